@@ -1,0 +1,83 @@
+"""What happens when a particle hits a plate: contact, energy and vibration, in a second.
+
+>>> import vibroimpact as vi
+>>> response = vi.simulate(vi.load_case("paper:type1-theory"))
+>>> response.impacts["rebound_height_m"].round(4).tolist()
+[2.4111, 1.4572, 0.8846, 0.5409, 0.3346]
+
+Names are loaded when they are first asked for, so that `vibroimpact --help` is quick.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+from vibroimpact._version import __version__
+
+if TYPE_CHECKING:
+    from vibroimpact.bodies.body import Body as Body
+    from vibroimpact.bodies.plate import rigid_plate as rigid_plate
+    from vibroimpact.bodies.sphere import rigid_sphere as rigid_sphere
+    from vibroimpact.cases.reader import load_case as load_case
+    from vibroimpact.cases.reader import read_case as read_case
+    from vibroimpact.cases.reader import shipped_cases as shipped_cases
+    from vibroimpact.cases.schema import Case as Case
+    from vibroimpact.cases.schema import case_schema as case_schema
+    from vibroimpact.contact.law import contact_laws as contact_laws
+    from vibroimpact.contact.law import find_contact_law as find_contact_law
+    from vibroimpact.dynamics.problem import Problem as Problem
+    from vibroimpact.dynamics.response import Outcome as Outcome
+    from vibroimpact.dynamics.response import Response as Response
+    from vibroimpact.dynamics.simulate import simulate as simulate
+    from vibroimpact.errors import ComputationError as ComputationError
+    from vibroimpact.errors import InputError as InputError
+    from vibroimpact.errors import VibroimpactError as VibroimpactError
+    from vibroimpact.materials import Material as Material
+    from vibroimpact.materials import find_material as find_material
+    from vibroimpact.materials import material_library as material_library
+    from vibroimpact.report.save import remake_report as remake_report
+    from vibroimpact.report.save import save_result as save_result
+    from vibroimpact.storage.folder import read_result as read_result
+    from vibroimpact.storage.result import Result as Result
+    from vibroimpact.units import to_si as to_si
+
+_HOME = {
+    "Body": "bodies.body",
+    "Case": "cases.schema",
+    "ComputationError": "errors",
+    "InputError": "errors",
+    "Material": "materials",
+    "Outcome": "dynamics.response",
+    "Problem": "dynamics.problem",
+    "Response": "dynamics.response",
+    "Result": "storage.result",
+    "VibroimpactError": "errors",
+    "case_schema": "cases.schema",
+    "contact_laws": "contact.law",
+    "find_contact_law": "contact.law",
+    "find_material": "materials",
+    "load_case": "cases.reader",
+    "material_library": "materials",
+    "read_case": "cases.reader",
+    "read_result": "storage.folder",
+    "remake_report": "report.save",
+    "rigid_plate": "bodies.plate",
+    "rigid_sphere": "bodies.sphere",
+    "save_result": "report.save",
+    "shipped_cases": "cases.reader",
+    "simulate": "dynamics.simulate",
+    "to_si": "units",
+}
+
+__all__ = [*sorted(_HOME), "__version__"]
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOME:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(import_module(f"{__name__}.{_HOME[name]}"), name)
+
+
+def __dir__() -> list[str]:
+    return __all__

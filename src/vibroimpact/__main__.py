@@ -1,0 +1,5 @@
+"""`python -m vibroimpact`: the command line."""
+
+from vibroimpact.cli import main
+
+main()

@@ -1,0 +1,1 @@
+"""Bodies: a mass or a fixity, made from geometry and material."""

@@ -1,0 +1,35 @@
+"""What the dynamics know of a body."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from vibroimpact.contact.pair import Array
+from vibroimpact.errors import InputError
+
+
+@dataclass(frozen=True)
+class Body:
+    """A body that falls, or one that is held.
+
+    Parameters
+    ----------
+    mass : float or array
+        Mass [kg], > 0; infinite for a body that is held fixed.
+    contact_offset : float or array
+        Distance of the point of contact from the centre of mass [m], >= 0.
+    """
+
+    mass: Array
+    contact_offset: Array
+
+    def __post_init__(self) -> None:
+        for name in ("mass", "contact_offset"):
+            if isinstance(getattr(self, name), (list, tuple)):
+                object.__setattr__(self, name, np.asarray(getattr(self, name), dtype=float))
+        if not np.all(np.asarray(self.mass) > 0):
+            raise InputError("the mass of a body must be positive [kg]")
+        if not np.all(np.asarray(self.contact_offset) >= 0):
+            raise InputError("the contact offset of a body must not be negative [m]")

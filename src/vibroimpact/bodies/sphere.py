@@ -1,0 +1,28 @@
+"""The sphere."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from vibroimpact.bodies.body import Body
+from vibroimpact.contact.pair import Array
+from vibroimpact.materials import Material
+
+
+def rigid_sphere(radius: Array, material: Material) -> Body:
+    r"""Make a solid sphere whose only compliance is that of its contact.
+
+    Parameters
+    ----------
+    radius : float or array
+        Radius [m], > 0.
+    material : Material
+        Its density gives the mass :math:`\tfrac43 \pi R^3 \rho`.
+
+    Examples
+    --------
+    >>> from vibroimpact.materials import find_material
+    >>> round(rigid_sphere(0.025, find_material("rock-paper")).mass, 11)
+    0.09032078879
+    """
+    return Body(mass=4.0 / 3.0 * np.pi * radius**3 * material.density, contact_offset=radius)

@@ -1,0 +1,1 @@
+"""Cases: the file that a user writes, its reader, and the cases that ship with the package."""

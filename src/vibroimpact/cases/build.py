@@ -1,0 +1,90 @@
+"""From a case to the problem it states, and back to a resolved case."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, fields
+from typing import Any
+
+from vibroimpact.bodies.plate import rigid_plate
+from vibroimpact.bodies.sphere import rigid_sphere
+from vibroimpact.cases.schema import Case
+from vibroimpact.contact.law import ContactLaw, find_contact_law
+from vibroimpact.contact.pair import ContactPair, effective_modulus
+from vibroimpact.dynamics.problem import Problem
+from vibroimpact.errors import InputError
+from vibroimpact.materials import RIGID, Material
+
+_DEFAULT_IMPACTS = 5
+
+
+def contact_pair(case: Case) -> ContactPair:
+    """Return the facts of the touching pair of a case: effective modulus, radius and mass."""
+    modulus = effective_modulus(case.sphere.material, case.plate.material)
+    mass = rigid_sphere(case.sphere.radius, case.sphere.material).mass
+    return ContactPair(effective_modulus=modulus, effective_radius=case.sphere.radius, effective_mass=mass)
+
+
+def contact_laws_of(case: Case) -> tuple[ContactLaw, ...]:
+    """Return the law of each impact: as many as the longest list of a parameter."""
+    law, pair = find_contact_law(case.contact.law), contact_pair(case)
+    lists = {key: value for key, value in case.contact.parameters.items() if isinstance(value, tuple)}
+    number = max((len(value) for value in lists.values()), default=1)
+    try:
+        return tuple(
+            law.for_pair(pair, **{**case.contact.parameters, **{key: value[min(impact, len(value) - 1)] for key, value in lists.items()}})
+            for impact in range(number)
+        )
+    except InputError as error:
+        raise InputError(error.message, f"contact.{error.key}".rstrip(".")) from None
+
+
+def impacts_of(case: Case) -> int | None:
+    """Return after how many impacts a case stops; None if it goes on to rest."""
+    if case.run.impacts is None:
+        return _DEFAULT_IMPACTS if case.run.duration is None else None
+    return None if case.run.impacts == "all" else case.run.impacts
+
+
+def problem_of(case: Case) -> Problem:
+    """Return the problem that a case states."""
+    return Problem(
+        sphere=rigid_sphere(case.sphere.radius, case.sphere.material),
+        plate=rigid_plate(case.plate.size[2] if case.plate.size else 0.0),
+        laws=contact_laws_of(case),
+        height=case.drop.height,
+        speed=case.drop.speed,
+        gravity=case.drop.gravity,
+        impacts=impacts_of(case),
+        duration=case.run.duration,
+        rest_speed=case.run.rest_speed,
+        tolerance=case.run.tolerance,
+        source=resolved(case),
+    )
+
+
+def resolved(case: Case) -> dict[str, Any]:
+    """Return a case in full, in SI: what is written as `case.toml`, and reads back as the same case."""
+    laws = contact_laws_of(case)
+    contact: dict[str, Any] = {"law": case.contact.law}
+    for item in fields(laws[0]):
+        values = [getattr(law, item.name) for law in laws]
+        if item.name in case.contact.parameters or values[0] is not None:
+            contact[item.name] = values if len(values) > 1 and len(set(values)) > 1 else values[0]
+    sections = case.model_dump(exclude_none=True, exclude={"sphere", "plate", "contact", "run"})
+    number = impacts_of(case)
+    return {
+        "schema_version": case.schema_version,
+        "name": case.name,
+        "sphere": {**case.sphere.model_dump(exclude={"material"}), "material": _table(case.sphere.material)},
+        "plate": {**case.plate.model_dump(exclude={"material"}, exclude_none=True), "material": _table(case.plate.material)},
+        "drop": {**sections["drop"], "position": list(case.drop.position)},
+        "contact": contact,
+        "run": {**case.run.model_dump(exclude_none=True, exclude={"impacts"}), "impacts": "all" if number is None else number},
+    }
+
+
+def _table(material: Material) -> dict[str, Any] | str:
+    if material is RIGID:
+        return RIGID.name
+    keep = ("density", "youngs_modulus", "poissons_ratio", "yield_strength", "loss_factor", "name")
+    return {key: value for key, value in asdict(material).items() if key in keep and value not in (None, "")}

@@ -1,0 +1,74 @@
+"""The [contact] section: a law by name, and that law's own parameters."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import Field, dataclass, fields
+from typing import Any
+
+from vibroimpact.cases.quantities import quantity_schema, read_quantity
+from vibroimpact.contact.law import ContactLaw, contact_laws, find_contact_law
+from vibroimpact.errors import InputError, did_you_mean
+
+
+@dataclass(frozen=True)
+class ContactSection:
+    """A contact law's name and its parameters in SI; a tuple is one value an impact, the last one goes on."""
+
+    law: str
+    parameters: Mapping[str, float | tuple[float, ...]]
+
+
+def read_contact(value: Any) -> ContactSection:
+    """Read the [contact] section.
+
+    Raises
+    ------
+    InputError
+        If the law is not known, or a parameter is unknown, can't be read or lies outside its range.
+    """
+    if isinstance(value, ContactSection):
+        return value
+    if not isinstance(value, dict) or not isinstance(value.get("law"), str):
+        raise InputError(f'it needs law = "...", one of {", ".join(contact_laws())}')
+    law = find_contact_law(value["law"])
+    known = {item.name: item for item in fields(law)}
+    exponent = value.get("exponent", known["exponent"].default if "exponent" in known else 1.0)
+    parameters: dict[str, float | tuple[float, ...]] = {}
+    for key, given in value.items():
+        if key == "law":
+            continue
+        if key not in known:
+            raise InputError(f'unknown key "{key}"; {law.name} takes {", ".join(known)}.{did_you_mean(key, known)}', key)
+        unit, allowed = unit_of(known[key], exponent), known[key].metadata["range"]
+        try:
+            if isinstance(given, list):
+                if not given:
+                    raise InputError("the list is empty; it must have one value an impact, the last one goes on")
+                parameters[key] = tuple(read_quantity(item, unit, allowed) for item in given)
+            else:
+                parameters[key] = read_quantity(given, unit, allowed)
+        except InputError as error:
+            raise InputError(error.message, key) from None
+    return ContactSection(law.name, parameters)
+
+
+def unit_of(item: Field[Any], exponent: Any) -> str:
+    """Return a parameter's SI unit, with the exponent of the force filled in."""
+    unit = str(item.metadata["unit"])
+    if unit == "N/m^n":
+        return f"N/m^{exponent:g}" if isinstance(exponent, (int, float)) and exponent != 1 else "N/m"
+    return unit
+
+
+def contact_schema() -> dict[str, Any]:
+    """Return the JSON schema of the [contact] section: one alternative a law."""
+    return {"description": "the contact law and its parameters", "oneOf": [_law_schema(law) for law in contact_laws().values()]}
+
+
+def _law_schema(law: type[ContactLaw]) -> dict[str, Any]:
+    properties: dict[str, Any] = {"law": {"const": law.name, "description": f"{law.equation} ({law.source})"}}
+    for item in fields(law):
+        one = quantity_schema(item.metadata["unit"], item.metadata["meaning"])
+        properties[item.name] = {"anyOf": [one, {"type": "array", "items": one, "minItems": 1}], "description": one["description"]}
+    return {"type": "object", "properties": properties, "required": ["law"], "additionalProperties": False}

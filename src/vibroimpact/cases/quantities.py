@@ -1,0 +1,52 @@
+"""Fields of a case that are quantities: a number in SI, or a string with a unit."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
+from pydantic_core import CoreSchema, core_schema
+
+from vibroimpact.ranges import Range
+from vibroimpact.units import to_si
+
+
+def read_quantity(value: Any, unit: str, allowed: Range) -> float:
+    """Return a quantity in SI, checked against its range.
+
+    Raises
+    ------
+    InputError
+        If it can't be read, or lies outside the range.
+
+    Examples
+    --------
+    >>> read_quantity("25 mm", "m", Range(above=0))
+    0.025
+    """
+    number = to_si(value, unit)
+    allowed.check(number, unit, f'"{value}"' if isinstance(value, str) else str(value))
+    return number
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """The annotation of a quantity field: SI unit, meaning and range; pydantic reads and describes it by this."""
+
+    unit: str
+    meaning: str
+    allowed: Range = Range()
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        return core_schema.no_info_plain_validator_function(lambda value: read_quantity(value, self.unit, self.allowed))
+
+    def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        return quantity_schema(self.unit, self.meaning)
+
+
+def quantity_schema(unit: str, description: str) -> dict[str, Any]:
+    """Return the JSON schema of a quantity."""
+    if not unit:
+        return {"type": "number", "description": description}
+    return {"type": ["number", "string"], "description": f"{description} [{unit}]; a string carries its own unit"}

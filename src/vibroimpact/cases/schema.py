@@ -1,0 +1,173 @@
+"""The case file, version 1: every key, its unit and its range."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, WithJsonSchema, model_validator
+
+from vibroimpact.cases.contact_section import ContactSection, contact_schema, read_contact
+from vibroimpact.cases.quantities import Quantity
+from vibroimpact.dynamics.problem import MOST_IMPACTS, STANDARD_GRAVITY, Problem
+from vibroimpact.errors import InputError
+from vibroimpact.materials import RIGID, Material, find_material
+from vibroimpact.ranges import Range
+
+
+class _Section(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True, arbitrary_types_allowed=True)
+
+
+class InlineMaterial(_Section):
+    """A material given by its numbers."""
+
+    density: Annotated[float, Quantity("kg/m^3", "density", Range(above=0))]
+    youngs_modulus: Annotated[float, Quantity("Pa", "Young's modulus", Range(above=0))]
+    poissons_ratio: Annotated[float, Quantity("", "Poisson's ratio", Range(above=-1, below=0.5))]
+    yield_strength: Annotated[float, Quantity("Pa", "yield strength", Range(above=0))] | None = None
+    loss_factor: Annotated[float, Quantity("", "loss factor", Range(at_least=0))] | None = None
+    name: str = ""
+
+
+def _read_material(value: Any) -> Material:
+    if isinstance(value, Material):
+        return value
+    if isinstance(value, str):
+        return find_material(value)
+    if isinstance(value, dict):
+        return Material(**InlineMaterial.model_validate(value).model_dump())
+    raise InputError(f"{value!r} is neither the name of a material nor a table with density, youngs_modulus and poissons_ratio")
+
+
+_MATERIAL_SCHEMA = {
+    "description": 'the name of a material ("vibroimpact materials" lists them), or its numbers; "rigid" for a plate of infinite modulus',
+    "anyOf": [{"type": "string"}, InlineMaterial.model_json_schema()],
+}
+MaterialField = Annotated[Material, BeforeValidator(_read_material), WithJsonSchema(_MATERIAL_SCHEMA)]
+
+
+class SphereSection(_Section):
+    """The body that falls."""
+
+    radius: Annotated[float, Quantity("m", "radius", Range(above=0))]
+    material: MaterialField
+    model: Literal["rigid"] = Field("rigid", description="whether the sphere deforms beyond its contact")
+
+    @model_validator(mode="after")
+    def _has_mass(self) -> SphereSection:
+        if self.material is RIGID:
+            raise InputError('"rigid" has no density, and the sphere needs a mass; only the plate can be rigid', "material")
+        return self
+
+
+class PlateSection(_Section):
+    """The plate, held fixed."""
+
+    material: MaterialField
+    size: (
+        tuple[
+            Annotated[float, Quantity("m", "length", Range(above=0))],
+            Annotated[float, Quantity("m", "width", Range(above=0))],
+            Annotated[float, Quantity("m", "thickness", Range(above=0))],
+        ]
+        | None
+    ) = Field(None, description="length (x), width (y) and thickness (z) [m]")
+    model: Literal["rigid"] = Field("rigid", description="whether the plate bends")
+
+
+class DropSection(_Section):
+    """How the sphere comes down: from a height at rest, or with a speed at first touch."""
+
+    height: (
+        Annotated[float, Quantity("m", "height of the sphere's centre above the plate's upper surface, at rest", Range(above=0))] | None
+    ) = None
+    speed: Annotated[float, Quantity("m/s", "downward speed at first touch, where the run then begins", Range(above=0))] | None = None
+    position: tuple[Annotated[float, Quantity("m", "x")], Annotated[float, Quantity("m", "y")]] = Field(
+        (0.0, 0.0), description="on the plate, from its centre [m]"
+    )
+    gravity: Annotated[float, Quantity("m/s^2", "acceleration of gravity", Range(at_least=0))] = STANDARD_GRAVITY
+
+    @model_validator(mode="after")
+    def _one_of_two(self) -> DropSection:
+        if (self.height is None) == (self.speed is None):
+            raise InputError("give either height or speed" + ("; both are given" if self.height is not None else "; neither is given"))
+        return self
+
+
+def _read_impacts(value: Any) -> Any:
+    if value is None or value == "all" or (type(value) is int and 1 <= value <= MOST_IMPACTS):
+        return value
+    shown = f'"{value}"' if isinstance(value, str) else value
+    raise InputError(f'{shown} is not allowed; it must be a whole number from 1 to {MOST_IMPACTS}, or "all" to go on to rest')
+
+
+class RunSection(_Section):
+    """When to stop, and how exact to be."""
+
+    impacts: Annotated[int | Literal["all"] | None, BeforeValidator(_read_impacts)] = Field(
+        None, description='stop after so many impacts; "all": go on to rest; by default 5, or all if a duration is given'
+    )
+    duration: Annotated[float, Quantity("s", "stop at this time", Range(above=0))] | None = None
+    rest_speed: Annotated[float, Quantity("m/s", "a sphere that leaves more slowly is at rest", Range(at_least=0))] | None = None
+    tolerance: Annotated[
+        float, Quantity("", "relative error allowed in the state at the end of a contact", Range(at_least=1e-13, at_most=1e-3))
+    ] = 1e-9
+
+
+class Case(_Section):
+    """A case: the file, validated, in SI.
+
+    Read one with `load_case` or `read_case`; `to_problem` states it for the simulation.
+    """
+
+    schema_version: Literal[1] = Field(1, description="version of this format")
+    name: str = Field("", description="what the case is, in a few words")
+    sphere: SphereSection
+    plate: PlateSection
+    drop: DropSection
+    contact: Annotated[ContactSection, BeforeValidator(read_contact)]
+    run: RunSection = RunSection()
+
+    @model_validator(mode="after")
+    def _fits_together(self) -> Case:
+        radius, height, size = self.sphere.radius, self.drop.height, self.plate.size
+        if height is not None and height <= radius:
+            raise InputError(
+                f"{height:g} m is not above the surface; it is the height of the sphere's centre, so it must be "
+                f"greater than the radius, {radius:g} m",
+                "drop.height",
+            )
+        if height is not None and self.drop.gravity == 0:
+            raise InputError("without gravity a sphere does not fall; give drop.speed instead of drop.height", "drop.gravity")
+        if size is not None and any(abs(at) > 0.5 * length for at, length in zip(self.drop.position, size[:2], strict=True)):
+            x, y = self.drop.position
+            raise InputError(
+                f"({x:g}, {y:g}) m lies outside the plate, which reaches to ({size[0] / 2:g}, {size[1] / 2:g}) m", "drop.position"
+            )
+        return self
+
+    def to_problem(self) -> Problem:
+        """Return the problem that the case states.
+
+        Raises
+        ------
+        InputError
+            If the contact law can't be made for these two bodies.
+        """
+        from vibroimpact.cases.build import problem_of  # it needs Case itself
+
+        return problem_of(self)
+
+
+def case_schema() -> dict[str, Any]:
+    """Return the JSON schema of a case file, with every contact law and its parameters.
+
+    Examples
+    --------
+    >>> sorted(case_schema()["properties"])
+    ['contact', 'drop', 'name', 'plate', 'run', 'schema_version', 'sphere']
+    """
+    schema = Case.model_json_schema()
+    schema["$schema"] = "https://json-schema.org/draft/2020-12/schema"
+    schema["properties"]["contact"] = contact_schema()
+    return schema

@@ -1,0 +1,180 @@
+"""The command line. Every command is a public function of the package with its result printed."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from vibroimpact.errors import ComputationError, InputError
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+    from vibroimpact.cases.schema import Case
+
+# heavy imports live inside the commands, so that --help is quick
+
+app = typer.Typer(
+    name="vibroimpact",
+    no_args_is_help=True,
+    add_completion=False,
+    rich_markup_mode=None,
+    pretty_exceptions_enable=False,
+)
+
+CaseArgument = Annotated[str, typer.Argument(metavar="CASE", help='A TOML file, or a shipped case such as "paper:type1-theory".')]
+Force = Annotated[bool, typer.Option("--force", help="Replace an existing result folder.")]
+
+
+def _show_version(wanted: bool) -> None:
+    if wanted:
+        from vibroimpact._version import __version__
+
+        typer.echo(f"vibroimpact {__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def common(
+    version: Annotated[bool, typer.Option("--version", callback=_show_version, is_eager=True, help="Show the version and leave.")] = False,
+) -> None:
+    """What happens when a particle hits a plate: contact, energy and vibration, in a second."""
+
+
+@app.command()
+def demo(
+    output: Annotated[Path, typer.Option("-o", "--output", metavar="DIR", help="The result folder to make.")] = Path("vibroimpact-demo"),
+    force: Force = False,
+) -> None:
+    """Run the paper's Type 1 as a first example.
+
+    A rock sphere falls 4 m on a steel plate and bounces five times.
+    """
+    _run("paper:type1-variable", output, force=force)
+
+
+@app.command()
+def run(
+    case: CaseArgument,
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", metavar="DIR", help="The result folder to make; by default named after the case.")
+    ] = None,
+    force: Force = False,
+) -> None:
+    """Run a case and write its result folder.
+
+    The folder holds the case in full, the impact table, the data as NetCDF, figures, and a report.
+    """
+    _run(case, output or Path(case.removeprefix("paper:")).with_suffix("").name, force=force)
+
+
+@app.command()
+def check(case: CaseArgument) -> None:
+    """Validate a case and explain it; run nothing."""
+    from vibroimpact.cases.reader import load_case
+    from vibroimpact.report.console import case_explained
+
+    _console().print(case_explained(load_case(case)))
+
+
+@app.command()
+def report(directory: Annotated[Path, typer.Argument(metavar="DIR", help="A result folder.")]) -> None:
+    """Remake the report of a result folder."""
+    from vibroimpact.report.save import remake_report
+
+    typer.echo(f"wrote {remake_report(directory) / 'report.html'}")
+
+
+@app.command()
+def laws() -> None:
+    """List the contact laws and their parameters."""
+    from vibroimpact.report.console import law_table
+
+    _console().print(law_table())
+
+
+@app.command()
+def materials() -> None:
+    """List the shipped materials and their sources."""
+    from vibroimpact.report.console import material_table
+
+    _console().print(material_table())
+
+
+@app.command()
+def schema() -> None:
+    """Print the JSON schema of a case file."""
+    import json
+
+    from vibroimpact.cases.schema import case_schema
+
+    typer.echo(json.dumps(case_schema(), indent=2))
+
+
+@app.command()
+def doctor() -> None:
+    """Show versions and test this installation."""
+    from vibroimpact.doctor import diagnose, first_rebound_error
+    from vibroimpact.report.console import versions_table
+
+    _console().print(versions_table(diagnose()))
+    error = first_rebound_error()
+    if not error < 2e-6:
+        raise ComputationError(f"the self-test is off by {error:.1e}; reinstall the package")
+    typer.echo(f"self-test passed: the paper's first rebound, off by {error:.1e}")
+
+
+def main() -> None:
+    """Run the command line; errors of the package end in one message and an exit status."""
+    try:
+        app()
+    except InputError as error:
+        _fail(str(error), 2)
+    except ComputationError as error:
+        _fail(str(error), 1)
+    except KeyboardInterrupt:
+        _fail("interrupted; nothing was written", 130)
+    except BrokenPipeError:
+        # the reader of our output has gone; leave quietly, as other tools do
+        sys.stderr.close()
+        sys.exit(1)
+
+
+def _run(name: str, output: Path | str, *, force: bool) -> None:
+    from vibroimpact.cases.reader import load_case
+    from vibroimpact.dynamics.simulate import simulate
+    from vibroimpact.report.console import result_summary
+    from vibroimpact.report.progress import patient_progress
+    from vibroimpact.report.save import save_result
+    from vibroimpact.storage.folder import check_free
+    from vibroimpact.storage.result import result_of
+
+    case: Case = load_case(name)
+    check_free(output, force=force)  # before the work, not after it
+    console = _console()
+    with patient_progress("simulating", console) as progress:
+        response = simulate(case, progress)
+    console.print(result_summary(result_of(response)))
+    folder = save_result(response, output, force=force)
+    typer.echo(f"wrote {folder / 'report.html'}")
+
+
+def _console() -> Console:
+    from rich.console import Console
+
+    console = Console()
+    if not console.is_terminal:
+        console = Console(width=160)  # a pipe or a file has no width; tables must not be cut
+    return console
+
+
+def _fail(message: str, status: int) -> None:
+    typer.echo("\n".join(f"vibroimpact: {line}" for line in message.splitlines()), err=True)
+    sys.exit(status)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,51 @@
+"""Hertz's law: a purely elastic sphere."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from vibroimpact.contact.pair import Array
+from vibroimpact.contact.power_law import PowerLaw
+
+
+@dataclass(frozen=True, kw_only=True)
+class Hertz(PowerLaw):
+    r"""Elastic contact of two smooth spheres, or of a sphere and a flat (Hertz 1881).
+
+    .. math:: F = K \delta^n
+
+    Parameters
+    ----------
+    stiffness : float or array
+        Contact stiffness :math:`K` [N/m^n], > 0.
+    exponent : float or array, default 1.5
+        Force exponent :math:`n` [-], >= 1; 1.5 for a sphere.
+
+    Notes
+    -----
+    Nothing is lost, so the restitution is 1. Valid while the contact radius is small beside the sphere's
+    and nothing yields.
+
+    References
+    ----------
+    Hertz, H. (1881). Ueber die Beruehrung fester elastischer Koerper. J. reine angew. Math. 92, 156-171.
+    Johnson, K. L. (1985). Contact Mechanics. Cambridge University Press, eq. (4.23).
+
+    Examples
+    --------
+    >>> elastic, dissipative = Hertz(stiffness=2.0).forces(4.0, 1.0, 1.0)
+    >>> float(elastic), float(dissipative)
+    (16.0, 0.0)
+    """
+
+    name = "hertz"
+    equation = "F = K delta^n"
+    source = "Hertz 1881, J. reine angew. Math. 92:156"
+    contact_end = "zero-indentation"
+    tension = "none"
+
+    def forces(self, delta: Array, delta_dot: Array, approach_speed: Array) -> tuple[Array, Array]:
+        """Return the elastic force and zero [N]."""
+        return self.elastic_force(delta), np.zeros_like(delta)

@@ -1,0 +1,91 @@
+"""The linear spring and dashpot (Kelvin and Voigt)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from vibroimpact.contact.law import CompliantLaw, parameter
+from vibroimpact.contact.pair import Array
+from vibroimpact.errors import InputError
+
+
+@dataclass(frozen=True, kw_only=True)
+class LinearSpringDashpot(CompliantLaw):
+    r"""Linear spring and dashpot in parallel, :math:`F = k \delta + c \dot\delta`.
+
+    Give either the dashpot's `damping` or the `restitution` wanted and the `effective_mass` m; then
+
+    .. math:: c = 2 \beta \sqrt{k m},\qquad \beta = -\ln e / \sqrt{\pi^2 + \ln^2 e}
+
+    Parameters
+    ----------
+    stiffness : float or array
+        Spring stiffness :math:`k` [N/m], > 0.
+    damping : float or array, optional
+        Dashpot :math:`c` [N s/m], >= 0.
+    restitution : float or array, optional
+        Restitution asked for, :math:`e` [-], in (0, 1].
+    effective_mass : float or array, optional
+        Effective mass of the pair [kg], > 0.
+
+    Raises
+    ------
+    InputError
+        Unless exactly one of `damping` and `restitution` is given, the latter with a mass.
+
+    Notes
+    -----
+    The contact ends at zero overlap and the dashpot may pull before that, as in most discrete-element
+    programs; the restitution without gravity is then exactly the one asked for. The force jumps at first
+    touch from zero to :math:`c\dot\delta_0`.
+
+    References
+    ----------
+    Garg, R., Galvin, J., Li, T. and Pannala, S. (2012). Open-source MFIX-DEM software for gas-solids flows:
+    Part I, verification studies. Powder Technology 220, 122-137.
+
+    Examples
+    --------
+    >>> law = LinearSpringDashpot(stiffness=100.0, restitution=1.0, effective_mass=1.0)
+    >>> elastic, dissipative = law.forces(0.5, 1.0, 1.0)
+    >>> float(elastic), abs(float(dissipative))
+    (50.0, 0.0)
+    """
+
+    name = "linear-spring-dashpot"
+    equation = "F = k delta + c delta_dot"
+    source = "Garg et al. 2012, Powder Technology 220:122"
+    contact_end = "zero-indentation"
+    tension = "kept"
+
+    stiffness: Array = parameter("spring stiffness k", "N/m", above=0)
+    damping: Array | None = parameter("dashpot c, unless a restitution is given", "N s/m", at_least=0, default=None)
+    restitution: Array | None = parameter("restitution asked for, instead of damping", above=0, at_most=1, default=None)
+    effective_mass: Array | None = parameter(
+        "mass for which the restitution is asked", "kg", above=0, from_pair="effective_mass", default=None
+    )
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if (self.damping is None) == (self.restitution is None):
+            raise InputError(f"{self.name} needs either damping [N s/m] or restitution, and not both")
+        if self.restitution is not None and self.effective_mass is None:
+            raise InputError(f"{self.name} needs effective_mass [kg] with restitution")
+
+    @property
+    def dashpot(self) -> Array:
+        """The dashpot's damping [N s/m], given or from the restitution."""
+        if self.damping is not None:
+            return self.damping
+        log = np.log(np.asarray(self.restitution, dtype=float))
+        return -2.0 * log / np.sqrt(np.pi**2 + log * log) * np.sqrt(self.stiffness * self.effective_mass)
+
+    def forces(self, delta: Array, delta_dot: Array, approach_speed: Array) -> tuple[Array, Array]:
+        """Return the elastic and the dissipative force [N]."""
+        return self.stiffness * delta, self.dashpot * delta_dot
+
+    def elastic_energy(self, delta: Array) -> Array:
+        r"""Return :math:`k \delta^2/2` [J]."""
+        return 0.5 * self.stiffness * delta * delta

@@ -1,0 +1,43 @@
+"""Newton's restitution: an impact without a duration."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from vibroimpact.contact.law import InstantaneousLaw, parameter
+from vibroimpact.contact.pair import Array
+
+
+@dataclass(frozen=True, kw_only=True)
+class Newton(InstantaneousLaw):
+    r"""Instantaneous impact of hard bodies (Newton 1687): :math:`v_+ = e\, v_-`.
+
+    Parameters
+    ----------
+    restitution : float or array
+        Coefficient of restitution :math:`e` [-], in [0, 1].
+
+    Notes
+    -----
+    There is no force and no indentation; the restitution asked for is the one achieved. Dropped from h, a
+    ball comes to rest after :math:`\sqrt{2h/g}\,(1+e)/(1-e)` and infinitely many bounces.
+
+    References
+    ----------
+    Newton, I. (1687). Philosophiae Naturalis Principia Mathematica, scholium to the laws of motion.
+
+    Examples
+    --------
+    >>> Newton(restitution=0.5).separation_speed(4.0)
+    2.0
+    """
+
+    name = "newton"
+    equation = "v+ = e v-"
+    source = "Newton 1687, Principia, scholium to the laws of motion"
+
+    restitution: Array = parameter("coefficient of restitution e", at_least=0, at_most=1)
+
+    def separation_speed(self, approach_speed: Array) -> Array:
+        """Return e times the approach speed [m/s]."""
+        return self.restitution * approach_speed

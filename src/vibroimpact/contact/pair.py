@@ -1,0 +1,82 @@
+"""What two elastic bodies bring to their contact: effective modulus, radius, mass, stiffness."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from vibroimpact.materials import Material
+
+Array = Any  # a float, or an array of any library that follows NumPy's operators and ufuncs
+
+
+def effective_modulus(first: Material, second: Material) -> float:
+    r"""Return the effective modulus of a contact pair [Pa].
+
+    .. math:: 1/E^* = (1 - \nu_1^2)/E_1 + (1 - \nu_2^2)/E_2
+
+    Infinite if both materials are rigid.
+
+    References
+    ----------
+    Johnson, K. L. (1985). Contact Mechanics. Cambridge University Press, eq. (4.6).
+
+    Examples
+    --------
+    >>> rock = Material(density=1380, youngs_modulus=2.26e9, poissons_ratio=0.28)
+    >>> steel = Material(density=7850, youngs_modulus=2.1e11, poissons_ratio=0.3)
+    >>> f"{effective_modulus(rock, steel):.6e}"
+    '2.426472e+09'
+    """
+    compliance = 1.0 / first.plane_strain_modulus + 1.0 / second.plane_strain_modulus
+    return 1.0 / compliance if compliance else np.inf
+
+
+def hertz_stiffness(modulus: Array, radius: Array) -> Array:
+    r"""Return Hertz's stiffness of a sphere on a flat [N/m^1.5].
+
+    .. math:: K = \tfrac{4}{3} E^* \sqrt{R}
+
+    Parameters
+    ----------
+    modulus : float or array
+        Effective modulus :math:`E^*` [Pa].
+    radius : float or array
+        Effective radius :math:`R` [m]; on a flat, the sphere's.
+
+    References
+    ----------
+    Johnson, K. L. (1985). Contact Mechanics. Cambridge University Press, eq. (4.23).
+
+    Examples
+    --------
+    >>> f"{hertz_stiffness(2.426472e9, 0.025):.5e}"
+    '5.11545e+08'
+    """
+    return 4.0 / 3.0 * modulus * np.sqrt(radius)
+
+
+@dataclass(frozen=True)
+class ContactPair:
+    """The facts of a touching pair that a law may take its parameters from.
+
+    Parameters
+    ----------
+    effective_modulus : float or array
+        :math:`E^*` [Pa]; infinite for two rigid materials.
+    effective_radius : float or array
+        :math:`R` [m].
+    effective_mass : float or array
+        :math:`m_1 m_2 / (m_1 + m_2)` [kg]; the sphere's mass if the plate is held.
+    """
+
+    effective_modulus: Array
+    effective_radius: Array
+    effective_mass: Array
+
+    @property
+    def hertz_stiffness(self) -> Array:
+        """Hertz's stiffness of the pair [N/m^1.5]."""
+        return hertz_stiffness(self.effective_modulus, self.effective_radius)

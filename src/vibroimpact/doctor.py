@@ -1,0 +1,45 @@
+"""Is this installation sound? Versions, and a number that must come out."""
+
+from __future__ import annotations
+
+import os
+import platform
+from importlib.metadata import PackageNotFoundError, requires, version
+
+from vibroimpact._version import __version__
+
+_FIRST_REBOUND = 6.8386265  # m/s: PAPER, section 4, theory, integrated independently at 1e-12
+
+
+def diagnose() -> list[tuple[str, str]]:
+    """Return what is installed: rows of (what, version or how to get it).
+
+    Examples
+    --------
+    >>> diagnose()[0][0]
+    'vibroimpact'
+    """
+    rows = [
+        ("vibroimpact", __version__),
+        ("python", platform.python_version()),
+        ("platform", platform.platform()),
+        ("processors", str(os.cpu_count())),
+    ]
+    for requirement in requires("vibroimpact") or []:
+        name, _, marker = requirement.partition(";")
+        name = name.split("[")[0].split(">")[0].split("=")[0].split("<")[0].split("~")[0].strip()
+        extra = marker.partition("extra ==")[2].strip(" '\"")
+        try:
+            rows.append((name, version(name)))
+        except PackageNotFoundError:
+            rows.append((name, f'not installed; pip install "vibroimpact[{extra}]"' if extra else "missing"))
+    return rows
+
+
+def first_rebound_error() -> float:
+    """Return the relative error of the first rebound speed of the paper's theory."""
+    from vibroimpact.cases.reader import load_case
+    from vibroimpact.dynamics.simulate import simulate
+
+    speed = float(simulate(load_case("paper:type1-theory")).impacts["separation_speed_m_s"][0])
+    return abs(speed / _FIRST_REBOUND - 1.0)

@@ -1,0 +1,1 @@
+"""The drop: flight, contact, release, the energy ledger and the response."""

@@ -1,0 +1,39 @@
+"""The names of everything a response tells, with unit and meaning: one list for table, file and figure."""
+
+from __future__ import annotations
+
+IMPACT_COLUMNS: dict[str, tuple[str, str]] = {
+    "impact": ("1", "number of the impact, from 1"),
+    "time_s": ("s", "time of first touch"),
+    "duration_s": ("s", "duration of contact"),
+    "approach_speed_m_s": ("m/s", "speed at first touch, downwards"),
+    "separation_speed_m_s": ("m/s", "speed at release, upwards"),
+    "restitution_achieved": ("1", "separation speed over approach speed"),
+    "max_indentation_m": ("m", "largest indentation"),
+    "max_force_N": ("N", "largest contact force"),
+    "max_acceleration_m_s2": ("m/s2", "largest magnitude of the sphere's acceleration"),
+    "rebound_height_m": ("m", "height of the sphere's centre above the plate at the top of the rebound"),
+    "energy_lost_J": ("J", "mechanical energy lost in the contact"),
+    "restitution_asked": ("1", "restitution asked of the contact law, where it has one"),
+    "time_of_max_indentation_s": ("s", "time of the largest indentation"),
+    "time_of_max_force_s": ("s", "time of the largest contact force"),
+}
+"""Columns of the impact table, one row an impact: unit and meaning."""
+
+HISTORY_COLUMNS: dict[str, tuple[str, str]] = {
+    "time_s": ("s", "time since the start"),
+    "position_m": ("m", "height of the sphere's centre above the plate's upper surface"),
+    "velocity_m_s": ("m/s", "velocity of the sphere, upwards"),
+    "acceleration_m_s2": ("m/s2", "acceleration of the sphere, upwards"),
+    "force_N": ("N", "contact force on the sphere, upwards"),
+    "indentation_m": ("m", "indentation, zero without contact"),
+    "kinetic_J": ("J", "kinetic energy of the sphere"),
+    "potential_J": ("J", "potential energy of the sphere, zero at first touch of the undeformed plate"),
+    "contact_elastic_J": ("J", "energy stored in the contact"),
+    "contact_dissipated_J": ("J", "energy lost in the contact so far"),
+    "written_off_at_rest_J": ("J", "energy written off when the sphere was found to be at rest"),
+}
+"""Columns of a history: unit and meaning."""
+
+LEDGER = ("kinetic_J", "potential_J", "contact_elastic_J", "contact_dissipated_J", "written_off_at_rest_J")
+"""The columns of a history that share the energy put in; their sum is constant."""

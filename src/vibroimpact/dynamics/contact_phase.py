@@ -1,0 +1,407 @@
+"""From first touch to release: the stretches of one impact, split where the force is not smooth.
+
+Each drop goes through compression (to each breakpoint of the law, then to the deepest point), restitution
+(back through the breakpoints to zero indentation) and, where a law's tension is cut, a glide: the sphere
+has stopped pushing but still overlaps, and moves freely until it pushes again or is out.
+
+A stretch is first aimed straight at its end. If that fails to converge, or its series has not converged,
+the drop advances by stretches of a given, adapted duration until the end comes within reach.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vibroimpact.dynamics.collocation import Floats, Map, Rule, collocation_rule
+from vibroimpact.dynamics.glide import Glide, glide_until_push
+from vibroimpact.dynamics.stretch import Aim, Encounter, Stretch, WarmStart, acceleration_unit, solve_stretch
+
+Drops = NDArray[np.intp]
+
+COMPRESSION, RESTITUTION, GLIDE, RELEASED, CAPTURED, FAILED = range(6)
+
+_HALVINGS = 60
+
+
+@dataclass(frozen=True)
+class Piece:
+    """One piece of the history of some drops' contact: a solved stretch or a free glide."""
+
+    drops: Drops
+    start: Floats
+    """Time since first touch at which it begins [s], (b,)."""
+    motion: Stretch | Glide
+
+
+@dataclass
+class Contact:
+    """One impact of B drops, first touch to release; arrays are (B,).
+
+    `outcome` is RELEASED, CAPTURED (its energy no longer suffices to get out of the indentation) or FAILED.
+    `final_delta`, `final_rate`: indentation [m] and its rate [m/s] at the end.
+    """
+
+    pieces: list[Piece]
+    outcome: NDArray[np.int8]
+    duration: Floats
+    final_delta: Floats
+    final_rate: Floats
+    max_delta: Floats
+    time_of_max_delta: Floats
+    dissipated: Floats
+
+    def of(self, index: int) -> Contact:
+        """Return the contact of one drop."""
+        pieces = []
+        for piece in self.pieces:
+            here = piece.drops == index
+            if here.any():
+                pieces.append(Piece(np.zeros(1, dtype=np.intp), piece.start[here], piece.motion.take(here)))
+        floats = (self.duration, self.final_delta, self.final_rate, self.max_delta, self.time_of_max_delta, self.dissipated)
+        return Contact(pieces, self.outcome[index : index + 1], *(array[index : index + 1] for array in floats))
+
+
+class Memory:
+    """The dimensionless solutions of a run's last stretches, one a kind and drop, to start the next from."""
+
+    def __init__(self, size: int) -> None:
+        self.size = size
+        self.starts: dict[tuple[Map, Aim], WarmStart] = {}
+
+    def knows(self, kind: tuple[Map, Aim], ids: Drops) -> NDArray[np.bool_]:
+        """Return for which drops there is a solution of a kind."""
+        return np.isfinite(self.starts[kind].unknowns[-1, ids]) if kind in self.starts else np.zeros(len(ids), dtype=bool)
+
+    def keep(self, kind: tuple[Map, Aim], ids: Drops, unknowns: Floats, inverse: Floats | None) -> None:
+        """Remember a solution."""
+        if kind not in self.starts:
+            self.starts[kind] = WarmStart(np.full((len(unknowns), self.size), np.nan))
+        self.starts[kind].unknowns[:, ids], self.starts[kind].inverse = unknowns, inverse
+
+
+def contact_phase(encounter: Encounter, tolerance: float, memory: Memory, ids: Drops) -> Contact:
+    """Integrate the contact of B drops from first touch to release.
+
+    Parameters
+    ----------
+    encounter : Encounter
+        The impact: law, mass, gravity, approach speed.
+    tolerance : float
+        Relative error allowed in the state at the end of each stretch.
+    memory : Memory
+        The solutions of the run's earlier impacts; gets this one's.
+    ids : array of int, shape (B,)
+        Which drops of the run these are.
+    """
+    with np.errstate(all="ignore"):  # guesses may be wild; what is not finite is found and tried again
+        return _Phase(encounter, tolerance, memory, ids).run()
+
+
+def nodes_for(tolerance: float) -> int:
+    """Return the number of collocation nodes for a tolerance: 16 at the default of 1e-9."""
+    return int(4 + 4 * np.ceil(-np.log10(tolerance) / 3.0))
+
+
+def elastic_depth(encounter: Encounter, delta: Floats, velocity: Floats) -> Floats:
+    """Return the indentation [m] that the motion would reach if nothing were lost."""
+    law, weight = encounter.law, encounter.mass * encounter.gravity
+    energy = 0.5 * encounter.mass * velocity * velocity + law.elastic_energy(delta) - weight * delta
+    depth = np.maximum(delta, velocity * velocity / (2.0 * encounter.gravity + 1e9) + 1e-9)
+    for _ in range(4):
+        stored = law.elastic_energy(depth)
+        elastic, _ = law.forces(depth, np.zeros_like(depth), encounter.approach_speed)
+        depth = depth * ((energy + weight * depth) / stored) ** (stored / (elastic * depth))
+    return np.maximum(depth, delta * (1.0 + 1e-9))
+
+
+class _Phase:
+    """The state of all drops in one contact phase, and the rules that move it on."""
+
+    def __init__(self, encounter: Encounter, tolerance: float, memory: Memory, ids: Drops) -> None:
+        size = len(encounter.mass)
+        self.memory, self.ids = memory, ids
+        self.encounter, self.law = encounter, encounter.law
+        self.number, self.tolerance = nodes_for(tolerance), tolerance
+        self.least_energy = 0.5 * encounter.mass * (tolerance * encounter.approach_speed) ** 2
+        self.pieces: list[Piece] = []
+        self.time, self.delta, self.velocity = np.zeros(size), np.zeros(size), encounter.approach_speed.copy()
+        self.outcome = np.full(size, COMPRESSION, dtype=np.int8)
+        self.max_delta, self.time_of_max_delta, self.dissipated = np.zeros(size), np.zeros(size), np.zeros(size)
+        self.levels = [np.broadcast_to(np.asarray(level, dtype=float), (size,)) for level in self.law.breakpoints]
+        self.within_reach = np.ones((len(self.levels), size), dtype=bool)
+        self.depth = elastic_depth(encounter, self.delta, self.velocity)
+        self.march = np.zeros(size)  # duration of the next stretch of a drop that can't aim at its end yet
+        self.pace = np.zeros(size)  # the last such duration that was good
+        self.halvings = np.zeros(size, dtype=int)
+
+    def run(self) -> Contact:
+        while (moving := np.flatnonzero(self.outcome < RELEASED)).size:
+            for code, advance in ((COMPRESSION, self.compress), (RESTITUTION, self.restore), (GLIDE, self.glide)):
+                drops = moving[self.outcome[moving] == code]
+                if drops.size:
+                    advance(drops)
+        return Contact(
+            self.pieces,
+            self.outcome,
+            self.time,
+            self.delta,
+            self.velocity,
+            self.max_delta,
+            self.time_of_max_delta,
+            self.dissipated,
+        )
+
+    # one advance of a group of drops -------------------------------------------------------------
+
+    def compress(self, drops: Drops) -> None:
+        """Move drops on towards the next breakpoint that they can reach, or to the deepest point."""
+        level = np.full(len(drops), np.inf)
+        for index, levels in reversed(list(enumerate(self.levels))):
+            ahead = (levels[drops] > self.delta[drops]) & (levels[drops] < self.depth[drops]) & self.within_reach[index, drops]
+            level[ahead] = levels[drops][ahead]
+        touching, turning = self.delta[drops] == 0.0, np.isinf(level)
+        maps: tuple[tuple[NDArray[np.bool_], Map], ...] = ((touching, "touch"), (~touching, "inside"))
+        aims: tuple[tuple[NDArray[np.bool_], Aim], ...] = ((turning, "turn"), (~turning, "indentation"))
+        for here, time_map in maps:
+            for there, aim in aims:
+                if (both := here & there).any():
+                    self.advance(drops[both], time_map, aim, level[both])
+
+    def restore(self, drops: Drops) -> None:
+        """Move drops on towards the next breakpoint below, or to zero indentation."""
+        level = np.zeros(len(drops))
+        for levels in self.levels:
+            ahead = levels[drops] < self.delta[drops]
+            level[ahead] = levels[drops][ahead]
+        last = level == 0.0
+        maps: tuple[tuple[NDArray[np.bool_], Map], ...] = ((last, "release"), (~last, "inside"))
+        for here, time_map in maps:
+            if here.any():
+                self.advance(drops[here], time_map, "indentation", level[here])
+
+    def advance(self, drops: Drops, time_map: Map, aim: Aim, level: Floats) -> None:
+        """Solve one stretch, aimed at its end or, for drops that are marching, of a given duration."""
+        marching = self.march[drops] > 0.0
+        if marching.any():
+            self.step(drops[marching], "touch" if time_map == "touch" else "inside", aim, level[marching])
+            drops, level = drops[~marching], level[~marching]
+        early = (
+            self.memory.knows(("inside", "force"), self.ids[drops]) & (self.outcome[drops] == RESTITUTION) & (self.velocity[drops] == 0.0)
+        )
+        if early.any():  # the last impact stopped pushing at this stage: look for that first
+            stretch = self.aimed(drops[early], "inside", "force", level[early])
+            good = self.good(drops[early], stretch) & (stretch.node_delta[-1] > level[early])
+            if good.any():
+                self.accept(drops[early][good], stretch.take(good), "force", level[early][good])
+            early[early] = good
+            drops, level = drops[~early], level[~early]
+        if drops.size:
+            self.settle(drops, self.aimed(drops, time_map, aim, level), aim, level)
+
+    def aimed(self, drops: Drops, time_map: Map, aim: Aim, level: Floats) -> Stretch:
+        """Solve a stretch to its end, from the last impact's solution or a sinusoidal guess."""
+        encounter, kind, ids = self.encounter.take(drops), (time_map, aim), self.ids[drops]
+        duration = self.time_scale(drops, aim, level)
+        if self.memory.knows(kind, ids).all():
+            start = WarmStart(self.memory.starts[kind].unknowns[:, ids], self.memory.starts[kind].inverse)
+        else:
+            unit = acceleration_unit(encounter, self.velocity[drops], duration)
+            guess = self.first_guess(drops, self.rule(time_map), aim, level) / unit
+            start = WarmStart(np.concatenate([guess, np.ones((1, len(drops)))]))
+        stretch = self.solve(drops, time_map, duration, start, aim, level)
+        self.remember(drops, stretch, aim, duration, start)
+        return stretch
+
+    def remember(self, drops: Drops, stretch: Stretch, aim: Aim, scale: Floats, start: WarmStart) -> None:
+        """Keep a solution for the next impact, in units of the time scale of its kind."""
+        if stretch.solved.all():
+            accelerations = stretch.node_acceleration / acceleration_unit(self.encounter.take(drops), stretch.velocity, scale)
+            unknowns = np.concatenate([accelerations, (stretch.duration / scale)[None]])
+            self.memory.keep((stretch.rule.time_map, aim), self.ids[drops], unknowns, start.inverse)
+
+    def solve(self, drops: Drops, time_map: Map, duration: Floats, start: WarmStart, aim: Aim, level: Floats) -> Stretch:
+        rule = self.rule(time_map)
+        return solve_stretch(self.encounter.take(drops), rule, self.delta[drops], self.velocity[drops], duration, start, aim, level)
+
+    def rule(self, time_map: Map) -> Rule:
+        return collocation_rule(self.number, time_map, self.law.root)
+
+    def time_scale(self, drops: Drops, aim: Aim, level: Floats) -> Floats:
+        """Return how long an undamped, sinusoidal motion would take to the end of a stretch [s]."""
+        delta, velocity, depth = self.delta[drops], self.velocity[drops], self.depth[drops]
+        if aim == "turn":
+            begin = np.arcsin(np.minimum(delta / depth, 0.999))
+            return np.asarray((0.5 * np.pi - begin) * depth * np.cos(begin) / velocity)
+        stored = np.sqrt(2.0 * self.encounter.take(drops).law.elastic_energy(delta) / self.encounter.mass[drops])
+        turn = np.arccos(np.clip(level / delta, 0.0, 1.0))
+        return np.where(velocity == 0.0, turn * delta / stored, (level - delta) / velocity)
+
+    def first_guess(self, drops: Drops, rule: Rule, aim: Aim, level: Floats) -> Floats:
+        """Guess the accelerations at the nodes of a stretch from an undamped, sinusoidal motion."""
+        delta, velocity, depth = self.delta[drops], self.velocity[drops], self.depth[drops]
+        duration, fraction = self.time_scale(drops, aim, level), rule.time[:, None]
+        if aim == "turn":
+            begin = np.arcsin(np.minimum(delta / depth, 0.999))
+            angle = begin + fraction * (0.5 * np.pi - begin)
+            path, speed = depth * np.sin(angle), velocity / np.cos(begin) * np.cos(angle)
+        else:
+            resting, turn = velocity == 0.0, np.arccos(np.clip(level / delta, 0.0, 1.0))
+            path = np.where(resting, delta * np.cos(turn * fraction), delta + (level - delta) * fraction)
+            speed = np.where(resting, -0.9 * delta * turn / duration * np.sin(turn * fraction), velocity)
+        return self.encounter.take(drops).acceleration(np.maximum(path, 0.0), speed)
+
+    # what becomes of a solved stretch ------------------------------------------------------------
+
+    def settle(self, drops: Drops, stretch: Stretch, aim: Aim, level: Floats) -> None:
+        """Accept an aimed stretch for the drops for which it holds; let the others march."""
+        good = self.good(drops, stretch)
+        if aim == "indentation":
+            missed = ~good & (self.outcome[drops] == COMPRESSION)
+            for index, levels in enumerate(self.levels):  # a breakpoint that damping keeps out of reach
+                self.within_reach[index, drops[missed & (levels[drops] == level)]] = False
+            lost = drops[~good & ~missed]
+        else:
+            lost = drops[~good]
+        self.march[lost] = np.where(self.pace[lost] > 0.0, self.pace[lost], 0.25 * self.span(lost))
+        if good.any():
+            self.accept(drops[good], stretch.take(good), aim, level[good])
+
+    def good(self, drops: Drops, stretch: Stretch) -> NDArray[np.bool_]:
+        """Is the stretch resolved, does the rate keep its sign, and does the indentation stay positive?"""
+        slack = 1e-12 * self.encounter.approach_speed[drops]
+        down = self.outcome[drops] == COMPRESSION
+        one_way = np.where(down, stretch.node_velocity.min(axis=0) >= -slack, stretch.node_velocity.max(axis=0) <= slack)
+        above = stretch.node_delta[:-1].min(axis=0) >= 0.0
+        return np.asarray(self.resolved(drops, stretch) & one_way & above)
+
+    def resolved(self, drops: Drops, stretch: Stretch) -> NDArray[np.bool_]:
+        return stretch.resolved(self.encounter.take(drops), self.tolerance)
+
+    def accept(self, drops: Drops, stretch: Stretch, aim: Aim, level: Floats) -> None:
+        """Take a stretch into the history, unless the force that may not pull has become zero on the way."""
+        restoring = self.outcome[drops] == RESTITUTION
+        if self.law.tension == "cut" and aim != "force" and restoring.any():
+            rounding = 1e-11 * np.abs(stretch.node_acceleration).max(axis=0)
+            pulling = (stretch.node_acceleration > self.encounter.gravity[drops] + rounding) & restoring
+            early = pulling.any(axis=0)
+            if early.any():
+                some = stretch.take(early)
+                self.redo(drops[early], some, some.rule.time[pulling[:, early].argmax(axis=0)], "force", level[early])
+                drops, stretch, level = drops[~early], stretch.take(~early), level[~early]
+        if not drops.size:
+            return
+        self.record(drops, stretch)
+        self.delta[drops] = level if aim == "indentation" else stretch.node_delta[-1]
+        self.velocity[drops] = 0.0 if aim == "turn" else stretch.node_velocity[-1]
+        self.halvings[drops], self.march[drops] = 0, 0.0
+        compressing = self.outcome[drops] == COMPRESSION
+        if aim == "turn":
+            turned = drops[compressing]
+            self.outcome[turned] = RESTITUTION
+            self.max_delta[turned], self.time_of_max_delta[turned] = self.delta[turned], self.time[turned]
+            self.outcome[drops[~compressing]] = CAPTURED  # it falls back before it is out
+        elif aim == "force":
+            self.outcome[drops] = GLIDE if self.law.contact_end == "zero-indentation" else RELEASED
+        elif aim == "indentation":
+            self.outcome[drops[~compressing & (level == 0.0)]] = RELEASED
+        else:  # go on marching, unless the end has come near enough to aim at
+            end = (level - self.delta[drops]) / self.velocity[drops]
+            left = np.where(np.isinf(level), -self.velocity[drops] / stretch.node_acceleration[-1], end)
+            near = (left > 0.0) & (left < 2.0 * self.pace[drops])
+            self.march[drops] = np.where(near, 0.0, self.pace[drops])
+        if aim != "duration":
+            self.pace[drops] = 0.0
+        self.capture(drops)
+
+    def capture(self, drops: Drops) -> None:
+        """End the contact of drops that can't get out any more.
+
+        No law gives energy, so a sphere that has less than it takes to lift it out of the indentation, with a
+        separation speed of `tolerance` times the approach speed, stays.
+        """
+        drops = drops[self.outcome[drops] < RELEASED]
+        encounter, delta = self.encounter.take(drops), self.delta[drops]
+        energy = encounter.mass * (0.5 * self.velocity[drops] ** 2 - encounter.gravity * delta) + encounter.law.elastic_energy(delta)
+        held = drops[energy < self.least_energy[drops]]
+        if held.size:
+            self.outcome[held] = CAPTURED
+            deeper = self.max_delta[held] < self.delta[held]
+            self.max_delta[held[deeper]], self.time_of_max_delta[held[deeper]] = self.delta[held[deeper]], self.time[held[deeper]]
+
+    def redo(self, drops: Drops, stretch: Stretch, fraction: Floats, aim: Aim, level: Floats) -> None:
+        """Solve part of a stretch again, to an event that was seen near a fraction of its duration."""
+        time_map: Map = "touch" if stretch.rule.time_map == "touch" else "inside"
+        if aim == "indentation" and not level.any():
+            time_map = "release"
+        rule, duration = self.rule(time_map), fraction * stretch.duration
+        guess = np.empty((self.number + 1, len(drops)))
+        for column, part in enumerate(fraction):
+            x = stretch.rule.unmap_time(part * rule.time)
+            guess[:-1, column] = stretch.rule.interpolate(x, stretch.node_acceleration[:, column])
+        guess[:-1] /= acceleration_unit(self.encounter.take(drops), self.velocity[drops], duration)
+        guess[-1] = 1.0
+        start = WarmStart(guess)
+        again = self.solve(drops, time_map, duration, start, aim, level)
+        if aim == "force" and not self.velocity[drops].any():
+            self.remember(drops, again, aim, self.time_scale(drops, aim, level), start)
+        good = self.resolved(drops, again)
+        self.refuse(drops[~good], 0.5 * duration[~good])
+        if good.any():
+            self.accept(drops[good], again.take(good), aim, level[good])
+
+    def step(self, drops: Drops, time_map: Map, aim: Aim, level: Floats) -> None:
+        """Advance marching drops by a stretch of given duration, or to the event inside it."""
+        encounter, duration = self.encounter.take(drops), self.march[drops]
+        rule = self.rule(time_map)
+        path = np.maximum(self.delta[drops] + self.velocity[drops] * (duration * rule.time[:, None]), 0.0)
+        guess = encounter.acceleration(path, np.broadcast_to(self.velocity[drops], path.shape))
+        guess /= acceleration_unit(encounter, self.velocity[drops], duration)
+        start = WarmStart(np.concatenate([guess, np.ones((1, len(drops)))]))
+        stretch = self.solve(drops, time_map, duration, start, "duration", level)
+        good = self.resolved(drops, stretch)
+        self.refuse(drops[~good], 0.25 * duration[~good])
+
+        compressing = self.outcome[drops] == COMPRESSION
+        turned = np.where(compressing, stretch.node_velocity < 0.0, stretch.node_velocity > 0.0)
+        crossed = np.where(compressing, stretch.node_delta > level, stretch.node_delta < level)
+        event = (turned | crossed).any(axis=0)
+        clear = good & ~event
+        if clear.any():
+            self.pace[drops[clear]] = 2.0 * duration[clear]
+            self.accept(drops[clear], stretch.take(clear), "duration", level[clear])
+        for sign, name in ((turned, "turn"), (crossed, "indentation")):
+            other = crossed if name == "turn" else turned
+            first = np.where(sign.any(axis=0), sign.argmax(axis=0), self.number)
+            sooner = first < np.where(other.any(axis=0), other.argmax(axis=0), self.number)
+            here = good & event & (sooner if name == "turn" else ~sooner & sign.any(axis=0))
+            if here.any():
+                fraction = rule.time[np.minimum(first[here], self.number - 1)]
+                self.redo(drops[here], stretch.take(here), fraction, "turn" if name == "turn" else "indentation", level[here])
+
+    def refuse(self, drops: Drops, duration: Floats) -> None:
+        """Shorten the next stretch of drops whose last was not good; give up after too many times."""
+        self.march[drops] = self.pace[drops] = duration
+        self.halvings[drops] += 1
+        self.outcome[drops[self.halvings[drops] > _HALVINGS]] = FAILED
+
+    def glide(self, drops: Drops) -> None:
+        """Move drops freely until the law pushes again or they are out of the indentation."""
+        motion, pushes, stays = glide_until_push(self.encounter.take(drops), self.delta[drops], self.velocity[drops])
+        self.pieces.append(Piece(drops, self.time[drops], motion))
+        self.dissipated[drops] += self.encounter.take(drops).law.elastic_energy(self.delta[drops])
+        self.time[drops] += motion.duration
+        self.delta[drops], self.velocity[drops] = motion.end()
+        self.dissipated[drops] -= self.encounter.take(drops).law.elastic_energy(self.delta[drops])
+        self.outcome[drops] = np.where(stays, CAPTURED, np.where(pushes, RESTITUTION, RELEASED))
+
+    def record(self, drops: Drops, stretch: Stretch) -> None:
+        self.pieces.append(Piece(drops, self.time[drops], stretch))
+        self.time[drops] += stretch.duration
+        self.dissipated[drops] += stretch.dissipated
+
+    def span(self, drops: Drops) -> Floats:
+        """Return a time scale of the contact [s], to begin marching with."""
+        return np.asarray(self.depth[drops] / np.maximum(self.encounter.approach_speed[drops], np.abs(self.velocity[drops])))

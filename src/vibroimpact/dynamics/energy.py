@@ -1,0 +1,31 @@
+"""The energy ledger of a run at its end."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from vibroimpact.dynamics.collocation import Floats
+from vibroimpact.dynamics.columns import LEDGER
+
+CLOSURE_LIMIT = 1e-6
+"""The part of the energy put in that may be missing; above it a run has failed."""
+
+
+def close_ledger(energy_in: Floats, entries: dict[str, Floats]) -> dict[str, Floats]:
+    """Return the ledger [J] with what was put in and its closure.
+
+    Parameters
+    ----------
+    energy_in : array, shape (B,)
+        Kinetic and potential energy at the start [J].
+    entries : dict of str to array
+        The entries of `LEDGER` at the end [J].
+
+    Returns
+    -------
+    dict of str to array
+        `input_J`, the entries, `closure_J` (entries less input) and `closure_relative`.
+    """
+    closure = sum((entries[name] for name in LEDGER), -energy_in)
+    relative = np.abs(closure) / np.where(energy_in > 0.0, energy_in, 1.0)
+    return {"input_J": energy_in, **{name: entries[name] for name in LEDGER}, "closure_J": closure, "closure_relative": relative}

@@ -1,0 +1,48 @@
+"""Free flight above a plate at rest, in closed form."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from vibroimpact.dynamics.collocation import Floats
+
+
+@dataclass(frozen=True)
+class Flight:
+    """Flights of B drops; all arrays are (B,).
+
+    `start`: when they begin [s]. `gap`: height of the sphere's lowest point above the plate then [m], >= 0.
+    `velocity`: upward [m/s]. `gravity` [m/s^2].
+    """
+
+    start: Floats
+    gap: Floats
+    velocity: Floats
+    gravity: Floats
+
+    def at(self, time: Floats) -> tuple[Floats, Floats]:
+        """Return gap [m] and upward velocity [m/s] at times [s] (..., B)."""
+        elapsed = time - self.start
+        return self.gap + elapsed * (self.velocity - 0.5 * self.gravity * elapsed), self.velocity - self.gravity * elapsed
+
+    def touch(self) -> tuple[Floats, Floats]:
+        r"""Return time [s] and approach speed [m/s] of the next touch; an infinite time if there is none.
+
+        .. math:: v = \sqrt{v_0^2 + 2 g h},\qquad t = (v_0 + v)/g = 2 h/(v - v_0)
+        """
+        speed = np.sqrt(self.velocity**2 + 2.0 * self.gravity * self.gap)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            rising = (self.velocity + speed) / self.gravity
+            falling = 2.0 * self.gap / (speed - self.velocity)  # the same root without its cancellation
+            elapsed = np.where(self.velocity > 0.0, rising, np.where(speed > self.velocity, falling, np.inf))
+        never = (self.gravity == 0.0) & (self.velocity >= 0.0)
+        return np.where(never, np.inf, self.start + elapsed), speed
+
+    def apex(self) -> tuple[Floats, Floats]:
+        """Return time [s] and gap [m] at the top of the flight; infinite without gravity, if rising."""
+        with np.errstate(divide="ignore", invalid="ignore"):
+            rise = np.where(self.velocity > 0.0, self.velocity / self.gravity, 0.0)
+            height = np.where(self.velocity > 0.0, 0.5 * self.velocity**2 / self.gravity, 0.0)
+        return self.start + rise, self.gap + height

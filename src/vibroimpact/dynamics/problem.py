@@ -1,0 +1,152 @@
+"""The statement of a drop, or of a batch of drops: everything the simulation needs, validated."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields, replace
+from typing import Any, Protocol
+
+import numpy as np
+
+from vibroimpact.bodies.body import Body
+from vibroimpact.contact.law import ContactLaw
+from vibroimpact.contact.pair import Array
+from vibroimpact.errors import InputError
+
+STANDARD_GRAVITY = 9.80665
+"""Standard acceleration of gravity [m/s^2], CGPM 1901."""
+
+MOST_IMPACTS = 100_000
+"""Where a run without a number of impacts is stopped, if it has not come to rest."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Problem:
+    """A sphere that falls on a plate, once or as a batch with one value a drop.
+
+    Parameters
+    ----------
+    sphere, plate : Body
+        The bodies. The plate is held fixed: its mass is infinite.
+    laws : tuple of ContactLaw
+        The contact law of the first impact, the second, ...; the last one goes on. All of one kind.
+    height : float or array, optional
+        Height of the sphere's centre above the plate's upper surface at rest, at the start [m].
+    speed : float or array, optional
+        Downward speed at first touch, where the run then begins [m/s]. Give this or `height`.
+    gravity : float or array, default 9.80665
+        Acceleration of gravity [m/s^2], >= 0.
+    impacts : int, optional
+        Stop after so many impacts, at the top of the last rebound. None: go on to rest.
+    duration : float, optional
+        Stop at this time [s]; an impact under way is finished first.
+    rest_speed : float or array, optional
+        A sphere that leaves more slowly is at rest [m/s]. By default the speed from which it would
+        rise no higher than the static indentation under its own weight, but at least 1e-6 of
+        the first approach speed. Zero: only a sphere that does not leave at all is at rest.
+    tolerance : float, default 1e-9
+        Relative error allowed in the state at the end of a contact; 1e-13 to 1e-3.
+    source : mapping, optional
+        The case that the problem was made from, for provenance.
+
+    Raises
+    ------
+    InputError
+        If a value is impossible, or array values do not agree in shape.
+
+    Examples
+    --------
+    >>> from vibroimpact.bodies.plate import rigid_plate
+    >>> from vibroimpact.contact.laws.newton import Newton
+    >>> ball = Body(mass=1.0, contact_offset=0.1)
+    >>> Problem(sphere=ball, plate=rigid_plate(), laws=(Newton(restitution=0.5),), height=[1.0, 2.0]).shape
+    (2,)
+    """
+
+    sphere: Body
+    plate: Body
+    laws: tuple[ContactLaw, ...]
+    height: Array | None = None
+    speed: Array | None = None
+    gravity: Array = STANDARD_GRAVITY
+    impacts: int | None = 5
+    duration: float | None = None
+    rest_speed: Array | None = None
+    tolerance: float = 1e-9
+    source: Mapping[str, Any] | None = field(default=None, compare=False)
+
+    def __post_init__(self) -> None:
+        if not self.laws or len({type(law) for law in self.laws}) != 1:
+            raise InputError("laws must be one or more contact laws, all of one kind")
+        if (self.height is None) == (self.speed is None):
+            raise InputError("give either height [m] or speed [m/s] of the drop, and not both")
+        if np.any(np.isfinite(self.plate.mass)):
+            raise InputError("the plate must be held fixed: a body with an infinite mass")
+        for name, least in (("height", -np.inf), ("speed", 0.0), ("gravity", 0.0), ("rest_speed", 0.0)):
+            value = getattr(self, name)
+            if value is not None and not np.all(np.isfinite(value) & (np.asarray(value) >= least)):
+                raise InputError(f"{name} must be finite{'' if np.isinf(least) else ' and not negative'}")
+        if self.speed is not None and not np.all(np.asarray(self.speed) > 0):
+            raise InputError("speed must be greater than 0 m/s")
+        if self.height is not None:
+            if not np.all(np.asarray(self.height) > self.sphere.contact_offset):
+                raise InputError(
+                    "height must be greater than the sphere's radius: it is the height of the centre above the plate's upper surface"
+                )
+            if not np.all(np.asarray(self.gravity) > 0):
+                raise InputError("without gravity a sphere does not fall: give speed instead of height")
+        if self.impacts is not None and not 1 <= self.impacts <= MOST_IMPACTS:
+            raise InputError(f"impacts must lie between 1 and {MOST_IMPACTS}")
+        if self.duration is not None and not 0 < self.duration < np.inf:
+            raise InputError("duration must be greater than 0 s and finite")
+        if not 1e-13 <= self.tolerance <= 1e-3:
+            raise InputError("tolerance must lie between 1e-13 and 1e-3")
+        try:
+            _ = self.shape
+        except ValueError:
+            raise InputError("the arrays of a batch must agree in shape: one value a drop") from None
+        if len(self.shape) > 1:
+            raise InputError(f"a batch has one axis, not the shape {self.shape}")
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """() for one drop, (B,) for a batch."""
+        values = [self.sphere.mass, self.sphere.contact_offset, self.height, self.speed, self.gravity, self.rest_speed]
+        values += [getattr(law, item.name) for law in self.laws for item in fields(law)]
+        return np.broadcast_shapes(*(np.shape(value) for value in values if value is not None))
+
+    def law_of(self, impact: int) -> ContactLaw:
+        """Return the law of an impact, counted from 0; the last one goes on."""
+        return self.laws[min(impact, len(self.laws) - 1)]
+
+    def take(self, drop: int) -> Problem:
+        """Return the problem of one drop of a batch."""
+
+        def one(value: Any) -> Any:
+            return value if np.ndim(value) == 0 else np.asarray(value)[drop]
+
+        def part(body: Body) -> Body:
+            return Body(mass=one(body.mass), contact_offset=one(body.contact_offset))
+
+        return replace(
+            self,
+            sphere=part(self.sphere),
+            plate=part(self.plate),
+            laws=tuple(law.take(drop) for law in self.laws),
+            height=one(self.height),
+            speed=one(self.speed),
+            gravity=one(self.gravity),
+            rest_speed=one(self.rest_speed),
+        )
+
+    def to_problem(self) -> Problem:
+        """Return itself: a problem states itself."""
+        return self
+
+
+class StatesProblem(Protocol):
+    """Anything that can be stated as a `Problem`: a problem itself, or a case that was read."""
+
+    def to_problem(self) -> Problem:
+        """Return the problem."""
+        ...

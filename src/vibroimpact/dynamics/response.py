@@ -1,0 +1,331 @@
+"""What came out of a run: impacts, histories that can be asked at any time, the energy ledger, a status."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from enum import Enum
+from functools import cached_property
+from os import PathLike
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vibroimpact.dynamics.collocation import Floats
+from vibroimpact.dynamics.columns import HISTORY_COLUMNS
+from vibroimpact.dynamics.contact_phase import Contact
+from vibroimpact.dynamics.energy import CLOSURE_LIMIT
+from vibroimpact.dynamics.flight import Flight
+from vibroimpact.dynamics.problem import Problem
+from vibroimpact.dynamics.segments import FlightSegment, GlideSegment, RestSegment, Segment, StretchSegment
+from vibroimpact.dynamics.stretch import Encounter, Stretch
+from vibroimpact.errors import InputError
+
+
+class Outcome(Enum):
+    """Why a drop's run ended; the value is the rule's name."""
+
+    IMPACTS = "number of impacts"
+    DURATION = "duration"
+    REST_SPEED = "at rest: rest speed"
+    CAPTURED = "at rest: contact without release"
+    LEFT = "left for good"
+    LIMIT = "limit of impacts"
+    FAILED = "failed"
+
+    @property
+    def at_rest(self) -> bool:
+        """Did the sphere come to rest?"""
+        return self in (Outcome.REST_SPEED, Outcome.CAPTURED)
+
+
+@dataclass(frozen=True)
+class Leg:
+    """One flight of some drops and the contact it ends in; arrays belong to `drops`, (b,).
+
+    `flight_end`: when the flight ends [s]. `contact` and `encounter` belong to `contact_drops`; they are
+    None for a flight that ends the run and for an instantaneous law.
+    """
+
+    drops: NDArray[np.intp]
+    flight: Flight
+    flight_end: Floats
+    contact_drops: NDArray[np.intp]
+    contact: Contact | None = None
+    encounter: Encounter | None = None
+
+
+@dataclass(frozen=True)
+class Rest:
+    """How the drops that came to rest do so; arrays are (B,), NaN for the others.
+
+    `speed`: below which a sphere that leaves is at rest [m/s]. `time`: when the bounces that were not
+    followed any more would have ended [s]. `sag`: static indentation [m]. `stored`: energy in it [J].
+    `written_off`: energy that the sphere still had [J].
+    """
+
+    speed: Floats
+    time: Floats
+    sag: Floats
+    stored: Floats
+    written_off: Floats
+
+
+@dataclass(frozen=True)
+class Response:
+    """The response of one drop, or of a batch.
+
+    Attributes
+    ----------
+    problem : Problem
+        What was simulated.
+    impacts : dict of str to array
+        One entry a column of `impacts.csv`. For one drop an array with one value an impact; for a batch
+        (B, impacts), NaN where a drop had fewer.
+    energy : dict of str to float or array
+        The ledger at the end [J], what was put in, and the closure; `closure_relative` is without dimension.
+    outcomes : tuple of Outcome
+        Which rule ended each drop.
+    end_time : array, shape (B,)
+        When each run ended [s].
+
+    See Also
+    --------
+    simulate : makes one.
+    """
+
+    problem: Problem
+    impacts: dict[str, Floats]
+    energy: dict[str, Floats]
+    outcomes: tuple[Outcome, ...]
+    end_time: Floats
+    rest: Rest
+    legs: tuple[Leg, ...]
+
+    def __len__(self) -> int:
+        """Return the number of drops."""
+        return len(self.outcomes)
+
+    def __repr__(self) -> str:
+        return f"<Response: {self.status}>" if len(self) == 1 else f"<Response of {len(self)} drops>"
+
+    def drop(self, index: int) -> Response:
+        """Return the response of one drop of a batch, counted from 0.
+
+        Raises
+        ------
+        InputError
+            If there is no such drop.
+        """
+        if not 0 <= index < len(self):
+            raise InputError(f"there is no drop {index}; the batch has {len(self)}, counted from 0")
+        if self.problem.shape == ():
+            return self
+        happened = np.isfinite(self.impacts["impact"][index])
+        return Response(
+            self.problem.take(index),
+            {name: column[index, happened] for name, column in self.impacts.items()},
+            {name: np.asarray(value)[index] for name, value in self.energy.items()},
+            self.outcomes[index : index + 1],
+            self.end_time[index : index + 1],
+            Rest(*(value[index : index + 1] for value in vars(self.rest).values())),
+            tuple(small for leg in self.legs if (small := _leg_of(leg, index)) is not None),
+        )
+
+    def squeezed(self) -> Response:
+        """Return the response of a batch of one as that of a single drop."""
+        impacts = {name: column[0] for name, column in self.impacts.items()}
+        return replace(self, impacts=impacts, energy={name: value[0] for name, value in self.energy.items()})
+
+    @property
+    def status(self) -> str:
+        """One sentence: why the run ended, and when.
+
+        For a batch, how many drops ended by each rule.
+        """
+        if len(self) > 1 or self.problem.shape != ():
+            counts = {outcome: self.outcomes.count(outcome) for outcome in Outcome}
+            return "; ".join(f"{count} of {len(self)} drops: {outcome.value}" for outcome, count in counts.items() if count)
+        number, end, outcome = len(self.impacts["impact"]), float(self.end_time[0]), self.outcomes[0]
+        after = f"after {number} impact{'' if number == 1 else 's'}"
+        if outcome is Outcome.IMPACTS:
+            return f"Stopped {after}, at the top of the last rebound, at {end:.6g} s."
+        if outcome is Outcome.DURATION:
+            return f"Stopped at {end:.6g} s, the duration asked for, {after}."
+        if outcome is Outcome.LIMIT:
+            return f"Stopped {after}, the most that are followed, at {end:.6g} s; the sphere is not at rest."
+        if outcome is Outcome.LEFT:
+            return f"The sphere leaves {after} and, without gravity, never comes back."
+        if outcome is Outcome.FAILED:
+            return f"Failed {after}: {self._failure()}"
+        return f"At rest {after}: {self._rest()}"
+
+    def _rest(self) -> str:
+        """Say by which rule the sphere is at rest."""
+        time = float(self.rest.time[0])
+        if self.outcomes[0] is Outcome.CAPTURED:
+            return f"by the capture rule, at {time:.7g} s the sphere has too little energy left to get out of its indentation."
+        speed, last = float(self.rest.speed[0]), float(self.impacts["separation_speed_m_s"][-1])
+        limit = f"; bounces with the last restitution would end at {time:.7g} s" if np.isfinite(time) else ""
+        return f"by the rest-speed rule, it leaves at {last:.3g} m/s, and below {speed:.3g} m/s it counts as at rest{limit}."
+
+    def _failure(self) -> str:
+        """Say why the run failed."""
+        closure = float(self.energy["closure_relative"])
+        if closure > CLOSURE_LIMIT:
+            return f"the energy ledger misses a part of {closure:.2g} of the energy put in; {CLOSURE_LIMIT:g} is allowed."
+        return "the contact could not be integrated to the tolerance."
+
+    def at(self, times: Any) -> dict[str, Floats]:
+        """Return the history of one drop at any times.
+
+        Parameters
+        ----------
+        times : array_like
+            Times since the start [s], within the run.
+
+        Returns
+        -------
+        dict of str to array
+            One entry a column (`HISTORY_COLUMNS`), in the shape of `times`.
+
+        Raises
+        ------
+        InputError
+            If a time lies outside the run, or the response is of several drops.
+
+        Examples
+        --------
+        >>> import vibroimpact as vi
+        >>> response = vi.simulate(vi.load_case("paper:type1-theory"))
+        >>> response.at([0.0])["position_m"].tolist()
+        [4.0]
+        """
+        times = np.asarray(times, dtype=float)
+        flat = times.ravel()
+        end = float(self.end_time[0])
+        if not np.all((flat >= 0.0) & (flat <= end)):
+            raise InputError(f"times must lie within the run, 0 to {end:.6g} s")
+        starts = np.array([segment.start for segment in self._segments])
+        index = np.maximum(np.searchsorted(starts, flat, side="right") - 1, 0)
+        columns = {name: np.empty(flat.shape) for name in HISTORY_COLUMNS}
+        for number in np.unique(index):
+            here = index == number
+            for name, values in self._history(int(number), flat[here]).items():
+                columns[name][here] = values
+        return {name: values.reshape(times.shape) for name, values in columns.items()}
+
+    def sample(self, rate: float) -> dict[str, Floats]:
+        """Return the history of one drop at a constant rate, as a recorder would see it.
+
+        Sampling hides what happens between samples; for peaks use `impacts`, for figures `history`.
+
+        Parameters
+        ----------
+        rate : float
+            Samples per second [Hz], > 0.
+        """
+        if not 0.0 < rate < np.inf:
+            raise InputError(f"rate must be greater than 0 Hz and finite, not {rate}")
+        count = float(self.end_time[0]) * rate
+        if count > 1e8:
+            raise InputError(f"{count:.3g} samples are more than 1e8; ask for a lower rate, or for parts by at()")
+        return self.at(np.minimum(np.arange(int(count * (1 + 1e-15)) + 1) / rate, self.end_time[0]))
+
+    def history(self) -> dict[str, Floats]:
+        """Return the history of one drop on a grid that resolves every contact, with both sides of each event."""
+        parts = [self._history(number, segment.grid()) for number, segment in enumerate(self._segments)]
+        return {name: np.concatenate([part[name] for part in parts]) for name in HISTORY_COLUMNS}
+
+    def save(self, directory: str | PathLike[str], *, force: bool = False) -> None:
+        """Write the result folder: case, table, summary, NetCDF file, figures and report.
+
+        Parameters
+        ----------
+        directory : path
+            The folder to make; it appears whole or not at all.
+        force : bool, default False
+            Replace an existing result folder.
+
+        Raises
+        ------
+        InputError
+            If the folder exists, or can't be made.
+        """
+        import vibroimpact  # the one door upwards: the package's front knows the writers
+
+        vibroimpact.save_result(self, directory, force=force)
+
+    # the history of one drop, segment by segment ---------------------------------------------------
+
+    def _history(self, number: int, times: Floats) -> dict[str, Floats]:
+        """Return all columns at times within one segment."""
+        segment, problem = self._segments[number], self.problem
+        mass, gravity = float(problem.sphere.mass), float(problem.gravity)
+        gap, velocity, force, stored, lost = segment.at(times)
+        resting = isinstance(segment, RestSegment)
+        return {
+            "time_s": times,
+            "position_m": float(problem.sphere.contact_offset) + gap,
+            "velocity_m_s": velocity,
+            "acceleration_m_s2": np.zeros_like(times) if resting else force / mass - gravity,
+            "force_N": force,
+            "indentation_m": np.maximum(-gap, 0.0),
+            "kinetic_J": 0.5 * mass * velocity**2,
+            "potential_J": mass * gravity * gap,
+            "contact_elastic_J": stored,
+            "contact_dissipated_J": self._lost_before[number] + lost,
+            "written_off_at_rest_J": np.full_like(times, self.rest.written_off[0] if resting else 0.0),
+        }
+
+    @cached_property
+    def _segments(self) -> list[Segment]:
+        return [segment for segment, _ in self._timeline]
+
+    @cached_property
+    def _lost_before(self) -> list[float]:
+        """Energy lost in contact before each segment [J]."""
+        return [lost for _, lost in self._timeline]
+
+    @cached_property
+    def _timeline(self) -> list[tuple[Segment, float]]:
+        """The segments of one drop in order, each with the energy lost before it [J]."""
+        if self.problem.shape != ():
+            raise InputError("a history belongs to one drop: ask response.drop(0), response.drop(1), ...")
+        timeline: list[tuple[Segment, float]] = []
+        lost_in_impacts = np.concatenate([[0.0], np.cumsum(self.impacts["energy_lost_J"])])
+        for number, leg in enumerate(self.legs):
+            lost = float(lost_in_impacts[number])
+            touch = float(leg.flight_end[0])
+            timeline.append((FlightSegment(float(leg.flight.start[0]), touch, leg.flight), lost))
+            if leg.contact is None or leg.encounter is None:
+                continue
+            for piece in leg.contact.pieces:
+                begin = touch + float(piece.start[0])
+                finish = begin + float(piece.motion.duration[0])
+                segment: Segment
+                if isinstance(piece.motion, Stretch):
+                    segment = StretchSegment(begin, finish, piece.motion, leg.encounter)
+                else:
+                    segment = GlideSegment(begin, finish, piece.motion, leg.encounter.law)
+                timeline.append((segment, lost))
+                lost += float(segment.at(np.array([finish]))[-1][0])
+        if self.outcomes[0].at_rest:
+            weight = float(self.problem.sphere.mass) * float(self.problem.gravity)
+            begin = timeline[-1][0].end
+            segment = RestSegment(begin, float(self.end_time[0]), float(self.rest.sag[0]), weight, float(self.rest.stored[0]))
+            timeline.append((segment, float(lost_in_impacts[-1])))
+        return timeline
+
+
+def _leg_of(leg: Leg, index: int) -> Leg | None:
+    """Return the leg of one drop of a batch, or None if it takes no part."""
+    here = np.flatnonzero(leg.drops == index)
+    if not here.size:
+        return None
+    one = np.zeros(1, dtype=np.intp)
+    flight = Flight(leg.flight.start[here], leg.flight.gap[here], leg.flight.velocity[here], leg.flight.gravity[here])
+    contact_here = np.flatnonzero(leg.contact_drops == index)
+    if leg.contact is None or leg.encounter is None or not contact_here.size:
+        return Leg(one, flight, leg.flight_end[here], one[: contact_here.size])
+    return Leg(one, flight, leg.flight_end[here], one, leg.contact.of(int(contact_here[0])), leg.encounter.take(contact_here))

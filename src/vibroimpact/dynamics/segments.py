@@ -1,0 +1,107 @@
+"""The history of one drop as a row of segments, each of which can be asked at any time within it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from vibroimpact.contact.law import CompliantLaw
+from vibroimpact.dynamics.collocation import Floats
+from vibroimpact.dynamics.flight import Flight
+from vibroimpact.dynamics.glide import Glide
+from vibroimpact.dynamics.stretch import Encounter, Stretch
+
+Motion = tuple[Floats, Floats, Floats, Floats, Floats]
+"""Gap [m], upward velocity [m/s], contact force [N], stored energy [J], energy lost since the start [J]."""
+
+
+@dataclass(frozen=True)
+class FlightSegment:
+    """Free flight of one drop."""
+
+    start: float
+    end: float
+    flight: Flight
+
+    def grid(self) -> Floats:
+        """Times that draw the segment well [s]."""
+        return np.linspace(self.start, self.end, 49)
+
+    def at(self, time: Floats) -> Motion:
+        """Return the motion at times [s] within the segment."""
+        gap, velocity = self.flight.at(time)
+        nothing = np.zeros_like(time)
+        return np.maximum(gap, 0.0), velocity, nothing, nothing, nothing
+
+
+@dataclass(frozen=True)
+class StretchSegment:
+    """One solved stretch of contact of one drop: a `Stretch` and an `Encounter` of one."""
+
+    start: float
+    end: float
+    stretch: Stretch
+    encounter: Encounter
+
+    def grid(self) -> Floats:
+        """Times that draw the segment well [s]."""
+        return self.start + (self.end - self.start) * self.stretch.rule.map_time(np.linspace(0.0, 1.0, 61))
+
+    def at(self, time: Floats) -> Motion:
+        """Return the motion at times [s] within the segment."""
+        stretch, rule, law = self.stretch, self.stretch.rule, self.encounter.law
+        duration = stretch.duration[0]
+        x = rule.unmap_time((time - self.start) / duration)
+        delta = np.maximum(stretch.delta[0] + duration * rule.integrate(x, stretch.node_velocity[:, 0]), 0.0)
+        velocity = stretch.velocity[0] + duration * rule.integrate(x, stretch.node_acceleration[:, 0])
+        elastic, dissipative = law.forces(delta, velocity, self.encounter.approach_speed)
+        force = elastic + dissipative
+        if law.tension == "cut":
+            force = np.maximum(force, 0.0)
+        _, at_nodes = law.forces(np.maximum(stretch.node_delta, 0.0), stretch.node_velocity, self.encounter.approach_speed)
+        lost = duration * rule.integrate(x, (at_nodes * stretch.node_velocity)[:, 0])
+        return -delta, -velocity, force, law.elastic_energy(delta), lost
+
+
+@dataclass(frozen=True)
+class GlideSegment:
+    """Free motion of one drop inside an indentation."""
+
+    start: float
+    end: float
+    glide: Glide
+    law: CompliantLaw
+
+    def grid(self) -> Floats:
+        """Times that draw the segment well [s]."""
+        return np.linspace(self.start, self.end, 17)
+
+    def at(self, time: Floats) -> Motion:
+        """Return the motion at times [s] within the segment."""
+        delta, velocity = (part[:, 0] for part in self.glide.at(time[:, None] - self.start))
+        stored = self.law.elastic_energy(delta)
+        return -delta, -velocity, np.zeros_like(time), stored, self.law.elastic_energy(self.glide.delta) - stored
+
+
+@dataclass(frozen=True)
+class RestSegment:
+    """The sphere at rest on the plate, in its static indentation."""
+
+    start: float
+    end: float
+    sag: float
+    weight: float
+    stored: float
+
+    def grid(self) -> Floats:
+        """Times that draw the segment well [s]."""
+        return np.array([self.start, self.end])
+
+    def at(self, time: Floats) -> Motion:
+        """Return the motion at times [s] within the segment."""
+        same = np.ones_like(time)
+        return -self.sag * same, 0.0 * same, self.weight * same, self.stored * same, 0.0 * same
+
+
+Segment = FlightSegment | StretchSegment | GlideSegment | RestSegment

@@ -1,0 +1,251 @@
+"""The loop: flight, touch, contact, release, until a stop rule."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vibroimpact.contact.law import CompliantLaw, ContactLaw, InstantaneousLaw
+from vibroimpact.contact.static import static_indentation
+from vibroimpact.dynamics.collocation import Floats
+from vibroimpact.dynamics.columns import IMPACT_COLUMNS
+from vibroimpact.dynamics.contact_phase import CAPTURED, FAILED, Memory, contact_phase
+from vibroimpact.dynamics.energy import CLOSURE_LIMIT, close_ledger
+from vibroimpact.dynamics.flight import Flight
+from vibroimpact.dynamics.peaks import force_peak
+from vibroimpact.dynamics.problem import MOST_IMPACTS, Problem, StatesProblem
+from vibroimpact.dynamics.response import Leg, Outcome, Response, Rest
+from vibroimpact.dynamics.stretch import Encounter
+from vibroimpact.errors import ComputationError
+
+Drops = NDArray[np.intp]
+
+
+def simulate(problem: StatesProblem, progress: Callable[[float], None] | None = None) -> Response:
+    """Let the sphere fall and bounce until a stop rule.
+
+    Flight is exact. Touch and release are located as roots; between them the contact is integrated by
+    Radau collocation, of order 31 at the default tolerance, in a time in which the force is smooth. A batch
+    runs as arrays; one drop is a batch of one.
+
+    Parameters
+    ----------
+    problem : Problem or Case
+        What falls on what, how, and when to stop.
+    progress : callable, optional
+        Called after each impact with the fraction done, in [0, 1].
+
+    Returns
+    -------
+    Response
+        Impacts, histories, energy and a status sentence. In a batch a drop that failed says so in its
+        outcome, and the others go on.
+
+    Raises
+    ------
+    ComputationError
+        If a single drop can't be computed, or its energy ledger does not close to 1e-6.
+
+    Examples
+    --------
+    >>> from vibroimpact.bodies.body import Body
+    >>> from vibroimpact.bodies.plate import rigid_plate
+    >>> from vibroimpact.contact.laws.newton import Newton
+    >>> problem = Problem(sphere=Body(mass=1.0, contact_offset=0.1), plate=rigid_plate(),
+    ...                   laws=(Newton(restitution=0.5),), height=1.1, impacts=3)
+    >>> simulate(problem).impacts["rebound_height_m"].round(6).tolist()
+    [0.35, 0.1625, 0.115625]
+    """
+    run = _Run(problem.to_problem())
+    while run.moving.any():
+        run.advance()
+        if progress is not None:
+            progress(run.fraction_done())
+    response = run.response()
+    if response.problem.shape == () and response.outcomes[0] is Outcome.FAILED:
+        raise ComputationError(response.status)
+    return response
+
+
+class _Run:
+    """A batch of B drops between impacts; arrays are (B,)."""
+
+    def __init__(self, problem: Problem) -> None:
+        self.problem = problem
+        self.size = int(np.prod(problem.shape))
+        self.mass, self.radius = self.spread(problem.sphere.mass), self.spread(problem.sphere.contact_offset)
+        self.gravity = self.spread(problem.gravity)
+        self.time, self.gap, self.velocity = np.zeros(self.size), np.zeros(self.size), np.zeros(self.size)
+        if problem.height is not None:
+            self.gap = self.spread(problem.height) - self.radius
+        else:
+            self.velocity = -self.spread(problem.speed)
+        self.energy_in = self.mechanical_energy()
+        self.dissipated = np.zeros(self.size)
+        self.moving = np.ones(self.size, dtype=bool)
+        self.outcomes = [Outcome.FAILED] * self.size
+        self.end_time, self.rest_time = np.full(self.size, np.nan), np.full(self.size, np.nan)
+        self.rest_speed = self.default_rest_speed() if problem.rest_speed is None else self.spread(problem.rest_speed)
+        self.memory = Memory(self.size)
+        self.legs: list[Leg] = []
+        self.rows: list[dict[str, Floats]] = []
+
+    def spread(self, value: object) -> Floats:
+        return np.array(np.broadcast_to(np.asarray(value, dtype=float), (self.size,)))
+
+    def mechanical_energy(self) -> Floats:
+        return np.asarray(self.mass * (0.5 * self.velocity**2 + self.gravity * self.gap))
+
+    def default_rest_speed(self) -> Floats:
+        law = self.problem.law_of(0)
+        least = 1e-6 * Flight(self.time, self.gap, self.velocity, self.gravity).touch()[1]
+        if not isinstance(law, CompliantLaw):
+            return np.asarray(least)
+        return np.asarray(np.maximum(np.sqrt(2.0 * self.gravity * static_indentation(law, self.mass * self.gravity)), least))
+
+    def fraction_done(self) -> float:
+        if not self.moving.any():
+            return 1.0
+        done = len(self.rows) / self.problem.impacts if self.problem.impacts else 0.0
+        return max(done, float(self.time[self.moving].min()) / self.problem.duration if self.problem.duration else 0.0)
+
+    # one flight and one contact --------------------------------------------------------------------
+
+    def advance(self) -> None:
+        """Fly all moving drops to their next touch and take them through one contact."""
+        drops = np.flatnonzero(self.moving)
+        flight = Flight(self.time[drops], self.gap[drops], self.velocity[drops], self.gravity[drops])
+        touch, speed = flight.touch()
+        end = np.inf if self.problem.duration is None else self.problem.duration
+        if self.problem.impacts is not None and len(self.rows) == self.problem.impacts:
+            last, outcome = np.minimum(flight.apex()[0], end), Outcome.IMPACTS
+        elif len(self.rows) == MOST_IMPACTS:
+            last, outcome = np.minimum(flight.apex()[0], end), Outcome.LIMIT
+        else:
+            last, outcome = np.full(len(drops), end), Outcome.DURATION
+        gone = np.isinf(touch) & np.isinf(end)
+        stops = (touch >= last) | gone
+        self.stop(drops[stops], outcome, last[stops])
+        self.stop(drops[stops & (last == end)], Outcome.DURATION, last[stops & (last == end)])
+        self.stop(drops[gone], Outcome.LEFT, flight.start[gone])
+        leg = Leg(drops, flight, np.where(gone, flight.start, np.where(stops, last, touch)), drops[~stops])
+        if not stops.all():
+            leg = self.collide(leg, touch[~stops], speed[~stops])
+        self.legs.append(leg)
+
+    def collide(self, leg: Leg, touch: Floats, speed: Floats) -> Leg:
+        """Take drops through a contact: write the row of the impact, return the leg with its contact."""
+        drops, row = leg.contact_drops, {name: np.full(self.size, np.nan) for name in IMPACT_COLUMNS}
+        law = self.problem.law_of(len(self.rows)).take(drops)
+        self.rows.append(row)
+        row["impact"][drops], row["time_s"][drops], row["approach_speed_m_s"][drops] = len(self.rows), touch, speed
+        row["restitution_asked"][drops] = _asked(law)
+        if isinstance(law, InstantaneousLaw):
+            self.time[drops], self.gap[drops], self.velocity[drops] = touch, 0.0, law.separation_speed(speed)
+            row["duration_s"][drops] = row["max_indentation_m"][drops] = 0.0
+            lost = 0.5 * self.mass[drops] * (speed**2 - self.velocity[drops] ** 2)
+        else:
+            assert isinstance(law, CompliantLaw)
+            leg, lost = self.deform(leg, Encounter(law, self.mass[drops], self.gravity[drops], speed), row)
+        self.dissipated[drops] += lost
+        separation = np.where(self.moving[drops], self.velocity[drops], 0.0)
+        row["separation_speed_m_s"][drops], row["restitution_achieved"][drops] = separation, separation / speed
+        row["energy_lost_J"][drops] = lost
+        with np.errstate(divide="ignore", invalid="ignore"):
+            rise = np.where(self.gravity[drops] > 0.0, 0.5 * separation**2 / self.gravity[drops], np.nan)
+        row["rebound_height_m"][drops] = self.radius[drops] + self.gap[drops] + rise
+        self.judge(drops[self.moving[drops]], row)
+        return leg
+
+    def deform(self, leg: Leg, encounter: Encounter, row: dict[str, Floats]) -> tuple[Leg, Floats]:
+        """Integrate a contact; return the leg with it, and the energy lost [J]."""
+        drops, touch = leg.contact_drops, self.legs_touch(leg)
+        contact = contact_phase(encounter, self.problem.tolerance, self.memory, drops)
+        force, when = force_peak(contact, encounter)
+        self.time[drops] = touch + contact.duration
+        self.gap[drops], self.velocity[drops] = -contact.final_delta, -contact.final_rate
+        row["duration_s"][drops] = contact.duration
+        row["max_indentation_m"][drops], row["time_of_max_indentation_s"][drops] = contact.max_delta, touch + contact.time_of_max_delta
+        row["max_force_N"][drops], row["time_of_max_force_s"][drops] = force, touch + when
+        row["max_acceleration_m_s2"][drops] = np.maximum(force / encounter.mass - encounter.gravity, encounter.gravity)
+        captured, failed = contact.outcome == CAPTURED, contact.outcome == FAILED
+        self.stop(drops[captured], Outcome.CAPTURED, self.time[drops[captured]])
+        self.rest_time[drops[captured]] = self.time[drops[captured]]
+        self.stop(drops[failed], Outcome.FAILED, self.time[drops[failed]])
+        left_in_contact = np.where(captured, 0.0, encounter.law.elastic_energy(contact.final_delta))
+        return Leg(leg.drops, leg.flight, leg.flight_end, drops, contact, encounter), contact.dissipated + left_in_contact
+
+    @staticmethod
+    def legs_touch(leg: Leg) -> Floats:
+        """Return when the drops that come into contact touch [s]."""
+        return leg.flight_end[np.isin(leg.drops, leg.contact_drops)]
+
+    def judge(self, drops: Drops, row: dict[str, Floats]) -> None:
+        """Stop the drops that leave more slowly than the rest speed."""
+        slow = drops[self.velocity[drops] < self.rest_speed[drops]]
+        slow = np.union1d(slow, drops[self.velocity[drops] == 0.0])
+        with np.errstate(divide="ignore", invalid="ignore"):
+            # a geometric series of flights, each shorter than the one before by the last restitution
+            missing = 1.0 - row["restitution_achieved"][slow]
+            limit = self.time[slow] + 2.0 * self.velocity[slow] / self.gravity[slow] / np.where(missing > 1e-6, missing, 0.0)
+        self.rest_time[slow] = limit
+        self.stop(slow, Outcome.REST_SPEED, np.where(np.isfinite(limit), limit, self.time[slow]))
+
+    def stop(self, drops: Drops, outcome: Outcome, time: Floats) -> None:
+        self.moving[drops], self.end_time[drops] = False, time
+        for drop in drops:
+            self.outcomes[drop] = outcome
+
+    # the end of the run ----------------------------------------------------------------------------
+
+    def response(self) -> Response:
+        at_rest = np.array([outcome.at_rest for outcome in self.outcomes])
+        sag, stored, law = np.zeros(self.size), np.zeros(self.size), self.problem.law_of(len(self.rows) - 1)
+        if isinstance(law, CompliantLaw):
+            sag = np.where(at_rest, static_indentation(law, self.mass * self.gravity), 0.0)
+            stored = np.where(at_rest, law.elastic_energy(sag), 0.0)
+        if self.problem.duration is not None:
+            self.end_time[at_rest] = np.maximum(self.end_time, self.problem.duration)[at_rest]
+        before = self.mechanical_energy()
+        captured = np.array([outcome is Outcome.CAPTURED for outcome in self.outcomes])
+        if captured.any() and isinstance(law, CompliantLaw):
+            before += np.where(captured, law.elastic_energy(np.maximum(-self.gap, 0.0)), 0.0)
+        written_off = np.where(at_rest, before - (stored - self.mass * self.gravity * sag), 0.0)
+        final_gap, final_velocity = self.final_motion(at_rest, sag)
+        energy = close_ledger(
+            self.energy_in,
+            {
+                "kinetic_J": 0.5 * self.mass * final_velocity**2,
+                "potential_J": self.mass * self.gravity * final_gap,
+                "contact_elastic_J": stored,
+                "contact_dissipated_J": self.dissipated,
+                "written_off_at_rest_J": written_off,
+            },
+        )
+        for drop in np.flatnonzero(~(energy["closure_relative"] <= CLOSURE_LIMIT)):
+            self.outcomes[drop] = Outcome.FAILED
+        table = {name: np.array([row[name] for row in self.rows]).reshape(-1, self.size).T for name in IMPACT_COLUMNS}
+        response = Response(
+            self.problem,
+            table,
+            energy,
+            tuple(self.outcomes),
+            self.end_time,
+            Rest(self.rest_speed, self.rest_time, sag, stored, written_off),
+            tuple(self.legs),
+        )
+        return response.squeezed() if self.problem.shape == () else response
+
+    def final_motion(self, at_rest: NDArray[np.bool_], sag: Floats) -> tuple[Floats, Floats]:
+        """Return gap [m] and upward velocity [m/s] at the end of the run."""
+        elapsed = np.where(at_rest, 0.0, self.end_time - self.time)
+        gap, velocity = Flight(np.zeros(self.size), self.gap, self.velocity, self.gravity).at(elapsed)
+        return np.where(at_rest, -sag, gap), np.where(at_rest, 0.0, velocity)
+
+
+def _asked(law: ContactLaw) -> Floats | float:
+    """Return the restitution asked of a law, or NaN."""
+    asked = getattr(law, "restitution", None)
+    return np.nan if asked is None else asked

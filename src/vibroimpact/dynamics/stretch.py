@@ -1,0 +1,293 @@
+"""A stretch of contact solved at once by Newton's method on the collocation equations."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vibroimpact.contact.law import CompliantLaw
+from vibroimpact.dynamics.collocation import Floats, Rule
+
+Aim = Literal["duration", "turn", "indentation", "force"]
+"""What ends a stretch: its duration is given, or it ends where the indentation rate is zero, where the
+indentation has a given level, or where the contact force is zero."""
+
+_CONVERGED = 1e-13
+_STALLED = 1e-11  # good enough where rounding keeps the last digits from settling
+_SHARED_SWEEPS = 30
+_REFRESHES = 5
+_OWN_SWEEPS = 12
+
+
+@dataclass(frozen=True)
+class Encounter:
+    """The facts of one impact of B drops: the law, the mass it moves, gravity, the approach speed."""
+
+    law: CompliantLaw
+    mass: Floats
+    gravity: Floats
+    approach_speed: Floats
+
+    def take(self, drops: NDArray[np.intp]) -> Encounter:
+        """Return the encounter of some of the drops."""
+        if len(drops) == len(self.mass):
+            return self
+        return Encounter(self.law.take(drops), self.mass[drops], self.gravity[drops], self.approach_speed[drops])
+
+    def acceleration(self, delta: Floats, velocity: Floats) -> Floats:
+        """Return the rate of the indentation rate [m/s^2], without any clip of the force."""
+        elastic, dissipative = self.law.forces(delta, velocity, self.approach_speed)
+        return np.asarray(self.gravity - (elastic + dissipative) / self.mass)
+
+
+@dataclass(frozen=True)
+class Stretch:
+    """A solved stretch of contact of some drops; arrays are (N, b) at the nodes, or (b,).
+
+    `duration`, `delta`, `velocity`: how long it lasts [s], indentation [m] and rate [m/s] at its start.
+    `node_delta`, `node_velocity`, `node_acceleration`: the same at the nodes of `rule`.
+    `dissipated`: energy lost [J]. `solved`: whether Newton's method converged.
+    """
+
+    rule: Rule
+    duration: Floats
+    delta: Floats
+    velocity: Floats
+    node_delta: Floats
+    node_velocity: Floats
+    node_acceleration: Floats
+    dissipated: Floats
+    solved: NDArray[np.bool_]
+
+    def resolved(self, encounter: Encounter, tolerance: float) -> NDArray[np.bool_]:
+        """Is the stretch solved, and its error within a relative tolerance?
+
+        Two measures that know nothing of each other: the last Legendre coefficients of the acceleration, with
+        whose square the error at the end goes, and the balance of energy over the stretch.
+        """
+        mass, law = encounter.mass, encounter.law
+        end_delta, end_velocity = np.maximum(self.node_delta[-1], 0.0), self.node_velocity[-1]
+        gain = 0.5 * mass * (end_velocity - self.velocity) * (end_velocity + self.velocity)
+        gain += law.elastic_energy(end_delta) - law.elastic_energy(self.delta) - mass * encounter.gravity * (end_delta - self.delta)
+        closes = np.abs(gain + self.dissipated) <= 0.1 * tolerance * mass * encounter.approach_speed**2
+        return np.asarray(self.solved & closes & (self.rule.tail(self.node_acceleration) ** 2 <= tolerance) & (self.duration > 0.0))
+
+    def take(self, drops: NDArray[np.bool_]) -> Stretch:
+        """Return the stretch of the drops under a mask."""
+        if drops.all():
+            return self
+        return Stretch(
+            self.rule,
+            self.duration[drops],
+            self.delta[drops],
+            self.velocity[drops],
+            self.node_delta[:, drops],
+            self.node_velocity[:, drops],
+            self.node_acceleration[:, drops],
+            self.dissipated[drops],
+            self.solved[drops],
+        )
+
+
+@dataclass
+class WarmStart:
+    """Where Newton's method starts: the dimensionless unknowns, and the inverse Jacobian of a like stretch.
+
+    Impacts resemble the ones before: in units of its own speed and time scale, the solution of one is a
+    good guess for the next, and so is its Jacobian.
+    """
+
+    unknowns: Floats
+    """Accelerations at the nodes and duration, (N + 1, B), in `units`."""
+    inverse: Floats | None = None
+    """Inverse Jacobian, (N + 1, N + 1); replaced by the last one that was used."""
+
+
+def acceleration_unit(encounter: Encounter, velocity: Floats, duration: Floats) -> Floats:
+    """Return the unit of the dimensionless accelerations [m/s^2], from a scale of the duration [s]."""
+    return np.asarray(np.maximum(np.abs(velocity), encounter.approach_speed) / duration)
+
+
+def solve_stretch(
+    encounter: Encounter,
+    rule: Rule,
+    delta: Floats,
+    velocity: Floats,
+    duration: Floats,
+    start: WarmStart,
+    aim: Aim,
+    level: Floats,
+) -> Stretch:
+    r"""Solve the motion of B drops through one stretch of contact.
+
+    The unknowns are the accelerations at the N nodes and the duration, made dimensionless; the equations
+    are :math:`a_i = g - F(\delta_i, \dot\delta_i)/m`, with :math:`\dot\delta` and :math:`\delta` from Radau
+    collocation, and the `aim`. Newton's method uses the Jacobian of one drop for all of them, which costs
+    one small inverse for the whole batch; the drops it does not bring home get Jacobians of their own.
+
+    Parameters
+    ----------
+    encounter : Encounter
+        The impact, of B drops.
+    rule : Rule
+        Nodes and time map.
+    delta, velocity : array, shape (B,)
+        Indentation [m] and its rate [m/s] at the start.
+    duration : array, shape (B,)
+        The duration [s], or a scale of it.
+    start : WarmStart
+        Guess of the unknowns and, where there is one, of the inverse Jacobian; gets the last one used.
+    aim : {"duration", "turn", "indentation", "force"}
+        What ends the stretch.
+    level : array, shape (B,)
+        The indentation [m] to end at, for that aim.
+    """
+    newton = _Newton(encounter, rule, delta, velocity, duration, aim, level)
+    unknowns = start.unknowns.copy()
+    solved = newton.improve_together(unknowns, start)
+    if len(delta) > 1 and not solved.all():
+        left = np.flatnonzero(~solved)
+        alone = _Newton(encounter.take(left), rule, delta[left], velocity[left], duration[left], aim, level[left])
+        own = start.unknowns[:, left]
+        solved[left] = alone.improve_each(own)
+        unknowns[:, left] = own
+    elif not solved.all():
+        unknowns = start.unknowns.copy()
+        solved = newton.improve_each(unknowns)
+    node_delta, node_velocity = newton.motion(unknowns)
+    accelerations = unknowns[:-1] * newton.acceleration_unit
+    _, dissipative = encounter.law.forces(np.maximum(node_delta, 0.0), node_velocity, encounter.approach_speed)
+    lasts = unknowns[-1] * duration
+    lost = lasts * (rule.integral[-1] @ (dissipative * node_velocity))
+    return Stretch(rule, lasts, delta, velocity, node_delta, node_velocity, accelerations, lost, solved)
+
+
+class _Newton:
+    """Newton's method for one call of `solve_stretch`: its units, residual and Jacobian."""
+
+    def __init__(
+        self, encounter: Encounter, rule: Rule, delta: Floats, velocity: Floats, duration: Floats, aim: Aim, level: Floats
+    ) -> None:
+        self.encounter, self.rule, self.aim = encounter, rule, aim
+        self.delta, self.velocity, self.level, self.duration = delta, velocity, level, duration
+        self.acceleration_unit = acceleration_unit(encounter, velocity, duration)
+        self.speed_unit = self.acceleration_unit * duration
+        self.length_unit = self.speed_unit * duration
+
+    def motion(self, unknowns: Floats) -> tuple[Floats, Floats]:
+        """Return indentation and rate at the nodes."""
+        scale = unknowns[-1]
+        velocity = self.rule.integral @ unknowns[:-1]
+        velocity *= self.speed_unit * scale
+        velocity += self.velocity
+        delta = self.rule.integral @ velocity
+        delta *= self.duration * scale
+        delta += self.delta
+        return delta, velocity
+
+    def residual(self, unknowns: Floats) -> tuple[Floats, Floats, Floats, Floats]:
+        """Return the residual, and the indentation, rate and acceleration it was made from."""
+        delta, velocity = self.motion(unknowns)
+        end = delta[-1].copy()
+        np.maximum(delta, 0.0, out=delta)
+        acceleration = self.encounter.acceleration(delta, velocity)
+        residual = np.empty_like(unknowns)
+        np.divide(acceleration, self.acceleration_unit, out=residual[:-1])
+        np.subtract(unknowns[:-1], residual[:-1], out=residual[:-1])
+        if self.aim == "turn":
+            residual[-1] = velocity[-1] / self.speed_unit
+        elif self.aim == "indentation":
+            residual[-1] = (end - self.level) / self.length_unit
+        elif self.aim == "force":
+            residual[-1] = unknowns[-2] - self.encounter.gravity / self.acceleration_unit
+        else:
+            residual[-1] = 0.0
+        return residual, delta, velocity, acceleration
+
+    def improve_together(self, unknowns: Floats, start: WarmStart) -> NDArray[np.bool_]:
+        """Improve `unknowns` in place with one Jacobian for all; return which drops got there."""
+        middle = unknowns.shape[1] // 2
+        scale = 1.0 + np.abs(unknowns).max()
+        change = np.full(unknowns.shape[1], np.inf)
+        refreshes, stale = 0, start.inverse is None
+        for _ in range(_SHARED_SWEEPS):
+            residual, *motion = self.residual(unknowns)
+            if start.inverse is None:
+                start.inverse = _inverse(self.jacobian(np.array([middle]), unknowns, *motion))[0]
+            before, change = change, self.apply(unknowns, start.inverse @ residual) / scale
+            worst = change.max()
+            if worst < _CONVERGED or (worst < _STALLED and worst > 0.3 * before.max()) or not worst < 1e12:
+                break
+            stale = stale or change[middle] > 0.1 * before[middle]
+            if stale and change[middle] > 1e-7 and refreshes < _REFRESHES:
+                start.inverse, refreshes, stale = None, refreshes + 1, False
+            elif refreshes == _REFRESHES and not (change < 0.9 * before).any():
+                break
+        if not np.isfinite(change[middle]):
+            start.inverse = None
+        return np.asarray(change < _STALLED)
+
+    def improve_each(self, unknowns: Floats) -> NDArray[np.bool_]:
+        """Improve `unknowns` in place with a Jacobian a drop; return which drops got there."""
+        everyone = np.arange(unknowns.shape[1])
+        change = np.full(unknowns.shape[1], np.inf)
+        for _ in range(_OWN_SWEEPS):
+            residual, *motion = self.residual(unknowns)
+            inverse = _inverse(self.jacobian(everyone, unknowns, *motion))
+            change = self.apply(unknowns, np.einsum("bij,jb->ib", inverse, residual)) / (1.0 + np.abs(unknowns).max(axis=0))
+            if not (change >= _CONVERGED).any():
+                break
+        return np.asarray(change < _STALLED)
+
+    @staticmethod
+    def apply(unknowns: Floats, step: Floats) -> Floats:
+        """Subtract a step in place, the duration changed no more than threefold; return the size of the whole step."""
+        size = np.abs(step).max(axis=0)
+        limit = unknowns[-1] * (2.0 / 3.0)
+        np.minimum(step[-1], limit, out=step[-1])
+        np.maximum(step[-1], -3.0 * limit, out=step[-1])
+        unknowns -= step
+        return np.asarray(size)
+
+    def jacobian(self, drops: NDArray[np.intp], unknowns: Floats, delta: Floats, velocity: Floats, acceleration: Floats) -> Floats:
+        """Return the Jacobian of the residual for some drops, (b, N + 1, N + 1)."""
+        encounter, speed_unit, length_unit, unit = self.encounter, self.speed_unit, self.length_unit, self.acceleration_unit
+        if len(drops) < len(speed_unit):
+            encounter, speed_unit, length_unit, unit = encounter.take(drops), speed_unit[drops], length_unit[drops], unit[drops]
+            unknowns, delta, velocity, acceleration = unknowns[:, drops], delta[:, drops], velocity[:, drops], acceleration[:, drops]
+        delta_step, velocity_step = 1e-7 * delta.max(axis=0) + 1e-300, 1e-7 * speed_unit
+        by_delta = (encounter.acceleration(delta + delta_step, velocity) - acceleration) * (length_unit / unit / delta_step)
+        by_velocity = (encounter.acceleration(delta, velocity + velocity_step) - acceleration) * (speed_unit / unit / velocity_step)
+
+        number, scale = len(self.rule.nodes), unknowns[-1][:, None, None]
+        integral, twice = self.rule.integral, self.rule.integral_twice
+        velocity_by = np.empty((len(drops), number, number + 1))
+        np.multiply(scale, integral, out=velocity_by[:, :, :-1])
+        velocity_by[:, :, -1] = (integral @ unknowns[:-1]).T
+        delta_by = np.empty_like(velocity_by)
+        np.multiply(scale * scale, twice, out=delta_by[:, :, :-1])
+        delta_by[:, :, -1] = (integral @ (velocity / speed_unit) + unknowns[-1] * (twice @ unknowns[:-1])).T
+
+        jacobian = np.zeros((len(drops), number + 1, number + 1))
+        jacobian[:, :-1] = -by_delta.T[:, :, None] * delta_by - by_velocity.T[:, :, None] * velocity_by
+        jacobian[:, np.arange(number), np.arange(number)] += 1.0
+        if self.aim == "turn":
+            jacobian[:, -1] = velocity_by[:, -1]
+        elif self.aim == "indentation":
+            jacobian[:, -1] = delta_by[:, -1]
+        elif self.aim == "force":
+            jacobian[:, -1, -2] = 1.0
+        else:
+            jacobian[:, -1, -1] = 1.0
+        return jacobian
+
+
+def _inverse(matrices: Floats) -> Floats:
+    """Invert each matrix; if one is singular they all become NaN, and their drops unsolved."""
+    try:
+        return np.asarray(np.linalg.inv(matrices))
+    except np.linalg.LinAlgError:
+        return np.full_like(matrices, np.nan)

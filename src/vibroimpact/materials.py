@@ -1,0 +1,117 @@
+"""Isotropic materials, and the library of them that ships with the package."""
+
+from __future__ import annotations
+
+import math
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cache
+from importlib.resources import files
+
+from vibroimpact.errors import InputError, did_you_mean
+from vibroimpact.ranges import Range
+
+_RANGES = {
+    "density": Range(above=0),
+    "youngs_modulus": Range(above=0),
+    "poissons_ratio": Range(above=-1, below=0.5),
+    "yield_strength": Range(above=0),
+    "loss_factor": Range(at_least=0),
+}
+
+
+@dataclass(frozen=True)
+class Material:
+    """An isotropic, linear-elastic material.
+
+    Parameters
+    ----------
+    density : float
+        Density [kg/m^3], > 0; NaN where the mass plays no part (a body held fixed).
+    youngs_modulus : float
+        Young's modulus [Pa], > 0; infinite for a rigid material.
+    poissons_ratio : float
+        Poisson's ratio [-], in (-1, 0.5).
+    yield_strength : float, optional
+        Yield strength in uniaxial compression or tension [Pa], > 0.
+    loss_factor : float, optional
+        Loss factor of vibration [-], >= 0.
+    name, description, note : str
+        How the library calls it, what it is, and how far its numbers can be trusted.
+    sources : mapping of str to str
+        For each number, where it comes from.
+
+    Raises
+    ------
+    InputError
+        If a number is outside its range.
+
+    Examples
+    --------
+    >>> steel = Material(density=7850, youngs_modulus=210e9, poissons_ratio=0.3)
+    >>> round(steel.plane_strain_modulus / 1e9, 3)
+    230.769
+    """
+
+    density: float
+    youngs_modulus: float
+    poissons_ratio: float
+    yield_strength: float | None = None
+    loss_factor: float | None = None
+    name: str = ""
+    description: str = ""
+    note: str = ""
+    sources: Mapping[str, str] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        for name, allowed in _RANGES.items():
+            value = getattr(self, name)
+            absent = value is None or (name == "density" and math.isnan(value)) or (name == "youngs_modulus" and value == math.inf)
+            try:
+                if not absent:
+                    allowed.check(value)
+            except InputError as error:
+                raise InputError(error.message, name) from None
+
+    @property
+    def plane_strain_modulus(self) -> float:
+        """Young's modulus over 1 - nu^2 [Pa], what a Hertz contact feels of a material."""
+        return self.youngs_modulus / (1.0 - self.poissons_ratio**2)
+
+
+RIGID = Material(density=math.nan, youngs_modulus=math.inf, poissons_ratio=0.0, name="rigid", description="a material of infinite modulus")
+
+
+@cache
+def material_library() -> Mapping[str, Material]:
+    """Return the shipped materials by name; each number has an entry in `sources`.
+
+    Examples
+    --------
+    >>> material_library()["rock-paper"].youngs_modulus
+    2260000000.0
+    """
+    text = files("vibroimpact").joinpath("materials.toml").read_text(encoding="utf-8")
+    return {name: Material(name=name, **entry) for name, entry in tomllib.loads(text).items()}
+
+
+def find_material(name: str) -> Material:
+    """Return the shipped material called `name`, or `RIGID` for "rigid".
+
+    Raises
+    ------
+    InputError
+        If there is none; the message names the closest.
+
+    Examples
+    --------
+    >>> find_material("rigid").youngs_modulus
+    inf
+    """
+    if name == RIGID.name:
+        return RIGID
+    library = material_library()
+    if name not in library:
+        raise InputError(f'there is no material "{name}" in the library; "vibroimpact materials" lists them.{did_you_mean(name, library)}')
+    return library[name]

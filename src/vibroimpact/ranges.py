@@ -1,0 +1,48 @@
+"""The range a number may lie in, and how to say so."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from vibroimpact.errors import InputError
+
+
+@dataclass(frozen=True)
+class Range:
+    """An interval; a bound that is left out does not hold. NaN and infinities are never inside.
+
+    Examples
+    --------
+    >>> Range(above=0, at_most=1).words
+    'greater than 0 and at most 1'
+    """
+
+    above: float = -math.inf
+    at_least: float = -math.inf
+    below: float = math.inf
+    at_most: float = math.inf
+
+    @property
+    def words(self) -> str:
+        """The range in words; "" if every finite number is inside."""
+        bounds = (("greater than", self.above), ("at least", self.at_least), ("less than", self.below), ("at most", self.at_most))
+        return " and ".join(f"{word} {bound:g}" for word, bound in bounds if math.isfinite(bound))
+
+    def check(self, values: Any, unit: str = "", shown: str = "") -> None:
+        """Raise unless all `values` are finite and inside.
+
+        Raises
+        ------
+        InputError
+            With the first value that is not (as `shown`, where given), and what is allowed.
+        """
+        array = np.asarray(values, dtype=float)
+        inside = np.isfinite(array) & (array > self.above) & (array >= self.at_least) & (array < self.below) & (array <= self.at_most)
+        if not inside.all():
+            wrong = shown or f"{array[~inside].flat[0]:g}"
+            allowed = f"{self.words}{' ' + unit if unit else ''}" if self.words else "finite"
+            raise InputError(f"{wrong} is not allowed; it must be {allowed}")

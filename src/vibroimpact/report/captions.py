@@ -1,0 +1,114 @@
+"""What to see in each figure, in a sentence or two, with the numbers of the run."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from vibroimpact.dynamics.problem import STANDARD_GRAVITY
+from vibroimpact.report.excerpt import contacts, enlarged
+from vibroimpact.report.quantity import digits, fixed, text
+from vibroimpact.report.style import ENLARGED
+from vibroimpact.storage.result import Result
+
+
+def caption(name: str, result: Result) -> str:
+    """Return the caption of a figure that the result has."""
+    return _WRITERS[name](result)
+
+
+def left_out(result: Result) -> str:
+    """Return a sentence about figures that this run does not have; empty if it has all."""
+    if len(contacts(result)):
+        return ""
+    if not len(result.impacts["time_s"]):
+        return "The sphere does not reach the plate in this run, so there are no figures of contact force, acceleration and indentation."
+    return (
+        "The contact law is instantaneous: contact has no duration, and force, acceleration and indentation in it "
+        "do not exist, so there are no figures of them."
+    )
+
+
+def _position(result: Result) -> str:
+    start = text(float(result.history["position_m"][0]), "m")
+    if not len(result.impacts["time_s"]):
+        return f"The sphere's centre starts {start} above the plate and has not touched it when the run ends."
+    words = f"The sphere's centre starts {start} above the plate's surface."
+    deepest = int(np.argmax(result.impacts["max_indentation_m"]))
+    if len(contacts(result)):
+        depth = text(float(result.impacts["max_indentation_m"][deepest]), "m")
+        words += f" The largest indentation, {depth}, is that of impact {deepest + 1}."
+    rebound = float(result.impacts["rebound_height_m"][0])
+    if np.isfinite(rebound) and result.impacts["separation_speed_m_s"][0] > 0.0:
+        words += f" The first rebound takes it to {text(rebound, 'm')}."
+    return f"{words} {_enlarged(result)}".strip()
+
+
+def _force(result: Result) -> str:
+    impacts, most = result.impacts, int(np.nanargmax(result.impacts["max_force_N"]))
+    lead = float(impacts["time_of_max_indentation_s"][most] - impacts["time_of_max_force_s"][most])
+    words = f"The largest force, {text(float(impacts['max_force_N'][most]), 'N')}, acts in impact {most + 1}"
+    if lead > 0.001 * impacts["duration_s"][most]:
+        words += f", {text(lead, 's', 3)} before the largest indentation: damping adds to the force on the way in"
+    return f"{words}. {_in_whole_run(result)}".strip()
+
+
+def _velocity(result: Result) -> str:
+    impacts = result.impacts
+    if not len(impacts["time_s"]):
+        return "The sphere falls freely through the whole run."
+    approach, separation = float(impacts["approach_speed_m_s"][0]), float(impacts["separation_speed_m_s"][0])
+    return (
+        f"In impact 1 the sphere arrives at {text(approach, 'm/s')} and leaves at {text(separation, 'm/s')}: "
+        f"a restitution of {fixed(separation / approach, 4)}. Between impacts the line's slope is gravity alone."
+    )
+
+
+def _acceleration(result: Result) -> str:
+    most = int(np.nanargmax(result.impacts["max_acceleration_m_s2"]))
+    value = float(result.impacts["max_acceleration_m_s2"][most])
+    return (
+        f"The largest magnitude, {text(value, 'm/s2')} in impact {most + 1}, is {digits(value / STANDARD_GRAVITY, 3)} times "
+        f"standard gravity. {_in_whole_run(result)}"
+    ).strip()
+
+
+def _loops(result: Result) -> str:
+    found, lost = contacts(result), result.impacts["energy_lost_J"]
+    if np.max(lost) < 1e-9 * result.energy["input_J"]:
+        return "The way in and the way out coincide: no energy is lost in contact."
+    first, last = (text(float(lost[impact]), "J") for impact in (found[0], found[-1]))
+    words = f"The area that a loop encloses is the energy lost in that contact: {first} in impact {found[0] + 1}"
+    return f"{words}, {last} in impact {found[-1] + 1}." if len(found) > 1 else f"{words}."
+
+
+def _energy(result: Result) -> str:
+    energy, put_in = result.energy, result.energy["input_J"]
+    lost = energy["contact_dissipated_J"]
+    words = f"Of {text(put_in, 'J')} put in, {text(lost, 'J')} ({fixed(100.0 * lost / put_in, 1)} %) are lost in contact by the end."
+    if np.min(result.history["potential_J"]) < -0.01 * put_in:
+        words += " Below the height of first touch the potential energy is negative; there the other bands begin below zero."
+    return words + " The bands add up to the energy put in at all times."
+
+
+def _enlarged(result: Result) -> str:
+    total = len(contacts(result))
+    return f"Of the {total} contacts the first {ENLARGED} are enlarged." if len(enlarged(result)) < total and total > ENLARGED else ""
+
+
+def _in_whole_run(result: Result) -> str:
+    """Tell that contacts look like lines in the whole run, where they do."""
+    found, span = contacts(result), result.history["time_s"][-1]
+    part = float(np.sum(result.impacts["duration_s"][found])) / span
+    if part > 0.02:
+        return ""
+    return f"Contact takes {digits(100.0 * part, 2)} % of the run, so it shows as thin lines in the whole run and is enlarged beneath."
+
+
+_WRITERS = {
+    "position": _position,
+    "force": _force,
+    "velocity": _velocity,
+    "acceleration": _acceleration,
+    "force_indentation": _loops,
+    "energy": _energy,
+}

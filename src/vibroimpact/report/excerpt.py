@@ -1,0 +1,82 @@
+"""Parts of a result that a figure shows: contacts, windows of the history, as many points as show."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vibroimpact.report.style import ENLARGED
+from vibroimpact.storage.result import Result
+
+Floats = NDArray[np.float64]
+
+MARGIN = 0.15
+"""What an enlarged contact shows before touch and after release, as a part of its duration."""
+
+_COLUMNS = 1500
+"""Into how many columns a long history is sorted: more than a figure has pixels that matter."""
+
+
+def contacts(result: Result) -> NDArray[np.intp]:
+    """Return which impacts, counted from 0, have a duration; none with an instantaneous law."""
+    found: NDArray[np.intp] = np.flatnonzero(result.impacts["duration_s"] > 0.0)
+    return found
+
+
+def enlarged(result: Result) -> NDArray[np.intp]:
+    """Return which contacts, counted from 0, are worth enlarging: the first few, unless one fills the run by itself."""
+    span = result.history["time_s"][-1] - result.history["time_s"][0]
+    found = contacts(result)
+    short: NDArray[np.intp] = found[result.impacts["duration_s"][found] < 0.5 * span]
+    return short[:ENLARGED]
+
+
+def around(result: Result, impact: int) -> dict[str, Floats]:
+    """Return the history around a contact, with time counted from first touch [s]."""
+    touch, duration = result.impacts["time_s"][impact], result.impacts["duration_s"][impact]
+    part = window(result.history, touch - MARGIN * duration, touch + (1.0 + MARGIN) * duration)
+    return {**part, "time_s": part["time_s"] - touch}
+
+
+def within(result: Result, impact: int) -> dict[str, Floats]:
+    """Return the history from first touch to release."""
+    touch = result.impacts["time_s"][impact]
+    return window(result.history, touch, touch + result.impacts["duration_s"][impact])
+
+
+def window(history: dict[str, Floats], start: float, end: float) -> dict[str, Floats]:
+    """Return the history between two times [s], with a point on each edge that lies within the run."""
+    time = history["time_s"]
+    first, last = np.searchsorted(time, start, side="left"), np.searchsorted(time, end, side="right")
+    before = [start] if first < len(time) and time[0] < start < time[first] else []
+    after = [end] if last > 0 and time[last - 1] < end < time[-1] else []
+
+    def cut(values: Floats) -> Floats:
+        return np.concatenate([np.interp(before, time, values), values[first:last], np.interp(after, time, values)])
+
+    return {name: cut(values) for name, values in history.items()}
+
+
+def touch_height(result: Result) -> float:
+    """Return the height of the sphere's centre at first touch [m]; NaN if the plate is never touched."""
+    if not len(result.impacts["time_s"]):
+        return float("nan")
+    first = np.searchsorted(result.history["time_s"], result.impacts["time_s"][0])
+    return float(result.history["position_m"][first])
+
+
+def gravity(result: Result) -> float:
+    """Return the acceleration of gravity [m/s2]: every run begins in flight."""
+    return -float(result.history["acceleration_m_s2"][0])
+
+
+def thinned(x: Floats, y: Floats) -> tuple[Floats, Floats]:
+    """Return a long line with the points that show: in each column of the figure its ends and its extremes."""
+    if len(x) <= 4 * _COLUMNS:
+        return x, y
+    column = np.searchsorted(np.linspace(x[0], x[-1], _COLUMNS + 1)[1:-1], x, side="right")
+    starts = np.flatnonzero(np.diff(column, prepend=-1))
+    ends = np.append(starts[1:], len(x)) - 1
+    by_height = np.lexsort((y, column))
+    kept = np.unique(np.concatenate([starts, ends, by_height[starts], by_height[ends]]))
+    return x[kept], y[kept]

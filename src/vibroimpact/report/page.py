@@ -1,0 +1,91 @@
+"""The report page: numbers first, then figures, the case and where it comes from, in one file."""
+
+from __future__ import annotations
+
+from base64 import b64encode
+from collections.abc import Mapping
+from importlib.resources import files
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import tomli_w
+from jinja2 import Environment, StrictUndefined
+
+from vibroimpact.dynamics.energy import CLOSURE_LIMIT
+from vibroimpact.report.captions import caption, left_out
+from vibroimpact.report.figures import draw_figures, save_figures
+from vibroimpact.report.quantity import digits
+from vibroimpact.report.tables import impact_table, ledger_table
+from vibroimpact.storage.result import Result
+
+_TITLES = {
+    "position": "Position",
+    "force": "Contact force",
+    "velocity": "Velocity",
+    "acceleration": "Acceleration",
+    "force_indentation": "Force over indentation",
+    "energy": "Energy",
+}
+
+
+class Picture(NamedTuple):
+    """A figure on the page: its name, title, caption and data URI."""
+
+    name: str
+    title: str
+    caption: str
+    source: str
+
+
+def write_report(result: Result, directory: Path) -> None:
+    """Write `report.html`, and the figures that it shows under `figures`, into a directory.
+
+    Parameters
+    ----------
+    result : Result
+        A run of one drop.
+    directory : pathlib.Path
+        An existing directory.
+    """
+    (directory / "figures").mkdir(exist_ok=True)
+    pictures = save_figures(draw_figures(result), directory / "figures")
+    (directory / "report.html").write_text(render_page(result, pictures), encoding="utf-8")
+
+
+def render_page(result: Result, pictures: Mapping[str, bytes]) -> str:
+    """Return the report as one HTML page that needs neither network nor script.
+
+    Parameters
+    ----------
+    result : Result
+        A run of one drop.
+    pictures : mapping of str to bytes
+        Each figure as SVG, by its name, in the order of the page.
+    """
+    environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
+    template = environment.from_string(files(__package__).joinpath("page.html.j2").read_text(encoding="utf-8"))
+    return template.render(
+        name=result.name[:1].upper() + result.name[1:],
+        status=result.status,
+        failed=result.status.startswith("Failed"),
+        impacts=impact_table(result),
+        ledger=ledger_table(result),
+        closure=f"{digits(result.energy['closure_J'], 2)} J",
+        closure_relative=digits(result.energy["closure_relative"], 2),
+        closure_limit=digits(CLOSURE_LIMIT, 1),
+        pictures=_pictures(result, pictures),
+        left_out=left_out(result),
+        case=_as_text(result.case),
+        provenance=result.provenance,
+    )
+
+
+def _pictures(result: Result, pictures: Mapping[str, bytes]) -> list[Picture]:
+    def source(svg: bytes) -> str:
+        return f"data:image/svg+xml;base64,{b64encode(svg).decode()}"
+
+    return [Picture(name, _TITLES[name], caption(name, result), source(svg)) for name, svg in pictures.items()]
+
+
+def _as_text(case: Mapping[str, Any]) -> str:
+    return tomli_w.dumps(case) if case else ""

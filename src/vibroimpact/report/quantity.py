@@ -1,0 +1,108 @@
+"""Numbers as people read them: multiples of units chosen from the data, and significant digits."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+
+class Multiple(NamedTuple):
+    """A multiple of an SI unit: its name and its size in SI."""
+
+    unit: str
+    size: float
+
+
+MISSING = "\u2013"
+"""What stands for a value that does not exist: an en dash."""
+
+_MINUS = "\u2212"
+
+_MULTIPLES: dict[str, tuple[Multiple, ...]] = {
+    "m": (Multiple("m", 1.0), Multiple("mm", 1e-3), Multiple("µm", 1e-6), Multiple("nm", 1e-9)),
+    "s": (Multiple("s", 1.0), Multiple("ms", 1e-3), Multiple("µs", 1e-6), Multiple("ns", 1e-9)),
+    "m/s": (Multiple("m/s", 1.0), Multiple("mm/s", 1e-3), Multiple("µm/s", 1e-6)),
+    "m/s2": (Multiple("km/s²", 1e3), Multiple("m/s²", 1.0), Multiple("mm/s²", 1e-3)),
+    "N": (Multiple("MN", 1e6), Multiple("kN", 1e3), Multiple("N", 1.0), Multiple("mN", 1e-3), Multiple("µN", 1e-6)),
+    "J": (Multiple("MJ", 1e6), Multiple("kJ", 1e3), Multiple("J", 1.0), Multiple("mJ", 1e-3), Multiple("µJ", 1e-6), Multiple("nJ", 1e-9)),
+    "1": (Multiple("", 1.0),),
+}
+"""The multiples of each SI unit that are in use, largest first."""
+
+
+def largest(values: ArrayLike) -> float:
+    """Return the largest magnitude among the finite values; 0 if there is none."""
+    values = np.abs(np.asarray(values, dtype=float))
+    return float(np.max(values, where=np.isfinite(values), initial=0.0))
+
+
+def multiple(unit: str, values: ArrayLike) -> Multiple:
+    """Return the largest multiple of an SI unit in which the largest of the values is at least 1.
+
+    Parameters
+    ----------
+    unit : str
+        SI unit as in `dynamics.columns`.
+    values : array_like
+        Values in that unit; NaN is passed over.
+
+    Examples
+    --------
+    >>> multiple("N", [120.0, 9709.0]).unit
+    'kN'
+    >>> multiple("m", [0.0]).unit
+    'm'
+    """
+    choices, size = _MULTIPLES[unit], largest(values)
+    if size == 0.0:
+        return next(choice for choice in choices if choice.size == 1.0)
+    # 0.9995 reads as 1.000 in the four digits that are printed
+    return next((choice for choice in choices if size >= 0.9995 * choice.size), choices[-1])
+
+
+def digits(value: float, significant: int = 4) -> str:
+    """Return a number in significant digits, with a dash for NaN and a true minus sign.
+
+    Examples
+    --------
+    >>> [digits(value) for value in (9.70894, 0.65, 12345.6, 0.0)]
+    ['9.709', '0.6500', '12346', '0']
+    >>> digits(1.25e-7, 3)
+    '1.25·10⁻⁷'
+    """
+    if not math.isfinite(value):
+        return MISSING
+    if value == 0.0:
+        return "0"
+    mantissa, exponent = f"{value:.{significant - 1}e}".split("e")
+    power = int(exponent)
+    if not -4 <= power <= 7:
+        return f"{mantissa}·10{_superscript(power)}".replace("-", _MINUS)
+    return fixed(value, max(0, significant - 1 - power))
+
+
+def fixed(value: float, decimals: int) -> str:
+    """Return a number with so many decimals, with a dash for NaN and a true minus sign."""
+    if not math.isfinite(value):
+        return MISSING
+    # + 0.0 makes a plain zero of what rounds to minus zero
+    return f"{round(value, decimals) + 0.0:.{decimals}f}".replace("-", _MINUS)
+
+
+def text(value: float, unit: str, significant: int = 4) -> str:
+    """Return a value [SI] in its best multiple, with the unit after a no-break space.
+
+    Examples
+    --------
+    >>> text(9708.94, "N").replace("\u00a0", " ")
+    '9.709 kN'
+    """
+    best = multiple(unit, value)
+    return f"{digits(value / best.size, significant)}\u00a0{best.unit}".rstrip("\u00a0")
+
+
+def _superscript(power: int) -> str:
+    return str(power).translate(str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"))

@@ -1,0 +1,63 @@
+"""Write a whole result folder, and remake the report of one."""
+
+from __future__ import annotations
+
+import os
+from os import PathLike
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from vibroimpact.dynamics.response import Response
+from vibroimpact.errors import InputError
+from vibroimpact.report.page import write_report
+from vibroimpact.storage.folder import new_folder, read_result, write_result
+from vibroimpact.storage.result import result_of
+
+
+def save_result(response: Response, directory: str | PathLike[str], *, force: bool = False) -> Path:
+    """Write the result folder of one drop: data, figures and report; it appears whole or not at all.
+
+    Parameters
+    ----------
+    response : Response
+        The response to one drop.
+    directory : path
+        The folder to make.
+    force : bool, default False
+        Replace a result folder that is there.
+
+    Returns
+    -------
+    pathlib.Path
+        The folder.
+
+    Raises
+    ------
+    InputError
+        If something is there already, or the place can't be written to.
+    """
+    with new_folder(directory, force=force) as folder:
+        result = result_of(response)
+        write_result(result, folder)
+        write_report(result, folder)
+    return Path(directory)
+
+
+def remake_report(directory: str | PathLike[str]) -> Path:
+    """Make figures and report of a result folder again, from its data; its other files stay as they are.
+
+    Raises
+    ------
+    InputError
+        If it is not a result folder, its data are damaged, or it can't be written to.
+    """
+    folder, result = Path(directory), read_result(directory)
+    try:
+        with TemporaryDirectory(prefix=".report.", dir=folder) as working:
+            write_report(result, Path(working))
+            (folder / "figures").mkdir(exist_ok=True)
+            for file in sorted(Path(working).rglob("*.*")):
+                os.replace(file, folder / file.relative_to(working))
+    except OSError as error:
+        raise InputError(f"{folder}: the report can't be written: {error.strerror}") from None
+    return folder

@@ -1,0 +1,88 @@
+"""How all figures look: sizes, type, lines that differ in grey too."""
+
+from __future__ import annotations
+
+from contextlib import AbstractContextManager
+from typing import Any
+
+import matplotlib as mpl
+
+ENLARGED = 5
+"""How many contacts are enlarged at most; more panels would be too narrow to read."""
+
+INK = "#1b1b1b"
+ACCENT = "#0b4f8a"
+MARK = "#b3400e"
+CONTACT = "#e6e6e6"
+"""The main line, what is enlarged, marks, and the ground behind a contact."""
+
+# luminance falls from line to line, so that they differ in grey print; the dashes differ as well
+LOOPS: tuple[tuple[str, str | tuple[int, tuple[int, ...]]], ...] = (
+    ("#00204d", "-"),
+    ("#0072b2", (0, (6, 2))),
+    ("#b3400e", (0, (6, 2, 1, 2))),
+    ("#5f8f3e", (0, (2, 1))),
+    ("#cc79a7", "-"),
+    ("#6b6b6b", (0, (10, 2, 2, 2))),
+    ("#c79000", (0, (4, 3))),
+    ("#56a8d8", (0, (1, 1))),
+)
+"""Colour and dashes of the loops, in order."""
+
+# both luminance and hatch tell the bands apart; from the bottom of the stack to its top
+BANDS: dict[str, tuple[str, str, str]] = {
+    "contact_dissipated_J": ("lost in contact", "#404040", ""),
+    "written_off_at_rest_J": ("written off at rest", "#ffffff", "xx"),
+    "contact_elastic_J": ("stored in the contact", "#f7cd6b", "////"),
+    "potential_J": ("potential", "#d6e6f4", ""),
+    "kinetic_J": ("kinetic", "#4a8cc7", "\\\\"),
+}
+"""Name in the legend, colour and hatch of each entry of the energy ledger."""
+
+_SETTINGS: dict[Any, Any] = {
+    "font.size": 9.0,
+    "axes.titlesize": 9.5,
+    "axes.labelsize": 9.0,
+    "figure.titlesize": 10.0,
+    "xtick.labelsize": 8.0,
+    "ytick.labelsize": 8.0,
+    "legend.fontsize": 8.0,
+    "legend.frameon": False,
+    "axes.edgecolor": "#555555",
+    "axes.linewidth": 0.7,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.grid": True,
+    "axes.axisbelow": True,
+    "axes.titlelocation": "left",
+    # a fixed place for titles: to search for one takes a third of the time of drawing
+    "axes.titley": 1.0,
+    "axes.formatter.limits": (-4, 5),
+    "axes.formatter.useoffset": False,
+    "axes.unicode_minus": True,
+    "grid.color": "#d9d9d9",
+    "grid.linewidth": 0.5,
+    "xtick.color": "#555555",
+    "ytick.color": "#555555",
+    "xtick.labelcolor": INK,
+    "ytick.labelcolor": INK,
+    "text.color": INK,
+    "axes.labelcolor": INK,
+    "lines.linewidth": 1.2,
+    "lines.solid_joinstyle": "miter",
+    "hatch.linewidth": 0.5,
+    "figure.facecolor": "white",
+    "savefig.facecolor": "white",
+    # a line's points that move it by less than a fifth of a point do not show, and make files large
+    "path.simplify": True,
+    "path.simplify_threshold": 0.2,
+    # text as outlines looks the same on every machine, whichever fonts it has
+    "svg.fonttype": "path",
+    # the same result gives the same file, byte for byte
+    "svg.hashsalt": "vibroimpact",
+}
+
+
+def style() -> AbstractContextManager[None]:
+    """Return a context in which figures have the report's look; matplotlib's own settings come back after it."""
+    return mpl.rc_context(_SETTINGS)

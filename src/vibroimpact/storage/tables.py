@@ -1,0 +1,37 @@
+"""The impact table as rows and as CSV."""
+
+from __future__ import annotations
+
+import csv
+import math
+from pathlib import Path
+from typing import Any
+
+from vibroimpact.dynamics.columns import IMPACT_COLUMNS
+
+
+def impact_rows(impacts: dict[str, Any]) -> list[dict[str, float | int | None]]:
+    """Return the impact table as one mapping an impact; None where there is no value.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> impact_rows({name: np.array([1.0]) for name in IMPACT_COLUMNS})[0]["impact"]
+    1
+    """
+    rows: list[dict[str, float | int | None]] = []
+    for index in range(len(impacts["impact"])):
+        row: dict[str, float | int | None] = {}
+        for name in IMPACT_COLUMNS:
+            value = float(impacts[name][index])
+            row[name] = int(value) if name == "impact" else value if math.isfinite(value) else None
+        rows.append(row)
+    return rows
+
+
+def write_csv(impacts: dict[str, Any], path: Path) -> None:
+    """Write the impact table with every digit; an empty cell where there is no value."""
+    with path.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.DictWriter(file, list(IMPACT_COLUMNS), lineterminator="\n")
+        writer.writeheader()
+        writer.writerows({name: "" if value is None else repr(value) for name, value in row.items()} for row in impact_rows(impacts))

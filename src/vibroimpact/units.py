@@ -1,0 +1,146 @@
+"""Read a quantity at the file's edge: a bare number is SI, a string carries its unit.
+
+Everything inside the package is a float in SI; nothing below the case reader calls this module.
+pint is imported when the first unit is met.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from functools import cache
+from typing import TYPE_CHECKING
+
+from vibroimpact.errors import InputError
+
+if TYPE_CHECKING:
+    import pint
+
+_QUANTITY = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*([^\d\s.+-].*)?")
+_UNIT = re.compile(r"[A-Za-z%°µμ*/^ ()·.0-9-]{1,40}")
+
+_KIND = {
+    "m": "length",
+    "kg": "mass",
+    "s": "time",
+    "m/s": "speed",
+    "m/s^2": "acceleration",
+    "Pa": "pressure",
+    "kg/m^3": "density",
+    "Hz": "frequency",
+    "N": "force",
+    "N/m": "stiffness",
+    "N/m^1.5": "contact stiffness",
+    "N s/m": "damping",
+    "": "plain number",
+}
+_EXAMPLE = {
+    "m": "25 mm",
+    "kg": "90 g",
+    "s": "5 ms",
+    "m/s": "8.8 m/s",
+    "m/s^2": "9.8 m/s^2",
+    "Pa": "2.26 GPa",
+    "kg/m^3": "1.38 g/cm^3",
+    "Hz": "60 kHz",
+    "N": "3.5 kN",
+    "N/m": "1.2 MN/m",
+    "N/m^1.5": "1.6e4 N/mm^1.5",
+    "N s/m": "179.75 N s/m",
+}
+
+
+@cache
+def _registry() -> pint.UnitRegistry[float]:
+    import pint
+
+    return pint.UnitRegistry()
+
+
+def to_si(value: float | str, unit: str = "") -> float:
+    """Convert a number or a "number unit" string to a float in the SI `unit`.
+
+    Parameters
+    ----------
+    value : float or str
+        A bare number is taken to be in `unit` already; a string must carry a unit of the same
+        dimension.
+    unit : str, default ""
+        The SI unit wanted, as pint reads it; "" for a plain number.
+
+    Returns
+    -------
+    float
+        The finite value in `unit`.
+
+    Raises
+    ------
+    InputError
+        If the value is not finite, not a number, has no unit or one of another dimension.
+
+    Examples
+    --------
+    >>> to_si("25 mm", "m")
+    0.025
+    >>> to_si("2.26 GPa", "Pa")
+    2260000000.0
+    >>> to_si(0.025, "m")
+    0.025
+    >>> to_si("25 kg", "m")
+    Traceback (most recent call last):
+        ...
+    vibroimpact.errors.InputError: "25 kg" is a mass; what is wanted is a length (a number in m, or a string such as "25 mm")
+    """
+    if isinstance(value, bool) or not isinstance(value, (int, float, str)):
+        raise InputError(f"{value!r} is not {_wanted(unit)}")
+    if isinstance(value, str):
+        return _finite(_parse(value, unit), value)
+    try:
+        return _finite(float(value), value)
+    except OverflowError:
+        raise InputError(f"{str(value)[:20]}... is too large for a number") from None
+
+
+def _parse(text: str, unit: str) -> float:
+    match = _QUANTITY.fullmatch(text) if len(text) <= 80 else None
+    if match is None:
+        raise InputError(f'"{text[:80]}" is not {_wanted(unit)}')
+    number, given = float(match[1]), (match[2] or "").strip()
+    if not unit:
+        if given:
+            raise InputError(f'"{text}" has a unit, but a plain number is wanted: write {number:g}')
+        return number
+    if not given:
+        raise InputError(f'"{text}" has no unit: write {number:g} (it is then in {unit}) or "{number:g} {unit}"')
+    return float(number * _factor(given, unit, text))
+
+
+def _factor(given: str, unit: str, text: str) -> float:
+    """Return how many `unit` there are in one `given`."""
+    import pint
+
+    registry = _registry()
+    try:
+        if not _UNIT.fullmatch(given) or re.search(r"\d{4}", given):
+            raise ValueError(given)
+        have, want = registry.Quantity(1.0, registry.parse_units(given)), registry.parse_units(unit)
+        return float(have.to(want).magnitude)
+    except pint.DimensionalityError:
+        kind = next((k for u, k in _KIND.items() if u and have.check(registry.parse_units(u).dimensionality)), None)
+        is_a = f"is a {kind}" if kind else "is another kind of quantity"
+        raise InputError(f'"{text}" {is_a}; what is wanted is {_wanted(unit)}') from None
+    except Exception as error:  # pint raises many kinds for a unit that it can't read
+        raise InputError(f'"{given}" in "{text}" is not a unit that is known; what is wanted is {_wanted(unit)}') from error
+
+
+def _wanted(unit: str) -> str:
+    if not unit:
+        return "a plain number"
+    example = _EXAMPLE.get(unit, f"1 {unit}")
+    return f'a {_KIND.get(unit, "quantity")} (a number in {unit}, or a string such as "{example}")'
+
+
+def _finite(number: float, value: float | str) -> float:
+    if not math.isfinite(number):
+        raise InputError(f"{value} is not finite")
+    return number

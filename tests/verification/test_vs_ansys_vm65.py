@@ -1,0 +1,24 @@
+"""Against Ansys verification case VM65: a mass falls on a spring (lb, in, s). Tolerance 1e-5, the digits given.
+
+m = 0.5, k = 1973.92, gap 1, g = 386: touch at 0.07198 s with 27.785, largest deflection 0.550666 at 0.100445 s.
+"""
+
+from __future__ import annotations
+
+import pytest
+
+import vibroimpact as vi
+from vibroimpact.contact.laws.linear_spring_dashpot import LinearSpringDashpot
+
+
+def test_mass_on_spring() -> None:
+    law = LinearSpringDashpot(stiffness=1973.92, damping=0.0)
+    ball = vi.Body(mass=0.5, contact_offset=0.0)
+    response = vi.simulate(vi.Problem(sphere=ball, plate=vi.rigid_plate(), laws=(law,), height=1.0, gravity=386.0, impacts=1))
+    row = {name: column[0] for name, column in response.impacts.items()}
+    assert row["time_s"] == pytest.approx(0.07198, abs=5e-6)
+    assert row["approach_speed_m_s"] == pytest.approx(27.785, abs=5e-4)
+    assert row["max_indentation_m"] == pytest.approx(0.550666, rel=1e-6)
+    assert row["time_of_max_indentation_s"] == pytest.approx(0.100445, abs=5e-7)
+    assert row["restitution_achieved"] == pytest.approx(1.0, rel=1e-9)
+    assert response.energy["closure_relative"] <= 1e-9

@@ -1,0 +1,28 @@
+"""Against the geometric series of a hard ball's bounces: t_inf = sqrt(2h/g) (1+e)/(1-e). Tolerance 1e-6."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+import vibroimpact as vi
+from vibroimpact.contact.laws.newton import Newton
+
+
+@pytest.mark.parametrize(("restitution", "expected"), [(0.5, 1.354571), (0.9, 8.578949)])
+def test_infinitely_many_bounces(restitution: float, expected: float) -> None:
+    ball = vi.Body(mass=1.0, contact_offset=0.1)
+    law = Newton(restitution=restitution)
+    response = vi.simulate(vi.Problem(sphere=ball, plate=vi.rigid_plate(), laws=(law,), height=1.1, gravity=9.81, impacts=None))
+    assert response.outcomes == (vi.Outcome.REST_SPEED,)
+    assert response.rest.time[0] == pytest.approx(math.sqrt(2 / 9.81) * (1 + restitution) / (1 - restitution), rel=1e-12)
+    assert response.rest.time[0] == pytest.approx(expected, abs=1e-6)
+    assert "by the rest-speed rule" in response.status
+    assert response.energy["closure_relative"] <= 1e-9
+
+
+def test_heights_fall_by_the_square() -> None:
+    ball = vi.Body(mass=1.0, contact_offset=0.1)
+    response = vi.simulate(vi.Problem(sphere=ball, plate=vi.rigid_plate(), laws=(Newton(restitution=0.8),), height=1.1, impacts=20))
+    assert response.impacts["rebound_height_m"] - 0.1 == pytest.approx([0.64**k for k in range(1, 21)], rel=1e-12)

@@ -1,0 +1,47 @@
+"""Against Chung and Ooi (2011), Granular Matter 13, 643-656, doi 10.1007/s10035-011-0277-0: tests 1 and 2.
+
+Inputs from the article; values from Hertz's closed form, which its digitised curves meet to 1 %. Tolerance 1e-5,
+the digits given.
+"""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+import vibroimpact as vi
+from vibroimpact.contact.laws.hertz import Hertz
+from vibroimpact.contact.pair import effective_modulus, hertz_stiffness
+
+
+def impact(mass: float, stiffness: float, speed: float) -> dict:
+    ball = vi.Body(mass=mass, contact_offset=0.01)
+    problem = vi.Problem(sphere=ball, plate=vi.rigid_plate(), laws=(Hertz(stiffness=stiffness),), speed=speed, gravity=0.0, impacts=1)
+    return vi.simulate(problem).impacts
+
+
+def test_1_two_identical_glass_spheres() -> None:
+    glass = vi.find_material("glass-chung-ooi")
+    mass = 4 / 3 * math.pi * 0.01**3 * glass.density
+    # two equal spheres at +-10 m/s: half the mass, half the radius, 20 m/s
+    row = impact(mass / 2, hertz_stiffness(effective_modulus(glass, glass), 0.005), 20.0)
+    assert row["max_indentation_m"][0] == pytest.approx(274.113e-6, rel=1e-5)
+    assert row["max_force_N"][0] == pytest.approx(10696.9, rel=1e-5)
+    assert row["duration_s"][0] == pytest.approx(40.3395e-6, rel=1e-5)
+
+
+def test_2_aluminium_sphere_on_a_rigid_wall() -> None:
+    case = vi.read_case(
+        {
+            "sphere": {"radius": 0.1, "material": "aluminium-chung-ooi"},
+            "plate": {"material": "rigid"},
+            "drop": {"speed": 0.2, "gravity": 0.0},
+            "contact": {"law": "hertz"},
+            "run": {"impacts": 1},
+        }
+    )
+    row = vi.simulate(case).impacts
+    assert row["max_indentation_m"][0] == pytest.approx(49.7172e-6, rel=1e-5)
+    assert row["max_force_N"][0] == pytest.approx(11369.9, rel=1e-5)
+    assert row["duration_s"][0] == pytest.approx(731.657e-6, rel=1e-5)

@@ -1,0 +1,53 @@
+"""Against Hertz's closed form of an undamped power-law impact without gravity. Tolerance 1e-8.
+
+F = K delta^n: delta_max = ((n+1) m v^2 / 2K)^(1/(n+1)), T = 2/(n+1) B(1/(n+1), 1/2) delta_max/v; for n = 1.5
+the factor of delta_max/v is 2.9432751843 (Johnson 1985, section 11.4).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.special import beta
+
+import vibroimpact as vi
+from vibroimpact.contact.laws.hertz import Hertz
+
+
+def impact(stiffness: float, exponent: float, mass: float, speed: float) -> vi.Response:
+    ball = vi.Body(mass=mass, contact_offset=0.1)
+    law = Hertz(stiffness=stiffness, exponent=exponent)
+    return vi.simulate(vi.Problem(sphere=ball, plate=vi.rigid_plate(), laws=(law,), speed=speed, gravity=0.0, impacts=1))
+
+
+@pytest.mark.parametrize("exponent", [1.0, 1.2, 1.5, 2.0, 2.2, 3.0])
+@pytest.mark.parametrize("speed", [1e-3, 1.0, 300.0])
+def test_closed_form(exponent: float, speed: float) -> None:
+    stiffness, mass = 3.7e8, 0.21
+    row = impact(stiffness, exponent, mass, speed).impacts
+    depth = ((exponent + 1) * mass * speed**2 / (2 * stiffness)) ** (1 / (exponent + 1))
+    duration = 2 / (exponent + 1) * beta(1 / (exponent + 1), 0.5) * depth / speed
+    assert row["max_indentation_m"][0] == pytest.approx(depth, rel=1e-8)
+    assert row["duration_s"][0] == pytest.approx(duration, rel=1e-8)
+    assert row["max_force_N"][0] == pytest.approx(stiffness * depth**exponent, rel=1e-8)
+    assert row["restitution_achieved"][0] == pytest.approx(1.0, rel=1e-8)
+
+
+def test_duration_factor_of_a_sphere() -> None:
+    row = impact(1e6, 1.5, 1.0, 1.0).impacts
+    assert row["duration_s"][0] / row["max_indentation_m"][0] == pytest.approx(2.9432751843, rel=1e-8)
+
+
+def test_the_papers_sphere_undamped() -> None:
+    row = impact(5.1154524848e8, 1.5, 0.09032078879, 8.826664149).impacts
+    assert row["max_indentation_m"][0] == pytest.approx(7.8372e-4, rel=1e-5)
+    assert row["max_force_N"][0] == pytest.approx(11223.5, rel=1e-5)
+    assert row["duration_s"][0] == pytest.approx(261.335e-6, rel=2e-6)
+
+
+def test_history_is_symmetric_in_time() -> None:
+    response = impact(1e6, 1.5, 1.0, 1.0)
+    duration = response.impacts["duration_s"][0]
+    times = np.linspace(0.05, 0.45, 9) * duration
+    early, late = response.at(times)["force_N"], response.at(duration - times)["force_N"]
+    np.testing.assert_allclose(early, late, rtol=1e-5)
