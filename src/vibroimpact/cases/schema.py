@@ -110,7 +110,7 @@ class RunSection(_Section):
     duration: Annotated[float, Quantity("s", "stop at this time", Range(above=0))] | None = None
     rest_speed: Annotated[float, Quantity("m/s", "a sphere that leaves more slowly is at rest", Range(at_least=0))] | None = None
     tolerance: Annotated[
-        float, Quantity("", "relative error allowed in the state at the end of a contact", Range(at_least=1e-13, at_most=1e-3))
+        float, Quantity("", "relative error allowed in the state at the end of a contact", Range(at_least=1e-13, at_most=1e-6))
     ] = 1e-9
 
 

@@ -146,6 +146,6 @@ def _radau(number: int) -> tuple[Floats, Floats, Floats, Floats]:
     for _ in range(3):
         z -= legendre.legval(z, polynomial) / legendre.legval(z, derivative)
     z[-1] = 1.0
-    coefficients = np.asarray(np.linalg.inv(legendre.legvander(z, number - 1)), dtype=np.float64)
-    antiderivative = legendre.legint(coefficients, lbnd=-1, axis=0) / 2.0
+    coefficients: Floats = np.asarray(np.linalg.inv(legendre.legvander(z, number - 1)), dtype=np.float64)
+    antiderivative: Floats = np.asarray(legendre.legint(coefficients, lbnd=-1, axis=0), dtype=np.float64) / 2.0
     return (z + 1.0) / 2.0, coefficients, antiderivative, legendre.legvander(z, number) @ antiderivative

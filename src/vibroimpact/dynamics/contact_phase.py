@@ -23,7 +23,7 @@ Drops = NDArray[np.intp]
 
 COMPRESSION, RESTITUTION, GLIDE, RELEASED, CAPTURED, FAILED = range(6)
 
-_HALVINGS = 60
+_MOST_STRETCHES = 2000  # the stiffest sensible contacts need about a hundred
 
 
 @dataclass(frozen=True)
@@ -135,10 +135,12 @@ class _Phase:
         self.depth = elastic_depth(encounter, self.delta, self.velocity)
         self.march = np.zeros(size)  # duration of the next stretch of a drop that can't aim at its end yet
         self.pace = np.zeros(size)  # the last such duration that was good
-        self.halvings = np.zeros(size, dtype=int)
+        self.stretches = np.zeros(size, dtype=int)  # tried so far
 
     def run(self) -> Contact:
         while (moving := np.flatnonzero(self.outcome < RELEASED)).size:
+            self.stretches[moving] += 1
+            self.outcome[self.stretches > _MOST_STRETCHES] = FAILED
             for code, advance in ((COMPRESSION, self.compress), (RESTITUTION, self.restore), (GLIDE, self.glide)):
                 drops = moving[self.outcome[moving] == code]
                 if drops.size:
@@ -296,7 +298,7 @@ class _Phase:
         self.record(drops, stretch)
         self.delta[drops] = level if aim == "indentation" else stretch.node_delta[-1]
         self.velocity[drops] = 0.0 if aim == "turn" else stretch.node_velocity[-1]
-        self.halvings[drops], self.march[drops] = 0, 0.0
+        self.march[drops] = 0.0
         compressing = self.outcome[drops] == COMPRESSION
         if aim == "turn":
             turned = drops[compressing]
@@ -382,10 +384,8 @@ class _Phase:
                 self.redo(drops[here], stretch.take(here), fraction, "turn" if name == "turn" else "indentation", level[here])
 
     def refuse(self, drops: Drops, duration: Floats) -> None:
-        """Shorten the next stretch of drops whose last was not good; give up after too many times."""
+        """Shorten the next stretch of drops whose last was not good."""
         self.march[drops] = self.pace[drops] = duration
-        self.halvings[drops] += 1
-        self.outcome[drops[self.halvings[drops] > _HALVINGS]] = FAILED
 
     def glide(self, drops: Drops) -> None:
         """Move drops freely until the law pushes again or they are out of the indentation."""

@@ -45,7 +45,7 @@ class Problem:
         rise no higher than the static indentation under its own weight, but at least 1e-6 of
         the first approach speed. Zero: only a sphere that does not leave at all is at rest.
     tolerance : float, default 1e-9
-        Relative error allowed in the state at the end of a contact; 1e-13 to 1e-3.
+        Relative error allowed in the state at the end of a contact; 1e-13 to 1e-6.
     source : mapping, optional
         The case that the problem was made from, for provenance.
 
@@ -99,8 +99,8 @@ class Problem:
             raise InputError(f"impacts must lie between 1 and {MOST_IMPACTS}")
         if self.duration is not None and not 0 < self.duration < np.inf:
             raise InputError("duration must be greater than 0 s and finite")
-        if not 1e-13 <= self.tolerance <= 1e-3:
-            raise InputError("tolerance must lie between 1e-13 and 1e-3")
+        if not 1e-13 <= self.tolerance <= 1e-6:
+            raise InputError("tolerance must lie between 1e-13 and 1e-6")
         try:
             _ = self.shape
         except ValueError:

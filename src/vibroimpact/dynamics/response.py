@@ -151,7 +151,9 @@ class Response:
         if outcome is Outcome.IMPACTS:
             return f"Stopped {after}, at the top of the last rebound, at {end:.6g} s."
         if outcome is Outcome.DURATION:
-            return f"Stopped at {end:.6g} s, the duration asked for, {after}."
+            asked = float(self.problem.duration or end)
+            finished = f", and the contact under way was finished, at {end:.9g} s" if end > asked else ""
+            return f"Stopped {after} at {asked:.6g} s, the duration asked for{finished}."
         if outcome is Outcome.LIMIT:
             return f"Stopped {after}, the most that are followed, at {end:.6g} s; the sphere is not at rest."
         if outcome is Outcome.LEFT:
@@ -235,7 +237,9 @@ class Response:
     def history(self) -> dict[str, Floats]:
         """Return the history of one drop on a grid that resolves every contact, with both sides of each event."""
         parts = [self._history(number, segment.grid()) for number, segment in enumerate(self._segments)]
-        return {name: np.concatenate([part[name] for part in parts]) for name in HISTORY_COLUMNS}
+        history = {name: np.concatenate([part[name] for part in parts]) for name in HISTORY_COLUMNS}
+        history["time_s"] = np.maximum.accumulate(history["time_s"])  # the two sides of an event may differ by rounding
+        return history
 
     def save(self, directory: str | PathLike[str], *, force: bool = False) -> None:
         """Write the result folder: case, table, summary, NetCDF file, figures and report.

@@ -119,16 +119,16 @@ class _Run:
         flight = Flight(self.time[drops], self.gap[drops], self.velocity[drops], self.gravity[drops])
         touch, speed = flight.touch()
         end = np.inf if self.problem.duration is None else self.problem.duration
-        if self.problem.impacts is not None and len(self.rows) == self.problem.impacts:
-            last, outcome = np.minimum(flight.apex()[0], end), Outcome.IMPACTS
-        elif len(self.rows) == MOST_IMPACTS:
-            last, outcome = np.minimum(flight.apex()[0], end), Outcome.LIMIT
-        else:
-            last, outcome = np.full(len(drops), end), Outcome.DURATION
-        gone = np.isinf(touch) & np.isinf(end)
+        last, outcome = np.full(len(drops), end), Outcome.IMPACTS
+        if len(self.rows) in (self.problem.impacts, MOST_IMPACTS):
+            last = np.minimum(flight.apex()[0], end)
+            outcome = Outcome.IMPACTS if len(self.rows) == self.problem.impacts else Outcome.LIMIT
+        by_time = last == end
+        last = np.maximum(last, flight.start)  # a contact under way at the end was finished first
+        gone = np.isinf(touch) & np.isinf(last)
         stops = (touch >= last) | gone
         self.stop(drops[stops], outcome, last[stops])
-        self.stop(drops[stops & (last == end)], Outcome.DURATION, last[stops & (last == end)])
+        self.stop(drops[stops & by_time], Outcome.DURATION, last[stops & by_time])
         self.stop(drops[gone], Outcome.LEFT, flight.start[gone])
         leg = Leg(drops, flight, np.where(gone, flight.start, np.where(stops, last, touch)), drops[~stops])
         if not stops.all():

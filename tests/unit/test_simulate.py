@@ -1,0 +1,259 @@
+"""The loop and its response: batches, stop rules, histories, ledger."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import vibroimpact as vi
+from support import plain_case
+from vibroimpact.contact.laws.adams_impact import AdamsImpact
+from vibroimpact.contact.laws.hertz import Hertz
+from vibroimpact.contact.laws.lankarani_nikravesh import LankaraniNikravesh
+from vibroimpact.contact.laws.linear_spring_dashpot import LinearSpringDashpot
+from vibroimpact.contact.laws.newton import Newton
+from vibroimpact.dynamics.columns import IMPACT_COLUMNS, LEDGER
+
+BALL = vi.Body(mass=0.1, contact_offset=0.02)
+LAW = LankaraniNikravesh(stiffness=5e8, restitution=0.6)
+
+
+def problem(**changes: object) -> vi.Problem:
+    return vi.Problem(**{"sphere": BALL, "plate": vi.rigid_plate(), "laws": (LAW,), "height": 1.0, **changes})
+
+
+# batches -------------------------------------------------------------------------------------------
+
+
+def batch(size: int) -> vi.Problem:
+    random = np.random.default_rng(1)
+    radius = random.uniform(0.005, 0.05, size)
+    law = AdamsImpact(stiffness=random.uniform(1e8, 1e9, size), damping_max=random.uniform(0.0, 3e4, size), full_damping_penetration=1e-4)
+    sphere = vi.Body(mass=1e4 * radius**3, contact_offset=radius)
+    return problem(sphere=sphere, laws=(law,), height=radius + random.uniform(1e-5, 4.0, size))
+
+
+def test_drops_do_not_depend_on_their_batch() -> None:
+    together = vi.simulate(batch(40))
+    assert {vi.Outcome.IMPACTS, vi.Outcome.REST_SPEED} <= set(together.outcomes)
+    for index in range(40):
+        alone, among = vi.simulate(batch(40).take(index)), together.drop(index)
+        assert alone.outcomes == among.outcomes
+        for name in IMPACT_COLUMNS:
+            np.testing.assert_allclose(among.impacts[name], alone.impacts[name], rtol=2e-10, atol=1e-13, err_msg=name)
+
+
+def test_smooth_drops_agree_to_rounding_whatever_the_batch() -> None:
+    restitution = np.linspace(0.2, 1.0, 33)
+    many = vi.simulate(problem(laws=(LankaraniNikravesh(stiffness=5e8, restitution=restitution),)))
+    for index in (0, 7, 16, 32):
+        one = vi.simulate(problem(laws=(LankaraniNikravesh(stiffness=5e8, restitution=float(restitution[index])),)))
+        for name in ("separation_speed_m_s", "duration_s", "max_indentation_m"):
+            np.testing.assert_allclose(many.impacts[name][index], one.impacts[name], rtol=1e-12, err_msg=name)
+
+
+def test_histories_of_a_batch_are_those_of_its_drops() -> None:
+    together = vi.simulate(batch(5))
+    times = np.linspace(0.0, 1.0, 101) * together.end_time[3]
+    one, same = vi.simulate(batch(5).take(3)), together.drop(3)
+    for name, values in one.at(times).items():
+        np.testing.assert_allclose(same.at(times)[name], values, rtol=1e-6, atol=1e-6, err_msg=name)
+    with pytest.raises(vi.InputError, match=r"drop\(0\)"):
+        together.history()
+    with pytest.raises(vi.InputError, match="there is no drop 5"):
+        together.drop(5)
+
+
+def test_batch_status_counts_its_drops() -> None:
+    response = vi.simulate(problem(height=[0.5, 1.0, 0.0200001]))
+    assert response.status == "2 of 3 drops: number of impacts; 1 of 3 drops: at rest: contact without release"
+    assert np.isnan(response.impacts["time_s"][2, 1])
+
+
+# stop rules ----------------------------------------------------------------------------------------
+
+
+def test_stops_after_impacts_at_the_top_of_the_rebound() -> None:
+    response = vi.simulate(problem(impacts=2))
+    assert response.outcomes == (vi.Outcome.IMPACTS,)
+    last = response.at(response.end_time[0])
+    assert last["velocity_m_s"] == pytest.approx(0.0, abs=1e-12)
+    assert last["position_m"] == pytest.approx(response.impacts["rebound_height_m"][-1], rel=1e-12)
+
+
+@pytest.mark.parametrize("duration", [0.1, 0.6, 1.0])
+def test_stops_at_a_time(duration: float) -> None:
+    response = vi.simulate(problem(impacts=None, duration=duration))
+    assert response.outcomes == (vi.Outcome.DURATION,)
+    assert response.end_time[0] == duration
+    assert np.all(response.impacts["time_s"] < duration)
+    assert response.energy["closure_relative"] < 1e-9
+
+
+def test_a_contact_under_way_at_the_end_is_finished() -> None:
+    touch = np.sqrt(2 * 0.98 / vi.Problem.__dataclass_fields__["gravity"].default)
+    response = vi.simulate(problem(duration=float(touch) + 1e-5))
+    assert len(response.impacts["impact"]) == 1
+    assert response.impacts["separation_speed_m_s"][0] > 3.0
+    assert response.end_time[0] >= touch + response.impacts["duration_s"][0]
+
+
+def test_rest_by_speed_is_reported_with_its_threshold() -> None:
+    response = vi.simulate(problem(impacts=None, rest_speed=0.5))
+    assert response.outcomes == (vi.Outcome.REST_SPEED,)
+    assert response.impacts["separation_speed_m_s"][-1] < 0.5 <= response.impacts["separation_speed_m_s"][-2]
+    assert "below 0.5 m/s it counts as at rest" in response.status
+    at_rest = response.at(response.end_time[0])
+    assert at_rest["velocity_m_s"] == 0.0
+    assert at_rest["force_N"] == pytest.approx(0.1 * 9.80665)
+
+
+def test_rest_goes_on_to_the_duration_asked_for() -> None:
+    response = vi.simulate(problem(impacts=None, duration=30.0))
+    assert response.outcomes[0].at_rest
+    assert response.end_time[0] == 30.0
+    assert response.at(29.0)["position_m"] == pytest.approx(0.02 - (0.1 * 9.80665 / 5e8) ** (2 / 3), rel=1e-12)
+
+
+@pytest.mark.parametrize("damping", [3.5, 60.0, 1e4])
+def test_a_sphere_that_never_gets_out_is_captured(damping: float) -> None:
+    response = vi.simulate(problem(laws=(LinearSpringDashpot(stiffness=50.0, damping=damping),), height=0.2, impacts=None, duration=2.0))
+    assert response.outcomes == (vi.Outcome.CAPTURED,)
+    assert response.impacts["restitution_achieved"][-1] == 0.0
+    assert "capture rule" in response.status
+    assert response.energy["closure_relative"] < 1e-9
+
+
+def test_without_gravity_it_leaves_for_good() -> None:
+    response = vi.simulate(problem(height=None, speed=2.0, gravity=0.0))
+    assert response.outcomes == (vi.Outcome.LEFT,)
+    assert len(response.impacts["impact"]) == 1
+    assert np.isnan(response.impacts["rebound_height_m"][0])
+
+
+def test_sticking_newton_is_at_rest_at_once() -> None:
+    response = vi.simulate(problem(laws=(Newton(restitution=0.0),), impacts=None))
+    assert response.outcomes == (vi.Outcome.REST_SPEED,)
+    assert len(response.impacts["impact"]) == 1
+    assert response.energy["closure_relative"] < 1e-12
+
+
+def test_laws_of_each_impact() -> None:
+    laws = tuple(LankaraniNikravesh(stiffness=5e8, restitution=e) for e in (0.9, 0.5))
+    asked = vi.simulate(problem(laws=laws, impacts=4)).impacts["restitution_asked"]
+    assert asked.tolist() == [0.9, 0.5, 0.5, 0.5]
+
+
+def test_progress_is_told() -> None:
+    told: list[float] = []
+    vi.simulate(problem(impacts=4), told.append)
+    assert told == sorted(told)
+    assert told[-1] == 1.0
+    assert len(told) >= 4
+
+
+# histories and ledger ------------------------------------------------------------------------------
+
+
+def test_peaks_are_located_not_sampled(theory: vi.Response) -> None:
+    for index in range(5):
+        start, duration = theory.impacts["time_s"][index], theory.impacts["duration_s"][index]
+        dense = theory.at(start + np.linspace(0.0, 1.0, 20001) * duration)
+        assert theory.impacts["max_force_N"][index] == pytest.approx(dense["force_N"].max(), rel=1e-7)
+        assert theory.impacts["max_indentation_m"][index] == pytest.approx(dense["indentation_m"].max(), rel=1e-8)
+        at_peak = theory.at(theory.impacts["time_of_max_force_s"][index])["force_N"]
+        assert at_peak == pytest.approx(theory.impacts["max_force_N"][index], rel=1e-7)
+    coarse = theory.sample(10.0)["force_N"]
+    assert coarse.max() == 0.0  # ten samples a second meet no contact, and the table does not care
+
+
+def test_history_joins_up(variable: vi.Response) -> None:
+    history = variable.history()
+    time, position, velocity = history["time_s"], history["position_m"], history["velocity_m_s"]
+    assert np.all(np.diff(time) >= 0.0)
+    same = np.flatnonzero(np.diff(time) == 0.0)
+    assert len(same) > 20
+    np.testing.assert_allclose(position[same], position[same + 1], atol=1e-9)
+    np.testing.assert_allclose(velocity[same], velocity[same + 1], atol=1e-5)
+    assert history["force_N"].min() >= 0.0
+
+
+def test_force_belongs_to_the_motion(variable: vi.Response) -> None:
+    history = variable.sample(1e5)
+    np.testing.assert_allclose(history["acceleration_m_s2"], history["force_N"] / 0.09032078879 - 9.8, rtol=1e-9, atol=1e-9)
+
+
+def test_energy_is_constant_at_any_time(variable: vi.Response) -> None:
+    history = variable.history()
+    total = sum(history[name] for name in LEDGER)
+    np.testing.assert_allclose(total, variable.energy["input_J"], rtol=1e-7)
+    assert np.all(np.diff(history["contact_dissipated_J"]) > -1e-7)
+
+
+def test_ledger_at_the_end_is_that_of_the_history(variable: vi.Response) -> None:
+    last = variable.at(variable.end_time[0])
+    for name in LEDGER:
+        assert last[name] == pytest.approx(variable.energy[name], abs=1e-7)
+
+
+def test_energy_lost_is_that_of_the_speeds(theory: vi.Response) -> None:
+    row = theory.impacts
+    lost = 0.5 * 0.09032078879 * (row["approach_speed_m_s"] ** 2 - row["separation_speed_m_s"] ** 2)
+    np.testing.assert_allclose(row["energy_lost_J"], lost, rtol=1e-9)
+
+
+def test_strong_dashpot_peaks_at_first_touch() -> None:
+    law = LinearSpringDashpot(stiffness=1e4, damping=80.0)  # 1.26 of critical
+    response = vi.simulate(problem(laws=(law,), height=None, speed=2.0, impacts=1))
+    assert response.impacts["max_force_N"][0] == pytest.approx(160.0, rel=1e-9)
+    assert response.impacts["time_of_max_force_s"][0] == 0.0
+
+
+def test_times_outside_the_run_are_refused(theory: vi.Response) -> None:
+    for times in ([-1.0], [theory.end_time[0] + 1.0], [np.nan]):
+        with pytest.raises(vi.InputError, match="within the run"):
+            theory.at(times)
+    for rate in (0.0, -1.0, np.inf, np.nan, 1e9):
+        with pytest.raises(vi.InputError, match="rate"):
+            theory.sample(rate)
+
+
+@pytest.mark.parametrize("tolerance", [1e-6, 1e-9, 1e-12])
+def test_tolerance_is_kept(tolerance: float) -> None:
+    row = vi.simulate(vi.read_case(plain_case(run={"impacts": 3, "tolerance": tolerance}))).impacts
+    exact = vi.simulate(vi.read_case(plain_case(run={"impacts": 3, "tolerance": 1e-13}))).impacts
+    np.testing.assert_allclose(row["separation_speed_m_s"], exact["separation_speed_m_s"], rtol=tolerance)
+
+
+# problems ------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"laws": ()}, "one or more contact laws"),
+        ({"laws": (LAW, Newton(restitution=0.5))}, "all of one kind"),
+        ({"speed": 1.0}, "not both"),
+        ({"height": None}, "not both"),
+        ({"height": 0.02}, "greater than the sphere's radius"),
+        ({"height": np.nan}, "finite"),
+        ({"gravity": -1.0}, "not negative"),
+        ({"gravity": 0.0}, "does not fall"),
+        ({"height": None, "speed": 0.0}, "greater than 0"),
+        ({"impacts": 0}, "impacts"),
+        ({"duration": 0.0}, "duration"),
+        ({"tolerance": 1.0}, "tolerance"),
+        ({"plate": BALL}, "held fixed"),
+        ({"height": [1.0, 2.0], "gravity": [9.8, 9.8, 9.8]}, "agree in shape"),
+        ({"height": [[1.0, 2.0]]}, "one axis"),
+    ],
+)
+def test_impossible_problems_are_refused(changes: dict, message: str) -> None:
+    with pytest.raises(vi.InputError, match=message):
+        problem(**changes)
+
+
+def test_a_law_that_gives_energy_fails_by_its_ledger(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(Hertz, "elastic_energy", lambda self, delta: 0.5 * self.elastic_force(delta) * delta)
+    with pytest.raises(vi.ComputationError, match="Failed after"):
+        vi.simulate(problem(laws=(Hertz(stiffness=5e8),)))
