@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     import pint
 
 _QUANTITY = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*([^\d\s.+-].*)?")
-_UNIT = re.compile(r"[A-Za-z%°µμ*/^ ()·.0-9-]{1,40}")
+_UNIT = re.compile(r"[A-Za-z%°µμ][A-Za-z%°µμ*/^ ()·.0-9-]{0,39}")
 
 _KIND = {
     "m": "length",

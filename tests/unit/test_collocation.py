@@ -7,9 +7,9 @@ import pytest
 
 from vibroimpact.contact.laws.lankarani_nikravesh import LankaraniNikravesh
 from vibroimpact.dynamics.collocation import collocation_rule
-from vibroimpact.dynamics.stretch import Encounter, WarmStart, acceleration_unit, solve_stretch
+from vibroimpact.dynamics.stretch import WarmStart, acceleration_unit, encounter_of, solve_stretch
 
-ENCOUNTER = Encounter(LankaraniNikravesh(stiffness=1.0, restitution=0.5), np.ones(1), np.full(1, 1e-3), np.ones(1))
+ENCOUNTER = encounter_of(LankaraniNikravesh(stiffness=1.0, restitution=0.5), np.ones(1), np.full(1, 1e-3), np.ones(1))
 NOTHING = np.zeros(1)
 
 
@@ -36,7 +36,8 @@ def test_rule_integrates_powers_of_its_own_time(time_map: str, root: int) -> Non
     np.testing.assert_allclose(rule.integrate(x, 2.0 * rule.time), rule.map_time(x) ** 2, atol=1e-13)
     np.testing.assert_allclose((rule.integral @ np.ones(12)), rule.time, atol=1e-14)
     np.testing.assert_allclose(rule.interpolate(x, rule.nodes**3), x**3, atol=1e-12)
-    np.testing.assert_allclose(rule.at_points(rule.nodes[3:4], rule.nodes[:, None] ** 2), rule.nodes[3:4] ** 2)
+    points = np.concatenate([[0.0], rule.nodes])
+    np.testing.assert_allclose(rule.weights(x).T @ points**3, x**3, atol=1e-12)
 
 
 @pytest.mark.parametrize("nodes", [2, 3, 4])

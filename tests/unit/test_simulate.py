@@ -39,8 +39,12 @@ def test_drops_do_not_depend_on_their_batch() -> None:
     for index in range(40):
         alone, among = vi.simulate(batch(40).take(index)), together.drop(index)
         assert alone.outcomes == among.outcomes
+        # when a sphere that is captured is found to be depends on where its stretches end
+        rows = slice(None, -1 if alone.outcomes == (vi.Outcome.CAPTURED,) else None)
         for name in IMPACT_COLUMNS:
-            np.testing.assert_allclose(among.impacts[name], alone.impacts[name], rtol=2e-10, atol=1e-13, err_msg=name)
+            # a law with kinks may be cut into other stretches; the force peaks between their nodes
+            tolerance = 1e-7 if name in ("max_force_N", "max_acceleration_m_s2") else 1e-5 if name == "time_of_max_force_s" else 2e-10
+            np.testing.assert_allclose(among.impacts[name][rows], alone.impacts[name][rows], rtol=tolerance, atol=1e-13, err_msg=name)
 
 
 def test_smooth_drops_agree_to_rounding_whatever_the_batch() -> None:
@@ -54,8 +58,8 @@ def test_smooth_drops_agree_to_rounding_whatever_the_batch() -> None:
 
 def test_histories_of_a_batch_are_those_of_its_drops() -> None:
     together = vi.simulate(batch(5))
-    times = np.linspace(0.0, 1.0, 101) * together.end_time[3]
     one, same = vi.simulate(batch(5).take(3)), together.drop(3)
+    times = np.linspace(0.0, 1.0, 101) * min(one.end_time[0], same.end_time[0])
     for name, values in one.at(times).items():
         np.testing.assert_allclose(same.at(times)[name], values, rtol=1e-6, atol=1e-6, err_msg=name)
     with pytest.raises(vi.InputError, match=r"drop\(0\)"):
@@ -257,3 +261,57 @@ def test_a_law_that_gives_energy_fails_by_its_ledger(monkeypatch: pytest.MonkeyP
     monkeypatch.setattr(Hertz, "elastic_energy", lambda self, delta: 0.5 * self.elastic_force(delta) * delta)
     with pytest.raises(vi.ComputationError, match="Failed after"):
         vi.simulate(problem(laws=(Hertz(stiffness=5e8),)))
+
+
+# what once went wrong ------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("ratio", [1e-3, 3e-3, 0.01, 0.012, 0.02, 0.3])
+def test_a_peak_just_before_the_deepest_point_is_found(ratio: float) -> None:
+    """Against the closed form of a damped oscillator, whose force leads its indentation."""
+    stiffness, mass, speed = 1e6, 0.1, 2.0
+    natural = np.sqrt(stiffness / mass)
+    damped = natural * np.sqrt(1 - ratio**2)
+    law = LinearSpringDashpot(stiffness=stiffness, damping=2 * ratio * np.sqrt(stiffness * mass))
+    row = vi.simulate(problem(laws=(law,), height=None, speed=speed, gravity=0.0, impacts=1)).impacts
+    # F = m v w exp(-z w t) sin(w_d t + phase) / sqrt(1 - z^2), with tan(phase) = 2 z sqrt(1 - z^2) / (1 - 2 z^2)
+    phase = np.arctan2(2 * ratio * np.sqrt(1 - ratio**2), 1 - 2 * ratio**2)
+    time = (np.arctan2(np.sqrt(1 - ratio**2), ratio) - phase) / damped
+    force = mass * speed * natural / np.sqrt(1 - ratio**2) * np.exp(-ratio * natural * time) * np.sin(damped * time + phase)
+    assert row["max_force_N"][0] == pytest.approx(force, rel=1e-9)
+    assert row["time_of_max_force_s"][0] == pytest.approx(time, rel=1e-5)
+
+
+def test_each_drop_of_a_batch_rests_under_its_own_last_law() -> None:
+    laws = tuple(LinearSpringDashpot(stiffness=k, damping=[60.0, 0.0]) for k in (1e3, 2e3))
+    together = vi.simulate(problem(laws=laws, height=0.05, impacts=3))
+    assert together.outcomes == (vi.Outcome.CAPTURED, vi.Outcome.IMPACTS)
+    alone = vi.simulate(problem(laws=laws, height=0.05, impacts=3).take(0))
+    assert together.rest.sag[0] == pytest.approx(0.1 * 9.80665 / 1e3, rel=1e-12)
+    assert together.energy["written_off_at_rest_J"][0] == pytest.approx(alone.energy["written_off_at_rest_J"], rel=1e-9)
+    assert together.energy["closure_relative"].max() < 1e-9
+
+
+@pytest.mark.parametrize(("damping", "speed"), [(1e4, 1e-3), (1e3, 1.0), (30.0, 1e-3), (30.0, 1e-2)])
+def test_a_slow_touch_sinks_at_least_to_its_static_indentation(damping: float, speed: float) -> None:
+    ball = vi.Body(mass=1.0, contact_offset=0.02)
+    law = LinearSpringDashpot(stiffness=1e4, damping=damping)
+    response = vi.simulate(problem(sphere=ball, laws=(law,), height=None, speed=speed, gravity=9.80665, impacts=3))
+    assert response.outcomes[0].at_rest
+    assert response.impacts["max_indentation_m"].max() >= 9.80665e-4 * (1 - 1e-5)
+    assert response.energy["closure_relative"] < 1e-9
+
+
+@pytest.mark.parametrize("slowness", [1.0, 1e-2, 1e-4])
+def test_a_sphere_put_down_softly(slowness: float) -> None:
+    """Elastic: the deepest point from v^2/2 + g d = K d^2.5 / 2.5 m, where gravity outweighs the approach speed."""
+    from scipy.optimize import brentq
+
+    stiffness, mass, gravity = 1.3e8, 0.01, 9.80665
+    sag = (mass * gravity / stiffness) ** (2 / 3)
+    speed = slowness * np.sqrt(2 * gravity * sag)
+    ball = vi.Body(mass=mass, contact_offset=0.01)
+    response = vi.simulate(problem(sphere=ball, laws=(Hertz(stiffness=stiffness),), height=None, speed=speed, impacts=1, rest_speed=0.0))
+    exact = brentq(lambda d: 0.5 * mass * speed**2 + mass * gravity * d - stiffness * d**2.5 / 2.5, sag, 10 * sag, xtol=1e-18, rtol=1e-14)
+    assert response.impacts["max_indentation_m"][0] == pytest.approx(exact, rel=1e-9)
+    assert response.impacts["restitution_achieved"][0] == pytest.approx(1.0, abs=1e-9 + 1e-12 / slowness**2)

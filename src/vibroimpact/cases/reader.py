@@ -48,7 +48,7 @@ def load_case(source: str | PathLike[str]) -> Case:
     text = _shipped(name) if name.startswith("paper:") else _file(Path(source))
     try:
         table = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
+    except ValueError as error:  # tomllib's own, or a number of thousands of digits
         raise InputError(f"{name}: this is not valid TOML: {error}") from None
     except RecursionError:
         raise InputError(f"{name}: this is not a case: its tables are nested too deeply") from None

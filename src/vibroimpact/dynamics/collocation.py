@@ -51,8 +51,8 @@ class Rule:
         From values at the nodes to Legendre coefficients in 2 x - 1.
     antiderivative : array, shape (N + 1, N)
         From values at the nodes to Legendre coefficients of their integral from 0.
-    barycentric : array, shape (N,)
-        Weights of the second barycentric formula.
+    barycentric : array, shape (N + 1,)
+        Barycentric weights of the points 0 and the nodes.
     dense : array, shape (65, N)
         From values at the nodes to values at 65 evenly spaced x.
     """
@@ -95,19 +95,22 @@ class Rule:
         slope = self.slope if values.ndim == 1 else self.slope[:, None]
         return np.asarray(legendre.legvander(2.0 * x - 1.0, len(self.nodes)) @ (self.antiderivative @ (slope * values)))
 
-    def at_points(self, x: Floats, values: Floats) -> Floats:
-        """Return the polynomials through `values` (N, B), each at its own x (B,): (B,)."""
-        distance = x - self.nodes[:, None]
-        with np.errstate(all="ignore"):
-            weights = self.barycentric[:, None] / distance
-            inside = (weights * values).sum(axis=0) / weights.sum(axis=0)
-        exact = distance == 0.0
-        return np.asarray(np.where(exact.any(axis=0), (exact * values).sum(axis=0), inside)) if exact.any() else np.asarray(inside)
+    def weights(self, x: Floats) -> Floats:
+        """Return the weights of the values at 0 and at the nodes for the polynomials at x (B,): (N + 1, B)."""
+        points = np.concatenate([[0.0], self.nodes])[:, None]
+        distance = x - points
+        distance[distance == 0.0] = 1e-300  # at a point, its weight outweighs all others
+        weights = self.barycentric[:, None] / distance
+        weights /= weights.sum(axis=0)
+        return np.asarray(weights)
 
-    def tail(self, values: Floats) -> Floats:
-        """Return the size of the last two Legendre coefficients of m' times `values` (N, B), relative: (B,)."""
+    def tail(self, values: Floats, scale: Floats) -> Floats:
+        """Return the size of the last two Legendre coefficients of m' times `values` (N, B): (B,).
+
+        Relative to the largest coefficient, or to `scale` (B,) where that is larger.
+        """
         spectrum = np.abs(self.coefficients @ (self.slope[:, None] * values))
-        return np.asarray(spectrum[-2:].max(axis=0) / np.maximum(spectrum.max(axis=0), 1e-300))
+        return np.asarray(spectrum[-2:].max(axis=0) / np.maximum(spectrum.max(axis=0), scale))
 
 
 @cache
@@ -130,8 +133,8 @@ def collocation_rule(number: int, time_map: Map, root: int = 2) -> Rule:
     else:
         time, slope = nodes, np.ones(number)
     integral = integral * slope
-    apart = nodes[:, None] - nodes + np.eye(number)
-    barycentric = 1.0 / np.prod(4.0 * apart, axis=1)  # 4: the capacity of [0, 1], against underflow
+    points = np.concatenate([[0.0], nodes])
+    barycentric = 1.0 / np.prod(4.0 * (points[:, None] - points) + np.eye(number + 1), axis=1)  # 4: against underflow
     dense = legendre.legvander(np.linspace(-1.0, 1.0, 65), number - 1) @ coefficients
     return Rule(time_map, root, nodes, time, slope, integral, integral @ integral, coefficients, antiderivative, barycentric, dense)
 

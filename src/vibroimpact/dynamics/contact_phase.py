@@ -15,6 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from vibroimpact.contact.static import static_indentation
 from vibroimpact.dynamics.collocation import Floats, Map, Rule, collocation_rule
 from vibroimpact.dynamics.glide import Glide, glide_until_push
 from vibroimpact.dynamics.stretch import Aim, Encounter, Stretch, WarmStart, acceleration_unit, solve_stretch
@@ -101,20 +102,8 @@ def contact_phase(encounter: Encounter, tolerance: float, memory: Memory, ids: D
 
 
 def nodes_for(tolerance: float) -> int:
-    """Return the number of collocation nodes for a tolerance: 16 at the default of 1e-9."""
-    return int(4 + 4 * np.ceil(-np.log10(tolerance) / 3.0))
-
-
-def elastic_depth(encounter: Encounter, delta: Floats, velocity: Floats) -> Floats:
-    """Return the indentation [m] that the motion would reach if nothing were lost."""
-    law, weight = encounter.law, encounter.mass * encounter.gravity
-    energy = 0.5 * encounter.mass * velocity * velocity + law.elastic_energy(delta) - weight * delta
-    depth = np.maximum(delta, velocity * velocity / (2.0 * encounter.gravity + 1e9) + 1e-9)
-    for _ in range(4):
-        stored = law.elastic_energy(depth)
-        elastic, _ = law.forces(depth, np.zeros_like(depth), encounter.approach_speed)
-        depth = depth * ((energy + weight * depth) / stored) ** (stored / (elastic * depth))
-    return np.maximum(depth, delta * (1.0 + 1e-9))
+    """Return the number of collocation nodes for a tolerance: 20 at the default of 1e-9."""
+    return int(8 + 4 * np.ceil(-np.log10(tolerance) / 3.0))
 
 
 class _Phase:
@@ -125,14 +114,14 @@ class _Phase:
         self.memory, self.ids = memory, ids
         self.encounter, self.law = encounter, encounter.law
         self.number, self.tolerance = nodes_for(tolerance), tolerance
-        self.least_energy = 0.5 * encounter.mass * (tolerance * encounter.approach_speed) ** 2
+        self.least_energy = 0.5 * encounter.mass * (tolerance * encounter.speed_scale) ** 2
         self.pieces: list[Piece] = []
         self.time, self.delta, self.velocity = np.zeros(size), np.zeros(size), encounter.approach_speed.copy()
         self.outcome = np.full(size, COMPRESSION, dtype=np.int8)
         self.max_delta, self.time_of_max_delta, self.dissipated = np.zeros(size), np.zeros(size), np.zeros(size)
         self.levels = [np.broadcast_to(np.asarray(level, dtype=float), (size,)) for level in self.law.breakpoints]
         self.within_reach = np.ones((len(self.levels), size), dtype=bool)
-        self.depth = elastic_depth(encounter, self.delta, self.velocity)
+        self.depth = encounter.depth
         self.march = np.zeros(size)  # duration of the next stretch of a drop that can't aim at its end yet
         self.pace = np.zeros(size)  # the last such duration that was good
         self.stretches = np.zeros(size, dtype=int)  # tried so far
@@ -207,22 +196,26 @@ class _Phase:
         """Solve a stretch to its end, from the last impact's solution or a sinusoidal guess."""
         encounter, kind, ids = self.encounter.take(drops), (time_map, aim), self.ids[drops]
         duration = self.time_scale(drops, aim, level)
-        if self.memory.knows(kind, ids).all():
+        known = self.memory.knows(kind, ids)
+        if known.all():
             start = WarmStart(self.memory.starts[kind].unknowns[:, ids], self.memory.starts[kind].inverse)
         else:
             unit = acceleration_unit(encounter, self.velocity[drops], duration)
             guess = self.first_guess(drops, self.rule(time_map), aim, level) / unit
             start = WarmStart(np.concatenate([guess, np.ones((1, len(drops)))]))
+            if known.any():
+                start.unknowns[:, known] = self.memory.starts[kind].unknowns[:, ids[known]]
         stretch = self.solve(drops, time_map, duration, start, aim, level)
         self.remember(drops, stretch, aim, duration, start)
         return stretch
 
     def remember(self, drops: Drops, stretch: Stretch, aim: Aim, scale: Floats, start: WarmStart) -> None:
         """Keep a solution for the next impact, in units of the time scale of its kind."""
-        if stretch.solved.all():
-            accelerations = stretch.node_acceleration / acceleration_unit(self.encounter.take(drops), stretch.velocity, scale)
-            unknowns = np.concatenate([accelerations, (stretch.duration / scale)[None]])
-            self.memory.keep((stretch.rule.time_map, aim), self.ids[drops], unknowns, start.inverse)
+        accelerations = stretch.node_acceleration / acceleration_unit(self.encounter.take(drops), stretch.velocity, scale)
+        unknowns = np.concatenate([accelerations, (stretch.duration / scale)[None]])
+        solved = stretch.solved
+        if solved.any():
+            self.memory.keep((stretch.rule.time_map, aim), self.ids[drops[solved]], unknowns[:, solved], start.inverse)
 
     def solve(self, drops: Drops, time_map: Map, duration: Floats, start: WarmStart, aim: Aim, level: Floats) -> Stretch:
         rule = self.rule(time_map)
@@ -236,7 +229,8 @@ class _Phase:
         delta, velocity, depth = self.delta[drops], self.velocity[drops], self.depth[drops]
         if aim == "turn":
             begin = np.arcsin(np.minimum(delta / depth, 0.999))
-            return np.asarray((0.5 * np.pi - begin) * depth * np.cos(begin) / velocity)
+            speed = np.sqrt(velocity**2 + self.encounter.gravity[drops] * (depth - delta))
+            return np.asarray((0.5 * np.pi - begin) * depth * np.cos(begin) / speed)
         stored = np.sqrt(2.0 * self.encounter.take(drops).law.elastic_energy(delta) / self.encounter.mass[drops])
         turn = np.arccos(np.clip(level / delta, 0.0, 1.0))
         return np.where(velocity == 0.0, turn * delta / stored, (level - delta) / velocity)
@@ -286,7 +280,8 @@ class _Phase:
         """Take a stretch into the history, unless the force that may not pull has become zero on the way."""
         restoring = self.outcome[drops] == RESTITUTION
         if self.law.tension == "cut" and aim != "force" and restoring.any():
-            rounding = 1e-11 * np.abs(stretch.node_acceleration).max(axis=0)
+            unit = self.encounter.approach_speed[drops] / stretch.duration
+            rounding = 1e-11 * (np.abs(stretch.node_acceleration).max(axis=0) + unit)
             pulling = (stretch.node_acceleration > self.encounter.gravity[drops] + rounding) & restoring
             early = pulling.any(axis=0)
             if early.any():
@@ -296,7 +291,7 @@ class _Phase:
         if not drops.size:
             return
         self.record(drops, stretch)
-        self.delta[drops] = level if aim == "indentation" else stretch.node_delta[-1]
+        self.delta[drops] = level if aim == "indentation" else np.maximum(stretch.node_delta[-1], 0.0)
         self.velocity[drops] = 0.0 if aim == "turn" else stretch.node_velocity[-1]
         self.march[drops] = 0.0
         compressing = self.outcome[drops] == COMPRESSION
@@ -321,17 +316,24 @@ class _Phase:
     def capture(self, drops: Drops) -> None:
         """End the contact of drops that can't get out any more.
 
-        No law gives energy, so a sphere that has less than it takes to lift it out of the indentation, with a
-        separation speed of `tolerance` times the approach speed, stays.
+        No law gives energy, so a sphere on its way out that has less than it takes to lift it out of the
+        indentation, with a separation speed of `tolerance` times the speed scale, stays. One on its way in may
+        creep towards its static indentation and never turn; it is followed until it is there.
         """
         drops = drops[self.outcome[drops] < RELEASED]
         encounter, delta = self.encounter.take(drops), self.delta[drops]
-        energy = encounter.mass * (0.5 * self.velocity[drops] ** 2 - encounter.gravity * delta) + encounter.law.elastic_energy(delta)
-        held = drops[energy < self.least_energy[drops]]
-        if held.size:
-            self.outcome[held] = CAPTURED
-            deeper = self.max_delta[held] < self.delta[held]
-            self.max_delta[held[deeper]], self.time_of_max_delta[held[deeper]] = self.delta[held[deeper]], self.time[held[deeper]]
+        weight = encounter.mass * encounter.gravity
+        energy = 0.5 * encounter.mass * self.velocity[drops] ** 2 + encounter.law.elastic_energy(delta) - weight * delta
+        held = energy < self.least_energy[drops]
+        sinking = held & (self.outcome[drops] == COMPRESSION)
+        if sinking.any():
+            sag = static_indentation(encounter.law, weight)
+            left = energy - (encounter.law.elastic_energy(sag) - weight * sag)
+            there = sinking & (left < np.maximum(1e-12 * weight * sag, self.least_energy[drops]))
+            self.max_delta[drops[there]] = np.maximum(delta, sag)[there]
+            self.time_of_max_delta[drops[there]] = self.time[drops[there]]
+            held &= ~sinking | there
+        self.outcome[drops[held]] = CAPTURED
 
     def redo(self, drops: Drops, stretch: Stretch, fraction: Floats, aim: Aim, level: Floats) -> None:
         """Solve part of a stretch again, to an event that was seen near a fraction of its duration."""
@@ -356,13 +358,10 @@ class _Phase:
 
     def step(self, drops: Drops, time_map: Map, aim: Aim, level: Floats) -> None:
         """Advance marching drops by a stretch of given duration, or to the event inside it."""
-        encounter, duration = self.encounter.take(drops), self.march[drops]
-        rule = self.rule(time_map)
-        path = np.maximum(self.delta[drops] + self.velocity[drops] * (duration * rule.time[:, None]), 0.0)
-        guess = encounter.acceleration(path, np.broadcast_to(self.velocity[drops], path.shape))
-        guess /= acceleration_unit(encounter, self.velocity[drops], duration)
-        start = WarmStart(np.concatenate([guess, np.ones((1, len(drops)))]))
-        stretch = self.solve(drops, time_map, duration, start, "duration", level)
+        duration, rule = self.march[drops], self.rule(time_map)
+        steady = np.zeros((self.number + 1, len(drops)))  # no acceleration: a guess that stiff damping can't send astray
+        steady[-1] = 1.0
+        stretch = self.solve(drops, time_map, duration, WarmStart(steady), "duration", level)
         good = self.resolved(drops, stretch)
         self.refuse(drops[~good], 0.25 * duration[~good])
 
@@ -404,4 +403,4 @@ class _Phase:
 
     def span(self, drops: Drops) -> Floats:
         """Return a time scale of the contact [s], to begin marching with."""
-        return np.asarray(self.depth[drops] / np.maximum(self.encounter.approach_speed[drops], np.abs(self.velocity[drops])))
+        return np.asarray(self.depth[drops] / np.maximum(self.encounter.speed_scale[drops], np.abs(self.velocity[drops])))

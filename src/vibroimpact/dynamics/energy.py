@@ -11,21 +11,24 @@ CLOSURE_LIMIT = 1e-6
 """The part of the energy put in that may be missing; above it a run has failed."""
 
 
-def close_ledger(energy_in: Floats, entries: dict[str, Floats]) -> dict[str, Floats]:
+def close_ledger(energy_in: Floats, sagging: Floats, entries: dict[str, Floats]) -> dict[str, Floats]:
     """Return the ledger [J] with what was put in and its closure.
 
     Parameters
     ----------
     energy_in : array, shape (B,)
         Kinetic and potential energy at the start [J].
+    sagging : array, shape (B,)
+        What gravity adds in the deepest indentation [J]; of a sphere put down softly, more than `energy_in`.
     entries : dict of str to array
         The entries of `LEDGER` at the end [J].
 
     Returns
     -------
     dict of str to array
-        `input_J`, the entries, `closure_J` (entries less input) and `closure_relative`.
+        `input_J`, the entries, `closure_J` (entries less input) and `closure_relative`, its part of the energy
+        put in by the drop and by gravity.
     """
     closure = sum((entries[name] for name in LEDGER), -energy_in)
-    relative = np.abs(closure) / np.where(energy_in > 0.0, energy_in, 1.0)
+    relative = np.abs(closure) / (energy_in + sagging)
     return {"input_J": energy_in, **{name: entries[name] for name in LEDGER}, "closure_J": closure, "closure_relative": relative}

@@ -10,45 +10,63 @@ from vibroimpact.dynamics.stretch import Encounter, Stretch
 
 
 def force_peak(contact: Contact, encounter: Encounter) -> tuple[Floats, Floats]:
-    """Return the largest contact force [N] of each drop and when it is reached, since first touch [s]."""
+    """Return the largest contact force [N] of each drop and when it is reached, since first touch [s].
+
+    The acceleration is least there. Its interpolant says where to look, and the law, at the motion there, what
+    it is: the motion is an integral, so more exact than the interpolant.
+    """
+    size = len(encounter.mass)
     stretches = [(piece, piece.motion) for piece in contact.pieces if isinstance(piece.motion, Stretch)]  # a glide is free of force
-    coarse = np.full(len(encounter.mass), np.inf)
-    for piece, motion in stretches:
-        coarse[piece.drops] = np.minimum(coarse[piece.drops], motion.node_acceleration.min(axis=0))
-    largest, when = np.zeros(len(encounter.mass)), np.zeros(len(encounter.mass))
-    for piece, motion in stretches:
+    lows = [np.minimum(_sampled(motion).min(axis=0), motion.node_acceleration.min(axis=0)) for _, motion in stretches]
+    lowest = np.full(size, np.inf)
+    for (piece, _), low in zip(stretches, lows, strict=True):
+        lowest[piece.drops] = np.minimum(lowest[piece.drops], low)
+    least, when = np.full(size, np.inf), np.zeros(size)
+    for (piece, motion), low in zip(stretches, lows, strict=True):
         drops = piece.drops
-        if not (motion.node_acceleration.min(axis=0) < 0.8 * coarse[drops]).any() and len(stretches) > 1:
-            continue  # far from the peak
-        least, x = _least_acceleration(motion, encounter.take(drops))
-        force = encounter.mass[drops] * (encounter.gravity[drops] - least)
-        better = force > largest[drops]
-        largest[drops[better]] = force[better]
+        margin = 1e-3 * np.abs(lowest[drops]) + 1e-3 * encounter.gravity[drops]
+        starts_high = encounter.take(drops).acceleration(motion.delta, motion.velocity) if not motion.delta.any() else low
+        if not (np.minimum(low, starts_high) <= lowest[drops] + margin).any():
+            continue  # the peak lies in another stretch
+        found, x = _least_acceleration(motion, encounter.take(drops))
+        better = found < least[drops]
+        least[drops[better]] = found[better]
         when[drops[better]] = (piece.start + motion.duration * motion.rule.map_time(x))[better]
-    return largest, when
+    return encounter.mass * (encounter.gravity - np.minimum(least, encounter.gravity)), when
+
+
+def _sampled(stretch: Stretch) -> Floats:
+    """Return the interpolant of the acceleration at evenly spaced x (65, B)."""
+    return np.asarray(stretch.rule.dense @ stretch.node_acceleration)
 
 
 def _least_acceleration(stretch: Stretch, encounter: Encounter) -> tuple[Floats, Floats]:
     """Return the least acceleration in a stretch, of each drop, and its x."""
-    rule, values = stretch.rule, stretch.node_acceleration
-    grid = rule.dense @ values
-    grid[0] = encounter.acceleration(stretch.delta, stretch.velocity)  # x = 0 is not a node
-    index = grid.argmin(axis=0)
-    column, last, spacing = np.arange(len(index)), len(grid) - 1, 1.0 / (len(grid) - 1)
-    least, at = grid[index, column], index * spacing
-    inside = (index > 0) & (index < last)
-    if not inside.any():
-        return least, at
-    centre = np.clip(index, 1, last - 1)
-    at = np.where(inside, centre * spacing + _vertex(grid[centre - 1, column], grid[centre, column], grid[centre + 1, column], spacing), at)
-    left, middle, right = (rule.at_points(at + side * spacing / 16.0, values) for side in (-1.0, 0.0, 1.0))
-    finer = np.clip(at + _vertex(left, middle, right, spacing / 16.0), 0.0, 1.0)
-    at = np.where(inside, finer, at)
-    return np.where(inside, rule.at_points(at, values), least), at
+    rule, values, grid = stretch.rule, stretch.node_acceleration, _sampled(stretch)
+    index, column, spacing = grid.argmin(axis=0), np.arange(grid.shape[1]), 1.0 / (len(grid) - 1)
+    centre, finer = np.clip(index, 1, len(grid) - 2), spacing / 16.0
+    at = centre * spacing + _vertex(grid[centre - 1, column], grid[centre, column], grid[centre + 1, column], spacing)
+    at = np.clip(at, finer, 1.0 - finer)
+    left, middle, right = (_acceleration(stretch, encounter, at + side * finer) for side in (-1.0, 0.0, 1.0))
+    at = np.clip(at + _vertex(left, middle, right, finer), 0.0, 1.0)
+
+    node = values.argmin(axis=0)  # at the start and the nodes the acceleration is exact
+    start = encounter.acceleration(stretch.delta, stretch.velocity)
+    candidates = np.stack([start, values[node, column], _acceleration(stretch, encounter, at)])
+    best = candidates.argmin(axis=0)
+    return candidates[best, column], np.stack([np.zeros_like(at), rule.nodes[node], at])[best, column]
+
+
+def _acceleration(stretch: Stretch, encounter: Encounter, x: Floats) -> Floats:
+    """Return the acceleration of each drop at its own x (B,)."""
+    weights = stretch.rule.weights(x)
+    delta = weights[0] * stretch.delta + (weights[1:] * stretch.node_delta).sum(axis=0)
+    velocity = weights[0] * stretch.velocity + (weights[1:] * stretch.node_velocity).sum(axis=0)
+    return encounter.acceleration(np.maximum(delta, 0.0), velocity)
 
 
 def _vertex(left: Floats, middle: Floats, right: Floats, spacing: float) -> Floats:
-    """Return how far from the middle the vertex lies of the parabola through three points."""
+    """Return how far from the middle the vertex lies of the parabola through three points, at most a spacing."""
     with np.errstate(all="ignore"):
         shift = 0.5 * spacing * (left - right) / (left - 2.0 * middle + right)
-    return np.where(np.abs(shift) <= spacing, shift, 0.0)
+    return np.where(np.isfinite(shift), np.clip(shift, -spacing, spacing), 0.0)

@@ -80,6 +80,8 @@ class Problem:
             raise InputError("laws must be one or more contact laws, all of one kind")
         if (self.height is None) == (self.speed is None):
             raise InputError("give either height [m] or speed [m/s] of the drop, and not both")
+        if not (np.all(np.isfinite(self.sphere.mass)) and np.all(np.isfinite(self.sphere.contact_offset))):
+            raise InputError("the sphere's mass and radius must be finite")
         if np.any(np.isfinite(self.plate.mass)):
             raise InputError("the plate must be held fixed: a body with an infinite mass")
         for name, least in (("height", -np.inf), ("speed", 0.0), ("gravity", 0.0), ("rest_speed", 0.0)):
@@ -95,8 +97,8 @@ class Problem:
                 )
             if not np.all(np.asarray(self.gravity) > 0):
                 raise InputError("without gravity a sphere does not fall: give speed instead of height")
-        if self.impacts is not None and not 1 <= self.impacts <= MOST_IMPACTS:
-            raise InputError(f"impacts must lie between 1 and {MOST_IMPACTS}")
+        if self.impacts is not None and not (isinstance(self.impacts, int) and 1 <= self.impacts <= MOST_IMPACTS):
+            raise InputError(f"impacts must be a whole number from 1 to {MOST_IMPACTS}")
         if self.duration is not None and not 0 < self.duration < np.inf:
             raise InputError("duration must be greater than 0 s and finite")
         if not 1e-13 <= self.tolerance <= 1e-6:
@@ -105,8 +107,8 @@ class Problem:
             _ = self.shape
         except ValueError:
             raise InputError("the arrays of a batch must agree in shape: one value a drop") from None
-        if len(self.shape) > 1:
-            raise InputError(f"a batch has one axis, not the shape {self.shape}")
+        if len(self.shape) > 1 or 0 in self.shape:
+            raise InputError(f"a batch has one axis with at least one drop, not the shape {self.shape}")
 
     @property
     def shape(self) -> tuple[int, ...]:

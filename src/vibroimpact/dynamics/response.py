@@ -213,7 +213,7 @@ class Response:
         columns = {name: np.empty(flat.shape) for name in HISTORY_COLUMNS}
         for number in np.unique(index):
             here = index == number
-            for name, values in self._history(int(number), flat[here]).items():
+            for name, values in self._history(int(number), flat[here] - starts[number]).items():
                 columns[name][here] = values
         return {name: values.reshape(times.shape) for name, values in columns.items()}
 
@@ -263,13 +263,13 @@ class Response:
     # the history of one drop, segment by segment ---------------------------------------------------
 
     def _history(self, number: int, times: Floats) -> dict[str, Floats]:
-        """Return all columns at times within one segment."""
+        """Return all columns at times since the start of one segment."""
         segment, problem = self._segments[number], self.problem
         mass, gravity = float(problem.sphere.mass), float(problem.gravity)
         gap, velocity, force, stored, lost = segment.at(times)
         resting = isinstance(segment, RestSegment)
         return {
-            "time_s": times,
+            "time_s": segment.start + times,
             "position_m": float(problem.sphere.contact_offset) + gap,
             "velocity_m_s": velocity,
             "acceleration_m_s2": np.zeros_like(times) if resting else force / mass - gravity,
@@ -313,7 +313,7 @@ class Response:
                 else:
                     segment = GlideSegment(begin, finish, piece.motion, leg.encounter.law)
                 timeline.append((segment, lost))
-                lost += float(segment.at(np.array([finish]))[-1][0])
+                lost += float(segment.at(piece.motion.duration)[-1][0])
         if self.outcomes[0].at_rest:
             weight = float(self.problem.sphere.mass) * float(self.problem.gravity)
             begin = timeline[-1][0].end

@@ -1,4 +1,7 @@
-"""The history of one drop as a row of segments, each of which can be asked at any time within it."""
+"""The history of one drop as a row of segments, each of which can be asked at any time within it.
+
+A segment counts time from its own start: a contact may be a billion times shorter than the run.
+"""
 
 from __future__ import annotations
 
@@ -25,12 +28,12 @@ class FlightSegment:
     flight: Flight
 
     def grid(self) -> Floats:
-        """Times that draw the segment well [s]."""
-        return np.linspace(self.start, self.end, 49)
+        """Times since its start that draw the segment well [s]."""
+        return np.linspace(0.0, self.end - self.start, 49)
 
     def at(self, time: Floats) -> Motion:
-        """Return the motion at times [s] within the segment."""
-        gap, velocity = self.flight.at(time)
+        """Return the motion at times [s] since the start of the segment."""
+        gap, velocity = self.flight.at(self.flight.start + time)
         nothing = np.zeros_like(time)
         return np.maximum(gap, 0.0), velocity, nothing, nothing, nothing
 
@@ -45,14 +48,14 @@ class StretchSegment:
     encounter: Encounter
 
     def grid(self) -> Floats:
-        """Times that draw the segment well [s]."""
-        return self.start + (self.end - self.start) * self.stretch.rule.map_time(np.linspace(0.0, 1.0, 61))
+        """Times since its start that draw the segment well [s]."""
+        return np.asarray(self.stretch.duration[0] * self.stretch.rule.map_time(np.linspace(0.0, 1.0, 61)))
 
     def at(self, time: Floats) -> Motion:
-        """Return the motion at times [s] within the segment."""
+        """Return the motion at times [s] since the start of the segment."""
         stretch, rule, law = self.stretch, self.stretch.rule, self.encounter.law
         duration = stretch.duration[0]
-        x = rule.unmap_time((time - self.start) / duration)
+        x = rule.unmap_time(time / duration)
         delta = np.maximum(stretch.delta[0] + duration * rule.integrate(x, stretch.node_velocity[:, 0]), 0.0)
         velocity = stretch.velocity[0] + duration * rule.integrate(x, stretch.node_acceleration[:, 0])
         elastic, dissipative = law.forces(delta, velocity, self.encounter.approach_speed)
@@ -74,12 +77,12 @@ class GlideSegment:
     law: CompliantLaw
 
     def grid(self) -> Floats:
-        """Times that draw the segment well [s]."""
-        return np.linspace(self.start, self.end, 17)
+        """Times since its start that draw the segment well [s]."""
+        return np.linspace(0.0, float(self.glide.duration[0]), 17)
 
     def at(self, time: Floats) -> Motion:
-        """Return the motion at times [s] within the segment."""
-        delta, velocity = (part[:, 0] for part in self.glide.at(time[:, None] - self.start))
+        """Return the motion at times [s] since the start of the segment."""
+        delta, velocity = (part[:, 0] for part in self.glide.at(time[:, None]))
         stored = self.law.elastic_energy(delta)
         return -delta, -velocity, np.zeros_like(time), stored, self.law.elastic_energy(self.glide.delta) - stored
 
@@ -95,11 +98,11 @@ class RestSegment:
     stored: float
 
     def grid(self) -> Floats:
-        """Times that draw the segment well [s]."""
-        return np.array([self.start, self.end])
+        """Times since its start that draw the segment well [s]."""
+        return np.array([0.0, self.end - self.start])
 
     def at(self, time: Floats) -> Motion:
-        """Return the motion at times [s] within the segment."""
+        """Return the motion at times [s] since the start of the segment."""
         same = np.ones_like(time)
         return -self.sag * same, 0.0 * same, self.weight * same, self.stored * same, 0.0 * same
 

@@ -17,7 +17,7 @@ from vibroimpact.dynamics.flight import Flight
 from vibroimpact.dynamics.peaks import force_peak
 from vibroimpact.dynamics.problem import MOST_IMPACTS, Problem, StatesProblem
 from vibroimpact.dynamics.response import Leg, Outcome, Response, Rest
-from vibroimpact.dynamics.stretch import Encounter
+from vibroimpact.dynamics.stretch import Encounter, encounter_of
 from vibroimpact.errors import ComputationError
 
 Drops = NDArray[np.intp]
@@ -83,10 +83,11 @@ class _Run:
         else:
             self.velocity = -self.spread(problem.speed)
         self.energy_in = self.mechanical_energy()
-        self.dissipated = np.zeros(self.size)
+        self.dissipated, self.deepest = np.zeros(self.size), np.zeros(self.size)
         self.moving = np.ones(self.size, dtype=bool)
         self.outcomes = [Outcome.FAILED] * self.size
         self.end_time, self.rest_time = np.full(self.size, np.nan), np.full(self.size, np.nan)
+        self.sag, self.stored, self.written_off = np.zeros(self.size), np.zeros(self.size), np.zeros(self.size)
         self.rest_speed = self.default_rest_speed() if problem.rest_speed is None else self.spread(problem.rest_speed)
         self.memory = Memory(self.size)
         self.legs: list[Leg] = []
@@ -144,19 +145,21 @@ class _Run:
         row["restitution_asked"][drops] = _asked(law)
         if isinstance(law, InstantaneousLaw):
             self.time[drops], self.gap[drops], self.velocity[drops] = touch, 0.0, law.separation_speed(speed)
+            row["separation_speed_m_s"][drops] = self.velocity[drops]
             row["duration_s"][drops] = row["max_indentation_m"][drops] = 0.0
             lost = 0.5 * self.mass[drops] * (speed**2 - self.velocity[drops] ** 2)
         else:
             assert isinstance(law, CompliantLaw)
-            leg, lost = self.deform(leg, Encounter(law, self.mass[drops], self.gravity[drops], speed), row)
+            leg, lost = self.deform(leg, encounter_of(law, self.mass[drops], self.gravity[drops], speed), row)
         self.dissipated[drops] += lost
-        separation = np.where(self.moving[drops], self.velocity[drops], 0.0)
-        row["separation_speed_m_s"][drops], row["restitution_achieved"][drops] = separation, separation / speed
+        separation = row["separation_speed_m_s"][drops]
+        row["restitution_achieved"][drops] = separation / speed
         row["energy_lost_J"][drops] = lost
         with np.errstate(divide="ignore", invalid="ignore"):
             rise = np.where(self.gravity[drops] > 0.0, 0.5 * separation**2 / self.gravity[drops], np.nan)
         row["rebound_height_m"][drops] = self.radius[drops] + self.gap[drops] + rise
-        self.judge(drops[self.moving[drops]], row)
+        moving = self.moving[drops]
+        self.judge(drops[moving], law.take(np.flatnonzero(moving)), row)
         return leg
 
     def deform(self, leg: Leg, encounter: Encounter, row: dict[str, Floats]) -> tuple[Leg, Floats]:
@@ -164,6 +167,7 @@ class _Run:
         drops, touch = leg.contact_drops, self.legs_touch(leg)
         contact = contact_phase(encounter, self.problem.tolerance, self.memory, drops)
         force, when = force_peak(contact, encounter)
+        self.deepest[drops] = np.maximum(self.deepest[drops], contact.max_delta)
         self.time[drops] = touch + contact.duration
         self.gap[drops], self.velocity[drops] = -contact.final_delta, -contact.final_rate
         row["duration_s"][drops] = contact.duration
@@ -171,27 +175,40 @@ class _Run:
         row["max_force_N"][drops], row["time_of_max_force_s"][drops] = force, touch + when
         row["max_acceleration_m_s2"][drops] = np.maximum(force / encounter.mass - encounter.gravity, encounter.gravity)
         captured, failed = contact.outcome == CAPTURED, contact.outcome == FAILED
-        self.stop(drops[captured], Outcome.CAPTURED, self.time[drops[captured]])
-        self.rest_time[drops[captured]] = self.time[drops[captured]]
+        row["separation_speed_m_s"][drops] = np.select([captured, failed], [0.0, np.nan], -contact.final_rate)
+        stored = encounter.law.elastic_energy(contact.final_delta)
         self.stop(drops[failed], Outcome.FAILED, self.time[drops[failed]])
-        left_in_contact = np.where(captured, 0.0, encounter.law.elastic_energy(contact.final_delta))
-        return Leg(leg.drops, leg.flight, leg.flight_end, drops, contact, encounter), contact.dissipated + left_in_contact
+        self.stop(drops[captured], Outcome.CAPTURED, self.time[drops[captured]])
+        if captured.any():
+            self.lie_down(drops[captured], encounter.law.take(np.flatnonzero(captured)), self.time[drops[captured]], stored[captured])
+        return Leg(leg.drops, leg.flight, leg.flight_end, drops, contact, encounter), contact.dissipated + np.where(captured, 0.0, stored)
 
     @staticmethod
     def legs_touch(leg: Leg) -> Floats:
         """Return when the drops that come into contact touch [s]."""
         return leg.flight_end[np.isin(leg.drops, leg.contact_drops)]
 
-    def judge(self, drops: Drops, row: dict[str, Floats]) -> None:
-        """Stop the drops that leave more slowly than the rest speed."""
-        slow = drops[self.velocity[drops] < self.rest_speed[drops]]
-        slow = np.union1d(slow, drops[self.velocity[drops] == 0.0])
+    def judge(self, drops: Drops, law: ContactLaw, row: dict[str, Floats]) -> None:
+        """Stop the drops that leave more slowly than the rest speed, or not at all."""
+        resting = (self.velocity[drops] < self.rest_speed[drops]) | (self.velocity[drops] == 0.0)
+        slow = drops[resting]
+        if not slow.size:
+            return
         with np.errstate(divide="ignore", invalid="ignore"):
             # a geometric series of flights, each shorter than the one before by the last restitution
             missing = 1.0 - row["restitution_achieved"][slow]
             limit = self.time[slow] + 2.0 * self.velocity[slow] / self.gravity[slow] / np.where(missing > 1e-6, missing, 0.0)
-        self.rest_time[slow] = limit
+        self.lie_down(slow, law.take(np.flatnonzero(resting)), limit, np.zeros(len(slow)))
         self.stop(slow, Outcome.REST_SPEED, np.where(np.isfinite(limit), limit, self.time[slow]))
+
+    def lie_down(self, drops: Drops, law: ContactLaw, time: Floats, stored: Floats) -> None:
+        """Lay drops that have come to rest, with energy `stored` in the contact [J], into their static indentation."""
+        weight = self.mass[drops] * self.gravity[drops]
+        if isinstance(law, CompliantLaw):
+            self.sag[drops] = static_indentation(law, weight)
+            self.stored[drops] = law.elastic_energy(self.sag[drops])
+        self.rest_time[drops] = time
+        self.written_off[drops] = self.mechanical_energy()[drops] + stored - (self.stored[drops] - weight * self.sag[drops])
 
     def stop(self, drops: Drops, outcome: Outcome, time: Floats) -> None:
         self.moving[drops], self.end_time[drops] = False, time
@@ -202,26 +219,18 @@ class _Run:
 
     def response(self) -> Response:
         at_rest = np.array([outcome.at_rest for outcome in self.outcomes])
-        sag, stored, law = np.zeros(self.size), np.zeros(self.size), self.problem.law_of(len(self.rows) - 1)
-        if isinstance(law, CompliantLaw):
-            sag = np.where(at_rest, static_indentation(law, self.mass * self.gravity), 0.0)
-            stored = np.where(at_rest, law.elastic_energy(sag), 0.0)
         if self.problem.duration is not None:
             self.end_time[at_rest] = np.maximum(self.end_time, self.problem.duration)[at_rest]
-        before = self.mechanical_energy()
-        captured = np.array([outcome is Outcome.CAPTURED for outcome in self.outcomes])
-        if captured.any() and isinstance(law, CompliantLaw):
-            before += np.where(captured, law.elastic_energy(np.maximum(-self.gap, 0.0)), 0.0)
-        written_off = np.where(at_rest, before - (stored - self.mass * self.gravity * sag), 0.0)
-        final_gap, final_velocity = self.final_motion(at_rest, sag)
+        final_gap, final_velocity = self.final_motion(at_rest)
         energy = close_ledger(
             self.energy_in,
+            self.mass * self.gravity * self.deepest,
             {
                 "kinetic_J": 0.5 * self.mass * final_velocity**2,
                 "potential_J": self.mass * self.gravity * final_gap,
-                "contact_elastic_J": stored,
+                "contact_elastic_J": self.stored,
                 "contact_dissipated_J": self.dissipated,
-                "written_off_at_rest_J": written_off,
+                "written_off_at_rest_J": self.written_off,
             },
         )
         for drop in np.flatnonzero(~(energy["closure_relative"] <= CLOSURE_LIMIT)):
@@ -233,16 +242,16 @@ class _Run:
             energy,
             tuple(self.outcomes),
             self.end_time,
-            Rest(self.rest_speed, self.rest_time, sag, stored, written_off),
+            Rest(self.rest_speed, self.rest_time, self.sag, self.stored, self.written_off),
             tuple(self.legs),
         )
         return response.squeezed() if self.problem.shape == () else response
 
-    def final_motion(self, at_rest: NDArray[np.bool_], sag: Floats) -> tuple[Floats, Floats]:
+    def final_motion(self, at_rest: NDArray[np.bool_]) -> tuple[Floats, Floats]:
         """Return gap [m] and upward velocity [m/s] at the end of the run."""
         elapsed = np.where(at_rest, 0.0, self.end_time - self.time)
         gap, velocity = Flight(np.zeros(self.size), self.gap, self.velocity, self.gravity).at(elapsed)
-        return np.where(at_rest, -sag, gap), np.where(at_rest, 0.0, velocity)
+        return np.where(at_rest, -self.sag, gap), np.where(at_rest, 0.0, velocity)
 
 
 def _asked(law: ContactLaw) -> Floats | float:

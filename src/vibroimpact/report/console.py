@@ -16,8 +16,7 @@ from vibroimpact.cases.build import contact_pair, impacts_of
 from vibroimpact.cases.schema import Case
 from vibroimpact.contact.law import CompliantLaw, contact_laws
 from vibroimpact.dynamics.columns import LEDGER
-from vibroimpact.dynamics.contact_phase import elastic_depth
-from vibroimpact.dynamics.stretch import Encounter
+from vibroimpact.dynamics.stretch import encounter_of
 from vibroimpact.materials import material_library
 from vibroimpact.storage.result import Result
 
@@ -135,8 +134,8 @@ def case_explained(case: Case) -> RenderableType:
     doubts: list[str] = []
     if isinstance(law, CompliantLaw):
         one = np.ones(1)
-        encounter = Encounter(law, mass * one, gravity * one, speed * one)
-        depth = elastic_depth(encounter, 0.0 * one, encounter.approach_speed)
+        encounter = encounter_of(law, mass * one, gravity * one, speed * one)
+        depth = encounter.depth
         force = float(np.asarray(law.forces(depth, 0.0 * one, encounter.approach_speed)[0])[0])
         rows.append(("if nothing were lost", f"indentation {float(depth[0]):.4g} m, force {force:.4g} N"))
         if depth[0] > 0.09 * radius:

@@ -1,0 +1,139 @@
+"""Bad input: one clear message that names where, what and what is allowed; exit status 2; never a traceback."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+import tomli_w
+
+import vibroimpact as vi
+from support import plain_case
+from vibroimpact.cli import main
+
+NAN, INF = float("nan"), float("inf")
+FAULTS = [
+    ({"sphere__raduis": 1}, 'sphere.raduis: unknown key "raduis"; [sphere] takes radius, material, model. Did you mean "radius"?'),
+    ({"contakt": {}}, 'contakt: unknown key "contakt"; a case takes'),
+    ({"contact__restitutoin": 0.5}, 'contact.restitutoin: unknown key "restitutoin"'),
+    ({"contact__damping_max": 5}, 'contact.damping_max: unknown key "damping_max"; lankarani-nikravesh takes'),
+    ({"sphere": None}, "sphere: this section is missing"),
+    ({"plate": None}, "plate: this section is missing"),
+    ({"drop": None}, "drop: this section is missing"),
+    ({"contact": None}, "contact: this section is missing"),
+    ({"sphere__radius": None}, "sphere.radius: this key is missing"),
+    ({"contact__restitution": None}, "contact.restitution: this key is missing"),
+    ({"contact__law": None}, "contact: it needs law"),
+    ({"contact__law": "lankarani"}, 'Did you mean "lankarani-nikravesh"?'),
+    ({"sphere__radius": "25 kg"}, 'sphere.radius: "25 kg" is a mass; what is wanted is a length'),
+    ({"sphere__radius": "25"}, 'sphere.radius: "25" has no unit: write 25 (it is then in m) or "25 m"'),
+    ({"sphere__radius": "25 lightbulbs"}, '"lightbulbs" in "25 lightbulbs" is not a unit'),
+    ({"sphere__radius": "9**9**9 m"}, "is not a unit that is known"),
+    ({"sphere__radius": NAN}, "sphere.radius: nan is not finite"),
+    ({"drop__height": INF}, "drop.height: inf is not finite"),
+    ({"contact__stiffness": NAN}, "contact.stiffness: nan is not finite"),
+    ({"sphere__radius": 0}, "sphere.radius: 0 is not allowed; it must be greater than 0 m"),
+    ({"sphere__radius": "-25 mm"}, 'sphere.radius: "-25 mm" is not allowed; it must be greater than 0 m'),
+    ({"drop__gravity": -9.8}, "drop.gravity: -9.8 is not allowed; it must be at least 0 m/s^2"),
+    ({"drop__height": 0.02}, "drop.height: 0.02 m is not above the surface"),
+    ({"drop__speed": 3}, "drop: give either height or speed; both are given"),
+    ({"drop__height": None}, "drop: give either height or speed; neither is given"),
+    ({"drop__gravity": 0}, "drop.gravity: without gravity a sphere does not fall"),
+    ({"plate__size": [0.1, 0.1, 0.01], "drop__position": [0.06, 0]}, "drop.position: (0.06, 0) m lies outside the plate"),
+    ({"plate__size": [0.1, 0.1]}, "plate.size: there are too few values"),
+    ({"plate__size": [0.1, 0.1, -0.1]}, "plate.size.2: -0.1 is not allowed"),
+    ({"sphere__material": "steal"}, 'Did you mean "steel"?'),
+    ({"sphere__material": "rigid"}, 'sphere.material: "rigid" has no density'),
+    ({"sphere__material": {"density": 1, "youngs_modulus": 1, "poissons_ratio": 0.5}}, "poissons_ratio: 0.5 is not allowed"),
+    ({"sphere__material": {"density": 1, "youngs_modulus": 1, "poissons_ratio": -1}}, "must be greater than -1 and less than 0.5"),
+    ({"sphere__material": {"density": 1, "youngs_modulus": 1}}, "sphere.material.poissons_ratio: this key is missing"),
+    ({"contact__restitution": 1.01}, "contact.restitution: 1.01 is not allowed; it must be at least 0 and at most 1"),
+    ({"contact__restitution": -0.1}, "contact.restitution: -0.1 is not allowed"),
+    ({"contact__restitution": []}, "contact.restitution: the list is empty"),
+    ({"contact__restitution": [0.5, 2]}, "contact.restitution: 2 is not allowed"),
+    ({"contact__restitution": "high"}, 'contact.restitution: "high" is not a plain number'),
+    ({"contact__exponent": "0.5 m"}, "contact.exponent"),
+    ({"contact__stiffness": "5 N/m"}, "contact.stiffness"),
+    ({"run__impacts": 0}, "run.impacts: 0 is not allowed; it must be a whole number from 1 to 100000"),
+    ({"run__impacts": 2.5}, "run.impacts: 2.5 is not allowed"),
+    ({"run__duration": "5 m"}, 'run.duration: "5 m" is a length'),
+    ({"run__tolerance": 0.1}, "run.tolerance: 0.1 is not allowed"),
+    ({"sphere__model": "elastic"}, "sphere.model: \"elastic\" is not allowed; it must be 'rigid'"),
+    ({"schema_version": 2}, "schema_version: 2 is not allowed; it must be 1"),
+    ({"sphere": 3}, "sphere: 3 is not a table"),
+    ({"name": 3}, "name: 3 is not allowed"),
+]
+
+
+def outcome(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], *arguments: str) -> tuple[int, str]:
+    """Run the command line; return its exit status and what it wrote to the error stream."""
+    monkeypatch.setattr("sys.argv", ["vibroimpact", *arguments])
+    with pytest.raises(SystemExit) as left:
+        main()
+    return int(left.value.code or 0), capsys.readouterr().err
+
+
+@pytest.mark.parametrize(("changes", "message"), FAULTS, ids=[message[:40] for _, message in FAULTS])
+def test_wrong_case(
+    changes: dict, message: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(vi.InputError) as raised:
+        vi.read_case(plain_case(**changes))
+    assert message in str(raised.value)
+    file = tmp_path / "case.toml"
+    file.write_text(tomli_w.dumps(plain_case(**changes)))
+    status, written = outcome(monkeypatch, capsys, "run", str(file), "-o", str(tmp_path / "out"))
+    assert status == 2
+    assert written.startswith(f"vibroimpact: {file}: ")
+    assert message in written
+    assert "Traceback" not in written
+    assert not (tmp_path / "out").exists()
+
+
+def test_every_fault_of_a_case_is_named_at_once() -> None:
+    with pytest.raises(vi.InputError) as raised:
+        vi.read_case(plain_case(sphere__radius=-1, drop__gravity="x", foo=1))
+    assert len(str(raised.value).splitlines()) == 3
+
+
+@pytest.mark.parametrize(
+    ("content", "message"),
+    [
+        (b"radius = = 3", "this is not valid TOML"),
+        (b"\xff\xfe\x00", "it is not UTF-8 text"),
+        (b"a = 1\n" * 200_000, "the file is larger than 1 MB"),
+        (b"a = " + b"[" * 5000, "nested too deeply"),
+        (b"", "sphere: this section is missing"),
+        (b"x = " + b"9" * 5000, "this is not valid TOML"),
+    ],
+)
+def test_unreadable_files(
+    content: bytes, message: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "case.toml"
+    file.write_bytes(content)
+    for command in ("check", "run"):
+        status, written = outcome(monkeypatch, capsys, command, str(file))
+        assert status == 2
+        assert message in written
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (("run", "no-such.toml"), "no-such.toml: there is no such file"),
+        (("check", "."), ".: this is a directory"),
+        (("run", "paper:type1-theroy"), 'Did you mean "paper:type1-theory"?'),
+        (("run", "paper:../reader"), "there is no shipped case"),
+        (("report", "."), "this is not a result folder"),
+        (("run",), "Missing argument"),
+        (("runn",), "No such command 'runn'"),
+    ],
+)
+def test_wrong_arguments(
+    arguments: tuple[str, ...], message: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    status, written = outcome(monkeypatch, capsys, *arguments)
+    assert status == 2
+    assert message in written

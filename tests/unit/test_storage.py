@@ -1,0 +1,172 @@
+"""The result folder: whole or not at all, and read back by others."""
+
+from __future__ import annotations
+
+import csv
+import json
+import re
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+import xarray
+
+import vibroimpact as vi
+from vibroimpact.dynamics.columns import HISTORY_COLUMNS, IMPACT_COLUMNS, LEDGER
+from vibroimpact.storage.folder import new_folder
+
+HEADER = (
+    "impact,time_s,duration_s,approach_speed_m_s,separation_speed_m_s,restitution_achieved,max_indentation_m,max_force_N,"
+    "max_acceleration_m_s2,rebound_height_m,energy_lost_J"
+)
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory, theory: vi.Response) -> Path:
+    path = tmp_path_factory.mktemp("results") / "deep" / "theory"
+    theory.save(path)
+    return path
+
+
+def test_holds_what_it_should(folder: Path) -> None:
+    names = {str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file()}
+    figures = {"position", "force", "velocity", "acceleration", "force_indentation", "energy"}
+    assert names == {"case.toml", "impacts.csv", "summary.json", "result.nc", "report.html"} | {
+        f"figures/{figure}.{kind}" for figure in figures for kind in ("png", "svg")
+    }
+    assert [path.name for path in folder.parent.iterdir()] == ["theory"]  # nothing beside it is left over
+
+
+def test_impacts_csv_has_the_promised_header_and_every_digit(folder: Path, theory: vi.Response) -> None:
+    text = (folder / "impacts.csv").read_text()
+    assert text.startswith(HEADER + ",")
+    rows = list(csv.DictReader(text.splitlines()))
+    assert [row["impact"] for row in rows] == ["1", "2", "3", "4", "5"]
+    for name in IMPACT_COLUMNS:
+        assert [float(row[name]) for row in rows] == theory.impacts[name].tolist()
+
+
+def test_summary_has_rows_ledger_status_and_version(folder: Path, theory: vi.Response) -> None:
+    summary = json.loads((folder / "summary.json").read_text())
+    assert summary["status"] == theory.status
+    assert summary["version"] == vi.__version__
+    assert list(summary["impacts"][0]) == list(IMPACT_COLUMNS)
+    assert summary["impacts"][4]["max_force_N"] == theory.impacts["max_force_N"][4]
+    assert set(summary["energy"]) == {"input_J", *LEDGER, "closure_J", "closure_relative"}
+
+
+def test_values_that_do_not_exist_are_null_and_empty(tmp_path: Path) -> None:
+    case = {
+        "sphere": {"radius": 0.01, "material": "steel"},
+        "plate": {"material": "rigid"},
+        "drop": {"speed": 1, "gravity": 0},
+        "contact": {"law": "newton", "restitution": 0.5},
+    }
+    vi.simulate(vi.read_case(case)).save(tmp_path / "out")
+    row = json.loads((tmp_path / "out" / "summary.json").read_text())["impacts"][0]
+    assert row["max_force_N"] is None
+    assert row["rebound_height_m"] is None
+    assert ",," in (tmp_path / "out" / "impacts.csv").read_text().splitlines()[1]
+    assert not re.search(r"\bnan\b", (tmp_path / "out" / "report.html").read_text().lower())
+
+
+def test_netcdf_opens_in_xarray_with_units(folder: Path, theory: vi.Response) -> None:
+    for group, columns in (("impacts", IMPACT_COLUMNS), ("history", HISTORY_COLUMNS)):
+        with xarray.open_dataset(folder / "result.nc", group=group, engine="h5netcdf") as data:
+            assert set(data.variables) == set(columns)
+            for name, (unit, meaning) in columns.items():
+                assert data[name].attrs["units"] == unit
+                assert data[name].attrs["long_name"] == meaning
+            assert data.sizes == {"impact": 5} if group == "impacts" else {"time_s": len(theory.history()["time_s"])}
+    with h5py.File(folder / "result.nc") as file:
+        assert file["energy"]["input_J"].attrs["units"] == "J"
+        assert file.attrs["status"] == theory.status
+
+
+def test_case_reads_back_as_the_same_run(folder: Path, theory: vi.Response) -> None:
+    again = vi.simulate(vi.load_case(folder / "case.toml"))
+    for name in IMPACT_COLUMNS:
+        np.testing.assert_array_equal(again.impacts[name], theory.impacts[name])
+
+
+def test_result_reads_back(folder: Path, theory: vi.Response) -> None:
+    result = vi.read_result(folder)
+    np.testing.assert_array_equal(result.impacts["max_force_N"], theory.impacts["max_force_N"])
+    np.testing.assert_array_equal(result.history["force_N"], theory.history()["force_N"])
+    assert result.energy["input_J"] == theory.energy["input_J"]
+    assert result.status == theory.status
+
+
+def test_report_is_remade_and_other_files_stay(tmp_path: Path, theory: vi.Response) -> None:
+    theory.save(tmp_path / "out")
+    page = (tmp_path / "out" / "report.html").read_bytes()
+    (tmp_path / "out" / "my notes.txt").write_text("mine")
+    (tmp_path / "out" / "report.html").unlink()
+    vi.remake_report(tmp_path / "out")
+    assert (tmp_path / "out" / "report.html").read_bytes() == page
+    assert (tmp_path / "out" / "my notes.txt").read_text() == "mine"
+    assert not list((tmp_path / "out").glob(".*"))
+
+
+def test_existing_folder_is_kept(tmp_path: Path, theory: vi.Response) -> None:
+    (tmp_path / "out").mkdir()
+    (tmp_path / "out" / "thesis.tex").write_text("years")
+    for force, words in ((False, "is there already"), (True, "is not a result folder")):
+        with pytest.raises(vi.InputError, match=words):
+            theory.save(tmp_path / "out", force=force)
+    assert (tmp_path / "out" / "thesis.tex").read_text() == "years"
+    (tmp_path / "file").write_text("x")
+    with pytest.raises(vi.InputError, match="not a folder"):
+        theory.save(tmp_path / "file", force=True)
+    with pytest.raises(vi.InputError, match="can't be made"):
+        theory.save(tmp_path / "file" / "below")
+
+
+def test_force_replaces_a_result(tmp_path: Path, theory: vi.Response, variable: vi.Response) -> None:
+    theory.save(tmp_path / "out")
+    with pytest.raises(vi.InputError, match="--force"):
+        variable.save(tmp_path / "out")
+    assert vi.read_result(tmp_path / "out").status == theory.status
+    variable.save(tmp_path / "out", force=True)
+    assert vi.read_result(tmp_path / "out").status == variable.status
+    assert [path.name for path in tmp_path.iterdir()] == ["out"]
+
+
+def test_a_failure_leaves_nothing_and_loses_nothing(tmp_path: Path, theory: vi.Response, monkeypatch: pytest.MonkeyPatch) -> None:
+    theory.save(tmp_path / "out")
+    before = (tmp_path / "out" / "summary.json").read_bytes()
+
+    def breaks(*_: object) -> None:
+        raise OSError("no space left on device")
+
+    monkeypatch.setattr("vibroimpact.report.save.write_report", breaks)
+    for name in ("new", "out"):
+        with pytest.raises(OSError, match="no space"):
+            theory.save(tmp_path / name, force=True)
+    assert [path.name for path in tmp_path.iterdir()] == ["out"]
+    assert (tmp_path / "out" / "summary.json").read_bytes() == before
+
+
+def test_an_interrupt_leaves_nothing(tmp_path: Path) -> None:
+    def interrupted() -> None:
+        with new_folder(tmp_path / "out") as working:
+            (working / "half").write_text("x")
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        interrupted()
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("name", ["summary.json", "case.toml", "result.nc"])
+@pytest.mark.parametrize("damage", [b"", b"\x00garbage", None])
+def test_damaged_results_are_named(name: str, damage: bytes | None, folder: Path, tmp_path: Path) -> None:
+    import shutil
+
+    copy = Path(shutil.copytree(folder, tmp_path / "copy"))
+    (copy / name).unlink() if damage is None else (copy / name).write_bytes(damage)
+    if damage == b"" and name == "case.toml":
+        return  # an empty case is what a problem made in Python has
+    with pytest.raises(vi.InputError, match=r"damaged|not a result folder"):
+        vi.read_result(copy)
