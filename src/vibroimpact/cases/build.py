@@ -70,14 +70,14 @@ def resolved(case: Case) -> dict[str, Any]:
         values = [getattr(law, item.name) for law in laws]
         if item.name in case.contact.parameters or values[0] is not None:
             contact[item.name] = values if len(values) > 1 and len(set(values)) > 1 else values[0]
-    sections = case.model_dump(exclude_none=True, exclude={"sphere", "plate", "contact", "run"})
+    size = {"size": list(case.plate.size)} if case.plate.size else {}
     number = impacts_of(case)
     return {
         "schema_version": case.schema_version,
         "name": case.name,
         "sphere": {**case.sphere.model_dump(exclude={"material"}), "material": _table(case.sphere.material)},
-        "plate": {**case.plate.model_dump(exclude={"material"}, exclude_none=True), "material": _table(case.plate.material)},
-        "drop": {**sections["drop"], "position": list(case.drop.position)},
+        "plate": {**size, "model": case.plate.model, "material": _table(case.plate.material)},
+        "drop": {**case.drop.model_dump(exclude_none=True), "position": list(case.drop.position)},
         "contact": contact,
         "run": {**case.run.model_dump(exclude_none=True, exclude={"impacts"}), "impacts": "all" if number is None else number},
     }

@@ -170,4 +170,5 @@ def case_schema() -> dict[str, Any]:
     schema = Case.model_json_schema()
     schema["$schema"] = "https://json-schema.org/draft/2020-12/schema"
     schema["properties"]["contact"] = contact_schema()
+    schema["$defs"].pop("ContactSection", None)
     return schema

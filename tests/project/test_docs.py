@@ -1,0 +1,140 @@
+"""What the documents say is so: commands run, examples run, names exist, docstrings are whole."""
+
+from __future__ import annotations
+
+import inspect
+import re
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import vibroimpact as vi
+from vibroimpact.dynamics.columns import IMPACT_COLUMNS
+
+ROOT = Path(__file__).parents[2]
+PAGES = sorted([ROOT / "README.md", *(ROOT / "docs").glob("*.md")])
+
+
+def blocks(page: Path, language: str) -> list[str]:
+    return re.findall(rf"```{language}\n(.*?)```", page.read_text(encoding="utf-8"), flags=re.S)
+
+
+def commands() -> list[str]:
+    return [
+        line.split("  #")[0].removeprefix("$ ").strip()
+        for page in PAGES
+        for block in blocks(page, "console")
+        for line in block.splitlines()
+        if line.startswith("$ vibroimpact")
+    ]
+
+
+def test_documented_commands_run(tmp_path: Path) -> None:
+    assert len(commands()) >= 8
+    for block in blocks(ROOT / "docs" / "case-file.md", "toml"):
+        (tmp_path / "case.toml").write_text(block)
+    for command in dict.fromkeys(commands()):
+        arguments = [sys.executable, "-m", "vibroimpact", *shlex.split(command)[1:]]
+        done = subprocess.run(arguments, cwd=tmp_path, capture_output=True, text=True, timeout=120, check=False)
+        assert done.returncode == 0, f"{command}\n{done.stderr}"
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_documented_python_runs(page: Path) -> None:
+    names: dict = {}
+    for block in blocks(page, "python"):
+        exec(compile(block, str(page), "exec"), names)
+    assert "__builtins__" in names or not blocks(page, "python")
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_documented_cases_are_valid(page: Path) -> None:
+    import tomllib
+
+    for block in blocks(page, "toml"):
+        assert vi.read_case(tomllib.loads(block)).sphere.radius > 0
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_links_lead_somewhere(page: Path) -> None:
+    for target in re.findall(r"\]\(([^)#]+)[^)]*\)", page.read_text(encoding="utf-8")):
+        assert target.startswith("https://") or (page.parent / target).exists(), target
+
+
+@pytest.mark.parametrize("example", sorted((ROOT / "examples").glob("*.py")), ids=lambda path: path.stem)
+def test_examples_run(example: Path, tmp_path: Path) -> None:
+    done = subprocess.run([sys.executable, str(example)], cwd=tmp_path, capture_output=True, text=True, timeout=120, check=False)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.strip()
+
+
+def test_every_column_is_documented() -> None:
+    text = (ROOT / "docs" / "result-folder.md").read_text(encoding="utf-8")
+    assert all(f"`{name}`" in text for name in IMPACT_COLUMNS)
+
+
+def test_every_case_key_is_documented() -> None:
+    text = (ROOT / "docs" / "case-file.md").read_text(encoding="utf-8")
+    schema = vi.case_schema()
+    for section in schema["$defs"].values():
+        for key in section.get("properties", {}):
+            assert f"`{key}`" in text, key
+    for law in schema["properties"]["contact"]["oneOf"]:
+        assert f"`{law['properties']['law']['const']}`" in text
+        for key in law["properties"]:
+            assert f"`{key}`" in text, key
+
+
+@pytest.mark.parametrize("name", [name for name in vi.__all__ if name != "__version__"])
+def test_public_names_are_documented(name: str) -> None:
+    thing = getattr(vi, name)
+    text = inspect.getdoc(thing) or ""
+    assert len(text) > 20, name
+    if inspect.isfunction(thing):
+        for parameter in inspect.signature(thing).parameters:
+            assert len(inspect.signature(thing).parameters) < 2 or re.search(rf"\b{parameter}\b", text), f"{name}: {parameter}"
+
+
+def test_materials_have_a_source_for_each_number() -> None:
+    library = vi.material_library()
+    assert len(library) >= 30
+    for name, material in library.items():
+        assert material.description, name
+        numbers = {"density", "youngs_modulus", "poissons_ratio"}
+        numbers |= {key for key in ("yield_strength", "loss_factor") if getattr(material, key) is not None}
+        assert set(material.sources) == numbers, name
+        assert all(len(source) > 15 for source in material.sources.values()), name
+
+
+def test_versions_agree() -> None:
+    import tomllib
+
+    version = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["version"]
+    assert f"version: {version}" in (ROOT / "CITATION.cff").read_text()
+    assert vi.__version__ == version
+
+
+def test_help_is_light() -> None:
+    """`--help` is quick because it imports nothing heavy; time is for the benchmarks to show."""
+    code = (
+        "import sys\nfrom vibroimpact.cli import app\nfrom typer.testing import CliRunner\n"
+        "assert CliRunner().invoke(app, ['--help']).exit_code == 0\n"
+        "heavy = {'numpy', 'scipy', 'pydantic', 'matplotlib', 'h5py', 'pint', 'jinja2', 'skfem'} & set(sys.modules)\n"
+        "assert not heavy, heavy\n"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=False)
+    assert done.returncode == 0, done.stderr
+
+
+def test_schema_accepts_the_shipped_cases() -> None:
+    import jsonschema
+
+    from vibroimpact.cases.build import resolved
+
+    for name in vi.shipped_cases():
+        jsonschema.validate(resolved(vi.load_case(name)), vi.case_schema())
+    with pytest.raises(jsonschema.ValidationError):
+        jsonschema.validate({**resolved(vi.load_case(name)), "contact": {"law": "hertz", "damping": 1}}, vi.case_schema())
