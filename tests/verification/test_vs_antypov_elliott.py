@@ -53,3 +53,16 @@ def test_zero_indentation_returns_what_was_asked(restitution: float) -> None:
 @pytest.mark.parametrize(("restitution", "expected"), [(0.9, 0.902026), (0.8, 0.808099), (0.5, 0.550283)])
 def test_zero_force_returns_more(restitution: float, expected: float) -> None:
     assert achieved(PushingTsuji, restitution) == pytest.approx(expected, abs=5e-7)
+
+
+def test_zero_force_end_under_gravity_may_leave_the_sphere_in_its_indentation() -> None:
+    ball = vi.Body(mass=MASS, contact_offset=0.1)
+    outcomes = set()
+    for height in (0.1001, 0.2, 1.0):
+        law = PushingTsuji(stiffness=1e5, damping=150.0)
+        response = vi.simulate(vi.Problem(sphere=ball, plate=vi.rigid_plate(), laws=(law,), height=height, impacts=2, rest_speed=0.0))
+        assert response.energy["closure_relative"] <= 1e-9
+        history = response.history()
+        assert all(np.all(np.isfinite(values)) for values in history.values())
+        outcomes |= set(response.outcomes)
+    assert outcomes == {vi.Outcome.IMPACTS, vi.Outcome.CAPTURED}

@@ -10,77 +10,18 @@ the drop advances by stretches of a given, adapted duration until the end comes 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
 
 from vibroimpact.contact.static import static_indentation
 from vibroimpact.dynamics.collocation import Floats, Map, Rule, collocation_rule
-from vibroimpact.dynamics.glide import Glide, glide_until_push
-from vibroimpact.dynamics.stretch import Aim, Encounter, Stretch, WarmStart, acceleration_unit, solve_stretch
-
-Drops = NDArray[np.intp]
-
-COMPRESSION, RESTITUTION, GLIDE, RELEASED, CAPTURED, FAILED = range(6)
+from vibroimpact.dynamics.contact import CAPTURED, COMPRESSION, FAILED, GLIDE, RELEASED, RESTITUTION, Contact, Drops, Piece
+from vibroimpact.dynamics.encounter import Encounter
+from vibroimpact.dynamics.glide import glide_until_push
+from vibroimpact.dynamics.memory import Memory
+from vibroimpact.dynamics.stretch import Aim, Stretch, WarmStart, acceleration_unit, solve_stretch
 
 _MOST_STRETCHES = 2000  # the stiffest sensible contacts need about a hundred
-
-
-@dataclass(frozen=True)
-class Piece:
-    """One piece of the history of some drops' contact: a solved stretch or a free glide."""
-
-    drops: Drops
-    start: Floats
-    """Time since first touch at which it begins [s], (b,)."""
-    motion: Stretch | Glide
-
-
-@dataclass
-class Contact:
-    """One impact of B drops, first touch to release; arrays are (B,).
-
-    `outcome` is RELEASED, CAPTURED (its energy no longer suffices to get out of the indentation) or FAILED.
-    `final_delta`, `final_rate`: indentation [m] and its rate [m/s] at the end.
-    """
-
-    pieces: list[Piece]
-    outcome: NDArray[np.int8]
-    duration: Floats
-    final_delta: Floats
-    final_rate: Floats
-    max_delta: Floats
-    time_of_max_delta: Floats
-    dissipated: Floats
-
-    def of(self, index: int) -> Contact:
-        """Return the contact of one drop."""
-        pieces = []
-        for piece in self.pieces:
-            here = piece.drops == index
-            if here.any():
-                pieces.append(Piece(np.zeros(1, dtype=np.intp), piece.start[here], piece.motion.take(here)))
-        floats = (self.duration, self.final_delta, self.final_rate, self.max_delta, self.time_of_max_delta, self.dissipated)
-        return Contact(pieces, self.outcome[index : index + 1], *(array[index : index + 1] for array in floats))
-
-
-class Memory:
-    """The dimensionless solutions of a run's last stretches, one a kind and drop, to start the next from."""
-
-    def __init__(self, size: int) -> None:
-        self.size = size
-        self.starts: dict[tuple[Map, Aim], WarmStart] = {}
-
-    def knows(self, kind: tuple[Map, Aim], ids: Drops) -> NDArray[np.bool_]:
-        """Return for which drops there is a solution of a kind."""
-        return np.isfinite(self.starts[kind].unknowns[-1, ids]) if kind in self.starts else np.zeros(len(ids), dtype=bool)
-
-    def keep(self, kind: tuple[Map, Aim], ids: Drops, unknowns: Floats, inverse: Floats | None) -> None:
-        """Remember a solution."""
-        if kind not in self.starts:
-            self.starts[kind] = WarmStart(np.full((len(unknowns), self.size), np.nan))
-        self.starts[kind].unknowns[:, ids], self.starts[kind].inverse = unknowns, inverse
 
 
 def contact_phase(encounter: Encounter, tolerance: float, memory: Memory, ids: Drops) -> Contact:
@@ -301,7 +242,11 @@ class _Phase:
             self.max_delta[turned], self.time_of_max_delta[turned] = self.delta[turned], self.time[turned]
             self.outcome[drops[~compressing]] = CAPTURED  # it falls back before it is out
         elif aim == "force":
-            self.outcome[drops] = GLIDE if self.law.contact_end == "zero-indentation" else RELEASED
+            if self.law.contact_end == "zero-indentation":
+                self.outcome[drops] = GLIDE
+            else:
+                gets_out = self.velocity[drops] ** 2 > 2.0 * self.encounter.gravity[drops] * self.delta[drops]
+                self.outcome[drops] = np.where(gets_out, RELEASED, CAPTURED)
         elif aim == "indentation":
             self.outcome[drops[~compressing & (level == 0.0)]] = RELEASED
         else:  # go on marching, unless the end has come near enough to aim at

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vibroimpact.dynamics.collocation import Floats
-from vibroimpact.dynamics.stretch import Encounter
+from vibroimpact.dynamics.encounter import Encounter
 
 _SAMPLES = 33
 

@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from vibroimpact.dynamics.collocation import Floats
-from vibroimpact.dynamics.contact_phase import Contact
-from vibroimpact.dynamics.stretch import Encounter, Stretch
+from vibroimpact.dynamics.contact import Contact
+from vibroimpact.dynamics.encounter import Encounter
+from vibroimpact.dynamics.stretch import Stretch
 
 
 def force_peak(contact: Contact, encounter: Encounter) -> tuple[Floats, Floats]:

@@ -13,12 +13,13 @@ from numpy.typing import NDArray
 
 from vibroimpact.dynamics.collocation import Floats
 from vibroimpact.dynamics.columns import HISTORY_COLUMNS
-from vibroimpact.dynamics.contact_phase import Contact
+from vibroimpact.dynamics.contact import Contact
+from vibroimpact.dynamics.encounter import Encounter
 from vibroimpact.dynamics.energy import CLOSURE_LIMIT
 from vibroimpact.dynamics.flight import Flight
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.segments import FlightSegment, GlideSegment, RestSegment, Segment, StretchSegment
-from vibroimpact.dynamics.stretch import Encounter, Stretch
+from vibroimpact.dynamics.stretch import Stretch
 from vibroimpact.errors import InputError
 
 

@@ -11,9 +11,10 @@ import numpy as np
 
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.dynamics.collocation import Floats
+from vibroimpact.dynamics.encounter import Encounter
 from vibroimpact.dynamics.flight import Flight
 from vibroimpact.dynamics.glide import Glide
-from vibroimpact.dynamics.stretch import Encounter, Stretch
+from vibroimpact.dynamics.stretch import Stretch
 
 Motion = tuple[Floats, Floats, Floats, Floats, Floats]
 """Gap [m], upward velocity [m/s], contact force [N], stored energy [J], energy lost since the start [J]."""
@@ -35,7 +36,7 @@ class FlightSegment:
         """Return the motion at times [s] since the start of the segment."""
         gap, velocity = self.flight.at(self.flight.start + time)
         nothing = np.zeros_like(time)
-        return np.maximum(gap, 0.0), velocity, nothing, nothing, nothing
+        return gap, velocity, nothing, nothing, nothing
 
 
 @dataclass(frozen=True)

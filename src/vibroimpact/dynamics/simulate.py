@@ -11,16 +11,16 @@ from vibroimpact.contact.law import CompliantLaw, ContactLaw, InstantaneousLaw
 from vibroimpact.contact.static import static_indentation
 from vibroimpact.dynamics.collocation import Floats
 from vibroimpact.dynamics.columns import IMPACT_COLUMNS
-from vibroimpact.dynamics.contact_phase import CAPTURED, FAILED, Memory, contact_phase
+from vibroimpact.dynamics.contact import CAPTURED, FAILED, Drops
+from vibroimpact.dynamics.contact_phase import contact_phase
+from vibroimpact.dynamics.encounter import Encounter, encounter_of
 from vibroimpact.dynamics.energy import CLOSURE_LIMIT, close_ledger
 from vibroimpact.dynamics.flight import Flight
+from vibroimpact.dynamics.memory import Memory
 from vibroimpact.dynamics.peaks import force_peak
 from vibroimpact.dynamics.problem import MOST_IMPACTS, Problem, StatesProblem
 from vibroimpact.dynamics.response import Leg, Outcome, Response, Rest
-from vibroimpact.dynamics.stretch import Encounter, encounter_of
 from vibroimpact.errors import ComputationError
-
-Drops = NDArray[np.intp]
 
 
 def simulate(problem: StatesProblem, progress: Callable[[float], None] | None = None) -> Response:
@@ -150,7 +150,7 @@ class _Run:
             lost = 0.5 * self.mass[drops] * (speed**2 - self.velocity[drops] ** 2)
         else:
             assert isinstance(law, CompliantLaw)
-            leg, lost = self.deform(leg, encounter_of(law, self.mass[drops], self.gravity[drops], speed), row)
+            leg, lost = self.deform(leg, encounter_of(law, self.mass[drops], self.gravity[drops], speed), touch, row)
         self.dissipated[drops] += lost
         separation = row["separation_speed_m_s"][drops]
         row["restitution_achieved"][drops] = separation / speed
@@ -162,9 +162,9 @@ class _Run:
         self.judge(drops[moving], law.take(np.flatnonzero(moving)), row)
         return leg
 
-    def deform(self, leg: Leg, encounter: Encounter, row: dict[str, Floats]) -> tuple[Leg, Floats]:
+    def deform(self, leg: Leg, encounter: Encounter, touch: Floats, row: dict[str, Floats]) -> tuple[Leg, Floats]:
         """Integrate a contact; return the leg with it, and the energy lost [J]."""
-        drops, touch = leg.contact_drops, self.legs_touch(leg)
+        drops = leg.contact_drops
         contact = contact_phase(encounter, self.problem.tolerance, self.memory, drops)
         force, when = force_peak(contact, encounter)
         self.deepest[drops] = np.maximum(self.deepest[drops], contact.max_delta)
@@ -175,18 +175,13 @@ class _Run:
         row["max_force_N"][drops], row["time_of_max_force_s"][drops] = force, touch + when
         row["max_acceleration_m_s2"][drops] = np.maximum(force / encounter.mass - encounter.gravity, encounter.gravity)
         captured, failed = contact.outcome == CAPTURED, contact.outcome == FAILED
-        row["separation_speed_m_s"][drops] = np.select([captured, failed], [0.0, np.nan], -contact.final_rate)
+        row["separation_speed_m_s"][drops] = np.where(failed, np.nan, np.where(captured, 0.0, -contact.final_rate))
         stored = encounter.law.elastic_energy(contact.final_delta)
         self.stop(drops[failed], Outcome.FAILED, self.time[drops[failed]])
         self.stop(drops[captured], Outcome.CAPTURED, self.time[drops[captured]])
         if captured.any():
             self.lie_down(drops[captured], encounter.law.take(np.flatnonzero(captured)), self.time[drops[captured]], stored[captured])
         return Leg(leg.drops, leg.flight, leg.flight_end, drops, contact, encounter), contact.dissipated + np.where(captured, 0.0, stored)
-
-    @staticmethod
-    def legs_touch(leg: Leg) -> Floats:
-        """Return when the drops that come into contact touch [s]."""
-        return leg.flight_end[np.isin(leg.drops, leg.contact_drops)]
 
     def judge(self, drops: Drops, law: ContactLaw, row: dict[str, Floats]) -> None:
         """Stop the drops that leave more slowly than the rest speed, or not at all."""

@@ -8,8 +8,8 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.dynamics.collocation import Floats, Rule
+from vibroimpact.dynamics.encounter import Encounter
 
 Aim = Literal["duration", "turn", "indentation", "force"]
 """What ends a stretch: its duration is given, or it ends where the indentation rate is zero, where the
@@ -20,51 +20,6 @@ _STALLED = 1e-11  # good enough where rounding keeps the last digits from settli
 _SHARED_SWEEPS = 30
 _REFRESHES = 5
 _OWN_SWEEPS = 12
-
-
-@dataclass(frozen=True)
-class Encounter:
-    """The facts of one impact of B drops: the law, the mass it moves, gravity, the approach speed.
-
-    `depth`: the indentation that it would reach if nothing were lost [m].
-    """
-
-    law: CompliantLaw
-    mass: Floats
-    gravity: Floats
-    approach_speed: Floats
-    depth: Floats
-
-    def take(self, drops: NDArray[np.intp]) -> Encounter:
-        """Return the encounter of some of the drops."""
-        if len(drops) == len(self.mass):
-            return self
-        return Encounter(self.law.take(drops), self.mass[drops], self.gravity[drops], self.approach_speed[drops], self.depth[drops])
-
-    @property
-    def speed_scale(self) -> Floats:
-        """The speed of the motion in contact [m/s]: that of the approach, or what gravity adds to a soft touch."""
-        return np.sqrt(self.approach_speed**2 + self.gravity * self.depth)
-
-    def acceleration(self, delta: Floats, velocity: Floats) -> Floats:
-        """Return the rate of the indentation rate [m/s^2], without any clip of the force."""
-        elastic, dissipative = self.law.forces(delta, velocity, self.approach_speed)
-        return np.asarray(self.gravity - (elastic + dissipative) / self.mass)
-
-
-def encounter_of(law: CompliantLaw, mass: Floats, gravity: Floats, approach_speed: Floats) -> Encounter:
-    """Return the encounter of B drops, with its depth from the energy that is put in."""
-    energy, weight = 0.5 * mass * approach_speed**2, mass * gravity
-    depth = np.full(len(mass), 1e-6)
-    with np.errstate(all="ignore"):
-        for _ in range(40):  # for a power law exact in one step, but for gravity's part
-            stored = law.elastic_energy(depth)
-            elastic, _dissipative = law.forces(depth, np.zeros_like(depth), approach_speed)
-            step = ((energy + weight * depth) / stored) ** (stored / (elastic * depth))
-            depth = depth * step
-            if np.all(np.abs(step - 1.0) < 1e-3):
-                break
-    return Encounter(law, mass, gravity, approach_speed, depth)
 
 
 @dataclass(frozen=True)
@@ -249,7 +204,7 @@ class _Newton:
             worst = change.max()
             if worst < _CONVERGED or (worst < _STALLED and worst > 0.3 * before.max()) or not worst < 1e12:
                 break
-            stale = stale or change[middle] > 0.1 * before[middle]
+            stale = stale or change[middle] > 0.03 * before[middle]
             if stale and change[middle] > 1e-7 and refreshes < _REFRESHES:
                 start.inverse, refreshes, stale = None, refreshes + 1, False
             elif refreshes == _REFRESHES and not (change < 0.9 * before).any():

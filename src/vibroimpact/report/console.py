@@ -16,7 +16,7 @@ from vibroimpact.cases.build import contact_pair, impacts_of
 from vibroimpact.cases.schema import Case
 from vibroimpact.contact.law import CompliantLaw, contact_laws
 from vibroimpact.dynamics.columns import LEDGER
-from vibroimpact.dynamics.stretch import encounter_of
+from vibroimpact.dynamics.encounter import encounter_of
 from vibroimpact.materials import material_library
 from vibroimpact.storage.result import Result
 
