@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import asdict, fields
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from vibroimpact.bodies.plate import rigid_plate
 from vibroimpact.bodies.sphere import rigid_sphere
-from vibroimpact.cases.schema import Case
 from vibroimpact.contact.law import ContactLaw, find_contact_law
 from vibroimpact.contact.pair import ContactPair, effective_modulus
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.errors import InputError
 from vibroimpact.materials import RIGID, Material
+
+if TYPE_CHECKING:
+    from vibroimpact.cases.schema import Case
 
 _DEFAULT_IMPACTS = 5
 

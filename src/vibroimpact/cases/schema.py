@@ -6,6 +6,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, WithJsonSchema, model_validator
 
+from vibroimpact.cases.build import problem_of
 from vibroimpact.cases.contact_section import ContactSection, contact_schema, read_contact
 from vibroimpact.cases.quantities import Quantity
 from vibroimpact.dynamics.problem import MOST_IMPACTS, STANDARD_GRAVITY, Problem
@@ -154,8 +155,6 @@ class Case(_Section):
         InputError
             If the contact law can't be made for these two bodies.
         """
-        from vibroimpact.cases.build import problem_of  # it needs Case itself
-
         return problem_of(self)
 
 
