@@ -2,13 +2,15 @@
 # make test      install what the tests need and run them (make test-all: the slow ones too)
 # make check     lint, formatting and types, as CI does
 # make bench     the benchmarks
+# make help      this list
 
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 OUTPUT := vibroimpact-demo
 
-.PHONY: demo test test-all check bench clean
+
+.PHONY: help demo test test-all check bench clean
 
 demo: $(VENV)/installed
 	$(BIN)/vibroimpact demo --output $(OUTPUT) --force
@@ -28,11 +30,15 @@ bench: $(VENV)/installed-bench
 	for script in benchmarks/bench_*.py; do $(BIN)/python $$script || exit 1; done
 
 $(VENV)/bin/python:
-	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null || { \
-	  echo "vibroimpact needs Python 3.11 or newer, and $(PYTHON) is $$($(PYTHON) --version 2>&1 || echo missing)." >&2; \
-	  echo "Install it and name it: make PYTHON=python3.11 $(MAKECMDGOALS)" >&2; exit 1; }
-	$(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet --upgrade "pip>=25.1"
+	@command -v $(PYTHON) >/dev/null || { \
+	  echo "vibroimpact needs Python 3.11 or newer, and there is no $(PYTHON)." >&2; \
+	  echo "Install it and name it: make PYTHON=python3.11 $(or $(MAKECMDGOALS),demo)" >&2; exit 1; }
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { \
+	  echo "vibroimpact needs Python 3.11 or newer, and $(PYTHON) is $$($(PYTHON) --version 2>&1)." >&2; \
+	  echo "Install it and name it: make PYTHON=python3.11 $(or $(MAKECMDGOALS),demo)" >&2; exit 1; }
+	@echo "making $(VENV) and installing; this takes a minute the first time"
+	@$(PYTHON) -m venv $(VENV)
+	@$(BIN)/python -m pip install --quiet --upgrade "pip>=25.1"
 
 $(VENV)/installed: pyproject.toml | $(VENV)/bin/python
 	$(BIN)/python -m pip install --quiet --editable .
@@ -41,6 +47,9 @@ $(VENV)/installed: pyproject.toml | $(VENV)/bin/python
 $(VENV)/installed-%: pyproject.toml | $(VENV)/bin/python
 	$(BIN)/python -m pip install --quiet --editable . --group $*
 	touch $@ $(VENV)/installed
+
+help:
+	@sed -n 's/^# //p' Makefile
 
 clean:
 	rm -rf $(VENV) build dist .pytest_cache .mypy_cache .ruff_cache .hypothesis

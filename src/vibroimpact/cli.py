@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, NoReturn
 
 import typer
 
@@ -68,7 +68,7 @@ def run(
 
     The folder holds the case in full, the impact table, the data as NetCDF, figures, and a report.
     """
-    _run(case, output or Path(case.removeprefix("paper:")).with_suffix("").name, force=force)
+    _run(case, output, force=force)
 
 
 @app.command()
@@ -97,11 +97,13 @@ def laws() -> None:
 
 
 @app.command()
-def materials() -> None:
-    """List the shipped materials and their sources."""
-    from vibroimpact.report.console import material_table
+def materials(
+    name: Annotated[str | None, typer.Argument(metavar="[NAME]", help="Show one material, with the source of each number.")] = None,
+) -> None:
+    """List the shipped materials, or one with its sources."""
+    from vibroimpact.report.console import material_sheet, material_table
 
-    _console().print(material_table())
+    _console().print(material_sheet(name) if name else material_table())
 
 
 @app.command()
@@ -135,15 +137,15 @@ def main() -> None:
         _fail(str(error), 2)
     except ComputationError as error:
         _fail(str(error), 1)
-    except KeyboardInterrupt:
-        _fail("interrupted; nothing was written", 130)
     except BrokenPipeError:
         # the reader of our output has gone; leave quietly, as other tools do
         sys.stderr.close()
         sys.exit(1)
+    except OSError as error:
+        _fail(f"the computer says: {error.strerror or error}", 1)
 
 
-def _run(name: str, output: Path | str, *, force: bool) -> None:
+def _run(name: str, output: Path | None, *, force: bool) -> None:
     from vibroimpact.cases.reader import load_case
     from vibroimpact.dynamics.simulate import simulate
     from vibroimpact.report.console import result_summary
@@ -153,12 +155,16 @@ def _run(name: str, output: Path | str, *, force: bool) -> None:
     from vibroimpact.storage.result import result_of
 
     case: Case = load_case(name)
-    check_free(output, force=force)  # before the work, not after it
+    target = Path(Path(name.removeprefix("paper:")).stem) if output is None else output
+    check_free(target, force=force)  # before the work, not after it
     console = _console()
-    with patient_progress("simulating", console) as progress:
-        response = simulate(case, progress)
-    console.print(result_summary(result_of(response)))
-    folder = save_result(response, output, force=force)
+    try:
+        with patient_progress("simulating", console) as progress:
+            response = simulate(case, progress)
+        folder = save_result(response, target, force=force)
+    except KeyboardInterrupt:
+        _fail("interrupted; nothing was written", 130)
+    console.print(result_summary(result_of(response), console.width))
     typer.echo(f"wrote {folder / 'report.html'}")
 
 
@@ -171,7 +177,7 @@ def _console() -> Console:
     return console
 
 
-def _fail(message: str, status: int) -> None:
+def _fail(message: str, status: int) -> NoReturn:
     typer.echo("\n".join(f"vibroimpact: {line}" for line in message.splitlines()), err=True)
     sys.exit(status)
 

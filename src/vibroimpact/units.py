@@ -108,7 +108,7 @@ def _parse(text: str, unit: str) -> float:
     number, given = float(match[1]), (match[2] or "").strip()
     if not unit:
         if given:
-            raise InputError(f'"{text}" has a unit, but a plain number is wanted: write {number:g}')
+            raise InputError(f'"{text}" has a unit, but a plain number is wanted: write {number / 100 if given == "%" else number:g}')
         return number
     if not given:
         raise InputError(f'"{text}" has no unit: write {number:g} (it is then in {unit}) or "{number:g} {unit}"')

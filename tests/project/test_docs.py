@@ -7,6 +7,7 @@ import re
 import shlex
 import subprocess
 import sys
+from io import StringIO
 from pathlib import Path
 
 import pytest
@@ -40,6 +41,20 @@ def test_documented_commands_run(tmp_path: Path) -> None:
         arguments = [sys.executable, "-m", "vibroimpact", *shlex.split(command)[1:]]
         done = subprocess.run(arguments, cwd=tmp_path, capture_output=True, text=True, timeout=120, check=False)
         assert done.returncode == 0, f"{command}\n{done.stderr}"
+
+
+def test_readme_shows_what_the_demo_prints(variable: vi.Response) -> None:
+    from rich.console import Console
+
+    from vibroimpact.report.console import result_summary
+    from vibroimpact.storage.result import result_of
+
+    written = StringIO()
+    Console(width=80, file=written).print(result_summary(result_of(variable), 80))
+    printed = [line.rstrip() for line in written.getvalue().splitlines()]
+    (shown,) = blocks(ROOT / "README.md", "text")
+    for line in shown.splitlines():
+        assert line in printed or " closure " in line  # which is rounding, and not the same everywhere
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)

@@ -106,7 +106,7 @@ def test_rest_by_speed_is_reported_with_its_threshold() -> None:
     response = vi.simulate(problem(impacts=None, rest_speed=0.5))
     assert response.outcomes == (vi.Outcome.REST_SPEED,)
     assert response.impacts["separation_speed_m_s"][-1] < 0.5 <= response.impacts["separation_speed_m_s"][-2]
-    assert "below 0.5 m/s it counts as at rest" in response.status
+    assert "below the rest speed of 0.5 m/s (rest-speed rule)" in response.status
     at_rest = response.at(response.end_time[0])
     assert at_rest["velocity_m_s"] == 0.0
     assert at_rest["force_N"] == pytest.approx(0.1 * 9.80665)
@@ -236,6 +236,13 @@ def test_tolerance_is_kept(tolerance: float) -> None:
     ("changes", "message"),
     [
         ({"laws": ()}, "one or more contact laws"),
+        ({"laws": Newton}, "one or more contact laws"),
+        ({"laws": "newton"}, "one or more contact laws"),
+        ({"height": "1 m"}, "height must be a number in SI"),
+        ({"gravity": 1j}, "gravity must be a number in SI"),
+        ({"impacts": 2.5}, "whole number"),
+        ({"height": []}, "at least one drop"),
+        ({"sphere": vi.Body(mass=np.inf, contact_offset=0.02)}, "finite"),
         ({"laws": (LAW, Newton(restitution=0.5))}, "all of one kind"),
         ({"speed": 1.0}, "not both"),
         ({"height": None}, "not both"),
@@ -315,3 +322,23 @@ def test_a_sphere_put_down_softly(slowness: float) -> None:
     exact = brentq(lambda d: 0.5 * mass * speed**2 + mass * gravity * d - stiffness * d**2.5 / 2.5, sag, 10 * sag, xtol=1e-18, rtol=1e-14)
     assert response.impacts["max_indentation_m"][0] == pytest.approx(exact, rel=1e-9)
     assert response.impacts["restitution_achieved"][0] == pytest.approx(1.0, abs=1e-9 + 1e-12 / slowness**2)
+
+
+def test_arguments_of_the_wrong_kind_are_refused_in_words(theory: vi.Response) -> None:
+    with pytest.raises(vi.InputError, match=r"vi\.load_case"):
+        vi.simulate("paper:type1-theory")  # type: ignore[arg-type]
+    with pytest.raises(vi.InputError, match="restitution"):
+        Newton(restitution="0.5")
+    with pytest.raises(vi.InputError, match=r"vi\.find_material"):
+        vi.rigid_sphere(0.01, "steel")  # type: ignore[arg-type]
+    with pytest.raises(vi.InputError, match=r"drop\(0\).save"):
+        vi.simulate(batch(2)).save("nowhere")
+    assert vi.rigid_sphere([0.01, 0.02], vi.find_material("steel")).mass.shape == (2,)
+    assert len(vi.simulate(problem(laws=LAW, impacts=np.int64(2))).impacts["impact"]) == 2
+
+
+def test_progress_towards_rest_is_told() -> None:
+    told: list[float] = []
+    vi.simulate(problem(impacts=None, rest_speed=0.05), told.append)
+    assert told == sorted(told)
+    assert 0.1 < told[len(told) // 2] < 0.9

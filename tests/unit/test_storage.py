@@ -10,9 +10,11 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
+import tomli_w
 import xarray
 
 import vibroimpact as vi
+from vibroimpact.cli import main
 from vibroimpact.dynamics.columns import HISTORY_COLUMNS, IMPACT_COLUMNS, LEDGER
 from vibroimpact.storage.folder import new_folder
 
@@ -88,6 +90,30 @@ def test_case_reads_back_as_the_same_run(folder: Path, theory: vi.Response) -> N
     again = vi.simulate(vi.load_case(folder / "case.toml"))
     for name in IMPACT_COLUMNS:
         np.testing.assert_array_equal(again.impacts[name], theory.impacts[name])
+
+
+def test_a_problem_made_in_python_keeps_its_inputs(tmp_path: Path) -> None:
+    law = vi.find_contact_law("newton")(restitution=0.5)
+    ball = vi.Body(mass=1.25, contact_offset=0.1)
+    vi.simulate(vi.Problem(sphere=ball, plate=vi.rigid_plate(), laws=(law,), height=1.0)).save(tmp_path / "out")
+    assert not (tmp_path / "out" / "case.toml").exists()
+    assert "mass=1.25" in vi.read_result(tmp_path / "out").provenance["problem"]
+    assert "mass=1.25" in (tmp_path / "out" / "report.html").read_text()
+
+
+def test_doubts_are_printed_and_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    case = {"sphere": {"radius": "5 mm", "material": "steel"}, "plate": {"material": "steel"}, "drop": {"height": "50 m"}}
+    case["contact"] = {"law": "adams-impact", "damping_max": 10.0, "full_damping_penetration": "9 mm"}
+    (tmp_path / "hard.toml").write_text(tomli_w.dumps(case))
+    monkeypatch.setattr("sys.argv", ["vibroimpact", "run", str(tmp_path / "hard.toml"), "-o", str(tmp_path / "out")])
+    with pytest.raises(SystemExit) as left:
+        main()
+    assert not left.value.code
+    printed = capsys.readouterr().out
+    summary = json.loads((tmp_path / "out" / "summary.json").read_text())
+    assert [("yield" in doubt, "full-damping" in doubt) for doubt in summary["doubts"]] == [(False, True), (True, False)]
+    page = (tmp_path / "out" / "report.html").read_text()
+    assert printed.count("Doubt: ") == page.count("Doubt: ") == 2
 
 
 def test_result_reads_back(folder: Path, theory: vi.Response) -> None:

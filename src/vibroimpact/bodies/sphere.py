@@ -6,6 +6,7 @@ import numpy as np
 
 from vibroimpact.bodies.body import Body
 from vibroimpact.contact.pair import Array
+from vibroimpact.errors import InputError
 from vibroimpact.materials import Material
 
 
@@ -25,4 +26,8 @@ def rigid_sphere(radius: Array, material: Material) -> Body:
     >>> round(rigid_sphere(0.025, find_material("rock-paper")).mass, 11)
     0.09032078879
     """
+    if not isinstance(material, Material):
+        raise InputError(f"material must be a Material, as vi.find_material(...) gives it, not {material!r}")
+    if isinstance(radius, (list, tuple)):
+        radius = np.asarray(radius, dtype=float)
     return Body(mass=4.0 / 3.0 * np.pi * radius**3 * material.density, contact_offset=radius)

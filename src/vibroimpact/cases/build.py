@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from vibroimpact.bodies.plate import rigid_plate
 from vibroimpact.bodies.sphere import rigid_sphere
-from vibroimpact.contact.law import ContactLaw, find_contact_law
+from vibroimpact.contact.law import ContactLaw, find_contact_law, loses_nothing
 from vibroimpact.contact.pair import ContactPair, effective_modulus
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.errors import InputError
@@ -48,7 +48,18 @@ def impacts_of(case: Case) -> int | None:
 
 
 def problem_of(case: Case) -> Problem:
-    """Return the problem that a case states."""
+    """Return the problem that a case states.
+
+    Raises
+    ------
+    InputError
+        If the contact law can't be made for these bodies, or the sphere would bounce for ever.
+    """
+    if impacts_of(case) is None and case.run.duration is None and loses_nothing(contact_laws_of(case)[-1]):
+        raise InputError(
+            f'"all" needs a law that loses energy, and this {case.contact.law} never comes to rest; give a number or a duration',
+            "run.impacts",
+        )
     return Problem(
         sphere=rigid_sphere(case.sphere.radius, case.sphere.material),
         plate=rigid_plate(case.plate.size[2] if case.plate.size else 0.0),

@@ -104,7 +104,7 @@ def _file(path: Path) -> str:
             data = file.read(LARGEST_FILE + 1)
         if len(data) > LARGEST_FILE:
             raise InputError(f"{path}: the file is larger than {LARGEST_FILE // 1_000_000} MB; a case is a page of text")
-        return data.decode("utf-8")
+        return data.decode("utf-8-sig")  # some editors put a byte-order mark first
     except FileNotFoundError:
         raise InputError(f'{path}: there is no such file; a case is a TOML file, or a shipped one such as "paper:type1-theory"') from None
     except (OSError, ValueError) as error:
@@ -129,7 +129,7 @@ def _explain(error: ValidationError) -> Iterator[str]:
             yield f'{path}: unknown key "{where[-1]}"; {place} takes {", ".join(known)}.{did_you_mean(where[-1], known)}'
         elif kind == "missing" and where[-1].isdigit():
             parent = ".".join(where[:-1])
-            yield f"{parent}: there are too few values; the next one is missing"
+            yield f"{parent}: there are too few values; it takes {_about(where[:-1]).removeprefix(': ')}"
         elif kind == "missing":
             what = "section" if len(where) == 1 else "key"
             yield f"{path}: this {what} is missing{_about(where)}"
@@ -141,10 +141,12 @@ def _explain(error: ValidationError) -> Iterator[str]:
             yield f"{path}.{context['error']}" if path and fault_key else f"{prefix}{context['error']}"
         elif kind == "literal_error":
             yield f"{prefix}{_show(fault['input'])} is not allowed; it must be {context['expected']}"
+        elif kind == "string_type":
+            yield f"{prefix}{_show(fault['input'])} is not a text; put it in quotes"
         elif kind in ("model_type", "dict_type"):
             yield f"{prefix}{_show(fault['input'])} is not a table"
         elif kind in ("tuple_type", "too_long", "too_short"):
-            yield f"{prefix}{_show(fault['input'])} does not have the right number of values"
+            yield f"{prefix}{_show(fault['input'])} does not have the right number of values; it takes {_about(where).removeprefix(': ')}"
         else:
             yield f"{prefix}{_show(fault['input'])} is not allowed; {fault['msg'][0].lower()}{fault['msg'][1:]}"
 

@@ -55,6 +55,8 @@ class ContactLaw:
     def __post_init__(self) -> None:
         for item in fields(self):
             value = getattr(self, item.name)
+            if isinstance(value, (str, bytes)):
+                raise InputError(f'"{value!s}" is a text; it must be a number in SI, or an array of them', item.name)
             if isinstance(value, (list, tuple)):
                 value = np.asarray(value, dtype=float)
                 object.__setattr__(self, item.name, value)
@@ -144,6 +146,21 @@ class InstantaneousLaw(ContactLaw):
     def separation_speed(self, approach_speed: Array) -> Array:
         """Return the speed at which the bodies part [m/s]."""
         raise NotImplementedError
+
+
+def loses_nothing(law: ContactLaw) -> bool:
+    """Is the law without any loss, so that a ball under it bounces for ever?
+
+    Examples
+    --------
+    >>> loses_nothing(find_contact_law("newton")(restitution=1.0))
+    True
+    """
+    if isinstance(law, InstantaneousLaw):
+        return bool(np.all(law.separation_speed(1.0) >= 1.0))
+    assert isinstance(law, CompliantLaw)
+    _, dissipative = law.forces(np.geomspace(1e-9, 1e-1, 9)[:, None], np.ones((9, 1)), np.ones((9, 1)))
+    return not np.any(dissipative)
 
 
 @cache

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
+from numbers import Integral
 from typing import Any, Protocol
 
 import numpy as np
@@ -20,7 +21,7 @@ MOST_IMPACTS = 100_000
 """Where a run without a number of impacts is stopped, if it has not come to rest."""
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class Problem:
     """A sphere that falls on a plate, once or as a batch with one value a drop.
 
@@ -76,8 +77,15 @@ class Problem:
     source: Mapping[str, Any] | None = field(default=None, compare=False)
 
     def __post_init__(self) -> None:
-        if not self.laws or len({type(law) for law in self.laws}) != 1:
+        if isinstance(self.laws, ContactLaw):
+            object.__setattr__(self, "laws", (self.laws,))
+        one_kind = isinstance(self.laws, (tuple, list)) and len({type(law) for law in self.laws}) == 1
+        if not one_kind or not isinstance(self.laws[0], ContactLaw):
             raise InputError("laws must be one or more contact laws, all of one kind")
+        for name in ("height", "speed", "gravity", "duration", "rest_speed", "tolerance"):
+            value = getattr(self, name)
+            if value is not None and np.asarray(value).dtype.kind not in "iuf":
+                raise InputError(f"{name} must be a number in SI, or an array of them, not {value!r}")
         if (self.height is None) == (self.speed is None):
             raise InputError("give either height [m] or speed [m/s] of the drop, and not both")
         if not (np.all(np.isfinite(self.sphere.mass)) and np.all(np.isfinite(self.sphere.contact_offset))):
@@ -97,7 +105,7 @@ class Problem:
                 )
             if not np.all(np.asarray(self.gravity) > 0):
                 raise InputError("without gravity a sphere does not fall: give speed instead of height")
-        if self.impacts is not None and not (isinstance(self.impacts, int) and 1 <= self.impacts <= MOST_IMPACTS):
+        if self.impacts is not None and not (isinstance(self.impacts, Integral) and 1 <= self.impacts <= MOST_IMPACTS):
             raise InputError(f"impacts must be a whole number from 1 to {MOST_IMPACTS}")
         if self.duration is not None and not 0 < self.duration < np.inf:
             raise InputError("duration must be greater than 0 s and finite")

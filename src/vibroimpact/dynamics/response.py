@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from enum import Enum
 from functools import cached_property
+from numbers import Integral
 from os import PathLike
 from typing import Any
 
@@ -72,7 +73,7 @@ class Rest:
     written_off: Floats
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Response:
     """The response of one drop, or of a batch.
 
@@ -118,7 +119,7 @@ class Response:
         InputError
             If there is no such drop.
         """
-        if not 0 <= index < len(self):
+        if not isinstance(index, Integral) or not 0 <= index < len(self):
             raise InputError(f"there is no drop {index}; the batch has {len(self)}, counted from 0")
         if self.problem.shape == ():
             return self
@@ -167,16 +168,16 @@ class Response:
         """Say by which rule the sphere is at rest."""
         time = float(self.rest.time[0])
         if self.outcomes[0] is Outcome.CAPTURED:
-            return f"by the capture rule, at {time:.7g} s the sphere has too little energy left to get out of its indentation."
+            return f"at {time:.7g} s it has too little energy left to get out of its indentation (capture rule)."
         speed, last = float(self.rest.speed[0]), float(self.impacts["separation_speed_m_s"][-1])
-        limit = f"; bounces with the last restitution would end at {time:.7g} s" if np.isfinite(time) else ""
-        return f"by the rest-speed rule, it leaves at {last:.3g} m/s, and below {speed:.3g} m/s it counts as at rest{limit}."
+        limit = f" Bounces with the last restitution would end at {time:.7g} s." if np.isfinite(time) else ""
+        return f"it left at {last:.3g} m/s, below the rest speed of {speed:.3g} m/s (rest-speed rule).{limit}"
 
     def _failure(self) -> str:
         """Say why the run failed."""
         closure = float(self.energy["closure_relative"])
         if closure > CLOSURE_LIMIT:
-            return f"the energy ledger misses a part of {closure:.2g} of the energy put in; {CLOSURE_LIMIT:g} is allowed."
+            return f"the energy ledger does not close: {closure:.2g} of the energy put in is missing (limit {CLOSURE_LIMIT:g})."
         return "the contact could not be integrated to the tolerance."
 
     def at(self, times: Any) -> dict[str, Floats]:
@@ -228,7 +229,7 @@ class Response:
         rate : float
             Samples per second [Hz], > 0.
         """
-        if not 0.0 < rate < np.inf:
+        if isinstance(rate, str) or not 0.0 < rate < np.inf:
             raise InputError(f"rate must be greater than 0 Hz and finite, not {rate}")
         count = float(self.end_time[0]) * rate
         if count > 1e8:
@@ -255,8 +256,10 @@ class Response:
         Raises
         ------
         InputError
-            If the folder exists, or can't be made.
+            If the folder exists or can't be made, or the response is of several drops.
         """
+        if self.problem.shape != ():
+            raise InputError("save writes one drop: response.drop(0).save(...)")
         import vibroimpact  # the one door upwards: the package's front knows the writers
 
         vibroimpact.save_result(self, directory, force=force)

@@ -20,7 +20,7 @@ from vibroimpact.dynamics.memory import Memory
 from vibroimpact.dynamics.peaks import force_peak
 from vibroimpact.dynamics.problem import MOST_IMPACTS, Problem, StatesProblem
 from vibroimpact.dynamics.response import Leg, Outcome, Response, Rest
-from vibroimpact.errors import ComputationError
+from vibroimpact.errors import ComputationError, InputError
 
 
 def simulate(problem: StatesProblem, progress: Callable[[float], None] | None = None) -> Response:
@@ -58,6 +58,8 @@ def simulate(problem: StatesProblem, progress: Callable[[float], None] | None = 
     >>> simulate(problem).impacts["rebound_height_m"].round(6).tolist()
     [0.35, 0.1625, 0.115625]
     """
+    if not hasattr(problem, "to_problem"):
+        raise InputError(f"simulate takes a Problem, or a case as vi.load_case(...) reads it, not {problem!r}")
     run = _Run(problem.to_problem())
     while run.moving.any():
         run.advance()
@@ -109,8 +111,14 @@ class _Run:
     def fraction_done(self) -> float:
         if not self.moving.any():
             return 1.0
-        done = len(self.rows) / self.problem.impacts if self.problem.impacts else 0.0
-        return max(done, float(self.time[self.moving].min()) / self.problem.duration if self.problem.duration else 0.0)
+        done = len(self.rows) / (self.problem.impacts or MOST_IMPACTS)
+        if self.problem.duration is not None:
+            done = max(done, float(self.time[self.moving].min()) / self.problem.duration)
+        if self.problem.impacts is None and self.rows:  # to rest: the logarithm of the speed falls steadily
+            first = self.rows[0]["approach_speed_m_s"][self.moving]
+            slowed = np.log(first / self.velocity[self.moving]) / np.log(first / self.rest_speed[self.moving])
+            done = max(done, float(np.nanmin(np.clip(slowed, 0.0, 1.0), initial=1.0)))
+        return done
 
     # one flight and one contact --------------------------------------------------------------------
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping
-from dataclasses import MISSING, fields
+from dataclasses import MISSING, Field, fields
+from typing import Any
 
 import numpy as np
 from rich.console import Group, RenderableType
@@ -12,96 +13,139 @@ from rich.markup import escape
 from rich.table import Table
 from rich.text import Text
 
-from vibroimpact.cases.build import contact_pair, impacts_of
+from vibroimpact.cases.build import contact_pair, impacts_of, resolved
+from vibroimpact.cases.doubts import doubts
 from vibroimpact.cases.schema import Case
 from vibroimpact.contact.law import CompliantLaw, contact_laws
 from vibroimpact.dynamics.columns import LEDGER
 from vibroimpact.dynamics.encounter import encounter_of
-from vibroimpact.materials import material_library
+from vibroimpact.materials import RIGID, Material, find_material, material_library
 from vibroimpact.storage.result import Result
 
 # column, heading, factor, digits
 _IMPACT_TABLE = (
     ("time_s", "time\n[s]", 1.0, 6),
-    ("duration_s", "contact\n[us]", 1e6, 5),
-    ("approach_speed_m_s", "approach\n[m/s]", 1.0, 5),
-    ("separation_speed_m_s", "separation\n[m/s]", 1.0, 5),
-    ("restitution_asked", "e\nasked", 1.0, 4),
+    ("duration_s", "contact\n[us]", 1e6, 4),
+    ("approach_speed_m_s", "approach\n[m/s]", 1.0, 4),
+    ("separation_speed_m_s", "separation\n[m/s]", 1.0, 4),
+    ("restitution_asked", "e\nasked", 1.0, 3),
     ("restitution_achieved", "e\nachieved", 1.0, 5),
-    ("max_indentation_m", "indentation\n[um]", 1e6, 5),
-    ("max_force_N", "force\n[N]", 1.0, 6),
+    ("max_indentation_m", "indentation\n[um]", 1e6, 4),
+    ("max_force_N", "force\n[N]", 1.0, 5),
     ("max_acceleration_m_s2", "acceleration\n[m/s2]", 1.0, 6),
-    ("rebound_height_m", "rebound\n[m]", 1.0, 6),
+    ("rebound_height_m", "rebound\n[m]", 1.0, 5),
     ("energy_lost_J", "lost\n[J]", 1.0, 4),
 )
-_MOST_ROWS = 40
+_LEFT_OUT_WHEN_NARROW = {"separation_speed_m_s", "max_acceleration_m_s2", "energy_lost_J"}
+_NARROW = 110  # columns of a terminal
+_FIRST_ROWS, _LAST_ROWS = 15, 3
 
 
-def impact_table(impacts: Mapping[str, np.ndarray]) -> RenderableType:
-    """Return the table of impacts; the middle of a long one is left out and said so."""
-    table = Table(title="Impacts", title_justify="left", header_style="bold")
-    table.add_column("#", justify="right")
-    for _, heading, _, _ in _IMPACT_TABLE:
-        table.add_column(escape(heading), justify="right", no_wrap=True)
+def impact_table(impacts: Mapping[str, np.ndarray], width: int) -> RenderableType:
+    """Return the table of impacts for a terminal of a width; numbers are never cut, the middle of a long table is."""
     number = len(impacts["impact"])
+    if not number:
+        return Text("No impact within the run.")
+    columns = [column for column in _IMPACT_TABLE if width >= _NARROW or column[0] not in _LEFT_OUT_WHEN_NARROW]
+    table = Table(box=None, padding=(0, 1), header_style="bold")
+    table.add_column("\n#", justify="right")
+    for _, heading, _, _ in columns:
+        table.add_column(escape(heading), justify="right", no_wrap=True)
     for index in range(number):
-        if number > _MOST_ROWS and 30 <= index < number - 5:
-            if index == 30:
-                table.add_row("...", *(["..."] * len(_IMPACT_TABLE)))
+        if _FIRST_ROWS <= index < number - _LAST_ROWS:
+            if index == _FIRST_ROWS:
+                table.add_row("...")
             continue
-        cells = (_number(float(impacts[name][index]) * factor, digits) for name, _, factor, digits in _IMPACT_TABLE)
+        cells = (_number(float(impacts[name][index]) * factor, digits) for name, _, factor, digits in columns)
         table.add_row(str(int(impacts["impact"][index])), *cells)
     return table
 
 
 def energy_table(energy: Mapping[str, float]) -> RenderableType:
-    """Return the ledger at the end of the run."""
-    table = Table(title="Energy at the end", title_justify="left", header_style="bold")
-    table.add_column("")
+    """Return the ledger at the end of the run, without the entries that are zero."""
+    table = Table(box=None, padding=(0, 1), header_style="bold")
+    table.add_column("energy at the end")
     table.add_column(escape("[J]"), justify="right")
-    table.add_column("% of input", justify="right")
+    table.add_column("%", justify="right")
     whole = energy["input_J"]
     for name in LEDGER:
-        part = energy[name] / whole if abs(energy[name]) > 1e-12 * whole else 0.0  # rounding is not energy
-        table.add_row(name.removesuffix("_J").replace("_", " "), _number(part * whole, 6), _number(100.0 * part, 4))
+        part = energy[name] / whole
+        if abs(part) > 1e-12:  # less is rounding
+            table.add_row(name.removesuffix("_J").replace("_", " "), _number(energy[name], 6), _number(100.0 * part, 4))
     table.add_row("[bold]put in[/bold]", f"[bold]{_number(whole, 6)}[/bold]", "100")
-    table.caption = f"closure {energy['closure_relative']:.1e} of the energy put in"
-    return table
+    return Group(table, Text(f" closure {energy['closure_relative']:.1e} of the energy put in", style="dim"))
 
 
-def result_summary(result: Result) -> RenderableType:
-    """Return what a run prints: the tables and the status."""
-    return Group(Text(result.name, style="bold"), impact_table(result.impacts), energy_table(result.energy), Text(result.status))
+def result_summary(result: Result, width: int) -> RenderableType:
+    """Return what a run prints in a terminal of a width: the tables, the status, and what to doubt."""
+    return Group(
+        Text(result.name, style="bold"),
+        impact_table(result.impacts, width),
+        Text(),
+        energy_table(result.energy),
+        Text(),
+        Text(result.status),
+        *_doubt_lines(result.doubts),
+    )
 
 
 def law_table() -> RenderableType:
-    """Return the table of contact laws."""
-    table = Table(title="Contact laws", title_justify="left", header_style="bold", show_lines=True)
-    for heading in ("name", "force or speed", "parameters", "contact ends", "tension", "source"):
-        table.add_column(heading, overflow="fold")
+    """Return the contact laws, a block each."""
+    blocks: list[RenderableType] = []
     for name, law in contact_laws().items():
-        parameters = "\n".join(
-            f"{item.name}{f' [{unit}]' if (unit := item.metadata['unit']) else ''}{_origin(item)}" for item in fields(law)
-        )
-        end, tension = ("at zero indentation", law.tension) if issubclass(law, CompliantLaw) else ("at once", "-")
-        if issubclass(law, CompliantLaw) and law.contact_end == "zero-force":
-            end = "at zero force"
-        table.add_row(name, escape(law.equation), escape(parameters), end, tension, escape(law.source))
-    return table
+        grid = Table.grid(padding=(0, 2))
+        for item in fields(law):
+            grid.add_row(f"  {item.name}", escape(f"{item.metadata['meaning']}{_unit(item)}{_origin(item)}"))
+        end = "at once"
+        if issubclass(law, CompliantLaw):
+            pulls = {"none": "it never pulls", "cut": "it is cut where it would pull", "kept": "it may pull before that"}[law.tension]
+            end = f"{law.contact_end.replace('-', ' ')}; {pulls}"
+        blocks += [
+            Text(name, style="bold"),
+            Text(f"  {law.equation}"),
+            Text(f"  ends: {end}"),
+            Text(f"  {law.source}", style="dim"),
+            grid,
+            Text(),
+        ]
+    return Group(*blocks[:-1])
 
 
 def material_table() -> RenderableType:
-    """Return the table of shipped materials, with the source of each density, modulus and ratio."""
-    table = Table(title="Materials", title_justify="left", header_style="bold")
-    table.add_column("name", no_wrap=True)
+    """Return the table of shipped materials."""
+    table = Table(box=None, padding=(0, 1), header_style="bold")
+    table.add_column("\nname", no_wrap=True)
     for heading in ("density\n[kg/m3]", "Young's\n[GPa]", "Poisson's\n[-]"):
         table.add_column(escape(heading), justify="right", no_wrap=True)
-    table.add_column("what, and source of Young's modulus", overflow="fold")
+    table.add_column("\nwhat", overflow="fold")
     for name, material in material_library().items():
-        text = f"{escape(material.description)}\n[dim]{escape(material.sources['youngs_modulus'])}[/dim]"
-        table.add_row(name, f"{material.density:g}", f"{material.youngs_modulus / 1e9:g}", f"{material.poissons_ratio:g}", text)
-    table.caption = 'also "rigid", of infinite modulus, for a plate; field samples of rock and coal vary widely: measure yours'
-    return table
+        numbers = f"{material.density:g}", f"{material.youngs_modulus / 1e9:g}", f"{material.poissons_ratio:g}"
+        table.add_row(name, *numbers, escape(material.description))
+    notes = 'Also "rigid" for a plate. "vibroimpact materials NAME" gives the source of each number. Rock and coal vary widely.'
+    return Group(table, Text(), Text(notes))
+
+
+def material_sheet(name: str) -> RenderableType:
+    """Return one material with the source of each number.
+
+    Raises
+    ------
+    InputError
+        If there is no such material.
+    """
+    material, table = find_material(name), Table.grid(padding=(0, 2))
+    for key, unit in (
+        ("density", "kg/m3"),
+        ("youngs_modulus", "Pa"),
+        ("poissons_ratio", ""),
+        ("yield_strength", "Pa"),
+        ("loss_factor", ""),
+    ):
+        value = getattr(material, key)
+        if value is not None:
+            table.add_row(key, f"{value:g} {unit}".strip(), escape(material.sources.get(key, "")))
+    note = [Text(material.note)] if material.note else []
+    return Group(Text(f"{material.name}: {material.description}", style="bold"), table, *note)
 
 
 def case_explained(case: Case) -> RenderableType:
@@ -110,10 +154,11 @@ def case_explained(case: Case) -> RenderableType:
     mass, radius, gravity = float(problem.sphere.mass), case.sphere.radius, case.drop.gravity
     speed = case.drop.speed or math.sqrt(2.0 * gravity * (float(case.drop.height or radius) - radius))
     rows: list[tuple[str, str]] = [
-        ("sphere", f"radius {radius:g} m, mass {mass:.6g} kg, {case.sphere.model}"),
+        ("sphere", f"radius {radius:g} m, mass {mass:.6g} kg, {case.sphere.model}, of {_stuff(case.sphere.material)}"),
         (
             "plate",
-            f"{case.plate.model}, held fixed" + (f", {' x '.join(f'{side:g}' for side in case.plate.size)} m" if case.plate.size else ""),
+            f"{case.plate.model}, held fixed, of {_stuff(case.plate.material)}"
+            + (f", {' x '.join(f'{side:g}' for side in case.plate.size)} m" if case.plate.size else ""),
         ),
         ("effective modulus", f"{pair.effective_modulus:.6g} Pa"),
         ("first approach speed", f"{speed:.6g} m/s, gravity {gravity:g} m/s2"),
@@ -121,6 +166,8 @@ def case_explained(case: Case) -> RenderableType:
     ]
     for item in fields(problem.laws[0]):
         values = [getattr(law, item.name) for law in problem.laws]
+        if values[0] is None:
+            continue
         shown = (
             ", ".join(f"{value:.9g}" for value in values) if len(set(values)) > 1 else f"{values[0]:.9g}" if values[0] is not None else "-"
         )
@@ -128,23 +175,21 @@ def case_explained(case: Case) -> RenderableType:
             (f"  {item.name}", f"{shown} {item.metadata['unit']}".replace("N/m^n", f"N/m^{getattr(problem.laws[0], 'exponent', 1):g}"))
         )
     number = impacts_of(case)
-    stop = [f"after {number} impacts" if number else "at rest"] + ([f"at {case.run.duration:g} s"] if case.run.duration else [])
-    rows += [("stops", " or ".join(stop) + ", or at rest"), ("tolerance", f"{case.run.tolerance:g}")]
-    law = problem.laws[0]
-    doubts: list[str] = []
+    stop = ["at rest"] + ([f"after {number} impact{'' if number == 1 else 's'}"] if number else [])
+    stop += [f"at {case.run.duration:g} s"] if case.run.duration else []
+    rows += [("stops", " or ".join(stop)), ("tolerance", f"{case.run.tolerance:g}")]
+    law, found = problem.laws[0], []
     if isinstance(law, CompliantLaw):
         one = np.ones(1)
         encounter = encounter_of(law, mass * one, gravity * one, speed * one)
-        depth = encounter.depth
-        force = float(np.asarray(law.forces(depth, 0.0 * one, encounter.approach_speed)[0])[0])
-        rows.append(("if nothing were lost", f"indentation {float(depth[0]):.4g} m, force {force:.4g} N"))
-        if depth[0] > 0.09 * radius:
-            part = math.sqrt(float(depth[0]) / radius)
-            doubts.append(f"the contact radius would be about {part:.2g} of the sphere's: Hertz's theory holds for small contacts")
+        depth = float(encounter.depth[0])
+        force = float(np.asarray(law.forces(encounter.depth, 0.0 * one, encounter.approach_speed)[0])[0])
+        rows.append(("if nothing were lost", f"indentation {depth:.4g} m, force {force:.4g} N"))
+        found = doubts(resolved(case), depth, force)
     table = Table.grid(padding=(0, 2))
     for row in rows:
         table.add_row(*(escape(cell) for cell in row))
-    return Group(Text(case.name or "a drop", style="bold"), table, *(Text(f"Doubt: {doubt}.", style="yellow") for doubt in doubts))
+    return Group(Text(case.name or "a drop", style="bold"), table, *_doubt_lines(found))
 
 
 def versions_table(rows: Iterable[tuple[str, str]]) -> RenderableType:
@@ -155,11 +200,28 @@ def versions_table(rows: Iterable[tuple[str, str]]) -> RenderableType:
     return table
 
 
-def _origin(item: object) -> str:
-    metadata, default = item.metadata, item.default  # type: ignore[attr-defined]
+def _stuff(material: Material) -> str:
+    name = material.name or "a material"
+    return (
+        name
+        if material is RIGID
+        else f"{name} (E {material.youngs_modulus:.4g} Pa, nu {material.poissons_ratio:g}, {material.density:g} kg/m3)"
+    )
+
+
+def _doubt_lines(found: Iterable[str]) -> list[RenderableType]:
+    return [Text(f"Doubt: {doubt}.", style="yellow") for doubt in found]
+
+
+def _unit(item: Field[Any]) -> str:
+    return f" [{item.metadata['unit']}]" if item.metadata["unit"] else ""
+
+
+def _origin(item: Field[Any]) -> str:
+    metadata, default = item.metadata, item.default
     if metadata["from_pair"]:
         return " (from the materials)" if "stiffness" in metadata["from_pair"] else " (from the bodies)"
-    return "" if default is MISSING else " (optional)" if default is None else f" = {default:g}"
+    return "" if default is MISSING else " (optional)" if default is None else f", {default:g} by default"
 
 
 def _number(value: float, digits: int) -> str:

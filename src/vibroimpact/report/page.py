@@ -76,6 +76,7 @@ def render_page(result: Result, pictures: Mapping[str, bytes]) -> str:
         pictures=_pictures(result, pictures),
         left_out=left_out(result),
         case=_as_text(result.case),
+        doubts=result.doubts,
         provenance=result.provenance,
     )
 

@@ -65,11 +65,16 @@ def check_free(directory: str | PathLike[str], *, force: bool = False) -> None:
         If something is there that may not be replaced.
     """
     target = Path(directory)
+    if target.resolve() == Path.cwd():
+        raise InputError(f"{target}: this is the folder you stand in; name one inside it")
+    above = next(folder for folder in target.absolute().parents if folder.exists())
+    if not os.access(above, os.W_OK):
+        raise InputError(f"{target}: {above} can't be written to; name another place for the result")
     if not os.path.lexists(target):
         return
     if not target.is_dir():
         raise InputError(f"{target}: this is not a folder; name another place for the result")
-    if force and ((target / SUMMARY).is_file() or not any(target.iterdir())):
+    if (force and (target / SUMMARY).is_file()) or not any(target.iterdir()):
         return
     if force:
         raise InputError(f"{target}: the folder is there and is not a result folder, so --force does not replace it; name another one")
@@ -78,7 +83,8 @@ def check_free(directory: str | PathLike[str], *, force: bool = False) -> None:
 
 def write_result(result: Result, directory: Path) -> None:
     """Write the data files of a result into a folder: case.toml, impacts.csv, summary.json, result.nc."""
-    (directory / "case.toml").write_text(tomli_w.dumps(result.case), encoding="utf-8")
+    if result.case:  # a problem made in Python has no case; its provenance says what it was
+        (directory / "case.toml").write_text(tomli_w.dumps(result.case), encoding="utf-8")
     write_csv(result.impacts, directory / "impacts.csv")
     summary = {
         "name": result.name,
@@ -86,6 +92,7 @@ def write_result(result: Result, directory: Path) -> None:
         "version": result.provenance.get("version", ""),
         "impacts": impact_rows(result.impacts),
         "energy": result.energy,
+        "doubts": result.doubts,
         "provenance": dict(result.provenance),
     }
     (directory / SUMMARY).write_text(json.dumps(summary, indent=2, allow_nan=False) + "\n", encoding="utf-8")
@@ -107,7 +114,8 @@ def read_result(directory: str | PathLike[str]) -> Result:
     try:
         summary = json.loads((folder / name).read_text(encoding="utf-8"))
         name = "case.toml"
-        case = tomllib.loads((folder / name).read_text(encoding="utf-8"))
+        has_case = "problem" not in summary["provenance"]
+        case = tomllib.loads((folder / name).read_text(encoding="utf-8")) if has_case else {}
         name = "result.nc"
         groups = read_groups(folder / name)
         missing = set(IMPACT_COLUMNS) - set(groups["impacts"])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import platform
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -12,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vibroimpact._version import __version__
+from vibroimpact.cases.doubts import doubts
 from vibroimpact.dynamics.response import Response
 
 
@@ -43,6 +45,12 @@ class Result:
     provenance: Mapping[str, str] = field(default_factory=dict)
 
     @property
+    def doubts(self) -> list[str]:
+        """What to doubt of it: where its assumptions are strained."""
+        peaks = (self.impacts[name] for name in ("max_indentation_m", "max_force_N"))
+        return doubts(self.case, *(float(peak.max()) if len(peak) else math.nan for peak in peaks))
+
+    @property
     def name(self) -> str:
         """The name of the case."""
         return str(self.case.get("name", "")) or "a drop"
@@ -69,5 +77,6 @@ def result_of(response: Response) -> Result:
             "numpy": np.__version__,
             "platform": platform.platform(),
             "tolerance": f"{response.problem.tolerance:g}",
+            **({} if response.problem.source else {"problem": repr(response.problem)}),
         },
     )
