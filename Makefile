@@ -9,7 +9,6 @@ VENV := .venv
 BIN := $(VENV)/bin
 OUTPUT := vibroimpact-demo
 
-
 .PHONY: help demo test test-all check bench clean
 
 demo: $(VENV)/installed
@@ -26,7 +25,7 @@ check: $(VENV)/installed-lint
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 
-bench: $(VENV)/installed-bench
+bench: $(VENV)/installed
 	for script in benchmarks/bench_*.py; do $(BIN)/python $$script || exit 1; done
 
 $(VENV)/bin/python:

@@ -79,7 +79,12 @@ def _that_show(result: Result) -> NDArray[np.intp]:
     close = np.searchsorted(time, np.linspace(time[0], time[-1], 4 * _COLUMNS))
     close = close[result.history["indentation_m"][close.clip(max=len(time) - 1)] > 0.0]
     beside = [np.searchsorted(time, touch), np.searchsorted(time, release, side="right") - 1, [len(time) - 1]]
-    return np.asarray(np.unique(np.concatenate([spread, close, *beside]).clip(0, len(time) - 1)))
+    kept = np.unique(np.concatenate([spread, close, *beside]).clip(0, len(time) - 1))
+    # one that is not would show as a hairline wherever a point happened to fall into it
+    impact = np.searchsorted(result.impacts["time_s"], time[kept], side="right") - 1
+    brief = np.append(result.impacts["duration_s"], 0.0)[impact] < 3.0 * (time[-1] - time[0]) / _COLUMNS
+    inside = result.history["contact_elastic_J"][kept] > 1e-4 * result.energy["input_J"]
+    return np.asarray(kept[~(brief & inside)])
 
 
 def _resampled(part: dict[str, Floats]) -> dict[str, Floats]:
