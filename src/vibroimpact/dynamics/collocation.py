@@ -96,11 +96,11 @@ class Rule:
         return np.asarray(legendre.legvander(2.0 * x - 1.0, len(self.nodes)) @ (self.antiderivative @ (slope * values)))
 
     def weights(self, x: Floats) -> Floats:
-        """Return the weights of the values at 0 and at the nodes for the polynomials at x (B,): (N + 1, B)."""
-        points = np.concatenate([[0.0], self.nodes])[:, None]
-        distance = x - points
+        """Return the weights of the values at 0 and at the nodes for the polynomials at x, of any shape: (N + 1, ...)."""
+        shape = (-1,) + (1,) * x.ndim
+        distance = x - np.concatenate([[0.0], self.nodes]).reshape(shape)
         distance[distance == 0.0] = 1e-300  # at a point, its weight outweighs all others
-        weights = self.barycentric[:, None] / distance
+        weights = self.barycentric.reshape(shape) / distance
         weights /= weights.sum(axis=0)
         return np.asarray(weights)
 

@@ -266,6 +266,8 @@ class _Phase:
         creep towards its static indentation and never turn; it is followed until it is there.
         """
         drops = drops[self.outcome[drops] < RELEASED]
+        if not drops.size:
+            return
         encounter, delta = self.encounter.take(drops), self.delta[drops]
         weight = encounter.mass * encounter.gravity
         energy = 0.5 * encounter.mass * self.velocity[drops] ** 2 + encounter.law.elastic_energy(delta) - weight * delta

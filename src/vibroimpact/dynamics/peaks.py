@@ -45,24 +45,27 @@ def _least_acceleration(stretch: Stretch, encounter: Encounter) -> tuple[Floats,
     """Return the least acceleration in a stretch, of each drop, and its x."""
     rule, values, grid = stretch.rule, stretch.node_acceleration, _sampled(stretch)
     index, column, spacing = grid.argmin(axis=0), np.arange(grid.shape[1]), 1.0 / (len(grid) - 1)
-    centre, finer = np.clip(index, 1, len(grid) - 2), spacing / 16.0
+    centre, finer = np.clip(index, 1, len(grid) - 2), spacing / 64.0
     at = centre * spacing + _vertex(grid[centre - 1, column], grid[centre, column], grid[centre + 1, column], spacing)
     at = np.clip(at, finer, 1.0 - finer)
-    left, middle, right = (_acceleration(stretch, encounter, at + side * finer) for side in (-1.0, 0.0, 1.0))
-    at = np.clip(at + _vertex(left, middle, right, finer), 0.0, 1.0)
+    left, middle, right = _accelerations(stretch, encounter, at + finer * np.array([[-1.0], [0.0], [1.0]]))
+    shift = _vertex(left, middle, right, finer)
+    lowest = middle + 0.25 * (right - left) * (shift / finer)  # of the parabola, whose error is the cube of its small span
 
     node = values.argmin(axis=0)  # at the start and the nodes the acceleration is exact
     start = encounter.acceleration(stretch.delta, stretch.velocity)
-    candidates = np.stack([start, values[node, column], _acceleration(stretch, encounter, at)])
+    candidates = np.stack(
+        [start, values[node, column], np.minimum(np.minimum(left, right), np.where(np.abs(shift) < finer, lowest, middle))]
+    )
     best = candidates.argmin(axis=0)
-    return candidates[best, column], np.stack([np.zeros_like(at), rule.nodes[node], at])[best, column]
+    return candidates[best, column], np.stack([np.zeros_like(at), rule.nodes[node], at + shift])[best, column]
 
 
-def _acceleration(stretch: Stretch, encounter: Encounter, x: Floats) -> Floats:
-    """Return the acceleration of each drop at its own x (B,)."""
+def _accelerations(stretch: Stretch, encounter: Encounter, x: Floats) -> Floats:
+    """Return the accelerations of each drop at its own few x (k, B)."""
     weights = stretch.rule.weights(x)
-    delta = weights[0] * stretch.delta + (weights[1:] * stretch.node_delta).sum(axis=0)
-    velocity = weights[0] * stretch.velocity + (weights[1:] * stretch.node_velocity).sum(axis=0)
+    delta = weights[0] * stretch.delta + (weights[1:] * stretch.node_delta[:, None]).sum(axis=0)
+    velocity = weights[0] * stretch.velocity + (weights[1:] * stretch.node_velocity[:, None]).sum(axis=0)
     return encounter.acceleration(np.maximum(delta, 0.0), velocity)
 
 
