@@ -324,6 +324,15 @@ def test_a_sphere_put_down_softly(slowness: float) -> None:
     assert response.impacts["restitution_achieved"][0] == pytest.approx(1.0, abs=1e-9 + 1e-12 / slowness**2)
 
 
+def test_a_marching_drop_gets_past_a_breakpoint() -> None:
+    """A crossing that a stretch of given duration ran over once was never taken, and the drop marched on the spot."""
+    law = AdamsImpact(stiffness=74887983.16821066, damping_max=6702.194915809717, full_damping_penetration=1e-4)
+    ball = vi.Body(mass=3.251292714937344, contact_offset=0.07294224995800092)
+    response = vi.simulate(problem(sphere=ball, laws=(law,), height=0.5016709192170816, impacts=5))
+    assert response.outcomes == (vi.Outcome.CAPTURED,)
+    assert sum(len(leg.contact.pieces) for leg in response.legs if leg.contact) < 60
+
+
 def test_arguments_of_the_wrong_kind_are_refused_in_words(theory: vi.Response) -> None:
     with pytest.raises(vi.InputError, match=r"vi\.load_case"):
         vi.simulate("paper:type1-theory")  # type: ignore[arg-type]

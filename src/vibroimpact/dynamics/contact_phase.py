@@ -320,14 +320,16 @@ class _Phase:
         if clear.any():
             self.pace[drops[clear]] = 2.0 * duration[clear]
             self.accept(drops[clear], stretch.take(clear), "duration", level[clear])
-        for sign, name in ((turned, "turn"), (crossed, "indentation")):
-            other = crossed if name == "turn" else turned
-            first = np.where(sign.any(axis=0), sign.argmax(axis=0), self.number)
-            sooner = first < np.where(other.any(axis=0), other.argmax(axis=0), self.number)
-            here = good & event & (sooner if name == "turn" else ~sooner & sign.any(axis=0))
+        first_turn, first_cross = (np.where(seen.any(axis=0), seen.argmax(axis=0), self.number) for seen in (turned, crossed))
+        turns = first_turn < first_cross
+        events: tuple[tuple[NDArray[np.bool_], NDArray[np.intp], Aim], ...] = (
+            (turns, first_turn, "turn"),
+            (~turns, first_cross, "indentation"),
+        )
+        for these, first, end in events:
+            here = good & event & these
             if here.any():
-                fraction = rule.time[np.minimum(first[here], self.number - 1)]
-                self.redo(drops[here], stretch.take(here), fraction, "turn" if name == "turn" else "indentation", level[here])
+                self.redo(drops[here], stretch.take(here), rule.time[first[here]], end, level[here])
 
     def refuse(self, drops: Drops, duration: Floats) -> None:
         """Shorten the next stretch of drops whose last was not good."""
