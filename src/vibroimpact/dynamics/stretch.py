@@ -84,7 +84,7 @@ class WarmStart:
     """
 
     unknowns: Floats
-    """Accelerations at the nodes and duration, (N + 1, B), in `units`."""
+    """Accelerations at the nodes in `acceleration_unit`, and the duration as a part of its scale, (N + 1, B)."""
     inverse: Floats | None = None
     """Inverse Jacobian, (N + 1, N + 1); replaced by the last one that was used."""
 
@@ -131,15 +131,12 @@ def solve_stretch(
     newton = _Newton(encounter, rule, delta, velocity, duration, aim, level)
     unknowns = start.unknowns.copy()
     solved = newton.improve_together(unknowns, start)
-    if len(delta) > 1 and not solved.all():
-        left = np.flatnonzero(~solved)
+    left = np.flatnonzero(~solved)
+    if left.size:
         alone = _Newton(encounter.take(left), rule, delta[left], velocity[left], duration[left], aim, level[left])
         own = start.unknowns[:, left]
         solved[left] = alone.improve_each(own)
         unknowns[:, left] = own
-    elif not solved.all():
-        unknowns = start.unknowns.copy()
-        solved = newton.improve_each(unknowns)
     node_delta, node_velocity = newton.motion(unknowns)
     accelerations = unknowns[:-1] * newton.acceleration_unit
     _, dissipative = encounter.law.forces(np.maximum(node_delta, 0.0), node_velocity, encounter.approach_speed)
