@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from vibroimpact.dynamics.collocation import Floats
+from vibroimpact.contact.phase.collocation import Floats
 from vibroimpact.dynamics.columns import LEDGER
 
 CLOSURE_LIMIT = 1e-6

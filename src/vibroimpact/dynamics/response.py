@@ -12,15 +12,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from vibroimpact.dynamics.collocation import Floats
+from vibroimpact.contact.phase.collocation import Floats
+from vibroimpact.contact.phase.contact import Contact
+from vibroimpact.contact.phase.encounter import Encounter
+from vibroimpact.contact.phase.stretch import Stretch
 from vibroimpact.dynamics.columns import HISTORY_COLUMNS
-from vibroimpact.dynamics.contact import Contact
-from vibroimpact.dynamics.encounter import Encounter
 from vibroimpact.dynamics.energy import CLOSURE_LIMIT
 from vibroimpact.dynamics.flight import Flight
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.segments import FlightSegment, GlideSegment, RestSegment, Segment, StretchSegment
-from vibroimpact.dynamics.stretch import Stretch
 from vibroimpact.errors import InputError
 
 

@@ -8,16 +8,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vibroimpact.contact.law import CompliantLaw, ContactLaw, InstantaneousLaw
+from vibroimpact.contact.phase.collocation import Floats
+from vibroimpact.contact.phase.contact import CAPTURED, FAILED, Drops
+from vibroimpact.contact.phase.contact_phase import contact_phase
+from vibroimpact.contact.phase.encounter import Encounter, encounter_of
+from vibroimpact.contact.phase.peaks import force_peak
+from vibroimpact.contact.phase.warm_starts import WarmStarts
 from vibroimpact.contact.static import static_indentation
-from vibroimpact.dynamics.collocation import Floats
 from vibroimpact.dynamics.columns import IMPACT_COLUMNS
-from vibroimpact.dynamics.contact import CAPTURED, FAILED, Drops
-from vibroimpact.dynamics.contact_phase import contact_phase
-from vibroimpact.dynamics.encounter import Encounter, encounter_of
 from vibroimpact.dynamics.energy import CLOSURE_LIMIT, close_ledger
 from vibroimpact.dynamics.flight import Flight
-from vibroimpact.dynamics.memory import Memory
-from vibroimpact.dynamics.peaks import force_peak
 from vibroimpact.dynamics.problem import MOST_IMPACTS, Problem, StatesProblem
 from vibroimpact.dynamics.response import Leg, Outcome, Response, Rest
 from vibroimpact.errors import ComputationError, InputError
@@ -91,7 +91,7 @@ class _Run:
         self.end_time, self.rest_time = np.full(self.size, np.nan), np.full(self.size, np.nan)
         self.sag, self.stored, self.written_off = np.zeros(self.size), np.zeros(self.size), np.zeros(self.size)
         self.rest_speed = self.default_rest_speed() if problem.rest_speed is None else self.spread(problem.rest_speed)
-        self.memory = Memory(self.size)
+        self.warm_starts = WarmStarts(self.size)
         self.legs: list[Leg] = []
         self.rows: list[dict[str, Floats]] = []
 
@@ -173,7 +173,7 @@ class _Run:
     def deform(self, leg: Leg, encounter: Encounter, touch: Floats, row: dict[str, Floats]) -> tuple[Leg, Floats]:
         """Integrate a contact; return the leg with it, and the energy lost [J]."""
         drops = leg.contact_drops
-        contact = contact_phase(encounter, self.problem.tolerance, self.memory, drops)
+        contact = contact_phase(encounter, self.problem.tolerance, self.warm_starts, drops)
         force, when = force_peak(contact, encounter)
         self.deepest[drops] = np.maximum(self.deepest[drops], contact.max_delta)
         self.time[drops] = touch + contact.duration

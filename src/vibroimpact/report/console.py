@@ -17,8 +17,8 @@ from vibroimpact.cases.build import contact_pair, impacts_of, resolved
 from vibroimpact.cases.doubts import doubts
 from vibroimpact.cases.schema import Case
 from vibroimpact.contact.law import CompliantLaw, contact_laws
+from vibroimpact.contact.phase.encounter import encounter_of
 from vibroimpact.dynamics.columns import LEDGER
-from vibroimpact.dynamics.encounter import encounter_of
 from vibroimpact.materials import RIGID, Material, find_material, material_library
 from vibroimpact.storage.result import Result
 

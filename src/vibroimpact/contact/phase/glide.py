@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from vibroimpact.dynamics.collocation import Floats
-from vibroimpact.dynamics.encounter import Encounter
+from vibroimpact.contact.phase.collocation import Floats
+from vibroimpact.contact.phase.encounter import Encounter
 
 _SAMPLES = 33
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from vibroimpact.dynamics.collocation import Floats
-from vibroimpact.dynamics.contact import Contact
-from vibroimpact.dynamics.encounter import Encounter
-from vibroimpact.dynamics.stretch import Stretch
+from vibroimpact.contact.phase.collocation import Floats
+from vibroimpact.contact.phase.contact import Contact
+from vibroimpact.contact.phase.encounter import Encounter
+from vibroimpact.contact.phase.stretch import Stretch
 
 
 def force_peak(contact: Contact, encounter: Encounter) -> tuple[Floats, Floats]:

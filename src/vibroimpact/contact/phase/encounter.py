@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vibroimpact.contact.law import CompliantLaw
-from vibroimpact.dynamics.collocation import Floats
+from vibroimpact.contact.phase.collocation import Floats
 
 
 @dataclass(frozen=True)

@@ -13,18 +13,18 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from vibroimpact.contact.phase.collocation import Floats, Map, Rule, collocation_rule
+from vibroimpact.contact.phase.contact import CAPTURED, COMPRESSION, FAILED, GLIDE, RELEASED, RESTITUTION, Contact, Drops, Piece
+from vibroimpact.contact.phase.encounter import Encounter
+from vibroimpact.contact.phase.glide import glide_until_push
+from vibroimpact.contact.phase.stretch import Aim, Stretch, WarmStart, acceleration_unit, solve_stretch
+from vibroimpact.contact.phase.warm_starts import WarmStarts
 from vibroimpact.contact.static import static_indentation
-from vibroimpact.dynamics.collocation import Floats, Map, Rule, collocation_rule
-from vibroimpact.dynamics.contact import CAPTURED, COMPRESSION, FAILED, GLIDE, RELEASED, RESTITUTION, Contact, Drops, Piece
-from vibroimpact.dynamics.encounter import Encounter
-from vibroimpact.dynamics.glide import glide_until_push
-from vibroimpact.dynamics.memory import Memory
-from vibroimpact.dynamics.stretch import Aim, Stretch, WarmStart, acceleration_unit, solve_stretch
 
 _MOST_STRETCHES = 2000  # the stiffest sensible contacts need about a hundred
 
 
-def contact_phase(encounter: Encounter, tolerance: float, memory: Memory, ids: Drops) -> Contact:
+def contact_phase(encounter: Encounter, tolerance: float, warm_starts: WarmStarts, ids: Drops) -> Contact:
     """Integrate the contact of B drops from first touch to release.
 
     Parameters
@@ -33,13 +33,13 @@ def contact_phase(encounter: Encounter, tolerance: float, memory: Memory, ids: D
         The impact: law, mass, gravity, approach speed.
     tolerance : float
         Relative error allowed in the state at the end of each stretch.
-    memory : Memory
+    warm_starts : WarmStarts
         The solutions of the run's earlier impacts; gets this one's.
     ids : array of int, shape (B,)
         Which drops of the run these are.
     """
     with np.errstate(all="ignore"):  # guesses may be wild; what is not finite is found and tried again
-        return _Phase(encounter, tolerance, memory, ids).run()
+        return _Phase(encounter, tolerance, warm_starts, ids).run()
 
 
 def nodes_for(tolerance: float) -> int:
@@ -50,9 +50,9 @@ def nodes_for(tolerance: float) -> int:
 class _Phase:
     """The state of all drops in one contact phase, and the rules that move it on."""
 
-    def __init__(self, encounter: Encounter, tolerance: float, memory: Memory, ids: Drops) -> None:
+    def __init__(self, encounter: Encounter, tolerance: float, warm_starts: WarmStarts, ids: Drops) -> None:
         size = len(encounter.mass)
-        self.memory, self.ids = memory, ids
+        self.warm_starts, self.ids = warm_starts, ids
         self.encounter, self.law = encounter, encounter.law
         self.number, self.tolerance = nodes_for(tolerance), tolerance
         self.least_energy = 0.5 * encounter.mass * (tolerance * encounter.speed_scale) ** 2
@@ -121,7 +121,9 @@ class _Phase:
             self.step(drops[marching], "touch" if time_map == "touch" else "inside", aim, level[marching])
             drops, level = drops[~marching], level[~marching]
         early = (
-            self.memory.knows(("inside", "force"), self.ids[drops]) & (self.outcome[drops] == RESTITUTION) & (self.velocity[drops] == 0.0)
+            self.warm_starts.knows(("inside", "force"), self.ids[drops])
+            & (self.outcome[drops] == RESTITUTION)
+            & (self.velocity[drops] == 0.0)
         )
         if early.any():  # the last impact stopped pushing at this stage: look for that first
             stretch = self.aimed(drops[early], "inside", "force", level[early])
@@ -137,15 +139,15 @@ class _Phase:
         """Solve a stretch to its end, from the last impact's solution or a sinusoidal guess."""
         encounter, kind, ids = self.encounter.take(drops), (time_map, aim), self.ids[drops]
         duration = self.time_scale(drops, aim, level)
-        known = self.memory.knows(kind, ids)
+        known = self.warm_starts.knows(kind, ids)
         if known.all():
-            start = WarmStart(self.memory.starts[kind].unknowns[:, ids], self.memory.starts[kind].inverse)
+            start = WarmStart(self.warm_starts.starts[kind].unknowns[:, ids], self.warm_starts.starts[kind].inverse)
         else:
             unit = acceleration_unit(encounter, self.velocity[drops], duration)
             guess = self.first_guess(drops, self.rule(time_map), aim, level) / unit
             start = WarmStart(np.concatenate([guess, np.ones((1, len(drops)))]))
             if known.any():
-                start.unknowns[:, known] = self.memory.starts[kind].unknowns[:, ids[known]]
+                start.unknowns[:, known] = self.warm_starts.starts[kind].unknowns[:, ids[known]]
         stretch = self.solve(drops, time_map, duration, start, aim, level)
         self.remember(drops, stretch, aim, duration, start)
         return stretch
@@ -156,7 +158,7 @@ class _Phase:
         unknowns = np.concatenate([accelerations, (stretch.duration / scale)[None]])
         solved = stretch.solved
         if solved.any():
-            self.memory.keep((stretch.rule.time_map, aim), self.ids[drops[solved]], unknowns[:, solved], start.inverse)
+            self.warm_starts.keep((stretch.rule.time_map, aim), self.ids[drops[solved]], unknowns[:, solved], start.inverse)
 
     def solve(self, drops: Drops, time_map: Map, duration: Floats, start: WarmStart, aim: Aim, level: Floats) -> Stretch:
         rule = self.rule(time_map)

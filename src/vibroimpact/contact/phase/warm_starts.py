@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from vibroimpact.dynamics.collocation import Floats, Map
-from vibroimpact.dynamics.contact import Drops
-from vibroimpact.dynamics.stretch import Aim, WarmStart
+from vibroimpact.contact.phase.collocation import Floats, Map
+from vibroimpact.contact.phase.contact import Drops
+from vibroimpact.contact.phase.stretch import Aim, WarmStart
 
 
-class Memory:
+class WarmStarts:
     """The dimensionless solutions of a run's last stretches, one a kind and drop, to start the next from."""
 
     def __init__(self, size: int) -> None:
