@@ -12,22 +12,21 @@ import vibroimpact as vi
 from support import plain_case
 from vibroimpact.cases.build import resolved
 from vibroimpact.contact.law import CompliantLaw, ContactLaw, contact_laws
+from vibroimpact.contact.restitution import integrated_restitution
 from vibroimpact.contact.static import static_indentation
 from vibroimpact.dynamics.columns import LEDGER
 
 LAWS = list(contact_laws().values())
 COMPLIANT = [law for law in LAWS if issubclass(law, CompliantLaw)]
-# what a case must give for laws whose parameters have no default
-GIVEN = {"restitution": 0.7, "damping_max": 150.0, "stiffness": 2e6}
+MASSES, SPEEDS = np.array([[0.01], [0.09], [2.0]]), np.array([0.03, 0.4, 3.0, 20.0])
 
 
 def parameters(law: type[ContactLaw]) -> dict[str, float]:
-    needed = {item.name for item in dataclasses.fields(law) if item.default is dataclasses.MISSING and not item.metadata["from_pair"]}
-    if law.name == "linear-spring-dashpot":
-        needed |= {"restitution"}  # it has a choice of two
-    missing = needed - GIVEN.keys()
-    assert not missing, f"say in GIVEN what a test may give {law.name} for {missing}"
-    return {key: GIVEN[key] for key in needed}
+    examples = {item.name: item.metadata["example"] for item in dataclasses.fields(law)}
+    for item in dataclasses.fields(law):
+        known = item.default is not dataclasses.MISSING or item.metadata["from_pair"] or examples[item.name] is not None
+        assert known, f"{law.name}: {item.name} needs an example"
+    return {key: value for key, value in examples.items() if value is not None}
 
 
 def case_of(law: type[ContactLaw], **more: object) -> vi.Case:
@@ -40,35 +39,95 @@ def made(law: type[ContactLaw]) -> ContactLaw:
 
 @pytest.mark.parametrize("law", COMPLIANT, ids=lambda law: law.name)
 def test_no_force_without_indentation(law: type[CompliantLaw]) -> None:
-    elastic, dissipative = made(law).forces(np.zeros(3), np.zeros(3), np.ones(3))
-    assert not elastic.any()
+    static, dissipative = made(law).forces(np.zeros(3), np.zeros(3), np.ones(3))
     assert not dissipative.any()
-    assert not np.asarray(made(law).elastic_energy(np.zeros(3))).any()
+    assert abs(float(np.max(made(law).elastic_energy(np.zeros(1))))) <= 1e-15 * float(np.max(made(law).elastic_energy(np.full(1, 1e-4))))
+    if law.contact_end == "pull-off":  # the named exception: it snaps together
+        assert np.all(static < 0.0)
+    else:
+        assert not static.any()
 
 
 @pytest.mark.parametrize("law", COMPLIANT, ids=lambda law: law.name)
-def test_elastic_force_is_the_slope_of_the_elastic_energy(law: type[CompliantLaw]) -> None:
-    delta, step = np.geomspace(1e-6, 1e-3, 7), 1e-4
-    energy = made(law).elastic_energy
-    slope = (energy(delta * (1 + step)) - energy(delta * (1 - step))) / (2 * step * delta)
-    elastic, _ = made(law).forces(delta, np.ones(7), np.ones(7))
-    np.testing.assert_allclose(elastic, slope, rtol=1e-6)
+def test_no_force_where_the_surfaces_part(law: type[CompliantLaw]) -> None:
+    dented = made(law).after_compression(np.array([1e-4]))
+    for level in (dented.touch_level, dented.release_level):
+        static, _ = dented.forces(level + np.zeros(1), np.zeros(1), np.ones(1))
+        assert np.all(static <= 1e-9 * np.abs(dented.forces(np.array([1e-4]), np.zeros(1), np.ones(1))[0]))
+    assert np.all(dented.release_level <= dented.touch_level)
+    assert np.all(dented.touch_level < 1e-4)
+
+
+@pytest.mark.parametrize("law", COMPLIANT, ids=lambda law: law.name)
+@pytest.mark.parametrize("dent", [0.0, 2e-4])
+def test_static_force_is_the_slope_of_elastic_energy_and_plastic_work(law: type[CompliantLaw], dent: float) -> None:
+    one = made(law).after_compression(np.full(7, dent))
+    delta, step = one.touch_level + np.geomspace(1e-6, 1e-3, 7), 1e-5
+
+    def work(at: np.ndarray) -> np.ndarray:
+        return one.elastic_energy(at) + one.plastic_work(at)
+
+    span = step * (delta - one.touch_level)
+    slope = (work(delta + span) - work(delta - span)) / (2 * span)
+    static, _ = one.forces(delta, np.ones(7), np.ones(7))
+    np.testing.assert_allclose(static, slope, rtol=2e-6, atol=1e-6 * np.abs(static).max())
 
 
 @pytest.mark.parametrize("law", COMPLIANT, ids=lambda law: law.name)
 def test_damping_takes_and_never_gives(law: type[CompliantLaw]) -> None:
-    delta, rate = np.meshgrid(np.geomspace(1e-7, 1e-3, 9), np.linspace(-3.0, 3.0, 9))
-    _, dissipative = made(law).forces(delta, rate, np.full(delta.shape, 3.0))
-    assert np.all(dissipative * rate >= 0.0)
+    delta, rate = np.meshgrid(np.geomspace(1e-7, 1e-3, 9), np.linspace(0.0, 3.0, 9))
+    for one, sign in ((made(law), 1.0), (made(law).after_compression(np.full(9, 1e-3)), -1.0)):
+        _, dissipative = one.forces(delta, sign * rate, np.full(delta.shape, 3.0))
+        assert np.all(dissipative * sign * rate >= 0.0)
+
+
+@pytest.mark.parametrize("law", COMPLIANT, ids=lambda law: law.name)
+def test_memory_only_grows_and_takes(law: type[CompliantLaw]) -> None:
+    one = made(law)
+    if not one.memories():
+        assert one.after_compression(np.array([1e-4])) is one
+        return
+    deepest = np.array([0.0, 5e-5, 1e-4, 2e-4])
+    dented = one.after_compression(deepest)
+    again = dented.after_compression(0.5 * deepest)
+    np.testing.assert_array_equal(again.elastic_energy(deepest), dented.elastic_energy(deepest))
+    np.testing.assert_array_equal(dented.take(np.array([0])).forces(deepest, 0.0, 1.0)[0], one.forces(deepest, 0.0, 1.0)[0])
+    assert np.all(np.diff(dented.touch_level + np.zeros(4)) >= 0.0)
+    assert not np.asarray(dented.plastic_work(deepest)).any()
+    np.testing.assert_allclose(dented.elastic_energy(deepest), one.elastic_energy(deepest), rtol=1e-12)
+    assert np.all(one.plastic_work(deepest) >= 0.0)
+
+
+@pytest.mark.parametrize("law", LAWS, ids=lambda law: law.name)
+def test_closed_form_agrees_with_integration(law: type[ContactLaw]) -> None:
+    one = made(law)
+    closed, integrated = one.closed_form_restitution(MASSES, SPEEDS), integrated_restitution(one, MASSES, SPEEDS)
+    assert integrated.shape == (3, 4)
+    assert np.all((integrated >= 0.0) & (integrated <= 1.0 + 1e-9))
+    assert np.all((integrated > 0.0) | (getattr(law, "contact_end", "") == "pull-off"))  # the named exception: it may stick
+    if closed is not None:
+        np.testing.assert_allclose(closed, integrated, rtol=0, atol=1e-8)
+
+
+@pytest.mark.parametrize("law", LAWS, ids=lambda law: law.name)
+def test_achieving_is_the_inverse(law: type[ContactLaw]) -> None:
+    one = made(law)
+    if one.free_parameter is None:
+        with pytest.raises(vi.InputError, match="no parameter that sets its loss"):
+            one.achieving(0.5, mass=0.09, speed=3.0)
+        return
+    found = one.achieving(np.array([0.75, 0.9]), mass=0.09, speed=3.0)
+    np.testing.assert_allclose(integrated_restitution(found, 0.09, 3.0), [0.75, 0.9], rtol=0, atol=1e-9)
 
 
 @pytest.mark.parametrize("law", COMPLIANT, ids=lambda law: law.name)
 def test_array_equals_scalar(law: type[CompliantLaw]) -> None:
     delta, rate, speed = np.geomspace(1e-6, 1e-3, 5), np.linspace(-2.0, 2.0, 5), np.linspace(1.0, 3.0, 5)
-    together = made(law).forces(delta, rate, speed)
-    for index in range(5):
-        alone = made(law).forces(float(delta[index]), float(rate[index]), float(speed[index]))
-        np.testing.assert_allclose([part[index] for part in together], alone, rtol=1e-14)
+    for one in (made(law), made(law).after_compression(3e-4)):
+        together = one.forces(delta, rate, speed)
+        for index in range(5):
+            alone = one.forces(float(delta[index]), float(rate[index]), float(speed[index]))
+            np.testing.assert_allclose([part[index] for part in together], alone, rtol=1e-14)
 
 
 @pytest.mark.parametrize("law", COMPLIANT, ids=lambda law: law.name)

@@ -23,7 +23,15 @@ def contact_pair(case: Case) -> ContactPair:
     """Return the facts of the touching pair of a case: effective modulus, radius and mass."""
     modulus = effective_modulus(case.sphere.material, case.plate.material)
     mass = rigid_sphere(case.sphere.radius, case.sphere.material).mass
-    return ContactPair(effective_modulus=modulus, effective_radius=case.sphere.radius, effective_mass=mass)
+    yielding = [material for material in (case.sphere.material, case.plate.material) if material.yield_strength]
+    weaker = min(yielding, key=lambda material: material.yield_strength or 0.0, default=None)
+    return ContactPair(
+        effective_modulus=modulus,
+        effective_radius=case.sphere.radius,
+        effective_mass=mass,
+        yield_strength=weaker.yield_strength if weaker else None,
+        poissons_ratio=weaker.poissons_ratio if weaker else None,
+    )
 
 
 def contact_laws_of(case: Case) -> tuple[ContactLaw, ...]:
@@ -70,6 +78,7 @@ def problem_of(case: Case) -> Problem:
         impacts=impacts_of(case),
         duration=case.run.duration,
         rest_speed=case.run.rest_speed,
+        same_spot=case.drop.same_spot,
         tolerance=case.run.tolerance,
         source=resolved(case),
     )

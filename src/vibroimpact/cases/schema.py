@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, WithJsonSchema, model_validator
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, StrictBool, WithJsonSchema, model_validator
 
 from vibroimpact.cases.build import problem_of
 from vibroimpact.cases.contact_section import ContactSection, contact_schema, read_contact
@@ -87,6 +87,9 @@ class DropSection(_Section):
         (0.0, 0.0), description="on the plate, from its centre [m]"
     )
     gravity: Annotated[float, Quantity("m/s^2", "acceleration of gravity", Range(at_least=0))] = STANDARD_GRAVITY
+    same_spot: StrictBool = Field(
+        True, description="does each impact fall where the last one did, into the dent that a law may leave, or on fresh surfaces?"
+    )
 
     @model_validator(mode="after")
     def _one_of_two(self) -> DropSection:

@@ -5,6 +5,7 @@ all the registration it needs. It declares
 
 * `name`, `equation` and `source`, which the command line and the documentation print;
 * its parameters, each with `parameter(...)`: unit, meaning, range, where a default comes from;
+* if its force depends on what the contact has been through, that state, each with `memory(...)`;
 * and, if it is a `CompliantLaw`, how its contact ends and whether it may pull.
 """
 
@@ -16,7 +17,8 @@ import pkgutil
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from functools import cache
-from typing import Any, ClassVar, Literal, Self
+from importlib.metadata import EntryPoint, entry_points
+from typing import Any, ClassVar, Literal, Self, cast
 
 import numpy as np
 
@@ -25,7 +27,15 @@ from vibroimpact.errors import InputError, did_you_mean
 from vibroimpact.ranges import Range
 
 
-def parameter(meaning: str, unit: str = "", *, from_pair: str | None = None, default: Any = dataclasses.MISSING, **bounds: float) -> Any:
+def parameter(
+    meaning: str,
+    unit: str = "",
+    *,
+    from_pair: str | None = None,
+    default: Any = dataclasses.MISSING,
+    example: float | None = None,
+    **bounds: float,
+) -> Any:
     """Declare a parameter of a law.
 
     Parameters
@@ -38,10 +48,19 @@ def parameter(meaning: str, unit: str = "", *, from_pair: str | None = None, def
         The attribute of `ContactPair` that serves where a case leaves the parameter out.
     default : optional
         The value where it is left out.
+    example : float, optional
+        A typical value, for figures and tests, of a parameter that has neither.
     **bounds : float
         The range, as `Range` takes it.
     """
-    return dataclasses.field(default=default, metadata={"meaning": meaning, "unit": unit, "range": Range(**bounds), "from_pair": from_pair})
+    metadata = {"meaning": meaning, "unit": unit, "range": Range(**bounds), "from_pair": from_pair, "example": example, "memory": False}
+    return dataclasses.field(default=default, metadata=metadata)
+
+
+def memory(meaning: str, unit: str = "") -> Any:
+    """Declare a state that a law carries through a contact, zero of a fresh one; takes what `parameter` takes."""
+    metadata = {"meaning": meaning, "unit": unit, "range": Range(at_least=0), "from_pair": None, "example": None, "memory": True}
+    return dataclasses.field(default=0.0, metadata=metadata)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -67,6 +86,57 @@ class ContactLaw:
                 raise InputError(error.message, item.name) from None
 
     @classmethod
+    def example(cls, pair: ContactPair) -> Self:
+        """Return the law of a pair with typical values of what the pair does not tell, for figures and tests."""
+        typical = {item.name: item.metadata["example"] for item in fields(cls) if item.metadata["example"] is not None}
+        return cls.for_pair(pair, **typical)
+
+    @property
+    def free_parameter(self) -> str | None:
+        """The parameter that sets how much is lost, which `achieving` may change; None if there is none."""
+        return "restitution" if getattr(self, "restitution", None) is not None else None
+
+    def closed_form_restitution(self, mass: Array, speed: Array) -> Array | None:
+        """Return the restitution achieved without gravity, if there is a closed form; else None.
+
+        Parameters
+        ----------
+        mass : float or array
+            Effective mass of the pair [kg].
+        speed : float or array
+            Approach speed [m/s].
+        """
+        return None
+
+    def achieving(self, restitution: Array, mass: Array, speed: Array) -> Self:
+        """Return this law with its free parameter such that it achieves a restitution.
+
+        Parameters
+        ----------
+        restitution : float or array
+            Restitution to achieve, without gravity [-].
+        mass : float or array
+            Effective mass of the pair [kg].
+        speed : float or array
+            Approach speed [m/s].
+
+        Raises
+        ------
+        InputError
+            If no value of the parameter achieves it; the message names the range that can be reached.
+
+        Examples
+        --------
+        >>> from vibroimpact.contact.laws.flores import Flores
+        >>> law = Flores(stiffness=5e8, restitution=0.7).achieving(restitution=0.7, mass=0.09, speed=3.0)
+        >>> round(law.restitution, 6)
+        0.715939
+        """
+        from vibroimpact.contact.restitution import law_achieving  # which needs this module
+
+        return law_achieving(self, restitution, mass, speed)
+
+    @classmethod
     def for_pair(cls, pair: ContactPair, **parameters: Any) -> Self:
         """Make the law for two bodies: what is not given is taken from the pair where it can be.
 
@@ -83,16 +153,24 @@ class ContactLaw:
         for key, item in known.items():
             if key not in given and item.metadata["from_pair"]:
                 given[key] = getattr(pair, item.metadata["from_pair"])
+                if given[key] is None:
+                    raise InputError(
+                        f"{cls.name} needs {_described(item)}, and no yield_strength is known of the materials to take it from; "
+                        f"give it here, or give one of the materials a yield_strength",
+                        key,
+                    )
                 if np.any(np.isinf(given[key])):
                     raise InputError("it must be given, since two rigid materials have no contact stiffness of their own", key)
             if key not in given and item.default is dataclasses.MISSING:
-                unit = f" [{item.metadata['unit']}]" if item.metadata["unit"] else ""
-                raise InputError(f"this key is missing; {cls.name} needs {item.metadata['meaning']}{unit}", key)
+                raise InputError(f"this key is missing; {cls.name} needs {_described(item)}", key)
         return cls(**given)
 
     def take(self, drops: Any) -> Self:
         """Return the law of some drops of a batch: parameters that are arrays are indexed."""
-        changes = {item.name: value[drops] for item in fields(self) if np.ndim(value := getattr(self, item.name))}
+        return self.changed({item.name: value[drops] for item in fields(self) if np.ndim(value := getattr(self, item.name))})
+
+    def changed(self, changes: Mapping[str, Any]) -> Self:
+        """Return the law with other values, which are known to be in range and are not checked."""
         if not changes:
             return self
         copy = object.__new__(type(self))
@@ -100,22 +178,43 @@ class ContactLaw:
             object.__setattr__(copy, item.name, changes.get(item.name, getattr(self, item.name)))
         return copy
 
+    def memories(self) -> dict[str, Array]:
+        """Return the state that the law carries, by name."""
+        return {item.name: getattr(self, item.name) for item in fields(self) if item.metadata["memory"]}
+
 
 @dataclass(frozen=True, kw_only=True)
 class CompliantLaw(ContactLaw):
-    """A law with a force: elastic and dissipative part apart, so that the ledger is free.
+    """A law with a force: static and dissipative part apart, so that the ledger is free.
 
     Signs: indentation `delta` >= 0 in contact, `delta_dot` > 0 on approach, a positive force pushes the
     bodies apart. All arguments broadcast; the last axis is the drop.
+
+    A law whose static force depends on how deep the contact has been declares that depth with `memory`
+    and returns itself with it from `after_compression`; its `forces` then follow the unloading path below
+    that depth and the loading path beyond it.
     """
 
-    contact_end: ClassVar[Literal["zero-indentation", "zero-force"]]
-    """Where the contact is over: when the bodies no longer overlap, or when they no longer push."""
+    contact_end: ClassVar[Literal["zero-indentation", "zero-force", "pull-off"]]
+    """When the contact is over: when the bodies no longer overlap, no longer push, or have been torn apart."""
     tension: ClassVar[Literal["none", "cut", "kept"]]
     """Does the formula pull near the end? It never does; it does and is clipped at zero; it does and may."""
 
     root: ClassVar[int] = 2
     """The force is smooth in this root of the indentation: 2 for powers such as 3/2, 4 where there is a power 1/4."""
+
+    lasting: ClassVar[bool] = False
+    """Does the memory outlast the contact, as a dent does, when the next impact falls on the same spot?"""
+
+    @property
+    def touch_level(self) -> Array:
+        """Indentation [m] at which the surfaces meet: zero, or the depth of the dent."""
+        return 0.0
+
+    @property
+    def release_level(self) -> Array:
+        """Indentation [m] at which they part again; below zero if they stick and are drawn out."""
+        return self.touch_level
 
     @property
     def breakpoints(self) -> tuple[Array, ...]:
@@ -123,7 +222,7 @@ class CompliantLaw(ContactLaw):
         return ()
 
     def forces(self, delta: Array, delta_dot: Array, approach_speed: Array) -> tuple[Array, Array]:
-        """Return the elastic and the dissipative part of the force [N], before any clip at zero.
+        """Return the static and the dissipative part of the force [N], before any clip at zero.
 
         Parameters
         ----------
@@ -135,17 +234,40 @@ class CompliantLaw(ContactLaw):
         raise NotImplementedError
 
     def elastic_energy(self, delta: Array) -> Array:
-        """Return the energy stored at the indentation `delta` [J], the integral of the elastic force."""
+        """Return the energy stored at the indentation `delta` [J], all of which can be got back.
+
+        With the plastic work it is the integral of the static force from `touch_level`.
+        """
         raise NotImplementedError
+
+    def plastic_work(self, delta: Array) -> Array:
+        """Return the work spent on plastic deformation, from the state remembered to the indentation `delta` [J]."""
+        return np.zeros_like(delta)
+
+    def after_compression(self, deepest: Array) -> Self:
+        """Return the law as it is once the contact has been as deep as `deepest` [m]."""
+        return self
 
 
 @dataclass(frozen=True, kw_only=True)
 class InstantaneousLaw(ContactLaw):
     """A law without a duration: it gives the speed after the impact from the speed before."""
 
-    def separation_speed(self, approach_speed: Array) -> Array:
-        """Return the speed at which the bodies part [m/s]."""
+    def separation_speed(self, approach_speed: Array, mass: Array) -> Array:
+        """Return the speed at which the bodies part [m/s].
+
+        Parameters
+        ----------
+        approach_speed : float or array
+            Speed at the touch [m/s].
+        mass : float or array
+            Effective mass of the pair [kg].
+        """
         raise NotImplementedError
+
+    def closed_form_restitution(self, mass: Array, speed: Array) -> Array:
+        """Return the separation speed over the approach speed."""
+        return self.separation_speed(speed, mass) / speed + 0.0 * mass
 
 
 def loses_nothing(law: ContactLaw) -> bool:
@@ -157,20 +279,24 @@ def loses_nothing(law: ContactLaw) -> bool:
     True
     """
     if isinstance(law, InstantaneousLaw):
-        return bool(np.all(law.separation_speed(1.0) >= 1.0))
+        return bool(np.all(law.separation_speed(1.0, 1.0) >= 1.0))
     assert isinstance(law, CompliantLaw)
-    _, dissipative = law.forces(np.geomspace(1e-9, 1e-1, 9)[:, None], np.ones((9, 1)), np.ones((9, 1)))
-    return not np.any(dissipative)
+    deltas = np.geomspace(1e-9, 1e-1, 9)[:, None]
+    _, dissipative = law.forces(deltas, np.ones((9, 1)), np.ones((9, 1)))
+    return not (np.any(dissipative) or np.any(law.plastic_work(deltas)) or np.any(law.elastic_energy(law.release_level)))
 
 
 @cache
 def contact_laws() -> Mapping[str, type[ContactLaw]]:
     """Return every contact law by its name.
 
+    Those of this package, and those of any installed package that names its laws under the entry point
+    "vibroimpact.contact_laws".
+
     Raises
     ------
     InputError
-        If two laws have the same name.
+        If two laws have the same name, or an entry point does not lead to a law.
 
     Examples
     --------
@@ -178,15 +304,37 @@ def contact_laws() -> Mapping[str, type[ContactLaw]]:
     True
     """
     package = importlib.import_module("vibroimpact.contact.laws")
+    modules = [
+        importlib.import_module(f"{package.__name__}.{info.name}")
+        for info in sorted(pkgutil.iter_modules(package.__path__), key=lambda info: info.name)
+    ]
+    laws = [law for module in modules for law in vars(module).values() if _is_law(law) and law.__module__ == module.__name__]
     found: dict[str, type[ContactLaw]] = {}
-    for info in sorted(pkgutil.iter_modules(package.__path__), key=lambda info: info.name):
-        module = importlib.import_module(f"{package.__name__}.{info.name}")
-        for law in vars(module).values():
-            if isinstance(law, type) and issubclass(law, ContactLaw) and law.__module__ == module.__name__:
-                if law.name in found:
-                    raise InputError(f'two contact laws are called "{law.name}": {found[law.name].__module__} and {law.__module__}')
-                found[law.name] = law
+    for law in laws + [_brought(point) for point in entry_points(group="vibroimpact.contact_laws")]:
+        if law.name in found:
+            raise InputError(f'two contact laws are called "{law.name}": {found[law.name].__module__} and {law.__module__}')
+        found[law.name] = law
     return found
+
+
+def _is_law(candidate: object) -> bool:
+    return isinstance(candidate, type) and issubclass(candidate, ContactLaw)
+
+
+def _brought(point: EntryPoint) -> type[ContactLaw]:
+    """Return the law that an installed package brings."""
+    try:
+        law = point.load()
+    except Exception as error:  # whatever a foreign package does, say whose fault it is
+        raise InputError(f'the contact law "{point.name}" of the entry point {point.value} can\'t be loaded: {error}') from error
+    if not _is_law(law) or not hasattr(law, "name"):
+        raise InputError(f'the entry point "{point.name}", {point.value}, is not a contact law with a name')
+    return cast("type[ContactLaw]", law)
+
+
+def _described(item: dataclasses.Field[Any]) -> str:
+    """Return a parameter's meaning and unit."""
+    return f"{item.metadata['meaning']} [{item.metadata['unit']}]" if item.metadata["unit"] else str(item.metadata["meaning"])
 
 
 def find_contact_law(name: str) -> type[ContactLaw]:

@@ -70,13 +70,22 @@ class ContactPair:
         :math:`R` [m].
     effective_mass : float or array
         :math:`m_1 m_2 / (m_1 + m_2)` [kg]; the sphere's mass if the plate is held.
+    yield_strength, poissons_ratio : float or array, optional
+        Of the material that yields first [Pa], [-].
     """
 
     effective_modulus: Array
     effective_radius: Array
     effective_mass: Array
+    yield_strength: Array | None = None
+    poissons_ratio: Array | None = None
 
     @property
     def hertz_stiffness(self) -> Array:
         """Hertz's stiffness of the pair [N/m^1.5]."""
         return hertz_stiffness(self.effective_modulus, self.effective_radius)
+
+    @property
+    def yield_pressure(self) -> Array | None:
+        """Largest contact pressure before yield [Pa]: 1.6 times the yield strength (Johnson 1985, eq. 6.9)."""
+        return None if self.yield_strength is None else 1.6 * self.yield_strength

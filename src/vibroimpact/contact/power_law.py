@@ -26,6 +26,21 @@ class PowerLaw(CompliantLaw):
         return self.elastic_force(delta) * delta / (self.exponent + 1.0)
 
 
+@dataclass(frozen=True, kw_only=True)
+class SphereLaw(CompliantLaw):
+    r"""Base of the laws that hold for a sphere alone: their elastic force is :math:`K \delta^{3/2}`."""
+
+    stiffness: Array = parameter("contact stiffness K", "N/m^1.5", above=0, from_pair="hertz_stiffness")
+
+    def elastic_force(self, delta: Array) -> Array:
+        r"""Return :math:`K \delta^{3/2}` [N]."""
+        return self.stiffness * power(delta, 1.5)
+
+    def elastic_energy(self, delta: Array) -> Array:
+        r"""Return :math:`\tfrac25 K \delta^{5/2}` [J]."""
+        return 0.4 * delta * self.elastic_force(delta)
+
+
 def power(delta: Array, exponent: Array) -> Array:
     """Return delta^exponent for delta >= 0; Hertz's 3/2 by a square root, which is many times faster.
 

@@ -14,6 +14,7 @@ IMPACT_COLUMNS: dict[str, tuple[str, str]] = {
     "max_acceleration_m_s2": ("m/s2", "largest magnitude of the sphere's acceleration"),
     "rebound_height_m": ("m", "height of the sphere's centre above the plate at the top of the rebound"),
     "energy_lost_J": ("J", "mechanical energy lost in the contact"),
+    "plastic_work_J": ("J", "the part of the energy lost that went into plastic deformation"),
     "restitution_asked": ("1", "restitution asked of the contact law, where it has one"),
     "time_of_max_indentation_s": ("s", "time of the largest indentation"),
     "time_of_max_force_s": ("s", "time of the largest contact force"),
@@ -26,14 +27,15 @@ HISTORY_COLUMNS: dict[str, tuple[str, str]] = {
     "velocity_m_s": ("m/s", "velocity of the sphere, upwards"),
     "acceleration_m_s2": ("m/s2", "acceleration of the sphere, upwards"),
     "force_N": ("N", "contact force on the sphere, upwards"),
-    "indentation_m": ("m", "indentation, zero without contact"),
+    "indentation_m": ("m", "indentation, zero without contact; negative where a sticking contact is drawn out"),
     "kinetic_J": ("J", "kinetic energy of the sphere"),
     "potential_J": ("J", "potential energy of the sphere, zero at first touch of the undeformed plate"),
     "contact_elastic_J": ("J", "energy stored in the contact"),
-    "contact_dissipated_J": ("J", "energy lost in the contact so far"),
+    "contact_dissipated_J": ("J", "energy lost so far in the damping of the contact, and when a sticking contact breaks"),
+    "plastic_work_J": ("J", "energy lost so far in plastic deformation"),
     "written_off_at_rest_J": ("J", "energy written off when the sphere was found to be at rest"),
 }
 """Columns of a history: unit and meaning."""
 
-LEDGER = ("kinetic_J", "potential_J", "contact_elastic_J", "contact_dissipated_J", "written_off_at_rest_J")
+LEDGER = ("kinetic_J", "potential_J", "contact_elastic_J", "contact_dissipated_J", "plastic_work_J", "written_off_at_rest_J")
 """The columns of a history that share the energy put in; their sum is constant."""

@@ -27,15 +27,18 @@ class Flight:
         elapsed = time - self.start
         return self.gap + elapsed * (self.velocity - 0.5 * self.gravity * elapsed), self.velocity - self.gravity * elapsed
 
-    def touch(self) -> tuple[Floats, Floats]:
+    def touch(self, level: Floats) -> tuple[Floats, Floats]:
         r"""Return time [s] and approach speed [m/s] of the next touch; an infinite time if there is none.
 
         .. math:: v = \sqrt{v_0^2 + 2 g h},\qquad t = (v_0 + v)/g = 2 h/(v - v_0)
+
+        with h the gap above `level` [m], at which the surfaces meet: zero, or below it in a dent.
         """
-        speed = np.sqrt(self.velocity**2 + 2.0 * self.gravity * self.gap)
+        height = self.gap - level
+        speed = np.sqrt(self.velocity**2 + 2.0 * self.gravity * height)
         with np.errstate(divide="ignore", invalid="ignore"):
             rising = (self.velocity + speed) / self.gravity
-            falling = 2.0 * self.gap / (speed - self.velocity)  # the same root without its cancellation
+            falling = 2.0 * height / (speed - self.velocity)  # the same root without its cancellation
             elapsed = np.where(self.velocity > 0.0, rising, np.where(speed > self.velocity, falling, np.inf))
         never = (self.gravity == 0.0) & (self.velocity >= 0.0)
         return np.where(never, np.inf, self.start + elapsed), speed

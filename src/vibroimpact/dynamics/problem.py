@@ -45,6 +45,9 @@ class Problem:
         A sphere that leaves more slowly is at rest [m/s]. By default the speed from which it would
         rise no higher than the static indentation under its own weight, but at least 1e-6 of
         the first approach speed. Zero: only a sphere that does not leave at all is at rest.
+    same_spot : bool, default True
+        Does each impact fall where the last one did, with the same part of the sphere? Then a law whose
+        memory lasts (a permanent dent) goes on with it; else each impact finds fresh surfaces.
     tolerance : float, default 1e-9
         Relative error allowed in the state at the end of a contact; 1e-13 to 1e-6.
     source : mapping, optional
@@ -73,6 +76,7 @@ class Problem:
     impacts: int | None = 5
     duration: float | None = None
     rest_speed: Array | None = None
+    same_spot: bool = True
     tolerance: float = 1e-9
     source: Mapping[str, Any] | None = field(default=None, compare=False)
 

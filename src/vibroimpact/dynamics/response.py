@@ -31,6 +31,7 @@ class Outcome(Enum):
     DURATION = "duration"
     REST_SPEED = "at rest: rest speed"
     CAPTURED = "at rest: contact without release"
+    STUCK = "at rest: stuck"
     LEFT = "left for good"
     LIMIT = "limit of impacts"
     FAILED = "failed"
@@ -38,7 +39,7 @@ class Outcome(Enum):
     @property
     def at_rest(self) -> bool:
         """Did the sphere come to rest?"""
-        return self in (Outcome.REST_SPEED, Outcome.CAPTURED)
+        return self in (Outcome.REST_SPEED, Outcome.CAPTURED, Outcome.STUCK)
 
 
 @dataclass(frozen=True)
@@ -169,6 +170,8 @@ class Response:
         time = float(self.rest.time[0])
         if self.outcomes[0] is Outcome.CAPTURED:
             return f"at {time:.7g} s it has too little energy left to get out of its indentation (capture rule)."
+        if self.outcomes[0] is Outcome.STUCK:
+            return f"at {time:.7g} s it has too little energy left to break the adhesion, and sticks (capture rule)."
         speed, last = float(self.rest.speed[0]), float(self.impacts["separation_speed_m_s"][-1])
         limit = f" Bounces with the last restitution would end at {time:.7g} s." if np.isfinite(time) else ""
         return f"it left at {last:.3g} m/s, below the rest speed of {speed:.3g} m/s (rest-speed rule).{limit}"
@@ -270,19 +273,21 @@ class Response:
         """Return all columns at times since the start of one segment."""
         segment, problem = self._segments[number], self.problem
         mass, gravity = float(problem.sphere.mass), float(problem.gravity)
-        gap, velocity, force, stored, lost = segment.at(times)
-        resting = isinstance(segment, RestSegment)
+        gap, velocity, force, stored, lost, plastic = segment.at(times)
+        lost_before, plastic_before = self._spent_before[number]
+        resting, flying = isinstance(segment, RestSegment), isinstance(segment, FlightSegment)
         return {
             "time_s": segment.start + times,
             "position_m": float(problem.sphere.contact_offset) + gap,
             "velocity_m_s": velocity,
             "acceleration_m_s2": np.zeros_like(times) if resting else force / mass - gravity,
             "force_N": force,
-            "indentation_m": np.maximum(-gap, 0.0),
+            "indentation_m": np.zeros_like(times) if flying else -gap,
             "kinetic_J": 0.5 * mass * velocity**2,
             "potential_J": mass * gravity * gap,
             "contact_elastic_J": stored,
-            "contact_dissipated_J": self._lost_before[number] + lost,
+            "contact_dissipated_J": lost_before + lost,
+            "plastic_work_J": plastic_before + plastic,
             "written_off_at_rest_J": np.full_like(times, self.rest.written_off[0] if resting else 0.0),
         }
 
@@ -291,21 +296,23 @@ class Response:
         return [segment for segment, _ in self._timeline]
 
     @cached_property
-    def _lost_before(self) -> list[float]:
-        """Energy lost in contact before each segment [J]."""
-        return [lost for _, lost in self._timeline]
+    def _spent_before(self) -> list[Floats]:
+        """Energy lost in damping and in plastic deformation before each segment [J]."""
+        return [spent for _, spent in self._timeline]
 
     @cached_property
-    def _timeline(self) -> list[tuple[Segment, float]]:
-        """The segments of one drop in order, each with the energy lost before it [J]."""
+    def _timeline(self) -> list[tuple[Segment, Floats]]:
+        """The segments of one drop in order, each with the energy lost before it in damping and in plastic deformation [J]."""
         if self.problem.shape != ():
             raise InputError("a history belongs to one drop: ask response.drop(0), response.drop(1), ...")
-        timeline: list[tuple[Segment, float]] = []
-        lost_in_impacts = np.concatenate([[0.0], np.cumsum(self.impacts["energy_lost_J"])])
+        timeline: list[tuple[Segment, Floats]] = []
+        plastic = self.impacts["plastic_work_J"]
+        spent_in_impacts = np.zeros((len(plastic) + 1, 2))
+        np.cumsum(np.stack([self.impacts["energy_lost_J"] - plastic, plastic], axis=1), axis=0, out=spent_in_impacts[1:])
         for number, leg in enumerate(self.legs):
-            lost = float(lost_in_impacts[number])
+            spent = spent_in_impacts[number].copy()
             touch = float(leg.flight_end[0])
-            timeline.append((FlightSegment(float(leg.flight.start[0]), touch, leg.flight), lost))
+            timeline.append((FlightSegment(float(leg.flight.start[0]), touch, leg.flight), spent))
             if leg.contact is None or leg.encounter is None:
                 continue
             for piece in leg.contact.pieces:
@@ -313,16 +320,16 @@ class Response:
                 finish = begin + float(piece.motion.duration[0])
                 segment: Segment
                 if isinstance(piece.motion, Stretch):
-                    segment = StretchSegment(begin, finish, piece.motion, leg.encounter)
+                    segment = StretchSegment(begin, finish, piece.motion, leg.encounter.under(piece.law))
                 else:
-                    segment = GlideSegment(begin, finish, piece.motion, leg.encounter.law)
-                timeline.append((segment, lost))
-                lost += float(segment.at(piece.motion.duration)[-1][0])
+                    segment = GlideSegment(begin, finish, piece.motion, piece.law)
+                timeline.append((segment, spent))
+                spent = spent + [float(part[0]) for part in segment.at(piece.motion.duration)[-2:]]
         if self.outcomes[0].at_rest:
             weight = float(self.problem.sphere.mass) * float(self.problem.gravity)
             begin = timeline[-1][0].end
             segment = RestSegment(begin, float(self.end_time[0]), float(self.rest.sag[0]), weight, float(self.rest.stored[0]))
-            timeline.append((segment, float(lost_in_impacts[-1])))
+            timeline.append((segment, spent_in_impacts[-1]))
         return timeline
 
 

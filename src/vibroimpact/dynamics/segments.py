@@ -16,8 +16,9 @@ from vibroimpact.contact.phase.glide import Glide
 from vibroimpact.contact.phase.stretch import Stretch
 from vibroimpact.dynamics.flight import Flight
 
-Motion = tuple[Floats, Floats, Floats, Floats, Floats]
-"""Gap [m], upward velocity [m/s], contact force [N], stored energy [J], energy lost since the start [J]."""
+Motion = tuple[Floats, Floats, Floats, Floats, Floats, Floats]
+"""Gap [m], upward velocity [m/s], contact force [N], stored energy [J], and energy lost in damping and in
+plastic deformation since the start [J]."""
 
 
 @dataclass(frozen=True)
@@ -36,7 +37,7 @@ class FlightSegment:
         """Return the motion at times [s] since the start of the segment."""
         gap, velocity = self.flight.at(self.flight.start + time)
         nothing = np.zeros_like(time)
-        return gap, velocity, nothing, nothing, nothing
+        return gap, velocity, nothing, nothing, nothing, nothing
 
 
 @dataclass(frozen=True)
@@ -57,15 +58,16 @@ class StretchSegment:
         stretch, rule, law = self.stretch, self.stretch.rule, self.encounter.law
         duration = stretch.duration[0]
         x = rule.unmap_time(time / duration)
-        delta = np.maximum(stretch.delta[0] + duration * rule.integrate(x, stretch.node_velocity[:, 0]), 0.0)
+        floor = self.encounter.floor
+        delta = np.maximum(stretch.delta[0] + duration * rule.integrate(x, stretch.node_velocity[:, 0]), floor)
         velocity = stretch.velocity[0] + duration * rule.integrate(x, stretch.node_acceleration[:, 0])
         elastic, dissipative = law.forces(delta, velocity, self.encounter.approach_speed)
         force = elastic + dissipative
         if law.tension == "cut":
             force = np.maximum(force, 0.0)
-        _, at_nodes = law.forces(np.maximum(stretch.node_delta, 0.0), stretch.node_velocity, self.encounter.approach_speed)
+        _, at_nodes = law.forces(np.maximum(stretch.node_delta, floor), stretch.node_velocity, self.encounter.approach_speed)
         lost = duration * rule.integrate(x, (at_nodes * stretch.node_velocity)[:, 0])
-        return -delta, -velocity, force, law.elastic_energy(delta), lost
+        return -delta, -velocity, force, law.elastic_energy(delta), lost, law.plastic_work(delta) - law.plastic_work(stretch.delta)
 
 
 @dataclass(frozen=True)
@@ -85,7 +87,8 @@ class GlideSegment:
         """Return the motion at times [s] since the start of the segment."""
         delta, velocity = (part[:, 0] for part in self.glide.at(time[:, None]))
         stored = self.law.elastic_energy(delta)
-        return -delta, -velocity, np.zeros_like(time), stored, self.law.elastic_energy(self.glide.delta) - stored
+        nothing = np.zeros_like(time)
+        return -delta, -velocity, nothing, stored, self.law.elastic_energy(self.glide.delta) - stored, nothing
 
 
 @dataclass(frozen=True)
@@ -105,7 +108,7 @@ class RestSegment:
     def at(self, time: Floats) -> Motion:
         """Return the motion at times [s] since the start of the segment."""
         same = np.ones_like(time)
-        return -self.sag * same, 0.0 * same, self.weight * same, self.stored * same, 0.0 * same
+        return -self.sag * same, 0.0 * same, self.weight * same, self.stored * same, 0.0 * same, 0.0 * same
 
 
 Segment = FlightSegment | StretchSegment | GlideSegment | RestSegment

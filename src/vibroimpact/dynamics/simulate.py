@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from vibroimpact.contact.law import CompliantLaw, ContactLaw, InstantaneousLaw
 from vibroimpact.contact.phase.collocation import Floats
-from vibroimpact.contact.phase.contact import CAPTURED, FAILED, Drops
+from vibroimpact.contact.phase.contact import CAPTURED, FAILED, Contact, Drops
 from vibroimpact.contact.phase.contact_phase import contact_phase
 from vibroimpact.contact.phase.encounter import Encounter, encounter_of
 from vibroimpact.contact.phase.peaks import force_peak
@@ -85,13 +85,14 @@ class _Run:
         else:
             self.velocity = -self.spread(problem.speed)
         self.energy_in = self.mechanical_energy()
-        self.dissipated, self.deepest = np.zeros(self.size), np.zeros(self.size)
+        self.dissipated, self.plastic, self.deepest = np.zeros(self.size), np.zeros(self.size), np.zeros(self.size)
         self.moving = np.ones(self.size, dtype=bool)
         self.outcomes = [Outcome.FAILED] * self.size
         self.end_time, self.rest_time = np.full(self.size, np.nan), np.full(self.size, np.nan)
         self.sag, self.stored, self.written_off = np.zeros(self.size), np.zeros(self.size), np.zeros(self.size)
         self.rest_speed = self.default_rest_speed() if problem.rest_speed is None else self.spread(problem.rest_speed)
         self.warm_starts = WarmStarts(self.size)
+        self.memories = {name: self.spread(value) for name, value in problem.laws[0].memories().items()}
         self.legs: list[Leg] = []
         self.rows: list[dict[str, Floats]] = []
 
@@ -103,7 +104,7 @@ class _Run:
 
     def default_rest_speed(self) -> Floats:
         law = self.problem.law_of(0)
-        least = 1e-6 * Flight(self.time, self.gap, self.velocity, self.gravity).touch()[1]
+        least = 1e-6 * Flight(self.time, self.gap, self.velocity, self.gravity).touch(np.zeros(1))[1]
         if not isinstance(law, CompliantLaw):
             return np.asarray(least)
         return np.asarray(np.maximum(np.sqrt(2.0 * self.gravity * static_indentation(law, self.mass * self.gravity)), least))
@@ -120,13 +121,20 @@ class _Run:
             done = max(done, float(np.nanmin(np.clip(slowed, 0.0, 1.0), initial=1.0)))
         return done
 
+    def law(self) -> ContactLaw:
+        """Return the law of the next impact of all drops, with what they remember of the last."""
+        law = self.problem.law_of(len(self.rows))
+        lasting = self.problem.same_spot and isinstance(law, CompliantLaw) and law.lasting
+        return law.changed(self.memories) if lasting else law
+
     # one flight and one contact --------------------------------------------------------------------
 
     def advance(self) -> None:
         """Fly all moving drops to their next touch and take them through one contact."""
         drops = np.flatnonzero(self.moving)
         flight = Flight(self.time[drops], self.gap[drops], self.velocity[drops], self.gravity[drops])
-        touch, speed = flight.touch()
+        law = self.law().take(drops)
+        touch, speed = flight.touch(-law.touch_level if isinstance(law, CompliantLaw) else np.zeros(1))
         end = np.inf if self.problem.duration is None else self.problem.duration
         last, outcome = np.full(len(drops), end), Outcome.IMPACTS
         if len(self.rows) in (self.problem.impacts, MOST_IMPACTS):
@@ -147,19 +155,22 @@ class _Run:
     def collide(self, leg: Leg, touch: Floats, speed: Floats) -> Leg:
         """Take drops through a contact: write the row of the impact, return the leg with its contact."""
         drops, row = leg.contact_drops, {name: np.full(self.size, np.nan) for name in IMPACT_COLUMNS}
-        law = self.problem.law_of(len(self.rows)).take(drops)
+        law = self.law().take(drops)
         self.rows.append(row)
         row["impact"][drops], row["time_s"][drops], row["approach_speed_m_s"][drops] = len(self.rows), touch, speed
         row["restitution_asked"][drops] = _asked(law)
         if isinstance(law, InstantaneousLaw):
-            self.time[drops], self.gap[drops], self.velocity[drops] = touch, 0.0, law.separation_speed(speed)
+            self.time[drops], self.gap[drops], self.velocity[drops] = touch, 0.0, law.separation_speed(speed, self.mass[drops])
             row["separation_speed_m_s"][drops] = self.velocity[drops]
-            row["duration_s"][drops] = row["max_indentation_m"][drops] = 0.0
+            row["duration_s"][drops] = row["max_indentation_m"][drops] = row["plastic_work_J"][drops] = 0.0
             lost = 0.5 * self.mass[drops] * (speed**2 - self.velocity[drops] ** 2)
         else:
             assert isinstance(law, CompliantLaw)
             leg, lost = self.deform(leg, encounter_of(law, self.mass[drops], self.gravity[drops], speed), touch, row)
-        self.dissipated[drops] += lost
+            lost += row["plastic_work_J"][drops]
+            law = self.law().take(drops)  # with what it remembers of this impact
+        self.dissipated[drops] += lost - row["plastic_work_J"][drops]
+        self.plastic[drops] += row["plastic_work_J"][drops]
         separation = row["separation_speed_m_s"][drops]
         row["restitution_achieved"][drops] = separation / speed
         row["energy_lost_J"][drops] = lost
@@ -178,18 +189,28 @@ class _Run:
         self.deepest[drops] = np.maximum(self.deepest[drops], contact.max_delta)
         self.time[drops] = touch + contact.duration
         self.gap[drops], self.velocity[drops] = -contact.final_delta, -contact.final_rate
-        row["duration_s"][drops] = contact.duration
+        row["duration_s"][drops], row["plastic_work_J"][drops] = contact.duration, contact.plastic
         row["max_indentation_m"][drops], row["time_of_max_indentation_s"][drops] = contact.max_delta, touch + contact.time_of_max_delta
         row["max_force_N"][drops], row["time_of_max_force_s"][drops] = force, touch + when
         row["max_acceleration_m_s2"][drops] = np.maximum(force / encounter.mass - encounter.gravity, encounter.gravity)
-        captured, failed = contact.outcome == CAPTURED, contact.outcome == FAILED
+        for name, values in contact.law.memories().items():
+            self.memories[name][drops] = values
+        failed, captured = contact.outcome == FAILED, contact.outcome == CAPTURED
+        captured |= ~failed & (contact.final_rate**2 < 2.0 * self.gravity[drops] * self.overlap(contact, drops))
         row["separation_speed_m_s"][drops] = np.where(failed, np.nan, np.where(captured, 0.0, -contact.final_rate))
-        stored = encounter.law.elastic_energy(contact.final_delta)
-        self.stop(drops[failed], Outcome.FAILED, self.time[drops[failed]])
-        self.stop(drops[captured], Outcome.CAPTURED, self.time[drops[captured]])
+        stored = contact.law.elastic_energy(contact.final_delta)
+        sticks = captured & (contact.law.elastic_energy(contact.law.release_level + np.zeros(len(drops))) > 0.0)
+        for these, outcome in ((failed, Outcome.FAILED), (captured & ~sticks, Outcome.CAPTURED), (sticks, Outcome.STUCK)):
+            self.stop(drops[these], outcome, self.time[drops[these]])
         if captured.any():
-            self.lie_down(drops[captured], encounter.law.take(np.flatnonzero(captured)), self.time[drops[captured]], stored[captured])
+            self.lie_down(drops[captured], contact.law.take(np.flatnonzero(captured)), self.time[drops[captured]], stored[captured])
         return Leg(leg.drops, leg.flight, leg.flight_end, drops, contact, encounter), contact.dissipated + np.where(captured, 0.0, stored)
+
+    def overlap(self, contact: Contact, drops: Drops) -> Floats:
+        """Return how far drops that have parted must still rise until the next touch is a new one [m]."""
+        law = self.law().take(drops)
+        assert isinstance(law, CompliantLaw)
+        return np.asarray(np.maximum(contact.final_delta - law.touch_level, 0.0))
 
     def judge(self, drops: Drops, law: ContactLaw, row: dict[str, Floats]) -> None:
         """Stop the drops that leave more slowly than the rest speed, or not at all."""
@@ -233,6 +254,7 @@ class _Run:
                 "potential_J": self.mass * self.gravity * final_gap,
                 "contact_elastic_J": self.stored,
                 "contact_dissipated_J": self.dissipated,
+                "plastic_work_J": self.plastic,
                 "written_off_at_rest_J": self.written_off,
             },
         )

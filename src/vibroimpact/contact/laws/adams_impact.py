@@ -52,8 +52,13 @@ class AdamsImpact(PowerLaw):
     contact_end = "zero-indentation"
     tension = "cut"
 
-    damping_max: Array = parameter("largest damping C", "N s/m", at_least=0)
+    damping_max: Array = parameter("largest damping C", "N s/m", example=150.0, at_least=0)
     full_damping_penetration: Array = parameter("indentation d at which the damping is full", "m", above=0, default=1e-4)
+
+    @property
+    def free_parameter(self) -> str:
+        """The largest damping."""
+        return "damping_max"
 
     @property
     def breakpoints(self) -> tuple[Array, ...]:

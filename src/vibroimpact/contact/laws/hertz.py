@@ -49,3 +49,7 @@ class Hertz(PowerLaw):
     def forces(self, delta: Array, delta_dot: Array, approach_speed: Array) -> tuple[Array, Array]:
         """Return the elastic force and zero [N]."""
         return self.elastic_force(delta), np.zeros_like(delta)
+
+    def closed_form_restitution(self, mass: Array, speed: Array) -> Array:
+        """Return 1: nothing is lost."""
+        return np.ones_like(mass * speed)

@@ -1,4 +1,4 @@
-"""The linear spring and dashpot (Kelvin and Voigt)."""
+"""The linear spring and dashpot of discrete-element programs (Kelvin and Voigt)."""
 
 from __future__ import annotations
 
@@ -6,13 +6,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from vibroimpact.contact.law import CompliantLaw, parameter
+from vibroimpact.contact.damping_ratio import damping_ratio_of
+from vibroimpact.contact.kelvin_voigt import KelvinVoigtLaw
+from vibroimpact.contact.law import parameter
 from vibroimpact.contact.pair import Array
 from vibroimpact.errors import InputError
 
 
 @dataclass(frozen=True, kw_only=True)
-class LinearSpringDashpot(CompliantLaw):
+class LinearSpringDashpot(KelvinVoigtLaw):
     r"""Linear spring and dashpot in parallel, :math:`F = k \delta + c \dot\delta`.
 
     Give either the dashpot's `damping` or the `restitution` wanted and the `effective_mass` m; then
@@ -57,12 +59,9 @@ class LinearSpringDashpot(CompliantLaw):
     name = "linear-spring-dashpot"
     equation = "F = k delta + c delta_dot"
     source = "Garg et al. 2012, Powder Technology 220:122"
-    contact_end = "zero-indentation"
-    tension = "kept"
 
-    stiffness: Array = parameter("spring stiffness k", "N/m", above=0)
     damping: Array | None = parameter("dashpot c, unless a restitution is given", "N s/m", at_least=0, default=None)
-    restitution: Array | None = parameter("restitution asked for, instead of damping", above=0, at_most=1, default=None)
+    restitution: Array | None = parameter("restitution asked for, instead of damping", example=0.7, above=0, at_most=1, default=None)
     effective_mass: Array | None = parameter(
         "mass for which the restitution is asked", "kg", above=0, from_pair="effective_mass", default=None
     )
@@ -75,17 +74,13 @@ class LinearSpringDashpot(CompliantLaw):
             raise InputError(f"{self.name} needs effective_mass [kg] with restitution")
 
     @property
+    def free_parameter(self) -> str:
+        """The damping, or the restitution if that is given."""
+        return "damping" if self.restitution is None else "restitution"
+
+    @property
     def dashpot(self) -> Array:
         """The dashpot's damping [N s/m], given or from the restitution."""
         if self.damping is not None:
             return self.damping
-        log = np.log(np.asarray(self.restitution, dtype=float))
-        return -2.0 * log / np.sqrt(np.pi**2 + log * log) * np.sqrt(self.stiffness * self.effective_mass)
-
-    def forces(self, delta: Array, delta_dot: Array, approach_speed: Array) -> tuple[Array, Array]:
-        """Return the elastic and the dissipative force [N]."""
-        return self.stiffness * delta, self.dashpot * delta_dot
-
-    def elastic_energy(self, delta: Array) -> Array:
-        r"""Return :math:`k \delta^2/2` [J]."""
-        return 0.5 * self.stiffness * delta * delta
+        return 2.0 * damping_ratio_of(self.restitution) * np.sqrt(self.stiffness * self.effective_mass)

@@ -28,7 +28,7 @@ class Newton(InstantaneousLaw):
 
     Examples
     --------
-    >>> Newton(restitution=0.5).separation_speed(4.0)
+    >>> Newton(restitution=0.5).separation_speed(4.0, mass=1.0)
     2.0
     """
 
@@ -36,8 +36,8 @@ class Newton(InstantaneousLaw):
     equation = "v+ = e v-"
     source = "Newton 1687, Principia, scholium to the laws of motion"
 
-    restitution: Array = parameter("coefficient of restitution e", at_least=0, at_most=1)
+    restitution: Array = parameter("coefficient of restitution e", example=0.7, at_least=0, at_most=1)
 
-    def separation_speed(self, approach_speed: Array) -> Array:
+    def separation_speed(self, approach_speed: Array, mass: Array) -> Array:
         """Return e times the approach speed [m/s]."""
         return self.restitution * approach_speed

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.phase.collocation import Floats
 from vibroimpact.contact.phase.glide import Glide
 from vibroimpact.contact.phase.stretch import Stretch
@@ -25,6 +26,8 @@ class Piece:
     start: Floats
     """Time since first touch at which it begins [s], (b,)."""
     motion: Stretch | Glide
+    law: CompliantLaw
+    """The law with its memories then, of all B drops of the contact."""
 
 
 @dataclass
@@ -32,7 +35,8 @@ class Contact:
     """One impact of B drops, first touch to release; arrays are (B,).
 
     `outcome` is RELEASED, CAPTURED (its energy no longer suffices to get out of the indentation) or FAILED.
-    `final_delta`, `final_rate`: indentation [m] and its rate [m/s] at the end.
+    `final_delta`, `final_rate`: indentation [m] and its rate [m/s] at the end. `dissipated`, `plastic`: work
+    lost in damping and in plastic deformation [J]. `law`: the law with what it remembers of this contact.
     """
 
     pieces: list[Piece]
@@ -43,6 +47,8 @@ class Contact:
     max_delta: Floats
     time_of_max_delta: Floats
     dissipated: Floats
+    plastic: Floats
+    law: CompliantLaw
 
     def of(self, index: int) -> Contact:
         """Return the contact of one drop."""
@@ -50,6 +56,7 @@ class Contact:
         for piece in self.pieces:
             here = piece.drops == index
             if here.any():
-                pieces.append(Piece(np.zeros(1, dtype=np.intp), piece.start[here], piece.motion.take(here)))
-        floats = (self.duration, self.final_delta, self.final_rate, self.max_delta, self.time_of_max_delta, self.dissipated)
-        return Contact(pieces, self.outcome[index : index + 1], *(array[index : index + 1] for array in floats))
+                law = piece.law.take(np.array([index]))
+                pieces.append(Piece(np.zeros(1, dtype=np.intp), piece.start[here], piece.motion.take(here), law))
+        arrays = {name: value[index : index + 1] for name, value in vars(self).items() if isinstance(value, np.ndarray)}
+        return replace(self, pieces=pieces, law=self.law.take(np.array([index])), **arrays)

@@ -1,8 +1,9 @@
 """From first touch to release: the stretches of one impact, split where the force is not smooth.
 
 Each drop goes through compression (to each breakpoint of the law, then to the deepest point), restitution
-(back through the breakpoints to zero indentation) and, where a law's tension is cut, a glide: the sphere
-has stopped pushing but still overlaps, and moves freely until it pushes again or is out.
+(back through the breakpoints to where the surfaces part) and, where a law's tension is cut, a glide: the
+sphere has stopped pushing but still overlaps, and moves freely until it pushes again or is out. A law with a
+memory gets it at the deepest point, and is another law from there on.
 
 A stretch is first aimed straight at its end. If that fails to converge, or its series has not converged,
 the drop advances by stretches of a given, adapted duration until the end comes within reach.
@@ -13,6 +14,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.phase.collocation import Floats, Map, Rule, collocation_rule
 from vibroimpact.contact.phase.contact import CAPTURED, COMPRESSION, FAILED, GLIDE, RELEASED, RESTITUTION, Contact, Drops, Piece
 from vibroimpact.contact.phase.encounter import Encounter
@@ -53,19 +55,27 @@ class _Phase:
     def __init__(self, encounter: Encounter, tolerance: float, warm_starts: WarmStarts, ids: Drops) -> None:
         size = len(encounter.mass)
         self.warm_starts, self.ids = warm_starts, ids
-        self.encounter, self.law = encounter, encounter.law
+        self.encounter = encounter
         self.number, self.tolerance = nodes_for(tolerance), tolerance
         self.least_energy = 0.5 * encounter.mass * (tolerance * encounter.speed_scale) ** 2
         self.pieces: list[Piece] = []
-        self.time, self.delta, self.velocity = np.zeros(size), np.zeros(size), encounter.approach_speed.copy()
+        self.time, self.delta, self.velocity = np.zeros(size), encounter.law.touch_level + np.zeros(size), encounter.approach_speed.copy()
         self.outcome = np.full(size, COMPRESSION, dtype=np.int8)
-        self.max_delta, self.time_of_max_delta, self.dissipated = np.zeros(size), np.zeros(size), np.zeros(size)
-        self.levels = [np.broadcast_to(np.asarray(level, dtype=float), (size,)) for level in self.law.breakpoints]
+        self.max_delta, self.time_of_max_delta = np.zeros(size), np.zeros(size)
+        self.dissipated, self.plastic = np.zeros(size), np.zeros(size)
+        self.levels = self.breakpoints()
         self.within_reach = np.ones((len(self.levels), size), dtype=bool)
         self.depth = encounter.depth
         self.march = np.zeros(size)  # duration of the next stretch of a drop that can't aim at its end yet
         self.pace = np.zeros(size)  # the last such duration that was good
         self.stretches = np.zeros(size, dtype=int)  # tried so far
+
+    @property
+    def law(self) -> CompliantLaw:
+        return self.encounter.law
+
+    def breakpoints(self) -> list[Floats]:
+        return [level + np.zeros(len(self.delta)) for level in self.law.breakpoints]
 
     def run(self) -> Contact:
         while (moving := np.flatnonzero(self.outcome < RELEASED)).size:
@@ -84,6 +94,8 @@ class _Phase:
             self.max_delta,
             self.time_of_max_delta,
             self.dissipated,
+            self.plastic,
+            self.law,
         )
 
     # one advance of a group of drops -------------------------------------------------------------
@@ -94,7 +106,7 @@ class _Phase:
         for index, levels in reversed(list(enumerate(self.levels))):
             ahead = (levels[drops] > self.delta[drops]) & (levels[drops] < self.depth[drops]) & self.within_reach[index, drops]
             level[ahead] = levels[drops][ahead]
-        touching, turning = self.delta[drops] == 0.0, np.isinf(level)
+        touching, turning = self.time[drops] == 0.0, np.isinf(level)
         maps: tuple[tuple[NDArray[np.bool_], Map], ...] = ((touching, "touch"), (~touching, "inside"))
         aims: tuple[tuple[NDArray[np.bool_], Aim], ...] = ((turning, "turn"), (~turning, "indentation"))
         for here, time_map in maps:
@@ -103,12 +115,12 @@ class _Phase:
                     self.advance(drops[both], time_map, aim, level[both])
 
     def restore(self, drops: Drops) -> None:
-        """Move drops on towards the next breakpoint below, or to zero indentation."""
-        level = np.zeros(len(drops))
+        """Move drops on towards the next breakpoint below, or to where the surfaces part."""
+        level = self.encounter.floor[drops]
         for levels in self.levels:
-            ahead = levels[drops] < self.delta[drops]
+            ahead = (levels[drops] < self.delta[drops]) & (levels[drops] > level)
             level[ahead] = levels[drops][ahead]
-        last = level == 0.0
+        last = level == self.encounter.floor[drops]
         maps: tuple[tuple[NDArray[np.bool_], Map], ...] = ((last, "release"), (~last, "inside"))
         for here, time_map in maps:
             if here.any():
@@ -120,11 +132,8 @@ class _Phase:
         if marching.any():
             self.step(drops[marching], "touch" if time_map == "touch" else "inside", aim, level[marching])
             drops, level = drops[~marching], level[~marching]
-        early = (
-            self.warm_starts.knows(("inside", "force"), self.ids[drops])
-            & (self.outcome[drops] == RESTITUTION)
-            & (self.velocity[drops] == 0.0)
-        )
+        early = self.warm_starts.knows(("inside", "force"), self.ids[drops])
+        early &= (self.outcome[drops] == RESTITUTION) & (self.velocity[drops] == 0.0)
         if early.any():  # the last impact stopped pushing at this stage: look for that first
             stretch = self.aimed(drops[early], "inside", "force", level[early])
             good = self.good(drops[early], stretch) & (stretch.node_delta[-1] > level[early])
@@ -169,18 +178,20 @@ class _Phase:
 
     def time_scale(self, drops: Drops, aim: Aim, level: Floats) -> Floats:
         """Return how long an undamped, sinusoidal motion would take to the end of a stretch [s]."""
-        delta, velocity, depth = self.delta[drops], self.velocity[drops], self.depth[drops]
+        encounter, velocity = self.encounter.take(drops), self.velocity[drops]
+        delta, depth, level = (self.above_floor(drops, value) for value in (self.delta[drops], self.depth[drops], level))
         if aim == "turn":
             begin = np.arcsin(np.minimum(delta / depth, 0.999))
-            speed = np.sqrt(velocity**2 + self.encounter.gravity[drops] * (depth - delta))
+            speed = np.sqrt(velocity**2 + encounter.gravity * (depth - delta))
             return np.asarray((0.5 * np.pi - begin) * depth * np.cos(begin) / speed)
-        stored = np.sqrt(2.0 * self.encounter.take(drops).law.elastic_energy(delta) / self.encounter.mass[drops])
-        turn = np.arccos(np.clip(level / delta, 0.0, 1.0))
-        return np.where(velocity == 0.0, turn * delta / stored, (level - delta) / velocity)
+        stored = encounter.law.elastic_energy(self.delta[drops]) - encounter.law.elastic_energy(encounter.floor)
+        turn, speed = np.arccos(np.clip(level / delta, 0.0, 1.0)), np.sqrt(2.0 * stored / encounter.mass)
+        return np.where(velocity == 0.0, turn * delta / np.where(stored > 0.0, speed, encounter.speed_scale), (level - delta) / velocity)
 
     def first_guess(self, drops: Drops, rule: Rule, aim: Aim, level: Floats) -> Floats:
         """Guess the accelerations at the nodes of a stretch from an undamped, sinusoidal motion."""
-        delta, velocity, depth = self.delta[drops], self.velocity[drops], self.depth[drops]
+        encounter, velocity = self.encounter.take(drops), self.velocity[drops]
+        delta, depth, level = (self.above_floor(drops, value) for value in (self.delta[drops], self.depth[drops], level))
         duration, fraction = self.time_scale(drops, aim, level), rule.time[:, None]
         if aim == "turn":
             begin = np.arcsin(np.minimum(delta / depth, 0.999))
@@ -190,7 +201,10 @@ class _Phase:
             resting, turn = velocity == 0.0, np.arccos(np.clip(level / delta, 0.0, 1.0))
             path = np.where(resting, delta * np.cos(turn * fraction), delta + (level - delta) * fraction)
             speed = np.where(resting, -0.9 * delta * turn / duration * np.sin(turn * fraction), velocity)
-        return self.encounter.take(drops).acceleration(np.maximum(path, 0.0), speed)
+        return encounter.acceleration(encounter.floor + np.maximum(path, 0.0), speed)
+
+    def above_floor(self, drops: Drops, delta: Floats) -> Floats:
+        return delta - self.encounter.floor[drops]
 
     # what becomes of a solved stretch ------------------------------------------------------------
 
@@ -213,7 +227,7 @@ class _Phase:
         slack = 1e-12 * self.encounter.approach_speed[drops]
         down = self.outcome[drops] == COMPRESSION
         one_way = np.where(down, stretch.node_velocity.min(axis=0) >= -slack, stretch.node_velocity.max(axis=0) <= slack)
-        above = stretch.node_delta[:-1].min(axis=0) >= 0.0
+        above = stretch.node_delta[:-1].min(axis=0) >= self.encounter.floor[drops]
         return np.asarray(self.resolved(drops, stretch) & one_way & above)
 
     def resolved(self, drops: Drops, stretch: Stretch) -> NDArray[np.bool_]:
@@ -234,23 +248,17 @@ class _Phase:
         if not drops.size:
             return
         self.record(drops, stretch)
-        self.delta[drops] = level if aim == "indentation" else np.maximum(stretch.node_delta[-1], 0.0)
+        self.delta[drops] = level if aim == "indentation" else np.maximum(stretch.node_delta[-1], self.encounter.floor[drops])
         self.velocity[drops] = 0.0 if aim == "turn" else stretch.node_velocity[-1]
         self.march[drops] = 0.0
         compressing = self.outcome[drops] == COMPRESSION
         if aim == "turn":
-            turned = drops[compressing]
-            self.outcome[turned] = RESTITUTION
-            self.max_delta[turned], self.time_of_max_delta[turned] = self.delta[turned], self.time[turned]
+            self.turn(drops[compressing])
             self.outcome[drops[~compressing]] = CAPTURED  # it falls back before it is out
         elif aim == "force":
-            if self.law.contact_end == "zero-indentation":
-                self.outcome[drops] = GLIDE
-            else:
-                gets_out = self.velocity[drops] ** 2 > 2.0 * self.encounter.gravity[drops] * self.delta[drops]
-                self.outcome[drops] = np.where(gets_out, RELEASED, CAPTURED)
+            self.outcome[drops] = GLIDE if self.law.contact_end == "zero-indentation" else RELEASED
         elif aim == "indentation":
-            self.outcome[drops[~compressing & (level == 0.0)]] = RELEASED
+            self.outcome[drops[~compressing & (level == self.encounter.floor[drops])]] = RELEASED
         else:  # go on marching, unless the end has come near enough to aim at
             end = (level - self.delta[drops]) / self.velocity[drops]
             left = np.where(np.isinf(level), -self.velocity[drops] / stretch.node_acceleration[-1], end)
@@ -259,6 +267,18 @@ class _Phase:
         if aim != "duration":
             self.pace[drops] = 0.0
         self.capture(drops)
+
+    def turn(self, drops: Drops) -> None:
+        """Begin restitution at the deepest point, with a law that remembers it."""
+        self.outcome[drops] = RESTITUTION
+        self.max_delta[drops], self.time_of_max_delta[drops] = self.delta[drops], self.time[drops]
+        self.plastic[drops] += self.encounter.take(drops).law.plastic_work(self.delta[drops])
+        deepest = np.zeros(len(self.delta))
+        deepest[drops] = self.delta[drops]
+        law = self.law.after_compression(deepest)
+        if law is not self.law:
+            self.encounter = self.encounter.under(law)
+            self.levels = self.breakpoints()
 
     def capture(self, drops: Drops) -> None:
         """End the contact of drops that can't get out any more.
@@ -273,21 +293,22 @@ class _Phase:
         encounter, delta = self.encounter.take(drops), self.delta[drops]
         weight = encounter.mass * encounter.gravity
         energy = 0.5 * encounter.mass * self.velocity[drops] ** 2 + encounter.law.elastic_energy(delta) - weight * delta
-        held = energy < self.least_energy[drops]
+        way_out = encounter.law.elastic_energy(encounter.floor) - weight * encounter.floor
+        held = energy < way_out + self.least_energy[drops]
         sinking = held & (self.outcome[drops] == COMPRESSION)
         if sinking.any():
             sag = static_indentation(encounter.law, weight)
             left = energy - (encounter.law.elastic_energy(sag) - weight * sag)
             there = sinking & (left < np.maximum(1e-12 * weight * sag, self.least_energy[drops]))
+            self.turn(drops[there])
             self.max_delta[drops[there]] = np.maximum(delta, sag)[there]
-            self.time_of_max_delta[drops[there]] = self.time[drops[there]]
             held &= ~sinking | there
         self.outcome[drops[held]] = CAPTURED
 
     def redo(self, drops: Drops, stretch: Stretch, fraction: Floats, aim: Aim, level: Floats) -> None:
         """Solve part of a stretch again, to an event that was seen near a fraction of its duration."""
         time_map: Map = "touch" if stretch.rule.time_map == "touch" else "inside"
-        if aim == "indentation" and not level.any():
+        if aim == "indentation" and np.all(level == self.encounter.floor[drops]):
             time_map = "release"
         rule, duration = self.rule(time_map), fraction * stretch.duration
         guess = np.empty((self.number + 1, len(drops)))
@@ -340,7 +361,7 @@ class _Phase:
     def glide(self, drops: Drops) -> None:
         """Move drops freely until the law pushes again or they are out of the indentation."""
         motion, pushes, stays = glide_until_push(self.encounter.take(drops), self.delta[drops], self.velocity[drops])
-        self.pieces.append(Piece(drops, self.time[drops], motion))
+        self.pieces.append(Piece(drops, self.time[drops], motion, self.law))
         self.dissipated[drops] += self.encounter.take(drops).law.elastic_energy(self.delta[drops])
         self.time[drops] += motion.duration
         self.delta[drops], self.velocity[drops] = motion.end()
@@ -348,7 +369,7 @@ class _Phase:
         self.outcome[drops] = np.where(stays, CAPTURED, np.where(pushes, RESTITUTION, RELEASED))
 
     def record(self, drops: Drops, stretch: Stretch) -> None:
-        self.pieces.append(Piece(drops, self.time[drops], stretch))
+        self.pieces.append(Piece(drops, self.time[drops], stretch, self.law))
         self.time[drops] += stretch.duration
         self.dissipated[drops] += stretch.dissipated
 

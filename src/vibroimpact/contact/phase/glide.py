@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,32 +9,37 @@ from numpy.typing import NDArray
 
 from vibroimpact.contact.phase.collocation import Floats
 from vibroimpact.contact.phase.encounter import Encounter
+from vibroimpact.contact.roots import find_root
 
 _SAMPLES = 33
 
 
 @dataclass(frozen=True)
 class Glide:
-    """Motion under gravity alone of b drops: duration [s], indentation [m] and rate [m/s] at its start."""
+    """Motion under gravity alone of b drops: duration [s], indentation [m] and rate [m/s] at its start.
+
+    `floor`: the least indentation, where the bodies part [m].
+    """
 
     duration: Floats
     delta: Floats
     velocity: Floats
     gravity: Floats
+    floor: Floats
 
     def at(self, time: Floats) -> tuple[Floats, Floats]:
         """Return indentation [m] and rate [m/s] at times since the start (..., b)."""
         delta = self.delta + time * (self.velocity + 0.5 * self.gravity * time)
-        return np.maximum(delta, 0.0), self.velocity + self.gravity * time
+        return np.maximum(delta, self.floor), self.velocity + self.gravity * time
 
     def take(self, drops: NDArray[np.bool_]) -> Glide:
         """Return the glide of the drops under a mask."""
-        return Glide(self.duration[drops], self.delta[drops], self.velocity[drops], self.gravity[drops])
+        return Glide(self.duration[drops], self.delta[drops], self.velocity[drops], self.gravity[drops], self.floor[drops])
 
     def end(self) -> tuple[Floats, Floats]:
-        """Return indentation and rate at the end; an indentation of rounding size is zero."""
+        """Return indentation and rate at the end; one that differs from the floor by rounding is at it."""
         delta, velocity = self.at(self.duration)
-        return np.where(delta < 1e-14 * self.delta, 0.0, delta), velocity
+        return np.where(delta - self.floor < 1e-14 * (self.delta - self.floor), self.floor, delta), velocity
 
 
 def glide_until_push(encounter: Encounter, delta: Floats, velocity: Floats) -> tuple[Glide, NDArray[np.bool_], NDArray[np.bool_]]:
@@ -50,13 +54,13 @@ def glide_until_push(encounter: Encounter, delta: Floats, velocity: Floats) -> t
     stays : array of bool, shape (B,)
         Whether gravity turns the drop back before it is out.
     """
-    gravity = encounter.gravity
-    inside = velocity * velocity - 2.0 * gravity * delta
+    gravity, above = encounter.gravity, delta - encounter.floor
+    inside = velocity * velocity - 2.0 * gravity * above
     stays = inside < 0.0
     with np.errstate(all="ignore"):
-        out = 2.0 * delta / (np.sqrt(np.maximum(inside, 0.0)) - velocity)
+        out = 2.0 * above / (np.sqrt(np.maximum(inside, 0.0)) - velocity)
         out = np.where(stays, -velocity / gravity, out)
-    path = Glide(out, delta, velocity, gravity)
+    path = Glide(out, delta, velocity, gravity, encounter.floor)
 
     def push(time: Floats) -> Floats:
         elastic, dissipative = encounter.law.forces(*path.at(time), encounter.approach_speed)
@@ -65,30 +69,13 @@ def glide_until_push(encounter: Encounter, delta: Floats, velocity: Floats) -> t
     fraction = np.linspace(0.0, 1.0, _SAMPLES)[1:, None]
     times = out * (fraction * (2.0 - fraction))  # dense near the end, where a law fades
     positive = push(times) > 0.0
-    positive[-1] = False  # at zero indentation there is no force, only its rounding
+    positive[-1] = False  # where the bodies part there is no force, only its rounding
     pushes = positive.any(axis=0)
     index = positive.argmax(axis=0)
     column = np.arange(len(delta))
     late = times[index, column]
     if (pushes & (index > 0)).any():
         with np.errstate(all="ignore"):
-            root = _first_push(push, times[np.maximum(index - 1, 0), column], late)
+            root = find_root(push, times[np.maximum(index - 1, 0), column], late)
         late = np.where(index > 0, root, late)
-    return Glide(np.where(pushes, late, out), delta, velocity, gravity), np.asarray(pushes), stays & ~pushes
-
-
-def _first_push(push: Callable[[Floats], Floats], early: Floats, late: Floats) -> Floats:
-    """Return when `push` becomes positive between `early` (it is not) and `late` (it is), by the Illinois method."""
-    below, above = push(early), push(late)
-    side = np.zeros(len(late), dtype=int)
-    for _ in range(60):
-        middle = (early * above - late * below) / (above - below)
-        value = push(middle)
-        up = value > 0.0
-        below = np.where(up, np.where(side > 0, 0.5 * below, below), value)
-        above = np.where(up, value, np.where(side < 0, 0.5 * above, above))
-        early, late = np.where(up, early, middle), np.where(up, middle, late)
-        side = np.where(up, 1, -1)
-        if not np.any(late - early > 1e-13 * late):
-            break
-    return late
+    return Glide(np.where(pushes, late, out), delta, velocity, gravity, encounter.floor), np.asarray(pushes), stays & ~pushes

@@ -26,10 +26,11 @@ def force_peak(contact: Contact, encounter: Encounter) -> tuple[Floats, Floats]:
     for (piece, motion), low in zip(stretches, lows, strict=True):
         drops = piece.drops
         margin = 1e-3 * np.abs(lowest[drops]) + 1e-3 * encounter.gravity[drops]
-        starts_high = encounter.take(drops).acceleration(motion.delta, motion.velocity) if not motion.delta.any() else low
+        here = encounter.under(piece.law).take(drops)
+        starts_high = here.acceleration(motion.delta, motion.velocity) if not piece.start.any() else low
         if not (np.minimum(low, starts_high) <= lowest[drops] + margin).any():
             continue  # the peak lies in another stretch
-        found, x = _least_acceleration(motion, encounter.take(drops))
+        found, x = _least_acceleration(motion, here)
         better = found < least[drops]
         least[drops[better]] = found[better]
         when[drops[better]] = (piece.start + motion.duration * motion.rule.map_time(x))[better]
@@ -66,7 +67,7 @@ def _accelerations(stretch: Stretch, encounter: Encounter, x: Floats) -> Floats:
     weights = stretch.rule.weights(x)
     delta = weights[0] * stretch.delta + (weights[1:] * stretch.node_delta[:, None]).sum(axis=0)
     velocity = weights[0] * stretch.velocity + (weights[1:] * stretch.node_velocity[:, None]).sum(axis=0)
-    return encounter.acceleration(np.maximum(delta, 0.0), velocity)
+    return encounter.acceleration(np.maximum(delta, encounter.floor), velocity)
 
 
 def _vertex(left: Floats, middle: Floats, right: Floats, spacing: float) -> Floats:

@@ -48,10 +48,11 @@ class Stretch:
         whose square the error at the end goes, and the balance of energy over the stretch.
         """
         mass, law = encounter.mass, encounter.law
-        end_delta, end_velocity = np.maximum(self.node_delta[-1], 0.0), self.node_velocity[-1]
+        end_delta, end_velocity = np.maximum(self.node_delta[-1], encounter.floor), self.node_velocity[-1]
         gain = 0.5 * mass * (end_velocity - self.velocity) * (end_velocity + self.velocity)
         gain += law.elastic_energy(end_delta) - law.elastic_energy(self.delta) - mass * encounter.gravity * (end_delta - self.delta)
-        scale = mass * (encounter.approach_speed**2 + encounter.gravity * self.node_delta.max(axis=0))
+        gain += law.plastic_work(end_delta) - law.plastic_work(self.delta)
+        scale = mass * (encounter.approach_speed**2 + encounter.gravity * (self.node_delta.max(axis=0) - encounter.floor))
         closes = np.abs(gain + self.dissipated) <= 0.1 * tolerance * scale
         # an acceleration that changes no speed need not be resolved: of a creeping sphere it is but rounding
         needed = np.abs(self.node_velocity).max(axis=0) / self.duration
@@ -139,7 +140,7 @@ def solve_stretch(
         unknowns[:, left] = own
     node_delta, node_velocity = newton.motion(unknowns)
     accelerations = unknowns[:-1] * newton.acceleration_unit
-    _, dissipative = encounter.law.forces(np.maximum(node_delta, 0.0), node_velocity, encounter.approach_speed)
+    _, dissipative = encounter.law.forces(np.maximum(node_delta, encounter.floor), node_velocity, encounter.approach_speed)
     lasts = unknowns[-1] * duration
     lost = lasts * (rule.integral[-1] @ (dissipative * node_velocity))
     return Stretch(rule, lasts, delta, velocity, node_delta, node_velocity, accelerations, lost, solved)
@@ -172,7 +173,7 @@ class _Newton:
         """Return the residual, and the indentation, rate and acceleration it was made from."""
         delta, velocity = self.motion(unknowns)
         end = delta[-1].copy()
-        np.maximum(delta, 0.0, out=delta)
+        np.maximum(delta, self.encounter.floor, out=delta)
         acceleration = self.encounter.acceleration(delta, velocity)
         residual = np.empty_like(unknowns)
         np.divide(acceleration, self.acceleration_unit, out=residual[:-1])
@@ -238,7 +239,7 @@ class _Newton:
         if len(drops) < len(speed_unit):
             encounter, speed_unit, length_unit, unit = encounter.take(drops), speed_unit[drops], length_unit[drops], unit[drops]
             unknowns, delta, velocity, acceleration = unknowns[:, drops], delta[:, drops], velocity[:, drops], acceleration[:, drops]
-        delta_step, velocity_step = 1e-7 * delta.max(axis=0) + 1e-300, 1e-7 * speed_unit
+        delta_step, velocity_step = 1e-7 * (delta.max(axis=0) - encounter.floor) + 1e-300, 1e-7 * speed_unit
         by_delta = (encounter.acceleration(delta + delta_step, velocity) - acceleration) * (length_unit / unit / delta_step)
         by_velocity = (encounter.acceleration(delta, velocity + velocity_step) - acceleration) * (speed_unit / unit / velocity_step)
 

@@ -1,0 +1,72 @@
+"""The restitution-based contact of MSC Adams: a penalty and Poisson's hypothesis."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from vibroimpact.contact.law import CompliantLaw, memory, parameter
+from vibroimpact.contact.pair import Array
+
+
+@dataclass(frozen=True, kw_only=True)
+class AdamsPoisson(CompliantLaw):
+    r"""Penalty spring with Poisson's hypothesis: the impulse of restitution is e times that of compression.
+
+    .. math:: F = p\, \delta \ \text{on approach},\qquad F = e^2 p\, \delta \ \text{on the way out}
+
+    Parameters
+    ----------
+    penalty : float or array
+        Penalty :math:`p` [N/m], > 0.
+    restitution : float or array
+        Restitution :math:`e` [-], in (0, 1].
+    turned : float or array, default 0
+        State: 1 once the contact has passed its deepest point [-].
+
+    Notes
+    -----
+    Adams' manual names the two parameters of its POISSON contact, says that the penalty only keeps the penetration
+    small and that the restitution sets the loss, and does not print the course of the force. This law has the same
+    parameters and the same outcome, exactly: both the ratio of the impulses and that of the speeds are e. What
+    happens within the contact (force, penetration, duration) is that of a linear spring and is no prediction of
+    Adams. The force falls at the deepest point from :math:`p\delta` to :math:`e^2 p\delta`.
+
+    References
+    ----------
+    MSC Software. Adams/Solver guide, statement CONTACT, arguments POISSON, PENALTY, RESTITUTION_COEFFICIENT.
+
+    Examples
+    --------
+    >>> law = AdamsPoisson(penalty=100.0, restitution=0.5)
+    >>> float(sum(law.forces(1.0, 1.0, 1.0))), float(sum(law.after_compression(2.0).forces(1.0, -1.0, 1.0)))
+    (100.0, 25.0)
+    """
+
+    name = "adams-poisson"
+    equation = "F = p delta on approach, e^2 p delta on the way out"
+    source = "MSC Adams/Solver guide, statement CONTACT (parameters and outcome; the course of the force is not published)"
+    contact_end = "zero-indentation"
+    tension = "none"
+
+    penalty: Array = parameter("penalty p", "N/m", example=2e6, above=0)
+    restitution: Array = parameter("restitution e", example=0.7, above=0, at_most=1)
+    turned: Array = memory("has the contact passed its deepest point? 1 if so")
+
+    def forces(self, delta: Array, delta_dot: Array, approach_speed: Array) -> tuple[Array, Array]:
+        """Return the force of the way out, and what the approach needs beyond it [N]."""
+        kept = self.restitution * self.restitution
+        return kept * self.penalty * delta, (1.0 - kept) * (1.0 - self.turned) * self.penalty * delta
+
+    def elastic_energy(self, delta: Array) -> Array:
+        r"""Return :math:`e^2 p \delta^2/2` [J]."""
+        return 0.5 * self.restitution**2 * self.penalty * delta * delta
+
+    def after_compression(self, deepest: Array) -> AdamsPoisson:
+        """Return the law for the way out, of the drops that have been deeper than zero."""
+        return self.changed({"turned": np.where(deepest > 0.0, 1.0, self.turned)})
+
+    def closed_form_restitution(self, mass: Array, speed: Array) -> Array:
+        """Return the restitution that was asked for."""
+        return self.restitution + 0.0 * mass * speed

@@ -1,0 +1,88 @@
+"""Jackson, Green and Marghitu's restitution: a fit to finite elements of elastic-plastic spheres."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from vibroimpact.contact.law import InstantaneousLaw, parameter
+from vibroimpact.contact.pair import Array
+
+_CHANGE = 60.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class JacksonGreenMarghitu(InstantaneousLaw):
+    r"""Restitution of an elastic-perfectly-plastic sphere (Jackson, Green and Marghitu 2010).
+
+    .. math:: e = \begin{cases} 1 & V^* \le 1 \\
+              1 - 0.1 \ln V^* \left(\frac{V^* - 1}{59}\right)^{0.156} & 1 < V^* \le 60 \\
+              1 - 0.1 \ln 60 - 0.11 \ln\frac{V^*}{60}\, (V^* - 60)^{2.36 S_y/E^*} & V^* > 60 \end{cases}
+
+    with :math:`V^* = v/v_c`, :math:`v_c = \sqrt{4 \omega_c P_c/(5 m)}`,
+    :math:`\omega_c = R\, (\pi C S_y/2 E^*)^2`, :math:`P_c = \tfrac43 (R/E^*)^2 (\pi C S_y/2)^3` and
+    :math:`C = 1.295\, \mathrm{e}^{0.736 \nu}`.
+
+    Parameters
+    ----------
+    effective_modulus : float or array
+        Effective modulus :math:`E^*` [Pa], > 0.
+    effective_radius : float or array
+        Effective radius :math:`R` [m], > 0.
+    yield_strength : float or array
+        Yield strength :math:`S_y` of the body that yields [Pa], > 0.
+    poissons_ratio : float or array
+        Poisson's ratio :math:`\nu` of the body that yields [-], in [0, 0.5).
+
+    Notes
+    -----
+    An instantaneous law: it gives the restitution and no force. Meant to compare the elastic-plastic laws with. The fits
+    rest on finite-element results up to :math:`V^*` of about 1000; far beyond they would turn negative, and are
+    held at zero. Every impact falls on fresh material.
+
+    References
+    ----------
+    Jackson, R. L., Green, I. and Marghitu, D. B. (2010). Predicting the coefficient of restitution of impacting
+    elastic-perfectly plastic spheres. Nonlinear Dynamics 60, 217-229.
+
+    Examples
+    --------
+    >>> law = JacksonGreenMarghitu(effective_modulus=7e10, effective_radius=0.01, yield_strength=4e8, poissons_ratio=0.3)
+    >>> [round(float(law.closed_form_restitution(0.01, v)), 5) for v in (0.001, 1.0, 10.0)]
+    [1.0, 0.78782, 0.4878]
+    """
+
+    name = "jackson-green-marghitu"
+    equation = (
+        "e = 1 - 0.1 ln(V) ((V - 1)/59)^0.156 for 1 < V <= 60, 1 - 0.1 ln(60) - 0.11 ln(V/60) (V - 60)^(2.36 Sy/E*) beyond, V = v/v_c"
+    )
+    source = "Jackson, Green & Marghitu 2010, Nonlinear Dynamics 60:217"
+
+    effective_modulus: Array = parameter("effective modulus E*", "Pa", above=0, from_pair="effective_modulus")
+    effective_radius: Array = parameter("effective radius R", "m", above=0, from_pair="effective_radius")
+    yield_strength: Array = parameter("yield strength Sy", "Pa", example=1e8, above=0, from_pair="yield_strength")
+    poissons_ratio: Array = parameter(
+        "Poisson's ratio of the body that yields", example=0.3, at_least=0, below=0.5, from_pair="poissons_ratio"
+    )
+
+    @property
+    def free_parameter(self) -> str:
+        """The yield strength."""
+        return "yield_strength"
+
+    def critical_speed(self, mass: Array) -> Array:
+        """Return the speed at which a sphere of a mass [kg] begins to yield [m/s]."""
+        pressure = 0.5 * np.pi * 1.295 * np.exp(0.736 * self.poissons_ratio) * self.yield_strength
+        indentation = self.effective_radius * (pressure / self.effective_modulus) ** 2
+        force = 4.0 / 3.0 * (self.effective_radius / self.effective_modulus) ** 2 * pressure**3
+        return np.sqrt(0.8 * indentation * force / mass)
+
+    def separation_speed(self, approach_speed: Array, mass: Array) -> Array:
+        """Return the restitution of the fit times the approach speed [m/s]."""
+        ratio = approach_speed / self.critical_speed(mass)
+        low = np.clip(ratio, 1.0, _CHANGE)
+        high = np.maximum(ratio, _CHANGE)
+        loss = 0.1 * np.log(low) * ((low - 1.0) / (_CHANGE - 1.0)) ** 0.156
+        loss = loss + 0.11 * np.log(high / _CHANGE) * (high - _CHANGE) ** (2.36 * self.yield_strength / self.effective_modulus)
+        return np.maximum(1.0 - loss, 0.0) * approach_speed

@@ -1,0 +1,64 @@
+"""Krijt and others' law: a viscoelastic sphere that sticks."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from vibroimpact.contact.law import parameter
+from vibroimpact.contact.pair import Array
+from vibroimpact.contact.sticking import StickingLaw
+
+
+@dataclass(frozen=True, kw_only=True)
+class Krijt(StickingLaw):
+    r"""Adhesion with viscoelastic loss in the bulk (after Krijt and others 2013).
+
+    .. math:: F = F_\mathrm{JKR}(a) + 2 E^* A\, a\, \dot\delta
+
+    with the contact radius a of Johnson, Kendall and Roberts.
+
+    Parameters
+    ----------
+    effective_modulus : float or array
+        Effective modulus :math:`E^*` [Pa], > 0.
+    effective_radius : float or array
+        Effective radius :math:`R` [m], > 0.
+    work_of_adhesion : float or array
+        Work of adhesion :math:`w` [J/m^2], > 0.
+    dissipation_time : float or array
+        Dissipative constant :math:`A` [s], >= 0; in the paper's terms the relaxation time over the square of
+        Poisson's ratio.
+
+    Notes
+    -----
+    Without adhesion it is Kuwabara and Kono's law. The paper also lets the work of adhesion depend on the
+    speed of the contact's edge, and lets the sphere yield; those two losses are not in this law.
+
+    References
+    ----------
+    Krijt, S., Guettler, C., Heisselmann, D., Dominik, C. and Tielens, A. G. G. M. (2013). Energy dissipation in
+    head-on collisions of spheres. J. Phys. D: Appl. Phys. 46, 435303.
+
+    Examples
+    --------
+    >>> law = Krijt(effective_modulus=1e9, effective_radius=1e-3, work_of_adhesion=0.1, dissipation_time=1e-7)
+    >>> _, dissipative = law.forces(0.0, 1.0, 1.0)
+    >>> bool(abs(dissipative / (2e9 * 1e-7 * law.contact_radius(0.0)) - 1) < 1e-12)
+    True
+    """
+
+    name = "krijt"
+    equation = "F = F_JKR(a) + 2 E* A a delta_dot"
+    source = "Krijt et al. 2013, J. Phys. D 46:435303 (the loss in the bulk)"
+
+    dissipation_time: Array = parameter("dissipative constant A", "s", example=1e-5, at_least=0)
+
+    @property
+    def free_parameter(self) -> str:
+        """The dissipative constant."""
+        return "dissipation_time"
+
+    def forces(self, delta: Array, delta_dot: Array, approach_speed: Array) -> tuple[Array, Array]:
+        """Return the static and the dissipative force [N]."""
+        damping = 2.0 * self.effective_modulus * self.dissipation_time * self.contact_radius(delta)
+        return self.adhesive_force(delta), damping * delta_dot

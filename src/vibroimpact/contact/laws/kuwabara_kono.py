@@ -1,0 +1,64 @@
+"""Kuwabara and Kono's law: a viscoelastic sphere."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from vibroimpact.contact.law import parameter
+from vibroimpact.contact.pair import Array
+from vibroimpact.contact.power_law import SphereLaw
+
+
+@dataclass(frozen=True, kw_only=True)
+class KuwabaraKono(SphereLaw):
+    r"""Viscoelastic spheres (Kuwabara and Kono 1987; Brilliantov and others 1996).
+
+    .. math:: F = \max\left(0,\ K \left[\delta^{3/2} + \tfrac32 A \sqrt\delta\, \dot\delta\right]\right)
+
+    Parameters
+    ----------
+    stiffness : float or array
+        Contact stiffness :math:`K` [N/m^1.5], > 0.
+    dissipation_time : float or array
+        Dissipative constant :math:`A` [s], >= 0.
+
+    Notes
+    -----
+    The viscous stress follows the elastic one, :math:`\delta + A \dot\delta` in place of :math:`\delta`, to first
+    order in A; valid while A is short beside the contact. The restitution falls with the speed, as
+    :math:`1 - c\, v^{1/5}`. The contact ends when the force is zero. A is best fitted to a measurement: its
+    published formula in terms of the two viscosities is disputed for nearly incompressible materials.
+
+    References
+    ----------
+    Kuwabara, G. and Kono, K. (1987). Restitution coefficient in a collision between two spheres. Jpn. J. Appl.
+    Phys. 26, 1230-1233.
+    Brilliantov, N. V., Spahn, F., Hertzsch, J.-M. and Poeschel, T. (1996). Model for collisions in granular gases.
+    Phys. Rev. E 53, 5382-5392.
+
+    Examples
+    --------
+    >>> law = KuwabaraKono(stiffness=2.0, dissipation_time=0.1)
+    >>> elastic, dissipative = law.forces(4.0, 1.0, 1.0)
+    >>> float(elastic), round(float(dissipative), 6)
+    (16.0, 0.6)
+    """
+
+    name = "kuwabara-kono"
+    equation = "F = max(0, K [delta^1.5 + 3/2 A sqrt(delta) delta_dot])"
+    source = "Kuwabara & Kono 1987, Jpn. J. Appl. Phys. 26:1230; Brilliantov et al. 1996, Phys. Rev. E 53:5382"
+    contact_end = "zero-force"
+    tension = "cut"
+
+    dissipation_time: Array = parameter("dissipative constant A", "s", example=1e-5, at_least=0)
+
+    @property
+    def free_parameter(self) -> str:
+        """The dissipative constant."""
+        return "dissipation_time"
+
+    def forces(self, delta: Array, delta_dot: Array, approach_speed: Array) -> tuple[Array, Array]:
+        """Return the elastic and the dissipative force [N], before the clip at zero."""
+        return self.elastic_force(delta), 1.5 * self.stiffness * self.dissipation_time * np.sqrt(delta) * delta_dot

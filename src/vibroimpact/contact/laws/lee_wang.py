@@ -1,0 +1,52 @@
+"""Lee and Wang's law: half the damping of Hunt and Crossley."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from vibroimpact.contact.hysteretic import HystereticLaw
+from vibroimpact.contact.pair import Array
+
+
+@dataclass(frozen=True, kw_only=True)
+class LeeWang(HystereticLaw):
+    r"""Hertz's force with hysteretic damping (Lee and Wang 1983).
+
+    .. math:: F = K \delta^n \left[1 + \tfrac34 (1 - e)\, \dot\delta / \dot\delta_0\right]
+
+    with :math:`\dot\delta_0` the speed at the first touch of this impact.
+
+    Parameters
+    ----------
+    stiffness : float or array
+        Contact stiffness :math:`K` [N/m^n], > 0.
+    restitution : float or array
+        Restitution asked for, :math:`e` [-], in [0, 1].
+    exponent : float or array, default 1.5
+        Force exponent :math:`n` [-], >= 1.
+
+    Notes
+    -----
+    Loses about half of what is asked: 0.7 gives 0.869, and no value gives less than 0.66.
+
+    References
+    ----------
+    Lee, T. W. and Wang, A. C. (1983). On the dynamics of intermittent-motion mechanisms, part 1: dynamic model
+    and response. J. Mech. Transm. Autom. Des. 105, 534-540.
+
+    Examples
+    --------
+    >>> law = LeeWang(stiffness=2.0, restitution=0.5)
+    >>> elastic, dissipative = law.forces(4.0, 1.0, 1.0)
+    >>> float(elastic), round(float(dissipative), 6)
+    (16.0, 6.0)
+    """
+
+    name = "lee-wang"
+    equation = "F = K delta^n [1 + 3/4 (1 - e) delta_dot / v0]"
+    source = "Lee & Wang 1983, J. Mech. Transm. Autom. Des. 105:534"
+
+    @property
+    def damping_factor(self) -> Array:
+        """The factor D [-] of the approach speed's share in the force."""
+        return 0.75 * (1.0 - self.restitution)

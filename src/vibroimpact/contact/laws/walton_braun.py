@@ -1,0 +1,104 @@
+"""Walton and Braun's law: two linear springs, one for loading and a stiffer one for unloading."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from vibroimpact.contact.elastic_plastic import ElasticPlasticLaw
+from vibroimpact.contact.law import parameter
+from vibroimpact.contact.pair import Array
+from vibroimpact.errors import InputError
+
+
+@dataclass(frozen=True, kw_only=True)
+class WaltonBraun(ElasticPlasticLaw):
+    r"""Partially latching spring (Walton and Braun 1986).
+
+    .. math:: F = k_1 \delta \ \text{loading},\qquad F = k_2 (\delta - \delta_r) \ \text{unloading},
+              \qquad \delta_r = \delta_m (1 - k_1/k_2)
+
+    with :math:`k_2 = k_1/e^2`, if a `restitution` is given, or :math:`k_2 = k_1 + S F_m`, if `stiffening` is.
+
+    Parameters
+    ----------
+    stiffness : float or array
+        Stiffness of loading :math:`k_1` [N/m], > 0.
+    restitution : float or array, optional
+        Restitution asked for, :math:`e` [-], in (0, 1].
+    stiffening : float or array, optional
+        Growth of the unloading stiffness with the largest force, :math:`S` [1/m], >= 0.
+    loaded_to : float or array, default 0
+        State: deepest indentation of this contact so far [m].
+
+    Raises
+    ------
+    InputError
+        Unless exactly one of `restitution` and `stiffening` is given.
+
+    Notes
+    -----
+    A stand-in for plastic deformation, as discrete-element programs use it. With a constant ratio of the stiffnesses
+    the restitution is exactly the one asked for; with `stiffening` it falls with the speed,
+    :math:`e = \sqrt{\omega_0/(S v_0 + \omega_0)}`, :math:`\omega_0 = \sqrt{k_1/m}`. The contact ends at zero force,
+    while the bodies overlap; the next contact begins anew, as in those programs.
+
+    References
+    ----------
+    Walton, O. R. and Braun, R. L. (1986). Viscosity, granular-temperature, and stress calculations for shearing
+    assemblies of inelastic, frictional disks. J. Rheology 30, 949-980.
+
+    Examples
+    --------
+    >>> law = WaltonBraun(stiffness=100.0, restitution=0.5)
+    >>> loading, _ = law.forces(0.5, 1.0, 1.0)
+    >>> unloading, _ = law.after_compression(0.6).forces(0.5, -1.0, 1.0)
+    >>> float(loading), round(float(unloading), 9)
+    (50.0, 20.0)
+    """
+
+    name = "walton-braun"
+    equation = "F = k1 delta loading, k2 (delta - delta_r) unloading; k2 = k1 / e^2 or k1 + S F_max"
+    source = "Walton & Braun 1986, J. Rheology 30:949"
+    lasting = False
+    unloading_exponent = 1.0
+
+    stiffness: Array = parameter("stiffness of loading k1", "N/m", example=2e6, above=0)
+    restitution: Array | None = parameter(
+        "restitution asked for, unless stiffening is given", example=0.7, above=0, at_most=1, default=None
+    )
+    stiffening: Array | None = parameter("growth S of the unloading stiffness with the largest force", "1/m", at_least=0, default=None)
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if (self.restitution is None) == (self.stiffening is None):
+            raise InputError(f"{self.name} needs either restitution or stiffening [1/m], and not both")
+
+    @property
+    def free_parameter(self) -> str:
+        """The stiffening, or the restitution if that is given."""
+        return "stiffening" if self.restitution is None else "restitution"
+
+    def loading_force(self, delta: Array) -> Array:
+        r"""Return :math:`k_1 \delta` [N]."""
+        return self.stiffness * delta
+
+    def loading_work(self, delta: Array) -> Array:
+        r"""Return :math:`k_1 \delta^2/2` [J]."""
+        return 0.5 * self.stiffness * delta * delta
+
+    def elastic_part(self, deepest: Array) -> Array:
+        r"""Return :math:`\delta_m k_1/k_2` [m]."""
+        if self.restitution is not None:
+            return self.restitution**2 * deepest
+        return deepest / (1.0 + self.stiffening * deepest)
+
+    def closed_form_restitution(self, mass: Array, speed: Array) -> Array:
+        """Return the published restitution."""
+        if np.any(self.loaded_to):
+            return super().closed_form_restitution(mass, speed)
+        if self.restitution is not None:
+            return self.restitution + 0.0 * mass * speed
+        frequency = np.sqrt(self.stiffness / mass)
+        return np.sqrt(frequency / (self.stiffening * speed + frequency))

@@ -1,0 +1,54 @@
+"""Zhiying and Qishao's law: Lankarani and Nikravesh's damping with a correction."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from vibroimpact.contact.hysteretic import HystereticLaw
+from vibroimpact.contact.pair import Array
+
+
+@dataclass(frozen=True, kw_only=True)
+class ZhiyingQishao(HystereticLaw):
+    r"""Hertz's force with hysteretic damping (Zhiying and Qishao 2006).
+
+    .. math:: F = K \delta^n \left[1 + \tfrac34 (1 - e^2)\, \mathrm{e}^{2 (1 - e)}\, \dot\delta / \dot\delta_0\right]
+
+    with :math:`\dot\delta_0` the speed at the first touch of this impact.
+
+    Parameters
+    ----------
+    stiffness : float or array
+        Contact stiffness :math:`K` [N/m^n], > 0.
+    restitution : float or array
+        Restitution asked for, :math:`e` [-], in [0, 1].
+    exponent : float or array, default 1.5
+        Force exponent :math:`n` [-], >= 1.
+
+    Notes
+    -----
+    For e above about 0.5: 0.7 gives 0.680, 0.3 gives 0.327, and no value gives less than 0.17.
+
+    References
+    ----------
+    Zhiying, Q. and Qishao, L. (2006). Analysis of impact process based on restitution coefficient. Journal of
+    Dynamics and Control 4, 294-298 (in Chinese).
+
+    Examples
+    --------
+    >>> law = ZhiyingQishao(stiffness=2.0, restitution=0.5)
+    >>> elastic, dissipative = law.forces(4.0, 1.0, 1.0)
+    >>> float(elastic), round(float(dissipative), 6)
+    (16.0, 24.464536)
+    """
+
+    name = "zhiying-qishao"
+    equation = "F = K delta^n [1 + 3/4 (1 - e^2) exp(2 (1 - e)) delta_dot / v0]"
+    source = "Zhiying & Qishao 2006, J. Dynamics and Control 4:294"
+
+    @property
+    def damping_factor(self) -> Array:
+        """The factor D [-] of the approach speed's share in the force."""
+        return 0.75 * (1.0 - self.restitution * self.restitution) * np.exp(2.0 * (1.0 - self.restitution))

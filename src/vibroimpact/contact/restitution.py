@@ -1,0 +1,194 @@
+"""The restitution that a law achieves, in closed form or by integration, and its inverse.
+
+Always without gravity: for a mass that comes with a speed and leaves with another.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable
+from dataclasses import fields
+from typing import TypeVar
+
+import numpy as np
+
+from vibroimpact.contact.law import CompliantLaw, ContactLaw, InstantaneousLaw
+from vibroimpact.contact.pair import Array
+from vibroimpact.contact.phase.collocation import Floats
+from vibroimpact.contact.phase.contact import CAPTURED, FAILED
+from vibroimpact.contact.phase.contact_phase import contact_phase
+from vibroimpact.contact.phase.encounter import encounter_of
+from vibroimpact.contact.phase.warm_starts import WarmStarts
+from vibroimpact.contact.roots import find_root
+from vibroimpact.errors import ComputationError, InputError
+from vibroimpact.ranges import Range
+
+Law = TypeVar("Law", bound=ContactLaw)
+
+_CHUNK = 2000  # drops integrated at once: enough for arrays to pay, few enough to stay in the cache
+_INVERSE_TOLERANCE = 1e-12
+_FARTHEST = 20  # steps of four from its present value in which a free parameter is looked for
+_EXACT = 1e-14
+
+
+def achieved_restitution(law: ContactLaw, mass: Array, speed: Array, *, tolerance: float = 1e-9) -> Array:
+    """Return the restitution that a law achieves, by its closed form where there is one, else by integration.
+
+    Parameters
+    ----------
+    law : ContactLaw
+        The law; its parameters may be arrays.
+    mass : float or array
+        Effective mass of the pair [kg], > 0; of a sphere on a plate that is held, the sphere's.
+    speed : float or array
+        Approach speed [m/s], > 0.
+    tolerance : float, default 1e-9
+        Relative error allowed where it is integrated.
+
+    Returns
+    -------
+    float or array
+        Separation speed over approach speed [-], in the shape that the arguments and the law's parameters have
+        together; zero where the bodies stick.
+
+    Raises
+    ------
+    InputError
+        If mass or speed is not positive and finite, or the shapes do not agree.
+    ComputationError
+        If the contact can't be integrated.
+
+    See Also
+    --------
+    integrated_restitution : by integration always.
+
+    Examples
+    --------
+    >>> from vibroimpact.contact.laws.hunt_crossley import HuntCrossley
+    >>> law = HuntCrossley(stiffness=5e8, restitution=0.7)
+    >>> [round(float(achieved_restitution(law, 0.09, v)), 4) for v in (1.0, 3.0)]
+    [0.768, 0.768]
+    """
+    shape = _shape(law, mass, speed)
+    found = law.closed_form_restitution(np.asarray(mass, dtype=float), np.asarray(speed, dtype=float))
+    return integrated_restitution(law, mass, speed, tolerance=tolerance) if found is None else np.broadcast_to(found, shape)[()]
+
+
+def integrated_restitution(law: ContactLaw, mass: Array, speed: Array, *, tolerance: float = 1e-9) -> Array:
+    """Return the restitution that a law achieves by integrating the contact; takes what `achieved_restitution` takes.
+
+    Examples
+    --------
+    >>> from vibroimpact.contact.laws.hunt_crossley import HuntCrossley
+    >>> law = HuntCrossley(stiffness=5e8, restitution=0.7)
+    >>> float(abs(integrated_restitution(law, 0.09, 3.0) - achieved_restitution(law, 0.09, 3.0))) < 1e-9
+    True
+    """
+    found = _by_integration(law, mass, speed, tolerance)
+    if np.isnan(found).any():
+        raise ComputationError(
+            f"{law.name} could not be integrated to the tolerance for {int(np.isnan(found).sum())} of {np.size(found)} drops"
+        )
+    return found
+
+
+def _by_integration(law: ContactLaw, mass: Array, speed: Array, tolerance: float) -> Array:
+    """Return the restitution, NaN where the contact could not be integrated."""
+    shape = _shape(law, mass, speed)
+    if isinstance(law, InstantaneousLaw):
+        return np.broadcast_to(law.closed_form_restitution(mass, speed), shape)[()]
+    assert isinstance(law, CompliantLaw)
+    masses, speeds = (np.broadcast_to(np.asarray(value, dtype=float), shape).ravel() for value in (mass, speed))
+    arrays = {item.name: value for item in fields(law) if np.ndim(value := getattr(law, item.name))}
+    flat = law.changed({name: np.broadcast_to(value, shape).ravel() for name, value in arrays.items()})
+    found = np.empty(len(masses))
+    for start in range(0, len(masses), _CHUNK):
+        drops = np.arange(start, min(start + _CHUNK, len(masses)))
+        found[drops] = _integrated(flat.take(drops), masses[drops], speeds[drops], tolerance)
+    return found.reshape(shape)[()]
+
+
+def _integrated(law: CompliantLaw, mass: Floats, speed: Floats, tolerance: float) -> Floats:
+    """Return the restitution of some drops; NaN of one that can't be integrated."""
+    size = len(mass)
+    contact = contact_phase(encounter_of(law, mass, np.zeros(size), speed), tolerance, WarmStarts(size), np.arange(size))
+    found = np.where(contact.outcome == CAPTURED, 0.0, -contact.final_rate / speed)
+    return np.where(contact.outcome == FAILED, np.nan, found)
+
+
+def law_achieving(law: Law, restitution: Array, mass: Array, speed: Array) -> Law:
+    """Return a law with its free parameter such that it achieves a restitution; see `ContactLaw.achieving`."""
+    wanted = np.asarray(restitution, dtype=float)
+    try:
+        Range(at_least=0, at_most=1).check(wanted)
+    except InputError as error:
+        raise InputError(error.message, "restitution") from None
+    name = law.free_parameter
+    if name is None:
+        now = np.asarray(achieved_restitution(law, mass, speed))
+        if np.all(np.abs(now - wanted) <= 1e-12):
+            return law
+        raise InputError(f"{law.name} has no parameter that sets its loss; it achieves {_between(now)}, not {_between(wanted)}")
+    shape = np.broadcast_shapes(_shape(law, mass, speed), wanted.shape)
+    allowed: Range = next(item for item in fields(law) if item.name == name).metadata["range"]
+
+    def achieved(value: Array) -> Array:
+        trial = law.changed({name: value})
+        found = trial.closed_form_restitution(mass, speed)
+        return np.asarray(_by_integration(trial, mass, speed, _INVERSE_TOLERANCE) if found is None else found)
+
+    now = np.broadcast_to(np.asarray(getattr(law, name), dtype=float), shape)
+    low, high, (least, most) = _bracket(achieved, wanted, np.where(now > 0.0, now, 1.0), allowed)
+    missed = np.isnan(low) | np.isnan(high)
+    if missed.any():
+        first = np.flatnonzero(missed.ravel())[0]
+        numbers = (float(np.broadcast_to(value, shape).ravel()[first]) for value in (least, most, speed, wanted))
+        raise InputError("{} reaches restitutions from {:.4g} to {:.4g} at {:.4g} m/s, not {:g}".format(law.name, *numbers))
+    found = find_root(lambda value: achieved(value) - wanted, low, high)
+    return law.changed({name: found if shape else float(found)})
+
+
+def _bracket(achieved: Callable[[Array], Array], wanted: Array, start: Array, allowed: Range) -> tuple[Array, Array, tuple[Array, Array]]:
+    """Return values of a parameter that achieve no more than is wanted, and more; NaN where none was found.
+
+    Also the least and the largest restitution that were seen. Looks at the ends of the range and in steps of four away
+    from the start.
+    """
+    low, high, least, most = (
+        np.full_like(start, np.nan),
+        np.full_like(start, np.nan),
+        np.full_like(start, np.inf),
+        np.full_like(start, -np.inf),
+    )
+    ends = [end + 0.0 * start for end in (allowed.at_least, allowed.at_most) if np.isfinite(end)]
+    steps = (start * 4.0**power for count in range(_FARTHEST) for power in ((-count, count) if count else (0,)))
+    for value in itertools.chain(ends, steps):
+        trial = np.clip(value, allowed.at_least, allowed.at_most)
+        restitution = achieved(trial)
+        least, most = np.fmin(least, restitution), np.fmax(most, restitution)
+        low = np.where(np.isnan(low) & (restitution <= wanted), trial, low)
+        high = np.where(np.isnan(high) & (restitution > wanted), trial, high)
+        exact = np.abs(restitution - wanted) <= _EXACT
+        low, high = np.where(exact, trial, low), np.where(exact, trial, high)
+        if not (np.isnan(low) | np.isnan(high)).any():
+            break
+    return low, high, (least, most)
+
+
+def _between(values: Array) -> str:
+    least, most = float(np.min(values)), float(np.max(values))
+    return f"{least:.4g}" if least == most else f"{least:.4g} to {most:.4g}"
+
+
+def _shape(law: ContactLaw, mass: Array, speed: Array) -> tuple[int, ...]:
+    """Return the common shape, having looked at the numbers."""
+    for name, value, unit in (("mass", mass, "kg"), ("speed", speed, "m/s")):
+        try:
+            Range(above=0).check(value, unit)
+        except InputError as error:
+            raise InputError(error.message, name) from None
+    values = [mass, speed, *(getattr(law, item.name) for item in fields(law))]
+    try:
+        return np.broadcast_shapes(*(np.shape(value) for value in values if value is not None))
+    except ValueError:
+        raise InputError("the arrays of mass, speed and the law's parameters must agree in shape") from None
