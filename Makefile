@@ -2,6 +2,7 @@
 # make test      install what the tests need and run them (make test-all: the slow ones too)
 # make check     lint, formatting and types, as CI does
 # make bench     the benchmarks
+# make docs      write the pages of the contact laws again
 # make help      this list
 
 PYTHON ?= python3
@@ -9,7 +10,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 OUTPUT := vibroimpact-demo
 
-.PHONY: help demo test test-all check bench clean
+.PHONY: help demo test test-all check bench docs clean
 
 demo: $(VENV)/installed
 	$(BIN)/vibroimpact demo --output $(OUTPUT) --force
@@ -27,6 +28,9 @@ check: $(VENV)/installed-lint
 
 bench: $(VENV)/installed
 	for script in benchmarks/bench_*.py; do $(BIN)/python $$script || exit 1; done
+
+docs: $(VENV)/installed
+	$(BIN)/python -m vibroimpact.report.law_pages docs
 
 $(VENV)/bin/python:
 	@command -v $(PYTHON) >/dev/null || { \

@@ -24,8 +24,11 @@ if TYPE_CHECKING:
     from vibroimpact.cases.reader import shipped_cases as shipped_cases
     from vibroimpact.cases.schema import Case as Case
     from vibroimpact.cases.schema import case_schema as case_schema
+    from vibroimpact.contact.law import ContactLaw as ContactLaw
     from vibroimpact.contact.law import contact_laws as contact_laws
     from vibroimpact.contact.law import find_contact_law as find_contact_law
+    from vibroimpact.contact.restitution import achieved_restitution as achieved_restitution
+    from vibroimpact.contact.restitution import integrated_restitution as integrated_restitution
     from vibroimpact.dynamics.problem import Problem as Problem
     from vibroimpact.dynamics.response import Outcome as Outcome
     from vibroimpact.dynamics.response import Response as Response
@@ -36,6 +39,9 @@ if TYPE_CHECKING:
     from vibroimpact.materials import Material as Material
     from vibroimpact.materials import find_material as find_material
     from vibroimpact.materials import material_library as material_library
+    from vibroimpact.report.comparison import Comparison as Comparison
+    from vibroimpact.report.comparison import compare_laws as compare_laws
+    from vibroimpact.report.comparison_folder import save_comparison as save_comparison
     from vibroimpact.report.save import remake_report as remake_report
     from vibroimpact.report.save import save_result as save_result
     from vibroimpact.storage.folder import read_result as read_result
@@ -45,7 +51,9 @@ if TYPE_CHECKING:
 _HOME = {
     "Body": "bodies.body",
     "Case": "cases.schema",
+    "Comparison": "report.comparison",
     "ComputationError": "errors",
+    "ContactLaw": "contact.law",
     "InputError": "errors",
     "Material": "materials",
     "Outcome": "dynamics.response",
@@ -53,10 +61,13 @@ _HOME = {
     "Response": "dynamics.response",
     "Result": "storage.result",
     "VibroimpactError": "errors",
+    "achieved_restitution": "contact.restitution",
     "case_schema": "cases.schema",
+    "compare_laws": "report.comparison",
     "contact_laws": "contact.law",
     "find_contact_law": "contact.law",
     "find_material": "materials",
+    "integrated_restitution": "contact.restitution",
     "load_case": "cases.reader",
     "material_library": "materials",
     "read_case": "cases.reader",
@@ -64,6 +75,7 @@ _HOME = {
     "remake_report": "report.save",
     "rigid_plate": "bodies.plate",
     "rigid_sphere": "bodies.sphere",
+    "save_comparison": "report.comparison_folder",
     "save_result": "report.save",
     "shipped_cases": "cases.reader",
     "simulate": "dynamics.simulate",

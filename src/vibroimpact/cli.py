@@ -81,6 +81,56 @@ def check(case: CaseArgument) -> None:
 
 
 @app.command()
+def compare(
+    case: CaseArgument,
+    laws: Annotated[str, typer.Option("--laws", metavar="A,B,C", help="The contact laws, separated by commas.")],
+    given: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--set", metavar="KEY=VALUE", help="A parameter for every law that has it, or LAW.KEY=VALUE for one; may be repeated."
+        ),
+    ] = None,
+    achieving: Annotated[
+        float | None,
+        typer.Option("--achieving", metavar="E", help="Tune each law so that the first impact achieves this restitution."),
+    ] = None,
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", metavar="DIR", help="The folder to make; by default CASE-compared.")
+    ] = None,
+    force: Force = False,
+) -> None:
+    """Run one case under several contact laws.
+
+    Parameters that the case's own law has are used where another law has the same.
+    """
+    from vibroimpact.cases.reader import load_case
+    from vibroimpact.report.comparison import compare_laws
+    from vibroimpact.report.comparison_folder import save_comparison
+    from vibroimpact.report.console import comparison_summary
+    from vibroimpact.report.progress import patient_progress
+    from vibroimpact.storage.folder import check_free
+
+    found = load_case(case)
+    target = Path(f"{_stem(case)}-compared") if output is None else output
+    check_free(target, force=force)
+    console = _console()
+    try:
+        with patient_progress("comparing", console) as progress:
+            comparison = compare_laws(
+                found,
+                [name.strip() for name in laws.split(",") if name.strip()],
+                _settings(given or []),
+                achieving=achieving,
+                progress=progress,
+            )
+        folder = save_comparison(comparison, target, force=force)
+    except KeyboardInterrupt:
+        _fail("interrupted; nothing was written", 130)
+    console.print(comparison_summary(comparison))
+    typer.echo(f"wrote {folder / 'report.html'}")
+
+
+@app.command()
 def report(directory: Annotated[Path, typer.Argument(metavar="DIR", help="A result folder.")]) -> None:
     """Remake the report of a result folder."""
     from vibroimpact.report.save import remake_report
@@ -89,11 +139,31 @@ def report(directory: Annotated[Path, typer.Argument(metavar="DIR", help="A resu
 
 
 @app.command()
-def laws() -> None:
-    """List the contact laws and their parameters."""
-    from vibroimpact.report.console import law_table
+def laws(
+    name: Annotated[str | None, typer.Argument(metavar="[NAME]", help="Show one law, and draw its curves.")] = None,
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", metavar="PNG", help="The picture of its curves; by default NAME.png.")
+    ] = None,
+    force: Annotated[bool, typer.Option("--force", help="Replace an existing picture.")] = False,
+) -> None:
+    """List the contact laws, or show one: equation, parameters, sources, and a picture of its curves."""
+    from vibroimpact.report.law_sheet import law_sheet, law_table
 
-    _console().print(law_table())
+    console = _console()
+    if name is None:
+        if output is not None:
+            raise InputError("name the law that is to be drawn: vibroimpact laws NAME -o PNG")
+        console.print(law_table(console.width))
+        return
+    from vibroimpact.report.law_curves import picture_path, save_law_picture
+
+    sheet, target = law_sheet(name), picture_path(name, output)
+    console.print(sheet)
+    typer.echo()
+    if target.exists() and not force:
+        typer.echo(f"{target} is there already and was left as it is; --force draws it anew")
+    else:
+        typer.echo(f"wrote {save_law_picture(name, target)}")
 
 
 @app.command()
@@ -155,7 +225,7 @@ def _run(name: str, output: Path | None, *, force: bool) -> None:
     from vibroimpact.storage.result import result_of
 
     case: Case = load_case(name)
-    target = Path(Path(name.removeprefix("paper:")).stem) if output is None else output
+    target = Path(_stem(name)) if output is None else output
     check_free(target, force=force)  # before the work, not after it
     console = _console()
     try:
@@ -166,6 +236,27 @@ def _run(name: str, output: Path | None, *, force: bool) -> None:
         _fail("interrupted; nothing was written", 130)
     console.print(result_summary(result_of(response), console.width))
     typer.echo(f"wrote {folder / 'report.html'}")
+
+
+def _stem(case: str) -> str:
+    """Return what a folder made from a case is called."""
+    return Path(case.removeprefix("paper:")).stem
+
+
+def _settings(given: list[str]) -> dict[str, object]:
+    """Read KEY=VALUE as a case file would: a number, a list, or a text with its unit."""
+    import tomllib
+
+    settings: dict[str, object] = {}
+    for item in given:
+        key, equals, value = item.partition("=")
+        if not (equals and key.strip() and value.strip()):
+            raise InputError(f'--set "{item}": give KEY=VALUE, such as restitution=0.7 or adams-impact.damping_max=180')
+        try:
+            settings[key.strip()] = tomllib.loads(f"value = {value}")["value"]
+        except ValueError:
+            settings[key.strip()] = value.strip()  # 5 mm needs no quotes here
+    return settings
 
 
 def _console() -> Console:

@@ -110,6 +110,13 @@ def test_closed_form_agrees_with_integration(law: type[ContactLaw]) -> None:
 
 
 @pytest.mark.parametrize("law", LAWS, ids=lambda law: law.name)
+def test_restitution_of_many_is_that_of_each(law: type[ContactLaw]) -> None:
+    one, speeds = made(law), np.array([20.0, 0.4, 3.0, 0.03, 6.0])
+    alone = [integrated_restitution(one, 0.09, speed) for speed in speeds]
+    np.testing.assert_allclose(integrated_restitution(one, 0.09, speeds), alone, rtol=0, atol=2e-9)
+
+
+@pytest.mark.parametrize("law", LAWS, ids=lambda law: law.name)
 def test_achieving_is_the_inverse(law: type[ContactLaw]) -> None:
     one = made(law)
     if one.free_parameter is None:

@@ -6,6 +6,8 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
+from vibroimpact.contact.elastic_plastic import ElasticPlasticLaw
+from vibroimpact.contact.law import InstantaneousLaw, find_contact_law
 from vibroimpact.contact.pair import effective_modulus
 from vibroimpact.materials import RIGID, Material
 
@@ -42,12 +44,12 @@ def doubts(case: Mapping[str, Any], depth: float, force: float) -> list[str]:
         )
     materials = [_material(case[body]["material"]) for body in ("sphere", "plate")]
     strengths = [material.yield_strength for material in materials if material.yield_strength]
-    if strengths:
+    if strengths and not issubclass(find_contact_law(contact["law"]), (ElasticPlasticLaw, InstantaneousLaw)):
         pressure = (6.0 * force * effective_modulus(*materials) ** 2 / (math.pi**3 * radius**2)) ** (1.0 / 3.0)
         if pressure > _YIELD * min(strengths):
             found.append(
                 f"Hertz's peak pressure would be {pressure / 1e6:.3g} MPa, above {_YIELD} times the yield strength of "
-                f"{min(strengths) / 1e6:.3g} MPa: the contact would yield, and these laws do not"
+                f"{min(strengths) / 1e6:.3g} MPa: the contact would yield, and {contact['law']} does not"
             )
     return found
 

@@ -10,7 +10,6 @@ import numpy as np
 from vibroimpact.contact.law import CompliantLaw, memory
 from vibroimpact.contact.pair import Array
 from vibroimpact.contact.power_law import power
-from vibroimpact.contact.roots import find_root
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -80,18 +79,16 @@ class ElasticPlasticLaw(CompliantLaw):
 
     def closed_form_restitution(self, mass: Array, speed: Array) -> Array:
         """Return the root of what unloading gives back over what was put in, from the balance of energy."""
-        energy = np.asarray(0.5 * mass * speed * speed)
-        before = self._recoverable(self.loaded_to) - self.loading_work(self.loaded_to)
-
-        def excess(delta: Array) -> Array:
-            return self.loading_work(delta) + before - energy
-
-        low = self.loaded_to + np.zeros_like(energy + before)
-        high = low + 1e-9
-        while np.any(short := ~(excess(high) > 0.0)):
-            high = np.where(short, low + 4.0 * (high - low), high)
-        deepest = find_root(excess, low, high, tolerance=1e-15)
-        return np.where(excess(low) < 0.0, np.sqrt(self._recoverable(deepest) / energy), 1.0)[()]
+        energy = np.asarray(0.5 * mass * speed * speed, dtype=float)
+        wanted = energy + self.loading_work(self.loaded_to) - self._recoverable(self.loaded_to)
+        deepest = np.full(np.shape(wanted), 1e-6)
+        for _ in range(60):  # Newton's method in the logarithms: both curves are nearly powers
+            work = self.loading_work(deepest)
+            step = np.log(wanted / work) * work / (deepest * self.loading_force(deepest))
+            deepest = deepest * np.exp(step)
+            if np.all(np.abs(step) < 1e-9):  # and the next would be below rounding
+                break
+        return np.where(deepest > self.loaded_to, np.sqrt(np.minimum(self._recoverable(deepest) / energy, 1.0)), 1.0)[()]
 
     def _recoverable(self, deepest: Array) -> Array:
         return self.loading_force(deepest) * self.elastic_part(deepest) / (self.unloading_exponent + 1.0)

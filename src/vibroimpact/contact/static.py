@@ -23,7 +23,12 @@ def static_indentation(law: CompliantLaw, weight: Array) -> Array:
     0.0004
     """
     weight = np.asarray(weight, dtype=float)
-    return _solve(law, lambda delta: _force(law, delta), lambda delta: weight, lambda delta: _exponent(law, delta) - 1.0, 1e-14)
+
+    def force_and_power(delta: Array) -> tuple[Array, Array]:
+        force = _force(law, delta)
+        return force, delta * force / _work(law, delta) - 1.0
+
+    return _solve(force_and_power, lambda _: weight, law.release_level, 1e-14)
 
 
 def free_depth(law: CompliantLaw, energy: Array, weight: Array) -> Array:
@@ -39,9 +44,12 @@ def free_depth(law: CompliantLaw, energy: Array, weight: Array) -> Array:
         A constant force that presses, and adds its own work [N].
     """
     touch = law.touch_level
-    return _solve(
-        law, lambda delta: _work(law, delta), lambda delta: energy + weight * (delta - touch), lambda delta: _exponent(law, delta), 1e-3
-    )
+
+    def work_and_power(delta: Array) -> tuple[Array, Array]:
+        work = _work(law, delta)
+        return work, delta * _force(law, delta) / work
+
+    return _solve(work_and_power, lambda delta: energy + weight * (delta - touch), touch, 1e-3)
 
 
 def _force(law: CompliantLaw, delta: Array) -> Array:
@@ -52,35 +60,33 @@ def _work(law: CompliantLaw, delta: Array) -> Array:
     return law.elastic_energy(delta) + law.plastic_work(delta)
 
 
-def _exponent(law: CompliantLaw, delta: Array) -> Array:
-    """Return the power of the indentation with which the work locally goes."""
-    return delta * _force(law, delta) / _work(law, delta)
+def _solve(function: Callable[[Array], tuple[Array, Array]], wanted: Callable[[Array], Array], least: Array, within: float) -> Array:
+    """Return the indentation, at least `least`, at which a rising function of it has the value that is wanted.
 
-
-def _solve(
-    law: CompliantLaw, function: Callable[[Array], Array], wanted: Callable[[Array], Array], power: Callable[[Array], Array], within: float
-) -> Array:
-    """Return the indentation at which a rising function of it has the value that is wanted.
-
-    Steps by the local power are exact at once for a power law; where they lead astray, a bracket is found.
+    `function` also gives the power with which it locally goes: steps by it are exact at once for a power law; where they
+    lead astray, a bracket is found.
     """
-    nothing = np.zeros_like(wanted(np.zeros(1)))
-    release = law.release_level + nothing
-    delta, idle = release + 1e-6, wanted(release) <= 0.0
+
+    def excess(delta: Array) -> Array:
+        return function(delta)[0] - wanted(delta)
+
+    least = least + np.zeros_like(wanted(np.zeros(1)))
+    delta, idle = least + 1e-6, wanted(least) <= 0.0
     with np.errstate(all="ignore"):
         for _ in range(30):
-            step = (wanted(delta) / function(delta)) ** (1.0 / power(delta))
+            value, power = function(delta)
+            step = (wanted(delta) / value) ** (1.0 / power)
             delta = delta * np.where(idle, 1.0, step)
             settled = np.abs(step - 1.0) < within
             if np.all(settled | idle | ~np.isfinite(delta)):
                 break
-        lost = ~(settled & (delta > release)) & (~idle | (function(release) < wanted(release)))
+        lost = ~(settled & (delta > least)) & (~idle | (excess(least) < 0.0))
         if np.any(lost):
-            low, high = release, release + 1e-9
+            low, high = least, least + 1e-9
             for _ in range(60):
-                short = ~(function(high) > wanted(high))
+                short = ~(excess(high) > 0.0)
                 if not np.any(short & lost):
                     break
-                low, high = np.where(short, high, low), np.where(short, release + 4.0 * (high - release), high)
-            delta = np.where(lost, find_root(lambda at: function(at) - wanted(at), low, high, tolerance=within), delta)
-    return np.asarray(np.where(lost | ~idle, delta, release))
+                low, high = np.where(short, high, low), np.where(short, least + 4.0 * (high - least), high)
+            delta = np.where(lost, find_root(excess, low, high, tolerance=within), delta)
+    return np.asarray(np.where(lost | ~idle, delta, least))

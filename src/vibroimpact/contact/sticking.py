@@ -39,18 +39,21 @@ class StickingLaw(CompliantLaw):
 
     def contact_radius(self, delta: Array) -> Array:
         """Return the contact radius a [m]."""
-        return self._radius_at_zero * self._z(delta) ** 2
+        z = self._z(delta)
+        return self._radius_at_zero * z * z
 
-    def adhesive_force(self, delta: Array) -> Array:
-        """Return the static force [N], negative where it pulls."""
-        cube = self._z(delta) ** 3
+    def adhesive_force(self, radius: Array) -> Array:
+        """Return the static force [N], negative where it pulls, at a contact radius [m]."""
+        ratio = radius / self._radius_at_zero
+        cube = ratio * np.sqrt(ratio)
         return (4.0 / 3.0 * cube - 2.0) * cube * (self.effective_modulus * self._radius_at_zero**3 / self.effective_radius)
 
     def elastic_energy(self, delta: Array) -> Array:
         """Return the integral of the static force from zero indentation [J]; at the break it is what the break costs."""
         z = self._z(delta)
+        cube = z * z * z
         unit = self.effective_modulus * self._radius_at_zero**5 / self.effective_radius**2
-        return ((8.0 / 15.0 * z**6 - 4.0 / 3.0 * z**3 + 0.5) * z**4 + 0.3) * unit
+        return (((8.0 / 15.0 * cube - 4.0 / 3.0) * cube + 0.5) * cube * z + 0.3) * unit
 
     @property
     def _radius_at_zero(self) -> Array:
@@ -65,10 +68,10 @@ def _stable_root(s: Array) -> Array:
     """Return the largest z with z^4 - z = s, by Ferrari's formula and a step of Newton's method."""
     s = np.maximum(s, _BREAK_INDENTATION)
     third = s / 3.0
-    u = np.cbrt(0.0625 + np.sqrt(np.maximum(0.00390625 + third**3, 0.0)))
+    u = np.cbrt(0.0625 + np.sqrt(np.maximum(0.00390625 + third * third * third, 0.0)))
     v = -third / u
     y = np.where(s > 0.0, 0.125 / (u * u + third + v * v), u + v)  # the same root of y^3 + s y = 1/8, without cancellation
     z = 0.5 * (np.sqrt(2.0 * y) + np.sqrt(np.maximum(np.sqrt(2.0 / y) - 2.0 * y, 0.0)))
-    slope = 4.0 * z**3 - 1.0
-    with np.errstate(divide="ignore", invalid="ignore"):
-        return np.where(slope > 1e-3, z - (z**4 - z - s) / slope, z)  # next to the break, where the slope is zero, z is good already
+    cube = z * z * z
+    slope = np.maximum(4.0 * cube - 1.0, 1e-3)  # next to the break, where the slope is zero, z is good already
+    return z - (cube * z - z - s) / slope

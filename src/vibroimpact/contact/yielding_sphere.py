@@ -15,13 +15,12 @@ from vibroimpact.contact.pair import Array, hertz_stiffness
 class YieldingSphereLaw(ElasticPlasticLaw):
     r"""Base of the elastic-plastic laws of a sphere.
 
-    Below `yield_indentation` the contact is Hertz's. From beyond, it unloads as Hertz's contact of the larger radius
-    :math:`R_p` that has the same contact radius :math:`\sqrt{R \delta_m}` and the force :math:`F_m`:
+    Below `yield_indentation` the contact is Hertz's. From beyond, it unloads as Hertz's contact of the flatter sphere that
+    has the same contact radius :math:`a_m = \sqrt{R \delta_m}` and force :math:`F_m`, so that
 
-    .. math:: \delta_m - \delta_r = \delta_m\, F_m / F_\mathrm{Hertz}(\delta_m),\qquad
-              R_p = R\, F_\mathrm{Hertz}(\delta_m)/F_m
+    .. math:: \delta_m - \delta_r = \frac{3 F_m}{4 E^* a_m}
 
-    (Thornton 1997; the same in Brake 2015, Int. J. Solids Struct. 62, 104-123).
+    (Thornton 1997, J. Appl. Mech. 64, 383-386).
     """
 
     effective_modulus: Array = parameter("effective modulus E*", "Pa", above=0, from_pair="effective_modulus")
@@ -63,7 +62,8 @@ class YieldingSphereLaw(ElasticPlasticLaw):
     def elastic_part(self, deepest: Array) -> Array:
         """Return how far the contact springs back [m]: all of it, if it has not yielded."""
         yielded, elastic = self._split(deepest)
-        return np.where(deepest > elastic, self.plastic_force(yielded) / (self.stiffness * np.sqrt(yielded)), deepest)
+        spring_back = 0.75 * self.plastic_force(yielded) / (self.effective_modulus * np.sqrt(self.effective_radius * yielded))
+        return np.where(deepest > elastic, spring_back, deepest)
 
     def _split(self, delta: Array) -> tuple[Array, Array]:
         """Return an indentation, but not less than that of yield, and not more than it."""

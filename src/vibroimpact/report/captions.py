@@ -83,7 +83,7 @@ def _loops(result: Result) -> str:
 
 def _energy(result: Result) -> str:
     energy, put_in = result.energy, result.energy["input_J"]
-    lost = energy["contact_dissipated_J"]
+    lost = energy["contact_dissipated_J"] + energy["plastic_work_J"]
     words = f"Of {text(put_in, 'J')} put in, {text(lost, 'J')} ({fixed(100.0 * lost / put_in, 1)} %) are lost in contact by the end."
     if np.min(result.history["potential_J"]) < -0.01 * put_in:
         words += " Below the height of first touch the potential energy is negative; there the other bands begin below zero."

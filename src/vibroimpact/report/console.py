@@ -1,11 +1,10 @@
-"""What the command line prints: tables of results, laws, materials, and a case explained."""
+"""What the command line prints: tables of results and materials, and a case explained."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping
-from dataclasses import MISSING, Field, fields
-from typing import Any
+from dataclasses import fields
 
 import numpy as np
 from rich.console import Group, RenderableType
@@ -16,10 +15,13 @@ from rich.text import Text
 from vibroimpact.cases.build import contact_pair, impacts_of, resolved
 from vibroimpact.cases.doubts import doubts
 from vibroimpact.cases.schema import Case
-from vibroimpact.contact.law import CompliantLaw, contact_laws
+from vibroimpact.contact.law import CompliantLaw, ContactLaw
 from vibroimpact.contact.phase.encounter import encounter_of
+from vibroimpact.contact.restitution import achieved_restitution
 from vibroimpact.dynamics.columns import LEDGER
+from vibroimpact.errors import InputError
 from vibroimpact.materials import RIGID, Material, find_material, material_library
+from vibroimpact.report.comparison import Comparison, comparison_table, free_parameter_words
 from vibroimpact.storage.result import Result
 
 # column, heading, factor, digits
@@ -89,26 +91,20 @@ def result_summary(result: Result, width: int) -> RenderableType:
     )
 
 
-def law_table() -> RenderableType:
-    """Return the contact laws, a block each."""
-    blocks: list[RenderableType] = []
-    for name, law in contact_laws().items():
-        grid = Table.grid(padding=(0, 2))
-        for item in fields(law):
-            grid.add_row(f"  {item.name}", escape(f"{item.metadata['meaning']}{_unit(item)}{_origin(item)}"))
-        end = "at once"
-        if issubclass(law, CompliantLaw):
-            pulls = {"none": "it never pulls", "cut": "it is cut where it would pull", "kept": "it may pull before that"}[law.tension]
-            end = f"{law.contact_end.replace('-', ' ')}; {pulls}"
-        blocks += [
-            Text(name, style="bold"),
-            Text(f"  {law.equation}"),
-            Text(f"  ends: {end}"),
-            Text(f"  {law.source}", style="dim"),
-            grid,
-            Text(),
-        ]
-    return Group(*blocks[:-1])
+def comparison_summary(comparison: Comparison) -> RenderableType:
+    """Return what a comparison prints: a row a law, and the parameter that sets the loss of each."""
+    headers, rows = comparison_table(comparison)
+    table = Table(box=None, padding=(0, 1), header_style="bold")
+    for number, (heading, unit) in enumerate(headers):
+        words = f"{heading}\n[{unit}]" if unit else heading
+        table.add_column(escape(words), justify="right" if number else "left", no_wrap=not number, vertical="bottom")
+    for row in rows:
+        table.add_row(*(escape(cell) for cell in row))
+    free = Table.grid(padding=(0, 2))
+    for name, law in comparison.laws.items():
+        free.add_row(f" {name}", escape(free_parameter_words(law)))
+    found = [f"{name}: {doubt}" for name, one in comparison.results.items() for doubt in one.doubts]
+    return Group(Text(comparison.name, style="bold"), table, Text(), Text("What sets the loss", style="bold"), free, *_doubt_lines(found))
 
 
 def material_table() -> RenderableType:
@@ -178,6 +174,7 @@ def case_explained(case: Case) -> RenderableType:
     stop = ["at rest"] + ([f"after {number} impact{'' if number == 1 else 's'}"] if number else [])
     stop += [f"at {case.run.duration:g} s"] if case.run.duration else []
     rows += [("stops", " or ".join(stop)), ("tolerance", f"{case.run.tolerance:g}")]
+    rows += [("" if number else "restitution", line) for number, line in enumerate(_restitution_lines(problem.laws[0], mass, speed))]
     law, found = problem.laws[0], []
     if isinstance(law, CompliantLaw):
         one = np.ones(1)
@@ -190,6 +187,20 @@ def case_explained(case: Case) -> RenderableType:
     for row in rows:
         table.add_row(*(escape(cell) for cell in row))
     return Group(Text(case.name or "a drop", style="bold"), table, *_doubt_lines(found))
+
+
+def _restitution_lines(law: ContactLaw, mass: float, speed: float) -> list[str]:
+    """Say what a law achieves, and what to ask it for where that is something else."""
+    achieved, asked = float(achieved_restitution(law, mass, speed)), getattr(law, "restitution", None)
+    if asked is None or abs(achieved - asked) < 5e-4:
+        return [f"{achieved:.5g} achieved at the first touch, without gravity"]
+    lines = [f"{asked:.5g} asked, {achieved:.5g} achieved at the first touch, without gravity"]
+    try:
+        better = getattr(law.achieving(asked, mass, speed), "restitution")  # noqa: B009 - not every law has one
+        lines.append(f"restitution = {better:.6g} would achieve {asked:.5g}")
+    except InputError as error:
+        lines.append(error.message)
+    return lines
 
 
 def versions_table(rows: Iterable[tuple[str, str]]) -> RenderableType:
@@ -211,17 +222,6 @@ def _stuff(material: Material) -> str:
 
 def _doubt_lines(found: Iterable[str]) -> list[RenderableType]:
     return [Text(f"Doubt: {doubt}.", style="yellow") for doubt in found]
-
-
-def _unit(item: Field[Any]) -> str:
-    return f" [{item.metadata['unit']}]" if item.metadata["unit"] else ""
-
-
-def _origin(item: Field[Any]) -> str:
-    metadata, default = item.metadata, item.default
-    if metadata["from_pair"]:
-        return " (from the materials)" if "stiffness" in metadata["from_pair"] else " (from the bodies)"
-    return "" if default is MISSING else " (optional)" if default is None else f", {default:g} by default"
 
 
 def _number(value: float, digits: int) -> str:

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import tomli_w
-from jinja2 import Environment, StrictUndefined
+from jinja2 import Environment, FunctionLoader, StrictUndefined, Template
 
 from vibroimpact.dynamics.energy import CLOSURE_LIMIT
 from vibroimpact.report.captions import caption, left_out
@@ -62,9 +62,7 @@ def render_page(result: Result, pictures: Mapping[str, bytes]) -> str:
     pictures : mapping of str to bytes
         Each figure as SVG, by its name, in the order of the page.
     """
-    environment = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
-    template = environment.from_string(files(__package__).joinpath("page.html.j2").read_text(encoding="utf-8"))
-    return template.render(
+    return template("page.html.j2").render(
         name=result.name[:1].upper() + result.name[1:],
         status=result.status,
         failed=result.status.startswith("Failed"),
@@ -81,11 +79,20 @@ def render_page(result: Result, pictures: Mapping[str, bytes]) -> str:
     )
 
 
-def _pictures(result: Result, pictures: Mapping[str, bytes]) -> list[Picture]:
-    def source(svg: bytes) -> str:
-        return f"data:image/svg+xml;base64,{b64encode(svg).decode()}"
+def template(name: str) -> Template:
+    """Return a template of this package; what it shows is escaped, and it may show nothing that it was not given."""
+    loader = FunctionLoader(lambda file: files(__package__).joinpath(file).read_text(encoding="utf-8"))
+    environment = Environment(loader=loader, autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
+    return environment.get_template(name)
 
-    return [Picture(name, _TITLES[name], caption(name, result), source(svg)) for name, svg in pictures.items()]
+
+def picture(name: str, title: str, words: str, svg: bytes) -> Picture:
+    """Return a figure for a page, which holds it whole."""
+    return Picture(name, title, words, f"data:image/svg+xml;base64,{b64encode(svg).decode()}")
+
+
+def _pictures(result: Result, pictures: Mapping[str, bytes]) -> list[Picture]:
+    return [picture(name, _TITLES[name], caption(name, result), svg) for name, svg in pictures.items()]
 
 
 def _as_text(case: Mapping[str, Any]) -> str:

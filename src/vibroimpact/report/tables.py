@@ -30,7 +30,8 @@ _ENTRIES = {
     "kinetic_J": "Kinetic energy of the sphere",
     "potential_J": "Potential energy of the sphere, zero at the height of first touch",
     "contact_elastic_J": "Stored in the contact",
-    "contact_dissipated_J": "Lost in contact",
+    "contact_dissipated_J": "Lost in the damping of the contact, or where a sticking contact broke",
+    "plastic_work_J": "Lost in plastic deformation",
     "written_off_at_rest_J": "Written off when the sphere was found to be at rest",
 }
 _UNITS = {"_m_s2": "m/s2", "_m_s": "m/s", "_s": "s", "_m": "m", "_N": "N", "_J": "J"}

@@ -60,7 +60,7 @@ class JKR(StickingLaw):
 
     def forces(self, delta: Array, delta_dot: Array, approach_speed: Array) -> tuple[Array, Array]:
         """Return the static force, and zero [N]."""
-        force = self.adhesive_force(delta)
+        force = self.adhesive_force(self.contact_radius(delta))
         return force, np.zeros_like(force)
 
     def closed_form_restitution(self, mass: Array, speed: Array) -> Array:

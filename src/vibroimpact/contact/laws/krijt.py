@@ -60,5 +60,6 @@ class Krijt(StickingLaw):
 
     def forces(self, delta: Array, delta_dot: Array, approach_speed: Array) -> tuple[Array, Array]:
         """Return the static and the dissipative force [N]."""
-        damping = 2.0 * self.effective_modulus * self.dissipation_time * self.contact_radius(delta)
-        return self.adhesive_force(delta), damping * delta_dot
+        radius = self.contact_radius(delta)
+        damping = 2.0 * self.effective_modulus * self.dissipation_time * radius
+        return self.adhesive_force(radius), damping * delta_dot

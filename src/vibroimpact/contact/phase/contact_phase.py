@@ -104,7 +104,8 @@ class _Phase:
         """Move drops on towards the next breakpoint that they can reach, or to the deepest point."""
         level = np.full(len(drops), np.inf)
         for index, levels in reversed(list(enumerate(self.levels))):
-            ahead = (levels[drops] > self.delta[drops]) & (levels[drops] < self.depth[drops]) & self.within_reach[index, drops]
+            sought = self.within_reach[index, drops] | (self.march[drops] > 0.0)
+            ahead = (levels[drops] > self.delta[drops]) & (levels[drops] < self.depth[drops]) & sought
             level[ahead] = levels[drops][ahead]
         touching, turning = self.time[drops] == 0.0, np.isinf(level)
         maps: tuple[tuple[NDArray[np.bool_], Map], ...] = ((touching, "touch"), (~touching, "inside"))
@@ -132,11 +133,12 @@ class _Phase:
         if marching.any():
             self.step(drops[marching], "touch" if time_map == "touch" else "inside", aim, level[marching])
             drops, level = drops[~marching], level[~marching]
-        early = self.warm_starts.knows(("inside", "force"), self.ids[drops])
+        early = self.warm_starts.knows(("release", "force"), self.ids[drops])
         early &= (self.outcome[drops] == RESTITUTION) & (self.velocity[drops] == 0.0)
         if early.any():  # the last impact stopped pushing at this stage: look for that first
-            stretch = self.aimed(drops[early], "inside", "force", level[early])
+            stretch = self.aimed(drops[early], "release", "force", level[early])
             good = self.good(drops[early], stretch) & (stretch.node_delta[-1] > level[early])
+            good &= ~self.pulling(drops[early], stretch)[:-1].any(axis=0)  # else it is a later zero of the force
             if good.any():
                 self.accept(drops[early][good], stretch.take(good), "force", level[early][good])
             early[early] = good
@@ -211,6 +213,11 @@ class _Phase:
     def settle(self, drops: Drops, stretch: Stretch, aim: Aim, level: Floats) -> None:
         """Accept an aimed stretch for the drops for which it holds; let the others march."""
         good = self.good(drops, stretch)
+        if aim == "turn":
+            for index, levels in enumerate(self.levels):  # a breakpoint that was within reach after all
+                run_over = (levels[drops] > self.delta[drops]) & (levels[drops] < stretch.node_delta[-1]) & good
+                self.within_reach[index, drops[run_over]] = True
+                good &= ~run_over
         if aim == "indentation":
             missed = ~good & (self.outcome[drops] == COMPRESSION)
             for index, levels in enumerate(self.levels):  # a breakpoint that damping keeps out of reach
@@ -233,13 +240,17 @@ class _Phase:
     def resolved(self, drops: Drops, stretch: Stretch) -> NDArray[np.bool_]:
         return stretch.resolved(self.encounter.take(drops), self.tolerance)
 
+    def pulling(self, drops: Drops, stretch: Stretch) -> NDArray[np.bool_]:
+        """At which nodes does the law pull, beyond rounding?"""
+        unit = self.encounter.approach_speed[drops] / stretch.duration
+        rounding = 1e-11 * (np.abs(stretch.node_acceleration).max(axis=0) + unit)
+        return np.asarray(stretch.node_acceleration > self.encounter.gravity[drops] + rounding)
+
     def accept(self, drops: Drops, stretch: Stretch, aim: Aim, level: Floats) -> None:
         """Take a stretch into the history, unless the force that may not pull has become zero on the way."""
         restoring = self.outcome[drops] == RESTITUTION
         if self.law.tension == "cut" and aim != "force" and restoring.any():
-            unit = self.encounter.approach_speed[drops] / stretch.duration
-            rounding = 1e-11 * (np.abs(stretch.node_acceleration).max(axis=0) + unit)
-            pulling = (stretch.node_acceleration > self.encounter.gravity[drops] + rounding) & restoring
+            pulling = self.pulling(drops, stretch) & restoring
             early = pulling.any(axis=0)
             if early.any():
                 some = stretch.take(early)
@@ -308,7 +319,7 @@ class _Phase:
     def redo(self, drops: Drops, stretch: Stretch, fraction: Floats, aim: Aim, level: Floats) -> None:
         """Solve part of a stretch again, to an event that was seen near a fraction of its duration."""
         time_map: Map = "touch" if stretch.rule.time_map == "touch" else "inside"
-        if aim == "indentation" and np.all(level == self.encounter.floor[drops]):
+        if aim == "force" or (aim == "indentation" and np.all(level == self.encounter.floor[drops])):
             time_map = "release"
         rule, duration = self.rule(time_map), fraction * stretch.duration
         guess = np.empty((self.number + 1, len(drops)))
@@ -322,6 +333,8 @@ class _Phase:
         if aim == "force" and not self.velocity[drops].any():
             self.remember(drops, again, aim, self.time_scale(drops, aim, level), start)
         good = self.resolved(drops, again)
+        if aim == "force":
+            good &= ~self.pulling(drops, again)[:-1].any(axis=0) & (again.node_delta[-1] > self.encounter.floor[drops])
         self.refuse(drops[~good], 0.5 * duration[~good])
         if good.any():
             self.accept(drops[good], again.take(good), aim, level[good])

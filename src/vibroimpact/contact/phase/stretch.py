@@ -52,7 +52,7 @@ class Stretch:
         gain = 0.5 * mass * (end_velocity - self.velocity) * (end_velocity + self.velocity)
         gain += law.elastic_energy(end_delta) - law.elastic_energy(self.delta) - mass * encounter.gravity * (end_delta - self.delta)
         gain += law.plastic_work(end_delta) - law.plastic_work(self.delta)
-        scale = mass * (encounter.approach_speed**2 + encounter.gravity * (self.node_delta.max(axis=0) - encounter.floor))
+        scale = mass * encounter.speed_scale**2
         closes = np.abs(gain + self.dissipated) <= 0.1 * tolerance * scale
         # an acceleration that changes no speed need not be resolved: of a creeping sphere it is but rounding
         needed = np.abs(self.node_velocity).max(axis=0) / self.duration

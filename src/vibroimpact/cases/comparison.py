@@ -1,0 +1,112 @@
+"""One case under several contact laws."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import MISSING, Field, fields
+from typing import Any
+
+from vibroimpact.cases.build import contact_laws_of, contact_pair, resolved
+from vibroimpact.cases.contact_section import unit_of
+from vibroimpact.cases.reader import read_case
+from vibroimpact.cases.schema import Case
+from vibroimpact.contact.law import ContactLaw, find_contact_law
+from vibroimpact.dynamics.problem import Problem
+from vibroimpact.errors import InputError, did_you_mean
+
+
+def cases_under(case: Case, laws: Iterable[str], given: Mapping[str, Any] | None = None, achieving: float | None = None) -> dict[str, Case]:
+    """Return a case under each of several contact laws.
+
+    A law takes its parameters from `given`; else from the case, if the case's law has one of the same name and unit;
+    else from the bodies.
+
+    Parameters
+    ----------
+    case : Case
+        The case.
+    laws : iterable of str
+        Names of laws.
+    given : mapping of str, optional
+        Parameters, as a case file would hold them: "KEY" for every law that has it, "LAW.KEY" for one.
+    achieving : float, optional
+        Give each law the value of its free parameter with which the first impact achieves this restitution [-].
+
+    Returns
+    -------
+    dict of str to Case
+        By the name of the law, in the order asked for.
+
+    Raises
+    ------
+    InputError
+        If a law or a key is not known, a parameter is missing, or a law can't achieve the restitution.
+
+    Examples
+    --------
+    >>> from vibroimpact.cases.reader import load_case
+    >>> cases = cases_under(load_case("paper:type1-theory"), ["hertz", "flores"], {"flores.restitution": 0.7})
+    >>> cases["flores"].contact.parameters["restitution"]
+    0.7
+    """
+    names, table = list(laws), dict(given or {})
+    if not names:
+        raise InputError("name at least one contact law")
+    for name in names:
+        if names.count(name) > 1:
+            raise InputError(f'"{name}" is named twice; a law can only be compared with others')
+    classes = {name: find_contact_law(name) for name in names}
+    _check_given(table, classes)
+    return {name: _case_under(case, law, table, achieving) for name, law in classes.items()}
+
+
+def first_speed(problem: Problem) -> float:
+    """Return the speed of the first touch [m/s] of a problem of one drop."""
+    if problem.speed is not None:
+        return float(problem.speed)
+    fall = float(problem.height or 0.0) - float(problem.sphere.contact_offset)
+    return float((2.0 * float(problem.gravity) * fall) ** 0.5)
+
+
+def _case_under(case: Case, law: type[ContactLaw], given: Mapping[str, Any], achieving: float | None) -> Case:
+    known = {item.name: item for item in fields(law)}
+    own = {item.name: item for item in fields(find_contact_law(case.contact.law))}
+    contact: dict[str, Any] = {"law": law.name}
+    for key, value in case.contact.parameters.items():
+        if law.name == case.contact.law or (key in known and _unit(known[key]) == _unit(own[key])):
+            contact[key] = list(value) if isinstance(value, tuple) else value
+    for key, item in known.items():
+        value = given.get(f"{law.name}.{key}", given.get(key))
+        if value is not None:
+            contact[key] = value
+        elif key not in contact and achieving is not None and item.default is MISSING and item.metadata["example"] is not None:
+            contact[key] = item.metadata["example"]  # something to start from
+    table = {**resolved(case), "name": f"{case.name or 'a drop'}, {law.name}", "contact": contact}
+    try:
+        found = read_case(table)
+        return found if achieving is None else _tuned(found, table, achieving)
+    except InputError as error:
+        hint = " (give parameters with LAW.KEY=VALUE)" if "missing" in error.message or "needs" in error.message else ""
+        raise InputError(f"{law.name}: {error}{hint}") from None
+
+
+def _tuned(case: Case, table: Mapping[str, Any], achieving: float) -> Case:
+    """Return a case whose first impact achieves a restitution."""
+    law, speed = contact_laws_of(case)[0], first_speed(case.to_problem())
+    tuned = law.achieving(achieving, contact_pair(case).effective_mass, speed)
+    if tuned.free_parameter is None:
+        return case
+    return read_case({**table, "contact": {**table["contact"], tuned.free_parameter: getattr(tuned, tuned.free_parameter)}})
+
+
+def _check_given(given: Mapping[str, Any], laws: Mapping[str, type[ContactLaw]]) -> None:
+    """Raise unless every given parameter belongs to a law that is compared."""
+    keys = {item.name for law in laws.values() for item in fields(law)}
+    known = [*keys, *(f"{name}.{item.name}" for name, law in laws.items() for item in fields(law))]
+    for key in given:
+        if key not in known:
+            raise InputError(f'"{key}" is no parameter of {", ".join(laws)}.{did_you_mean(key, known)}')
+
+
+def _unit(item: Field[Any]) -> str:
+    return unit_of(item, 1.5)

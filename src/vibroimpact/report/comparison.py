@@ -1,0 +1,132 @@
+"""One drop under several contact laws, and the table of it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from vibroimpact.cases.build import contact_laws_of, contact_pair
+from vibroimpact.cases.comparison import cases_under, first_speed
+from vibroimpact.cases.schema import Case
+from vibroimpact.contact.law import ContactLaw
+from vibroimpact.contact.restitution import achieved_restitution
+from vibroimpact.dynamics.simulate import simulate
+from vibroimpact.report.quantity import MISSING, digits, fixed, multiple
+from vibroimpact.storage.result import Result, result_of
+
+_SPEEDS = 61
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """One drop under several contact laws.
+
+    Parameters
+    ----------
+    name : str
+        The name of the case.
+    results : dict of str to Result
+        The result under each law, by the law's name.
+    laws : dict of str to ContactLaw
+        The law of the first impact.
+    speeds : array, shape (S,)
+        Approach speeds [m/s].
+    restitutions : dict of str to array, shape (S,)
+        The restitution that each law of the first impact achieves at them, without gravity.
+    """
+
+    name: str
+    results: dict[str, Result]
+    laws: dict[str, ContactLaw]
+    speeds: np.ndarray
+    restitutions: dict[str, np.ndarray]
+
+
+def compare_laws(
+    case: Case,
+    laws: Iterable[str],
+    given: Mapping[str, Any] | None = None,
+    *,
+    achieving: float | None = None,
+    progress: Callable[[float], None] | None = None,
+) -> Comparison:
+    """Run a case under each of several contact laws.
+
+    Parameters
+    ----------
+    case : Case
+        The case; its own law counts only if it is among the laws.
+    laws : iterable of str
+        Names of laws.
+    given : mapping of str, optional
+        Parameters: "KEY" for every law that has it, "LAW.KEY" for one; the others come from the case where its law has
+        one of the same name and unit.
+    achieving : float, optional
+        Give each law the value of its free parameter with which the first impact achieves this restitution [-].
+    progress : callable, optional
+        Called with the fraction done, in [0, 1].
+
+    Raises
+    ------
+    InputError
+        If a law or a parameter is not known or missing, or a law can't achieve the restitution.
+
+    Examples
+    --------
+    >>> import vibroimpact as vi
+    >>> comparison = vi.compare_laws(vi.load_case("paper:type1-theory"), ["hunt-crossley", "flores"])
+    >>> {name: round(float(one.impacts["restitution_achieved"][0]), 3) for name, one in comparison.results.items()}
+    {'hunt-crossley': 0.739, 'flores': 0.63}
+    """
+    cases = cases_under(case, laws, given, achieving)
+    mass, speed = contact_pair(case).effective_mass, first_speed(case.to_problem())
+    speeds = speed * np.geomspace(1e-3, 3.0, _SPEEDS)
+    first, results, restitutions = {}, {}, {}
+    for number, (name, one) in enumerate(cases.items()):
+        results[name] = result_of(simulate(one))
+        first[name] = contact_laws_of(one)[0]
+        restitutions[name] = achieved_restitution(first[name], mass, speeds)
+        if progress is not None:
+            progress((number + 1) / len(cases))
+    return Comparison(case.name or "a drop", results, first, speeds, restitutions)
+
+
+# column, heading
+_COLUMNS = {
+    "max_indentation_m": "Largest indentation",
+    "max_force_N": "Largest force",
+    "duration_s": "Contact duration",
+    "rebound_height_m": "Rebound height",
+    "energy_lost_J": "Energy lost",
+}
+_UNITS = {"_m": "m", "_N": "N", "_s": "s", "_J": "J"}
+
+
+def comparison_table(comparison: Comparison) -> tuple[list[tuple[str, str]], list[list[str]]]:
+    """Return headers with units, and a row a law: asked and achieved restitution, and the first impact."""
+    headers = [("Law", ""), ("Impacts", ""), ("Restitution asked", ""), ("achieved, first", ""), ("achieved, last", "")]
+    rows = []
+    for name, one in comparison.results.items():
+        achieved = one.impacts["restitution_achieved"]
+        asked = one.impacts["restitution_asked"]
+        some = [fixed(float(values[at]), 4) if len(values) else MISSING for values, at in ((asked, 0), (achieved, 0), (achieved, -1))]
+        rows.append([name, str(len(achieved)), *some])
+    for column, heading in _COLUMNS.items():
+        first = np.array([one.impacts[column][0] if len(one.impacts[column]) else np.nan for one in comparison.results.values()])
+        scale = multiple(next(unit for end, unit in _UNITS.items() if column.endswith(end)), first)
+        headers.append((heading, scale.unit))
+        for row, value in zip(rows, first / scale.size, strict=True):
+            row.append(digits(float(value)))
+    return headers, rows
+
+
+def free_parameter_words(law: ContactLaw) -> str:
+    """Return the free parameter of a law with its value and unit; "nothing to set" if it has none."""
+    name = law.free_parameter
+    if name is None:
+        return "nothing to set"
+    unit = next(item for item in law.__dataclass_fields__.values() if item.name == name).metadata["unit"]
+    return f"{name} = {float(getattr(law, name)):.6g} {unit}".rstrip()

@@ -1,0 +1,82 @@
+"""Write a comparison of contact laws: data, figures and page."""
+
+from __future__ import annotations
+
+import csv
+import json
+from os import PathLike
+from pathlib import Path
+
+import tomli_w
+
+from vibroimpact._version import __version__
+from vibroimpact.dynamics.columns import IMPACT_COLUMNS
+from vibroimpact.report.comparison import Comparison, comparison_table, free_parameter_words
+from vibroimpact.report.comparison_figures import draw_comparison
+from vibroimpact.report.figures import save_figures
+from vibroimpact.report.page import picture, template
+from vibroimpact.storage.folder import SUMMARY, new_folder
+from vibroimpact.storage.tables import impact_rows
+
+_TITLES = {
+    "position": ("Position", "The sphere's centre above the plate, under each law."),
+    "force": ("Contact force of the first impact", "Time counts from first touch."),
+    "force_indentation": (
+        "Force over indentation of the first impact",
+        "The area that a loop encloses is the energy lost. Laws without a force are not shown.",
+    ),
+    "restitution": (
+        "Restitution achieved",
+        "Lines: each law with the parameters of its first impact, without gravity. Marks: the impacts of the run. Where a law "
+        "depends on how fast the sphere came, the marks follow its line.",
+    ),
+}
+
+
+def save_comparison(comparison: Comparison, directory: str | PathLike[str], *, force: bool = False) -> Path:
+    """Write a comparison: `comparison.csv`, `summary.json`, the cases, figures and a page; whole or not at all.
+
+    Parameters
+    ----------
+    comparison : Comparison
+        What to write.
+    directory : path
+        The folder to make.
+    force : bool, default False
+        Replace a result folder that is there.
+
+    Raises
+    ------
+    InputError
+        If something is there already, or the place can't be written to.
+    """
+    with new_folder(directory, force=force) as folder:
+        rows = [{"law": name, **row} for name, one in comparison.results.items() for row in impact_rows(one.impacts)]
+        with (folder / "comparison.csv").open("w", newline="", encoding="utf-8") as file:
+            writer = csv.DictWriter(file, ["law", *IMPACT_COLUMNS], lineterminator="\n")
+            writer.writeheader()
+            writer.writerows({key: "" if value is None else value for key, value in row.items()} for row in rows)
+        laws = {
+            name: {"status": one.status, "impacts": impact_rows(one.impacts), "energy": one.energy, "doubts": one.doubts}
+            for name, one in comparison.results.items()
+        }
+        summary = {"name": comparison.name, "version": __version__, "laws": laws}
+        (folder / SUMMARY).write_text(json.dumps(summary, indent=2, allow_nan=False) + "\n", encoding="utf-8")
+        (folder / "cases").mkdir()
+        for name, one in comparison.results.items():
+            (folder / "cases" / f"{name}.toml").write_text(tomli_w.dumps(one.case), encoding="utf-8")
+        (folder / "figures").mkdir()
+        drawn = draw_comparison(comparison.results, comparison.speeds, comparison.restitutions)
+        pictures = save_figures(drawn, folder / "figures")
+        headers, cells = comparison_table(comparison)
+        page = template("comparison.html.j2").render(
+            name=comparison.name[:1].upper() + comparison.name[1:],
+            headers=headers,
+            rows=cells,
+            free=[(name, free_parameter_words(law)) for name, law in comparison.laws.items()],
+            results=comparison.results,
+            pictures=[picture(name, *_TITLES[name], svg) for name, svg in pictures.items()],
+            version=__version__,
+        )
+        (folder / "report.html").write_text(page, encoding="utf-8")
+    return Path(directory)

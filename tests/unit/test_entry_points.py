@@ -1,0 +1,58 @@
+"""Laws that other packages bring."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from importlib.metadata import EntryPoint
+
+import pytest
+
+import vibroimpact as vi
+from vibroimpact.contact import law as module
+from vibroimpact.contact.hysteretic import HystereticLaw
+
+
+@dataclass(frozen=True, kw_only=True)
+class Foreign(HystereticLaw):
+    """A law of someone else."""
+
+    name = "foreign"
+    equation = "F = K delta^n (1 + (1 - e) delta_dot / v0)"
+    source = "nobody"
+
+    @property
+    def damping_factor(self) -> float:
+        return 1.0 - self.restitution
+
+
+@dataclass(frozen=True, kw_only=True)
+class Usurper(Foreign):
+    """A law with a name that is taken."""
+
+    name = "hertz"
+
+
+def bring(monkeypatch: pytest.MonkeyPatch, *values: str) -> dict:
+    points = [EntryPoint(name=f"law{number}", value=value, group="vibroimpact.contact_laws") for number, value in enumerate(values)]
+    monkeypatch.setattr(module, "entry_points", lambda group: points)
+    return dict(module.contact_laws.__wrapped__())
+
+
+def test_a_law_is_brought_by_an_entry_point(monkeypatch: pytest.MonkeyPatch) -> None:
+    laws = bring(monkeypatch, f"{__name__}:Foreign")
+    assert laws["foreign"] is Foreign
+    assert len(laws) == len(vi.contact_laws()) + 1
+
+
+def test_a_duplicate_name_raises(monkeypatch: pytest.MonkeyPatch) -> None:
+    with pytest.raises(vi.InputError, match='two contact laws are called "hertz"'):
+        bring(monkeypatch, f"{__name__}:Usurper")
+
+
+@pytest.mark.parametrize(
+    ("value", "message"),
+    [("no.such.module:Law", "can't be loaded"), (f"{__name__}:Nothing", "can't be loaded"), ("math:pi", "is not a contact law")],
+)
+def test_a_broken_entry_point_is_named(monkeypatch: pytest.MonkeyPatch, value: str, message: str) -> None:
+    with pytest.raises(vi.InputError, match=message):
+        bring(monkeypatch, value)

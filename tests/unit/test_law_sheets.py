@@ -1,0 +1,100 @@
+"""The sheets and pictures of the contact laws: readable in a terminal, and never written over."""
+
+from __future__ import annotations
+
+from io import StringIO
+from pathlib import Path
+
+import pytest
+from PIL import Image
+from rich.console import Console
+
+import vibroimpact as vi
+from vibroimpact.cli import main
+from vibroimpact.report.law_sheet import law_sheet, law_table
+from vibroimpact.report.law_text import law_text, short_source
+
+LAWS = vi.contact_laws()
+
+
+def printed(what: object, width: int) -> str:
+    file = StringIO()
+    Console(width=width, file=file).print(what)
+    return file.getvalue()
+
+
+def run(monkeypatch: pytest.MonkeyPatch, *arguments: str) -> int:
+    monkeypatch.setattr("sys.argv", ["vibroimpact", "laws", *arguments])
+    with pytest.raises(SystemExit) as left:
+        main()
+    return int(left.value.code or 0)
+
+
+@pytest.mark.parametrize("width", [80, 100, 160])
+def test_the_table_names_every_law_whole(width: int) -> None:
+    lines = printed(law_table(width), width).splitlines()
+    assert max(map(len, lines)) <= width
+    assert not any("\u2026" in line for line in lines)
+    assert set(LAWS) <= {line.split()[0] for line in lines if line.strip()}
+    assert "vibroimpact laws NAME" in lines[-1] + lines[-2]
+
+
+@pytest.mark.parametrize("name", LAWS)
+def test_the_sheet_reads_well(name: str) -> None:
+    for width in (80, 160):
+        text = printed(law_sheet(name), width)
+        assert not any(mark in text for mark in ("\\", ":math:", ".. math", "`", "{", "}", "$", "\u2026"))
+        assert max(map(len, text.splitlines())) <= width
+    words = " ".join(text.split())
+    for item in (*law_text(LAWS[name]).parameters, *law_text(LAWS[name]).state):
+        assert item.name in words
+    for heading in ("Parameters", "End of the contact", "Notes", "References"):
+        assert heading in words
+    assert short_source(LAWS[name])
+
+
+def test_asked_and_achieved_are_shown() -> None:
+    words = " ".join(printed(law_sheet("lankarani-nikravesh"), 100).split())
+    assert "asked 0.9 0.7 0.5 0.3 achieved 0.913 0.796 0.725 0.684" in words
+    assert "achieved" not in printed(law_sheet("hertz"), 100)
+
+
+@pytest.mark.parametrize("name", LAWS)
+def test_every_law_is_drawn(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert run(monkeypatch, name) == 0
+    with Image.open(f"{name}.png") as picture:
+        assert picture.size == (1200, 735)
+        assert len(picture.getcolors(1 << 20) or ()) > 20
+
+
+def test_a_picture_that_is_there_is_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    target = tmp_path / "mine.png"
+    target.write_bytes(b"mine")
+    assert run(monkeypatch, "hertz", "-o", str(target)) == 0
+    assert target.read_bytes() == b"mine"
+    assert "is there already and was left as it is" in capsys.readouterr().out
+    assert run(monkeypatch, "hertz", "-o", str(target), "--force") == 0
+    assert target.read_bytes().startswith(b"\x89PNG")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (("hertz", "-o", "nowhere/hertz.png"), "there is no folder nowhere"),
+        (("hertz", "-o", "hertz.pdf"), "ends in .png"),
+        (("hertz", "-o", "folder.png"), "this is a folder"),
+        (("hetrz",), 'Did you mean "hertz"?'),
+        (("-o", "all.png"), "name the law"),
+    ],
+)
+def test_what_is_refused(
+    arguments: tuple[str, ...], message: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "folder.png").mkdir()
+    assert run(monkeypatch, *arguments) == 2
+    written = capsys.readouterr()
+    assert message in written.err
+    assert not written.out
+    assert [path.name for path in tmp_path.iterdir()] == ["folder.png"]

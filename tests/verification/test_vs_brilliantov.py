@@ -1,0 +1,30 @@
+"""Against the known restitution of viscoelastic spheres (Kuwabara and Kono 1987; Brilliantov and others 1996).
+
+x'' + b sqrt(x) x' + x^1.5 = 0 from x = 0, x' = 1 to zero force: .892859 (b = .1), .722085 (.3), .393931 (1). And the Pade
+approximant of Mueller and Poeschel (Phys. Rev. E 84, 021302, 2011), good to about 1e-3 over all speeds.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from vibroimpact.contact.laws.kuwabara_kono import KuwabaraKono
+from vibroimpact.contact.restitution import integrated_restitution
+
+
+@pytest.mark.parametrize(("b", "expected"), [(0.1, 0.892859), (0.3, 0.722085), (1.0, 0.393931)])
+def test_dimensionless_equation(b: float, expected: float) -> None:
+    law = KuwabaraKono(stiffness=1.0, dissipation_time=b / 1.5)
+    assert integrated_restitution(law, 1.0, 1.0) == pytest.approx(expected, abs=1e-6)
+
+
+def test_pade_over_the_speed() -> None:
+    stiffness, mass, time = 5e8, 0.09, 2e-6
+    speed = np.geomspace(1e-3, 1e2, 16)
+    star = np.sqrt(1.5 * time * (stiffness / mass) ** 0.4) * speed**0.1
+    top = np.polynomial.polynomial.polyval(star, [1, 1.07232, 0.574198, 0.141552])
+    bottom = np.polynomial.polynomial.polyval(star, [1, 1.07232, 1.72765, 1.37842, 1.19449, 0.467273, 0.235585])
+    found = integrated_restitution(KuwabaraKono(stiffness=stiffness, dissipation_time=time), mass, speed)
+    np.testing.assert_allclose(found, top / bottom, atol=2e-3)
+    assert np.all(np.diff(found) < 0.0)
