@@ -66,6 +66,10 @@ FAULTS = [
     ({"drop__same_spot": "yes"}, "drop.same_spot"),
     ({"run__impacts": 0}, "run.impacts: 0 is not allowed; it must be a whole number from 1 to 100000"),
     ({"run__impacts": "all", "contact": {"law": "hertz"}}, 'run.impacts: "all" needs a law that loses energy'),
+    (
+        {"run__impacts": "all", "contact": {"law": "thornton", "yield_pressure": 1e7}},
+        'run.impacts: "all" needs a law that loses energy, and thornton loses none on a dent that it has made',
+    ),
     ({"contact__restitution": "80 %"}, "write 0.8"),
     ({"run__impacts": 2.5}, "run.impacts: 2.5 is not allowed"),
     ({"run__duration": "5 m"}, 'run.duration: "5 m" is a length'),

@@ -41,6 +41,12 @@ def test_given_parameters_come_first_and_a_laws_own_before_all() -> None:
         ([], {}, None, "at least one"),
         (["flores", "flores"], {}, None, "named twice"),
         (["flores"], {"restitutoin": 0.5}, None, 'Did you mean "restitution"'),
+        (
+            ["tsuji", "walton-braun"],
+            {"stiffness": 1e7},
+            None,
+            '"stiffness" is not the same in all laws: tsuji [N/m^1.5], walton-braun [N/m]',
+        ),
         (["flores"], {"hertz.exponent": 1.5}, None, '"hertz.exponent" is no parameter of flores'),
         (["flores"], {"restitution": 0}, None, "flores: contact.restitution: 0 is not allowed; it must be greater than 0 and at most 1"),
         (["adams-impact"], {}, None, "adams-impact needs largest damping C"),

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from vibroimpact.bodies.plate import rigid_plate
 from vibroimpact.bodies.sphere import rigid_sphere
+from vibroimpact.contact.elastic_plastic import ElasticPlasticLaw
 from vibroimpact.contact.law import ContactLaw, find_contact_law, loses_nothing
 from vibroimpact.contact.pair import ContactPair, effective_modulus
 from vibroimpact.dynamics.problem import Problem
@@ -63,11 +64,14 @@ def problem_of(case: Case) -> Problem:
     InputError
         If the contact law can't be made for these bodies, or the sphere would bounce for ever.
     """
-    if impacts_of(case) is None and case.run.duration is None and loses_nothing(contact_laws_of(case)[-1]):
-        raise InputError(
-            f'"all" needs a law that loses energy, and this {case.contact.law} never comes to rest; give a number or a duration',
-            "run.impacts",
-        )
+    law = contact_laws_of(case)[-1]
+    if impacts_of(case) is None and case.run.duration is None:
+        remedy = "give a number or a duration"
+        if loses_nothing(law):
+            raise InputError(f'"all" needs a law that loses energy, and this {law.name} never comes to rest; {remedy}', "run.impacts")
+        if isinstance(law, ElasticPlasticLaw) and law.lasting and case.drop.same_spot:
+            words = f"and {law.name} loses none on a dent that it has made"
+            raise InputError(f'"all" needs a law that loses energy, {words}; {remedy}, or drop.same_spot = false', "run.impacts")
     return Problem(
         sphere=rigid_sphere(case.sphere.radius, case.sphere.material),
         plate=rigid_plate(case.plate.size[2] if case.plate.size else 0.0),

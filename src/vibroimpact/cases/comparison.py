@@ -103,9 +103,13 @@ def _check_given(given: Mapping[str, Any], laws: Mapping[str, type[ContactLaw]])
     """Raise unless every given parameter belongs to a law that is compared."""
     keys = {item.name for law in laws.values() for item in fields(law)}
     known = [*keys, *(f"{name}.{item.name}" for name, law in laws.items() for item in fields(law))]
-    for key in given:
+    for key, value in given.items():
         if key not in known:
             raise InputError(f'"{key}" is no parameter of {", ".join(laws)}.{did_you_mean(key, known)}')
+        units = {name: _unit(item) for name, law in laws.items() for item in fields(law) if item.name == key}
+        if len(set(units.values())) > 1 and not isinstance(value, str):
+            of_each = ", ".join(f"{name} [{unit}]" for name, unit in units.items())
+            raise InputError(f'"{key}" is not the same in all laws: {of_each}; give LAW.{key} for each')
 
 
 def _unit(item: Field[Any]) -> str:

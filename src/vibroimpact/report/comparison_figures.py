@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from vibroimpact.report.excerpt import Floats, contacts, thinned, within
+from vibroimpact.report.excerpt import Floats, contacts, pressed, thinned
 from vibroimpact.report.layout import label_vertical, new_figure, wide_axes
 from vibroimpact.report.quantity import multiple
 from vibroimpact.report.style import LOOPS, style
@@ -62,7 +62,7 @@ def _draw_positions(results: Mapping[str, Result], looks: Mapping[str, Any]) -> 
 
 def _draw_first_contacts(results: Mapping[str, Result], looks: Mapping[str, Any], column: str, unit: str, label: str) -> Figure:
     figure, axes = _axes(len(results))
-    parts = {name: within(one, contacts(one)[0]) for name, one in results.items()}
+    parts = {name: pressed(one, contacts(one)[0]) for name, one in results.items()}
     for name, one in results.items():
         parts[name]["time_s"] = parts[name]["time_s"] - one.impacts["time_s"][contacts(one)[0]]
     across = multiple(unit, np.concatenate([part[column] for part in parts.values()]))

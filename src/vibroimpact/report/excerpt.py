@@ -44,6 +44,18 @@ def within(result: Result, impact: int) -> dict[str, Floats]:
     return window(result.history, touch, touch + result.impacts["duration_s"][impact])
 
 
+def pressed(result: Result, impact: int) -> dict[str, Floats]:
+    """Return the history of a contact, from where the surfaces meet to where they part.
+
+    The flight's side of both ends shows the jump of the force there; but in flight there is no indentation, so it is left
+    out where the surfaces meet in a dent or part with their neck drawn out.
+    """
+    part = within(result, impact)
+    away = np.abs(part["indentation_m"]) > 1e-9 * np.max(np.abs(part["indentation_m"]))
+    first, last = int(away[1] and not away[0]), len(away) - int(away[-2] and not away[-1])
+    return {name: values[first:last] for name, values in part.items()}
+
+
 def window(history: dict[str, Floats], start: float, end: float) -> dict[str, Floats]:
     """Return the history between two times [s], with a point on each edge that lies within the run."""
     time = history["time_s"]

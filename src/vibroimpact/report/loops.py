@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from vibroimpact.report.excerpt import Floats, contacts, within
+from vibroimpact.report.excerpt import Floats, contacts, pressed
 from vibroimpact.report.layout import label_vertical, new_figure, wide_axes
 from vibroimpact.report.quantity import Multiple, multiple, text
 from vibroimpact.report.style import ENLARGED, LOOPS, MARK
@@ -37,7 +37,7 @@ def draw_loops(result: Result) -> Figure:
 
 
 def _loop(result: Result, impact: int, depth: Multiple, force: Multiple) -> tuple[Floats, Floats]:
-    part = within(result, impact)
+    part = pressed(result, impact)
     return part["indentation_m"] / depth.size, part["force_N"] / force.size
 
 

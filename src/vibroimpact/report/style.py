@@ -31,7 +31,7 @@ LOOPS: tuple[tuple[str, str | tuple[int, tuple[int, ...]]], ...] = (
 
 # both luminance and hatch tell the bands apart; from the bottom of the stack to its top
 BANDS: dict[str, tuple[str, str, str]] = {
-    "contact_dissipated_J": ("lost in damping", "#404040", ""),
+    "contact_dissipated_J": ("damping and adhesion", "#404040", ""),
     "plastic_work_J": ("plastic work", "#9c6b52", ".."),
     "written_off_at_rest_J": ("written off at rest", "#ffffff", "xx"),
     "contact_elastic_J": ("stored in the contact", "#f7cd6b", "////"),

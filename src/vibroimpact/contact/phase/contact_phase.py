@@ -139,6 +139,7 @@ class _Phase:
             stretch = self.aimed(drops[early], "release", "force", level[early])
             good = self.good(drops[early], stretch) & (stretch.node_delta[-1] > level[early])
             good &= ~self.pulling(drops[early], stretch)[:-1].any(axis=0)  # else it is a later zero of the force
+            self.warm_starts.forget(("release", "force"), self.ids[drops[early][~good]])
             if good.any():
                 self.accept(drops[early][good], stretch.take(good), "force", level[early][good])
             early[early] = good
@@ -225,6 +226,7 @@ class _Phase:
             lost = drops[~good & ~missed]
         else:
             lost = drops[~good]
+        self.warm_starts.forget((stretch.rule.time_map, aim), self.ids[drops[~good]])
         self.march[lost] = np.where(self.pace[lost] > 0.0, self.pace[lost], 0.25 * self.span(lost))
         if good.any():
             self.accept(drops[good], stretch.take(good), aim, level[good])

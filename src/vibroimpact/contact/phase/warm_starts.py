@@ -21,6 +21,11 @@ class WarmStarts:
         """Return for which drops there is a solution of a kind."""
         return np.isfinite(self.starts[kind].unknowns[-1, ids]) if kind in self.starts else np.zeros(len(ids), dtype=bool)
 
+    def forget(self, kind: tuple[Map, Aim], ids: Drops) -> None:
+        """Forget solutions that turned out to be of another motion."""
+        if kind in self.starts:
+            self.starts[kind].unknowns[:, ids] = np.nan
+
     def keep(self, kind: tuple[Map, Aim], ids: Drops, unknowns: Floats, inverse: Floats | None) -> None:
         """Remember a solution."""
         if kind not in self.starts:
