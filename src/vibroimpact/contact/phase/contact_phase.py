@@ -298,7 +298,7 @@ class _Phase:
 
         No law gives energy, so a sphere on its way out that has less than it takes to lift it out of the
         indentation, with a separation speed of `tolerance` times the speed scale, stays. One on its way in may
-        creep towards its static indentation and never turn; it is followed until it is there.
+        creep towards its static indentation and never turn; it is followed until it is there, or as slow as that.
         """
         drops = drops[self.outcome[drops] < RELEASED]
         if not drops.size:
@@ -312,7 +312,8 @@ class _Phase:
         if sinking.any():
             sag = static_indentation(encounter.law, weight)
             left = energy - (encounter.law.elastic_energy(sag) - weight * sag)
-            there = sinking & (left < np.maximum(1e-12 * weight * sag, self.least_energy[drops]))
+            still = 0.5 * encounter.mass * self.velocity[drops] ** 2 < self.least_energy[drops]
+            there = sinking & (still | (left < np.maximum(1e-12 * weight * sag, self.least_energy[drops])))
             self.turn(drops[there])
             self.max_delta[drops[there]] = np.maximum(delta, sag)[there]
             held &= ~sinking | there
