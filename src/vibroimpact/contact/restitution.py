@@ -159,6 +159,12 @@ def law_achieving(law: Law, restitution: Array, mass: Array, speed: Array) -> La
         return np.asarray(_by_integration(trial, mass, speed, _INVERSE_TOLERANCE) if found is None else found)
 
     now = np.broadcast_to(np.asarray(getattr(law, name), dtype=float), shape)
+    if allowed.at_least == 0.0 and not np.isfinite(allowed.at_most):  # a damping: nothing achieves more than none of it
+        most = achieved(np.zeros(shape))
+        if np.any(out_of_reach := most < wanted - _EXACT):
+            first = np.flatnonzero(out_of_reach.ravel())[0]
+            numbers = (float(np.broadcast_to(value, shape).ravel()[first]) for value in (most, speed, wanted))
+            raise InputError("{} reaches restitutions up to {:.4g} at {:.4g} m/s, not {:g}".format(law.name, *numbers))
     low, high, (least, most) = _bracket(achieved, wanted, np.where(now > 0.0, now, 1.0), allowed)
     missed = np.isnan(low) | np.isnan(high)
     if missed.any():

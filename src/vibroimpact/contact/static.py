@@ -26,7 +26,7 @@ def static_indentation(law: CompliantLaw, weight: Array) -> Array:
 
     def force_and_power(delta: Array) -> tuple[Array, Array]:
         force = _force(law, delta)
-        return force, delta * force / _work(law, delta) - 1.0
+        return force, delta * force / static_work(law, delta) - 1.0
 
     return _solve(force_and_power, lambda _: weight, law.release_level, 1e-14)
 
@@ -46,7 +46,7 @@ def free_depth(law: CompliantLaw, energy: Array, weight: Array) -> Array:
     touch = law.touch_level
 
     def work_and_power(delta: Array) -> tuple[Array, Array]:
-        work = _work(law, delta)
+        work = static_work(law, delta)
         return work, delta * _force(law, delta) / work
 
     return _solve(work_and_power, lambda delta: energy + weight * (delta - touch), touch, 1e-3)
@@ -56,7 +56,8 @@ def _force(law: CompliantLaw, delta: Array) -> Array:
     return law.forces(delta, np.zeros_like(delta), np.ones_like(delta))[0]
 
 
-def _work(law: CompliantLaw, delta: Array) -> Array:
+def static_work(law: CompliantLaw, delta: Array) -> Array:
+    """Return the integral of the static force from `touch_level` [J]: the elastic energy and the plastic work."""
     return law.elastic_energy(delta) + law.plastic_work(delta)
 
 

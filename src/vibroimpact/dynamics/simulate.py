@@ -107,7 +107,8 @@ class _Run:
         least = 1e-6 * Flight(self.time, self.gap, self.velocity, self.gravity).touch(np.zeros(1))[1]
         if not isinstance(law, CompliantLaw):
             return np.asarray(least)
-        return np.asarray(np.maximum(np.sqrt(2.0 * self.gravity * static_indentation(law, self.mass * self.gravity)), least))
+        sag = static_indentation(law, self.mass * self.gravity) - law.touch_level
+        return np.asarray(np.maximum(np.sqrt(2.0 * self.gravity * sag), least))
 
     def fraction_done(self) -> float:
         if not self.moving.any():

@@ -55,13 +55,13 @@ class AdamsPoisson(CompliantLaw):
     turned: Array = memory("has the contact passed its deepest point? 1 if so")
 
     def forces(self, delta: Array, delta_dot: Array, approach_speed: Array) -> tuple[Array, Array]:
-        """Return the force of the way out, and what the approach needs beyond it [N]."""
-        kept = self.restitution * self.restitution
-        return kept * self.penalty * delta, (1.0 - kept) * (1.0 - self.turned) * self.penalty * delta
+        """Return the penalty's force, and what the way out lacks of it [N]."""
+        force = self.penalty * delta
+        return force, (self.restitution * self.restitution - 1.0) * self.turned * force
 
     def elastic_energy(self, delta: Array) -> Array:
-        r"""Return :math:`e^2 p \delta^2/2` [J]."""
-        return 0.5 * self.restitution**2 * self.penalty * delta * delta
+        r"""Return :math:`p \delta^2/2` [J], of which the way out loses a part."""
+        return 0.5 * self.penalty * delta * delta
 
     def after_compression(self, deepest: Array) -> AdamsPoisson:
         """Return the law for the way out, of the drops that have been deeper than zero."""

@@ -21,7 +21,7 @@ from vibroimpact.contact.phase.encounter import Encounter
 from vibroimpact.contact.phase.glide import glide_until_push
 from vibroimpact.contact.phase.stretch import Aim, Stretch, WarmStart, acceleration_unit, solve_stretch
 from vibroimpact.contact.phase.warm_starts import WarmStarts
-from vibroimpact.contact.static import static_indentation
+from vibroimpact.contact.static import static_indentation, static_work
 
 _MOST_STRETCHES = 2000  # the stiffest sensible contacts need about a hundred
 
@@ -248,11 +248,20 @@ class _Phase:
         rounding = 1e-11 * (np.abs(stretch.node_acceleration).max(axis=0) + unit)
         return np.asarray(stretch.node_acceleration > self.encounter.gravity[drops] + rounding)
 
+    def pulls_last(self, drops: Drops, stretch: Stretch) -> NDArray[np.bool_]:
+        """Does the law pull between the last two nodes, at next to no indentation, where it should have ended?"""
+        if self.law.contact_end != "zero-force":
+            return np.zeros(len(drops), dtype=bool)
+        encounter = self.encounter.take(drops)
+        delta = encounter.floor + 1e-3 * (stretch.node_delta[-2] - encounter.floor)
+        return np.asarray(encounter.acceleration(delta, stretch.node_velocity[-1]) > encounter.gravity)
+
     def accept(self, drops: Drops, stretch: Stretch, aim: Aim, level: Floats) -> None:
         """Take a stretch into the history, unless the force that may not pull has become zero on the way."""
         restoring = self.outcome[drops] == RESTITUTION
         if self.law.tension == "cut" and aim != "force" and restoring.any():
             pulling = self.pulling(drops, stretch) & restoring
+            pulling[-2] |= self.pulls_last(drops, stretch) & restoring & (aim == "indentation")
             early = pulling.any(axis=0)
             if early.any():
                 some = stretch.take(early)
@@ -292,6 +301,9 @@ class _Phase:
         if law is not self.law:
             self.encounter = self.encounter.under(law)
             self.levels = self.breakpoints()
+            here = self.encounter.take(drops)
+            weak = here.acceleration(self.delta[drops], np.zeros(len(drops))) >= 0.0  # it pushes no more than the weight
+            self.outcome[drops[weak]] = CAPTURED
 
     def capture(self, drops: Drops) -> None:
         """End the contact of drops that can't get out any more.
@@ -305,13 +317,14 @@ class _Phase:
             return
         encounter, delta = self.encounter.take(drops), self.delta[drops]
         weight = encounter.mass * encounter.gravity
-        energy = 0.5 * encounter.mass * self.velocity[drops] ** 2 + encounter.law.elastic_energy(delta) - weight * delta
+        # on the way in, what goes into plastic deformation is no loss yet: the static force is all that acts
+        energy = 0.5 * encounter.mass * self.velocity[drops] ** 2 + static_work(encounter.law, delta) - weight * delta
         way_out = encounter.law.elastic_energy(encounter.floor) - weight * encounter.floor
         held = energy < way_out + self.least_energy[drops]
         sinking = held & (self.outcome[drops] == COMPRESSION)
         if sinking.any():
             sag = static_indentation(encounter.law, weight)
-            left = energy - (encounter.law.elastic_energy(sag) - weight * sag)
+            left = energy - (static_work(encounter.law, sag) - weight * sag)
             still = 0.5 * encounter.mass * self.velocity[drops] ** 2 < self.least_energy[drops]
             there = sinking & (still | (left < np.maximum(1e-12 * weight * sag, self.least_energy[drops])))
             self.turn(drops[there])
