@@ -16,8 +16,8 @@ from vibroimpact.errors import InputError
 if TYPE_CHECKING:
     import pint
 
-_QUANTITY = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*([^\d\s.+-].*)?")
-_UNIT = re.compile(r"[A-Za-z%°µμ][A-Za-z%°µμ*/^ ()·.0-9-]{0,39}")
+_QUANTITY = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*((?:1/)?[^\d\s.+-].*)?")
+_UNIT = re.compile(r"(?:1/)?[A-Za-z%°µμ][A-Za-z%°µμ*/^ ()·.0-9-]{0,39}")
 
 _KIND = {
     "m": "length",
@@ -32,6 +32,8 @@ _KIND = {
     "N/m": "stiffness",
     "N/m^1.5": "contact stiffness",
     "N s/m": "damping",
+    "J/m^2": "work of adhesion",
+    "1/m": "reciprocal length",
     "": "plain number",
 }
 _EXAMPLE = {
@@ -47,6 +49,8 @@ _EXAMPLE = {
     "N/m": "1.2 MN/m",
     "N/m^1.5": "1.6e4 N/mm^1.5",
     "N s/m": "179.75 N s/m",
+    "J/m^2": "50 mJ/m^2",
+    "1/m": "0.5 1/mm",
 }
 
 

@@ -63,7 +63,8 @@ FAULTS = [
     ({"contact": {"law": "jkr"}}, "contact.work_of_adhesion: this key is missing; jkr needs work of adhesion w [J/m^2]"),
     ({"contact": {"law": "walton-braun", "stiffness": 1e6}}, "walton-braun needs either restitution or stiffening [1/m], and not both"),
     ({"contact": {"law": "storakers", "yield_strength": "5 MPa", "hardening_exponent": 1}}, "contact.hardening_exponent: 1 is not allowed"),
-    ({"drop__same_spot": "yes"}, "drop.same_spot"),
+    ({"drop__same_spot": "yes"}, 'drop.same_spot: "yes" is not allowed; it must be true or false'),
+    ({"contact": {"law": "walton-braun", "stiffness": 1e6, "stiffening": "5 m"}}, 'contact.stiffening: "5 m" is a length'),
     ({"run__impacts": 0}, "run.impacts: 0 is not allowed; it must be a whole number from 1 to 100000"),
     ({"run__impacts": "all", "contact": {"law": "hertz"}}, 'run.impacts: "all" needs a law that loses energy'),
     (

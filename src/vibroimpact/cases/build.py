@@ -31,7 +31,7 @@ def contact_pair(case: Case) -> ContactPair:
         effective_radius=case.sphere.radius,
         effective_mass=mass,
         yield_strength=weaker.yield_strength if weaker else None,
-        poissons_ratio=weaker.poissons_ratio if weaker else None,
+        poissons_ratio=(weaker or case.sphere.material).poissons_ratio,
     )
 
 

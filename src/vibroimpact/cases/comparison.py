@@ -40,7 +40,8 @@ def cases_under(case: Case, laws: Iterable[str], given: Mapping[str, Any] | None
     Raises
     ------
     InputError
-        If a law or a key is not known, a parameter is missing, or a law can't achieve the restitution.
+        If a law or a key is not known, a parameter is missing, or a law can't achieve the restitution. A law without a
+        free parameter is left as it is.
 
     Examples
     --------
@@ -72,6 +73,7 @@ def _case_under(case: Case, law: type[ContactLaw], given: Mapping[str, Any], ach
     known = {item.name: item for item in fields(law)}
     own = {item.name: item for item in fields(find_contact_law(case.contact.law))}
     contact: dict[str, Any] = {"law": law.name}
+    guessed = []
     for key, value in case.contact.parameters.items():
         if law.name == case.contact.law or (key in known and _unit(known[key]) == _unit(own[key])):
             contact[key] = list(value) if isinstance(value, tuple) else value
@@ -80,23 +82,30 @@ def _case_under(case: Case, law: type[ContactLaw], given: Mapping[str, Any], ach
         if value is not None:
             contact[key] = value
         elif key not in contact and achieving is not None and item.default is MISSING and item.metadata["example"] is not None:
-            contact[key] = item.metadata["example"]  # something to start from
+            contact[key] = item.metadata["example"]  # something to start from, if it is what is tuned
+            guessed.append(key)
     table = {**resolved(case), "name": f"{case.name or 'a drop'}, {law.name}", "contact": contact}
     try:
         found = read_case(table)
-        return found if achieving is None else _tuned(found, table, achieving)
+        tuned = contact_laws_of(found)[0].free_parameter
+        if any(key != tuned for key in guessed):  # only what is tuned may be left out
+            table["contact"] = {key: value for key, value in contact.items() if key not in guessed or key == tuned}
+            found = read_case(table)
+        if achieving is None or tuned is None:
+            return found
+        if tuned in given or f"{law.name}.{tuned}" in given:
+            raise InputError(f"{tuned} is what is tuned to achieve {achieving:g}, so it can't be given too")
+        return _tuned(found, table, tuned, achieving)
     except InputError as error:
         hint = " (give parameters with LAW.KEY=VALUE)" if "missing" in error.message or "needs" in error.message else ""
-        raise InputError(f"{law.name}: {error}{hint}") from None
+        raise InputError(f"{law.name}: {str(error).removeprefix(f'{law.name} ')}{hint}") from None
 
 
-def _tuned(case: Case, table: Mapping[str, Any], achieving: float) -> Case:
+def _tuned(case: Case, table: Mapping[str, Any], parameter: str, achieving: float) -> Case:
     """Return a case whose first impact achieves a restitution."""
     law, speed = contact_laws_of(case)[0], first_speed(case.to_problem())
     tuned = law.achieving(achieving, contact_pair(case).effective_mass, speed)
-    if tuned.free_parameter is None:
-        return case
-    return read_case({**table, "contact": {**table["contact"], tuned.free_parameter: getattr(tuned, tuned.free_parameter)}})
+    return read_case({**table, "contact": {**table["contact"], parameter: getattr(tuned, parameter)}})
 
 
 def _check_given(given: Mapping[str, Any], laws: Mapping[str, type[ContactLaw]]) -> None:

@@ -143,6 +143,8 @@ def _explain(error: ValidationError) -> Iterator[str]:
             yield f"{prefix}{_show(fault['input'])} is not allowed; it must be {context['expected']}"
         elif kind == "string_type":
             yield f"{prefix}{_show(fault['input'])} is not a text; put it in quotes"
+        elif kind == "bool_type":
+            yield f"{prefix}{_show(fault['input'])} is not allowed; it must be true or false"
         elif kind in ("model_type", "dict_type"):
             yield f"{prefix}{_show(fault['input'])} is not a table"
         elif kind in ("tuple_type", "too_long", "too_short"):

@@ -312,7 +312,10 @@ def contact_laws() -> Mapping[str, type[ContactLaw]]:
     found: dict[str, type[ContactLaw]] = {}
     for law in laws + [_brought(point) for point in entry_points(group="vibroimpact.contact_laws")]:
         if law.name in found:
-            raise InputError(f'two contact laws are called "{law.name}": {found[law.name].__module__} and {law.__module__}')
+            raise InputError(
+                f'two contact laws are called "{law.name}": {found[law.name].__module__} and {law.__module__}; '
+                "rename one, or uninstall its package"
+            )
         found[law.name] = law
     return found
 
@@ -326,9 +329,13 @@ def _brought(point: EntryPoint) -> type[ContactLaw]:
     try:
         law = point.load()
     except Exception as error:  # whatever a foreign package does, say whose fault it is
-        raise InputError(f'the contact law "{point.name}" of the entry point {point.value} can\'t be loaded: {error}') from error
-    if not _is_law(law) or not hasattr(law, "name"):
-        raise InputError(f'the entry point "{point.name}", {point.value}, is not a contact law with a name')
+        raise InputError(
+            f'the contact law "{point.name}" of the entry point {point.value} can\'t be loaded: {error}; mend or uninstall its package'
+        ) from error
+    missing = [key for key in ("name", "equation", "source") if not isinstance(getattr(law, key, None), str)]
+    if not _is_law(law) or missing:
+        lacks = f"; it has no {', '.join(missing)}" if _is_law(law) else ""
+        raise InputError(f'the entry point "{point.name}", {point.value}, is not a contact law with name, equation and source{lacks}')
     return cast("type[ContactLaw]", law)
 
 
@@ -346,6 +353,8 @@ def find_contact_law(name: str) -> type[ContactLaw]:
         If there is none; the message names the closest.
     """
     laws = contact_laws()
+    if not isinstance(name, str):
+        raise InputError(f"a contact law is found by its name, a text, not {name!r}")
     if name not in laws:
         raise InputError(f'there is no contact law "{name}"; there are {", ".join(laws)}.{did_you_mean(name, laws)}')
     return laws[name]

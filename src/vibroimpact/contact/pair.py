@@ -71,7 +71,7 @@ class ContactPair:
     effective_mass : float or array
         :math:`m_1 m_2 / (m_1 + m_2)` [kg]; the sphere's mass if the plate is held.
     yield_strength, poissons_ratio : float or array, optional
-        Of the material that yields first [Pa], [-].
+        Of the material that yields first [Pa], [-]; the sphere's ratio if no yield strength is known.
     """
 
     effective_modulus: Array

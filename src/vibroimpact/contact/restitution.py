@@ -139,7 +139,7 @@ def _loss(encounter: Encounter) -> Floats:
 
 def law_achieving(law: Law, restitution: Array, mass: Array, speed: Array) -> Law:
     """Return a law with its free parameter such that it achieves a restitution; see `ContactLaw.achieving`."""
-    wanted = np.asarray(restitution, dtype=float)
+    wanted, mass, speed = (np.asarray(value, dtype=float) for value in (restitution, mass, speed))
     try:
         Range(at_least=0, at_most=1).check(wanted)
     except InputError as error:
@@ -209,6 +209,8 @@ def _between(values: Array) -> str:
 
 def _shape(law: ContactLaw, mass: Array, speed: Array) -> tuple[int, ...]:
     """Return the common shape, having looked at the numbers."""
+    if not isinstance(law, ContactLaw):
+        raise InputError(f"law must be a contact law with its parameters, such as Hertz(stiffness=5e8), not {law!r}")
     for name, value, unit in (("mass", mass, "kg"), ("speed", speed, "m/s")):
         try:
             Range(above=0).check(value, unit)

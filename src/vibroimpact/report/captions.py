@@ -74,6 +74,10 @@ def _acceleration(result: Result) -> str:
 
 def _loops(result: Result) -> str:
     found, lost = contacts(result), result.impacts["energy_lost_J"]
+    if result.impacts["separation_speed_m_s"][found[-1]] == 0.0:
+        return (
+            f"In impact {found[-1] + 1} the sphere stays; what energy it still has is written off in the ledger, and its curve ends there."
+        )
     if np.max(lost) < 1e-9 * result.energy["input_J"]:
         return "The way in and the way out coincide: no energy is lost in contact."
     first, last = (text(float(lost[impact]), "J") for impact in (found[0], found[-1]))

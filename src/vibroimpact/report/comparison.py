@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -39,10 +39,10 @@ class Comparison:
     """
 
     name: str
-    results: dict[str, Result]
+    results: dict[str, Result] = field(repr=False)
     laws: dict[str, ContactLaw]
-    speeds: np.ndarray
-    restitutions: dict[str, np.ndarray]
+    speeds: np.ndarray = field(repr=False)
+    restitutions: dict[str, np.ndarray] = field(repr=False)
 
 
 def compare_laws(

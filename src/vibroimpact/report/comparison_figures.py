@@ -52,10 +52,15 @@ def draw_comparison(results: Mapping[str, Result], speeds: Floats, restitutions:
 def _draw_positions(results: Mapping[str, Result], looks: Mapping[str, Any]) -> Figure:
     figure, axes = _axes(len(results))
     scale = multiple("m", [one.history["position_m"].max() for one in results.values()])
+    clock = multiple("s", [one.history["time_s"][-1] for one in results.values()])
+    end = max(one.history["time_s"][-1] for one in results.values())
     for name, one in results.items():
-        axes.plot(*thinned(one.history["time_s"], one.history["position_m"] / scale.size), label=name, **looks[name])
+        time, height = one.history["time_s"], one.history["position_m"]
+        if one.status.startswith("At rest"):  # and there it lies
+            time, height = np.append(time, end), np.append(height, height[-1])
+        axes.plot(*thinned(time / clock.size, height / scale.size), label=name, **looks[name])
     axes.set_title("Height of the sphere's centre")
-    axes.set_xlabel("Time [s]")
+    axes.set_xlabel(f"Time [{clock.unit}]")
     label_vertical(axes, f"Height above the plate [{scale.unit}]")
     return _with_legend(figure, axes)
 
@@ -69,7 +74,7 @@ def _draw_first_contacts(results: Mapping[str, Result], looks: Mapping[str, Any]
     force = multiple("N", np.concatenate([part["force_N"] for part in parts.values()]))
     for name, part in parts.items():
         axes.plot(part[column] / across.size, part["force_N"] / force.size, label=name, **looks[name])
-    axes.set_title("Contact force of the first impact")
+    axes.set_title("Contact force over time, first impact" if unit == "s" else "Contact force over indentation, first impact")
     axes.set_xlabel(f"{label} [{across.unit}]")
     label_vertical(axes, f"Contact force [{force.unit}]")
     return _with_legend(figure, axes)

@@ -27,8 +27,8 @@ _TITLES = {
     ),
     "restitution": (
         "Restitution achieved",
-        "Lines: each law with the parameters of its first impact, without gravity. Marks: the impacts of the run. Where a law "
-        "depends on how fast the sphere came, the marks follow its line.",
+        "Lines: each law with the parameters of its first impact, on fresh surfaces and without gravity. Marks: the impacts of "
+        "the run; under a law whose dent lasts those after the first lie above its line.",
     ),
 }
 

@@ -102,9 +102,11 @@ def comparison_summary(comparison: Comparison) -> RenderableType:
         table.add_row(*(escape(cell) for cell in row))
     free = Table.grid(padding=(0, 2))
     for name, law in comparison.laws.items():
-        free.add_row(f" {name}", escape(free_parameter_words(law)))
+        free.add_row(f" {name}", escape(free_parameter_words(law)), escape(comparison.results[name].status))
     found = [f"{name}: {doubt}" for name, one in comparison.results.items() for doubt in one.doubts]
-    return Group(Text(comparison.name, style="bold"), table, Text(), Text("What sets the loss", style="bold"), free, *_doubt_lines(found))
+    note = Text(" Indentation, force, duration, height and energy are those of the first impact.", style="dim")
+    title = Text("What sets the loss, and how the run ended", style="bold")
+    return Group(Text(comparison.name, style="bold"), table, note, Text(), title, free, *_doubt_lines(found))
 
 
 def material_table() -> RenderableType:
@@ -162,7 +164,7 @@ def case_explained(case: Case) -> RenderableType:
     ]
     for item in fields(problem.laws[0]):
         values = [getattr(law, item.name) for law in problem.laws]
-        if values[0] is None:
+        if values[0] is None or (item.metadata["memory"] and not any(values)):
             continue
         shown = (
             ", ".join(f"{value:.9g}" for value in values) if len(set(values)) > 1 else f"{values[0]:.9g}" if values[0] is not None else "-"
@@ -174,6 +176,9 @@ def case_explained(case: Case) -> RenderableType:
     stop = ["at rest"] + ([f"after {number} impact{'' if number == 1 else 's'}"] if number else [])
     stop += [f"at {case.run.duration:g} s"] if case.run.duration else []
     rows += [("stops", " or ".join(stop)), ("tolerance", f"{case.run.tolerance:g}")]
+    if isinstance(problem.laws[0], CompliantLaw) and problem.laws[0].lasting:
+        where = "on the same spot: the dent of the last one lasts" if case.drop.same_spot else "on fresh surfaces"
+        rows.append(("each impact", f"{where} (drop.same_spot = {str(case.drop.same_spot).lower()})"))
     rows += [("" if number else "restitution", line) for number, line in enumerate(_restitution_lines(problem.laws[0], mass, speed))]
     law, found = problem.laws[0], []
     if isinstance(law, CompliantLaw):

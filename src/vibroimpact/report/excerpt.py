@@ -48,11 +48,14 @@ def pressed(result: Result, impact: int) -> dict[str, Floats]:
     """Return the history of a contact, from where the surfaces meet to where they part.
 
     The flight's side of both ends shows the jump of the force there; but in flight there is no indentation, so it is left
-    out where the surfaces meet in a dent or part with their neck drawn out.
+    out where the surfaces meet in a dent or part with their neck drawn out. So is the rest of a sphere that stays.
     """
     part = within(result, impact)
     away = np.abs(part["indentation_m"]) > 1e-9 * np.max(np.abs(part["indentation_m"]))
     first, last = int(away[1] and not away[0]), len(away) - int(away[-2] and not away[-1])
+    if result.impacts["separation_speed_m_s"][impact] == 0.0:
+        # it stays: what follows is its rest, to which its motion was not followed
+        last = int(np.searchsorted(part["time_s"], part["time_s"][-1])) + 1
     return {name: values[first:last] for name, values in part.items()}
 
 

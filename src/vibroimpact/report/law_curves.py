@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass, fields
 from pathlib import Path
+from tempfile import NamedTemporaryFile
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -26,6 +28,7 @@ from vibroimpact.report.law_text import paper_pair
 from vibroimpact.report.layout import label_vertical, new_figure, row_of_axes
 from vibroimpact.report.quantity import multiple, text
 from vibroimpact.report.style import ACCENT, INK, LOOPS, style
+from vibroimpact.storage.folder import umask
 
 _SPEEDS = np.geomspace(1e-3, 30.0, 60)
 _POINTS = 600
@@ -105,8 +108,14 @@ def save_law_picture(name: str, target: Path) -> Path:
     """
     picture = render_png(draw_law(find_contact_law(name)))
     try:
-        target.write_bytes(picture)
+        with NamedTemporaryFile(dir=target.parent, prefix=f".{target.name}.", delete=False) as file:
+            working = Path(file.name)
+            file.write(picture)
+        working.chmod(0o666 & ~umask())
+        working.replace(target)
     except OSError as error:
+        with suppress(OSError, NameError):
+            working.unlink()
         raise InputError(f"{target}: the picture can't be written: {error.strerror}") from None
     return target
 

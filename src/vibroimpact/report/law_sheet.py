@@ -57,7 +57,7 @@ def law_sheet(name: str) -> RenderableType:
         *_state(text),
         *_heading("End of the contact"),
         _indented(f"{text.end} {text.pulls}".strip()),
-        *_heading("Notes"),
+        *(_heading("Notes") if text.notes else []),
         *_prose(text.notes),
         *_achieved(law),
         *_heading("References"),

@@ -55,6 +55,12 @@ def _draw_others(axes: Axes, result: Result, others: NDArray[np.intp], depth: Mu
 
 def _mark_largest_forces(axes: Axes, result: Result, shown: NDArray[np.intp], depth: Multiple, force: Multiple) -> None:
     when = result.impacts["time_of_max_force_s"][shown]
-    x = np.interp(when, result.history["time_s"], result.history["indentation_m"]) / depth.size
+    x = _indentation_at(result, shown, when) / depth.size
     y = result.impacts["max_force_N"][shown] / force.size
     axes.plot(x, y, "o", markersize=4.5, markerfacecolor="white", markeredgecolor=MARK, zorder=3, label="largest force")
+
+
+def _indentation_at(result: Result, shown: NDArray[np.intp], when: Floats) -> Floats:
+    """Return the indentation of each contact at a time in it [m]."""
+    parts = [pressed(result, impact) for impact in shown]
+    return np.array([np.interp(time, part["time_s"], part["indentation_m"]) for time, part in zip(when, parts, strict=True)])

@@ -26,8 +26,17 @@ _MULTIPLES: dict[str, tuple[Multiple, ...]] = {
     "s": (Multiple("s", 1.0), Multiple("ms", 1e-3), Multiple("µs", 1e-6), Multiple("ns", 1e-9)),
     "m/s": (Multiple("m/s", 1.0), Multiple("mm/s", 1e-3), Multiple("µm/s", 1e-6)),
     "m/s2": (Multiple("km/s²", 1e3), Multiple("m/s²", 1.0), Multiple("mm/s²", 1e-3)),
-    "N": (Multiple("MN", 1e6), Multiple("kN", 1e3), Multiple("N", 1.0), Multiple("mN", 1e-3), Multiple("µN", 1e-6)),
-    "J": (Multiple("MJ", 1e6), Multiple("kJ", 1e3), Multiple("J", 1.0), Multiple("mJ", 1e-3), Multiple("µJ", 1e-6), Multiple("nJ", 1e-9)),
+    "N": (Multiple("MN", 1e6), Multiple("kN", 1e3), Multiple("N", 1.0), Multiple("mN", 1e-3), Multiple("µN", 1e-6), Multiple("nN", 1e-9)),
+    "J": (
+        Multiple("MJ", 1e6),
+        Multiple("kJ", 1e3),
+        Multiple("J", 1.0),
+        Multiple("mJ", 1e-3),
+        Multiple("µJ", 1e-6),
+        Multiple("nJ", 1e-9),
+        Multiple("pJ", 1e-12),
+        Multiple("fJ", 1e-15),
+    ),
     "1": (Multiple("", 1.0),),
 }
 """The multiples of each SI unit that are in use, largest first."""

@@ -70,6 +70,8 @@ def _beside(value: float, whole: float, significant: int) -> str:
     if abs(value) < 1e-12 * whole:
         return "0"
     decimals = max(0, significant - 1 - math.floor(math.log10(whole)))
+    if decimals > 12:
+        return digits(value, significant)
     return fixed(value, decimals) if abs(value) >= 100.0 * 10.0**-decimals else digits(value, 3)
 
 

@@ -48,7 +48,7 @@ def new_folder(directory: str | PathLike[str], *, force: bool = False) -> Iterat
     except OSError as error:
         raise InputError(f"{target}: the folder can't be made: {error.strerror}") from None
     try:
-        working.chmod(0o777 & ~_umask())
+        working.chmod(0o777 & ~umask())
         yield working
         _put_in_place(working, target)
     except BaseException:
@@ -113,6 +113,8 @@ def read_result(directory: str | PathLike[str]) -> Result:
     name = SUMMARY
     try:
         summary = json.loads((folder / name).read_text(encoding="utf-8"))
+        if "laws" in summary:
+            raise InputError(f"{folder}: this is a comparison of contact laws, not the result of a run; make it anew with compare")
         name = "case.toml"
         has_case = "problem" not in summary["provenance"]
         case = tomllib.loads((folder / name).read_text(encoding="utf-8")) if has_case else {}
@@ -144,7 +146,8 @@ def _put_in_place(working: Path, target: Path) -> None:
         shutil.rmtree(aside, ignore_errors=True)
 
 
-def _umask() -> int:
+def umask() -> int:
+    """Return what this user takes away of the permissions of a new file."""
     mask = os.umask(0)
     os.umask(mask)
     return mask
