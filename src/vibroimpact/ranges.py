@@ -40,7 +40,12 @@ class Range:
         InputError
             With the first value that is not (as `shown`, where given), and what is allowed.
         """
-        array = np.asarray(values, dtype=float)
+        try:
+            array = np.asarray(values, dtype=float)
+        except (TypeError, ValueError):
+            raise InputError(
+                f"{values!r} is not allowed; it must be a number{' in ' + unit if unit else ''}, or an array of them"
+            ) from None
         inside = np.isfinite(array) & (array > self.above) & (array >= self.at_least) & (array < self.below) & (array <= self.at_most)
         if not inside.all():
             wrong = shown or f"{array[~inside].flat[0]:g}"

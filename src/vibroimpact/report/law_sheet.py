@@ -90,7 +90,7 @@ def _parameters(parameters: Iterable[ParameterText], *, given: bool = True) -> R
 
 
 def _left_out(default: str) -> str:
-    return default if default in ("required", "optional") else f"if left out, {default}"
+    return default if default.startswith(("required", "optional")) else f"if left out, {default}"
 
 
 def _state(text: LawText) -> list[RenderableType]:

@@ -192,7 +192,10 @@ def _default(item: Field[Any]) -> str:
     source = item.metadata["from_pair"]
     if source:
         return "from the bodies" if source in _OF_BODIES else "from the materials"
-    return "required" if item.default is MISSING else "optional" if item.default is None else f"{item.default:g}"
+    if item.default is MISSING:
+        typical = item.metadata["example"]
+        return "required" if typical is None else f"required, such as {typical:g}"
+    return "optional" if item.default is None else f"{item.default:g}"
 
 
 def _sections(doc: str) -> dict[str, str]:
