@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from vibroimpact.bodies.plate import rigid_plate
 from vibroimpact.bodies.sphere import rigid_sphere
-from vibroimpact.contact.elastic_plastic import ElasticPlasticLaw
-from vibroimpact.contact.law import ContactLaw, find_contact_law, loses_nothing
+from vibroimpact.contact.law import CompliantLaw, ContactLaw, find_contact_law, loses_nothing
 from vibroimpact.contact.pair import ContactPair, effective_modulus
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.errors import InputError
@@ -69,7 +68,7 @@ def problem_of(case: Case) -> Problem:
         remedy = "give a number or a duration"
         if loses_nothing(law):
             raise InputError(f'"all" needs a law that loses energy, and this {law.name} never comes to rest; {remedy}', "run.impacts")
-        if isinstance(law, ElasticPlasticLaw) and law.lasting and case.drop.same_spot:
+        if isinstance(law, CompliantLaw) and law.lasting and case.drop.same_spot and loses_nothing(law.after_compression(1.0)):
             words = f"and {law.name} loses none on a dent that it has made"
             raise InputError(f'"all" needs a law that loses energy, {words}; {remedy}, or drop.same_spot = false', "run.impacts")
     return Problem(
@@ -86,6 +85,14 @@ def problem_of(case: Case) -> Problem:
         tolerance=case.run.tolerance,
         source=resolved(case),
     )
+
+
+def first_speed(problem: Problem) -> float:
+    """Return the speed of the first touch [m/s] of a problem of one drop."""
+    if problem.speed is not None:
+        return float(problem.speed)
+    fall = float(problem.height or 0.0) - float(problem.sphere.contact_offset)
+    return float((2.0 * float(problem.gravity) * fall) ** 0.5)
 
 
 def resolved(case: Case) -> dict[str, Any]:

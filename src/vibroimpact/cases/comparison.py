@@ -6,12 +6,11 @@ from collections.abc import Iterable, Mapping
 from dataclasses import MISSING, Field, fields
 from typing import Any
 
-from vibroimpact.cases.build import contact_laws_of, contact_pair, resolved
+from vibroimpact.cases.build import contact_laws_of, contact_pair, first_speed, resolved
 from vibroimpact.cases.contact_section import unit_of
 from vibroimpact.cases.reader import read_case
 from vibroimpact.cases.schema import Case
 from vibroimpact.contact.law import ContactLaw, find_contact_law
-from vibroimpact.dynamics.problem import Problem
 from vibroimpact.errors import InputError, did_you_mean
 
 
@@ -59,14 +58,6 @@ def cases_under(case: Case, laws: Iterable[str], given: Mapping[str, Any] | None
     classes = {name: find_contact_law(name) for name in names}
     _check_given(table, classes)
     return {name: _case_under(case, law, table, achieving) for name, law in classes.items()}
-
-
-def first_speed(problem: Problem) -> float:
-    """Return the speed of the first touch [m/s] of a problem of one drop."""
-    if problem.speed is not None:
-        return float(problem.speed)
-    fall = float(problem.height or 0.0) - float(problem.sphere.contact_offset)
-    return float((2.0 * float(problem.gravity) * fall) ** 0.5)
 
 
 def _case_under(case: Case, law: type[ContactLaw], given: Mapping[str, Any], achieving: float | None) -> Case:

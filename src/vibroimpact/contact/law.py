@@ -88,8 +88,9 @@ class ContactLaw:
     @classmethod
     def example(cls, pair: ContactPair) -> Self:
         """Return the law of a pair with typical values of what the pair does not tell, for figures and tests."""
+        told = {item.name for item in fields(cls) if item.metadata["from_pair"] and getattr(pair, item.metadata["from_pair"]) is not None}
         typical = {item.name: item.metadata["example"] for item in fields(cls) if item.metadata["example"] is not None}
-        return cls.for_pair(pair, **typical)
+        return cls.for_pair(pair, **{name: value for name, value in typical.items() if name not in told})
 
     @property
     def free_parameter(self) -> str | None:

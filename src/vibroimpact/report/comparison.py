@@ -8,13 +8,14 @@ from typing import Any
 
 import numpy as np
 
-from vibroimpact.cases.build import contact_laws_of, contact_pair
-from vibroimpact.cases.comparison import cases_under, first_speed
+from vibroimpact.cases.build import contact_laws_of, contact_pair, first_speed
+from vibroimpact.cases.comparison import cases_under
 from vibroimpact.cases.schema import Case
 from vibroimpact.contact.law import ContactLaw
 from vibroimpact.contact.restitution import achieved_restitution
 from vibroimpact.dynamics.simulate import simulate
-from vibroimpact.report.quantity import MISSING, digits, fixed, multiple
+from vibroimpact.report.quantity import MISSING, fixed
+from vibroimpact.report.tables import HEADERS, column
 from vibroimpact.storage.result import Result, result_of
 
 _SPEEDS = 61
@@ -94,15 +95,7 @@ def compare_laws(
     return Comparison(case.name or "a drop", results, first, speeds, restitutions)
 
 
-# column, heading
-_COLUMNS = {
-    "max_indentation_m": "Largest indentation",
-    "max_force_N": "Largest force",
-    "duration_s": "Contact duration",
-    "rebound_height_m": "Rebound height",
-    "energy_lost_J": "Energy lost",
-}
-_UNITS = {"_m": "m", "_N": "N", "_s": "s", "_J": "J"}
+_COLUMNS = ("max_indentation_m", "max_force_N", "duration_s", "rebound_height_m", "energy_lost_J")
 
 
 def comparison_table(comparison: Comparison) -> tuple[list[tuple[str, str]], list[list[str]]]:
@@ -114,12 +107,12 @@ def comparison_table(comparison: Comparison) -> tuple[list[tuple[str, str]], lis
         asked = one.impacts["restitution_asked"]
         some = [fixed(float(values[at]), 4) if len(values) else MISSING for values, at in ((asked, 0), (achieved, 0), (achieved, -1))]
         rows.append([name, str(len(achieved)), *some])
-    for column, heading in _COLUMNS.items():
-        first = np.array([one.impacts[column][0] if len(one.impacts[column]) else np.nan for one in comparison.results.values()])
-        scale = multiple(next(unit for end, unit in _UNITS.items() if column.endswith(end)), first)
-        headers.append((heading, scale.unit))
-        for row, value in zip(rows, first / scale.size, strict=True):
-            row.append(digits(float(value)))
+    for name in _COLUMNS:
+        first = np.array([one.impacts[name][0] if len(one.impacts[name]) else np.nan for one in comparison.results.values()])
+        unit, cells = column(name, first)
+        headers.append((HEADERS[name], unit))
+        for row, cell in zip(rows, cells, strict=True):
+            row.append(cell)
     return headers, rows
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import json
 from os import PathLike
 from pathlib import Path
@@ -16,7 +15,7 @@ from vibroimpact.report.comparison_figures import draw_comparison
 from vibroimpact.report.figures import save_figures
 from vibroimpact.report.page import picture, template
 from vibroimpact.storage.folder import SUMMARY, new_folder
-from vibroimpact.storage.tables import impact_rows
+from vibroimpact.storage.tables import impact_rows, write_csv
 
 _TITLES = {
     "position": ("Position", "The sphere's centre above the plate, under each law."),
@@ -52,10 +51,7 @@ def save_comparison(comparison: Comparison, directory: str | PathLike[str], *, f
     """
     with new_folder(directory, force=force) as folder:
         rows = [{"law": name, **row} for name, one in comparison.results.items() for row in impact_rows(one.impacts)]
-        with (folder / "comparison.csv").open("w", newline="", encoding="utf-8") as file:
-            writer = csv.DictWriter(file, ["law", *IMPACT_COLUMNS], lineterminator="\n")
-            writer.writeheader()
-            writer.writerows({key: "" if value is None else value for key, value in row.items()} for row in rows)
+        write_csv(rows, ["law", *IMPACT_COLUMNS], folder / "comparison.csv")
         laws = {
             name: {"status": one.status, "impacts": impact_rows(one.impacts), "energy": one.energy, "doubts": one.doubts}
             for name, one in comparison.results.items()

@@ -12,7 +12,7 @@ from rich.markup import escape
 from rich.table import Table
 from rich.text import Text
 
-from vibroimpact.cases.build import contact_pair, impacts_of, resolved
+from vibroimpact.cases.build import contact_pair, first_speed, impacts_of, resolved
 from vibroimpact.cases.doubts import doubts
 from vibroimpact.cases.schema import Case
 from vibroimpact.contact.law import CompliantLaw, ContactLaw
@@ -150,7 +150,7 @@ def case_explained(case: Case) -> RenderableType:
     """Return what a case means: the resolved numbers, what to expect, and what to doubt."""
     problem, pair = case.to_problem(), contact_pair(case)
     mass, radius, gravity = float(problem.sphere.mass), case.sphere.radius, case.drop.gravity
-    speed = case.drop.speed or math.sqrt(2.0 * gravity * (float(case.drop.height or radius) - radius))
+    speed = first_speed(problem)
     rows: list[tuple[str, str]] = [
         ("sphere", f"radius {radius:g} m, mass {mass:.6g} kg, {case.sphere.model}, of {_stuff(case.sphere.material)}"),
         (
@@ -196,12 +196,13 @@ def case_explained(case: Case) -> RenderableType:
 
 def _restitution_lines(law: ContactLaw, mass: float, speed: float) -> list[str]:
     """Say what a law achieves, and what to ask it for where that is something else."""
-    achieved, asked = float(achieved_restitution(law, mass, speed)), getattr(law, "restitution", None)
-    if asked is None or abs(achieved - asked) < 5e-4:
+    achieved = float(achieved_restitution(law, mass, speed))
+    asked = getattr(law, "restitution", achieved) if law.free_parameter == "restitution" else achieved
+    if abs(achieved - asked) < 5e-4:
         return [f"{achieved:.5g} achieved at the first touch, without gravity"]
     lines = [f"{asked:.5g} asked, {achieved:.5g} achieved at the first touch, without gravity"]
     try:
-        better = getattr(law.achieving(asked, mass, speed), "restitution")  # noqa: B009 - not every law has one
+        better = getattr(law.achieving(asked, mass, speed), "restitution", asked)
         lines.append(f"restitution = {better:.6g} would achieve {asked:.5g}")
     except InputError as error:
         lines.append(error.message)

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from contextlib import suppress
 from dataclasses import dataclass, fields
 from pathlib import Path
-from tempfile import NamedTemporaryFile
+from tempfile import TemporaryDirectory
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -28,7 +27,6 @@ from vibroimpact.report.law_text import paper_pair
 from vibroimpact.report.layout import label_vertical, new_figure, row_of_axes
 from vibroimpact.report.quantity import multiple, text
 from vibroimpact.report.style import ACCENT, INK, LOOPS, style
-from vibroimpact.storage.folder import umask
 
 _SPEEDS = np.geomspace(1e-3, 30.0, 60)
 _POINTS = 600
@@ -108,32 +106,26 @@ def save_law_picture(name: str, target: Path) -> Path:
     """
     picture = render_png(draw_law(find_contact_law(name)))
     try:
-        with NamedTemporaryFile(dir=target.parent, prefix=f".{target.name}.", delete=False) as file:
-            working = Path(file.name)
-            file.write(picture)
-        working.chmod(0o666 & ~umask())
-        working.replace(target)
+        with TemporaryDirectory(prefix=f".{target.name}.", dir=target.parent) as working:
+            file = Path(working) / target.name
+            file.write_bytes(picture)
+            file.replace(target)
     except OSError as error:
-        with suppress(OSError, NameError):
-            working.unlink()
         raise InputError(f"{target}: the picture can't be written: {error.strerror}") from None
     return target
 
 
 def _scene(law: type[ContactLaw]) -> _Scene:
     """Return what shows the law's character."""
-    taken = {item.metadata["from_pair"] for item in fields(law)}
-    typical = {item.name: item.metadata["example"] for item in fields(law) if item.metadata["example"] is not None}
-    if taken & {"yield_pressure", "yield_strength"}:
+    if {item.metadata["from_pair"] for item in fields(law)} & {"yield_pressure", "yield_strength"}:
         pair = _pair_of(0.025, "steel", "steel")
-        told = {item.name for item in fields(law) if item.metadata["from_pair"]}
-        known = {name: value for name, value in typical.items() if name not in told}
-        return _Scene("Steel sphere, radius 25 mm, on a steel plate", pair, law.for_pair(pair, **known))
+        return _Scene("Steel sphere, radius 25 mm, on a steel plate", pair, law.example(pair))
     if getattr(law, "contact_end", "") == "pull-off":
         pair = _pair_of(1e-4, "rock-paper", "steel-paper")
-        if "dissipation_time" in typical:  # a contact of this sphere is so much shorter than one of the paper's
-            typical["dissipation_time"] *= pair.effective_radius / paper_pair().effective_radius
-        return _Scene("Rock sphere, radius 0.1 mm, on a steel plate", pair, law.for_pair(pair, **typical))
+        one = law.example(pair)
+        if hasattr(one, "dissipation_time"):  # a contact of this sphere is so much shorter than one of the paper's
+            one = one.changed({"dissipation_time": one.dissipation_time * pair.effective_radius / paper_pair().effective_radius})
+        return _Scene("Rock sphere, radius 0.1 mm, on a steel plate", pair, one)
     pair = paper_pair()
     return _Scene("Rock sphere, radius 25 mm, on a steel plate", pair, law.example(pair))
 

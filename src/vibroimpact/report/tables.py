@@ -12,7 +12,7 @@ from vibroimpact.storage.result import Result
 _MOST_ROWS, _FIRST, _LAST = 50, 45, 3
 """A table of more rows shows only its first and last ones."""
 
-_HEADERS = {
+HEADERS = {
     "impact": "Impact",
     "time_s": "First touch",
     "duration_s": "Contact duration",
@@ -26,6 +26,8 @@ _HEADERS = {
     "rebound_height_m": "Rebound height",
     "energy_lost_J": "Energy lost",
 }
+"""The columns of the impact table that are shown, and how they are headed."""
+
 _ENTRIES = {
     "kinetic_J": "Kinetic energy of the sphere",
     "potential_J": "Potential energy of the sphere, zero at the height of first touch",
@@ -49,8 +51,8 @@ class Table(NamedTuple):
 
 def impact_table(result: Result) -> Table:
     """Return the impact table in multiples of units; a long one without its middle."""
-    columns = [_column(name, result.impacts[name]) for name in _HEADERS]
-    headers = [(header, unit) for header, (unit, _) in zip(_HEADERS.values(), columns, strict=True)]
+    columns = [column(name, result.impacts[name]) for name in HEADERS]
+    headers = [(header, unit) for header, (unit, _) in zip(HEADERS.values(), columns, strict=True)]
     rows = [list(row) for row in zip(*(cells for _, cells in columns), strict=True)]
     if len(rows) <= _MOST_ROWS:
         return Table(headers, rows, 0, [])
@@ -75,8 +77,8 @@ def _beside(value: float, whole: float, significant: int) -> str:
     return fixed(value, decimals) if abs(value) >= 100.0 * 10.0**-decimals else digits(value, 3)
 
 
-def _column(name: str, values: Floats) -> tuple[str, list[str]]:
-    """Return unit and cells of a column."""
+def column(name: str, values: Floats) -> tuple[str, list[str]]:
+    """Return unit and cells of a column of the impact table."""
     if name == "impact":
         return "", [fixed(value, 0) for value in values]
     if name.startswith("restitution"):

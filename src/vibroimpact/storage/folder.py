@@ -48,7 +48,7 @@ def new_folder(directory: str | PathLike[str], *, force: bool = False) -> Iterat
     except OSError as error:
         raise InputError(f"{target}: the folder can't be made: {error.strerror}") from None
     try:
-        working.chmod(0o777 & ~umask())
+        working.chmod(0o777 & ~_umask())
         yield working
         _put_in_place(working, target)
     except BaseException:
@@ -85,7 +85,7 @@ def write_result(result: Result, directory: Path) -> None:
     """Write the data files of a result into a folder: case.toml, impacts.csv, summary.json, result.nc."""
     if result.case:  # a problem made in Python has no case; its provenance says what it was
         (directory / "case.toml").write_text(tomli_w.dumps(result.case), encoding="utf-8")
-    write_csv(result.impacts, directory / "impacts.csv")
+    write_csv(impact_rows(result.impacts), list(IMPACT_COLUMNS), directory / "impacts.csv")
     summary = {
         "name": result.name,
         "status": result.status,
@@ -146,8 +146,7 @@ def _put_in_place(working: Path, target: Path) -> None:
         shutil.rmtree(aside, ignore_errors=True)
 
 
-def umask() -> int:
-    """Return what this user takes away of the permissions of a new file."""
+def _umask() -> int:
     mask = os.umask(0)
     os.umask(mask)
     return mask

@@ -29,9 +29,9 @@ def impact_rows(impacts: dict[str, Any]) -> list[dict[str, float | int | None]]:
     return rows
 
 
-def write_csv(impacts: dict[str, Any], path: Path) -> None:
-    """Write the impact table with every digit; an empty cell where there is no value."""
+def write_csv(rows: list[dict[str, Any]], columns: list[str], path: Path) -> None:
+    """Write rows with every digit; an empty cell where there is no value."""
     with path.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.DictWriter(file, list(IMPACT_COLUMNS), lineterminator="\n")
+        writer = csv.DictWriter(file, columns, lineterminator="\n")
         writer.writeheader()
-        writer.writerows({name: "" if value is None else repr(value) for name, value in row.items()} for row in impact_rows(impacts))
+        writer.writerows({name: "" if value is None else value for name, value in row.items()} for row in rows)

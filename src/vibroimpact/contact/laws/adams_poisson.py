@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-
-from vibroimpact.contact.law import CompliantLaw, memory, parameter
+from vibroimpact.contact.law import parameter
+from vibroimpact.contact.one_way import OneWayLaw
 from vibroimpact.contact.pair import Array
 
 
 @dataclass(frozen=True, kw_only=True)
-class AdamsPoisson(CompliantLaw):
+class AdamsPoisson(OneWayLaw):
     r"""Penalty spring with Poisson's hypothesis: the impulse of restitution is e times that of compression.
 
     .. math:: F = p\, \delta \ \text{on approach},\qquad F = e^2 p\, \delta \ \text{on the way out}
@@ -52,7 +51,6 @@ class AdamsPoisson(CompliantLaw):
 
     penalty: Array = parameter("penalty p", "N/m", example=2e6, above=0)
     restitution: Array = parameter("restitution e", example=0.7, above=0, at_most=1)
-    turned: Array = memory("has the contact passed its deepest point? 1 if so")
 
     def forces(self, delta: Array, delta_dot: Array, approach_speed: Array) -> tuple[Array, Array]:
         """Return the penalty's force, and what the way out lacks of it [N]."""
@@ -62,10 +60,6 @@ class AdamsPoisson(CompliantLaw):
     def elastic_energy(self, delta: Array) -> Array:
         r"""Return :math:`p \delta^2/2` [J], of which the way out loses a part."""
         return 0.5 * self.penalty * delta * delta
-
-    def after_compression(self, deepest: Array) -> AdamsPoisson:
-        """Return the law for the way out, of the drops that have been deeper than zero."""
-        return self.changed({"turned": np.where(deepest > 0.0, 1.0, self.turned)})
 
     def closed_form_restitution(self, mass: Array, speed: Array) -> Array:
         """Return the restitution that was asked for."""

@@ -6,13 +6,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from vibroimpact.contact.law import memory, parameter
+from vibroimpact.contact.law import parameter
+from vibroimpact.contact.one_way import OneWayLaw
 from vibroimpact.contact.pair import Array
 from vibroimpact.contact.power_law import SphereLaw
 
 
 @dataclass(frozen=True, kw_only=True)
-class Jankowski(SphereLaw):
+class Jankowski(SphereLaw, OneWayLaw):
     r"""Nonlinear viscoelastic pounding (Jankowski 2005, 2006).
 
     .. math:: F = K \delta^{3/2} + 2 \xi \sqrt{m K \sqrt\delta}\, \dot\delta,\qquad
@@ -60,7 +61,6 @@ class Jankowski(SphereLaw):
 
     restitution: Array = parameter("restitution asked for, e", example=0.7, above=0, at_most=1)
     effective_mass: Array = parameter("mass for which the restitution is asked", "kg", above=0, from_pair="effective_mass")
-    turned: Array = memory("has the contact passed its deepest point? 1 if so")
 
     def forces(self, delta: Array, delta_dot: Array, approach_speed: Array) -> tuple[Array, Array]:
         """Return the elastic and the dissipative force [N]."""
@@ -68,7 +68,3 @@ class Jankowski(SphereLaw):
         ratio = 4.5 * np.sqrt(5.0) * (1.0 - e * e) / (e * (e * (9.0 * np.pi - 16.0) + 16.0))
         damping = 2.0 * ratio * np.sqrt(self.effective_mass * self.stiffness) * (1.0 - self.turned)
         return self.elastic_force(delta), damping * np.sqrt(np.sqrt(delta)) * delta_dot
-
-    def after_compression(self, deepest: Array) -> Jankowski:
-        """Return the law for the way out, of the drops that have been deeper than zero."""
-        return self.changed({"turned": np.where(deepest > 0.0, 1.0, self.turned)})

@@ -19,6 +19,7 @@ from vibroimpact.contact.phase.collocation import Floats, Map, Rule, collocation
 from vibroimpact.contact.phase.contact import CAPTURED, COMPRESSION, FAILED, GLIDE, RELEASED, RESTITUTION, Contact, Drops, Piece
 from vibroimpact.contact.phase.encounter import Encounter
 from vibroimpact.contact.phase.glide import glide_until_push
+from vibroimpact.contact.phase.guess import first_guess, time_scale
 from vibroimpact.contact.phase.stretch import Aim, Stretch, WarmStart, acceleration_unit, solve_stretch
 from vibroimpact.contact.phase.warm_starts import WarmStarts
 from vibroimpact.contact.static import static_indentation, static_work
@@ -150,13 +151,13 @@ class _Phase:
     def aimed(self, drops: Drops, time_map: Map, aim: Aim, level: Floats) -> Stretch:
         """Solve a stretch to its end, from the last impact's solution or a sinusoidal guess."""
         encounter, kind, ids = self.encounter.take(drops), (time_map, aim), self.ids[drops]
-        duration = self.time_scale(drops, aim, level)
+        duration = time_scale(encounter, self.delta[drops], self.velocity[drops], aim, level)
         known = self.warm_starts.knows(kind, ids)
         if known.all():
             start = WarmStart(self.warm_starts.starts[kind].unknowns[:, ids], self.warm_starts.starts[kind].inverse)
         else:
             unit = acceleration_unit(encounter, self.velocity[drops], duration)
-            guess = self.first_guess(drops, self.rule(time_map), aim, level) / unit
+            guess = first_guess(encounter, self.rule(time_map), self.delta[drops], self.velocity[drops], duration, aim, level) / unit
             start = WarmStart(np.concatenate([guess, np.ones((1, len(drops)))]))
             if known.any():
                 start.unknowns[:, known] = self.warm_starts.starts[kind].unknowns[:, ids[known]]
@@ -178,36 +179,6 @@ class _Phase:
 
     def rule(self, time_map: Map) -> Rule:
         return collocation_rule(self.number, time_map, self.law.root)
-
-    def time_scale(self, drops: Drops, aim: Aim, level: Floats) -> Floats:
-        """Return how long an undamped, sinusoidal motion would take to the end of a stretch [s]."""
-        encounter, velocity = self.encounter.take(drops), self.velocity[drops]
-        delta, depth, level = (self.above_floor(drops, value) for value in (self.delta[drops], self.depth[drops], level))
-        if aim == "turn":
-            begin = np.arcsin(np.minimum(delta / depth, 0.999))
-            speed = np.sqrt(velocity**2 + encounter.gravity * (depth - delta))
-            return np.asarray((0.5 * np.pi - begin) * depth * np.cos(begin) / speed)
-        stored = encounter.law.elastic_energy(self.delta[drops]) - encounter.law.elastic_energy(encounter.floor)
-        turn, speed = np.arccos(np.clip(level / delta, 0.0, 1.0)), np.sqrt(2.0 * stored / encounter.mass)
-        return np.where(velocity == 0.0, turn * delta / np.where(stored > 0.0, speed, encounter.speed_scale), (level - delta) / velocity)
-
-    def first_guess(self, drops: Drops, rule: Rule, aim: Aim, level: Floats) -> Floats:
-        """Guess the accelerations at the nodes of a stretch from an undamped, sinusoidal motion."""
-        encounter, velocity = self.encounter.take(drops), self.velocity[drops]
-        delta, depth, level = (self.above_floor(drops, value) for value in (self.delta[drops], self.depth[drops], level))
-        duration, fraction = self.time_scale(drops, aim, level), rule.time[:, None]
-        if aim == "turn":
-            begin = np.arcsin(np.minimum(delta / depth, 0.999))
-            angle = begin + fraction * (0.5 * np.pi - begin)
-            path, speed = depth * np.sin(angle), velocity / np.cos(begin) * np.cos(angle)
-        else:
-            resting, turn = velocity == 0.0, np.arccos(np.clip(level / delta, 0.0, 1.0))
-            path = np.where(resting, delta * np.cos(turn * fraction), delta + (level - delta) * fraction)
-            speed = np.where(resting, -0.9 * delta * turn / duration * np.sin(turn * fraction), velocity)
-        return encounter.acceleration(encounter.floor + np.maximum(path, 0.0), speed)
-
-    def above_floor(self, drops: Drops, delta: Floats) -> Floats:
-        return delta - self.encounter.floor[drops]
 
     # what becomes of a solved stretch ------------------------------------------------------------
 
@@ -347,7 +318,8 @@ class _Phase:
         start = WarmStart(guess)
         again = self.solve(drops, time_map, duration, start, aim, level)
         if aim == "force" and not self.velocity[drops].any():
-            self.remember(drops, again, aim, self.time_scale(drops, aim, level), start)
+            scale = time_scale(self.encounter.take(drops), self.delta[drops], self.velocity[drops], aim, level)
+            self.remember(drops, again, aim, scale, start)
         good = self.resolved(drops, again)
         if aim == "force":
             good &= ~self.pulling(drops, again)[:-1].any(axis=0) & (again.node_delta[-1] > self.encounter.floor[drops])
