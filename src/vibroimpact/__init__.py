@@ -19,6 +19,8 @@ if TYPE_CHECKING:
     from vibroimpact.bodies.body import Body as Body
     from vibroimpact.bodies.plate import rigid_plate as rigid_plate
     from vibroimpact.bodies.sphere import rigid_sphere as rigid_sphere
+    from vibroimpact.cases.modes import BodyModes as BodyModes
+    from vibroimpact.cases.modes import compute_modes as compute_modes
     from vibroimpact.cases.reader import load_case as load_case
     from vibroimpact.cases.reader import read_case as read_case
     from vibroimpact.cases.reader import shipped_cases as shipped_cases
@@ -36,26 +38,36 @@ if TYPE_CHECKING:
     from vibroimpact.errors import ComputationError as ComputationError
     from vibroimpact.errors import InputError as InputError
     from vibroimpact.errors import VibroimpactError as VibroimpactError
+    from vibroimpact.exchange.mesh_file import read_mesh as read_mesh
+    from vibroimpact.exchange.vtu import write_vtu as write_vtu
+    from vibroimpact.exchange.write_abaqus import write_abaqus as write_abaqus
+    from vibroimpact.exchange.write_nastran import write_nastran as write_nastran
     from vibroimpact.materials import Material as Material
     from vibroimpact.materials import find_material as find_material
     from vibroimpact.materials import material_library as material_library
     from vibroimpact.report.comparison import Comparison as Comparison
     from vibroimpact.report.comparison import compare_laws as compare_laws
     from vibroimpact.report.comparison_folder import save_comparison as save_comparison
+    from vibroimpact.report.modes_folder import save_modes as save_modes
     from vibroimpact.report.save import remake_report as remake_report
     from vibroimpact.report.save import save_result as save_result
     from vibroimpact.storage.folder import read_result as read_result
     from vibroimpact.storage.result import Result as Result
+    from vibroimpact.structures.mesh import Mesh as Mesh
+    from vibroimpact.structures.modal_model import ModalBasis as ModalBasis
     from vibroimpact.units import to_si as to_si
 
 _HOME = {
     "Body": "bodies.body",
+    "BodyModes": "cases.modes",
     "Case": "cases.schema",
     "Comparison": "report.comparison",
     "ComputationError": "errors",
     "ContactLaw": "contact.law",
     "InputError": "errors",
     "Material": "materials",
+    "Mesh": "structures.mesh",
+    "ModalBasis": "structures.modal_model",
     "Outcome": "dynamics.response",
     "Problem": "dynamics.problem",
     "Response": "dynamics.response",
@@ -64,6 +76,7 @@ _HOME = {
     "achieved_restitution": "contact.restitution",
     "case_schema": "cases.schema",
     "compare_laws": "report.comparison",
+    "compute_modes": "cases.modes",
     "contact_laws": "contact.law",
     "find_contact_law": "contact.law",
     "find_material": "materials",
@@ -71,15 +84,20 @@ _HOME = {
     "load_case": "cases.reader",
     "material_library": "materials",
     "read_case": "cases.reader",
+    "read_mesh": "exchange.mesh_file",
     "read_result": "storage.folder",
     "remake_report": "report.save",
     "rigid_plate": "bodies.plate",
     "rigid_sphere": "bodies.sphere",
     "save_comparison": "report.comparison_folder",
+    "save_modes": "report.modes_folder",
     "save_result": "report.save",
     "shipped_cases": "cases.reader",
     "simulate": "dynamics.simulate",
     "to_si": "units",
+    "write_abaqus": "exchange.write_abaqus",
+    "write_nastran": "exchange.write_nastran",
+    "write_vtu": "exchange.vtu",
 }
 
 __all__ = [*sorted(_HOME), "__version__"]

@@ -81,6 +81,37 @@ def check(case: CaseArgument) -> None:
 
 
 @app.command()
+def modes(
+    case: CaseArgument,
+    output: Annotated[Path | None, typer.Option("-o", "--output", metavar="DIR", help="The folder to make; by default CASE-modes.")] = None,
+    force: Force = False,
+) -> None:
+    """Compute the modes of the elastic bodies of a case.
+
+    The folder holds a table of frequencies, pictures of the first modes, and the meshes for ParaView, Nastran and Abaqus.
+    """
+    from vibroimpact.cases.modes import compute_modes
+    from vibroimpact.cases.reader import load_case
+    from vibroimpact.report.modes_folder import save_modes
+    from vibroimpact.report.modes_text import modes_summary
+    from vibroimpact.report.progress import patient_progress
+    from vibroimpact.storage.folder import check_free
+
+    found = load_case(case)
+    target = Path(f"{_stem(case)}-modes") if output is None else output
+    check_free(target, force=force)
+    console = _console()
+    try:
+        with patient_progress("computing modes", console) as progress:
+            bodies = compute_modes(found, progress, lambda text: typer.echo(f"vibroimpact: {text}", err=True))
+        folder = save_modes(found, bodies, target, force=force)
+    except KeyboardInterrupt:
+        _fail("interrupted; nothing was written", 130)
+    console.print(modes_summary(found, bodies))
+    typer.echo(f"wrote {folder / 'modes.csv'}")
+
+
+@app.command()
 def compare(
     case: CaseArgument,
     laws: Annotated[str, typer.Option("--laws", metavar="A,B,C", help="The contact laws, separated by commas.")],
@@ -187,11 +218,18 @@ def schema() -> None:
 
 
 @app.command()
-def doctor() -> None:
-    """Show versions and test this installation."""
+def doctor(
+    clear_store: Annotated[bool, typer.Option("--clear-store", help="Empty the store of computed modes.")] = False,
+) -> None:
+    """Show versions and the store of modes, and test this installation."""
     from vibroimpact.doctor import diagnose, first_rebound_error
     from vibroimpact.report.console import versions_table
 
+    if clear_store:
+        from vibroimpact.structures.store import clear_store as clear
+
+        typer.echo(f"removed {clear()} entries from the store of modes")
+        return
     _console().print(versions_table(diagnose()))
     error = first_rebound_error()
     if not error < 2e-6:

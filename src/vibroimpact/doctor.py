@@ -7,6 +7,8 @@ import platform
 from importlib.metadata import PackageNotFoundError, requires, version
 
 from vibroimpact._version import __version__
+from vibroimpact.structures.factor import free_memory
+from vibroimpact.structures.store import entries, store_folder, store_size
 
 _FIRST_REBOUND = 6.8386265  # m/s: PAPER, section 4, theory, integrated independently at 1e-12
 
@@ -24,6 +26,8 @@ def diagnose() -> list[tuple[str, str]]:
         ("python", platform.python_version()),
         ("platform", platform.platform()),
         ("processors", str(os.cpu_count())),
+        ("memory free", f"{free_memory() / 1e9:.3g} GB"),
+        ("store of modes", f"{len(entries())} entries, {store_size() / 1e6:.3g} MB, in {store_folder()}"),
     ]
     for requirement in requires("vibroimpact") or []:
         name, _, marker = requirement.partition(";")

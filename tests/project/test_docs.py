@@ -36,7 +36,8 @@ def commands() -> list[str]:
 def test_documented_commands_run(tmp_path: Path) -> None:
     assert len(commands()) >= 8
     for block in blocks(ROOT / "docs" / "case-file.md", "toml"):
-        (tmp_path / "case.toml").write_text(block)
+        name = re.match(r"# (\S+\.toml)\n", block)  # a block may say what its file is called
+        (tmp_path / (name[1] if name else "case.toml")).write_text(block)
     for command in dict.fromkeys(commands()):
         arguments = [sys.executable, "-m", "vibroimpact", *shlex.split(command)[1:]]
         done = subprocess.run(arguments, cwd=tmp_path, capture_output=True, text=True, timeout=120, check=False)

@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, fields
+from dataclasses import fields
 from typing import TYPE_CHECKING, Any
 
 from vibroimpact.bodies.plate import rigid_plate
 from vibroimpact.bodies.sphere import rigid_sphere
+from vibroimpact.cases.build_elastic import elastic_bodies
+from vibroimpact.cases.damping_field import damping_table
+from vibroimpact.cases.material_field import material_table
+from vibroimpact.cases.supports_field import supports_table
 from vibroimpact.contact.law import CompliantLaw, ContactLaw, find_contact_law, loses_nothing
 from vibroimpact.contact.pair import ContactPair, effective_modulus
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.errors import InputError
-from vibroimpact.materials import RIGID, Material
 
 if TYPE_CHECKING:
-    from vibroimpact.cases.schema import Case
+    from vibroimpact.cases.schema import Case, PlateSection, SphereSection
 
 _DEFAULT_IMPACTS = 5
 
@@ -55,13 +58,13 @@ def impacts_of(case: Case) -> int | None:
     return None if case.run.impacts == "all" else case.run.impacts
 
 
-def problem_of(case: Case) -> Problem:
-    """Return the problem that a case states.
+def check_case(case: Case) -> None:
+    """Raise unless a case can be stated as a problem, without computing anything.
 
     Raises
     ------
     InputError
-        If the contact law can't be made for these bodies, or the sphere would bounce for ever.
+        If the contact law can't be made for these bodies, the sphere would bounce for ever, or an elastic body can't be made.
     """
     law = contact_laws_of(case)[-1]
     if impacts_of(case) is None and case.run.duration is None:
@@ -71,6 +74,23 @@ def problem_of(case: Case) -> Problem:
         if isinstance(law, CompliantLaw) and law.lasting and case.drop.same_spot and loses_nothing(law.after_compression(1.0)):
             words = f"and {law.name} loses none on a dent that it has made"
             raise InputError(f'"all" needs a law that loses energy, {words}; {remedy}, or drop.same_spot = false', "run.impacts")
+    elastic_bodies(case)
+
+
+def problem_of(case: Case) -> Problem:
+    """Return the problem that a case states.
+
+    Raises
+    ------
+    InputError
+        What `check_case` raises; and for elastic bodies, whose drop can't be simulated yet.
+    """
+    check_case(case)
+    for name in elastic_bodies(case):
+        raise InputError(
+            'a drop of elastic bodies is not simulated yet; "vibroimpact modes" gives their modes, and model = "rigid" the drop',
+            f"{name}.model",
+        )
     return Problem(
         sphere=rigid_sphere(case.sphere.radius, case.sphere.material),
         plate=rigid_plate(case.plate.size[2] if case.plate.size else 0.0),
@@ -87,12 +107,11 @@ def problem_of(case: Case) -> Problem:
     )
 
 
-def first_speed(problem: Problem) -> float:
-    """Return the speed of the first touch [m/s] of a problem of one drop."""
-    if problem.speed is not None:
-        return float(problem.speed)
-    fall = float(problem.height or 0.0) - float(problem.sphere.contact_offset)
-    return float((2.0 * float(problem.gravity) * fall) ** 0.5)
+def first_speed(case: Case) -> float:
+    """Return the speed of the first touch [m/s] of a case."""
+    if case.drop.speed is not None:
+        return case.drop.speed
+    return float((2.0 * case.drop.gravity * ((case.drop.height or 0.0) - case.sphere.radius)) ** 0.5)
 
 
 def resolved(case: Case) -> dict[str, Any]:
@@ -103,21 +122,29 @@ def resolved(case: Case) -> dict[str, Any]:
         values = [getattr(law, item.name) for law in laws]
         if item.name in case.contact.parameters or values[0] is not None:
             contact[item.name] = values if len(values) > 1 and len(set(values)) > 1 else values[0]
-    size = {"size": list(case.plate.size)} if case.plate.size else {}
     number = impacts_of(case)
     return {
         "schema_version": case.schema_version,
         "name": case.name,
-        "sphere": {**case.sphere.model_dump(exclude={"material"}), "material": _table(case.sphere.material)},
-        "plate": {**size, "model": case.plate.model, "material": _table(case.plate.material)},
+        "sphere": _body(case.sphere),
+        "plate": _body(case.plate),
         "drop": {**case.drop.model_dump(exclude_none=True), "position": list(case.drop.position)},
         "contact": contact,
         "run": {**case.run.model_dump(exclude_none=True, exclude={"impacts"}), "impacts": "all" if number is None else number},
+        **({"sensors": [sensor.model_dump() for sensor in case.sensors]} if case.sensors else {}),
     }
 
 
-def _table(material: Material) -> dict[str, Any] | str:
-    if material is RIGID:
-        return RIGID.name
-    keep = ("density", "youngs_modulus", "poissons_ratio", "yield_strength", "loss_factor", "name")
-    return {key: value for key, value in asdict(material).items() if key in keep and value not in (None, "")}
+def _body(section: SphereSection | PlateSection) -> dict[str, Any]:
+    """Return a body in full, without what its model does not have."""
+    found = section.model_dump(exclude_none=True, exclude={"material", "supports", "damping", "mesh"})
+    if section.model == "rigid":
+        found = {key: found[key] for key in ("radius", "size", "model") if key in found}
+    elif section.mesh is not None:
+        found["mesh"] = section.mesh.model_dump(exclude_none=True)
+    for key, table in (("damping", damping_table), ("supports", supports_table)):
+        if getattr(section, key, None) is not None:
+            found[key] = table(getattr(section, key))
+    if "size" in found:
+        found["size"] = list(found["size"])
+    return {**found, "material": material_table(section.material)}

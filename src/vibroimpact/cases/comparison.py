@@ -94,7 +94,7 @@ def _case_under(case: Case, law: type[ContactLaw], given: Mapping[str, Any], ach
 
 def _tuned(case: Case, table: Mapping[str, Any], parameter: str, achieving: float) -> Case:
     """Return a case whose first impact achieves a restitution."""
-    law, speed = contact_laws_of(case)[0], first_speed(case.to_problem())
+    law, speed = contact_laws_of(case)[0], first_speed(case)
     tuned = law.achieving(achieving, contact_pair(case).effective_mass, speed)
     return read_case({**table, "contact": {**table["contact"], parameter: getattr(tuned, parameter)}})
 

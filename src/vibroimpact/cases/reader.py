@@ -11,7 +11,9 @@ from typing import Any
 
 from pydantic import BaseModel, ValidationError
 
-from vibroimpact.cases.schema import Case, DropSection, InlineMaterial, PlateSection, RunSection, SphereSection
+from vibroimpact.cases.build import check_case
+from vibroimpact.cases.material_field import InlineMaterial
+from vibroimpact.cases.schema import Case, DropSection, PlateSection, RunSection, SensorSection, SphereSection
 from vibroimpact.errors import InputError, did_you_mean
 
 LARGEST_FILE = 1_000_000
@@ -23,7 +25,12 @@ _SECTIONS: dict[tuple[str, ...], type[BaseModel]] = {
     ("plate",): PlateSection,
     ("drop",): DropSection,
     ("run",): RunSection,
+    ("sensors",): SensorSection,
 }
+
+
+def _section(where: tuple[str, ...]) -> type[BaseModel] | None:
+    return _SECTIONS.get(tuple(part for part in where if not part.isdigit()))
 
 
 def load_case(source: str | PathLike[str]) -> Case:
@@ -53,7 +60,7 @@ def load_case(source: str | PathLike[str]) -> Case:
     except RecursionError:
         raise InputError(f"{name}: this is not a case: its tables are nested too deeply") from None
     try:
-        return read_case(table)
+        return read_case(_beside(table, Path(source).parent))
     except InputError as error:
         lines = str(error).splitlines()
         raise InputError("\n".join(f"{name}: {line}" for line in lines)) from None
@@ -69,7 +76,7 @@ def read_case(table: Mapping[str, Any]) -> Case:
     """
     try:
         case = Case.model_validate(dict(table))
-        case.to_problem()
+        check_case(case)
     except ValidationError as error:
         raise InputError("\n".join(dict.fromkeys(_explain(error)))) from None
     return case
@@ -86,6 +93,18 @@ def shipped_cases() -> dict[str, str]:
     folder = files("vibroimpact").joinpath("cases/library")
     names = sorted(entry.name.removesuffix(".toml") for entry in folder.iterdir() if entry.name.endswith(".toml"))
     return {f"paper:{name}": tomllib.loads(_shipped(f"paper:{name}"))["name"] for name in names}
+
+
+def _beside(table: dict[str, Any], folder: Path) -> dict[str, Any]:
+    """Return a case whose mesh files are found beside it, wherever it is read from."""
+    for body in ("sphere", "plate"):
+        section = table.get(body)
+        mesh = section.get("mesh") if isinstance(section, dict) else None
+        file = mesh.get("file") if isinstance(mesh, dict) else mesh
+        if isinstance(section, dict) and isinstance(file, str):
+            path = str((folder / file).absolute())
+            section["mesh"] = {**mesh, "file": path} if isinstance(mesh, dict) else path
+    return table
 
 
 def _shipped(name: str) -> str:
@@ -124,7 +143,7 @@ def _explain(error: ValidationError) -> Iterator[str]:
         prefix = f"{path}: " if path else ""
         kind, context = fault["type"], fault.get("ctx", {})
         if kind == "extra_forbidden":
-            known = list((_SECTIONS.get(where[:-1]) or InlineMaterial).model_fields)
+            known = list((_section(where[:-1]) or InlineMaterial).model_fields)
             place = f"[{'.'.join(where[:-1])}]" if where[:-1] else "a case"
             yield f'{path}: unknown key "{where[-1]}"; {place} takes {", ".join(known)}.{did_you_mean(where[-1], known)}'
         elif kind == "missing" and where[-1].isdigit():
@@ -159,7 +178,7 @@ def _is_branch(part: str) -> bool:
 
 
 def _about(where: tuple[str, ...]) -> str:
-    section = _SECTIONS.get(where[:-1])
+    section = _section(where[:-1])
     field = section.model_fields.get(where[-1]) if section else None
     text = (field.description or "") if field else ""
     return f": {text}" if text else ""

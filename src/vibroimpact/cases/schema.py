@@ -4,64 +4,52 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, StrictBool, WithJsonSchema, model_validator
+from pydantic import BeforeValidator, Field, StrictBool, model_validator
 
 from vibroimpact.cases.build import problem_of
 from vibroimpact.cases.contact_section import ContactSection, contact_schema, read_contact
+from vibroimpact.cases.damping_field import DampingField
+from vibroimpact.cases.elastic_fields import (
+    FrequencyField,
+    MethodField,
+    ModesField,
+    PlateMeshField,
+    SphereMeshField,
+    check_elastic,
+    check_plate,
+)
+from vibroimpact.cases.material_field import MaterialField
 from vibroimpact.cases.quantities import Quantity
+from vibroimpact.cases.section import Section
+from vibroimpact.cases.supports_field import SupportsField
 from vibroimpact.dynamics.problem import MOST_IMPACTS, STANDARD_GRAVITY, Problem
 from vibroimpact.errors import InputError
-from vibroimpact.materials import RIGID, Material, find_material
+from vibroimpact.materials import RIGID
 from vibroimpact.ranges import Range
 
 
-class _Section(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True, arbitrary_types_allowed=True)
-
-
-class InlineMaterial(_Section):
-    """A material given by its numbers."""
-
-    density: Annotated[float, Quantity("kg/m^3", "density", Range(above=0))]
-    youngs_modulus: Annotated[float, Quantity("Pa", "Young's modulus", Range(above=0))]
-    poissons_ratio: Annotated[float, Quantity("", "Poisson's ratio", Range(above=-1, below=0.5))]
-    yield_strength: Annotated[float, Quantity("Pa", "yield strength", Range(above=0))] | None = None
-    loss_factor: Annotated[float, Quantity("", "loss factor", Range(at_least=0))] | None = None
-    name: str = ""
-
-
-def _read_material(value: Any) -> Material:
-    if isinstance(value, Material):
-        return value
-    if isinstance(value, str):
-        return find_material(value)
-    if isinstance(value, dict):
-        return Material(**InlineMaterial.model_validate(value).model_dump())
-    raise InputError(f"{value!r} is neither the name of a material nor a table with density, youngs_modulus and poissons_ratio")
-
-
-_MATERIAL_SCHEMA = {
-    "description": 'the name of a material ("vibroimpact materials" lists them), or its numbers; "rigid" for a plate of infinite modulus',
-    "anyOf": [{"type": "string"}, InlineMaterial.model_json_schema()],
-}
-MaterialField = Annotated[Material, BeforeValidator(_read_material), WithJsonSchema(_MATERIAL_SCHEMA)]
-
-
-class SphereSection(_Section):
+class SphereSection(Section):
     """The body that falls."""
 
     radius: Annotated[float, Quantity("m", "radius", Range(above=0))]
     material: MaterialField
-    model: Literal["rigid"] = Field("rigid", description="whether the sphere deforms beyond its contact")
+    model: Literal["rigid", "elastic"] = Field("rigid", description="whether the sphere deforms beyond its contact")
+    modes: ModesField | None = None
+    max_frequency: FrequencyField | None = None
+    damping: DampingField = None
+    mesh: SphereMeshField = None
+    reduction: MethodField | None = None
+    attachment_mode: StrictBool = Field(False, description="add a residual attachment mode at the contact point")
 
     @model_validator(mode="after")
     def _has_mass(self) -> SphereSection:
         if self.material is RIGID:
             raise InputError('"rigid" has no density, and the sphere needs a mass; only the plate can be rigid', "material")
+        check_elastic(self)
         return self
 
 
-class PlateSection(_Section):
+class PlateSection(Section):
     """The plate, held fixed."""
 
     material: MaterialField
@@ -73,10 +61,24 @@ class PlateSection(_Section):
         ]
         | None
     ) = Field(None, description="length (x), width (y) and thickness (z) [m]")
-    model: Literal["rigid"] = Field("rigid", description="whether the plate bends")
+    model: Literal["rigid", "elastic"] = Field("rigid", description="whether the plate deforms beyond its contact")
+    element: Literal["plate", "solid"] | None = Field(None, description="what an elastic plate is made of; plate elements by default")
+    modes: ModesField | None = None
+    max_frequency: FrequencyField | None = None
+    damping: DampingField = None
+    supports: SupportsField = None
+    mesh: PlateMeshField = None
+    reduction: MethodField | None = None
+    attachment_mode: StrictBool = Field(False, description="add a residual attachment mode at the contact point")
+
+    @model_validator(mode="after")
+    def _whole(self) -> PlateSection:
+        check_elastic(self)
+        check_plate(self)
+        return self
 
 
-class DropSection(_Section):
+class DropSection(Section):
     """How the sphere comes down: from a height at rest, or with a speed at first touch."""
 
     height: (
@@ -105,7 +107,17 @@ def _read_impacts(value: Any) -> Any:
     raise InputError(f'{shown} is not allowed; it must be a whole number from 1 to {MOST_IMPACTS}, or "all" to go on to rest')
 
 
-class RunSection(_Section):
+class SensorSection(Section):
+    """A point of the plate that is watched."""
+
+    name: str = Field(min_length=1, description="what it is called in tables and figures")
+    position: tuple[Annotated[float, Quantity("m", "x")], Annotated[float, Quantity("m", "y")]] | str = Field(
+        description="on the plate, from its centre [m]; or the name of a set of a mesh that was brought"
+    )
+    face: Literal["upper", "lower"] = Field("upper", description="the side of the plate that it is on")
+
+
+class RunSection(Section):
     """When to stop, and how exact to be."""
 
     impacts: Annotated[int | Literal["all"] | None, BeforeValidator(_read_impacts)] = Field(
@@ -118,7 +130,7 @@ class RunSection(_Section):
     ] = 1e-9
 
 
-class Case(_Section):
+class Case(Section):
     """A case: the file, validated, in SI.
 
     Read one with `load_case` or `read_case`; `to_problem` states it for the simulation.
@@ -131,6 +143,7 @@ class Case(_Section):
     drop: DropSection
     contact: Annotated[ContactSection, BeforeValidator(read_contact)]
     run: RunSection = RunSection()
+    sensors: tuple[SensorSection, ...] = Field((), description="the points of the plate that are watched")
 
     @model_validator(mode="after")
     def _fits_together(self) -> Case:
@@ -167,7 +180,7 @@ def case_schema() -> dict[str, Any]:
     Examples
     --------
     >>> sorted(case_schema()["properties"])
-    ['contact', 'drop', 'name', 'plate', 'run', 'schema_version', 'sphere']
+    ['contact', 'drop', 'name', 'plate', 'run', 'schema_version', 'sensors', 'sphere']
     """
     schema = Case.model_json_schema()
     schema["$schema"] = "https://json-schema.org/draft/2020-12/schema"

@@ -83,7 +83,7 @@ def compare_laws(
     {'hunt-crossley': 0.739, 'flores': 0.63}
     """
     cases = cases_under(case, laws, given, achieving)
-    mass, speed = contact_pair(case).effective_mass, first_speed(case.to_problem())
+    mass, speed = contact_pair(case).effective_mass, first_speed(case)
     speeds = speed * np.geomspace(1e-3, 3.0, _SPEEDS)
     first, results, restitutions = {}, {}, {}
     for number, (name, one) in enumerate(cases.items()):

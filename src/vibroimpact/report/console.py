@@ -12,7 +12,7 @@ from rich.markup import escape
 from rich.table import Table
 from rich.text import Text
 
-from vibroimpact.cases.build import contact_pair, first_speed, impacts_of, resolved
+from vibroimpact.cases.build import contact_laws_of, contact_pair, first_speed, impacts_of, resolved
 from vibroimpact.cases.doubts import doubts
 from vibroimpact.cases.schema import Case
 from vibroimpact.contact.law import CompliantLaw, ContactLaw
@@ -22,6 +22,7 @@ from vibroimpact.dynamics.columns import LEDGER
 from vibroimpact.errors import InputError
 from vibroimpact.materials import RIGID, Material, find_material, material_library
 from vibroimpact.report.comparison import Comparison, comparison_table, free_parameter_words
+from vibroimpact.report.modes_text import elastic_rows
 from vibroimpact.storage.result import Result
 
 # column, heading, factor, digits
@@ -148,39 +149,37 @@ def material_sheet(name: str) -> RenderableType:
 
 def case_explained(case: Case) -> RenderableType:
     """Return what a case means: the resolved numbers, what to expect, and what to doubt."""
-    problem, pair = case.to_problem(), contact_pair(case)
-    mass, radius, gravity = float(problem.sphere.mass), case.sphere.radius, case.drop.gravity
-    speed = first_speed(problem)
+    laws, pair, speed = contact_laws_of(case), contact_pair(case), first_speed(case)
+    mass, radius, gravity = float(pair.effective_mass), case.sphere.radius, case.drop.gravity
     rows: list[tuple[str, str]] = [
         ("sphere", f"radius {radius:g} m, mass {mass:.6g} kg, {case.sphere.model}, of {_stuff(case.sphere.material)}"),
         (
             "plate",
-            f"{case.plate.model}, held fixed, of {_stuff(case.plate.material)}"
+            f"{'rigid, held fixed' if case.plate.model == 'rigid' else 'elastic'}, of {_stuff(case.plate.material)}"
             + (f", {' x '.join(f'{side:g}' for side in case.plate.size)} m" if case.plate.size else ""),
         ),
+        *elastic_rows(case),
         ("effective modulus", f"{pair.effective_modulus:.6g} Pa"),
         ("first approach speed", f"{speed:.6g} m/s, gravity {gravity:g} m/s2"),
-        ("contact law", f"{case.contact.law}: {problem.laws[0].equation}"),
+        ("contact law", f"{case.contact.law}: {laws[0].equation}"),
     ]
-    for item in fields(problem.laws[0]):
-        values = [getattr(law, item.name) for law in problem.laws]
+    for item in fields(laws[0]):
+        values = [getattr(law, item.name) for law in laws]
         if values[0] is None or (item.metadata["memory"] and not any(values)):
             continue
         shown = (
             ", ".join(f"{value:.9g}" for value in values) if len(set(values)) > 1 else f"{values[0]:.9g}" if values[0] is not None else "-"
         )
-        rows.append(
-            (f"  {item.name}", f"{shown} {item.metadata['unit']}".replace("N/m^n", f"N/m^{getattr(problem.laws[0], 'exponent', 1):g}"))
-        )
+        rows.append((f"  {item.name}", f"{shown} {item.metadata['unit']}".replace("N/m^n", f"N/m^{getattr(laws[0], 'exponent', 1):g}")))
     number = impacts_of(case)
     stop = ["at rest"] + ([f"after {number} impact{'' if number == 1 else 's'}"] if number else [])
     stop += [f"at {case.run.duration:g} s"] if case.run.duration else []
     rows += [("stops", " or ".join(stop)), ("tolerance", f"{case.run.tolerance:g}")]
-    if isinstance(problem.laws[0], CompliantLaw) and problem.laws[0].lasting:
+    if isinstance(laws[0], CompliantLaw) and laws[0].lasting:
         where = "on the same spot: the dent of the last one lasts" if case.drop.same_spot else "on fresh surfaces"
         rows.append(("each impact", f"{where} (drop.same_spot = {str(case.drop.same_spot).lower()})"))
-    rows += [("" if number else "restitution", line) for number, line in enumerate(_restitution_lines(problem.laws[0], mass, speed))]
-    law, found = problem.laws[0], []
+    rows += [("" if number else "restitution", line) for number, line in enumerate(_restitution_lines(laws[0], mass, speed))]
+    law, found = laws[0], []
     if isinstance(law, CompliantLaw):
         one = np.ones(1)
         encounter = encounter_of(law, mass * one, gravity * one, speed * one)

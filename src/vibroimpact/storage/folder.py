@@ -115,6 +115,8 @@ def read_result(directory: str | PathLike[str]) -> Result:
         summary = json.loads((folder / name).read_text(encoding="utf-8"))
         if "laws" in summary:
             raise InputError(f"{folder}: this is a comparison of contact laws, not the result of a run; make it anew with compare")
+        if "modes" in summary:
+            raise InputError(f"{folder}: these are modes of elastic bodies, not the result of a run; make them anew with modes")
         name = "case.toml"
         has_case = "problem" not in summary["provenance"]
         case = tomllib.loads((folder / name).read_text(encoding="utf-8")) if has_case else {}

@@ -1,0 +1,17 @@
+"""What every test has, and every example in a docstring."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+
+@pytest.fixture(autouse=True, scope="session")
+def own_store(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
+    """Keep the modes that tests compute apart from those of the user."""
+    folder = tmp_path_factory.mktemp("modes")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("VIBROIMPACT_STORE", str(folder))
+        yield folder

@@ -1,0 +1,148 @@
+"""Elastic bodies: from geometry and material to the recipe of their modes, with meshes that resolve them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any, Literal
+
+from vibroimpact.errors import InputError
+from vibroimpact.materials import Material
+from vibroimpact.structures.damping import ConstantRatio, Damping
+from vibroimpact.structures.modal_model import ModalBasis, ModalModel, modal_basis
+from vibroimpact.structures.recipe import PlateOfPlates, PlateOfSolids, Recipe, Reduction, Shape, SphereOfSolids
+from vibroimpact.structures.supports.support import Support
+from vibroimpact.structures.surface import Side, Spot
+
+_ACROSS = 8  # elements from pole to pole: the lowest modes to 0.03 %
+_SOLID_STEP, _PLATE_STEP = 0.25, 0.6  # of the shortest bending wave: sides of second-order bricks, and of the plate element
+_SIDE = 6  # plate elements along the shorter side, at least
+_SOLID_SIDE = 24  # bricks along the shorter side, at least
+
+
+@dataclass(frozen=True)
+class ElasticBody:
+    """A body that deforms, before its modes are known.
+
+    Parameters
+    ----------
+    recipe : Recipe
+        What determines the modes.
+    side : str
+        Where the other body is met: "upper" or "lower".
+    contact : tuple of two floats, str or None
+        The contact point: x and y [m], the name of a set of nodes, or the point of that side that reaches farthest.
+    damping : Damping, optional
+        Of its modes; none by default.
+    watched : mapping of str to (spot, side), optional
+        Points whose motion is asked for.
+    """
+
+    recipe: Recipe
+    side: Side
+    contact: Spot = None
+    damping: Damping = ConstantRatio(0.0)
+    watched: Mapping[str, tuple[Spot, Side]] = field(default_factory=dict)
+
+    def basis(self, model: ModalModel) -> ModalBasis:
+        """Return modes of the recipe, seen at the contact point and at the points watched.
+
+        Raises
+        ------
+        InputError
+            If a point is not on the body, or a set is not in its mesh.
+        """
+        return modal_basis(model, self.damping, self.contact, self.side, self.watched)
+
+
+def sphere_recipe(radius: float, material: Material, reduction: Reduction, shape: Shape | None = None) -> Recipe:
+    """Return the recipe of an elastic sphere.
+
+    Parameters
+    ----------
+    radius : float
+        Radius [m], > 0.
+    material : Material
+        Of the sphere.
+    reduction : Reduction
+        Which modes are kept.
+    shape : optional
+        Its mesh; by default one that resolves the modes asked for.
+
+    Examples
+    --------
+    >>> from vibroimpact.materials import find_material
+    >>> sphere_recipe(0.025, find_material("rock-paper"), Reduction(modes=10)).shape
+    SphereOfSolids(radius=0.025, elements_across=8, kind='hex27', grading=1.0)
+    """
+    if shape is None:
+        wave_number = _shear_wave_number(radius, material, reduction) * radius
+        across = max(_ACROSS, 2 * math.ceil(4.0 * wave_number / (2.0 * math.pi)))
+        shape = SphereOfSolids(radius, across)
+    return _recipe(shape, material, reduction)
+
+
+def plate_recipe(
+    size: tuple[float, float, float],
+    material: Material,
+    reduction: Reduction,
+    supports: tuple[Support, ...] = (),
+    element: Literal["plate", "solid"] = "plate",
+    **mesh: Any,
+) -> Recipe:
+    """Return the recipe of an elastic plate.
+
+    Parameters
+    ----------
+    size : tuple of three floats
+        Length, width and thickness [m], > 0.
+    material : Material
+        Of the plate.
+    reduction : Reduction
+        Which modes are kept.
+    supports : tuple of supports
+        What holds it; nothing by default.
+    element : str, default "plate"
+        "plate" elements, or "solid" ones.
+    **mesh : optional
+        What `PlateOfPlates` or `PlateOfSolids` takes; `element_size` is chosen to resolve the modes unless given.
+
+    Examples
+    --------
+    >>> from vibroimpact.materials import find_material
+    >>> plate_recipe((0.52, 0.42, 0.008), find_material("steel-paper"), Reduction(modes=20)).shape
+    PlateOfPlates(size=(0.52, 0.42, 0.008), element_size=0.07, theory='thick')
+    """
+    if not mesh.get("element_size"):
+        wave = 2.0 * math.pi / _bending_wave_number(size, material, reduction)
+        step, least = (_PLATE_STEP, _SIDE) if element == "plate" else (_SOLID_STEP, _SOLID_SIDE)
+        mesh["element_size"] = float(f"{min(step * wave, min(size[:2]) / least):.3g}")
+    kind = PlateOfPlates if element == "plate" else PlateOfSolids
+    return replace(_recipe(kind(size=size, **mesh), material, reduction), supports=supports)
+
+
+def _recipe(shape: Shape, material: Material, reduction: Reduction) -> Recipe:
+    if not math.isfinite(material.youngs_modulus):
+        raise InputError('"rigid" does not deform; an elastic body needs a material with a modulus', "material")
+    return Recipe(shape, material.density, material.youngs_modulus, material.poissons_ratio, reduction=reduction)
+
+
+def _shear_wave_number(radius: float, material: Material, reduction: Reduction) -> float:
+    """Return the wave number [1/m] of shear waves at the highest frequency asked for."""
+    speed = math.sqrt(material.youngs_modulus / (2.0 * (1.0 + material.poissons_ratio) * material.density))
+    if reduction.modes is None:
+        return 2.0 * math.pi * (reduction.max_frequency or 0.0) / speed
+    return float(
+        1.9 * (reduction.modes + 1) ** (1.0 / 3.0) / radius
+    )  # Weyl's count of modes in a ball, V k^3 / (6 pi^2) for each of three waves
+
+
+def _bending_wave_number(size: tuple[float, float, float], material: Material, reduction: Reduction) -> float:
+    """Return the wave number [1/m] of bending waves at the highest frequency asked for."""
+    length, width, thickness = size
+    if reduction.modes is None:
+        rigidity = material.youngs_modulus * thickness**3 / (12.0 * (1.0 - material.poissons_ratio**2))
+        angular = 2.0 * math.pi * (reduction.max_frequency or 0.0)
+        return float((angular**2 * material.density * thickness / rigidity) ** 0.25)
+    return math.sqrt(4.0 * math.pi * (reduction.modes + 4) / (length * width))  # Weyl's count of modes of an area, A k^2 / (4 pi)

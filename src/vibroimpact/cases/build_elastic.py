@@ -1,0 +1,84 @@
+"""From a case to its elastic bodies."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+from vibroimpact.bodies.elastic import ElasticBody, plate_recipe, sphere_recipe
+from vibroimpact.cases.damping_field import damping_of
+from vibroimpact.cases.elastic_fields import BroughtMeshTable, PlateMeshTable, SphereMeshTable, reduction_of
+from vibroimpact.cases.supports_field import supports_of
+from vibroimpact.errors import InputError
+from vibroimpact.structures.recipe import Recipe, SphereOfSolids
+from vibroimpact.structures.surface import Spot
+
+if TYPE_CHECKING:
+    from vibroimpact.cases.schema import Case
+
+
+def elastic_bodies(case: Case) -> dict[str, ElasticBody]:
+    """Return the bodies of a case that deform, by their names.
+
+    Raises
+    ------
+    InputError
+        If one can't be made.
+    """
+    found = {}
+    for name, make in (("sphere", _sphere), ("plate", _plate)):
+        if getattr(case, name).model == "elastic":
+            try:
+                found[name] = make(case)
+            except InputError as error:
+                raise InputError(error.message, f"{name}.{error.key}".rstrip(".")) from None
+    return found
+
+
+def _sphere(case: Case) -> ElasticBody:
+    section, mesh = case.sphere, case.sphere.mesh
+    contact = mesh.contact if isinstance(mesh, BroughtMeshTable) else None
+    reduction = reduction_of("sphere", section, (contact, "lower"))
+    shape = mesh.brought() if isinstance(mesh, BroughtMeshTable) else None
+    recipe = sphere_recipe(section.radius, section.material, reduction, shape)
+    if isinstance(mesh, SphereMeshTable):
+        default = recipe.shape
+        assert isinstance(default, SphereOfSolids)
+        across = mesh.elements_across or default.elements_across
+        recipe = sphere_recipe(section.radius, section.material, reduction, SphereOfSolids(section.radius, across, mesh.kind, mesh.grading))
+    return ElasticBody(recipe, "lower", contact, damping_of(section.damping, section.material.loss_factor))
+
+
+def _plate(case: Case) -> ElasticBody:
+    section = case.plate
+    contact: Spot = case.drop.position
+    if isinstance(section.mesh, BroughtMeshTable) and section.mesh.contact:
+        contact = section.mesh.contact
+    watched = {sensor.name: (sensor.position, sensor.face) for sensor in case.sensors}
+    return ElasticBody(_plate_recipe(case, contact), "upper", contact, damping_of(section.damping, section.material.loss_factor), watched)
+
+
+def _plate_recipe(case: Case, contact: Spot) -> Recipe:
+    section, mesh = case.plate, case.plate.mesh
+    reduction = reduction_of("plate", section, (contact, "upper"))
+    supports = supports_of(section.supports or "free")
+    material = section.material
+    if isinstance(mesh, BroughtMeshTable):
+        return Recipe(mesh.brought(), material.density, material.youngs_modulus, material.poissons_ratio, supports, reduction)
+    assert section.size is not None  # the section has seen to it
+    element = section.element or "plate"
+    options = mesh.model_dump(exclude_none=True, exclude={"elements"}) if isinstance(mesh, PlateMeshTable) else {}
+    if isinstance(mesh, PlateMeshTable) and mesh.elements:
+        options |= _about(section.size, mesh.elements, mesh.layers)
+    return plate_recipe(section.size, material, reduction, supports, element, **options)
+
+
+def _about(size: tuple[float, float, float], elements: int, layers: int | None) -> dict[str, Any]:
+    """Return the side of an element, and the layers, with which a plate has about so many of them, cubes if may be."""
+    layers = layers or max(1, round(size[2] * (elements / math.prod(size)) ** (1.0 / 3.0)))
+    guess = math.sqrt(size[0] * size[1] * layers / elements)
+
+    def miss(side: float) -> float:
+        return abs(math.ceil(size[0] / side - 1e-9) * math.ceil(size[1] / side - 1e-9) * layers - elements)
+
+    return {"element_size": min((guess * (1.0 + 1e-3 * step) for step in range(-100, 101)), key=miss), "layers": layers}

@@ -1,0 +1,107 @@
+"""The damping of an elastic body in a case: a ratio, a word, or a table."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+from pydantic import BeforeValidator, WithJsonSchema
+
+from vibroimpact.errors import InputError, did_you_mean
+from vibroimpact.ranges import Range
+from vibroimpact.structures.damping import AdamsDefault, ConstantRatio, Damping, LossFactor, RatioOfEach, RatioTable, Rayleigh
+
+ADAMS = "adams-default"
+MATERIAL = "loss-factor"
+_NOT_NEGATIVE = Range(at_least=0)
+_ALLOWED = (
+    f'a damping ratio, "{ADAMS}", "{MATERIAL}" (of the material), {{ rayleigh = [1/s, s] }}, {{ loss_factor = x }}, '
+    "{ ratios = [...] } mode by mode, or { frequencies = [...], ratios = [...] }"
+)
+
+
+def _read_damping(value: Any) -> Any:
+    if isinstance(value, Damping_) or value == MATERIAL:
+        return value
+    if isinstance(value, str):
+        if value != ADAMS:
+            raise InputError(f'"{value}" is not allowed; it must be {_ALLOWED}.{did_you_mean(value, (ADAMS, MATERIAL))}')
+        return AdamsDefault()
+    if isinstance(value, dict):
+        return _read_table(value)
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        raise InputError(f"{value!r} is not allowed; it must be {_ALLOWED}")
+    _NOT_NEGATIVE.check(value)
+    return ConstantRatio(float(value))
+
+
+Damping_ = (AdamsDefault, ConstantRatio, LossFactor, RatioOfEach, RatioTable, Rayleigh)
+
+
+def _read_table(value: dict[str, Any]) -> Damping:
+    from vibroimpact.cases.quantities import read_quantity
+
+    def numbers(key: str, unit: str = "") -> tuple[float, ...]:
+        given = value[key]
+        if not isinstance(given, list) or not given:
+            raise InputError("it must be a list of numbers", key)
+        try:
+            return tuple(read_quantity(item, unit, _NOT_NEGATIVE) for item in given)
+        except InputError as error:
+            raise InputError(error.message, key) from None
+
+    keys = set(value)
+    if keys == {"rayleigh"}:
+        pair = value["rayleigh"]
+        if not isinstance(pair, list) or len(pair) != 2:
+            raise InputError("it must be a pair, [a, b]: a [1/s] times the mass and b [s] times the stiffness", "rayleigh")
+        return Rayleigh(read_quantity(pair[0], "1/s", _NOT_NEGATIVE), read_quantity(pair[1], "s", _NOT_NEGATIVE))
+    if keys == {"loss_factor"}:
+        return LossFactor(read_quantity(value["loss_factor"], "", _NOT_NEGATIVE))
+    if keys == {"ratios"}:
+        return RatioOfEach(numbers("ratios"))
+    if keys == {"frequencies", "ratios"}:
+        return RatioTable(numbers("frequencies", "Hz"), numbers("ratios"))
+    raise InputError(f"a table with {', '.join(sorted(keys)) or 'nothing'} is not a damping; it must be {_ALLOWED}")
+
+
+DampingField = Annotated[
+    Any,
+    BeforeValidator(_read_damping),
+    WithJsonSchema({"description": _ALLOWED, "anyOf": [{"type": "number"}, {"enum": [ADAMS, MATERIAL]}, {"type": "object"}]}),
+]
+
+
+def damping_of(value: Any, loss_factor: float | None) -> Damping:
+    """Return the damping that a case states; none if it states none.
+
+    Raises
+    ------
+    InputError
+        If the material's loss factor is asked for and it has none.
+    """
+    if value is None:
+        return ConstantRatio(0.0)
+    if value == MATERIAL:
+        if loss_factor is None:
+            raise InputError(f'"{MATERIAL}" needs a loss_factor of the material, and it has none; give {{ loss_factor = x }}', "damping")
+        return LossFactor(loss_factor)
+    found: Damping = value
+    return found
+
+
+def damping_table(value: Any) -> Any:
+    """Return a damping as a case holds it."""
+    match value:
+        case ConstantRatio():
+            return value.ratio
+        case AdamsDefault():
+            return ADAMS
+        case LossFactor():
+            return {"loss_factor": value.loss_factor}
+        case Rayleigh():
+            return {"rayleigh": [value.mass_coefficient, value.stiffness_coefficient]}
+        case RatioOfEach():
+            return {"ratios": list(value.damping_ratios)}
+        case RatioTable():
+            return {"frequencies": list(value.frequencies), "ratios": list(value.damping_ratios)}
+    return value

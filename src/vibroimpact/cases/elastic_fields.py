@@ -1,0 +1,165 @@
+"""The keys of a body in a case that say how it deforms."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
+
+from vibroimpact.cases.quantities import Quantity
+from vibroimpact.cases.section import Section, read_table
+from vibroimpact.errors import InputError
+from vibroimpact.ranges import Range
+from vibroimpact.structures.lattice import SOLID_KINDS
+from vibroimpact.structures.mesh import Mesh
+from vibroimpact.structures.recipe import BroughtMesh, Place, Reduction
+
+MOST_MODES = 20_000
+DEFAULT_MODES = {"sphere": 20, "plate": 100}
+
+_Size = Annotated[float, Quantity("m", "largest side of an element", Range(above=0))]
+_Count = Annotated[int, Field(ge=1, strict=True)]
+Kind = Literal["hex8", "hex20", "hex27", "tet4", "tet10"]
+assert set(SOLID_KINDS) == set(Kind.__args__)  # type: ignore[attr-defined]
+
+
+class BroughtMeshTable(Section):
+    """A mesh, or a geometry, from a file."""
+
+    file: str = Field(description="Nastran (.bdf, .dat), Abaqus (.inp), Gmsh (.msh), or with the extra mesh STEP (.step) and BREP (.brep)")
+    unit: Annotated[float, Quantity("m", "unit of its coordinates", Range(above=0))] = 1.0
+    element_size: _Size | None = None
+    contact: str | None = Field(None, description="a named set: the contact point is its middle")
+
+    def brought(self) -> BroughtMesh:
+        """Return the mesh, to be read when it is needed.
+
+        Raises
+        ------
+        InputError
+            If there is no such file.
+        """
+        path = Path(self.file)
+        try:
+            digest = hashlib.sha256(path.read_bytes()).hexdigest()
+        except OSError as error:
+            raise InputError(f"{path}: the file can't be read: {error.strerror}", "mesh") from None
+        return BroughtMesh(json.dumps([digest, path.suffix.lower(), self.unit, self.element_size]), self.read)
+
+    def read(self) -> Mesh:
+        """Read the mesh [m]."""
+        from vibroimpact.exchange.mesh_file import read_mesh
+
+        return read_mesh(self.file, self.unit, self.element_size)
+
+
+class SphereMeshTable(Section):
+    """The mesh of a sphere made here."""
+
+    elements_across: Annotated[int, Field(ge=4, multiple_of=2, strict=True)] | None = Field(
+        None, description="elements from pole to pole, even and at least 4"
+    )
+    kind: Kind = Field("hex27", description="kind of element")
+    grading: Annotated[float, Quantity("", "how many times smaller elements are at the contact point", Range(at_least=1))] = 1.0
+
+
+class PlateMeshTable(Section):
+    """The mesh of a plate made here."""
+
+    element_size: _Size | None = None
+    elements: _Count | None = Field(None, description='about how many elements in all, instead of element_size; only of element = "solid"')
+    layers: _Count | None = Field(None, description='elements through the thickness; only of element = "solid"')
+    kind: Kind | None = Field(None, description='kind of element; only of element = "solid"')
+    splits: Annotated[int, Field(ge=0, le=6, strict=True)] | None = Field(
+        None, description='how often elements at the rims of patches and at the lower side are split; only of element = "solid"'
+    )
+    theory: Literal["thick", "thin"] | None = Field(None, description='of plates; only of element = "plate"')
+
+    @model_validator(mode="after")
+    def _one_of_two(self) -> PlateMeshTable:
+        if self.element_size is not None and self.elements is not None:
+            raise InputError("give either element_size or elements; both are given")
+        return self
+
+
+def _mesh_reader(kind: type[Section]) -> Any:
+    def read(value: Any) -> Any:
+        if isinstance(value, Section) or value is None:
+            return value
+        if isinstance(value, str):
+            return BroughtMeshTable(file=value)
+        if isinstance(value, dict):
+            return read_table(BroughtMeshTable if "file" in value else kind, value)
+        raise InputError(f"{value!r} is neither the name of a file nor a table")
+
+    schemas = [{"type": "string"}, BroughtMeshTable.model_json_schema(), kind.model_json_schema()]
+    return Annotated[Any, BeforeValidator(read), WithJsonSchema({"description": "a file, or how the mesh is made here", "anyOf": schemas})]
+
+
+SphereMeshField = _mesh_reader(SphereMeshTable)
+PlateMeshField = _mesh_reader(PlateMeshTable)
+
+ModesField = Annotated[int, Field(ge=1, le=MOST_MODES, strict=True)]
+FrequencyField = Annotated[float, Quantity("Hz", "all modes up to this frequency", Range(above=0))]
+MethodField = Literal["modal", "craig-bampton"]
+
+_ELASTIC_KEYS = ("modes", "max_frequency", "damping", "supports", "mesh", "reduction", "attachment_mode", "element")
+
+
+def check_elastic(section: Any) -> None:
+    """Raise unless the keys of a body fit one another, and its model.
+
+    Raises
+    ------
+    InputError
+        With the key that does not.
+    """
+    if section.model == "rigid":
+        for key in _ELASTIC_KEYS:
+            if getattr(section, key, None) not in (None, False):
+                raise InputError(f'a rigid body does not take it; add model = "elastic", or leave out {key}', key)
+        return
+    if section.modes is not None and section.max_frequency is not None:
+        raise InputError("give either modes or max_frequency; both are given", "modes")
+    if section.reduction == "craig-bampton" and section.attachment_mode:
+        raise InputError("the constraint modes of craig-bampton hold it already; leave it out", "attachment_mode")
+    if section.material.name == "rigid":
+        raise InputError('"rigid" does not deform; an elastic body needs a material with a modulus', "material")
+
+
+def check_plate(section: Any) -> None:
+    """Raise unless an elastic plate has a size, and a mesh that fits its element.
+
+    Raises
+    ------
+    InputError
+        With the key that is wrong.
+    """
+    if section.model == "rigid":
+        return
+    mesh = section.mesh
+    brought = isinstance(mesh, BroughtMeshTable)
+    if section.size is None and not brought:
+        raise InputError("an elastic plate needs its length, width and thickness, or a mesh", "size")
+    if brought and section.element == "plate":
+        raise InputError("a mesh that is brought is of solid elements; leave out element, or the mesh", "element")
+    if isinstance(mesh, PlateMeshTable):
+        solid = section.element == "solid"
+        for key in ("theory",) if solid else ("elements", "layers", "kind", "splits"):
+            if getattr(mesh, key) is not None:
+                raise InputError(f'element = "{section.element or "plate"}" does not take it', f"mesh.{key}")
+
+
+def reduction_of(body: Literal["sphere", "plate"], section: Any, place: Place) -> Reduction:
+    """Return which modes of a body a case asks for; the place is that of the contact."""
+    number = DEFAULT_MODES[body] if section.modes is None and section.max_frequency is None else section.modes
+    return Reduction(
+        modes=number,
+        max_frequency=section.max_frequency,
+        method=section.reduction or "modal",
+        interface=(place,) if section.reduction == "craig-bampton" else (),
+        attachment=(place,) if section.attachment_mode else (),
+    )

@@ -1,0 +1,49 @@
+"""A material in a case: by its name, or by its numbers."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from typing import Annotated, Any
+
+from pydantic import BeforeValidator, WithJsonSchema
+
+from vibroimpact.cases.quantities import Quantity
+from vibroimpact.cases.section import Section
+from vibroimpact.errors import InputError
+from vibroimpact.materials import RIGID, Material, find_material
+from vibroimpact.ranges import Range
+
+
+class InlineMaterial(Section):
+    """A material given by its numbers."""
+
+    density: Annotated[float, Quantity("kg/m^3", "density", Range(above=0))]
+    youngs_modulus: Annotated[float, Quantity("Pa", "Young's modulus", Range(above=0))]
+    poissons_ratio: Annotated[float, Quantity("", "Poisson's ratio", Range(above=-1, below=0.5))]
+    yield_strength: Annotated[float, Quantity("Pa", "yield strength", Range(above=0))] | None = None
+    loss_factor: Annotated[float, Quantity("", "loss factor", Range(at_least=0))] | None = None
+    name: str = ""
+
+
+def _read_material(value: Any) -> Material:
+    if isinstance(value, Material):
+        return value
+    if isinstance(value, str):
+        return find_material(value)
+    if isinstance(value, dict):
+        return Material(**InlineMaterial.model_validate(value).model_dump())
+    raise InputError(f"{value!r} is neither the name of a material nor a table with density, youngs_modulus and poissons_ratio")
+
+
+_SCHEMA = {
+    "description": 'the name of a material ("vibroimpact materials" lists them), or its numbers; "rigid" for a plate of infinite modulus',
+    "anyOf": [{"type": "string"}, InlineMaterial.model_json_schema()],
+}
+MaterialField = Annotated[Material, BeforeValidator(_read_material), WithJsonSchema(_SCHEMA)]
+
+
+def material_table(material: Material) -> dict[str, Any] | str:
+    """Return a material as a case holds it in full."""
+    if material is RIGID:
+        return RIGID.name
+    return {key: value for key, value in asdict(material).items() if key in InlineMaterial.model_fields and value not in (None, "")}

@@ -1,0 +1,109 @@
+"""The modes of the elastic bodies of a case."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from vibroimpact.bodies.elastic import ElasticBody
+from vibroimpact.cases.build_elastic import elastic_bodies
+from vibroimpact.errors import InputError
+from vibroimpact.structures.modal_model import ModalBasis, ModalModel
+from vibroimpact.structures.recipe import BroughtMesh, modal_model_of
+
+if TYPE_CHECKING:
+    from vibroimpact.cases.schema import Case
+
+_WEIGHT_OFF = 0.05  # relative: a mesh whose volume differs more from that of the case is doubted
+_LARGE = 50.0  # m: a body larger than this is probably in millimetres
+
+
+@dataclass(frozen=True)
+class BodyModes:
+    """An elastic body of a case with its modes.
+
+    Parameters
+    ----------
+    body : ElasticBody
+        The body.
+    model : ModalModel
+        Its modes on its mesh.
+    basis : ModalBasis
+        Its modes seen at the contact point and at the sensors.
+    doubts : tuple of str
+        What to doubt of it.
+    """
+
+    body: ElasticBody
+    model: ModalModel
+    basis: ModalBasis
+    doubts: tuple[str, ...] = ()
+
+
+def compute_modes(
+    case: Case, progress: Callable[[float], None] | None = None, tell: Callable[[str], None] | None = None
+) -> dict[str, BodyModes]:
+    """Return the modes of the elastic bodies of a case, by the name of the body.
+
+    Parameters
+    ----------
+    case : Case
+        A case with `model = "elastic"` for the sphere, the plate, or both.
+    progress : callable, optional
+        Called with a number from 0 to 1.
+    tell : callable, optional
+        Called with a sentence if something is wrong with the store of modes.
+
+    Raises
+    ------
+    InputError
+        If no body of the case is elastic, or one can't be made.
+    ComputationError
+        If modes can't be computed.
+
+    Examples
+    --------
+    >>> import vibroimpact as vi
+    >>> case = vi.read_case({
+    ...     "sphere": {"radius": "25 mm", "material": "rock-paper", "model": "elastic", "modes": 5},
+    ...     "plate": {"material": "rigid"}, "drop": {"speed": 1.0}, "contact": {"law": "hertz"},
+    ... })
+    >>> [round(float(value), -2) for value in compute_modes(case)["sphere"].basis.frequencies[:2]]
+    [12700.0, 12700.0]
+    """
+    bodies = elastic_bodies(case)
+    if not bodies:
+        raise InputError('no body of the case is elastic; give the sphere or the plate model = "elastic"')
+    found = {}
+    for number, (name, body) in enumerate(bodies.items()):
+
+        def told(part: float, number: int = number) -> None:
+            if progress is not None:
+                progress((number + part) / len(bodies))
+
+        try:
+            model = modal_model_of(body.recipe, told, tell)
+            found[name] = BodyModes(body, model, body.basis(model), tuple(_doubts(case, name, body, model)))
+        except InputError as error:
+            raise InputError(error.message, ".".join(part for part in (name, error.key) if part)) from None
+    return found
+
+
+def _doubts(case: Case, name: str, body: ElasticBody, model: ModalModel) -> list[str]:
+    """Say where a mesh that was brought does not look like the body of the case."""
+    if not isinstance(body.recipe.shape, BroughtMesh):
+        return []
+    extent = model.mesh.extent
+    size = " x ".join(f"{side:.3g}" for side in extent)
+    said = f"the mesh of the {name} is {size} m large and weighs {model.properties.mass:.4g} kg"
+    volume = 4.0 / 3.0 * math.pi * case.sphere.radius**3 if name == "sphere" else math.prod(case.plate.size) if case.plate.size else None
+    hint = '; if it is in millimetres, give mesh = { file = "...", unit = "mm" }'
+    if volume is not None:
+        expected = volume * body.recipe.density
+        if abs(model.properties.mass / expected - 1.0) > _WEIGHT_OFF:
+            return [f"{said}, and what the case describes weighs {expected:.4g} kg{hint if extent.max() > _LARGE else ''}"]
+    elif extent.max() > _LARGE:
+        return [said + hint]
+    return []

@@ -1,0 +1,34 @@
+"""What all sections of a case are: frozen, and closed to unknown keys."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, TypeVar
+
+from pydantic import BaseModel, ConfigDict
+
+from vibroimpact.errors import InputError, did_you_mean
+
+
+class Section(BaseModel):
+    """A table of a case."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, arbitrary_types_allowed=True)
+
+
+Kind = TypeVar("Kind", bound=Section)
+
+
+def read_table(kind: type[Kind], value: Mapping[str, Any]) -> Kind:
+    """Read a table that is one of several possible; an unknown key is named with those that this one takes.
+
+    Raises
+    ------
+    InputError
+        If it has an unknown key.
+    """
+    known = [name for name in kind.model_fields if name != "type"]
+    for key in value:
+        if key not in kind.model_fields:
+            raise InputError(f'unknown key "{key}"; it takes {", ".join(known)}.{did_you_mean(key, known)}', key)
+    return kind.model_validate(dict(value))

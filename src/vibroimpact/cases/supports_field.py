@@ -1,0 +1,231 @@
+"""The supports of a plate in a case: a word, a table, or a list of tables."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from itertools import product
+from typing import Annotated, Any, ClassVar, Literal
+
+from pydantic import AfterValidator, BeforeValidator, Field, StringConstraints, WithJsonSchema, model_validator
+
+from vibroimpact.cases.material_field import MaterialField, material_table
+from vibroimpact.cases.quantities import Quantity
+from vibroimpact.cases.section import Section, read_table
+from vibroimpact.errors import InputError, did_you_mean
+from vibroimpact.materials import RIGID, Material
+from vibroimpact.ranges import Range
+from vibroimpact.structures.supports.bar import Bar
+from vibroimpact.structures.supports.edge import EDGES, Edge, EdgeName
+from vibroimpact.structures.supports.node_set import NodeSet
+from vibroimpact.structures.supports.patch import Patch, RectangularPatch
+from vibroimpact.structures.supports.point import Point
+from vibroimpact.structures.supports.spring import Spring
+from vibroimpact.structures.supports.support import Support
+
+_Length = Annotated[float, Quantity("m", "length", Range(above=0))]
+_Position = tuple[Annotated[float, Quantity("m", "x")], Annotated[float, Quantity("m", "y")]]
+_Radius = Annotated[float, Quantity("m", "radius", Range(above=0))]
+_Spacing = tuple[_Length, _Length]
+
+WORDS = ("free", "clamped", "simply-supported")
+
+
+class _Table(Section):
+    what: ClassVar[str]
+
+    def made(self) -> tuple[Support, ...]:
+        """Return the supports that the table states."""
+        raise NotImplementedError
+
+
+class PatchTable(_Table):
+    """A rigid patch of the lower side."""
+
+    what = "a rigid patch of the lower side, held still: a disc of a radius, or a rectangle of a size"
+    type: Literal["patch"] = "patch"
+    position: _Position
+    radius: _Radius | None = None
+    size: tuple[_Length, _Length] | None = None
+
+    @model_validator(mode="after")
+    def _one_of_two(self) -> PatchTable:
+        if (self.radius is None) == (self.size is None):
+            raise InputError("give either radius or size" + ("; neither is given" if self.radius is None else "; both are given"))
+        return self
+
+    def made(self) -> tuple[Support, ...]:
+        """Return the patch."""
+        if self.size is not None:
+            return (RectangularPatch(*self.position, *self.size),)
+        return (Patch(*self.position, self.radius or 0.0),)
+
+
+class PatchesTable(_Table):
+    """Four rigid patches, at the corners of a rectangle."""
+
+    what = "four rigid circular patches of the lower side, at the corners of a rectangle of this spacing around the centre"
+    type: Literal["patches"] = "patches"
+    spacing: _Spacing
+    radius: _Radius
+
+    def made(self) -> tuple[Support, ...]:
+        """Return the four."""
+        return tuple(Patch(x, y, self.radius) for x, y in _corners(self.spacing))
+
+
+def _not_rigid(value: Material) -> Material:
+    if value is RIGID:
+        raise InputError('a bar is elastic, and "rigid" has no modulus; for rigid bars take patches')
+    return value
+
+
+_BarMaterial = Annotated[MaterialField, AfterValidator(_not_rigid)]
+
+
+class BarTable(_Table):
+    """An elastic column."""
+
+    what = "an elastic round column under the plate, fixed to the ground"
+    type: Literal["bar"] = "bar"
+    position: _Position
+    radius: _Radius
+    length: _Length
+    material: _BarMaterial
+
+    def made(self) -> tuple[Support, ...]:
+        """Return the column."""
+        return (Bar(*self.position, self.radius, self.length, self.material),)
+
+
+class BarsTable(_Table):
+    """Four elastic columns, at the corners of a rectangle."""
+
+    what = "four elastic round columns, at the corners of a rectangle of this spacing around the centre"
+    type: Literal["bars"] = "bars"
+    spacing: _Spacing
+    radius: _Radius
+    length: _Length
+    material: _BarMaterial
+
+    def made(self) -> tuple[Support, ...]:
+        """Return the four."""
+        return tuple(Bar(x, y, self.radius, self.length, self.material) for x, y in _corners(self.spacing))
+
+
+class EdgeTable(_Table):
+    """An edge of the plate."""
+
+    what = "an edge of the plate"
+    type: Literal["edge"] = "edge"
+    edge: EdgeName
+    condition: Literal["clamped", "simply-supported"]
+
+    def made(self) -> tuple[Support, ...]:
+        """Return the edge."""
+        return (Edge(self.edge, self.condition),)
+
+
+class PointTable(_Table):
+    """A pinned point."""
+
+    what = "a point of the lower side, pinned"
+    type: Literal["point"] = "point"
+    position: _Position
+
+    def made(self) -> tuple[Support, ...]:
+        """Return the point."""
+        return (Point(*self.position),)
+
+
+class SpringTable(_Table):
+    """A spring or an elastic pad."""
+
+    what = "a spring under a point, or an elastic pad of a radius"
+    type: Literal["spring"] = "spring"
+    position: _Position
+    stiffness: Annotated[float, Quantity("N/m", "vertical stiffness", Range(above=0))]
+    horizontal_stiffness: Annotated[float, Quantity("N/m", "stiffness along x, and along y", Range(at_least=0))] = 0.0
+    radius: Annotated[float, Quantity("m", "radius", Range(at_least=0))] = 0.0
+
+    def made(self) -> tuple[Support, ...]:
+        """Return the spring."""
+        return (Spring(*self.position, self.stiffness, self.horizontal_stiffness, self.radius),)
+
+
+class SetTable(_Table):
+    """A named set of a mesh that was brought."""
+
+    what = "a named set of nodes or elements of a mesh that was brought, held still along some axes"
+    type: Literal["set"] = "set"
+    name: str = Field(description="of the set")
+    directions: Annotated[str, StringConstraints(pattern=r"^[xyz]{1,3}$")] = Field("xyz", description="the axes along which it is held")
+
+    def made(self) -> tuple[Support, ...]:
+        """Return the set."""
+        return (NodeSet(self.name, self.directions),)
+
+
+_TABLES: Mapping[str, type[_Table]] = {
+    str(kind.model_fields["type"].default): kind
+    for kind in (PatchesTable, PatchTable, BarsTable, BarTable, EdgeTable, PointTable, SpringTable, SetTable)
+}
+_ALLOWED = f"{', '.join(WORDS)}, or a table (or a list of tables) with type = {', '.join(_TABLES)}"
+
+
+def _read_supports(value: Any) -> Any:
+    if isinstance(value, str):
+        if value not in WORDS:
+            raise InputError(f'"{value}" is not allowed; it must be {_ALLOWED}.{did_you_mean(value, WORDS)}')
+        return value
+    if isinstance(value, dict):
+        return (_read_one(value),)
+    if isinstance(value, (list, tuple)):
+        found = []
+        for number, item in enumerate(value):
+            try:
+                found.append(item if isinstance(item, _Table) else _read_one(item))
+            except InputError as error:
+                raise InputError(error.message, ".".join(part for part in (str(number), error.key) if part)) from None
+        return tuple(found)
+    raise InputError(f"{value!r} is not allowed; it must be {_ALLOWED}")
+
+
+def _read_one(value: Any) -> _Table:
+    name = value.get("type") if isinstance(value, dict) else None
+    if not isinstance(name, str) or name not in _TABLES:
+        shown = f'there is no support of type "{name}"' if name is not None else "a support is a table with a type"
+        raise InputError(f"{shown}; there are {', '.join(_TABLES)}.{did_you_mean(str(name), _TABLES)}")
+    return read_table(_TABLES[name], value)
+
+
+_SCHEMA = {
+    "description": "how the plate is held",
+    "anyOf": [
+        {"enum": list(WORDS)},
+        *({**kind.model_json_schema(), "description": kind.what} for kind in _TABLES.values()),
+        {"type": "array", "items": {"type": "object"}},
+    ],
+}
+SupportsField = Annotated[Any, BeforeValidator(_read_supports), WithJsonSchema(_SCHEMA)]
+
+
+def supports_of(value: str | tuple[_Table, ...]) -> tuple[Support, ...]:
+    """Return the supports that a case states."""
+    if isinstance(value, str):
+        return () if value == "free" else tuple(Edge(edge, value) for edge in EDGES)  # type: ignore[arg-type]
+    return tuple(support for table in value for support in table.made())
+
+
+def _corners(spacing: tuple[float, float]) -> list[tuple[float, float]]:
+    return [(0.5 * x * spacing[0], 0.5 * y * spacing[1]) for x, y in product((-1.0, 1.0), repeat=2)]
+
+
+def supports_table(value: Any) -> Any:
+    """Return supports as a case holds them."""
+    if isinstance(value, tuple):
+        return [{**table.model_dump(exclude_none=True), **_material(table)} for table in value]
+    return value
+
+
+def _material(table: _Table) -> dict[str, Any]:
+    return {"material": material_table(table.material)} if isinstance(table, (BarTable, BarsTable)) else {}

@@ -1,0 +1,1 @@
+"""Mesh files of other programs: read, written, and made from geometry."""

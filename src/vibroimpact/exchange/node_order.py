@@ -1,0 +1,46 @@
+"""Other programs' orders of the nodes of an element, told by the corners that each node lies between."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vibroimpact.structures.element_kinds import ELEMENT_KINDS
+
+_HEX_BOTTOM, _HEX_TOP, _HEX_UP = "01 12 23 30", "45 56 67 74", "04 15 26 37"
+_HEX20_GMSH = "0 1 2 3 4 5 6 7 01 03 04 12 15 23 26 37 45 47 56 67"
+
+GMSH = {
+    "tet10": "0 1 2 3 01 12 02 03 23 13",
+    "hex20": _HEX20_GMSH,
+    "hex27": f"{_HEX20_GMSH} 0123 0154 0374 1265 2376 4567 01234567",
+}
+NASTRAN = {"hex20": f"0 1 2 3 4 5 6 7 {_HEX_BOTTOM} {_HEX_UP} {_HEX_TOP}"}
+ABAQUS = {"hex27": f"0 1 2 3 4 5 6 7 {_HEX_BOTTOM} {_HEX_TOP} {_HEX_UP} 01234567 0123 4567 0154 1265 2376 0374"}
+"""Abaqus and we differ in hex27 only: its node in the middle comes before those of the faces."""
+
+
+def from_ours(kind: str, foreign: str) -> NDArray[np.int64]:
+    """Return where each node of another order stands in ours: `theirs = ours[from_ours(...)]`."""
+    return np.argsort(to_ours(kind, foreign)).astype(np.int64)
+
+
+def to_ours(kind: str, foreign: str) -> NDArray[np.int64]:
+    """Return where each of our nodes stands in another order: `ours = theirs[to_ours(...)]`.
+
+    Parameters
+    ----------
+    kind : str
+        A name in `ELEMENT_KINDS`.
+    foreign : str
+        For each node in turn the corners that it is the middle of.
+
+    Examples
+    --------
+    >>> to_ours("tet10", GMSH["tet10"]).tolist()
+    [0, 1, 2, 3, 4, 5, 6, 7, 9, 8]
+    """
+    reference = ELEMENT_KINDS[kind].reference
+    theirs = np.array([reference[[int(corner) for corner in node]].mean(axis=0) for node in foreign.split()])
+    distance = np.abs(reference[:, None, :] - theirs[None, :, :]).max(axis=2)
+    return np.asarray(distance.argmin(axis=1), dtype=np.int64)

@@ -1,0 +1,88 @@
+"""What the command line prints of modes, and of elastic bodies before they are computed."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from rich.console import Group, RenderableType
+from rich.markup import escape
+from rich.table import Table
+from rich.text import Text
+
+from vibroimpact.bodies.elastic import ElasticBody
+from vibroimpact.cases.build_elastic import elastic_bodies
+from vibroimpact.cases.modes import BodyModes
+from vibroimpact.cases.schema import Case
+from vibroimpact.structures.store import has_model, key_of
+
+_ROWS = 20
+
+
+def modes_summary(case: Case, modes: Mapping[str, BodyModes]) -> RenderableType:
+    """Return what is printed of the modes of a case: what each body is, its lowest modes, and what to doubt."""
+    parts: list[RenderableType] = [Text(case.name or "modes", style="bold")]
+    for name, found in modes.items():
+        properties = found.model.properties
+        facts = Table.grid(padding=(0, 2))
+        rows = [
+            (
+                name,
+                f"{properties.mass:.6g} kg, {found.model.facts['elements']}, {found.model.facts['degrees of freedom']} degrees of freedom",
+            ),
+            ("held by", _supports(found.body)),
+            ("rigid motions", str(found.model.rigid_motions)),
+            ("damping", found.body.damping.words),
+        ]
+        if "left out of the file" in found.model.facts:
+            rows.append(("left out of the file", found.model.facts["left out of the file"]))
+        for row in rows:
+            facts.add_row(*(escape(cell) for cell in row))
+        parts += [facts, _table(found), *(Text(f"Doubt: {doubt}.", style="yellow") for doubt in found.doubts), Text()]
+    return Group(*parts[:-1])
+
+
+def _table(found: BodyModes) -> Table:
+    table = Table(box=None, padding=(0, 1), header_style="bold")
+    for heading in ("mode", "frequency\n[Hz]", "damping\nratio", "shape at contact\n[1/sqrt kg]", "effective mass, vertical\n[kg]"):
+        table.add_column(escape(heading), justify="right", no_wrap=True, vertical="bottom")
+    basis = found.basis
+    for mode in range(min(_ROWS, len(basis.frequencies))):
+        numbers = basis.frequencies[mode], basis.damping_ratios[mode], basis.contact[mode], basis.participation[mode, 2] ** 2
+        table.add_row(str(mode + 1), f"{numbers[0]:.6g}", f"{numbers[1]:.4g}", f"{_clean(numbers[2], basis.contact)}", f"{numbers[3]:.4f}")
+    if len(basis.frequencies) > _ROWS:
+        table.add_row("...", f"{basis.frequencies[-1]:.6g}", "", "", "")
+    return table
+
+
+def _clean(value: float, all_values: object) -> str:
+    import numpy as np
+
+    return f"{value:.4f}" if abs(value) > 1e-6 * float(np.abs(np.asarray(all_values)).max()) else "0"
+
+
+def elastic_rows(case: Case) -> list[tuple[str, str]]:
+    """Return what `check` says of the elastic bodies of a case: their mesh, supports, modes and damping.
+
+    Raises
+    ------
+    InputError
+        If a mesh can't be made.
+    """
+    rows = []
+    for name, body in elastic_bodies(case).items():
+        mesh = body.recipe.shape.mesh(body.recipe.supports)
+        elements = ", ".join(f"{len(block.connectivity)} {block.kind}" for block in mesh.blocks)
+        reduction = body.recipe.reduction
+        kept = f"{reduction.modes} modes" if reduction.modes else f"modes up to {reduction.max_frequency:g} Hz"
+        stored = "computed already" if has_model(key_of(body.recipe)) else "not computed yet"
+        rows += [
+            (f"elastic {name}", f"{elements}, {len(mesh.nodes)} nodes, {mesh.dofs_per_node * len(mesh.nodes)} degrees of freedom"),
+            ("  modes", f"{kept}, {reduction.method}{', with an attachment mode' if reduction.attachment else ''}; {stored}"),
+            ("  damping", body.damping.words),
+            ("  held by", _supports(body)),
+        ]
+    return rows
+
+
+def _supports(body: ElasticBody) -> str:
+    return "; ".join(support.words for support in body.recipe.supports) or "nothing: it is free"

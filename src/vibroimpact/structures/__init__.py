@@ -1,0 +1,1 @@
+"""Structures: meshes, elasticity, supports, modes, reduction and damping; they know nothing of contact."""

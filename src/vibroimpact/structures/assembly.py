@@ -1,0 +1,91 @@
+"""What every assembly needs: shape functions of all elements at once, and the sum of what falls on one pair of nodes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+
+import numpy as np
+from scipy.sparse import bsr_array, csr_array
+
+from vibroimpact.structures.geometry import jacobians
+from vibroimpact.structures.mesh import ElementBlock, Floats, Mesh
+
+_CHUNK = 4_000_000  # numbers in the largest array of one step
+
+
+def scaled_shapes(mesh: Mesh, block: ElementBlock) -> Iterator[tuple[Floats, Floats]]:
+    """Yield shape functions of chunks of elements at the quadrature points, times sqrt(dV).
+
+    Yields
+    ------
+    values : array, shape (elements, points, nodes)
+        So that `values.T @ values` of an element is the integral of N_a N_b.
+    gradients : array, shape (dimension, elements, points, nodes)
+        Their derivatives along each axis.
+    """
+    points, weights = block.element.quadrature()
+    values, slopes = block.element.basis(points)
+    size = max(1, _CHUNK // (values.shape[1] * values.size))
+    for start in range(0, len(block.connectivity), size):
+        at = mesh.nodes[block.connectivity[start : start + size], : block.element.dimension]
+        jacobian = jacobians(at, slopes)
+        root = np.sqrt(weights * np.linalg.det(jacobian))
+        gradients = np.linalg.inv(jacobian) @ slopes * root[:, :, None, None]
+        yield values * root[:, :, None], np.ascontiguousarray(gradients.transpose(2, 0, 1, 3))
+
+
+def summation(mesh: Mesh) -> tuple[Callable[[Sequence[Floats]], Floats], Callable[[Floats], csr_array]]:
+    """Return how to sum element matrices over the pairs of nodes, and how to make a sparse matrix of the sums.
+
+    Returns
+    -------
+    summed : callable
+        From element matrices (elements, nodes, nodes), in chunks in the order of the mesh, to one number a pair.
+    matrix : callable
+        From blocks, shape (pairs, n, n), to a sparse matrix of n degrees of freedom a node.
+    """
+    number = len(mesh.nodes)
+    pairs = np.concatenate([(block.connectivity[:, :, None] * number + block.connectivity[:, None, :]).ravel() for block in mesh.blocks])
+    order = np.argsort(pairs, kind="stable")
+    key = pairs[order]
+    starts = np.flatnonzero(np.concatenate([[True], key[1:] != key[:-1]]))
+    found = key[starts]
+    columns, pointer = found % number, np.searchsorted(found, np.arange(number + 1) * number)
+
+    def summed(chunks: Sequence[Floats]) -> Floats:
+        return np.asarray(np.add.reduceat(np.concatenate([chunk.ravel() for chunk in chunks])[order], starts))
+
+    def matrix(blocks: Floats) -> csr_array:
+        size = number * blocks.shape[1]
+        return bsr_array((blocks, columns, pointer), shape=(size, size)).tocsr()
+
+    return summed, matrix
+
+
+def node_adjacency(mesh: Mesh) -> csr_array:
+    """Return which nodes share an element, as the pattern of a sparse matrix (nodes, nodes)."""
+    summed, matrix = summation(mesh)
+    ones = [np.ones((*block.connectivity.shape, block.connectivity.shape[1])) for block in mesh.blocks]
+    return matrix(summed(ones)[:, None, None])
+
+
+def isotropic(product: Floats, lame: float, mu: float) -> Floats:
+    """Return the stiffness blocks of an isotropic material from the integrals of dN_a/dx_i dN_b/dx_j.
+
+    Parameters
+    ----------
+    product : array, shape (d, d, pairs)
+        The integrals, i and j first.
+    lame, mu : float
+        Lame's first parameter (in a plane, that of plane stress) and the shear modulus [Pa].
+
+    Returns
+    -------
+    array, shape (pairs, d, d)
+        lambda G_ij + mu G_ji + mu delta_ij tr G.
+    """
+    trace = mu * np.trace(product)
+    stiffness = lame * product + mu * product.transpose(1, 0, 2)
+    for axis in range(len(product)):
+        stiffness[axis, axis] += trace
+    return np.ascontiguousarray(stiffness.transpose(2, 0, 1))

@@ -1,0 +1,148 @@
+"""The kinds of finite elements: node order, shape functions, quadrature and faces.
+
+The order of the nodes is the one of Abaqus and of VTK. Bricks live on the unit cube, tetrahedra on the unit simplex.
+The shape functions of solids are scikit-fem's; the quadrilateral of order four for plates is a tensor product of
+Lagrange's polynomials.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import cache, partial
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Shape = tuple[NDArray[np.float64], NDArray[np.float64]]
+
+_HEX_CORNERS = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]]
+_HEX_EDGES = [(0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4), (0, 4), (1, 5), (2, 6), (3, 7)]
+_HEX_FACES = ((0, 4, 7, 3), (1, 2, 6, 5), (0, 1, 5, 4), (3, 7, 6, 2), (0, 3, 2, 1), (4, 5, 6, 7))
+_TET_CORNERS = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
+_TET_EDGES = [(0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3)]
+_TET_FACES = ((0, 2, 1), (0, 1, 3), (1, 2, 3), (0, 3, 2))
+
+PLATE_ORDER = 4
+"""The polynomial degree of the plate element; from four on, quadrilaterals of thin plates do not lock."""
+
+
+_QUAD_CORNERS = (0, PLATE_ORDER, (PLATE_ORDER + 1) ** 2 - 1, PLATE_ORDER * (PLATE_ORDER + 1))
+
+
+@dataclass(frozen=True)
+class ElementKind:
+    """One kind of element.
+
+    Parameters
+    ----------
+    name : str
+        Such as "hex20".
+    reference : array, shape (nodes, dimension)
+        Where the nodes lie on the reference element.
+    corners : int
+        How many of them, the first ones, are corners.
+    faces : tuple of tuple of int
+        The corners of each face, seen counter-clockwise from outside; of a plate element its own.
+    basis : callable
+        From points (points, dimension) to the values (points, nodes) and the gradients (points, dimension, nodes).
+    degree : int
+        Degree of the quadrature that integrates stiffness and mass.
+    """
+
+    name: str
+    reference: NDArray[np.float64]
+    corners: int
+    faces: tuple[tuple[int, ...], ...]
+    basis: Callable[[NDArray[np.float64]], Shape]
+    degree: int
+
+    @property
+    def dimension(self) -> int:
+        """Three for a solid, two for a plate."""
+        return int(self.reference.shape[1])
+
+    @property
+    def is_brick(self) -> bool:
+        """Is it a product of intervals?"""
+        return self.corners == int(2**self.dimension)
+
+    def quadrature(self, degree: int | None = None) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Return points (points, dimension) and weights of a rule exact to a degree; by default that of stiffness and mass.
+
+        Examples
+        --------
+        >>> points, weights = ELEMENT_KINDS["hex20"].quadrature()
+        >>> len(weights), round(float(weights.sum()), 12)
+        (27, 1.0)
+        """
+        return _quadrature(self.is_brick, self.dimension, self.degree if degree is None else degree)
+
+
+@cache
+def _quadrature(brick: bool, dimension: int, degree: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    from skfem.quadrature import get_quadrature
+    from skfem.refdom import RefHex, RefQuad, RefTet
+
+    points, weights = get_quadrature({2: RefQuad, 3: RefHex}[dimension] if brick else RefTet, degree)
+    return np.ascontiguousarray(points.T), weights
+
+
+def _scikit_fem(name: str, reference: NDArray[np.float64], points: NDArray[np.float64]) -> Shape:
+    """Evaluate scikit-fem's shape functions in our order of the nodes."""
+    element, order = _in_our_order(name, reference.tobytes(), reference.shape)
+    found = [element.lbasis(points.T, index) for index in order]
+    return np.stack([value for value, _ in found], axis=1), np.stack([slope.T for _, slope in found], axis=2)
+
+
+@cache
+def _in_our_order(name: str, reference: bytes, shape: tuple[int, int]) -> tuple[Any, list[int]]:
+    import skfem
+
+    element = getattr(skfem, name)()
+    ours = np.frombuffer(reference).reshape(shape)
+    distance = np.abs(ours[:, None, :] - np.asarray(element.doflocs)[None, :, :]).max(axis=2)
+    return element, [int(index) for index in distance.argmin(axis=1)]
+
+
+def _tensor_lagrange(order: int, points: NDArray[np.float64]) -> Shape:
+    """Evaluate Lagrange's polynomials on a square; the first coordinate runs fastest."""
+    (a, da), (b, db) = (_lagrange(order, points[:, axis]) for axis in range(2))
+    values = b[:, :, None] * a[:, None, :]
+    slopes = np.stack([b[:, :, None] * da[:, None, :], db[:, :, None] * a[:, None, :]], axis=1)
+    return values.reshape(len(points), -1), slopes.reshape(len(points), 2, -1)
+
+
+def _lagrange(order: int, x: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    powers = np.arange(order + 1)
+    coefficients = np.linalg.inv(np.vander(powers / order, increasing=True))
+    values = x[:, None] ** powers
+    slopes = powers * x[:, None] ** np.maximum(powers - 1, 0)
+    return values @ coefficients, slopes @ coefficients
+
+
+def _kind(name: str, reference: NDArray[np.float64], corners: int, element: str, degree: int) -> ElementKind:
+    faces = _HEX_FACES if corners == 8 else _TET_FACES
+    return ElementKind(name, reference, corners, faces, partial(_scikit_fem, element, reference), degree)
+
+
+def _kinds() -> Mapping[str, ElementKind]:
+    hexa, tet = np.array(_HEX_CORNERS, dtype=float), np.array(_TET_CORNERS, dtype=float)
+    hex20 = np.concatenate([hexa, [hexa[list(edge)].mean(axis=0) for edge in _HEX_EDGES]])
+    hex27 = np.concatenate([hex20, [hexa[list(face)].mean(axis=0) for face in _HEX_FACES], [[0.5, 0.5, 0.5]]])
+    tet10 = np.concatenate([tet, [tet[list(edge)].mean(axis=0) for edge in _TET_EDGES]])
+    steps = np.linspace(0.0, 1.0, PLATE_ORDER + 1)
+    quad = np.array([[x, y] for y in steps for x in steps])
+    return {
+        "tet4": _kind("tet4", tet, 4, "ElementTetP1", 2),
+        "tet10": _kind("tet10", tet10, 4, "ElementTetP2", 5),
+        "hex8": _kind("hex8", hexa, 8, "ElementHex1", 3),
+        "hex20": _kind("hex20", hex20, 8, "ElementHexS2", 5),
+        "hex27": _kind("hex27", hex27, 8, "ElementHex2", 5),
+        "quad25": ElementKind("quad25", quad, 4, (_QUAD_CORNERS,), partial(_tensor_lagrange, PLATE_ORDER), 2 * PLATE_ORDER + 1),
+    }
+
+
+ELEMENT_KINDS: Mapping[str, ElementKind] = _kinds()
+"""The kinds by name: tetrahedra and bricks of first and second order, and the plate element."""

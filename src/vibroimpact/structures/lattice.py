@@ -1,0 +1,122 @@
+"""Lattices: a body is cut into blocks, each a regular lattice of points in three directions.
+
+Three by three by three points make one brick of 27 nodes; the other kinds of elements are taken out of it. Neighbouring
+blocks must have the same points where they meet, and their directions must ascend alike along a common face, so that
+the tetrahedra of both sides cut it along the same diagonal.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import permutations
+
+import numpy as np
+
+from vibroimpact.structures.element_kinds import ELEMENT_KINDS
+from vibroimpact.structures.mesh import ElementBlock, Floats, Integers, Mesh
+
+_BRICK = np.rint(2.0 * ELEMENT_KINDS["hex27"].reference).astype(np.int64)
+
+
+def _tetrahedra(order: int) -> Integers:
+    """Return the six tetrahedra around the diagonal of a brick, as indices into its 27 nodes."""
+    index = {tuple(corner): number for number, corner in enumerate(_BRICK.tolist())}
+    found = []
+    for path in permutations(range(3)):
+        corners = [np.zeros(3, dtype=np.int64)]
+        for axis in path:
+            corners.append(corners[-1] + 2 * np.eye(3, dtype=np.int64)[axis])
+        if np.linalg.det(np.array(corners[1:]) - corners[0]) < 0.0:
+            corners[1], corners[2] = corners[2], corners[1]
+        reference = ELEMENT_KINDS["tet4" if order == 1 else "tet10"].reference
+        at = corners[0] + reference @ (np.array(corners[1:]) - corners[0])
+        found.append([index[tuple(int(value) for value in point)] for point in np.rint(at)])
+    return np.array(found)
+
+
+_TAKEN = {
+    "hex8": np.arange(8)[None],
+    "hex20": np.arange(20)[None],
+    "hex27": np.arange(27)[None],
+    "tet4": _tetrahedra(1),
+    "tet10": _tetrahedra(2),
+}
+SOLID_KINDS = tuple(_TAKEN)
+"""The kinds of solid elements that a lattice can be made of."""
+
+
+def mesh_of_blocks(blocks: Sequence[Floats], kind: str) -> Mesh:
+    """Make a mesh of solid elements from lattices.
+
+    Parameters
+    ----------
+    blocks : sequence of arrays, shape (2 a + 1, 2 b + 1, 2 c + 1, 3)
+        Points [m] of each block, a x b x c bricks.
+    kind : str
+        "hex8", "hex20", "hex27", "tet4" or "tet10".
+
+    Returns
+    -------
+    Mesh
+        Points that coincide are one node.
+
+    Examples
+    --------
+    >>> x, y, z = np.meshgrid(*[np.linspace(0.0, 1.0, 3)] * 3, indexing="ij")
+    >>> mesh_of_blocks([np.stack([x, y, z], axis=-1)], "tet10").number_of_elements
+    6
+    """
+    bricks, points, start = [], [], 0
+    for block in blocks:
+        lattice = _right_handed(block)
+        number = np.arange(start, start + lattice[..., 0].size).reshape(lattice.shape[:3])
+        first = number[:-1:2, :-1:2, :-1:2].ravel()
+        strides = np.array([lattice.shape[1] * lattice.shape[2], lattice.shape[2], 1])
+        bricks.append(first[:, None] + _BRICK @ strides)
+        points.append(lattice.reshape(-1, 3))
+        start += lattice[..., 0].size
+    connectivity = np.concatenate(bricks)[:, _TAKEN[kind]].reshape(-1, _TAKEN[kind].shape[1])
+    nodes, connectivity = merged(np.concatenate(points), connectivity)
+    return Mesh(nodes, (ElementBlock(kind, connectivity),))
+
+
+def merged(points: Floats, connectivity: Integers) -> tuple[Floats, Integers]:
+    """Make one node of points that coincide, leave out those that no element uses, and renumber."""
+    used, connectivity = np.unique(connectivity, return_inverse=True)
+    points = points[used]
+    grid = np.rint(points / (1e-7 * np.ptp(points, axis=0).max())).astype(np.int64)
+    _, first, same = np.unique(grid, axis=0, return_index=True, return_inverse=True)
+    return points[first], same.ravel()[connectivity]
+
+
+def box_mesh(size: Sequence[float], counts: Sequence[int], kind: str = "hex20") -> Mesh:
+    """Make a mesh of a box, centred at the origin.
+
+    Parameters
+    ----------
+    size : sequence of three floats
+        Length, width and height [m].
+    counts : sequence of three ints
+        Bricks along each.
+    kind : str, default "hex20"
+        Kind of element.
+
+    Examples
+    --------
+    >>> box_mesh((0.52, 0.42, 0.008), (60, 48, 1)).nodes.shape
+    (20703, 3)
+    """
+    axes = [np.linspace(-0.5 * length, 0.5 * length, 2 * count + 1) for length, count in zip(size, counts, strict=True)]
+    return mesh_of_blocks([np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1)], kind)
+
+
+def _right_handed(block: Floats) -> Floats:
+    """Return the block with its first two directions in the order that makes volumes positive."""
+    middle = tuple(size // 4 * 2 for size in block.shape[:3])
+    at = block[middle]
+    sides = []
+    for axis in range(3):
+        step = np.array(middle)
+        step[axis] += 1
+        sides.append(block[tuple(step)] - at)
+    return block if np.linalg.det(np.array(sides)) > 0.0 else block.transpose(1, 0, 2, 3)

@@ -1,0 +1,156 @@
+"""A modal model: the modes of a body on its mesh, as they are computed, stored and drawn; and the modal basis seen at points."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+from scipy.sparse import csr_array
+
+from vibroimpact.structures.damping import Damping
+from vibroimpact.structures.geometry import MassProperties
+from vibroimpact.structures.mesh import Floats, Mesh
+from vibroimpact.structures.modes import Eigenmodes
+from vibroimpact.structures.structure import Structure
+from vibroimpact.structures.surface import Side, Spot, place_of, surface_motion
+
+
+@dataclass(frozen=True)
+class ModalModel:
+    """The modes of a body on its mesh.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        The elements.
+    properties : MassProperties
+        Mass, centre of mass and inertia of the mesh.
+    angular_frequencies : array, shape (modes,)
+        [rad/s], ascending; rigid motions are not among them.
+    shapes : array, shape (modes, dofs)
+        Of unit modal mass [kg^-1/2], on the degrees of freedom of the nodes.
+    participation : array, shape (modes, 6)
+        Momentum of each mode along x, y and z [kg^1/2], and angular momentum about the centre of mass [kg^1/2 m].
+    rigid_motions : int
+        How many rigid motions the supports leave, 0 to 6.
+    thickness : float, default 0
+        Thickness of plate elements [m].
+    facts : mapping of str to str
+        How it was made, in words.
+    """
+
+    mesh: Mesh
+    properties: MassProperties
+    angular_frequencies: Floats
+    shapes: Floats
+    participation: Floats
+    rigid_motions: int
+    thickness: float = 0.0
+    facts: Mapping[str, str] = field(default_factory=dict)
+
+    @property
+    def frequencies(self) -> Floats:
+        """Frequencies [Hz]."""
+        return np.asarray(self.angular_frequencies / (2.0 * np.pi))
+
+    def displacements(self, mode: int) -> Floats:
+        """Return how the nodes move in a mode (from 0), shape (nodes, 3) [kg^-1/2]."""
+        return np.asarray(self.shapes[mode].reshape(len(self.mesh.nodes), -1)[:, :3])
+
+    def at(self, places: Floats, side: Side = "upper") -> tuple[Floats, Floats]:
+        """Return the mode shapes at places on one side, shape (modes, points, 3), and where these lie, (points, 3) [m].
+
+        Raises
+        ------
+        InputError
+            If a place lies beside the body.
+        """
+        motion, positions = surface_motion(self.mesh, places, side, self.thickness)
+        return np.asarray(motion @ self.shapes.T).T.reshape(len(self.shapes), -1, 3), positions
+
+
+def modal_model(structure: Structure, modes: Eigenmodes, expansion: csr_array, rigid_motions: int, facts: Mapping[str, str]) -> ModalModel:
+    """Make the modal model of a structure from the modes of its free degrees of freedom."""
+    shapes = expansion @ modes.shapes
+    momentum = structure.mass @ structure.rigid_motions()
+    return ModalModel(
+        structure.mesh,
+        structure.properties,
+        modes.angular_frequencies,
+        np.ascontiguousarray(shapes.T),
+        np.asarray(shapes.T @ momentum),
+        rigid_motions,
+        structure.thickness,
+        facts,
+    )
+
+
+@dataclass(frozen=True)
+class ModalBasis:
+    """What the dynamics know of an elastic body: its modes, seen at the contact point and at the points watched.
+
+    Parameters
+    ----------
+    frequencies : array, shape (modes,)
+        [Hz], ascending.
+    damping_ratios : array, shape (modes,)
+        [-].
+    contact : array, shape (modes,)
+        How far the contact point moves up in each mode of unit modal mass [kg^-1/2].
+    participation : array, shape (modes, 3)
+        Momentum of each mode [kg^1/2]; over the mass it is how far the centre of mass moves.
+    points : mapping of str to array, shape (modes, 3)
+        How the points watched move [kg^-1/2].
+    """
+
+    frequencies: Floats
+    damping_ratios: Floats
+    contact: Floats
+    participation: Floats
+    points: Mapping[str, Floats] = field(default_factory=dict)
+
+    @property
+    def angular_frequencies(self) -> Floats:
+        """Angular frequencies [rad/s]."""
+        return np.asarray(2.0 * np.pi * self.frequencies)
+
+
+def modal_basis(
+    model: ModalModel,
+    damping: Damping,
+    contact: Spot,
+    side: Side,
+    points: Mapping[str, tuple[Spot, Side]] | None = None,
+) -> ModalBasis:
+    """Return the modes of a model seen at its contact point and at the points watched.
+
+    Parameters
+    ----------
+    model : ModalModel
+        The modes.
+    damping : Damping
+        What gives them their damping ratios.
+    contact : tuple of two floats, str or None
+        The contact point: x and y [m]; the name of a set of nodes, whose middle is meant; or the point that reaches farthest.
+    side : str
+        Where it is: "upper" or "lower".
+    points : mapping of str to (spot, side), optional
+        The points watched.
+
+    Raises
+    ------
+    InputError
+        If a point is not on the body.
+    """
+
+    def seen(spot: Spot, face: Side) -> Floats:
+        return model.at(np.array([place_of(model.mesh, spot, face)]), face)[0][:, 0]
+
+    return ModalBasis(
+        model.frequencies,
+        damping.ratios(model.frequencies),
+        seen(contact, side)[:, 2],
+        model.participation[:, :3],
+        {name: seen(*point) for name, point in (points or {}).items()},
+    )

@@ -1,0 +1,186 @@
+"""Undamped modes of a held or free structure, by shift-invert Lanczos, its rigid motions kept apart; and static response."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import eigh, qr
+from scipy.sparse import csr_array
+from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigsh
+
+from vibroimpact.errors import ComputationError, InputError
+from vibroimpact.structures.factor import Factors
+from vibroimpact.structures.mesh import Floats, Integers
+
+_DENSE = 400  # degrees of freedom up to which a dense solver is quicker
+_MOST = 0.4  # of the degrees of freedom: more modes than this of a mesh mean nothing, and Lanczos' method gains nothing
+_SINGULAR = 1e-6  # of the largest static displacement: what a mechanism that the supports leave makes of it
+_ROUGHLY = 1e-3  # how exactly the largest mode left over must be known
+_EQUAL = 1e-6  # relative: eigenvalues so near are those of one multiple mode
+
+Progress = Callable[[float], None]
+
+
+@dataclass(frozen=True)
+class Eigenmodes:
+    """Angular frequencies and shapes.
+
+    Parameters
+    ----------
+    angular_frequencies : array, shape (modes,)
+        [rad/s], ascending.
+    shapes : array, shape (dofs, modes)
+        One column a mode, of unit modal mass [kg^-1/2].
+    """
+
+    angular_frequencies: Floats
+    shapes: Floats
+
+
+class Elastic:
+    """What an elastic system does at low frequencies: its statics, once factorised, and from them its modes.
+
+    Parameters
+    ----------
+    stiffness, mass : sparse arrays, shape (n, n)
+        Symmetric.
+    rigid : array, shape (n, r), optional
+        The rigid motions, which the stiffness does not resist.
+    order : int array, shape (n,), optional
+        An elimination order.
+
+    Raises
+    ------
+    ComputationError
+        If the system can move without resistance otherwise than by its rigid motions.
+
+    Notes
+    -----
+    A system that is free has no inverse. Held still at as many degrees of freedom as it has rigid motions, it has one, and
+    loads that the inertia of a rigid acceleration balances are carried without reactions there, wherever they are. So the
+    modes of a free body come out exactly orthogonal to its rigid motions, and no shift has to be guessed.
+
+    Examples
+    --------
+    >>> chain = csr_array(np.diag([1.0, 2.0, 1.0]) - np.eye(3, k=1) - np.eye(3, k=-1))
+    >>> modes = Elastic(chain, csr_array(np.eye(3)), np.ones((3, 1))).modes(2)
+    >>> (modes.angular_frequencies**2).round(12).tolist()
+    [1.0, 3.0]
+    """
+
+    def __init__(self, stiffness: csr_array, mass: csr_array, rigid: Floats | None = None, order: Integers | None = None) -> None:
+        number = stiffness.shape[0]
+        self.stiffness, self.mass = stiffness, mass
+        self.order = np.arange(number) if order is None else order
+        motions = np.zeros((number, 0)) if rigid is None else rigid
+        if motions.shape[1]:
+            lower = np.linalg.cholesky(motions.T @ (mass @ motions))
+            motions = np.asarray(np.linalg.solve(lower, motions.T).T, dtype=np.float64)
+        self.rigid = motions
+        """The rigid motions, of unit modal mass."""
+        self._momentum = mass @ motions
+        held = qr(motions.T, pivoting=True, mode="r")[1][: motions.shape[1]] if motions.shape[1] else np.zeros(0, dtype=int)
+        self._free = np.setdiff1d(np.arange(number), held)
+        place = np.full(number, -1)
+        place[self._free] = np.arange(len(self._free))
+        inner = place[self.order]
+        matrix = stiffness[self._free][:, self._free] if len(held) else stiffness
+        self._factors = Factors(csr_array(matrix), inner[inner >= 0])
+        self._refuse_mechanisms()
+
+    def static(self, load: Floats) -> Floats:
+        """Return the static response to loads, shape (n,) or (n, loads).
+
+        Where the system is free the load is balanced by the inertia of the rigid acceleration that it causes, and the
+        response has no rigid part.
+        """
+        balanced = load - self._momentum @ (self.rigid.T @ load)
+        response = np.zeros_like(balanced)
+        response[self._free] = self._factors.solve(balanced[self._free])
+        return np.asarray(response - self.rigid @ (self._momentum.T @ response))
+
+    def modes(self, number: int, progress: Progress | None = None) -> Eigenmodes:
+        """Return the lowest modes, rigid motions left out.
+
+        Parameters
+        ----------
+        number : int
+            How many, >= 1.
+        progress : callable, optional
+            Called with a number from 0 to 1 that estimates how much is done.
+
+        Raises
+        ------
+        InputError
+            If the mesh has not so many.
+        ComputationError
+            If the iteration does not converge.
+        """
+        size = self.stiffness.shape[0]
+        most = size - self.rigid.shape[1] if size <= _DENSE else int(_MOST * size)
+        if not 1 <= number <= most:
+            raise InputError(
+                f"{number} modes are not to be had from {size} degrees of freedom; it must be from 1 to {most}"
+                + ("" if number < 1 else ", or the elements smaller")
+            )
+        return self._dense(number) if size <= _DENSE else self._lanczos(number, progress or (lambda part: None))
+
+    def count_below(self, angular_frequency: float) -> int:
+        """Return how many modes lie below an angular frequency [rad/s], rigid motions left out, without computing them."""
+        shifted = self.stiffness - angular_frequency**2 * self.mass
+        return int(Factors(csr_array(shifted), self.order).negative_pivots()) - int(self.rigid.shape[1])
+
+    def _refuse_mechanisms(self) -> None:
+        """Raise if a random load moves the system as only a mechanism is moved."""
+        random = np.random.default_rng(0).standard_normal(self.stiffness.shape[0])
+        load = self.mass @ random
+        response = self.static(load)
+        error = self.stiffness @ response - (load - self._momentum @ (self.rigid.T @ load))
+        if not np.linalg.norm(error) <= _SINGULAR * np.linalg.norm(load):
+            raise ComputationError(
+                "the stiffness matrix is singular: part of the body can move without resistance, as a hinge does; "
+                "look for elements that share only an edge or a node"
+            )
+
+    def _dense(self, number: int) -> Eigenmodes:
+        skip = self.rigid.shape[1]
+        values, shapes = eigh(self.stiffness.toarray(), self.mass.toarray(), subset_by_index=[skip, skip + number - 1])
+        return Eigenmodes(np.sqrt(np.maximum(values, 0.0)), shapes)
+
+    def _lanczos(self, number: int, progress: Progress) -> Eigenmodes:
+        steps, expected = 0, 2.2 * number + 60.0
+
+        def respond(load: Floats) -> Floats:
+            nonlocal steps
+            steps += 1
+            progress(min(steps / expected, 0.99))
+            return self.static(load)
+
+        values, shapes = self._largest(respond, number, 0.0)
+        while True:  # a Krylov space can be blind to the second of two equal modes: look for what was missed
+            momenta = self.mass @ shapes
+
+            def without(load: Floats, shapes: Floats = shapes, momenta: Floats = momenta) -> Floats:
+                response = respond(load)
+                return np.asarray(response - shapes @ (momenta.T @ response))
+
+            if self._largest(without, 1, _ROUGHLY)[0][0] > (1.0 - _EQUAL) * values[-1]:
+                progress(1.0)
+                return Eigenmodes(np.sqrt(values), shapes)
+            value, shape = self._largest(without, 1, 0.0)
+            order = np.argsort([*values, *value])[:number]
+            values, shapes = np.concatenate([values, value])[order], np.concatenate([shapes, shape], axis=1)[:, order]
+
+    def _largest(self, respond: Callable[[Floats], Floats], number: int, tolerance: float) -> tuple[Floats, Floats]:
+        """Return eigenvalues, ascending, and shapes of the modes that respond most."""
+        size = self.stiffness.shape[0]
+        start = respond(self.mass @ np.random.default_rng(1).standard_normal(size))
+        operator = LinearOperator((size, size), matvec=lambda load: respond(np.ravel(load)), dtype=float)
+        try:
+            values, shapes = eigsh(self.stiffness, number, self.mass, sigma=0.0, OPinv=operator, v0=start, tol=tolerance)
+        except ArpackNoConvergence:
+            raise ComputationError(f"the {number} lowest modes could not be found: the iteration does not converge") from None
+        order = np.argsort(values)
+        return values[order], shapes[:, order]

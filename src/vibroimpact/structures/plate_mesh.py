@@ -1,0 +1,89 @@
+"""Meshes of a plate: solid elements, or the plate element on its middle plane."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from vibroimpact.structures.element_kinds import PLATE_ORDER
+from vibroimpact.structures.lattice import merged, mesh_of_blocks
+from vibroimpact.structures.mesh import ElementBlock, Mesh
+from vibroimpact.structures.rectangle import Disc, rectangle_blocks, split_at, with_midpoints
+
+
+def solid_plate_mesh(
+    size: Sequence[float],
+    element_size: float,
+    layers: int = 1,
+    kind: str = "hex20",
+    discs: Sequence[Disc] = (),
+    lines: tuple[Sequence[float], Sequence[float]] = ((), ()),
+    splits: int = 0,
+) -> Mesh:
+    """Make a mesh of a plate of solid elements, its middle at the origin.
+
+    Parameters
+    ----------
+    size : sequence of three floats
+        Length (x), width (y) and thickness (z) [m].
+    element_size : float
+        Largest side of an element along x and y [m].
+    layers : int, default 1
+        Elements through the thickness.
+    kind : str, default "hex20"
+        Kind of element: "hex8", "hex20", "hex27", "tet4" or "tet10".
+    discs, lines
+        What must fall on edges of elements: see `rectangle_blocks`.
+    splits : int, default 0
+        How often the elements at the rims of discs, and the lowest layer, are split: the strain grows without bound at the
+        rim of a patch that is held still.
+
+    Examples
+    --------
+    >>> solid_plate_mesh((0.52, 0.42, 0.008), 0.004, layers=2).number_of_elements
+    27300
+    """
+    height = with_midpoints(split_at(np.linspace(-0.5 * size[2], 0.5 * size[2], layers + 1), splits), 2)
+    blocks = []
+    for flat in rectangle_blocks(size[:2], element_size, 2, discs, lines, splits):
+        block = np.empty((*flat.shape[:2], len(height), 3))
+        block[..., :2], block[..., 2] = flat[:, :, None], height
+        blocks.append(block)
+    return mesh_of_blocks(blocks, kind)
+
+
+def plate_mesh(
+    size: Sequence[float],
+    element_size: float,
+    discs: Sequence[Disc] = (),
+    lines: tuple[Sequence[float], Sequence[float]] = ((), ()),
+) -> Mesh:
+    """Make a mesh of the plate element, on the plane z = 0, its middle at the origin.
+
+    Parameters
+    ----------
+    size : sequence of floats
+        Length (x) and width (y) [m].
+    element_size : float
+        Largest side of an element [m].
+    discs, lines
+        What must fall on edges of elements: see `rectangle_blocks`.
+
+    Examples
+    --------
+    >>> plate_mesh((0.52, 0.42), 0.052).nodes.shape
+    (1517, 3)
+    """
+    steps = np.arange(PLATE_ORDER + 1)
+    points, elements, start = [], [], 0
+    for block in rectangle_blocks(size, element_size, PLATE_ORDER, discs, lines):
+        sides = (block[1, 0] - block[0, 0], block[0, 1] - block[0, 0])
+        flat = block if sides[0][0] * sides[1][1] > sides[0][1] * sides[1][0] else block.transpose(1, 0, 2)
+        number = start + np.arange(flat[..., 0].size).reshape(flat.shape[:2])
+        offsets = (flat.shape[1] * steps[None, :] + steps[:, None]).ravel()  # the first coordinate runs fastest
+        elements.append(number[:-1:PLATE_ORDER, :-1:PLATE_ORDER].reshape(-1, 1) + offsets)
+        points.append(np.concatenate([flat.reshape(-1, 2), np.zeros((flat[..., 0].size, 1))], axis=1))
+        start += flat[..., 0].size
+    nodes, connectivity = merged(np.concatenate(points), np.concatenate(elements))
+    return Mesh(nodes, (ElementBlock("quad25", connectivity),))

@@ -1,0 +1,244 @@
+"""A recipe: all that determines the modes of a body; and how it is followed."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Literal, Protocol
+
+import numpy as np
+
+from vibroimpact.errors import InputError
+from vibroimpact.materials import Material
+from vibroimpact.structures.mesh import Floats, Integers, Mesh
+from vibroimpact.structures.modal_model import ModalModel, modal_model
+from vibroimpact.structures.modes import Eigenmodes, Elastic, Progress
+from vibroimpact.structures.plate_mesh import plate_mesh, solid_plate_mesh
+from vibroimpact.structures.rectangle import Disc
+from vibroimpact.structures.reduction import attachment_modes, craig_bampton, projected
+from vibroimpact.structures.sphere_mesh import sphere_mesh
+from vibroimpact.structures.store import key_of, load_model, save_model
+from vibroimpact.structures.structure import Structure, plate_structure, solid_structure
+from vibroimpact.structures.supports.constraints import HeldStructure
+from vibroimpact.structures.supports.support import Support, held_by
+from vibroimpact.structures.surface import Side, Spot, place_of, surface_motion
+
+Place = tuple[Spot, Side]
+"""A spot, and the side of the body that it is on."""
+
+
+class Shape(Protocol):
+    """Anything that a body can be made of: a frozen dataclass."""
+
+    def mesh(self, supports: tuple[Support, ...]) -> Mesh:
+        """Make the mesh; it follows the supports where it is made here."""
+
+    def structure(self, mesh: Mesh, material: Material) -> Structure:
+        """Make the finite elements of the mesh."""
+
+
+@dataclass(frozen=True)
+class SphereOfSolids:
+    """A solid sphere, meshed here: see `sphere_mesh`."""
+
+    radius: float
+    elements_across: int = 8
+    kind: str = "hex27"
+    grading: float = 1.0
+
+    def mesh(self, supports: tuple[Support, ...] = ()) -> Mesh:
+        """Make the mesh."""
+        return sphere_mesh(self.radius, self.elements_across, self.kind, self.grading)
+
+    def structure(self, mesh: Mesh, material: Material) -> Structure:
+        """Make the finite elements."""
+        return solid_structure(mesh, material)
+
+
+@dataclass(frozen=True)
+class PlateOfSolids:
+    """A plate of solid elements, meshed here: see `solid_plate_mesh`."""
+
+    size: tuple[float, float, float]
+    element_size: float
+    layers: int = 1
+    kind: str = "hex20"
+    splits: int = 0
+
+    def mesh(self, supports: tuple[Support, ...] = ()) -> Mesh:
+        """Make the mesh."""
+        return solid_plate_mesh(self.size, self.element_size, self.layers, self.kind, *_to_follow(supports), self.splits)
+
+    def structure(self, mesh: Mesh, material: Material) -> Structure:
+        """Make the finite elements."""
+        return solid_structure(mesh, material)
+
+
+@dataclass(frozen=True)
+class PlateOfPlates:
+    """A plate of plate elements, meshed here: see `plate_mesh` and `assemble_plate`."""
+
+    size: tuple[float, float, float]
+    element_size: float
+    theory: Literal["thick", "thin"] = "thick"
+
+    def mesh(self, supports: tuple[Support, ...] = ()) -> Mesh:
+        """Make the mesh."""
+        return plate_mesh(self.size[:2], self.element_size, *_to_follow(supports))
+
+    def structure(self, mesh: Mesh, material: Material) -> Structure:
+        """Make the finite elements."""
+        return plate_structure(mesh, material, self.size[2], self.theory)
+
+
+@dataclass(frozen=True)
+class BroughtMesh:
+    """A mesh that was brought.
+
+    Parameters
+    ----------
+    digest : str
+        A digest of the file and of how it is read: what the modes depend on.
+    read : callable
+        Reads it [m].
+    """
+
+    digest: str
+    read: Callable[[], Mesh] = field(compare=False)
+
+    def mesh(self, supports: tuple[Support, ...] = ()) -> Mesh:
+        """Read the mesh."""
+        return self.read()
+
+    def structure(self, mesh: Mesh, material: Material) -> Structure:
+        """Make the finite elements."""
+        return solid_structure(mesh, material)
+
+
+@dataclass(frozen=True)
+class Reduction:
+    """Which modes are kept.
+
+    Parameters
+    ----------
+    modes : int, optional
+        How many; with Craig and Bampton's method, those with the interface fixed.
+    max_frequency : float, optional
+        All modes up to this frequency [Hz], instead of a number.
+    method : str, default "modal"
+        "modal" truncation, or "craig-bampton".
+    interface : tuple of places
+        Where Craig and Bampton's interface is: at the nearest nodes, in all directions.
+    attachment : tuple of places
+        Where a residual attachment mode for a vertical force is added.
+    """
+
+    modes: int | None = None
+    max_frequency: float | None = None
+    method: Literal["modal", "craig-bampton"] = "modal"
+    interface: tuple[Place, ...] = ()
+    attachment: tuple[Place, ...] = ()
+
+
+@dataclass(frozen=True)
+class Recipe:
+    """All that determines the modes of a body."""
+
+    shape: Shape
+    density: float
+    youngs_modulus: float
+    poissons_ratio: float
+    supports: tuple[Support, ...] = ()
+    reduction: Reduction = Reduction(modes=20)
+
+
+def modal_model_of(recipe: Recipe, progress: Progress | None = None, tell: Callable[[str], None] | None = None) -> ModalModel:
+    """Return the modal model of a recipe, from the store if it is there.
+
+    Parameters
+    ----------
+    recipe : Recipe
+        What to make.
+    progress : callable, optional
+        Called with a number from 0 to 1 while modes are computed.
+    tell : callable, optional
+        Called with a sentence if something is wrong with the store.
+
+    Raises
+    ------
+    InputError
+        If the mesh, a support or a number of the recipe is wrong.
+    ComputationError
+        If the modes can't be computed.
+    """
+    key, say = key_of(recipe), tell or (lambda text: None)
+    model, trouble = load_model(key)
+    if trouble:
+        say(trouble)
+    if model is None:
+        model = computed_model(recipe, progress)
+        trouble = save_model(key, model)
+        if trouble:
+            say(trouble)
+    return model
+
+
+def computed_model(recipe: Recipe, progress: Progress | None = None) -> ModalModel:
+    """Compute the modal model of a recipe; takes and raises what `modal_model_of` does."""
+    begun = time.process_time()
+    material = Material(recipe.density, recipe.youngs_modulus, recipe.poissons_ratio)
+    structure = recipe.shape.structure(recipe.shape.mesh(recipe.supports), material)
+    held = held_by(structure, recipe.supports)
+    modes = _kept(held, recipe.reduction, progress)
+    facts = {
+        "nodes": f"{len(structure.mesh.nodes)}",
+        "elements": ", ".join(f"{len(block.connectivity)} {block.kind}" for block in structure.mesh.blocks),
+        "degrees of freedom": f"{held.stiffness.shape[0]}",
+        "left out of the file": ", ".join(f"{name} ({count})" for name, count in structure.mesh.skipped.items()),
+        "processor time": f"{time.process_time() - begun:.2f} s",
+    }
+    return modal_model(structure, modes, held.expansion, held.rigid.shape[1], {name: text for name, text in facts.items() if text})
+
+
+def _kept(held: HeldStructure, reduction: Reduction, progress: Progress | None) -> Eigenmodes:
+    elastic = Elastic(held.stiffness, held.mass, held.rigid, held.order)
+    number = reduction.modes
+    if number is None:
+        number = elastic.count_below(2.0 * np.pi * (reduction.max_frequency or 0.0))
+        if number < 1:
+            raise InputError(f"there is no mode below {reduction.max_frequency:g} Hz", "max_frequency")
+    if reduction.method == "craig-bampton":
+        interface = np.concatenate([_nearest(held, place) for place in reduction.interface])
+        basis = craig_bampton(held.stiffness, held.mass, interface, number, held.order, elastic.rigid, progress)
+        return projected(held.stiffness, held.mass, basis, elastic.rigid)
+    modes = elastic.modes(number, progress)
+    if not reduction.attachment:
+        return modes
+    loads = np.stack([_vertical(held, place) for place in reduction.attachment], axis=1)
+    basis = np.concatenate([modes.shapes, attachment_modes(elastic, modes, loads)], axis=1)
+    return projected(held.stiffness, held.mass, basis, elastic.rigid)
+
+
+def _vertical(held: HeldStructure, place: Place) -> Floats:
+    """Return the load of a unit vertical force at a place, on the free degrees of freedom."""
+    structure = held.structure
+    at = place_of(structure.mesh, *place)
+    motion, _ = surface_motion(structure.mesh, np.array([at]), place[1], structure.thickness)
+    return np.asarray((motion @ held.expansion)[[2]].toarray()[0])
+
+
+def _nearest(held: HeldStructure, place: Place) -> Integers:
+    """Return the free degrees of freedom of the node nearest to a place."""
+    structure = held.structure
+    _, position = surface_motion(structure.mesh, np.array([place_of(structure.mesh, *place)]), place[1], structure.thickness)
+    height = 0.5 * structure.thickness if place[1] == "upper" else -0.5 * structure.thickness
+    node = np.linalg.norm(structure.mesh.nodes - position + [0.0, 0.0, height], axis=1).argmin()
+    rows = held.expansion[structure.mesh.dofs_per_node * node + np.arange(structure.mesh.dofs_per_node)]
+    return np.unique(rows.indices)
+
+
+def _to_follow(supports: tuple[Support, ...]) -> tuple[list[Disc], tuple[list[float], list[float]]]:
+    """Return the discs and the lines that a mesh should follow."""
+    discs = [disc for support in supports for disc in support.discs]
+    return discs, ([x for support in supports for x in support.lines[0]], [y for support in supports for y in support.lines[1]])

@@ -1,0 +1,180 @@
+"""A rectangle cut into blocks of lattices, so that lines given and the rims of discs fall on the edges of elements."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from vibroimpact.errors import InputError
+from vibroimpact.structures.mesh import Floats
+
+_CORE = 0.5  # half the side of the square inside a disc, in radii
+_MARGIN = 1.5  # half the side of the square around a disc, in radii
+_CLOSEST = 1.02  # of the radius: how near to the centre of a disc an edge of the plate may be
+
+
+@dataclass(frozen=True)
+class Disc:
+    """A disc on the rectangle: its centre and radius [m]."""
+
+    x: float
+    y: float
+    radius: float
+
+
+def rectangle_blocks(
+    size: Sequence[float],
+    element_size: float,
+    order: int,
+    discs: Sequence[Disc] = (),
+    lines: tuple[Sequence[float], Sequence[float]] = ((), ()),
+    splits: int = 0,
+) -> list[Floats]:
+    """Cut a rectangle, centred at the origin, into lattices.
+
+    Parameters
+    ----------
+    size : sequence of two floats
+        Length along x and width along y [m].
+    element_size : float
+        Largest side of an element [m].
+    order : int
+        Steps of the lattice to an element.
+    discs : sequence of Disc
+        Their rims become edges of elements: a square, four sides around it, and four more out to a box.
+    lines : two sequences of floats
+        x and y [m] that must fall on edges of elements.
+    splits : int, default 0
+        How often the elements on both sides of each rim are split, see `split_at`.
+
+    Returns
+    -------
+    list of arrays, shape (order a + 1, order b + 1, 2)
+        The blocks; neighbours have the same points where they meet.
+
+    Raises
+    ------
+    InputError
+        If discs overlap, or reach the edge of the rectangle.
+
+    Examples
+    --------
+    >>> len(rectangle_blocks((1.0, 1.0), 0.5, 2))
+    1
+    >>> len(rectangle_blocks((1.0, 1.0), 0.1, 2, [Disc(0.0, 0.0, 0.1)]))
+    17
+    """
+    boxes = [_box(disc, size, discs) for disc in discs]
+    breaks = [
+        _distinct([-0.5 * size[axis], 0.5 * size[axis], *lines[axis], *(box[axis][side] for box in boxes for side in range(2))], size[axis])
+        for axis in range(2)
+    ]
+    axes = [_points(found, element_size, order) for found in breaks]
+    taken, blocks = [], []
+    for disc, box in zip(discs, boxes, strict=True):
+        (x0, x1), (y0, y1) = (tuple(np.abs(axis - end).argmin() for end in ends) for axis, ends in zip(axes, box, strict=True))
+        taken.append([(int(x0), int(x1)), (int(y0), int(y1))])
+        blocks += _around(disc, axes[0][x0 : x1 + 1], axes[1][y0 : y1 + 1], element_size, order, splits)
+    return _rest(axes, taken, order) + blocks
+
+
+def _box(disc: Disc, size: Sequence[float], discs: Sequence[Disc]) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Return the box around a disc, as x and y from and to: clear of other discs, and no sliver along the edge."""
+    reach = _MARGIN * disc.radius
+    for other in discs:
+        apart = max(abs(other.x - disc.x), abs(other.y - disc.y))
+        if other is not disc:
+            reach = min(reach, apart * disc.radius / (disc.radius + other.radius))
+    if reach < _CLOSEST * disc.radius:
+        raise InputError(f"the patch at ({disc.x:g}, {disc.y:g}) m, radius {disc.radius:g} m, touches another one; patches must lie apart")
+    sides = []
+    for at, length, axis in ((disc.x, size[0], "length"), (disc.y, size[1], "width")):
+        ends = []
+        for sign in (-1.0, 1.0):
+            edge = sign * 0.5 * length
+            if sign * (edge - at) < _CLOSEST * disc.radius:
+                raise InputError(
+                    f"the patch at ({disc.x:g}, {disc.y:g}) m, radius {disc.radius:g} m, reaches the edge of the plate, whose {axis} "
+                    f"is {length:g} m; it must lie inside"
+                )
+            ends.append(edge if sign * (edge - at) < reach + 0.5 * disc.radius else at + sign * reach)
+        sides.append((ends[0], ends[1]))
+    return sides[0], sides[1]
+
+
+def _distinct(values: Sequence[float], length: float) -> Floats:
+    found = np.sort(np.asarray(values, dtype=float))
+    found = found[(found >= -0.5 * length) & (found <= 0.5 * length)]
+    apart = np.concatenate([[True], np.diff(found) > 1e-6 * length])
+    return np.asarray(found[apart])
+
+
+def _points(breaks: Floats, element_size: float, order: int) -> Floats:
+    """Return the points of the lattice along one axis: each interval in equal elements."""
+    parts = [breaks[:1]]
+    for start, end in pairwise(breaks.tolist()):
+        number = order * max(1, int(np.ceil((end - start) / element_size - 1e-9)))
+        parts.append(start + (end - start) * np.arange(1, number + 1) / number)
+    return np.concatenate(parts)
+
+
+def split_at(corners: Floats, splits: int) -> Floats:
+    """Split the first element of a row several times, each time at a quarter of it, where a strain grows without bound.
+
+    Examples
+    --------
+    >>> split_at(np.array([0.0, 1.0, 2.0]), 2).tolist()
+    [0.0, 0.0625, 0.25, 1.0, 2.0]
+    """
+    first = corners[0] + (corners[1] - corners[0]) * 0.25 ** np.arange(splits, 0, -1)
+    return np.concatenate([corners[:1], first, corners[1:]])
+
+
+def with_midpoints(corners: Floats, order: int) -> Floats:
+    """Return the points of a lattice along a row of elements.
+
+    Examples
+    --------
+    >>> with_midpoints(np.array([0.0, 1.0, 3.0]), 2).tolist()
+    [0.0, 0.5, 1.0, 2.0, 3.0]
+    """
+    inside = corners[:-1, None] + np.diff(corners)[:, None] * np.arange(order) / order
+    return np.append(inside.ravel(), corners[-1])
+
+
+def _around(disc: Disc, xs: Floats, ys: Floats, element_size: float, order: int, splits: int) -> list[Floats]:
+    """Return the nine blocks of a box with a disc in it: the square, four to the rim, and four to the box."""
+    centre = np.array([disc.x, disc.y])
+    along = [2.0 * (axis - axis[0]) / (axis[-1] - axis[0]) - 1.0 for axis in (xs, ys)]  # -1 to 1 along each side
+    half = _CORE * disc.radius
+    rings: list[tuple[Floats, Floats, Floats]] = []
+    for axis in range(2):  # the axis along which a side runs
+        run = along[axis]
+        for sign, end in ((-1.0, 0), (1.0, -1)):
+            inner, rim, outer = np.empty((3, len(run), 2))
+            inner[:, axis], inner[:, 1 - axis] = half * run, sign * half
+            rim[:, axis], rim[:, 1 - axis] = disc.radius * np.sin(0.25 * np.pi * run), sign * disc.radius * np.cos(0.25 * np.pi * run)
+            outer[:, axis], outer[:, 1 - axis] = (xs, ys)[axis] - centre[axis], (xs, ys)[1 - axis][end] - centre[1 - axis]
+            rings.append((inner, rim, outer))
+    blocks = [centre + half * np.stack(np.meshgrid(*along, indexing="ij"), axis=-1)]
+    for start, end in ((0, 1), (1, 2)):
+        longest = max(np.linalg.norm(ring[end] - ring[start], axis=1).max() for ring in rings)
+        corners = _points(np.array([0.0, longest]), element_size, 1) / longest  # all four sides alike
+        graded = 1.0 - split_at(1.0 - corners[::-1], splits)[::-1] if end == 1 else split_at(corners, splits)
+        step = with_midpoints(graded, order)[None, :, None]
+        blocks += [centre + (1.0 - step) * ring[start][:, None] + step * ring[end][:, None] for ring in rings]
+    return blocks
+
+
+def _rest(axes: list[Floats], taken: list[list[tuple[int, int]]], order: int) -> list[Floats]:
+    """Return what boxes leave of the rectangle, in blocks between the lines of the boxes' edges."""
+    cuts = [sorted({0, len(axes[axis]) - 1, *(end for box in taken for end in box[axis])}) for axis in range(2)]
+    blocks = []
+    for x0, x1 in pairwise(cuts[0]):
+        for y0, y1 in pairwise(cuts[1]):
+            if not any(box[0][0] <= x0 < box[0][1] and box[1][0] <= y0 < box[1][1] for box in taken):
+                blocks.append(np.stack(np.meshgrid(axes[0][x0 : x1 + 1], axes[1][y0 : y1 + 1], indexing="ij"), axis=-1))
+    return blocks

@@ -1,0 +1,144 @@
+"""Reduction to few degrees of freedom: each way builds a basis, and one projection makes modes of it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from scipy.linalg import eigh
+from scipy.sparse import csr_array
+
+from vibroimpact.errors import InputError
+from vibroimpact.structures.mesh import Floats, Integers
+from vibroimpact.structures.modes import Eigenmodes, Elastic, Progress
+
+_DEPENDENT = 1e-10  # of the largest: columns of a basis that add less than this to the others are left out
+
+
+def craig_bampton(
+    stiffness: csr_array,
+    mass: csr_array,
+    interface: Sequence[int] | Integers,
+    number: int,
+    order: Integers | None = None,
+    rigid: Floats | None = None,
+    progress: Progress | None = None,
+) -> Floats:
+    r"""Return Craig and Bampton's basis: constraint modes, and modes with the interface fixed.
+
+    Parameters
+    ----------
+    stiffness, mass : sparse arrays, shape (n, n)
+        Of the free degrees of freedom.
+    interface : sequence of int
+        The degrees of freedom that stay as they are.
+    number : int
+        How many fixed-interface modes, >= 0.
+    order : int array, shape (n,), optional
+        An elimination order.
+    rigid : array, shape (n, r), optional
+        Rigid motions; those that the interface does not stop are added to the basis.
+    progress : callable, optional
+        As `Elastic.modes` takes it.
+
+    Returns
+    -------
+    array, shape (n, interface + number)
+        :math:`[\Psi, \Phi]` with :math:`\Psi = [I; -K_{ii}^{-1} K_{ib}]`, one static shape for a unit displacement of each
+        interface degree of freedom, and :math:`\Phi` the lowest eigenvectors of the interior.
+
+    Raises
+    ------
+    InputError
+        If the interface is empty, or the interior has not so many modes.
+
+    Notes
+    -----
+    R. R. Craig and M. C. C. Bampton, AIAA J. 6:1313, 1968. The static response to loads on the interface is exact.
+
+    Examples
+    --------
+    >>> chain = csr_array(np.diag([2.0, 2.0, 1.0]) - np.eye(3, k=1) - np.eye(3, k=-1))
+    >>> craig_bampton(chain, csr_array(np.eye(3)), [2], 0).ravel().round(6).tolist()
+    [0.333333, 0.666667, 1.0]
+    """
+    size = stiffness.shape[0]
+    boundary = np.unique(np.asarray(interface, dtype=np.int64))
+    if not len(boundary):
+        raise InputError("Craig and Bampton's reduction needs at least one interface degree of freedom")
+    inside = np.setdiff1d(np.arange(size), boundary)
+    place = np.full(size, -1)
+    place[inside] = np.arange(len(inside))
+    inner = place[np.arange(size) if order is None else order]
+    left = _left(rigid, boundary)
+    interior = Elastic(stiffness[inside][:, inside], mass[inside][:, inside], None if left is None else left[inside], inner[inner >= 0])
+    basis = np.zeros((size, len(boundary) + number))
+    basis[boundary, np.arange(len(boundary))] = 1.0
+    basis[inside, : len(boundary)] = -interior.static(stiffness[inside][:, boundary].toarray())
+    if number:
+        basis[inside, len(boundary) :] = interior.modes(number, progress).shapes
+    return basis
+
+
+def attachment_modes(elastic: Elastic, modes: Eigenmodes, loads: Floats) -> Floats:
+    """Return what truncated modes lack of the static response to loads (residual attachment modes).
+
+    Parameters
+    ----------
+    elastic : Elastic
+        The system.
+    modes : Eigenmodes
+        Its lowest modes.
+    loads : array, shape (n, loads)
+        Unit loads.
+
+    Notes
+    -----
+    R. H. MacNeal, Comput. Struct. 1:581, 1971; of a free system the response is that with inertia relief.
+    """
+    kept = modes.shapes @ ((modes.shapes.T @ loads) / modes.angular_frequencies[:, None] ** 2)
+    return np.asarray(elastic.static(loads) - kept)
+
+
+def projected(stiffness: csr_array, mass: csr_array, basis: Floats, rigid: Floats | None = None) -> Eigenmodes:
+    """Return the modes of a system that can move only as a basis lets it.
+
+    Parameters
+    ----------
+    stiffness, mass : sparse arrays, shape (n, n)
+        Of the system.
+    basis : array, shape (n, m)
+        Columns that may depend on one another.
+    rigid : array, shape (n, r), optional
+        Rigid motions of unit modal mass; the modes are made orthogonal to them.
+
+    Returns
+    -------
+    Eigenmodes
+        As many as the basis has independent columns.
+
+    Examples
+    --------
+    >>> chain = csr_array(np.diag([2.0, 2.0, 1.0]) - np.eye(3, k=1) - np.eye(3, k=-1))
+    >>> modes = projected(chain, csr_array(np.eye(3)), np.array([[1.0], [2.0], [3.0]]))
+    >>> round(float(modes.angular_frequencies[0] ** 2), 6)  # Rayleigh's quotient
+    0.214286
+    """
+    if rigid is not None and rigid.shape[1]:
+        basis = basis - rigid @ (rigid.T @ (mass @ basis))
+    basis = basis / np.sqrt(np.einsum("ij,ij->j", basis, mass @ basis))
+    gram, turned = eigh(basis.T @ (mass @ basis))
+    keep = gram > _DEPENDENT * gram[-1]
+    basis = basis @ (turned[:, keep] / np.sqrt(gram[keep]))
+    values, shapes = eigh(basis.T @ (stiffness @ basis), basis.T @ (mass @ basis))
+    return Eigenmodes(np.sqrt(np.maximum(values, 0.0)), basis @ shapes)
+
+
+def _left(rigid: Floats | None, boundary: Integers) -> Floats | None:
+    """Return the rigid motions that leave the interface where it is."""
+    if rigid is None or not rigid.shape[1]:
+        return None
+    scaled = rigid / np.abs(rigid).max(axis=0)
+    _, values, turned = np.linalg.svd(scaled[boundary], full_matrices=True)
+    rank = int((values > 1e-9 * max(values.max(initial=0.0), 1e-300)).sum())
+    return np.asarray(scaled @ turned[rank:].T)

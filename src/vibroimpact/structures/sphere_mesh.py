@@ -1,0 +1,80 @@
+"""A mesh of a solid sphere: a cube in its middle, and six blocks from the faces of the cube to the surface."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from vibroimpact.errors import InputError
+from vibroimpact.structures.lattice import mesh_of_blocks
+from vibroimpact.structures.mesh import Floats, Mesh
+
+_CORE = 0.45  # half the side of the cube in radii
+_BULGE = 0.5  # between a cube (0) and a ball (1)
+
+
+def sphere_mesh(radius: float, elements_across: int = 8, kind: str = "hex20", grading: float = 1.0) -> Mesh:
+    """Make a mesh of a solid sphere, curved and of second order, centred at the origin.
+
+    Parameters
+    ----------
+    radius : float
+        Radius R [m], > 0.
+    elements_across : int, default 8
+        Bricks from pole to pole, even and >= 4: half of them in the cube, the others between it and the surface.
+    kind : str, default "hex20"
+        Kind of element: "hex8", "hex20", "hex27", "tet4" or "tet10".
+    grading : float, default 1
+        How many times smaller the elements at the lower pole, where the plate is met, are made; >= 1. They grow as much
+        larger at the upper pole.
+
+    Raises
+    ------
+    InputError
+        If a number is out of its range.
+
+    Notes
+    -----
+    The grading is a conformal map of the ball onto itself (L. V. Ahlfors, Moebius Transformations in Several Dimensions,
+    1981): elements keep their shape, only their size changes.
+
+    Examples
+    --------
+    >>> sphere_mesh(0.025, 4).number_of_elements
+    32
+    """
+    if elements_across < 4 or elements_across % 2:
+        raise InputError(f"{elements_across} elements across a sphere is not allowed; it must be an even number, at least 4")
+    if not grading >= 1.0:
+        raise InputError(f"a grading of {grading:g} is not allowed; it must be at least 1")
+    layers = elements_across // 4
+    side = elements_across - 2 * layers
+    run = np.linspace(-1.0, 1.0, 2 * side + 1)
+    depth = np.linspace(0.0, 1.0, 2 * layers + 1)
+    blocks = [_core(np.stack(np.meshgrid(run, run, run, indexing="ij"), axis=-1))]
+    first, second = np.meshgrid(run, run, indexing="ij")
+    for axis in range(3):
+        others = [other for other in range(3) if other != axis]
+        for sign in (-1.0, 1.0):
+            face = np.full((*first.shape, 3), sign)
+            face[..., others[0]], face[..., others[1]] = first, second
+            outside = np.tan(0.25 * np.pi * face)
+            outside /= np.linalg.norm(outside, axis=-1, keepdims=True)
+            step = depth[:, None]
+            blocks.append((1.0 - step) * _core(face)[:, :, None] + step * outside[:, :, None])
+    return mesh_of_blocks([radius * _towards_lower_pole(block, grading) for block in blocks], kind)
+
+
+def _core(at: Floats) -> Floats:
+    """Map the cube from -1 to 1 onto the core, its sides bulged."""
+    square = at**2
+    following, last = np.roll(square, -1, axis=-1), np.roll(square, -2, axis=-1)
+    ball = at * np.sqrt(1.0 - 0.5 * following - 0.5 * last + following * last / 3.0)
+    return np.asarray(_CORE * ((1.0 - _BULGE) * at + _BULGE * np.sqrt(2.0) * ball))
+
+
+def _towards_lower_pole(at: Floats, grading: float) -> Floats:
+    shift = np.array([0.0, 0.0, (grading - 1.0) / (grading + 1.0)])
+    squared = shift @ shift
+    apart = at - shift
+    top = (1.0 - squared) * apart - (apart**2).sum(axis=-1, keepdims=True) * shift
+    return np.asarray(top / (1.0 - 2.0 * (at @ shift) + (at**2).sum(axis=-1) * squared)[..., None])

@@ -1,0 +1,183 @@
+"""A store of modal models on disk, under the key of all that determines them, so that nothing is computed twice."""
+
+from __future__ import annotations
+
+import dataclasses
+import hashlib
+import json
+import os
+import tempfile
+import zipfile
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from vibroimpact._version import __version__
+from vibroimpact.structures.geometry import MassProperties
+from vibroimpact.structures.mesh import ElementBlock, Mesh
+from vibroimpact.structures.modal_model import ModalModel
+
+FORMAT = 1
+"""Counts up when what is stored, or how it is computed, changes."""
+
+PLACE = "VIBROIMPACT_STORE"
+"""The environment variable that moves the store."""
+
+_LARGEST = 4_000_000_000  # bytes; the entries that were not used for longest go first
+_SUFFIX = ".modes"
+
+
+def store_folder() -> Path:
+    """Return where the store is: in the user's cache, or where the environment variable VIBROIMPACT_STORE says."""
+    from platformdirs import user_cache_path
+
+    given = os.environ.get(PLACE)
+    return Path(given) if given else user_cache_path("vibroimpact") / "modes"
+
+
+def key_of(recipe: Any) -> str:
+    """Return the key of a recipe: a digest of its content and of the version of the package.
+
+    Examples
+    --------
+    >>> from vibroimpact.structures.supports.point import Point
+    >>> key_of(Point(0.0, 0.1)) == key_of(Point(0.0, 0.1)), key_of(Point(0.0, 0.1)) == key_of(Point(0.1, 0.0))
+    (True, False)
+    """
+    text = json.dumps([FORMAT, __version__, _content(recipe)], sort_keys=True)
+    return hashlib.sha256(text.encode()).hexdigest()[:32]
+
+
+def _content(value: Any) -> Any:
+    """Return what determines a value, as JSON holds it: of a dataclass its name and its fields that are compared."""
+    if dataclasses.is_dataclass(value):
+        return [
+            type(value).__name__,
+            {item.name: _content(getattr(value, item.name)) for item in dataclasses.fields(value) if item.compare},
+        ]
+    if isinstance(value, (list, tuple)):
+        return [_content(item) for item in value]
+    if isinstance(value, Mapping):
+        return {str(key): _content(item) for key, item in value.items()}
+    if isinstance(value, np.ndarray):
+        return [str(value.dtype), value.shape, hashlib.sha256(np.ascontiguousarray(value).tobytes()).hexdigest()]
+    return value.hex() if isinstance(value, float) else value
+
+
+def has_model(key: str) -> bool:
+    """Is there an entry under a key?"""
+    return (store_folder() / (key + _SUFFIX)).is_file()
+
+
+def load_model(key: str) -> tuple[ModalModel | None, str]:
+    """Return the model under a key, or None; and what was wrong with its entry, or "".
+
+    Every part of an entry carries a check sum, so that a damaged one is known and taken as absent.
+    """
+    path = store_folder() / (key + _SUFFIX)
+    try:
+        with np.load(path, allow_pickle=False) as entry:
+            model = _model(entry)
+        os.utime(path)  # it was used just now
+    except FileNotFoundError:
+        return None, ""
+    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile) as error:
+        return None, f"the stored modes in {path} are damaged ({error}); they are computed again"
+    return model, ""
+
+
+def save_model(key: str, model: ModalModel) -> str:
+    """Keep a model under a key; return what prevented it, or "".
+
+    The entry appears whole or not at all, so that several processes may save and load at once.
+    """
+    folder = store_folder()
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        handle, name = tempfile.mkstemp(prefix=f".{key}.", dir=folder)
+        try:
+            with os.fdopen(handle, "wb") as file:
+                np.savez(file, **_parts(model))
+            os.replace(name, folder / (key + _SUFFIX))
+        except BaseException:
+            Path(name).unlink(missing_ok=True)
+            raise
+        _make_room(folder)
+    except OSError as error:
+        return f"the modes can't be kept in {folder} ({error.strerror}); they will be computed again next time"
+    return ""
+
+
+def entries() -> list[Path]:
+    """Return the files of the store, the one that was used last at the end."""
+    found = [(path.stat().st_mtime, path) for path in store_folder().glob("*" + _SUFFIX)]
+    return [path for _, path in sorted(found)]
+
+
+def store_size() -> int:
+    """Return how many bytes the store holds."""
+    return sum(path.stat().st_size for path in entries())
+
+
+def clear_store() -> int:
+    """Empty the store; return how many entries it had."""
+    found = entries()
+    for path in found:
+        path.unlink(missing_ok=True)
+    return len(found)
+
+
+def _make_room(folder: Path) -> None:
+    found = entries()
+    total = sum(path.stat().st_size for path in found)
+    for path in found[:-1]:
+        if total <= _LARGEST:
+            break
+        total -= path.stat().st_size
+        path.unlink(missing_ok=True)
+
+
+def _parts(model: ModalModel) -> dict[str, Any]:
+    parts: dict[str, Any] = {
+        "nodes": model.mesh.nodes,
+        "angular_frequencies": model.angular_frequencies,
+        "shapes": model.shapes,
+        "participation": model.participation,
+        "centre": model.properties.centre,
+        "inertia": model.properties.inertia,
+        "numbers": np.array([model.properties.mass, model.thickness, model.rigid_motions]),
+        "facts": np.array(json.dumps(dict(model.facts))),
+    }
+    for index, block in enumerate(model.mesh.blocks):
+        parts[f"block:{index}:{block.kind}"] = block.connectivity
+    for name, nodes in model.mesh.node_sets.items():
+        parts[f"nodes:{name.encode().hex()}"] = nodes
+    for name, elements in model.mesh.element_sets.items():
+        parts[f"elements:{name.encode().hex()}"] = elements
+    return parts
+
+
+def _model(entry: Mapping[str, Any]) -> ModalModel:
+    def named(prefix: str) -> dict[str, Any]:
+        return {bytes.fromhex(key[len(prefix) :]).decode(): entry[key] for key in entry if key.startswith(prefix)}
+
+    blocks = sorted((key.split(":") for key in entry if key.startswith("block:")), key=lambda parts: int(parts[1]))
+    mesh = Mesh(
+        entry["nodes"],
+        tuple(ElementBlock(kind, entry[f"block:{index}:{kind}"]) for _, index, kind in blocks),
+        named("nodes:"),
+        named("elements:"),
+    )
+    mass, thickness, rigid_motions = entry["numbers"].tolist()
+    return ModalModel(
+        mesh,
+        MassProperties(mass, entry["centre"], entry["inertia"]),
+        entry["angular_frequencies"],
+        entry["shapes"],
+        entry["participation"],
+        int(rigid_motions),
+        thickness,
+        json.loads(str(entry["facts"])),
+    )

@@ -1,0 +1,99 @@
+"""A structure: a mesh with its stiffness and mass, of solid or of plate elements, not yet held by anything."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from scipy.sparse import csr_array
+
+from vibroimpact.materials import Material
+from vibroimpact.structures.assembly import node_adjacency
+from vibroimpact.structures.elasticity import assemble_solid
+from vibroimpact.structures.factor import check_memory, dissection, factor_entries
+from vibroimpact.structures.geometry import MassProperties, check_mesh, mass_properties
+from vibroimpact.structures.mesh import Floats, Integers, Mesh
+from vibroimpact.structures.plate_element import assemble_plate
+
+
+@dataclass(frozen=True)
+class Structure:
+    """A body as finite elements.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        The elements.
+    stiffness, mass : sparse arrays, shape (dofs, dofs)
+        Degrees of freedom run through the nodes: three displacements each, and of a plate two slopes after them.
+    properties : MassProperties
+        Mass, centre of mass and inertia.
+    thickness : float, default 0
+        Thickness of plate elements [m].
+    """
+
+    mesh: Mesh
+    stiffness: csr_array
+    mass: csr_array
+    properties: MassProperties
+    thickness: float = 0.0
+
+    @cached_property
+    def order(self) -> Integers:
+        """An elimination order of the degrees of freedom that keeps factors sparse.
+
+        Raises
+        ------
+        InputError
+            If the factors would not fit into the memory that is free.
+        """
+        adjacency = node_adjacency(self.mesh)
+        parts = dissection(self.mesh.nodes, adjacency)
+        check_memory(self.stiffness.shape[0], self.mesh.dofs_per_node**2 * factor_entries(parts, adjacency))
+        return (self.mesh.dofs_per_node * np.concatenate(parts)[:, None] + np.arange(self.mesh.dofs_per_node)).ravel()
+
+    def rigid_motions(self) -> Floats:
+        """Return the six rigid motions, shape (dofs, 6): translations [m], then rotations [rad] about the centre of mass.
+
+        Examples
+        --------
+        >>> from vibroimpact.structures.lattice import box_mesh
+        >>> steel = Material(density=7850.0, youngs_modulus=210e9, poissons_ratio=0.3)
+        >>> structure = solid_structure(box_mesh((1.0, 1.0, 1.0), (2, 1, 1)), steel)
+        >>> bool(np.abs(structure.stiffness @ structure.rigid_motions()).max() < 1e-3)
+        True
+        """
+        x, y, z = (self.mesh.nodes - self.properties.centre).T
+        number = len(self.mesh.nodes)
+        motions = np.zeros((number, self.mesh.dofs_per_node, 6))
+        motions[:, :3, :3] = np.eye(3)
+        motions[:, :3, 3:] = rotation_columns(x, y, z)
+        if self.mesh.is_flat:
+            motions[:, 3, 4] = 1.0  # a rotation about y moves a point at height z by z along x
+            motions[:, 4, 3] = -1.0
+        return motions.reshape(-1, 6)
+
+
+def rotation_columns(x: Floats, y: Floats, z: Floats) -> Floats:
+    """Return the displacements (points, 3, 3) of points by unit rotations about x, y and z."""
+    zero = np.zeros_like(x)
+    return np.stack([np.stack([zero, z, -y], -1), np.stack([-z, zero, x], -1), np.stack([y, -x, zero], -1)], axis=1)
+
+
+def solid_structure(mesh: Mesh, material: Material) -> Structure:
+    """Make a structure of solid elements.
+
+    Raises
+    ------
+    InputError
+        If elements are inverted or the mesh is in loose parts.
+    """
+    check_mesh(mesh)
+    return Structure(mesh, *assemble_solid(mesh, material), mass_properties(mesh, material.density))
+
+
+def plate_structure(mesh: Mesh, material: Material, thickness: float, theory: str = "thick") -> Structure:
+    """Make a structure of plate elements; `theory` is "thick" or "thin"."""
+    properties = mass_properties(mesh, material.density, thickness)
+    return Structure(mesh, *assemble_plate(mesh, material, thickness, theory), properties, thickness)

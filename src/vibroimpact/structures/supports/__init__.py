@@ -1,0 +1,1 @@
+"""Supports: how a plate is held, one kind a file."""

@@ -1,0 +1,167 @@
+"""How supports act on a structure: degrees of freedom held or tied, stiffness and bodies added; then what is left free."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.sparse import block_diag, coo_array, csr_array
+
+from vibroimpact.errors import InputError
+from vibroimpact.structures.mesh import Floats, Integers
+from vibroimpact.structures.structure import Structure, rotation_columns
+
+_STILL = 1e-12  # the part of a rigid motion's energy or displacement that rounding may leave
+
+
+@dataclass(frozen=True)
+class HeldStructure:
+    """A structure as its supports hold it.
+
+    Parameters
+    ----------
+    structure : Structure
+        The structure.
+    stiffness, mass : sparse arrays, shape (free, free)
+        Of the degrees of freedom that are left free.
+    expansion : sparse array, shape (dofs, free)
+        From the free degrees of freedom to those of the structure.
+    order : int array, shape (free,)
+        An elimination order.
+    rigid : array, shape (free, r)
+        The rigid motions that the supports leave, r from none to six.
+    """
+
+    structure: Structure
+    stiffness: csr_array
+    mass: csr_array
+    expansion: csr_array
+    order: Integers
+    rigid: Floats
+
+
+class Constraints:
+    """What the supports of a structure do to it, gathered one after the other.
+
+    Parameters
+    ----------
+    structure : Structure
+        The structure to be held.
+    """
+
+    def __init__(self, structure: Structure) -> None:
+        self.structure = structure
+        self._ties: dict[int, dict[int, float]] = {}  # a degree of freedom as a sum of others; of none: it is held
+        self._added: list[tuple[Integers, Floats]] = []  # degrees of freedom and their stiffness
+        self._bodies: list[tuple[Floats, Floats, Floats]] = []  # stiffness, mass and rigid motions of each
+        self._size = structure.stiffness.shape[0]
+
+    def hold(self, dofs: Integers) -> None:
+        """Hold degrees of freedom still."""
+        for dof in dofs.ravel().tolist():
+            self._ties[dof] = {}
+
+    def attach(self, nodes: Integers, axes: tuple[int, ...] = (0, 1, 2), body: tuple[Integers, Floats] | None = None) -> None:
+        """Hold the lower face at nodes along some axes, or let it move with a rigid body.
+
+        Parameters
+        ----------
+        nodes : int array
+            Nodes of the lower face; of plate elements, those above it.
+        axes : tuple of int
+            0, 1 and 2 for x, y and z.
+        body : tuple, optional
+            Six degrees of freedom of a rigid body, and the point [m], shape (3,), that its first three move.
+
+        Raises
+        ------
+        InputError
+            If a node is attached to two bodies.
+        """
+        mesh, height = self.structure.mesh, -0.5 * self.structure.thickness
+        per_node = mesh.dofs_per_node
+        for node in nodes.tolist():
+            for axis in axes:
+                dof = per_node * node + axis
+                tie = {per_node * node + 3 + axis: -height} if mesh.is_flat and axis < 2 else {}
+                if body is not None:
+                    tie |= self._row(node, axis, *body)
+                if self._ties.get(dof, tie) != tie and (body is not None or self._ties[dof]):
+                    x, y, _ = mesh.nodes[node]
+                    raise InputError(f"two supports hold the same point, ({x:g}, {y:g}) m; supports must lie apart")
+                self._ties[dof] = tie
+
+    def _row(self, node: int, axis: int, dofs: Integers, point: Floats) -> dict[int, float]:
+        at = self.structure.mesh.nodes[node] + [0.0, 0.0, -0.5 * self.structure.thickness] - point
+        turned = rotation_columns(*at[:, None])[0, axis]
+        return {int(dofs[axis]): 1.0} | {int(dof): float(value) for dof, value in zip(dofs[3:], turned, strict=True) if value != 0.0}
+
+    def add_stiffness(self, dofs: Integers, stiffness: Floats) -> None:
+        """Add a stiffness matrix on some degrees of freedom, grounded."""
+        self._added.append((dofs, stiffness))
+
+    def add_body(self, stiffness: Floats, mass: Floats, rigid: Floats) -> Integers:
+        """Add a body with degrees of freedom of its own, given its matrices and its rigid motions; return their numbers."""
+        self._bodies.append((stiffness, mass, rigid))
+        self._size += len(stiffness)
+        return np.arange(self._size - len(stiffness), self._size)
+
+    def held(self) -> HeldStructure:
+        """Return the structure as it is held."""
+        structure = self.structure
+        expansion, free = self._expansion()
+        added = self._added_stiffness()
+        stiffness = block_diag([structure.stiffness, *(body[0] for body in self._bodies)], format="csr") + added
+        mass = block_diag([structure.mass, *(body[1] for body in self._bodies)], format="csr")
+        motions = np.concatenate([structure.rigid_motions(), *(body[2] for body in self._bodies)])
+        order = np.concatenate([structure.order, np.arange(structure.stiffness.shape[0], self._size)])
+        place = np.full(self._size, -1)
+        place[free] = np.arange(len(free))
+        order = place[order]
+        if not self._ties and not self._bodies:
+            reduced = (csr_array(stiffness), csr_array(mass))
+        else:
+            turned = expansion.T.tocsr()
+            reduced = (csr_array(turned @ stiffness @ expansion), csr_array(turned @ mass @ expansion))
+        rigid = self._left_rigid(motions, expansion, free, added)
+        return HeldStructure(structure, *reduced, csr_array(expansion[: structure.stiffness.shape[0]]), order[order >= 0], rigid)
+
+    def _expansion(self) -> tuple[csr_array, Integers]:
+        tied = np.array(sorted(self._ties), dtype=np.int64)
+        free = np.setdiff1d(np.arange(self._size), tied)
+        entries = [(dof, other, value) for dof, tie in self._ties.items() for other, value in tie.items()]
+        rows, columns, values = (np.array(side) for side in zip(*entries, strict=True)) if entries else (np.zeros(0, int),) * 3
+        rows, columns = np.concatenate([free, rows]), np.concatenate([free, columns])
+        values = np.concatenate([np.ones(len(free)), values])
+        whole = csr_array(coo_array((values, (rows, columns)), shape=(self._size, self._size)))
+        for _ in range(4):  # a tie may lead to a degree of freedom that is tied itself
+            if whole[:, tied].nnz == 0:
+                break
+            whole = csr_array(whole @ whole)
+            whole.eliminate_zeros()
+        return csr_array(whole[:, free]), free
+
+    def _added_stiffness(self) -> csr_array:
+        total = csr_array((self._size, self._size))
+        for dofs, stiffness in self._added:
+            rows, columns = np.meshgrid(dofs, dofs, indexing="ij")
+            total = total + csr_array(coo_array((stiffness.ravel(), (rows.ravel(), columns.ravel())), shape=total.shape))
+        return csr_array(total)
+
+    def _left_rigid(self, motions: Floats, expansion: csr_array, free: Integers, added: csr_array) -> Floats:
+        """Return the rigid motions that break no tie and strain no spring."""
+        length = np.ptp(self.structure.mesh.nodes, axis=0).max()
+        motions = motions * np.array([1.0, 1.0, 1.0, *3 * [1.0 / length]])
+        broken = motions - expansion @ motions[free]
+        size = motions.T @ motions
+        measure = broken.T @ broken / size.trace()
+        energy = motions.T @ (added @ motions)
+        start = self.structure.stiffness.shape[0]
+        for stiffness, _, rigid in self._bodies:
+            part = motions[start : start + len(rigid)]
+            energy += part.T @ stiffness @ part
+            start += len(rigid)
+        if energy.any():
+            measure = measure + energy / np.abs(energy).max()
+        values, vectors = np.linalg.eigh(measure)
+        return np.asarray(motions[free] @ vectors[:, values < _STILL])

@@ -1,0 +1,62 @@
+"""An edge of the plate, clamped or simply supported."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from vibroimpact.errors import InputError
+from vibroimpact.structures.rectangle import Disc
+from vibroimpact.structures.supports.constraints import Constraints
+
+EdgeName = Literal["x-min", "x-max", "y-min", "y-max"]
+EDGES: tuple[EdgeName, ...] = ("x-min", "x-max", "y-min", "y-max")
+_FLAT = 1e-6  # of the plate's length: how far from the extreme a node of the edge may lie
+
+
+@dataclass(frozen=True)
+class Edge:
+    """A straight edge of the plate.
+
+    Parameters
+    ----------
+    edge : str
+        "x-min", "x-max", "y-min" or "y-max".
+    condition : str
+        "clamped": nothing moves. "simply-supported": the edge keeps its height and its place along itself, and turns
+        about itself freely (the hard condition, the one of Navier's solution); over the whole height of a solid plate.
+    """
+
+    edge: EdgeName
+    condition: Literal["clamped", "simply-supported"]
+
+    @property
+    def words(self) -> str:
+        """What it is, for people."""
+        return f"edge {self.edge} {self.condition}"
+
+    @property
+    def discs(self) -> Sequence[Disc]:
+        """None."""
+        return ()
+
+    @property
+    def lines(self) -> tuple[Sequence[float], Sequence[float]]:
+        """None; edges of the plate are edges of elements."""
+        return (), ()
+
+    def hold(self, constraints: Constraints) -> None:
+        """Hold the nodes of the edge."""
+        mesh = constraints.structure.mesh
+        across = 0 if self.edge[0] == "x" else 1
+        at = mesh.nodes[:, across]
+        end = at.min() if self.edge.endswith("min") else at.max()
+        nodes = np.flatnonzero(np.abs(at - end) <= _FLAT * np.ptp(at))
+        if len(nodes) < 3:
+            raise InputError(f'the edge "{self.edge}" has only {len(nodes)} of the nodes of the mesh: that side of the body is not flat')
+        turning = [4 - across] if mesh.is_flat else []
+        axes = list(range(mesh.dofs_per_node)) if self.condition == "clamped" else [1 - across, 2, *turning]
+        constraints.hold(mesh.dofs_per_node * nodes[:, None] + np.array(axes))

@@ -1,0 +1,86 @@
+"""A rigid patch: part of the lower side held still."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from vibroimpact.structures.rectangle import Disc
+from vibroimpact.structures.supports.constraints import Constraints
+from vibroimpact.structures.supports.support import nodes_within
+
+
+@dataclass(frozen=True)
+class Patch:
+    """A rigid circular patch of the lower side, held still.
+
+    Parameters
+    ----------
+    x, y : float
+        Its centre [m].
+    radius : float
+        Its radius [m], > 0.
+    """
+
+    x: float
+    y: float
+    radius: float
+
+    @property
+    def words(self) -> str:
+        """What it is, for people."""
+        return f"rigid patch of radius {self.radius:g} m at ({self.x:g}, {self.y:g}) m"
+
+    @property
+    def discs(self) -> Sequence[Disc]:
+        """The patch itself."""
+        return (Disc(self.x, self.y, self.radius),)
+
+    @property
+    def lines(self) -> tuple[Sequence[float], Sequence[float]]:
+        """None."""
+        return (), ()
+
+    def hold(self, constraints: Constraints) -> None:
+        """Hold the nodes of the patch."""
+        constraints.attach(nodes_within(constraints.structure, self.x, self.y, self.radius, "the patch"))
+
+
+@dataclass(frozen=True)
+class RectangularPatch:
+    """A rigid rectangular patch of the lower side, held still.
+
+    Parameters
+    ----------
+    x, y : float
+        Its centre [m].
+    length, width : float
+        Its sides along x and y [m], > 0.
+    """
+
+    x: float
+    y: float
+    length: float
+    width: float
+
+    @property
+    def words(self) -> str:
+        """What it is, for people."""
+        return f"rigid patch, {self.length:g} x {self.width:g} m, at ({self.x:g}, {self.y:g}) m"
+
+    @property
+    def discs(self) -> Sequence[Disc]:
+        """None."""
+        return ()
+
+    @property
+    def lines(self) -> tuple[Sequence[float], Sequence[float]]:
+        """Its sides."""
+        return tuple((at - 0.5 * side, at + 0.5 * side) for at, side in ((self.x, self.length), (self.y, self.width)))  # type: ignore[return-value]
+
+    def hold(self, constraints: Constraints) -> None:
+        """Hold the nodes of the patch."""
+        half = 0.5 * np.array([self.length, self.width])
+        constraints.attach(nodes_within(constraints.structure, self.x, self.y, half, "the patch"))

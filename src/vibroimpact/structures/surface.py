@@ -1,0 +1,212 @@
+"""The surface of a mesh: its outer faces, the nodes of its lower side, and what moves at a place (x, y) of either side."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from scipy.sparse import coo_array, csr_array
+
+from vibroimpact.errors import InputError
+from vibroimpact.structures.element_kinds import ElementKind
+from vibroimpact.structures.mesh import Floats, Integers, Mesh
+
+Side = Literal["upper", "lower"]
+Spot = tuple[float, float] | str | None
+"""x and y [m]; or the name of a set of nodes, whose middle is meant; or None, the point of a side that reaches farthest."""
+
+_OUTSIDE = 1e-6  # how far beyond the edge of a face, in its length, a point may lie
+_NEWTON_STEPS = 20
+
+
+@dataclass(frozen=True)
+class Faces:
+    """Outer faces that have the same number among the faces of their elements; of plate elements, the elements."""
+
+    kind: ElementKind
+    corners: tuple[int, ...]
+    connectivity: Integers
+
+    def places(self, local: Floats) -> Floats:
+        """Return places on the reference element (points, dimension) of places on the face (points, 2)."""
+        a, b = local[:, :1], local[:, 1:]
+        corner = self.kind.reference[list(self.corners)]
+        if len(corner) == 3:
+            return np.asarray(corner[0] + a * (corner[1] - corner[0]) + b * (corner[2] - corner[0]))
+        weights = np.concatenate([(1 - a) * (1 - b), a * (1 - b), a * b, (1 - a) * b], axis=1)
+        return np.asarray(weights @ corner)
+
+    def slopes(self, local: Floats) -> tuple[Floats, Floats]:
+        """Return shape functions (points, nodes) and their derivatives along the face (points, 2, nodes)."""
+        values, gradients = self.kind.basis(self.places(local))
+        step = 0.5 * np.eye(2)
+        along = np.stack([self.places(local + step[axis]) - self.places(local - step[axis]) for axis in range(2)], axis=1)
+        return values, np.asarray(along @ gradients)
+
+    def beyond(self, local: Floats) -> Floats:
+        """Return how far places lie outside the face, in its length; not positive inside."""
+        outside = np.maximum(-local.min(axis=1), (local.sum(axis=1) if len(self.corners) == 3 else local.max(axis=1)) - 1.0)
+        return np.asarray(outside)
+
+
+def outer_faces(mesh: Mesh) -> list[Faces]:
+    """Return the faces that belong to one element alone, in groups; of plate elements, the elements."""
+    owners, keys = [], []
+    for block in mesh.blocks:
+        if block.element.dimension == 2:
+            return [Faces(block.element, block.element.faces[0], block.connectivity)]
+        for face in block.element.faces:
+            corner = np.sort(block.connectivity[:, list(face)], axis=1)
+            keys.append(np.pad(corner, ((0, 0), (0, 4 - corner.shape[1])), constant_values=-1))
+            owners.append((block.element, face, block.connectivity))
+    _, same, count = np.unique(np.concatenate(keys), axis=0, return_inverse=True, return_counts=True)
+    alone = np.split(count[same.ravel()] == 1, np.cumsum([len(key) for key in keys])[:-1])
+    return [Faces(kind, face, nodes[mine]) for (kind, face, nodes), mine in zip(owners, alone, strict=True) if mine.any()]
+
+
+def _looking(mesh: Mesh, side: Side) -> list[Faces]:
+    """Return the outer faces that look up or down; of plate elements, which have no sides, all."""
+    groups = outer_faces(mesh)
+    if mesh.is_flat:
+        return groups
+    found = []
+    for faces in groups:
+        corner = mesh.nodes[faces.connectivity[:, list(faces.corners)]]
+        normal = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
+        height = normal[:, 2] / np.linalg.norm(normal, axis=1)
+        looks = height > 1e-3 if side == "upper" else height < -1e-3
+        found.append(Faces(faces.kind, faces.corners, faces.connectivity[looks]))
+    return [faces for faces in found if len(faces.connectivity)]
+
+
+def lower_nodes(mesh: Mesh) -> Integers:
+    """Return the nodes of the faces that look down; of plate elements, all nodes."""
+    if mesh.is_flat:
+        return np.arange(len(mesh.nodes))
+    found = []
+    for faces in _looking(mesh, "lower"):
+        corner = faces.kind.reference[list(faces.corners)]
+        normal = np.cross(corner[1] - corner[0], corner[2] - corner[0])
+        on_face = np.abs((faces.kind.reference - corner[0]) @ normal) < 1e-9
+        found.append(faces.connectivity[:, on_face].ravel())
+    return np.unique(np.concatenate(found)) if found else np.zeros(0, dtype=np.int64)
+
+
+def place_of(mesh: Mesh, spot: Spot, side: Side) -> tuple[float, float]:
+    """Return x and y [m] of a spot on one side of a mesh.
+
+    Raises
+    ------
+    InputError
+        If the mesh has no set of that name.
+    """
+    if isinstance(spot, tuple):
+        return spot
+    if isinstance(spot, str):
+        x, y = mesh.nodes[mesh.nodes_of(spot), :2].mean(axis=0)
+    else:
+        height = mesh.nodes[:, 2]
+        x, y = mesh.nodes[height.argmax() if side == "upper" else height.argmin(), :2]
+    return float(x), float(y)
+
+
+def surface_motion(mesh: Mesh, places: Floats, side: Side = "upper", thickness: float = 0.0) -> tuple[csr_array, Floats]:
+    """Return how places on one side of a body move with its degrees of freedom.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        Its elements.
+    places : array, shape (points, 2)
+        x and y [m].
+    side : str, default "upper"
+        "upper" or "lower"; where several faces lie above one another, the outermost counts.
+    thickness : float, default 0
+        Thickness of plate elements [m], whose sides lie half of it above and below the nodes.
+
+    Returns
+    -------
+    motion : sparse array, shape (3 points, dofs)
+        Three rows a point: its displacements along x, y and z.
+    positions : array, shape (points, 3)
+        Where the points lie [m].
+
+    Raises
+    ------
+    InputError
+        If a place lies beside the body.
+
+    Examples
+    --------
+    >>> from vibroimpact.structures.lattice import box_mesh
+    >>> motion, positions = surface_motion(box_mesh((1.0, 1.0, 0.1), (3, 3, 1)), np.array([[0.2, 0.1]]))
+    >>> positions.round(9).tolist(), float(motion.sum().round(9))
+    ([[0.2, 0.1, 0.05]], 3.0)
+    """
+    places = np.atleast_2d(np.asarray(places, dtype=float))
+    sign = 1.0 if side == "upper" else -1.0
+    best = np.full(len(places), -np.inf)
+    nodes: list[Integers] = [np.zeros(0, dtype=np.int64)] * len(places)
+    weights: list[Floats] = [np.zeros(0)] * len(places)
+    positions = np.full((len(places), 3), np.nan)
+    for faces in _looking(mesh, side):
+        point, face, local = _found(mesh.nodes, faces, places)
+        values = faces.slopes(local)[0]
+        at = np.einsum("pk,pki->pi", values, mesh.nodes[faces.connectivity[face]])
+        for index, which in enumerate(point.tolist()):
+            if sign * at[index, 2] > best[which]:
+                best[which] = sign * at[index, 2]
+                positions[which] = at[index]
+                nodes[which], weights[which] = faces.connectivity[face[index]], values[index]
+    beside = np.flatnonzero(np.isneginf(best))
+    if len(beside):
+        x, y = places[beside[0]]
+        low, high = mesh.nodes.min(axis=0), mesh.nodes.max(axis=0)
+        raise InputError(
+            f"({x:g}, {y:g}) m is not on the body, which reaches from {low[0]:g} to {high[0]:g} m along x and "
+            f"from {low[1]:g} to {high[1]:g} m along y"
+        )
+    height = sign * 0.5 * thickness if mesh.is_flat else 0.0
+    positions[:, 2] += height
+    return _rows(mesh, nodes, weights, height), positions
+
+
+def _rows(mesh: Mesh, nodes: list[Integers], weights: list[Floats], height: float) -> csr_array:
+    point = np.repeat(np.arange(len(nodes)), [len(found) for found in nodes])
+    node, weight = np.concatenate(nodes), np.concatenate(weights)
+    per_node = mesh.dofs_per_node
+    rows = [3 * point + axis for axis in range(3)]
+    columns = [per_node * node + axis for axis in range(3)]
+    values = [weight] * 3
+    if mesh.is_flat:  # a point at a height moves with the slopes too
+        rows += [3 * point + axis for axis in range(2)]
+        columns += [per_node * node + 3 + axis for axis in range(2)]
+        values += [height * weight] * 2
+    shape = (3 * len(nodes), per_node * len(mesh.nodes))
+    return csr_array(coo_array((np.concatenate(values), (np.concatenate(rows), np.concatenate(columns))), shape=shape))
+
+
+def _found(nodes: Floats, faces: Faces, places: Floats) -> tuple[Integers, Integers, Floats]:
+    """Return which place lies on which face, and where on it: Newton's method for all pairs that may meet."""
+    at = nodes[faces.connectivity][:, :, :2]
+    corner = at[:, list(faces.corners)]
+    middle, reach = 0.5 * (corner.max(axis=1) + corner.min(axis=1)), 0.75 * np.ptp(corner, axis=1)
+    reach = np.maximum(reach, 0.25 * reach.max(axis=1, keepdims=True))  # a curved side bulges beyond its corners
+    near = (np.abs(places[:, None] - middle[None]) <= reach[None]).all(axis=2)
+    point, face = np.nonzero(near)
+    start = 1.0 / 3.0 if len(faces.corners) == 3 else 0.5
+    local = np.full((len(point), 2), start)
+    for _ in range(_NEWTON_STEPS):
+        values, slopes = faces.slopes(local)
+        apart = np.einsum("pk,pki->pi", values, at[face]) - places[point]
+        jacobian = (slopes @ at[face]).transpose(0, 2, 1)  # of x and y by the two places on the face
+        flat = np.abs(np.linalg.det(jacobian)) < 1e-14 * np.abs(jacobian).max(axis=(1, 2), initial=1e-300) ** 2
+        jacobian[flat] = np.eye(2)
+        step = np.linalg.solve(jacobian, apart[:, :, None])[:, :, 0]
+        local = np.clip(local - step, -1.0, 2.0)
+        if not len(step) or np.abs(step).max() < 1e-14:
+            break
+    missed = np.linalg.norm(apart, axis=1) > _OUTSIDE * reach[face].max(axis=1)
+    inside = (faces.beyond(local) <= _OUTSIDE) & ~missed & ~flat
+    return point[inside], face[inside], local[inside]
