@@ -61,7 +61,7 @@ def _plate(case: Case) -> ElasticBody:
 def _plate_recipe(case: Case, contact: Spot) -> Recipe:
     section, mesh = case.plate, case.plate.mesh
     reduction = reduction_of("plate", section, (contact, "upper"))
-    supports = supports_of(section.supports or "free")
+    supports = supports_of(section.supports)
     material = section.material
     if isinstance(mesh, BroughtMeshTable):
         return Recipe(mesh.brought(), material.density, material.youngs_modulus, material.poissons_ratio, supports, reduction)

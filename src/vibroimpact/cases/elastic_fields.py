@@ -26,11 +26,16 @@ Kind = Literal["hex8", "hex20", "hex27", "tet4", "tet10"]
 assert set(SOLID_KINDS) == set(Kind.__args__)  # type: ignore[attr-defined]
 
 
+def _one_of_a_unit(value: Any) -> Any:
+    """Return "1 mm" for "mm"."""
+    return f"1 {value}" if isinstance(value, str) and value.strip().isalpha() else value
+
+
 class BroughtMeshTable(Section):
     """A mesh, or a geometry, from a file."""
 
     file: str = Field(description="Nastran (.bdf, .dat), Abaqus (.inp), Gmsh (.msh), or with the extra mesh STEP (.step) and BREP (.brep)")
-    unit: Annotated[float, Quantity("m", "unit of its coordinates", Range(above=0))] = 1.0
+    unit: Annotated[float, Quantity("m", "unit of its coordinates", Range(above=0)), BeforeValidator(_one_of_a_unit)] = 1.0
     element_size: _Size | None = None
     contact: str | None = Field(None, description="a named set: the contact point is its middle")
 
@@ -144,6 +149,8 @@ def check_plate(section: Any) -> None:
     brought = isinstance(mesh, BroughtMeshTable)
     if section.size is None and not brought:
         raise InputError("an elastic plate needs its length, width and thickness, or a mesh", "size")
+    if section.supports is None:
+        raise InputError('how is the elastic plate held? Give "free", "clamped", "simply-supported", or tables such as patches', "supports")
     if brought and section.element == "plate":
         raise InputError("a mesh that is brought is of solid elements; leave out element, or the mesh", "element")
     if isinstance(mesh, PlateMeshTable):

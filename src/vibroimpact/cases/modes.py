@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -91,19 +91,20 @@ def compute_modes(
     return found
 
 
-def _doubts(case: Case, name: str, body: ElasticBody, model: ModalModel) -> list[str]:
-    """Say where a mesh that was brought does not look like the body of the case."""
-    if not isinstance(body.recipe.shape, BroughtMesh):
-        return []
-    extent = model.mesh.extent
-    size = " x ".join(f"{side:.3g}" for side in extent)
-    said = f"the mesh of the {name} is {size} m large and weighs {model.properties.mass:.4g} kg"
-    volume = 4.0 / 3.0 * math.pi * case.sphere.radius**3 if name == "sphere" else math.prod(case.plate.size) if case.plate.size else None
-    hint = '; if it is in millimetres, give mesh = { file = "...", unit = "mm" }'
-    if volume is not None:
-        expected = volume * body.recipe.density
+def _doubts(case: Case, name: str, body: ElasticBody, model: ModalModel) -> Iterator[str]:
+    """Say where a plate would fall, and where a mesh that was brought does not look like the body of the case."""
+    if name == "plate" and not model.is_held_vertically:
+        yield "the plate is not held: its supports let it fall or tilt, and a drop needs a plate that is held"
+    if isinstance(body.recipe.shape, BroughtMesh):
+        extent = model.mesh.extent
+        size = " x ".join(f"{side:.3g}" for side in extent)
+        said = f"the mesh of the {name} is {size} m large and weighs {model.properties.mass:.4g} kg"
+        hint = '; if it is in millimetres, give mesh = { file = "...", unit = "mm" }' if extent.max() > _LARGE else ""
+        volume = (
+            4.0 / 3.0 * math.pi * case.sphere.radius**3 if name == "sphere" else math.prod(case.plate.size) if case.plate.size else None
+        )
+        expected = body.recipe.density * (volume or math.nan)
         if abs(model.properties.mass / expected - 1.0) > _WEIGHT_OFF:
-            return [f"{said}, and what the case describes weighs {expected:.4g} kg{hint if extent.max() > _LARGE else ''}"]
-    elif extent.max() > _LARGE:
-        return [said + hint]
-    return []
+            yield f"{said}, and what the case describes weighs {expected:.4g} kg{hint}"
+        elif volume is None and hint:
+            yield said + hint

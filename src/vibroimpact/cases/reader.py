@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from importlib.resources import files
 from os import PathLike
 from pathlib import Path
@@ -12,6 +12,7 @@ from typing import Any
 from pydantic import BaseModel, ValidationError
 
 from vibroimpact.cases.build import check_case
+from vibroimpact.cases.explain import explained
 from vibroimpact.cases.material_field import InlineMaterial
 from vibroimpact.cases.schema import Case, DropSection, PlateSection, RunSection, SensorSection, SphereSection
 from vibroimpact.errors import InputError, did_you_mean
@@ -30,7 +31,7 @@ _SECTIONS: dict[tuple[str, ...], type[BaseModel]] = {
 
 
 def _section(where: tuple[str, ...]) -> type[BaseModel] | None:
-    return _SECTIONS.get(tuple(part for part in where if not part.isdigit()))
+    return _SECTIONS.get(tuple(part for part in where if not part.isdigit()), InlineMaterial if where[-1:] == ("material",) else None)
 
 
 def load_case(source: str | PathLike[str]) -> Case:
@@ -78,7 +79,8 @@ def read_case(table: Mapping[str, Any]) -> Case:
         case = Case.model_validate(dict(table))
         check_case(case)
     except ValidationError as error:
-        raise InputError("\n".join(dict.fromkeys(_explain(error)))) from None
+        lines = (f"{path}: {message}" if path else message for path, message in explained(error, _section))
+        raise InputError("\n".join(dict.fromkeys(lines))) from None
     return case
 
 
@@ -131,59 +133,3 @@ def _file(path: Path) -> str:
         if isinstance(error, InputError):
             raise
         raise InputError(f"{path}: the file can't be read: {reason}") from None
-
-
-# from pydantic's errors to sentences -----------------------------------------------------------------
-
-
-def _explain(error: ValidationError) -> Iterator[str]:
-    for fault in error.errors():
-        where = tuple(str(part) for part in fault["loc"] if not _is_branch(str(part)))
-        path = ".".join(where)
-        prefix = f"{path}: " if path else ""
-        kind, context = fault["type"], fault.get("ctx", {})
-        if kind == "extra_forbidden":
-            known = list((_section(where[:-1]) or InlineMaterial).model_fields)
-            place = f"[{'.'.join(where[:-1])}]" if where[:-1] else "a case"
-            yield f'{path}: unknown key "{where[-1]}"; {place} takes {", ".join(known)}.{did_you_mean(where[-1], known)}'
-        elif kind == "missing" and where[-1].isdigit():
-            parent = ".".join(where[:-1])
-            yield f"{parent}: there are too few values; it takes {_about(where[:-1]).removeprefix(': ')}"
-        elif kind == "missing":
-            what = "section" if len(where) == 1 else "key"
-            yield f"{path}: this {what} is missing{_about(where)}"
-        elif kind == "value_error" and isinstance(context.get("error"), ValidationError):
-            for line in _explain(context["error"]):
-                yield f"{path}.{line}" if path else line
-        elif kind == "value_error":
-            fault_key = getattr(context["error"], "key", "")
-            yield f"{path}.{context['error']}" if path and fault_key else f"{prefix}{context['error']}"
-        elif kind == "literal_error":
-            yield f"{prefix}{_show(fault['input'])} is not allowed; it must be {context['expected']}"
-        elif kind == "string_type":
-            yield f"{prefix}{_show(fault['input'])} is not a text; put it in quotes"
-        elif kind == "bool_type":
-            yield f"{prefix}{_show(fault['input'])} is not allowed; it must be true or false"
-        elif kind in ("model_type", "dict_type"):
-            yield f"{prefix}{_show(fault['input'])} is not a table"
-        elif kind in ("tuple_type", "too_long", "too_short"):
-            yield f"{prefix}{_show(fault['input'])} does not have the right number of values; it takes {_about(where).removeprefix(': ')}"
-        else:
-            yield f"{prefix}{_show(fault['input'])} is not allowed; {fault['msg'][0].lower()}{fault['msg'][1:]}"
-
-
-def _is_branch(part: str) -> bool:
-    """Is this part of a location the name that pydantic gives to one alternative of a union?"""
-    return part.startswith(("literal[", "constrained-", "function-", "tuple[", "nullable"))
-
-
-def _about(where: tuple[str, ...]) -> str:
-    section = _section(where[:-1])
-    field = section.model_fields.get(where[-1]) if section else None
-    text = (field.description or "") if field else ""
-    return f": {text}" if text else ""
-
-
-def _show(value: Any) -> str:
-    text = f'"{value}"' if isinstance(value, str) else str(value)
-    return text if len(text) <= 60 else text[:57] + "..."

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, TypeVar
 
-from pydantic import BaseModel, ConfigDict
+from pydantic import BaseModel, ConfigDict, ValidationError
 
+from vibroimpact.cases.explain import explained
 from vibroimpact.errors import InputError, did_you_mean
 
 
@@ -25,10 +26,14 @@ def read_table(kind: type[Kind], value: Mapping[str, Any]) -> Kind:
     Raises
     ------
     InputError
-        If it has an unknown key.
+        With the first key that is wrong.
     """
     known = [name for name in kind.model_fields if name != "type"]
     for key in value:
         if key not in kind.model_fields:
             raise InputError(f'unknown key "{key}"; it takes {", ".join(known)}.{did_you_mean(key, known)}', key)
-    return kind.model_validate(dict(value))
+    try:
+        return kind.model_validate(dict(value))
+    except ValidationError as error:
+        path, message = next(explained(error, lambda where: kind if not where else None))
+        raise InputError(message, path) from None

@@ -82,6 +82,11 @@ def _not_rigid(value: Material) -> Material:
 _BarMaterial = Annotated[MaterialField, AfterValidator(_not_rigid)]
 
 
+def _plain(material: Material) -> Material:
+    """Return what determines the modes of a bar, without names and sources."""
+    return Material(material.density, material.youngs_modulus, material.poissons_ratio)
+
+
 class BarTable(_Table):
     """An elastic column."""
 
@@ -94,7 +99,7 @@ class BarTable(_Table):
 
     def made(self) -> tuple[Support, ...]:
         """Return the column."""
-        return (Bar(*self.position, self.radius, self.length, self.material),)
+        return (Bar(*self.position, self.radius, self.length, _plain(self.material)),)
 
 
 class BarsTable(_Table):
@@ -109,7 +114,7 @@ class BarsTable(_Table):
 
     def made(self) -> tuple[Support, ...]:
         """Return the four."""
-        return tuple(Bar(x, y, self.radius, self.length, self.material) for x, y in _corners(self.spacing))
+        return tuple(Bar(x, y, self.radius, self.length, _plain(self.material)) for x, y in _corners(self.spacing))
 
 
 class EdgeTable(_Table):

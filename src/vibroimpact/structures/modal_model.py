@@ -6,13 +6,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
-from scipy.sparse import csr_array
 
 from vibroimpact.structures.damping import Damping
 from vibroimpact.structures.geometry import MassProperties
 from vibroimpact.structures.mesh import Floats, Mesh
 from vibroimpact.structures.modes import Eigenmodes
-from vibroimpact.structures.structure import Structure
+from vibroimpact.structures.supports.constraints import HeldStructure
 from vibroimpact.structures.surface import Side, Spot, place_of, surface_motion
 
 
@@ -32,8 +31,8 @@ class ModalModel:
         Of unit modal mass [kg^-1/2], on the degrees of freedom of the nodes.
     participation : array, shape (modes, 6)
         Momentum of each mode along x, y and z [kg^1/2], and angular momentum about the centre of mass [kg^1/2 m].
-    rigid_motions : int
-        How many rigid motions the supports leave, 0 to 6.
+    left : array, shape (r, 6)
+        The rigid motions that the supports leave: how much of each translation, and of each rotation about the centre of mass.
     thickness : float, default 0
         Thickness of plate elements [m].
     facts : mapping of str to str
@@ -45,7 +44,7 @@ class ModalModel:
     angular_frequencies: Floats
     shapes: Floats
     participation: Floats
-    rigid_motions: int
+    left: Floats
     thickness: float = 0.0
     facts: Mapping[str, str] = field(default_factory=dict)
 
@@ -53,6 +52,11 @@ class ModalModel:
     def frequencies(self) -> Floats:
         """Frequencies [Hz]."""
         return np.asarray(self.angular_frequencies / (2.0 * np.pi))
+
+    @property
+    def is_held_vertically(self) -> bool:
+        """Do the supports stop every rigid motion that has a vertical part?"""
+        return not np.abs(self.left[:, 2:5]).max(initial=0.0) > 1e-6 * np.abs(self.left).max(initial=0.0)
 
     def displacements(self, mode: int) -> Floats:
         """Return how the nodes move in a mode (from 0), shape (nodes, 3) [kg^-1/2]."""
@@ -67,22 +71,22 @@ class ModalModel:
             If a place lies beside the body.
         """
         motion, positions = surface_motion(self.mesh, places, side, self.thickness)
-        return np.asarray(motion @ self.shapes.T).T.reshape(len(self.shapes), -1, 3), positions
+        dofs = np.unique(motion.indices)  # few of many: the others need not be read
+        return np.asarray(self.shapes[:, dofs] @ motion[:, dofs].T.toarray()).reshape(len(self.shapes), -1, 3), positions
 
 
-def modal_model(structure: Structure, modes: Eigenmodes, expansion: csr_array, rigid_motions: int, facts: Mapping[str, str]) -> ModalModel:
-    """Make the modal model of a structure from the modes of its free degrees of freedom."""
-    shapes = expansion @ modes.shapes
-    momentum = structure.mass @ structure.rigid_motions()
+def modal_model(held: HeldStructure, modes: Eigenmodes, facts: Mapping[str, str] | None = None) -> ModalModel:
+    """Make the modal model of a held structure from the modes of its free degrees of freedom."""
+    structure, shapes = held.structure, held.expansion @ modes.shapes
     return ModalModel(
         structure.mesh,
         structure.properties,
         modes.angular_frequencies,
         np.ascontiguousarray(shapes.T),
-        np.asarray(shapes.T @ momentum),
-        rigid_motions,
+        np.asarray(shapes.T @ (structure.mass @ structure.rigid_motions())),
+        held.left,
         structure.thickness,
-        facts,
+        facts or {},
     )
 
 

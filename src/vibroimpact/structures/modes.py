@@ -8,17 +8,15 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import eigh, qr
 from scipy.sparse import csr_array
-from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigsh
 
 from vibroimpact.errors import ComputationError, InputError
 from vibroimpact.structures.factor import Factors
+from vibroimpact.structures.lanczos import lowest_modes
 from vibroimpact.structures.mesh import Floats, Integers
 
 _DENSE = 400  # degrees of freedom up to which a dense solver is quicker
 _MOST = 0.4  # of the degrees of freedom: more modes than this of a mesh mean nothing, and Lanczos' method gains nothing
 _SINGULAR = 1e-6  # of the largest static displacement: what a mechanism that the supports leave makes of it
-_ROUGHLY = 1e-3  # how exactly the largest mode left over must be known
-_EQUAL = 1e-6  # relative: eigenvalues so near are those of one multiple mode
 
 Progress = Callable[[float], None]
 
@@ -125,7 +123,10 @@ class Elastic:
                 f"{number} modes are not to be had from {size} degrees of freedom; it must be from 1 to {most}"
                 + ("" if number < 1 else ", or the elements smaller")
             )
-        return self._dense(number) if size <= _DENSE else self._lanczos(number, progress or (lambda part: None))
+        if size <= _DENSE:
+            return self._dense(number)
+        values, shapes = lowest_modes(self.static, self.mass, number, progress or (lambda part: None))
+        return Eigenmodes(np.sqrt(values), shapes)
 
     def count_below(self, angular_frequency: float) -> int:
         """Return how many modes lie below an angular frequency [rad/s], rigid motions left out, without computing them."""
@@ -148,39 +149,3 @@ class Elastic:
         skip = self.rigid.shape[1]
         values, shapes = eigh(self.stiffness.toarray(), self.mass.toarray(), subset_by_index=[skip, skip + number - 1])
         return Eigenmodes(np.sqrt(np.maximum(values, 0.0)), shapes)
-
-    def _lanczos(self, number: int, progress: Progress) -> Eigenmodes:
-        steps, expected = 0, 2.2 * number + 60.0
-
-        def respond(load: Floats) -> Floats:
-            nonlocal steps
-            steps += 1
-            progress(min(steps / expected, 0.99))
-            return self.static(load)
-
-        values, shapes = self._largest(respond, number, 0.0)
-        while True:  # a Krylov space can be blind to the second of two equal modes: look for what was missed
-            momenta = self.mass @ shapes
-
-            def without(load: Floats, shapes: Floats = shapes, momenta: Floats = momenta) -> Floats:
-                response = respond(load)
-                return np.asarray(response - shapes @ (momenta.T @ response))
-
-            if self._largest(without, 1, _ROUGHLY)[0][0] > (1.0 - _EQUAL) * values[-1]:
-                progress(1.0)
-                return Eigenmodes(np.sqrt(values), shapes)
-            value, shape = self._largest(without, 1, 0.0)
-            order = np.argsort([*values, *value])[:number]
-            values, shapes = np.concatenate([values, value])[order], np.concatenate([shapes, shape], axis=1)[:, order]
-
-    def _largest(self, respond: Callable[[Floats], Floats], number: int, tolerance: float) -> tuple[Floats, Floats]:
-        """Return eigenvalues, ascending, and shapes of the modes that respond most."""
-        size = self.stiffness.shape[0]
-        start = respond(self.mass @ np.random.default_rng(1).standard_normal(size))
-        operator = LinearOperator((size, size), matvec=lambda load: respond(np.ravel(load)), dtype=float)
-        try:
-            values, shapes = eigsh(self.stiffness, number, self.mass, sigma=0.0, OPinv=operator, v0=start, tol=tolerance)
-        except ArpackNoConvergence:
-            raise ComputationError(f"the {number} lowest modes could not be found: the iteration does not converge") from None
-        order = np.argsort(values)
-        return values[order], shapes[:, order]

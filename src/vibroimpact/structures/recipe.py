@@ -198,7 +198,7 @@ def computed_model(recipe: Recipe, progress: Progress | None = None) -> ModalMod
         "left out of the file": ", ".join(f"{name} ({count})" for name, count in structure.mesh.skipped.items()),
         "processor time": f"{time.process_time() - begun:.2f} s",
     }
-    return modal_model(structure, modes, held.expansion, held.rigid.shape[1], {name: text for name, text in facts.items() if text})
+    return modal_model(held, modes, {name: text for name, text in facts.items() if text})
 
 
 def _kept(held: HeldStructure, reduction: Reduction, progress: Progress | None) -> Eigenmodes:

@@ -147,7 +147,8 @@ def _parts(model: ModalModel) -> dict[str, Any]:
         "participation": model.participation,
         "centre": model.properties.centre,
         "inertia": model.properties.inertia,
-        "numbers": np.array([model.properties.mass, model.thickness, model.rigid_motions]),
+        "numbers": np.array([model.properties.mass, model.thickness]),
+        "left": model.left,
         "facts": np.array(json.dumps(dict(model.facts))),
     }
     for index, block in enumerate(model.mesh.blocks):
@@ -170,14 +171,14 @@ def _model(entry: Mapping[str, Any]) -> ModalModel:
         named("nodes:"),
         named("elements:"),
     )
-    mass, thickness, rigid_motions = entry["numbers"].tolist()
+    mass, thickness = entry["numbers"].tolist()
     return ModalModel(
         mesh,
         MassProperties(mass, entry["centre"], entry["inertia"]),
         entry["angular_frequencies"],
         entry["shapes"],
         entry["participation"],
-        int(rigid_motions),
+        entry["left"],
         thickness,
         json.loads(str(entry["facts"])),
     )

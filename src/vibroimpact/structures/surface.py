@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -10,7 +10,7 @@ from scipy.sparse import coo_array, csr_array
 
 from vibroimpact.errors import InputError
 from vibroimpact.structures.element_kinds import ElementKind
-from vibroimpact.structures.mesh import Floats, Integers, Mesh
+from vibroimpact.structures.mesh import ElementBlock, Floats, Integers, Mesh
 
 Side = Literal["upper", "lower"]
 Spot = tuple[float, float] | str | None
@@ -60,6 +60,8 @@ def outer_faces(mesh: Mesh) -> list[Faces]:
             corner = np.sort(block.connectivity[:, list(face)], axis=1)
             keys.append(np.pad(corner, ((0, 0), (0, 4 - corner.shape[1])), constant_values=-1))
             owners.append((block.element, face, block.connectivity))
+    if not keys:
+        return []
     _, same, count = np.unique(np.concatenate(keys), axis=0, return_inverse=True, return_counts=True)
     alone = np.split(count[same.ravel()] == 1, np.cumsum([len(key) for key in keys])[:-1])
     return [Faces(kind, face, nodes[mine]) for (kind, face, nodes), mine in zip(owners, alone, strict=True) if mine.any()]
@@ -150,7 +152,7 @@ def surface_motion(mesh: Mesh, places: Floats, side: Side = "upper", thickness: 
     nodes: list[Integers] = [np.zeros(0, dtype=np.int64)] * len(places)
     weights: list[Floats] = [np.zeros(0)] * len(places)
     positions = np.full((len(places), 3), np.nan)
-    for faces in _looking(mesh, side):
+    for faces in _looking(_above_or_below(mesh, places), side):
         point, face, local = _found(mesh.nodes, faces, places)
         values = faces.slopes(local)[0]
         at = np.einsum("pk,pki->pi", values, mesh.nodes[faces.connectivity[face]])
@@ -170,6 +172,19 @@ def surface_motion(mesh: Mesh, places: Floats, side: Side = "upper", thickness: 
     height = sign * 0.5 * thickness if mesh.is_flat else 0.0
     positions[:, 2] += height
     return _rows(mesh, nodes, weights, height), positions
+
+
+def _above_or_below(mesh: Mesh, places: Floats) -> Mesh:
+    """Return the elements that may lie above or below places: among their faces the outermost are the same."""
+    low, high = places.min(axis=0), places.max(axis=0)
+    blocks = []
+    for block in mesh.blocks:
+        at = mesh.nodes[block.connectivity[:, : block.element.corners], :2] if not mesh.is_flat else mesh.nodes[block.connectivity, :2]
+        first, last = at.min(axis=1), at.max(axis=1)
+        reach = 0.5 * (last - first).max(axis=1, keepdims=True)  # a curved side bulges beyond its corners
+        near = ((first - reach <= high) & (last + reach >= low)).all(axis=1)
+        blocks.append(ElementBlock(block.kind, block.connectivity[near]))
+    return replace(mesh, blocks=tuple(block for block in blocks if len(block.connectivity)))
 
 
 def _rows(mesh: Mesh, nodes: list[Integers], weights: list[Floats], height: float) -> csr_array:

@@ -30,6 +30,8 @@ class HeldStructure:
         An elimination order.
     rigid : array, shape (free, r)
         The rigid motions that the supports leave, r from none to six.
+    left : array, shape (r, 6)
+        What these are: how much of each translation along x, y and z, and of each rotation about the centre of mass.
     """
 
     structure: Structure
@@ -38,6 +40,7 @@ class HeldStructure:
     expansion: csr_array
     order: Integers
     rigid: Floats
+    left: Floats
 
 
 class Constraints:
@@ -123,8 +126,10 @@ class Constraints:
         else:
             turned = expansion.T.tocsr()
             reduced = (csr_array(turned @ stiffness @ expansion), csr_array(turned @ mass @ expansion))
-        rigid = self._left_rigid(motions, expansion, free, added)
-        return HeldStructure(structure, *reduced, csr_array(expansion[: structure.stiffness.shape[0]]), order[order >= 0], rigid)
+        left = self._left(motions, expansion, free, added)
+        return HeldStructure(
+            structure, *reduced, csr_array(expansion[: structure.stiffness.shape[0]]), order[order >= 0], motions[free] @ left.T, left
+        )
 
     def _expansion(self) -> tuple[csr_array, Integers]:
         tied = np.array(sorted(self._ties), dtype=np.int64)
@@ -148,13 +153,12 @@ class Constraints:
             total = total + csr_array(coo_array((stiffness.ravel(), (rows.ravel(), columns.ravel())), shape=total.shape))
         return csr_array(total)
 
-    def _left_rigid(self, motions: Floats, expansion: csr_array, free: Integers, added: csr_array) -> Floats:
-        """Return the rigid motions that break no tie and strain no spring."""
-        length = np.ptp(self.structure.mesh.nodes, axis=0).max()
-        motions = motions * np.array([1.0, 1.0, 1.0, *3 * [1.0 / length]])
+    def _left(self, motions: Floats, expansion: csr_array, free: Integers, added: csr_array) -> Floats:
+        """Return the combinations of rigid motions that break no tie and strain no spring, a row each."""
+        scale = np.repeat([1.0, 1.0 / np.ptp(self.structure.mesh.nodes, axis=0).max()], 3)  # so that rotations count as translations
+        motions = motions * scale
         broken = motions - expansion @ motions[free]
-        size = motions.T @ motions
-        measure = broken.T @ broken / size.trace()
+        measure = broken.T @ broken / (motions.T @ motions).trace()
         energy = motions.T @ (added @ motions)
         start = self.structure.stiffness.shape[0]
         for stiffness, _, rigid in self._bodies:
@@ -164,4 +168,4 @@ class Constraints:
         if energy.any():
             measure = measure + energy / np.abs(energy).max()
         values, vectors = np.linalg.eigh(measure)
-        return np.asarray(motions[free] @ vectors[:, values < _STILL])
+        return np.asarray((scale[:, None] * vectors[:, values < _STILL]).T)

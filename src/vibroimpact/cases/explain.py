@@ -1,0 +1,65 @@
+"""From pydantic's errors to sentences: where, what is wrong, what is allowed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import Any
+
+from pydantic import BaseModel, ValidationError
+
+from vibroimpact.errors import did_you_mean
+
+SectionAt = Callable[[tuple[str, ...]], type[BaseModel] | None]
+"""Which section of a case lies at a place, if one does."""
+
+
+def explained(error: ValidationError, section_at: SectionAt) -> Iterator[tuple[str, str]]:
+    """Yield the dotted place of each fault, and a sentence about it."""
+    for fault in error.errors():
+        where = tuple(str(part) for part in fault["loc"] if not _is_branch(str(part)))
+        path = ".".join(where)
+        kind, context = fault["type"], fault.get("ctx", {})
+        cause, shown = context.get("error"), _show(fault["input"])
+        if kind == "extra_forbidden":
+            section = section_at(where[:-1])
+            known = list(section.model_fields) if section else []
+            place = f"[{'.'.join(where[:-1])}]" if where[:-1] else "a case"
+            yield path, f'unknown key "{where[-1]}"; {place} takes {", ".join(known)}.{did_you_mean(where[-1], known)}'
+        elif kind == "missing" and where[-1].isdigit():
+            yield ".".join(where[:-1]), f"there are too few values; it takes {_about(where[:-1], section_at).removeprefix(': ')}"
+        elif kind == "missing":
+            yield path, f"this {'section' if len(where) == 1 else 'key'} is missing{_about(where, section_at)}"
+        elif kind == "value_error" and isinstance(cause, ValidationError):
+            yield from ((f"{path}.{inner}" if path else inner, message) for inner, message in explained(cause, section_at))
+        elif kind == "value_error":
+            key = getattr(cause, "key", "")
+            yield ".".join(part for part in (path, key) if part), getattr(cause, "message", str(cause))
+        elif kind == "literal_error":
+            yield path, f"{shown} is not allowed; it must be {context['expected']}"
+        elif kind == "string_type":
+            yield path, f"{shown} is not a text; put it in quotes"
+        elif kind == "bool_type":
+            yield path, f"{shown} is not allowed; it must be true or false"
+        elif kind in ("model_type", "dict_type"):
+            yield path, f"{shown} is not a table"
+        elif kind in ("tuple_type", "too_long", "too_short"):
+            yield path, f"{shown} does not have the right number of values; it takes {_about(where, section_at).removeprefix(': ')}"
+        else:
+            yield path, f"{shown} is not allowed; {fault['msg'][0].lower()}{fault['msg'][1:]}"
+
+
+def _is_branch(part: str) -> bool:
+    """Is this part of a location the name that pydantic gives to one alternative of a union?"""
+    return part.startswith(("literal[", "constrained-", "function-", "tuple[", "nullable"))
+
+
+def _about(where: tuple[str, ...], section_at: SectionAt) -> str:
+    section = section_at(where[:-1])
+    field = section.model_fields.get(where[-1]) if section else None
+    text = (field.description or "") if field else ""
+    return f": {text}" if text else ""
+
+
+def _show(value: Any) -> str:
+    text = f'"{value}"' if isinstance(value, str) else str(value)
+    return text if len(text) <= 60 else text[:57] + "..."

@@ -1,0 +1,319 @@
+"""Elastic bodies in cases: what is read, what is refused and how, and what `vibroimpact modes` writes."""
+
+from __future__ import annotations
+
+import csv
+import json
+import tomllib
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import vibroimpact as vi
+from support import plain_case
+from vibroimpact.cases.build import resolved
+from vibroimpact.cases.build_elastic import elastic_bodies
+from vibroimpact.cli import main
+from vibroimpact.structures.lattice import box_mesh, mesh_of_blocks
+from vibroimpact.structures.supports.bar import Bar
+from vibroimpact.structures.supports.patch import Patch
+
+PLATE = {"size": ["520 mm", "420 mm", "8 mm"], "material": "steel-paper", "model": "elastic", "supports": "clamped", "modes": 4}
+PATCHES = {"type": "patches", "spacing": ["458.4 mm", "360 mm"], "radius": "20 mm"}
+
+
+def plate_case(**changes: Any) -> dict:
+    """A case with an elastic plate; changes are keys of it."""
+    plate = {key: value for key, value in {**PLATE, **changes}.items() if value is not None}
+    return plain_case(plate=plate)
+
+
+FAULTS: list[tuple[dict, str]] = [
+    (plate_case(supports=None), "plate.supports: how is the elastic plate held?"),
+    (plate_case(size=None), "plate.size: an elastic plate needs its length, width and thickness, or a mesh"),
+    (plate_case(material="rigid"), 'plate.material: "rigid" does not deform'),
+    (plate_case(model="rigid"), 'plate.modes: a rigid body does not take it; add model = "elastic"'),
+    (plate_case(supports="clampd"), 'plate.supports: "clampd" is not allowed'),
+    (plate_case(supports="clampd"), 'Did you mean "clamped"?'),
+    (plate_case(supports={"type": "patchs"}), 'plate.supports: there is no support of type "patchs"; there are patches, patch,'),
+    (plate_case(supports=[{"type": "patch", "position": [0, 0]}]), "plate.supports.0: give either radius or size; neither is given"),
+    (plate_case(supports=[PATCHES, {**PATCHES, "radus": 1}]), 'plate.supports.1.radus: unknown key "radus"; it takes spacing, radius'),
+    (plate_case(supports={**PATCHES, "radius": "20 kg"}), 'plate.supports.radius: "20 kg" is a mass'),
+    (
+        plate_case(supports={"type": "edge", "edge": "x", "condition": "clamped"}),
+        "plate.supports.edge: \"x\" is not allowed; it must be 'x-min'",
+    ),
+    (
+        plate_case(supports={"type": "bar", "position": [0, 0], "radius": 0.02, "length": 0.3, "material": "rigid"}),
+        'plate.supports.material: a bar is elastic, and "rigid" has no modulus',
+    ),
+    (plate_case(damping="adams"), 'plate.damping: "adams" is not allowed; it must be a damping ratio'),
+    (plate_case(damping=-0.1), "plate.damping: -0.1 is not allowed; it must be at least 0"),
+    (plate_case(damping={"rayleigh": [1.0]}), "plate.damping.rayleigh: it must be a pair, [a, b]"),
+    (
+        plate_case(damping={"frequencies": [10, 5], "ratios": [0.1, 0.1]}),
+        "plate.damping.frequencies: the frequencies of the table must ascend",
+    ),
+    (plate_case(damping={"frequencies": [10], "ratios": [0.1, 0.1]}), "plate.damping: 1 frequencies and 2 ratios do not make a table"),
+    (plate_case(damping="loss-factor"), "needs a loss_factor of the material, and it has none"),
+    (plate_case(modes=0), "plate.modes: 0 is not allowed"),
+    (plate_case(modes=2.5), "plate.modes: 2.5 is not allowed"),
+    (plate_case(max_frequency="1 kHz"), "plate.modes: give either modes or max_frequency; both are given"),
+    (plate_case(modes=None, max_frequency="1 m"), 'plate.max_frequency: "1 m" is a length'),
+    (plate_case(element="shell"), "plate.element: \"shell\" is not allowed; it must be 'plate' or 'solid'"),
+    (plate_case(mesh={"layers": 2}), 'plate.mesh.layers: element = "plate" does not take it'),
+    (plate_case(element="solid", mesh={"theory": "thin"}), 'plate.mesh.theory: element = "solid" does not take it'),
+    (plate_case(element="solid", mesh={"elements": 100, "element_size": 0.1}), "plate.mesh: give either element_size or elements"),
+    (plate_case(mesh={"elementsize": 0.1}), 'plate.mesh.elementsize: unknown key "elementsize"'),
+    (plate_case(mesh="nowhere.bdf"), "nowhere.bdf: the file can't be read: No such file or directory"),
+    (plate_case(mesh=3), "plate.mesh: 3 is neither the name of a file nor a table"),
+    (plate_case(reduction="guyan"), "plate.reduction: \"guyan\" is not allowed; it must be 'modal' or 'craig-bampton'"),
+    (plain_case(sphere__modes=3), 'sphere.modes: a rigid body does not take it; add model = "elastic"'),
+    (plain_case(sphere__model="elastic", sphere__mesh={"elements_across": 5}), "sphere.mesh.elements_across: 5 is not allowed"),
+    (plain_case(sensors=[{"name": "a", "position": [0, 0], "fce": "upper"}]), 'sensors.0.fce: unknown key "fce"; [sensors.0] takes name,'),
+]
+
+
+@pytest.mark.parametrize(("case", "message"), FAULTS, ids=[message[:50] for _, message in FAULTS])
+def test_wrong_elastic_case(case: dict, message: str) -> None:
+    with pytest.raises(vi.InputError) as raised:
+        vi.read_case(case)
+    assert message in str(raised.value)
+
+
+FOUND_LATER: list[tuple[dict, str]] = [
+    ({"supports": {**PATCHES, "radius": "40 mm"}}, "plate: the patch at (-0.2292, -0.18) m, radius 0.04 m, reaches the edge of the plate"),
+    (
+        {"supports": [{"type": "patch", "position": [x, 0.0], "radius": 0.05} for x in (0.0, 0.08)]},
+        "plate: the patch at (0, 0) m, radius 0.05 m, touches another one",
+    ),
+    ({"supports": {"type": "point", "position": [1.0, 0.0]}}, "plate: the point support at (1, 0) m is"),
+    (
+        {"supports": {"type": "spring", "position": [0.3, 0.0], "stiffness": 1e5}},
+        "plate: (0.3, 0) m is not on the body, which reaches from",
+    ),
+    ({"supports": {"type": "set", "name": "LEGS"}}, 'plate: the mesh has no set "LEGS"; it has no named sets'),
+    ({"modes": 20_000, "mesh": {"element_size": "200 mm"}}, "plate: 20000 modes are not to be had from"),
+    ({"modes": None, "max_frequency": 1.0}, "plate.max_frequency: there is no mode below 1 Hz"),
+]
+
+
+@pytest.mark.parametrize(("changes", "message"), FOUND_LATER, ids=[message[:50] for _, message in FOUND_LATER])
+def test_body_that_cannot_be_made(changes: dict, message: str) -> None:
+    with pytest.raises(vi.InputError) as raised:
+        vi.compute_modes(vi.read_case(plate_case(**changes)))
+    assert message in str(raised.value)
+
+
+def test_too_large_for_the_memory(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("vibroimpact.structures.factor.free_memory", lambda: 1e6)
+    with pytest.raises(vi.InputError, match=r"degrees of freedom need about .* GB of memory to be factorised, and 0.001 GB are free"):
+        vi.compute_modes(vi.read_case(plate_case(modes=5)))
+
+
+def test_rigid_bodies_have_no_modes() -> None:
+    with pytest.raises(vi.InputError, match="no body of the case is elastic"):
+        vi.compute_modes(vi.read_case(plain_case()))
+
+
+def test_drop_of_elastic_bodies_is_not_there_yet() -> None:
+    with pytest.raises(vi.InputError, match=r"plate\.model: a drop of elastic bodies is not simulated yet"):
+        vi.simulate(vi.read_case(plate_case()))
+
+
+@pytest.mark.parametrize(
+    ("supports", "number", "kind"),
+    [
+        ("free", 0, None),
+        ("clamped", 4, None),
+        (PATCHES, 4, Patch),
+        ({**PATCHES, "type": "bars", "length": 0.3, "material": "steel"}, 4, Bar),
+        ([{"type": "edge", "edge": "x-min", "condition": "clamped"}, {"type": "point", "position": [0.1, 0.1]}], 2, None),
+    ],
+)
+def test_supports_and_back(supports: Any, number: int, kind: type | None) -> None:
+    case = vi.read_case(plate_case(supports=supports))
+    found = elastic_bodies(case)["plate"].recipe.supports
+    assert len(found) == number
+    assert kind is None or all(isinstance(support, kind) for support in found)
+    again = vi.read_case(resolved(case))
+    assert elastic_bodies(again)["plate"] == elastic_bodies(case)["plate"]
+
+
+@pytest.mark.parametrize(
+    "damping",
+    [
+        0.02,
+        "adams-default",
+        {"rayleigh": [1.0, 1e-6]},
+        {"loss_factor": 0.01},
+        {"ratios": [0.1, 0.2]},
+        {"frequencies": [1.0, 9.0], "ratios": [0.1, 0.2]},
+    ],
+)
+def test_damping_and_back(damping: Any) -> None:
+    case = vi.read_case(plate_case(damping=damping))
+    assert elastic_bodies(vi.read_case(resolved(case)))["plate"].damping == elastic_bodies(case)["plate"].damping
+
+
+def test_as_many_elements_as_asked() -> None:
+    body = elastic_bodies(vi.read_case(plate_case(element="solid", mesh={"elements": 27304})))["plate"]
+    mesh = body.recipe.shape.mesh(())
+    assert abs(mesh.number_of_elements / 27304 - 1.0) < 1e-3
+    lower, upper = np.unique(mesh.nodes[:, 2])[[0, -1]]
+    assert (lower, upper) == (-0.004, 0.004)
+
+
+def test_named_sets_and_coordinates(tmp_path: Path) -> None:
+    """A plate that is brought, in millimetres, its support, contact and sensor named by sets, is the plate that is made here."""
+    made = box_mesh((520.0, 420.0, 8.0), (13, 10, 1))
+    low = np.flatnonzero(np.abs(made.nodes[:, 0] + 260.0) < 1e-6)
+    top = np.flatnonzero((np.abs(made.nodes[:, :2]).max(axis=1) < 1e-6) & (made.nodes[:, 2] > 0))
+    mesh = vi.Mesh(made.nodes, made.blocks, {"WALL": low, "TOP": top})
+    for name, write in (("plate.bdf", vi.write_nastran), ("plate.inp", vi.write_abaqus)):
+        write(mesh, tmp_path / name)
+        brought = plate_case(
+            supports={"type": "set", "name": "WALL"}, mesh={"file": str(tmp_path / name), "unit": "mm", "contact": "TOP"}, size=None
+        )
+        brought["sensors"] = [{"name": "here", "position": "TOP"}, {"name": "below", "position": [0.1, 0.05], "face": "lower"}]
+        there = vi.compute_modes(vi.read_case(brought))["plate"]
+        case = plate_case(
+            supports={"type": "edge", "edge": "x-min", "condition": "clamped"}, element="solid", mesh={"element_size": 0.0421}
+        )
+        here = vi.compute_modes(vi.read_case(case))["plate"]
+        assert here.model.mesh.number_of_elements == there.model.mesh.number_of_elements == 130
+        np.testing.assert_allclose(there.basis.frequencies, here.basis.frequencies, rtol=1e-7)
+        np.testing.assert_allclose(np.abs(there.basis.contact), np.abs(here.basis.contact), atol=1e-6)
+        np.testing.assert_allclose(there.basis.points["here"][:, 2], there.basis.contact)
+        assert there.doubts == ()
+
+
+def test_a_mesh_in_millimetres_by_mistake_is_doubted(tmp_path: Path) -> None:
+    vi.write_abaqus(box_mesh((520.0, 420.0, 8.0), (4, 3, 1)), tmp_path / "plate.inp")
+    found = vi.compute_modes(vi.read_case(plate_case(mesh=str(tmp_path / "plate.inp"), element=None)))["plate"]
+    (doubt,) = found.doubts
+    assert "weighs 1.372e+10 kg, and what the case describes weighs 13.72 kg" in doubt
+    assert 'if it is in millimetres, give mesh = { file = "...", unit = "mm" }' in doubt
+
+
+def _brought(mesh: vi.Mesh, folder: Path, **changes: Any) -> vi.Case:
+    vi.write_abaqus(mesh, folder / "plate.inp")
+    return vi.read_case(plate_case(mesh=str(folder / "plate.inp"), **changes))
+
+
+def test_inverted_elements_are_refused(tmp_path: Path) -> None:
+    mesh = box_mesh((0.52, 0.42, 0.008), (4, 3, 1), "hex8")
+    nodes = mesh.nodes.copy()
+    inside = np.flatnonzero(np.abs(nodes[:, :2]).max(axis=1) < 0.2)[0]
+    nodes[inside, 0] += 0.3
+    with pytest.raises(vi.InputError, match=r"plate: \d of 12 elements are inverted or folded .*: number \d+"):
+        vi.compute_modes(_brought(vi.Mesh(nodes, mesh.blocks), tmp_path))
+
+
+def test_loose_parts_are_refused(tmp_path: Path) -> None:
+    side = np.linspace(0.0, 0.1, 3)
+    one = np.stack(np.meshgrid(side, side, side, indexing="ij"), axis=-1)
+    mesh = mesh_of_blocks([one, one + np.array([0.5, 0.0, 0.0])], "hex20")
+    with pytest.raises(vi.InputError, match="the mesh consists of 2 loose parts that share no node"):
+        vi.compute_modes(_brought(mesh, tmp_path))
+
+
+def test_a_contact_point_off_the_body_is_refused(tmp_path: Path) -> None:
+    case = plate_case(mesh=str(tmp_path / "plate.inp"), size=None)
+    case["drop"]["position"] = [0.3, 0.0]
+    vi.write_abaqus(box_mesh((0.52, 0.42, 0.008), (4, 3, 1)), tmp_path / "plate.inp")
+    with pytest.raises(vi.InputError, match=r"plate: \(0.3, 0\) m is not on the body, which reaches from -0.26 to 0.26 m along x"):
+        vi.compute_modes(vi.read_case(case))
+
+
+def test_a_plate_that_would_fall_is_doubted() -> None:
+    for supports, held in (("free", False), ("clamped", True), ({"type": "edge", "edge": "x-min", "condition": "simply-supported"}, False)):
+        found = vi.compute_modes(vi.read_case(plate_case(supports=supports)))["plate"]
+        assert found.model.is_held_vertically is held
+        assert bool(found.doubts) is not held
+    springs = [{"type": "spring", "position": [x, y], "stiffness": 1e5} for x, y in ((-0.2, -0.1), (0.2, -0.1), (0.0, 0.15))]
+    found = vi.compute_modes(vi.read_case(plate_case(supports=springs)))["plate"]
+    assert found.model.is_held_vertically
+    assert len(found.model.left) == 3
+
+
+# the command ------------------------------------------------------------------------------------------
+
+
+def command(monkeypatch: pytest.MonkeyPatch, *arguments: str) -> int:
+    monkeypatch.setattr("sys.argv", ["vibroimpact", *arguments])
+    try:
+        main()
+    except SystemExit as left:
+        return int(left.code or 0)
+    return 0
+
+
+def rows_of(path: Path) -> Sequence[dict[str, str]]:
+    with path.open(encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def test_modes_command(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    import tomli_w
+
+    case = plate_case(supports=PATCHES, damping="adams-default", modes=14)
+    case["sphere"] |= {"model": "elastic", "modes": 6, "mesh": {"elements_across": 4}}
+    case["sensors"] = [{"name": "a1", "position": [0.1, 0.05]}]
+    (tmp_path / "case.toml").write_text(tomli_w.dumps(case))
+    monkeypatch.chdir(tmp_path)
+    assert command(monkeypatch, "modes", "case.toml", "-o", "out") == 0
+    printed = capsys.readouterr().out
+    assert "Adams' default" in printed
+    assert "rigid motions" in printed
+    out = tmp_path / "out"
+    rows = rows_of(out / "modes.csv")
+    assert list(rows[0])[:4] == ["body", "mode", "frequency_Hz", "damping_ratio"]
+    assert [(row["body"], row["mode"]) for row in rows[5:7]] == [("sphere", "6"), ("plate", "1")]
+    assert len(rows) == 20
+    assert len(rows_of(out / "points.csv")) == 14
+    summary = json.loads((out / "summary.json").read_text())["modes"]["plate"]
+    assert summary["mass_kg"] == pytest.approx(0.52 * 0.42 * 0.008 * 7850)
+    assert summary["frequencies_Hz"] == [float(row["frequency_Hz"]) for row in rows[6:]]
+    assert {file.name for file in out.iterdir()} == {
+        *("case.toml", "modes.csv", "points.csv", "summary.json", "figures"),
+        *(f"{body}.{suffix}" for body in ("sphere", "plate") for suffix in ("bdf", "inp", "vtu")),
+    }
+    assert (out / "figures" / "plate_modes.png").stat().st_size > 20_000
+    # the case written is the case: nothing is computed again
+    monkeypatch.setattr("vibroimpact.structures.recipe.computed_model", lambda *given: pytest.fail("computed again"))
+    assert command(monkeypatch, "modes", "out/case.toml", "-o", "again") == 0
+    assert (tmp_path / "again" / "modes.csv").read_bytes() == (out / "modes.csv").read_bytes()
+    assert tomllib.loads((out / "case.toml").read_text())["plate"]["damping"] == "adams-default"
+    capsys.readouterr()
+    # a folder that is there is not overwritten, and check says what is known
+    assert command(monkeypatch, "modes", "case.toml", "-o", "out") == 2
+    assert "replace it with --force" in capsys.readouterr().err
+    assert command(monkeypatch, "check", "case.toml") == 0
+    assert "computed already" in capsys.readouterr().out
+    assert command(monkeypatch, "report", "out") == 2
+    assert "these are modes of elastic bodies" in capsys.readouterr().err
+
+
+def test_the_meshes_written_are_those_of_the_modes(tmp_path: Path) -> None:
+    """A solid plate written for Nastran, and brought back, has the same frequencies."""
+    case = vi.read_case(plate_case(element="solid", mesh={"element_size": 0.06}))
+    modes = vi.compute_modes(case)
+    vi.save_modes(case, modes, tmp_path / "out")
+    for name in ("plate.bdf", "plate.inp"):
+        brought = vi.read_case(plate_case(mesh=str(tmp_path / "out" / name)))
+        again = vi.compute_modes(brought)["plate"]
+        np.testing.assert_allclose(again.basis.frequencies, modes["plate"].basis.frequencies, rtol=1e-8)
+
+
+def test_relative_mesh_files_lie_beside_the_case(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    import tomli_w
+
+    (tmp_path / "there").mkdir()
+    vi.write_abaqus(box_mesh((0.52, 0.42, 0.008), (4, 3, 1)), tmp_path / "there" / "plate.inp")
+    (tmp_path / "there" / "case.toml").write_text(tomli_w.dumps(plate_case(mesh="plate.inp")))
+    monkeypatch.chdir(tmp_path)
+    assert vi.load_case("there/case.toml").plate.mesh.file == str(tmp_path / "there" / "plate.inp")
