@@ -108,7 +108,7 @@ def modes(
     except KeyboardInterrupt:
         _fail("interrupted; nothing was written", 130)
     console.print(modes_summary(found, bodies))
-    typer.echo(f"wrote {folder / 'modes.csv'}")
+    typer.echo(f"wrote {folder / 'modes.csv'}, and pictures and meshes beside it")
 
 
 @app.command()
@@ -245,6 +245,10 @@ def main() -> None:
         _fail(str(error), 2)
     except ComputationError as error:
         _fail(str(error), 1)
+    except MemoryError:
+        _fail("there is not enough memory for this; use larger elements, or ask for less", 1)
+    except KeyboardInterrupt:
+        _fail("interrupted; nothing was written", 130)
     except BrokenPipeError:
         # the reader of our output has gone; leave quietly, as other tools do
         sys.stderr.close()

@@ -27,7 +27,7 @@ def diagnose() -> list[tuple[str, str]]:
         ("platform", platform.platform()),
         ("processors", str(os.cpu_count())),
         ("memory free", f"{free_memory() / 1e9:.3g} GB"),
-        ("store of modes", f"{len(entries())} entries, {store_size() / 1e6:.3g} MB, in {store_folder()}"),
+        ("store of modes", _store()),
     ]
     for requirement in requires("vibroimpact") or []:
         name, _, marker = requirement.partition(";")
@@ -38,6 +38,13 @@ def diagnose() -> list[tuple[str, str]]:
         except PackageNotFoundError:
             rows.append((name, f'not installed; pip install "vibroimpact[{extra}]"' if extra else "missing"))
     return rows
+
+
+def _store() -> str:
+    folder = store_folder()
+    if os.path.lexists(folder) and not (folder.is_dir() and os.access(folder, os.W_OK)):
+        return f"{folder} is not a folder that can be written to: modes are not kept"
+    return f"{len(entries())} entries, {store_size() / 1e6:.3g} MB, in {folder}"
 
 
 def first_rebound_error() -> float:

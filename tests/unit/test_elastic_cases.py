@@ -85,15 +85,18 @@ def test_wrong_elastic_case(case: dict, message: str) -> None:
 
 
 FOUND_LATER: list[tuple[dict, str]] = [
-    ({"supports": {**PATCHES, "radius": "40 mm"}}, "plate: the patch at (-0.2292, -0.18) m, radius 0.04 m, reaches the edge of the plate"),
+    (
+        {"supports": {**PATCHES, "radius": "40 mm"}},
+        "plate: the round support at (-0.2292, -0.18) m, radius 0.04 m, does not lie wholly on the plate, which reaches from -0.26",
+    ),
     (
         {"supports": [{"type": "patch", "position": [x, 0.0], "radius": 0.05} for x in (0.0, 0.08)]},
-        "plate: the patch at (0, 0) m, radius 0.05 m, touches another one",
+        "plate: the round support at (0, 0) m, radius 0.05 m, is too near to another one",
     ),
-    ({"supports": {"type": "point", "position": [1.0, 0.0]}}, "plate: the point support at (1, 0) m is"),
+    ({"supports": {"type": "point", "position": [1.0, 0.0]}}, "plate: point (1, 0) m held along z: (1, 0) m is not on the body"),
     (
         {"supports": {"type": "spring", "position": [0.3, 0.0], "stiffness": 1e5}},
-        "plate: (0.3, 0) m is not on the body, which reaches from",
+        "plate: spring of 100000 N/m at (0.3, 0) m: (0.3, 0) m is not on the body, which reaches from",
     ),
     ({"supports": {"type": "set", "name": "LEGS"}}, 'plate: the mesh has no set "LEGS"; it has no named sets'),
     ({"modes": 20_000, "mesh": {"element_size": "200 mm"}}, "plate: 20000 modes are not to be had from"),
@@ -110,8 +113,40 @@ def test_body_that_cannot_be_made(changes: dict, message: str) -> None:
 
 def test_too_large_for_the_memory(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("vibroimpact.structures.factor.free_memory", lambda: 1e6)
-    with pytest.raises(vi.InputError, match=r"degrees of freedom need about .* GB of memory to be factorised, and 0.001 GB are free"):
+    with pytest.raises(vi.InputError, match=r"the factors of .* degrees of freedom need about .* GB of memory, and 0.001 GB are free"):
         vi.compute_modes(vi.read_case(plate_case(modes=5)))
+
+
+@pytest.mark.parametrize(
+    ("mesh", "message"),
+    [({"element_size": "1 um"}, "would be more than 2000000"), ({"elements": 1_000_000_000}, "would be more than 2000000")],
+)
+def test_far_too_many_elements_are_refused_before_they_are_made(mesh: dict, message: str) -> None:
+    with pytest.raises(vi.InputError, match=message):
+        vi.compute_modes(vi.read_case(plate_case(element="solid", mesh=mesh)))
+
+
+@pytest.mark.parametrize(
+    ("changes", "doubt"),
+    [
+        ({"element": "solid", "mesh": {"kind": "hex8"}}, "elements of first order, which are far too stiff in bending"),
+        ({"damping": 2}, "the damping of the plate is critical or more; a ratio of 0.01 is 1 %"),
+        ({"size": [0.5, 0.4, 0.2]}, "shorter than 4 thicknesses"),
+        ({"size": [520, 420, 8]}, 'write "520 mm", as a bare number is in metres'),
+    ],
+)
+def test_what_is_probably_not_meant_is_doubted(changes: dict, doubt: str) -> None:
+    found = vi.compute_modes(vi.read_case(plate_case(**changes)))["plate"]
+    assert any(doubt in one for one in found.doubts)
+
+
+def test_a_graded_sphere_has_more_elements_or_is_doubted() -> None:
+    sphere = {"radius": 0.025, "material": "rock-paper", "model": "elastic", "modes": 5, "mesh": {"grading": 4}}
+    shape = elastic_bodies(vi.read_case(plain_case(sphere=sphere)))["sphere"].recipe.shape
+    assert shape.elements_across == 16
+    coarse = {**sphere, "mesh": {"grading": 4, "elements_across": 8}}
+    (doubt,) = vi.compute_modes(vi.read_case(plain_case(sphere=coarse)))["sphere"].doubts
+    assert "its elements are too large" in doubt
 
 
 def test_rigid_bodies_have_no_modes() -> None:
@@ -141,6 +176,7 @@ def test_supports_and_back(supports: Any, number: int, kind: type | None) -> Non
     assert kind is None or all(isinstance(support, kind) for support in found)
     again = vi.read_case(resolved(case))
     assert elastic_bodies(again)["plate"] == elastic_bodies(case)["plate"]
+    assert resolved(case)["plate"]["mesh"]["element_size"] > 0  # what was chosen is said
 
 
 @pytest.mark.parametrize(
@@ -225,7 +261,9 @@ def test_a_contact_point_off_the_body_is_refused(tmp_path: Path) -> None:
     case = plate_case(mesh=str(tmp_path / "plate.inp"), size=None)
     case["drop"]["position"] = [0.3, 0.0]
     vi.write_abaqus(box_mesh((0.52, 0.42, 0.008), (4, 3, 1)), tmp_path / "plate.inp")
-    with pytest.raises(vi.InputError, match=r"plate: \(0.3, 0\) m is not on the body, which reaches from -0.26 to 0.26 m along x"):
+    with pytest.raises(
+        vi.InputError, match=r"plate: the contact point: \(0.3, 0\) m is not on the body, which reaches from -0.26 to 0.26 m along x"
+    ):
         vi.compute_modes(vi.read_case(case))
 
 

@@ -15,10 +15,11 @@ from vibroimpact.structures.recipe import PlateOfPlates, PlateOfSolids, Recipe, 
 from vibroimpact.structures.supports.support import Support
 from vibroimpact.structures.surface import Side, Spot
 
+_PER_WAVE = 3.0  # second-order bricks along the shortest shear wave
 _ACROSS = 8  # elements from pole to pole: the lowest modes to 0.03 %
 _SOLID_STEP, _PLATE_STEP = 0.25, 0.6  # of the shortest bending wave: sides of second-order bricks, and of the plate element
-_SIDE = 6  # plate elements along the shorter side, at least
-_SOLID_SIDE = 24  # bricks along the shorter side, at least
+_SIDE = 7  # plate elements along the longer side, at least
+_SOLID_SIDE = 30  # bricks along the longer side, at least
 
 
 @dataclass(frozen=True)
@@ -78,7 +79,7 @@ def sphere_recipe(radius: float, material: Material, reduction: Reduction, shape
     """
     if shape is None:
         wave_number = _shear_wave_number(radius, material, reduction) * radius
-        across = max(_ACROSS, 2 * math.ceil(4.0 * wave_number / (2.0 * math.pi)))
+        across = max(_ACROSS, 2 * math.ceil(_PER_WAVE * wave_number / (2.0 * math.pi)))
         shape = SphereOfSolids(radius, across)
     return _recipe(shape, material, reduction)
 
@@ -112,12 +113,12 @@ def plate_recipe(
     --------
     >>> from vibroimpact.materials import find_material
     >>> plate_recipe((0.52, 0.42, 0.008), find_material("steel-paper"), Reduction(modes=20)).shape
-    PlateOfPlates(size=(0.52, 0.42, 0.008), element_size=0.07, theory='thick')
+    PlateOfPlates(size=(0.52, 0.42, 0.008), element_size=0.0743, theory='thick')
     """
     if not mesh.get("element_size"):
         wave = 2.0 * math.pi / _bending_wave_number(size, material, reduction)
         step, least = (_PLATE_STEP, _SIDE) if element == "plate" else (_SOLID_STEP, _SOLID_SIDE)
-        mesh["element_size"] = float(f"{min(step * wave, min(size[:2]) / least):.3g}")
+        mesh["element_size"] = float(f"{min(step * wave, max(size[:2]) / least):.3g}")
     kind = PlateOfPlates if element == "plate" else PlateOfSolids
     return replace(_recipe(kind(size=size, **mesh), material, reduction), supports=supports)
 
@@ -138,11 +139,16 @@ def _shear_wave_number(radius: float, material: Material, reduction: Reduction) 
     )  # Weyl's count of modes in a ball, V k^3 / (6 pi^2) for each of three waves
 
 
+def shortest_bending_wave(thickness: float, material: Material, frequency: float) -> float:
+    """Return the length [m] of bending waves in a thin plate at a frequency [Hz], by Kirchhoff's theory."""
+    rigidity = material.youngs_modulus * thickness**3 / (12.0 * (1.0 - material.poissons_ratio**2))
+    return float(2.0 * math.pi * (rigidity / (material.density * thickness * (2.0 * math.pi * frequency) ** 2)) ** 0.25)
+
+
 def _bending_wave_number(size: tuple[float, float, float], material: Material, reduction: Reduction) -> float:
     """Return the wave number [1/m] of bending waves at the highest frequency asked for."""
     length, width, thickness = size
     if reduction.modes is None:
-        rigidity = material.youngs_modulus * thickness**3 / (12.0 * (1.0 - material.poissons_ratio**2))
-        angular = 2.0 * math.pi * (reduction.max_frequency or 0.0)
-        return float((angular**2 * material.density * thickness / rigidity) ** 0.25)
-    return math.sqrt(4.0 * math.pi * (reduction.modes + 4) / (length * width))  # Weyl's count of modes of an area, A k^2 / (4 pi)
+        return 2.0 * math.pi / shortest_bending_wave(thickness, material, reduction.max_frequency or 0.0)
+    of_area = math.sqrt(4.0 * math.pi * (reduction.modes + 4) / (length * width))  # Weyl's count, A k^2 / (4 pi)
+    return min(of_area, math.pi * (reduction.modes + 4) / max(length, width))  # a narrow plate has the modes of a beam

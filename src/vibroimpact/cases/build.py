@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import fields
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 from vibroimpact.bodies.plate import rigid_plate
 from vibroimpact.bodies.sphere import rigid_sphere
-from vibroimpact.cases.build_elastic import elastic_bodies
-from vibroimpact.cases.damping_field import damping_table
+from vibroimpact.cases.build_elastic import elastic_bodies, elastic_table
 from vibroimpact.cases.material_field import material_table
-from vibroimpact.cases.supports_field import supports_table
 from vibroimpact.contact.law import CompliantLaw, ContactLaw, find_contact_law, loses_nothing
 from vibroimpact.contact.pair import ContactPair, effective_modulus
 from vibroimpact.dynamics.problem import Problem
@@ -126,8 +124,8 @@ def resolved(case: Case) -> dict[str, Any]:
     return {
         "schema_version": case.schema_version,
         "name": case.name,
-        "sphere": _body(case.sphere),
-        "plate": _body(case.plate),
+        "sphere": _body(case, "sphere"),
+        "plate": _body(case, "plate"),
         "drop": {**case.drop.model_dump(exclude_none=True), "position": list(case.drop.position)},
         "contact": contact,
         "run": {**case.run.model_dump(exclude_none=True, exclude={"impacts"}), "impacts": "all" if number is None else number},
@@ -135,16 +133,14 @@ def resolved(case: Case) -> dict[str, Any]:
     }
 
 
-def _body(section: SphereSection | PlateSection) -> dict[str, Any]:
+def _body(case: Case, name: Literal["sphere", "plate"]) -> dict[str, Any]:
     """Return a body in full, without what its model does not have."""
+    section: SphereSection | PlateSection = getattr(case, name)
     found = section.model_dump(exclude_none=True, exclude={"material", "supports", "damping", "mesh"})
     if section.model == "rigid":
         found = {key: found[key] for key in ("radius", "size", "model") if key in found}
-    elif section.mesh is not None:
-        found["mesh"] = section.mesh.model_dump(exclude_none=True)
-    for key, table in (("damping", damping_table), ("supports", supports_table)):
-        if getattr(section, key, None) is not None:
-            found[key] = table(getattr(section, key))
+    else:
+        found |= elastic_table(case, name)
     if "size" in found:
         found["size"] = list(found["size"])
     return {**found, "material": material_table(section.material)}

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 from vibroimpact.bodies.elastic import ElasticBody, plate_recipe, sphere_recipe
-from vibroimpact.cases.damping_field import damping_of
+from vibroimpact.cases.damping_field import damping_of, damping_table
 from vibroimpact.cases.elastic_fields import BroughtMeshTable, PlateMeshTable, SphereMeshTable, reduction_of
-from vibroimpact.cases.supports_field import supports_of
+from vibroimpact.cases.supports_field import supports_of, supports_table
 from vibroimpact.errors import InputError
-from vibroimpact.structures.recipe import Recipe, SphereOfSolids
+from vibroimpact.structures.recipe import BroughtMesh, Recipe, SphereOfSolids, to_follow
+from vibroimpact.structures.rectangle import rectangle_blocks
+from vibroimpact.structures.supports.support import Support
 from vibroimpact.structures.surface import Spot
 
 if TYPE_CHECKING:
@@ -35,6 +37,25 @@ def elastic_bodies(case: Case) -> dict[str, ElasticBody]:
     return found
 
 
+def elastic_table(case: Case, name: Literal["sphere", "plate"]) -> dict[str, Any]:
+    """Return the keys of an elastic body with what was chosen for it: its mesh, its modes and its damping."""
+    section, body = getattr(case, name), elastic_bodies(case)[name]
+    shape, reduction = body.recipe.shape, body.recipe.reduction
+    damping = body.damping if section.damping is None else section.damping
+    table: dict[str, Any] = {"reduction": reduction.method, "damping": damping_table(damping)}
+    if reduction.modes:
+        table["modes"] = reduction.modes
+    if isinstance(shape, BroughtMesh):
+        table["mesh"] = section.mesh.model_dump(exclude_none=True)
+    else:
+        table["mesh"] = {key: value for key, value in vars(shape).items() if key not in ("radius", "size")}
+    if name == "plate":
+        table["supports"] = supports_table(section.supports)
+        if not isinstance(shape, BroughtMesh):
+            table["element"] = section.element or "plate"
+    return table
+
+
 def _sphere(case: Case) -> ElasticBody:
     section, mesh = case.sphere, case.sphere.mesh
     contact = mesh.contact if isinstance(mesh, BroughtMeshTable) else None
@@ -44,7 +65,7 @@ def _sphere(case: Case) -> ElasticBody:
     if isinstance(mesh, SphereMeshTable):
         default = recipe.shape
         assert isinstance(default, SphereOfSolids)
-        across = mesh.elements_across or default.elements_across
+        across = mesh.elements_across or 2 * math.ceil(0.5 * default.elements_across * math.sqrt(mesh.grading))
         recipe = sphere_recipe(section.radius, section.material, reduction, SphereOfSolids(section.radius, across, mesh.kind, mesh.grading))
     return ElasticBody(recipe, "lower", contact, damping_of(section.damping, section.material.loss_factor))
 
@@ -69,16 +90,18 @@ def _plate_recipe(case: Case, contact: Spot) -> Recipe:
     element = section.element or "plate"
     options = mesh.model_dump(exclude_none=True, exclude={"elements"}) if isinstance(mesh, PlateMeshTable) else {}
     if isinstance(mesh, PlateMeshTable) and mesh.elements:
-        options |= _about(section.size, mesh.elements, mesh.layers)
+        options |= _about(section.size, mesh.elements, mesh.layers, supports)
     return plate_recipe(section.size, material, reduction, supports, element, **options)
 
 
-def _about(size: tuple[float, float, float], elements: int, layers: int | None) -> dict[str, Any]:
+def _about(size: tuple[float, float, float], elements: int, layers: int | None, supports: tuple[Support, ...]) -> dict[str, Any]:
     """Return the side of an element, and the layers, with which a plate has about so many of them, cubes if may be."""
     layers = layers or max(1, round(size[2] * (elements / math.prod(size)) ** (1.0 / 3.0)))
-    guess = math.sqrt(size[0] * size[1] * layers / elements)
-
-    def miss(side: float) -> float:
-        return abs(math.ceil(size[0] / side - 1e-9) * math.ceil(size[1] / side - 1e-9) * layers - elements)
-
-    return {"element_size": min((guess * (1.0 + 1e-3 * step) for step in range(-100, 101)), key=miss), "layers": layers}
+    side = math.sqrt(size[0] * size[1] * layers / elements)
+    tried: dict[float, float] = {}
+    for _ in range(8):  # the count goes as 1 / side^2, but for the elements around patches and for rounding
+        blocks = rectangle_blocks(size[:2], side, 1, *to_follow(supports))
+        count = layers * sum((block.shape[0] - 1) * (block.shape[1] - 1) for block in blocks)
+        tried[side] = abs(count - elements)
+        side *= math.sqrt(count / elements)
+    return {"element_size": min(tried, key=lambda one: tried[one]), "layers": layers}

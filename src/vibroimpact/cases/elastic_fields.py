@@ -16,6 +16,7 @@ from vibroimpact.ranges import Range
 from vibroimpact.structures.lattice import SOLID_KINDS
 from vibroimpact.structures.mesh import Mesh
 from vibroimpact.structures.recipe import BroughtMesh, Place, Reduction
+from vibroimpact.structures.sphere_mesh import MOST_ACROSS
 
 MOST_MODES = 20_000
 DEFAULT_MODES = {"sphere": 20, "plate": 100}
@@ -58,13 +59,17 @@ class BroughtMeshTable(Section):
         """Read the mesh [m]."""
         from vibroimpact.exchange.mesh_file import read_mesh
 
-        return read_mesh(self.file, self.unit, self.element_size)
+        try:
+            return read_mesh(self.file, self.unit, self.element_size)
+        except InputError as error:
+            key = {"size": "mesh.element_size", "unit_in_metres": "mesh.unit"}.get(error.key, "mesh")
+            raise InputError(error.message, key) from None
 
 
 class SphereMeshTable(Section):
     """The mesh of a sphere made here."""
 
-    elements_across: Annotated[int, Field(ge=4, multiple_of=2, strict=True)] | None = Field(
+    elements_across: Annotated[int, Field(ge=4, le=MOST_ACROSS, multiple_of=2, strict=True)] | None = Field(
         None, description="elements from pole to pole, even and at least 4"
     )
     kind: Kind = Field("hex27", description="kind of element")
@@ -95,6 +100,8 @@ def _mesh_reader(kind: type[Section]) -> Any:
         if isinstance(value, Section) or value is None:
             return value
         if isinstance(value, str):
+            if not value.strip():
+                raise InputError("the name of the file is empty")
             return BroughtMeshTable(file=value)
         if isinstance(value, dict):
             return read_table(BroughtMeshTable if "file" in value else kind, value)

@@ -43,9 +43,10 @@ def explained(error: ValidationError, section_at: SectionAt) -> Iterator[tuple[s
         elif kind in ("model_type", "dict_type"):
             yield path, f"{shown} is not a table"
         elif kind in ("tuple_type", "too_long", "too_short"):
-            yield path, f"{shown} does not have the right number of values; it takes {_about(where, section_at).removeprefix(': ')}"
+            about = _about(where, section_at).removeprefix(": ")
+            yield path, f"{shown} does not have the right number of values" + (f"; it takes {about}" if about else "")
         else:
-            yield path, f"{shown} is not allowed; {fault['msg'][0].lower()}{fault['msg'][1:]}"
+            yield path, f"{shown} is not allowed; {fault['msg'].replace('Input should', 'it must')}"
 
 
 def _is_branch(part: str) -> bool:

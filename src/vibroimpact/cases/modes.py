@@ -7,9 +7,10 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from vibroimpact.bodies.elastic import ElasticBody
+from vibroimpact.bodies.elastic import ElasticBody, shortest_bending_wave
 from vibroimpact.cases.build_elastic import elastic_bodies
 from vibroimpact.errors import InputError
+from vibroimpact.structures.damping import ConstantRatio, RatioOfEach, RatioTable
 from vibroimpact.structures.modal_model import ModalBasis, ModalModel
 from vibroimpact.structures.recipe import BroughtMesh, modal_model_of
 
@@ -17,6 +18,8 @@ if TYPE_CHECKING:
     from vibroimpact.cases.schema import Case
 
 _WEIGHT_OFF = 0.05  # relative: a mesh whose volume differs more from that of the case is doubted
+_MESH_OFF = 0.005  # relative: a mesh made here with less of the body's mass is too coarse
+_THICK = 4.0  # thicknesses: plates whose waves are shorter are no longer plates
 _LARGE = 50.0  # m: a body larger than this is probably in millimetres
 
 
@@ -85,26 +88,40 @@ def compute_modes(
 
         try:
             model = modal_model_of(body.recipe, told, tell)
-            found[name] = BodyModes(body, model, body.basis(model), tuple(_doubts(case, name, body, model)))
+            basis = body.basis(model)
+            found[name] = BodyModes(body, model, basis, tuple(_doubts(case, name, body, model, basis)))
         except InputError as error:
             raise InputError(error.message, ".".join(part for part in (name, error.key) if part)) from None
     return found
 
 
-def _doubts(case: Case, name: str, body: ElasticBody, model: ModalModel) -> Iterator[str]:
-    """Say where a plate would fall, and where a mesh that was brought does not look like the body of the case."""
+def _doubts(case: Case, name: str, body: ElasticBody, model: ModalModel, basis: ModalBasis) -> Iterator[str]:
+    """Say where a plate would fall, and where a mesh or a damping does not look like what was meant."""
     if name == "plate" and not model.is_held_vertically:
         yield "the plate is not held: its supports let it fall or tilt, and a drop needs a plate that is held"
-    if isinstance(body.recipe.shape, BroughtMesh):
-        extent = model.mesh.extent
-        size = " x ".join(f"{side:.3g}" for side in extent)
-        said = f"the mesh of the {name} is {size} m large and weighs {model.properties.mass:.4g} kg"
-        hint = '; if it is in millimetres, give mesh = { file = "...", unit = "mm" }' if extent.max() > _LARGE else ""
-        volume = (
-            4.0 / 3.0 * math.pi * case.sphere.radius**3 if name == "sphere" else math.prod(case.plate.size) if case.plate.size else None
-        )
-        expected = body.recipe.density * (volume or math.nan)
-        if abs(model.properties.mass / expected - 1.0) > _WEIGHT_OFF:
-            yield f"{said}, and what the case describes weighs {expected:.4g} kg{hint}"
-        elif volume is None and hint:
-            yield said + hint
+    yield from _doubts_of_mass(case, name, body, model)
+    if any(block.element.order == 1 for block in model.mesh.blocks):
+        yield f"the mesh of the {name} has elements of first order, which are far too stiff in bending; take second order"
+    if isinstance(body.damping, (ConstantRatio, RatioOfEach, RatioTable)) and basis.damping_ratios.max() >= 1.0:
+        yield f"the damping of the {name} is critical or more; a ratio of 0.01 is 1 %"
+    if model.thickness:
+        wave = shortest_bending_wave(model.thickness, case.plate.material, float(model.frequencies[-1]))
+        if wave < _THICK * model.thickness:
+            yield (
+                f"the bending waves of the highest modes are {wave:.2g} m long, shorter than {_THICK:g} thicknesses, where plate elements "
+                'are no longer to be trusted; take element = "solid"'
+            )
+
+
+def _doubts_of_mass(case: Case, name: str, body: ElasticBody, model: ModalModel) -> Iterator[str]:
+    brought, extent = isinstance(body.recipe.shape, BroughtMesh), model.mesh.extent
+    size = " x ".join(f"{side:.3g}" for side in (*extent[:2], model.thickness or extent[2]))
+    said = f"the mesh of the {name} is {size} m large and weighs {model.properties.mass:.4g} kg"
+    remedy = 'give mesh = { file = "...", unit = "mm" }' if brought else 'write "520 mm", as a bare number is in metres'
+    hint = f"; if it is in millimetres, {remedy}" if extent.max() > _LARGE else ""
+    volume = 4.0 / 3.0 * math.pi * case.sphere.radius**3 if name == "sphere" else math.prod(case.plate.size) if case.plate.size else None
+    expected = body.recipe.density * (volume or math.nan)
+    if abs(model.properties.mass / expected - 1.0) > (_WEIGHT_OFF if brought else _MESH_OFF):
+        yield f"{said}, and what the case describes weighs {expected:.4g} kg{hint or ('' if brought else '; its elements are too large')}"
+    elif hint:
+        yield said + hint

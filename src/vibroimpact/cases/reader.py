@@ -103,7 +103,7 @@ def _beside(table: dict[str, Any], folder: Path) -> dict[str, Any]:
         section = table.get(body)
         mesh = section.get("mesh") if isinstance(section, dict) else None
         file = mesh.get("file") if isinstance(mesh, dict) else mesh
-        if isinstance(section, dict) and isinstance(file, str):
+        if isinstance(section, dict) and isinstance(file, str) and file.strip():
             path = str((folder / file).absolute())
             section["mesh"] = {**mesh, "file": path} if isinstance(mesh, dict) else path
     return table

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, StrictBool, model_validator
@@ -10,6 +11,7 @@ from vibroimpact.cases.build import problem_of
 from vibroimpact.cases.contact_section import ContactSection, contact_schema, read_contact
 from vibroimpact.cases.damping_field import DampingField
 from vibroimpact.cases.elastic_fields import (
+    BroughtMeshTable,
     FrequencyField,
     MethodField,
     ModesField,
@@ -156,11 +158,15 @@ class Case(Section):
             )
         if height is not None and self.drop.gravity == 0:
             raise InputError("without gravity a sphere does not fall; give drop.speed instead of drop.height", "drop.gravity")
-        if size is not None and any(abs(at) > 0.5 * length for at, length in zip(self.drop.position, size[:2], strict=True)):
+        in_own_coordinates = isinstance(self.plate.mesh, BroughtMeshTable)
+        reach = [0.5 * length for length in size[:2]] if size and not in_own_coordinates else [math.inf, math.inf]
+        if any(abs(at) > end for at, end in zip(self.drop.position, reach, strict=True)):
             x, y = self.drop.position
-            raise InputError(
-                f"({x:g}, {y:g}) m lies outside the plate, which reaches to ({size[0] / 2:g}, {size[1] / 2:g}) m", "drop.position"
-            )
+            raise InputError(f"({x:g}, {y:g}) m lies outside the plate, which reaches to ({reach[0]:g}, {reach[1]:g}) m", "drop.position")
+        names = [sensor.name for sensor in self.sensors]
+        twice = next((name for name in names if names.count(name) > 1), None)
+        if twice is not None:
+            raise InputError(f'two sensors are called "{twice}"; each needs a name of its own', "sensors")
         return self
 
     def to_problem(self) -> Problem:

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from itertools import product
 from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import AfterValidator, BeforeValidator, Field, StringConstraints, WithJsonSchema, model_validator
+from pydantic import AfterValidator, BeforeValidator, Field, WithJsonSchema, model_validator
 
 from vibroimpact.cases.material_field import MaterialField, material_table
 from vibroimpact.cases.quantities import Quantity
@@ -25,6 +25,7 @@ from vibroimpact.structures.supports.support import Support
 _Length = Annotated[float, Quantity("m", "length", Range(above=0))]
 _Position = tuple[Annotated[float, Quantity("m", "x")], Annotated[float, Quantity("m", "y")]]
 _Radius = Annotated[float, Quantity("m", "radius", Range(above=0))]
+_Directions = Literal["x", "y", "z", "xy", "xz", "yz", "xyz"]
 _Spacing = tuple[_Length, _Length]
 
 WORDS = ("free", "clamped", "simply-supported")
@@ -133,13 +134,14 @@ class EdgeTable(_Table):
 class PointTable(_Table):
     """A pinned point."""
 
-    what = "a point of the lower side, pinned"
+    what = "a point of the lower side, held along some axes"
     type: Literal["point"] = "point"
     position: _Position
+    directions: _Directions = Field("z", description="the axes along which it is held")
 
     def made(self) -> tuple[Support, ...]:
         """Return the point."""
-        return (Point(*self.position),)
+        return (Point(*self.position, self.directions),)
 
 
 class SpringTable(_Table):
@@ -163,7 +165,7 @@ class SetTable(_Table):
     what = "a named set of nodes or elements of a mesh that was brought, held still along some axes"
     type: Literal["set"] = "set"
     name: str = Field(description="of the set")
-    directions: Annotated[str, StringConstraints(pattern=r"^[xyz]{1,3}$")] = Field("xyz", description="the axes along which it is held")
+    directions: _Directions = Field("xyz", description="the axes along which it is held")
 
     def made(self) -> tuple[Support, ...]:
         """Return the set."""
@@ -198,6 +200,8 @@ def _read_supports(value: Any) -> Any:
 def _read_one(value: Any) -> _Table:
     name = value.get("type") if isinstance(value, dict) else None
     if not isinstance(name, str) or name not in _TABLES:
+        if value in WORDS:
+            raise InputError(f'"{value}" stands alone, without a list: supports = "{value}"')
         shown = f'there is no support of type "{name}"' if name is not None else "a support is a table with a type"
         raise InputError(f"{shown}; there are {', '.join(_TABLES)}.{did_you_mean(str(name), _TABLES)}")
     return read_table(_TABLES[name], value)

@@ -9,7 +9,7 @@ import sys
 
 MARK = "vibroimpact could not make a mesh: "
 MOST_ELEMENTS = 3_000_000
-DEFAULT_FRACTION = 20
+DEFAULT_FRACTION = 12
 
 
 def make_mesh(geometry: str, mesh: str, size: float, order: int) -> None:

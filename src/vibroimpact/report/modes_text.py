@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+import numpy as np
 from rich.console import Group, RenderableType
 from rich.markup import escape
 from rich.table import Table
@@ -14,6 +15,7 @@ from vibroimpact.cases.build_elastic import elastic_bodies
 from vibroimpact.cases.modes import BodyModes
 from vibroimpact.cases.schema import Case
 from vibroimpact.structures.store import has_model, key_of
+from vibroimpact.structures.surface import check_place
 
 _ROWS = 20
 
@@ -47,17 +49,21 @@ def _table(found: BodyModes) -> Table:
         table.add_column(escape(heading), justify="right", no_wrap=True, vertical="bottom")
     basis = found.basis
     for mode in range(min(_ROWS, len(basis.frequencies))):
-        numbers = basis.frequencies[mode], basis.damping_ratios[mode], basis.contact[mode], basis.participation[mode, 2] ** 2
-        table.add_row(str(mode + 1), f"{numbers[0]:.6g}", f"{numbers[1]:.4g}", f"{_clean(numbers[2], basis.contact)}", f"{numbers[3]:.4f}")
+        table.add_row(
+            str(mode + 1),
+            f"{basis.frequencies[mode]:.6g}",
+            f"{basis.damping_ratios[mode]:.4g}",
+            _clean(basis.contact[mode], float(np.abs(basis.contact).max())),
+            _clean(basis.participation[mode, 2] ** 2, found.model.properties.mass),
+        )
     if len(basis.frequencies) > _ROWS:
         table.add_row("...", f"{basis.frequencies[-1]:.6g}", "", "", "")
     return table
 
 
-def _clean(value: float, all_values: object) -> str:
-    import numpy as np
-
-    return f"{value:.4f}" if abs(value) > 1e-6 * float(np.abs(np.asarray(all_values)).max()) else "0"
+def _clean(value: float, whole: float) -> str:
+    """Return a number, or 0 where it is rounding of the whole."""
+    return f"{value:.4f}" if abs(value) > 1e-6 * whole else "0"
 
 
 def elastic_rows(case: Case) -> list[tuple[str, str]]:
@@ -68,15 +74,21 @@ def elastic_rows(case: Case) -> list[tuple[str, str]]:
     InputError
         If a mesh can't be made.
     """
-    rows = []
+    rows: list[tuple[str, str]] = []
     for name, body in elastic_bodies(case).items():
         mesh = body.recipe.shape.mesh(body.recipe.supports)
+        check_place(mesh, body.contact, body.side, f"{name}: the contact point")
+        for sensor, place in body.watched.items():
+            check_place(mesh, *place, f'{name}: sensor "{sensor}"')
         elements = ", ".join(f"{len(block.connectivity)} {block.kind}" for block in mesh.blocks)
         reduction = body.recipe.reduction
         kept = f"{reduction.modes} modes" if reduction.modes else f"modes up to {reduction.max_frequency:g} Hz"
         stored = "computed already" if has_model(key_of(body.recipe)) else "not computed yet"
         rows += [
-            (f"elastic {name}", f"{elements}, {len(mesh.nodes)} nodes, {mesh.dofs_per_node * len(mesh.nodes)} degrees of freedom"),
+            (
+                f"elastic {name}",
+                f"{elements}, {len(mesh.nodes)} nodes, {mesh.dofs_per_node * len(mesh.nodes)} degrees of freedom before supports",
+            ),
             ("  modes", f"{kept}, {reduction.method}{', with an attachment mode' if reduction.attachment else ''}; {stored}"),
             ("  damping", body.damping.words),
             ("  held by", _supports(body)),

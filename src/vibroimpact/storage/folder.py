@@ -50,6 +50,7 @@ def new_folder(directory: str | PathLike[str], *, force: bool = False) -> Iterat
     try:
         working.chmod(0o777 & ~_umask())
         yield working
+        check_free(target, force=force)  # another process may have been quicker
         _put_in_place(working, target)
     except BaseException:
         shutil.rmtree(working, ignore_errors=True)

@@ -45,7 +45,8 @@ def summation(mesh: Mesh) -> tuple[Callable[[Sequence[Floats]], Floats], Callabl
         From blocks, shape (pairs, n, n), to a sparse matrix of n degrees of freedom a node.
     """
     number = len(mesh.nodes)
-    pairs = np.concatenate([(block.connectivity[:, :, None] * number + block.connectivity[:, None, :]).ravel() for block in mesh.blocks])
+    wide = [block.connectivity.astype(np.int64) for block in mesh.blocks]  # the square of the number of nodes must fit
+    pairs = np.concatenate([(nodes[:, :, None] * number + nodes[:, None, :]).ravel() for nodes in wide])
     order = np.argsort(pairs, kind="stable")
     key = pairs[order]
     starts = np.flatnonzero(np.concatenate([[True], key[1:] != key[:-1]]))

@@ -64,6 +64,11 @@ class ElementKind:
         return int(self.reference.shape[1])
 
     @property
+    def order(self) -> int:
+        """The degree of its shape functions along an edge."""
+        return PLATE_ORDER if self.dimension == 2 else 1 if len(self.reference) == self.corners else 2
+
+    @property
     def is_brick(self) -> bool:
         """Is it a product of intervals?"""
         return self.corners == int(2**self.dimension)
@@ -111,7 +116,8 @@ def _tensor_lagrange(order: int, points: NDArray[np.float64]) -> Shape:
     (a, da), (b, db) = (_lagrange(order, points[:, axis]) for axis in range(2))
     values = b[:, :, None] * a[:, None, :]
     slopes = np.stack([b[:, :, None] * da[:, None, :], db[:, :, None] * a[:, None, :]], axis=1)
-    return values.reshape(len(points), -1), slopes.reshape(len(points), 2, -1)
+    nodes = (order + 1) ** 2
+    return values.reshape(-1, nodes), slopes.reshape(-1, 2, nodes)
 
 
 def _lagrange(order: int, x: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

@@ -19,7 +19,7 @@ _BLOCK = 10
 _TOLERANCE = 1e-9  # of a mode's own response: the residual that is left of it
 _EQUAL = 1e-6  # relative: eigenvalues so near are those of one multiple mode
 _PATIENCE = 1.05  # how much longer it is made before it is asked again
-_LONGEST = 12  # how many times as long as the number of modes the iteration may become
+_LONGEST = 60  # how many times as long as the number of modes the iteration may become
 _DEPENDENT = 1e-13  # of the largest: a direction of a block that is smaller adds nothing but rounding
 _LOOK = 4  # blocks of the search for what was missed
 

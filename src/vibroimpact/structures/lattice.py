@@ -11,10 +11,14 @@ from collections.abc import Sequence
 from itertools import permutations
 
 import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
 
 from vibroimpact.structures.element_kinds import ELEMENT_KINDS
 from vibroimpact.structures.mesh import ElementBlock, Floats, Integers, Mesh
 
+_SAME = 1e-7  # of the largest extent: points nearer to one another than this are one
 _BRICK = np.rint(2.0 * ELEMENT_KINDS["hex27"].reference).astype(np.int64)
 
 
@@ -84,9 +88,11 @@ def merged(points: Floats, connectivity: Integers) -> tuple[Floats, Integers]:
     """Make one node of points that coincide, leave out those that no element uses, and renumber."""
     used, connectivity = np.unique(connectivity, return_inverse=True)
     points = points[used]
-    grid = np.rint(points / (1e-7 * np.ptp(points, axis=0).max())).astype(np.int64)
-    _, first, same = np.unique(grid, axis=0, return_index=True, return_inverse=True)
-    return points[first], same.ravel()[connectivity]
+    near = cKDTree(points).query_pairs(_SAME * float(np.ptp(points, axis=0).max()), output_type="ndarray")
+    graph = coo_array((np.ones(len(near)), (near[:, 0], near[:, 1])), shape=(len(points), len(points)))
+    same = connected_components(graph, directed=False)[1].astype(np.int64)
+    _, first = np.unique(same, return_index=True)
+    return points[first], same[connectivity]
 
 
 def box_mesh(size: Sequence[float], counts: Sequence[int], kind: str = "hex20") -> Mesh:

@@ -12,7 +12,7 @@ from vibroimpact.structures.geometry import MassProperties
 from vibroimpact.structures.mesh import Floats, Mesh
 from vibroimpact.structures.modes import Eigenmodes
 from vibroimpact.structures.supports.constraints import HeldStructure
-from vibroimpact.structures.surface import Side, Spot, place_of, surface_motion
+from vibroimpact.structures.surface import Side, Spot, check_place, place_of, surface_motion
 
 
 @dataclass(frozen=True)
@@ -77,7 +77,9 @@ class ModalModel:
 
 def modal_model(held: HeldStructure, modes: Eigenmodes, facts: Mapping[str, str] | None = None) -> ModalModel:
     """Make the modal model of a held structure from the modes of its free degrees of freedom."""
-    structure, shapes = held.structure, held.expansion @ modes.shapes
+    structure, shapes = held.structure, np.asarray(held.expansion @ modes.shapes)
+    large = np.abs(shapes) > 0.5 * np.abs(shapes).max(axis=0)
+    shapes *= np.sign(shapes[large.argmax(axis=0), np.arange(shapes.shape[1])])  # the first large displacement is positive
     return ModalModel(
         structure.mesh,
         structure.properties,
@@ -148,7 +150,8 @@ def modal_basis(
         If a point is not on the body.
     """
 
-    def seen(spot: Spot, face: Side) -> Floats:
+    def seen(spot: Spot, face: Side, what: str = "the contact point") -> Floats:
+        check_place(model.mesh, spot, face, what)
         return model.at(np.array([place_of(model.mesh, spot, face)]), face)[0][:, 0]
 
     return ModalBasis(
@@ -156,5 +159,5 @@ def modal_basis(
         damping.ratios(model.frequencies),
         seen(contact, side)[:, 2],
         model.participation[:, :3],
-        {name: seen(*point) for name, point in (points or {}).items()},
+        {name: seen(*point, f'sensor "{name}"') for name, point in (points or {}).items()},
     )

@@ -6,17 +6,20 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import eigh, qr
+from scipy.linalg import qr
 from scipy.sparse import csr_array
 
 from vibroimpact.errors import ComputationError, InputError
-from vibroimpact.structures.factor import Factors
+from vibroimpact.structures.factor import Factors, check_room
 from vibroimpact.structures.lanczos import lowest_modes
 from vibroimpact.structures.mesh import Floats, Integers
 
 _DENSE = 400  # degrees of freedom up to which a dense solver is quicker
+_SPACE = 3.0  # vectors that the iteration keeps, and as many of their momenta, for each mode
 _MOST = 0.4  # of the degrees of freedom: more modes than this of a mesh mean nothing, and Lanczos' method gains nothing
-_SINGULAR = 1e-6  # of the largest static displacement: what a mechanism that the supports leave makes of it
+_CARRIED = 1e-3  # of a load: how much of it may be left when the stiffness is far from singular
+_INVERSE_STEPS = 4
+_ROUNDING = 2e-15  # of the highest frequency squared: a lowest one below this is none
 
 Progress = Callable[[float], None]
 
@@ -86,6 +89,7 @@ class Elastic:
         inner = place[self.order]
         matrix = stiffness[self._free][:, self._free] if len(held) else stiffness
         self._factors = Factors(csr_array(matrix), inner[inner >= 0])
+        self._heavy = mass.diagonal() > 0.0  # not so the slopes of a thin plate
         self._refuse_mechanisms()
 
     def static(self, load: Floats) -> Floats:
@@ -117,7 +121,9 @@ class Elastic:
             If the iteration does not converge.
         """
         size = self.stiffness.shape[0]
-        most = size - self.rigid.shape[1] if size <= _DENSE else int(_MOST * size)
+        most = int(self._heavy.sum()) - self.rigid.shape[1]
+        if size > _DENSE:
+            most = int(_MOST * most)
         if not 1 <= number <= most:
             raise InputError(
                 f"{number} modes are not to be had from {size} degrees of freedom; it must be from 1 to {most}"
@@ -125,6 +131,7 @@ class Elastic:
             )
         if size <= _DENSE:
             return self._dense(number)
+        check_room(16.0 * size * _SPACE * number, f"{number} modes of {size} degrees of freedom need")
         values, shapes = lowest_modes(self.static, self.mass, number, progress or (lambda part: None))
         return Eigenmodes(np.sqrt(values), shapes)
 
@@ -134,18 +141,27 @@ class Elastic:
         return int(Factors(csr_array(shifted), self.order).negative_pivots()) - int(self.rigid.shape[1])
 
     def _refuse_mechanisms(self) -> None:
-        """Raise if a random load moves the system as only a mechanism is moved."""
-        random = np.random.default_rng(0).standard_normal(self.stiffness.shape[0])
-        load = self.mass @ random
-        response = self.static(load)
-        error = self.stiffness @ response - (load - self._momentum @ (self.rigid.T @ load))
-        if not np.linalg.norm(error) <= _SINGULAR * np.linalg.norm(load):
+        """Raise if loads are not carried, and the lowest frequency, found by inverse iteration, is no more than rounding."""
+        shape = np.random.default_rng(0).standard_normal(self.stiffness.shape[0])
+        load = self.mass @ shape
+        left = self.stiffness @ self.static(load) - load + self._momentum @ (self.rigid.T @ load)
+        if np.linalg.norm(left) <= _CARRIED * np.linalg.norm(load):
+            return
+        highest = (self.stiffness.diagonal()[self._heavy] / self.mass.diagonal()[self._heavy]).max()
+        for _ in range(_INVERSE_STEPS):
+            shape = self.static(self.mass @ shape)
+            shape /= np.sqrt(shape @ (self.mass @ shape))
+        if not shape @ (self.stiffness @ shape) > _ROUNDING * highest:
             raise ComputationError(
                 "the stiffness matrix is singular: part of the body can move without resistance, as a hinge does; "
                 "look for elements that share only an edge or a node"
             )
 
     def _dense(self, number: int) -> Eigenmodes:
-        skip = self.rigid.shape[1]
-        values, shapes = eigh(self.stiffness.toarray(), self.mass.toarray(), subset_by_index=[skip, skip + number - 1])
-        return Eigenmodes(np.sqrt(np.maximum(values, 0.0)), shapes)
+        """Solve in full; the mass may be singular, as that of a thin plate is, and so may the stiffness, but not both."""
+        inertia, axes = np.linalg.eigh(self.mass.toarray())
+        root = axes * np.sqrt(np.maximum(inertia, 0.0))
+        response = self.static(root)
+        responses, turned = np.linalg.eigh(root.T @ response)
+        lowest = slice(-1, -number - 1, -1)
+        return Eigenmodes(1.0 / np.sqrt(responses[lowest]), response @ (turned[:, lowest] / responses[lowest]))

@@ -6,10 +6,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from vibroimpact.errors import InputError
 from vibroimpact.structures.element_kinds import PLATE_ORDER
 from vibroimpact.structures.lattice import merged, mesh_of_blocks
 from vibroimpact.structures.mesh import ElementBlock, Mesh
-from vibroimpact.structures.rectangle import Disc, rectangle_blocks, split_at, with_midpoints
+from vibroimpact.structures.rectangle import MOST_ELEMENTS, Disc, rectangle_blocks, split_at, with_midpoints
 
 
 def solid_plate_mesh(
@@ -44,6 +45,8 @@ def solid_plate_mesh(
     >>> solid_plate_mesh((0.52, 0.42, 0.008), 0.004, layers=2).number_of_elements
     27300
     """
+    if size[0] * size[1] / element_size**2 * layers > MOST_ELEMENTS:
+        raise InputError(f"elements of {element_size:g} m in {layers} layers would be more than {MOST_ELEMENTS}; make them larger")
     height = with_midpoints(split_at(np.linspace(-0.5 * size[2], 0.5 * size[2], layers + 1), splits), 2)
     blocks = []
     for flat in rectangle_blocks(size[:2], element_size, 2, discs, lines, splits):

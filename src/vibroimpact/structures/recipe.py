@@ -68,7 +68,7 @@ class PlateOfSolids:
 
     def mesh(self, supports: tuple[Support, ...] = ()) -> Mesh:
         """Make the mesh."""
-        return solid_plate_mesh(self.size, self.element_size, self.layers, self.kind, *_to_follow(supports), self.splits)
+        return solid_plate_mesh(self.size, self.element_size, self.layers, self.kind, *to_follow(supports), self.splits)
 
     def structure(self, mesh: Mesh, material: Material) -> Structure:
         """Make the finite elements."""
@@ -85,7 +85,7 @@ class PlateOfPlates:
 
     def mesh(self, supports: tuple[Support, ...] = ()) -> Mesh:
         """Make the mesh."""
-        return plate_mesh(self.size[:2], self.element_size, *_to_follow(supports))
+        return plate_mesh(self.size[:2], self.element_size, *to_follow(supports))
 
     def structure(self, mesh: Mesh, material: Material) -> Structure:
         """Make the finite elements."""
@@ -207,7 +207,8 @@ def _kept(held: HeldStructure, reduction: Reduction, progress: Progress | None) 
     if number is None:
         number = elastic.count_below(2.0 * np.pi * (reduction.max_frequency or 0.0))
         if number < 1:
-            raise InputError(f"there is no mode below {reduction.max_frequency:g} Hz", "max_frequency")
+            lowest = elastic.modes(1).angular_frequencies[0] / (2.0 * np.pi)
+            raise InputError(f"there is no mode below {reduction.max_frequency:g} Hz; the lowest is at {lowest:.5g} Hz", "max_frequency")
     if reduction.method == "craig-bampton":
         interface = np.concatenate([_nearest(held, place) for place in reduction.interface])
         basis = craig_bampton(held.stiffness, held.mass, interface, number, held.order, elastic.rigid, progress)
@@ -238,7 +239,7 @@ def _nearest(held: HeldStructure, place: Place) -> Integers:
     return np.unique(rows.indices)
 
 
-def _to_follow(supports: tuple[Support, ...]) -> tuple[list[Disc], tuple[list[float], list[float]]]:
-    """Return the discs and the lines that a mesh should follow."""
+def to_follow(supports: tuple[Support, ...]) -> tuple[list[Disc], tuple[list[float], list[float]]]:
+    """Return the discs and the lines that a mesh made for supports should follow."""
     discs = [disc for support in supports for disc in support.discs]
     return discs, ([x for support in supports for x in support.lines[0]], [y for support in supports for y in support.lines[1]])

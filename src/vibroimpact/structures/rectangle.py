@@ -11,9 +11,12 @@ import numpy as np
 from vibroimpact.errors import InputError
 from vibroimpact.structures.mesh import Floats
 
+MOST_ELEMENTS = 2_000_000
+"""More than this are refused before they are made; no machine would find their modes."""
+
 _CORE = 0.5  # half the side of the square inside a disc, in radii
 _MARGIN = 1.5  # half the side of the square around a disc, in radii
-_CLOSEST = 1.02  # of the radius: how near to the centre of a disc an edge of the plate may be
+_CLOSEST = 1.15  # of the radius: how near to the centre of a disc an edge of the plate, or half way to another disc, may be
 
 
 @dataclass(frozen=True)
@@ -67,9 +70,20 @@ def rectangle_blocks(
     >>> len(rectangle_blocks((1.0, 1.0), 0.1, 2, [Disc(0.0, 0.0, 0.1)]))
     17
     """
+    if size[0] * size[1] / element_size**2 > MOST_ELEMENTS:
+        raise InputError(f"elements of {element_size:g} m would be more than {MOST_ELEMENTS} on this plate; make them larger")
     boxes = [_box(disc, size, discs) for disc in discs]
     breaks = [
-        _distinct([-0.5 * size[axis], 0.5 * size[axis], *lines[axis], *(box[axis][side] for box in boxes for side in range(2))], size[axis])
+        _distinct(
+            [
+                -0.5 * size[axis],
+                0.5 * size[axis],
+                *lines[axis],
+                *(box[axis][side] for box in boxes for side in range(2)),
+                *((disc.x, disc.y)[axis] for disc in discs),
+            ],
+            size[axis],
+        )
         for axis in range(2)
     ]
     axes = [_points(found, element_size, order) for found in breaks]
@@ -83,25 +97,30 @@ def rectangle_blocks(
 
 def _box(disc: Disc, size: Sequence[float], discs: Sequence[Disc]) -> tuple[tuple[float, float], tuple[float, float]]:
     """Return the box around a disc, as x and y from and to: clear of other discs, and no sliver along the edge."""
+    said = f"the round support at ({disc.x:g}, {disc.y:g}) m, radius {disc.radius:g} m,"
+    sides = []
+    for at, length, axis in ((disc.x, size[0], "x"), (disc.y, size[1], "y")):
+        ends = []
+        for edge in (-0.5 * length, 0.5 * length):
+            room = (edge - at) * (1.0 if edge > 0.0 else -1.0)
+            if room < _CLOSEST * disc.radius:
+                raise InputError(
+                    f"{said} does not lie wholly on the plate, which reaches from {-0.5 * length:g} to {0.5 * length:g} m along {axis}; "
+                    "between it and the edge must be at least 0.15 radii"
+                )
+            ends.append(edge)
+        sides.append((ends[0], ends[1]))
     reach = _MARGIN * disc.radius
     for other in discs:
         apart = max(abs(other.x - disc.x), abs(other.y - disc.y))
         if other is not disc:
             reach = min(reach, apart * disc.radius / (disc.radius + other.radius))
     if reach < _CLOSEST * disc.radius:
-        raise InputError(f"the patch at ({disc.x:g}, {disc.y:g}) m, radius {disc.radius:g} m, touches another one; patches must lie apart")
-    sides = []
-    for at, length, axis in ((disc.x, size[0], "length"), (disc.y, size[1], "width")):
-        ends = []
-        for sign in (-1.0, 1.0):
-            edge = sign * 0.5 * length
-            if sign * (edge - at) < _CLOSEST * disc.radius:
-                raise InputError(
-                    f"the patch at ({disc.x:g}, {disc.y:g}) m, radius {disc.radius:g} m, reaches the edge of the plate, whose {axis} "
-                    f"is {length:g} m; it must lie inside"
-                )
-            ends.append(edge if sign * (edge - at) < reach + 0.5 * disc.radius else at + sign * reach)
-        sides.append((ends[0], ends[1]))
+        raise InputError(f"{said} is too near to another one; between them must be at least 0.3 radii")
+    for index, at in enumerate((disc.x, disc.y)):
+        low, high = sides[index]
+        near = reach + 0.5 * disc.radius  # no sliver along the edge
+        sides[index] = (low if at - low < near else at - reach, high if high - at < near else at + reach)
     return sides[0], sides[1]
 
 

@@ -8,6 +8,9 @@ from vibroimpact.errors import InputError
 from vibroimpact.structures.lattice import mesh_of_blocks
 from vibroimpact.structures.mesh import Floats, Mesh
 
+MOST_ACROSS = 100
+"""More elements across than this are refused; no machine would find their modes."""
+
 _CORE = 0.45  # half the side of the cube in radii
 _BULGE = 0.5  # between a cube (0) and a ball (1)
 
@@ -25,7 +28,7 @@ def sphere_mesh(radius: float, elements_across: int = 8, kind: str = "hex20", gr
         Kind of element: "hex8", "hex20", "hex27", "tet4" or "tet10".
     grading : float, default 1
         How many times smaller the elements at the lower pole, where the plate is met, are made; >= 1. They grow as much
-        larger at the upper pole.
+        larger at the upper pole, so that a strong grading needs more of them.
 
     Raises
     ------
@@ -42,8 +45,8 @@ def sphere_mesh(radius: float, elements_across: int = 8, kind: str = "hex20", gr
     >>> sphere_mesh(0.025, 4).number_of_elements
     32
     """
-    if elements_across < 4 or elements_across % 2:
-        raise InputError(f"{elements_across} elements across a sphere is not allowed; it must be an even number, at least 4")
+    if not 4 <= elements_across <= MOST_ACROSS or elements_across % 2:
+        raise InputError(f"{elements_across} elements across a sphere is not allowed; it must be an even number from 4 to {MOST_ACROSS}")
     if not grading >= 1.0:
         raise InputError(f"a grading of {grading:g} is not allowed; it must be at least 1")
     layers = elements_across // 4

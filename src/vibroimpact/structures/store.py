@@ -5,9 +5,10 @@ from __future__ import annotations
 import dataclasses
 import hashlib
 import json
+import math
 import os
 import tempfile
-import zipfile
+import zlib
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -63,7 +64,9 @@ def _content(value: Any) -> Any:
         return {str(key): _content(item) for key, item in value.items()}
     if isinstance(value, np.ndarray):
         return [str(value.dtype), value.shape, hashlib.sha256(np.ascontiguousarray(value).tobytes()).hexdigest()]
-    return value.hex() if isinstance(value, float) else value
+    if isinstance(value, (np.generic, float, int)) and not isinstance(value, bool):
+        return (float(value) + 0.0).hex()  # one and 1.0 are the same, and so are zero and minus zero
+    return value
 
 
 def has_model(key: str) -> bool:
@@ -74,16 +77,17 @@ def has_model(key: str) -> bool:
 def load_model(key: str) -> tuple[ModalModel | None, str]:
     """Return the model under a key, or None; and what was wrong with its entry, or "".
 
-    Every part of an entry carries a check sum, so that a damaged one is known and taken as absent.
+    An entry carries a check sum of all of it, so that a damaged one is known and taken as absent.
     """
     path = store_folder() / (key + _SUFFIX)
     try:
-        with np.load(path, allow_pickle=False) as entry:
-            model = _model(entry)
+        model = _model(_unpacked(path.read_bytes()))
         os.utime(path)  # it was used just now
     except FileNotFoundError:
         return None, ""
-    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile) as error:
+    except OSError as error:
+        return None, f"the stored modes in {path} can't be read ({error.strerror}); they are computed again"
+    except (ValueError, KeyError) as error:
         return None, f"the stored modes in {path} are damaged ({error}); they are computed again"
     return model, ""
 
@@ -99,7 +103,7 @@ def save_model(key: str, model: ModalModel) -> str:
         handle, name = tempfile.mkstemp(prefix=f".{key}.", dir=folder)
         try:
             with os.fdopen(handle, "wb") as file:
-                np.savez(file, **_parts(model))
+                file.writelines(_packed(_parts(model)))
             os.replace(name, folder / (key + _SUFFIX))
         except BaseException:
             Path(name).unlink(missing_ok=True)
@@ -108,6 +112,37 @@ def save_model(key: str, model: ModalModel) -> str:
     except OSError as error:
         return f"the modes can't be kept in {folder} ({error.strerror}); they will be computed again next time"
     return ""
+
+
+def _packed(parts: Mapping[str, Any]) -> list[bytes]:
+    """Return arrays as bytes: a check sum of what follows, the length of the heading, the heading, and the numbers."""
+    arrays = {name: np.ascontiguousarray(part) for name, part in parts.items()}
+    heading = json.dumps([[name, array.dtype.str, array.shape] for name, array in arrays.items()]).encode()
+    body = [len(heading).to_bytes(8, "little"), heading, *(array.tobytes() for array in arrays.values())]
+    total = 0
+    for piece in body:
+        total = zlib.crc32(piece, total)
+    return [total.to_bytes(4, "little"), *body]
+
+
+def _unpacked(data: bytes) -> dict[str, Any]:
+    """Return the arrays of an entry.
+
+    Raises
+    ------
+    ValueError
+        If the check sum is not that of the data.
+    """
+    view = memoryview(data)
+    if len(view) < 12 or zlib.crc32(view[4:]) != int.from_bytes(view[:4], "little"):
+        raise ValueError("their check sum does not agree")
+    end = 12 + int.from_bytes(view[4:12], "little")
+    found = {}
+    for name, kind, shape in json.loads(bytes(view[12:end])):
+        count = math.prod(shape)
+        found[name] = np.frombuffer(view, np.dtype(kind), count, end).reshape(shape)
+        end += count * np.dtype(kind).itemsize
+    return found
 
 
 def entries() -> list[Path]:
@@ -149,7 +184,7 @@ def _parts(model: ModalModel) -> dict[str, Any]:
         "inertia": model.properties.inertia,
         "numbers": np.array([model.properties.mass, model.thickness]),
         "left": model.left,
-        "facts": np.array(json.dumps(dict(model.facts))),
+        "facts": np.frombuffer(json.dumps(dict(model.facts)).encode(), np.uint8),
     }
     for index, block in enumerate(model.mesh.blocks):
         parts[f"block:{index}:{block.kind}"] = block.connectivity
@@ -180,5 +215,5 @@ def _model(entry: Mapping[str, Any]) -> ModalModel:
         entry["participation"],
         entry["left"],
         thickness,
-        json.loads(str(entry["facts"])),
+        json.loads(entry["facts"].tobytes()),
     )

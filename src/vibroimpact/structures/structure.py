@@ -93,7 +93,16 @@ def solid_structure(mesh: Mesh, material: Material) -> Structure:
     return Structure(mesh, *assemble_solid(mesh, material), mass_properties(mesh, material.density))
 
 
-def plate_structure(mesh: Mesh, material: Material, thickness: float, theory: str = "thick") -> Structure:
-    """Make a structure of plate elements; `theory` is "thick" or "thin"."""
+def plate_structure(
+    mesh: Mesh, material: Material, thickness: float, theory: str = "thick", shear_correction: float | None = None
+) -> Structure:
+    """Make a structure of plate elements; takes what `assemble_plate` does.
+
+    Raises
+    ------
+    InputError
+        If elements are inverted or the mesh is in loose parts, or there is no such theory.
+    """
+    check_mesh(mesh)
     properties = mass_properties(mesh, material.density, thickness)
-    return Structure(mesh, *assemble_plate(mesh, material, thickness, theory), properties, thickness)
+    return Structure(mesh, *assemble_plate(mesh, material, thickness, theory, shear_correction), properties, thickness)

@@ -18,6 +18,7 @@ Spot = tuple[float, float] | str | None
 
 _OUTSIDE = 1e-6  # how far beyond the edge of a face, in its length, a point may lie
 _NEWTON_STEPS = 20
+_STARTS = ((1.0 / 3.0, 1.0 / 3.0), (0.9, 0.05), (0.05, 0.9), (0.05, 0.05), (0.9, 0.9))  # steep, curved faces need a near one
 
 
 @dataclass(frozen=True)
@@ -113,6 +114,20 @@ def place_of(mesh: Mesh, spot: Spot, side: Side) -> tuple[float, float]:
     return float(x), float(y)
 
 
+def check_place(mesh: Mesh, spot: Spot, side: Side, what: str) -> None:
+    """Raise unless a spot lies on a side of a body.
+
+    Raises
+    ------
+    InputError
+        With what it is.
+    """
+    try:
+        surface_motion(mesh, np.array([place_of(mesh, spot, side)]), side)
+    except InputError as error:
+        raise InputError(f"{what}: {error.message}") from None
+
+
 def surface_motion(mesh: Mesh, places: Floats, side: Side = "upper", thickness: float = 0.0) -> tuple[csr_array, Floats]:
     """Return how places on one side of a body move with its degrees of freedom.
 
@@ -152,15 +167,18 @@ def surface_motion(mesh: Mesh, places: Floats, side: Side = "upper", thickness: 
     nodes: list[Integers] = [np.zeros(0, dtype=np.int64)] * len(places)
     weights: list[Floats] = [np.zeros(0)] * len(places)
     positions = np.full((len(places), 3), np.nan)
-    for faces in _looking(_above_or_below(mesh, places), side):
-        point, face, local = _found(mesh.nodes, faces, places)
-        values = faces.slopes(local)[0]
-        at = np.einsum("pk,pki->pi", values, mesh.nodes[faces.connectivity[face]])
-        for index, which in enumerate(point.tolist()):
-            if sign * at[index, 2] > best[which]:
-                best[which] = sign * at[index, 2]
-                positions[which] = at[index]
-                nodes[which], weights[which] = faces.connectivity[face[index]], values[index]
+    groups = _looking(_above_or_below(mesh, places), side)
+    for start in _STARTS:
+        waiting = np.flatnonzero(np.isneginf(best))
+        for faces in groups if len(waiting) else []:
+            found, face, local = _found(mesh.nodes, faces, places[waiting], start)
+            values = faces.slopes(local)[0]
+            at = np.einsum("pk,pki->pi", values, mesh.nodes[faces.connectivity[face]])
+            for index, which in enumerate(waiting[found].tolist()):
+                if sign * at[index, 2] > best[which]:
+                    best[which] = sign * at[index, 2]
+                    positions[which] = at[index]
+                    nodes[which], weights[which] = faces.connectivity[face[index]], values[index]
     beside = np.flatnonzero(np.isneginf(best))
     if len(beside):
         x, y = places[beside[0]]
@@ -202,17 +220,17 @@ def _rows(mesh: Mesh, nodes: list[Integers], weights: list[Floats], height: floa
     return csr_array(coo_array((np.concatenate(values), (np.concatenate(rows), np.concatenate(columns))), shape=shape))
 
 
-def _found(nodes: Floats, faces: Faces, places: Floats) -> tuple[Integers, Integers, Floats]:
-    """Return which place lies on which face, and where on it: Newton's method for all pairs that may meet."""
+def _found(nodes: Floats, faces: Faces, places: Floats, start: tuple[float, float]) -> tuple[Integers, Integers, Floats]:
+    """Return which place lies on which face, and where on it: Newton's method from a start, for all pairs that may meet."""
     at = nodes[faces.connectivity][:, :, :2]
     corner = at[:, list(faces.corners)]
     middle, reach = 0.5 * (corner.max(axis=1) + corner.min(axis=1)), 0.75 * np.ptp(corner, axis=1)
-    reach = np.maximum(reach, 0.25 * reach.max(axis=1, keepdims=True))  # a curved side bulges beyond its corners
+    reach = np.maximum(reach, 0.5 * reach.max(axis=1, keepdims=True))  # a curved side bulges beyond its corners
     near = (np.abs(places[:, None] - middle[None]) <= reach[None]).all(axis=2)
     point, face = np.nonzero(near)
-    start = 1.0 / 3.0 if len(faces.corners) == 3 else 0.5
-    local = np.full((len(point), 2), start)
-    for _ in range(_NEWTON_STEPS):
+    local = np.tile(start, (len(point), 1))
+    apart, flat = np.zeros((len(point), 2)), np.zeros(len(point), dtype=bool)
+    for _ in range(_NEWTON_STEPS if len(point) else 0):
         values, slopes = faces.slopes(local)
         apart = np.einsum("pk,pki->pi", values, at[face]) - places[point]
         jacobian = (slopes @ at[face]).transpose(0, 2, 1)  # of x and y by the two places on the face
@@ -220,7 +238,7 @@ def _found(nodes: Floats, faces: Faces, places: Floats) -> tuple[Integers, Integ
         jacobian[flat] = np.eye(2)
         step = np.linalg.solve(jacobian, apart[:, :, None])[:, :, 0]
         local = np.clip(local - step, -1.0, 2.0)
-        if not len(step) or np.abs(step).max() < 1e-14:
+        if np.abs(step).max() < 1e-14:
             break
     missed = np.linalg.norm(apart, axis=1) > _OUTSIDE * reach[face].max(axis=1)
     inside = (faces.beyond(local) <= _OUTSIDE) & ~missed & ~flat

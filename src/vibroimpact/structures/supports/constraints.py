@@ -55,14 +55,32 @@ class Constraints:
     def __init__(self, structure: Structure) -> None:
         self.structure = structure
         self._ties: dict[int, dict[int, float]] = {}  # a degree of freedom as a sum of others; of none: it is held
+        self._carried: set[int] = set()  # those that move with bodies
         self._added: list[tuple[Integers, Floats]] = []  # degrees of freedom and their stiffness
         self._bodies: list[tuple[Floats, Floats, Floats]] = []  # stiffness, mass and rigid motions of each
         self._size = structure.stiffness.shape[0]
 
     def hold(self, dofs: Integers) -> None:
-        """Hold degrees of freedom still."""
+        """Hold degrees of freedom still.
+
+        Raises
+        ------
+        InputError
+            If one moves with a body already.
+        """
         for dof in dofs.ravel().tolist():
+            if dof in self._carried:
+                self._refuse(dof // self.structure.mesh.dofs_per_node)
             self._ties[dof] = {}
+
+    def hold_motion(self, motion: csr_array) -> None:
+        """Hold sums of degrees of freedom, one a row, at zero."""
+        for row in range(motion.shape[0]):
+            part = motion[[row]].tocoo()
+            weights = {int(dof): float(value) for dof, value in zip(part.col, part.data, strict=True) if dof not in self._ties}
+            if weights:
+                largest = max(weights, key=lambda dof: abs(weights[dof]))
+                self._ties[largest] = {dof: -value / weights[largest] for dof, value in weights.items() if dof != largest}
 
     def attach(self, nodes: Integers, axes: tuple[int, ...] = (0, 1, 2), body: tuple[Integers, Floats] | None = None) -> None:
         """Hold the lower face at nodes along some axes, or let it move with a rigid body.
@@ -89,10 +107,15 @@ class Constraints:
                 tie = {per_node * node + 3 + axis: -height} if mesh.is_flat and axis < 2 else {}
                 if body is not None:
                     tie |= self._row(node, axis, *body)
-                if self._ties.get(dof, tie) != tie and (body is not None or self._ties[dof]):
-                    x, y, _ = mesh.nodes[node]
-                    raise InputError(f"two supports hold the same point, ({x:g}, {y:g}) m; supports must lie apart")
+                if dof in self._carried or (body is not None and dof in self._ties):
+                    self._refuse(node)
+                if body is not None:
+                    self._carried.add(dof)
                 self._ties[dof] = tie
+
+    def _refuse(self, node: int) -> None:
+        x, y, _ = self.structure.mesh.nodes[node]
+        raise InputError(f"two supports hold the same point, ({x:g}, {y:g}) m; supports must lie apart")
 
     def _row(self, node: int, axis: int, dofs: Integers, point: Floats) -> dict[int, float]:
         at = self.structure.mesh.nodes[node] + [0.0, 0.0, -0.5 * self.structure.thickness] - point

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from vibroimpact.errors import InputError
 from vibroimpact.structures.rectangle import Disc
 from vibroimpact.structures.supports.constraints import Constraints
 from vibroimpact.structures.supports.support import nodes_within
@@ -82,5 +83,13 @@ class RectangularPatch:
 
     def hold(self, constraints: Constraints) -> None:
         """Hold the nodes of the patch."""
-        half = 0.5 * np.array([self.length, self.width])
+        middle, half = np.array([self.x, self.y]), 0.5 * np.array([self.length, self.width])
+        nodes = constraints.structure.mesh.nodes[:, :2]
+        low, high = nodes.min(axis=0), nodes.max(axis=0)
+        room = 1e-6 * (high - low)
+        if np.any(middle - half < low - room) or np.any(middle + half > high + room):
+            raise InputError(
+                f"the {self.words} does not lie wholly on the plate, which reaches from {low[0]:g} to {high[0]:g} m along x and "
+                f"from {low[1]:g} to {high[1]:g} m along y"
+            )
         constraints.attach(nodes_within(constraints.structure, self.x, self.y, half, "the patch"))

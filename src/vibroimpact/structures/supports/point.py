@@ -1,4 +1,4 @@
-"""A point of the lower side, pinned."""
+"""A point of the lower side that is held."""
 
 from __future__ import annotations
 
@@ -10,14 +10,12 @@ import numpy as np
 from vibroimpact.errors import InputError
 from vibroimpact.structures.rectangle import Disc
 from vibroimpact.structures.supports.constraints import Constraints
-from vibroimpact.structures.surface import lower_nodes
-
-_NEAR = 0.05  # of the plate's length: how far the nearest node may be
+from vibroimpact.structures.surface import surface_motion
 
 
 @dataclass(frozen=True)
 class Point:
-    """A point of the lower side that does not move; the plate turns about it.
+    """A point of the lower side that does not move along some axes; the plate turns about it.
 
     A point on a solid has no stiffness in the limit of a fine mesh, so this suits plate elements.
 
@@ -25,15 +23,19 @@ class Point:
     ----------
     x, y : float
         Where it is [m].
+    directions : str, default "z"
+        The axes along which it is held. Held along x and y too, several points also stretch the plate as it bends, as they
+        lie below its middle.
     """
 
     x: float
     y: float
+    directions: str = "z"
 
     @property
     def words(self) -> str:
         """What it is, for people."""
-        return f"point ({self.x:g}, {self.y:g}) m pinned"
+        return f"point ({self.x:g}, {self.y:g}) m held along {self.directions}"
 
     @property
     def discs(self) -> Sequence[Disc]:
@@ -46,12 +48,10 @@ class Point:
         return (self.x,), (self.y,)
 
     def hold(self, constraints: Constraints) -> None:
-        """Hold the nearest node of the lower side."""
-        mesh = constraints.structure.mesh
-        lower = lower_nodes(mesh)
-        apart = np.hypot(*(mesh.nodes[lower, :2] - [self.x, self.y]).T) if len(lower) else np.array([np.inf])
-        if apart.min() > _NEAR * mesh.extent.max():
-            raise InputError(
-                f"the point support at ({self.x:g}, {self.y:g}) m is {apart.min():.2g} m from the nearest node of the lower side"
-            )
-        constraints.attach(lower[[apart.argmin()]])
+        """Hold the point, by the shape functions of the element that it is on."""
+        structure = constraints.structure
+        try:
+            motion, _ = surface_motion(structure.mesh, np.array([[self.x, self.y]]), "lower", structure.thickness)
+        except InputError as error:
+            raise InputError(f"{self.words}: {error.message}") from None
+        constraints.hold_motion(motion[["xyz".index(letter) for letter in self.directions]])

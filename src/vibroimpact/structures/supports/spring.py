@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from vibroimpact.errors import InputError
 from vibroimpact.structures.mesh import Floats
 from vibroimpact.structures.rectangle import Disc
 from vibroimpact.structures.supports.constraints import Constraints
@@ -58,7 +59,10 @@ class Spring:
         """Add the stiffness of the pad."""
         places, weights = disc_rule(self.radius)
         structure = constraints.structure
-        motion, _ = surface_motion(structure.mesh, places + np.array([self.x, self.y]), "lower", structure.thickness)
+        try:
+            motion, _ = surface_motion(structure.mesh, places + np.array([self.x, self.y]), "lower", structure.thickness)
+        except InputError as error:
+            raise InputError(f"{self.words}: {error.message}") from None
         stiffness = np.outer(weights, [self.horizontal_stiffness, self.horizontal_stiffness, self.stiffness]).ravel()
         dofs = np.unique(motion.indices)
         local = motion[:, dofs].toarray()
