@@ -20,7 +20,7 @@ from vibroimpact.structures.supports.patch import Patch, RectangularPatch
 from vibroimpact.structures.supports.point import Point
 from vibroimpact.structures.supports.spring import Spring, disc_rule
 from vibroimpact.structures.supports.support import Support, held_by
-from vibroimpact.structures.surface import lower_nodes
+from vibroimpact.structures.surface import lower_nodes, surface_motion
 
 STEEL = Material(7850.0, 210e9, 0.3)
 WEIGHTLESS = Material(1e-6, 210e9, 0.3)
@@ -268,3 +268,16 @@ def test_rule_of_a_disc() -> None:
         mean = weights @ (points**2).sum(axis=1) ** power
         assert mean == pytest.approx(0.3 ** (2 * power) / (power + 1), rel=1e-12)
     assert weights @ (points[:, 0] ** 3 * points[:, 1]) == pytest.approx(0.0, abs=1e-15)
+
+
+def test_points_that_share_an_element_are_both_held() -> None:
+    """Three points inside one brick: each stays where it is, in every mode."""
+    structure = made(BRICKS, ())
+    (x0, y0), side = structure.mesh.nodes[:, :2].min(axis=0), 0.01
+    points = tuple(Point(x0 + a * side, y0 + b * side, "xyz") for a, b in ((1.0, 1.0), (2.0, 1.5), (1.5, 2.5)))
+    held = held_by(structure, points)
+    assert held.rigid.shape[1] == 0
+    modes = Elastic(held.stiffness, held.mass, held.rigid, held.order).modes(3)
+    motion, _ = surface_motion(structure.mesh, np.array([[point.x, point.y] for point in points]), "lower")
+    moved = motion @ (held.expansion @ modes.shapes)
+    assert np.abs(moved).max() < 1e-9 * np.abs(modes.shapes).max()

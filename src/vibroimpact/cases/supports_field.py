@@ -44,9 +44,9 @@ class PatchTable(_Table):
 
     what = "a rigid patch of the lower side, held still: a disc of a radius, or a rectangle of a size"
     type: Literal["patch"] = "patch"
-    position: _Position
+    position: _Position = Field(description="two lengths: x and y on the plate, from its centre")
     radius: _Radius | None = None
-    size: tuple[_Length, _Length] | None = None
+    size: tuple[_Length, _Length] | None = Field(None, description="two lengths: along x and along y")
 
     @model_validator(mode="after")
     def _one_of_two(self) -> PatchTable:
@@ -66,7 +66,7 @@ class PatchesTable(_Table):
 
     what = "four rigid circular patches of the lower side, at the corners of a rectangle of this spacing around the centre"
     type: Literal["patches"] = "patches"
-    spacing: _Spacing
+    spacing: _Spacing = Field(description="two lengths: between centres along x and along y")
     radius: _Radius
 
     def made(self) -> tuple[Support, ...]:
@@ -93,7 +93,7 @@ class BarTable(_Table):
 
     what = "an elastic round column under the plate, fixed to the ground"
     type: Literal["bar"] = "bar"
-    position: _Position
+    position: _Position = Field(description="two lengths: x and y on the plate, from its centre")
     radius: _Radius
     length: _Length
     material: _BarMaterial
@@ -108,7 +108,7 @@ class BarsTable(_Table):
 
     what = "four elastic round columns, at the corners of a rectangle of this spacing around the centre"
     type: Literal["bars"] = "bars"
-    spacing: _Spacing
+    spacing: _Spacing = Field(description="two lengths: between centres along x and along y")
     radius: _Radius
     length: _Length
     material: _BarMaterial
@@ -136,7 +136,7 @@ class PointTable(_Table):
 
     what = "a point of the lower side, held along some axes"
     type: Literal["point"] = "point"
-    position: _Position
+    position: _Position = Field(description="two lengths: x and y on the plate, from its centre")
     directions: _Directions = Field("z", description="the axes along which it is held")
 
     def made(self) -> tuple[Support, ...]:
@@ -149,7 +149,7 @@ class SpringTable(_Table):
 
     what = "a spring under a point, or an elastic pad of a radius"
     type: Literal["spring"] = "spring"
-    position: _Position
+    position: _Position = Field(description="two lengths: x and y on the plate, from its centre")
     stiffness: Annotated[float, Quantity("N/m", "vertical stiffness", Range(above=0))]
     horizontal_stiffness: Annotated[float, Quantity("N/m", "stiffness along x, and along y", Range(at_least=0))] = 0.0
     radius: Annotated[float, Quantity("m", "radius", Range(at_least=0))] = 0.0

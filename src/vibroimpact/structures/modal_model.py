@@ -78,8 +78,9 @@ class ModalModel:
 def modal_model(held: HeldStructure, modes: Eigenmodes, facts: Mapping[str, str] | None = None) -> ModalModel:
     """Make the modal model of a held structure from the modes of its free degrees of freedom."""
     structure, shapes = held.structure, np.asarray(held.expansion @ modes.shapes)
-    large = np.abs(shapes) > 0.5 * np.abs(shapes).max(axis=0)
-    shapes *= np.sign(shapes[large.argmax(axis=0), np.arange(shapes.shape[1])])  # the first large displacement is positive
+    moved = shapes.reshape(len(structure.mesh.nodes), -1, shapes.shape[1])[:, :3].reshape(-1, shapes.shape[1])
+    large = np.abs(moved) > 0.5 * np.abs(moved).max(axis=0)
+    shapes *= np.sign(moved[large.argmax(axis=0), np.arange(shapes.shape[1])])  # the first large displacement is positive
     return ModalModel(
         structure.mesh,
         structure.properties,

@@ -12,13 +12,13 @@ from vibroimpact.structures.mesh import Floats
 from vibroimpact.structures.rectangle import Disc
 from vibroimpact.structures.structure import rotation_columns
 from vibroimpact.structures.supports.constraints import Constraints
-from vibroimpact.structures.supports.support import nodes_within
+from vibroimpact.structures.supports.support import Support, nodes_within
 
 _ELEMENTS = 8  # of the column; its first bending frequency is then right to 1e-5
 
 
 @dataclass(frozen=True)
-class Bar:
+class Bar(Support):
     """A round elastic column, fixed to the ground; its top moves as a rigid disc with the lower side of the plate.
 
     Parameters
@@ -46,11 +46,6 @@ class Bar:
     def discs(self) -> Sequence[Disc]:
         """The top of the bar."""
         return (Disc(self.x, self.y, self.radius),)
-
-    @property
-    def lines(self) -> tuple[Sequence[float], Sequence[float]]:
-        """None."""
-        return (), ()
 
     def hold(self, constraints: Constraints) -> None:
         """Add the column, and attach the nodes of the patch to its top."""

@@ -77,8 +77,14 @@ class Constraints:
         """Hold sums of degrees of freedom, one a row, at zero."""
         for row in range(motion.shape[0]):
             part = motion[[row]].tocoo()
-            weights = {int(dof): float(value) for dof, value in zip(part.col, part.data, strict=True) if dof not in self._ties}
-            if weights:
+            waiting, weights = list(zip(part.col.tolist(), part.data.tolist(), strict=True)), dict[int, float]()
+            while waiting:  # in terms of those that are free
+                dof, value = waiting.pop()
+                if dof in self._ties:
+                    waiting += [(other, value * share) for other, share in self._ties[dof].items()]
+                else:
+                    weights[dof] = weights.get(dof, 0.0) + value
+            if any(weights.values()):
                 largest = max(weights, key=lambda dof: abs(weights[dof]))
                 self._ties[largest] = {dof: -value / weights[largest] for dof, value in weights.items() if dof != largest}
 

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
 
 from vibroimpact.errors import InputError
-from vibroimpact.structures.rectangle import Disc
 from vibroimpact.structures.supports.constraints import Constraints
+from vibroimpact.structures.supports.support import Support
 
 EdgeName = Literal["x-min", "x-max", "y-min", "y-max"]
 EDGES: tuple[EdgeName, ...] = ("x-min", "x-max", "y-min", "y-max")
@@ -18,7 +17,7 @@ _FLAT = 1e-6  # of the plate's length: how far from the extreme a node of the ed
 
 
 @dataclass(frozen=True)
-class Edge:
+class Edge(Support):
     """A straight edge of the plate.
 
     Parameters
@@ -37,16 +36,6 @@ class Edge:
     def words(self) -> str:
         """What it is, for people."""
         return f"edge {self.edge} {self.condition}"
-
-    @property
-    def discs(self) -> Sequence[Disc]:
-        """None."""
-        return ()
-
-    @property
-    def lines(self) -> tuple[Sequence[float], Sequence[float]]:
-        """None; edges of the plate are edges of elements."""
-        return (), ()
 
     def hold(self, constraints: Constraints) -> None:
         """Hold the nodes of the edge."""

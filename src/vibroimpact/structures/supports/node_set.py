@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from vibroimpact.structures.rectangle import Disc
 from vibroimpact.structures.supports.constraints import Constraints
+from vibroimpact.structures.supports.support import Support
 
 
 @dataclass(frozen=True)
-class NodeSet:
+class NodeSet(Support):
     """A named set of nodes, or the nodes of a set of elements, held along some axes.
 
     Parameters
@@ -30,16 +29,6 @@ class NodeSet:
     def words(self) -> str:
         """What it is, for people."""
         return f"set {self.name} held along {self.directions}"
-
-    @property
-    def discs(self) -> Sequence[Disc]:
-        """None; the mesh is there already."""
-        return ()
-
-    @property
-    def lines(self) -> tuple[Sequence[float], Sequence[float]]:
-        """None; the mesh is there already."""
-        return (), ()
 
     def hold(self, constraints: Constraints) -> None:
         """Hold the nodes of the set."""

@@ -10,11 +10,11 @@ import numpy as np
 from vibroimpact.errors import InputError
 from vibroimpact.structures.rectangle import Disc
 from vibroimpact.structures.supports.constraints import Constraints
-from vibroimpact.structures.supports.support import nodes_within
+from vibroimpact.structures.supports.support import Support, nodes_within
 
 
 @dataclass(frozen=True)
-class Patch:
+class Patch(Support):
     """A rigid circular patch of the lower side, held still.
 
     Parameters
@@ -39,18 +39,13 @@ class Patch:
         """The patch itself."""
         return (Disc(self.x, self.y, self.radius),)
 
-    @property
-    def lines(self) -> tuple[Sequence[float], Sequence[float]]:
-        """None."""
-        return (), ()
-
     def hold(self, constraints: Constraints) -> None:
         """Hold the nodes of the patch."""
         constraints.attach(nodes_within(constraints.structure, self.x, self.y, self.radius, "the patch"))
 
 
 @dataclass(frozen=True)
-class RectangularPatch:
+class RectangularPatch(Support):
     """A rigid rectangular patch of the lower side, held still.
 
     Parameters
@@ -70,11 +65,6 @@ class RectangularPatch:
     def words(self) -> str:
         """What it is, for people."""
         return f"rigid patch, {self.length:g} x {self.width:g} m, at ({self.x:g}, {self.y:g}) m"
-
-    @property
-    def discs(self) -> Sequence[Disc]:
-        """None."""
-        return ()
 
     @property
     def lines(self) -> tuple[Sequence[float], Sequence[float]]:

@@ -8,13 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from vibroimpact.errors import InputError
-from vibroimpact.structures.rectangle import Disc
 from vibroimpact.structures.supports.constraints import Constraints
+from vibroimpact.structures.supports.support import Support
 from vibroimpact.structures.surface import surface_motion
 
 
 @dataclass(frozen=True)
-class Point:
+class Point(Support):
     """A point of the lower side that does not move along some axes; the plate turns about it.
 
     A point on a solid has no stiffness in the limit of a fine mesh, so this suits plate elements.
@@ -36,11 +36,6 @@ class Point:
     def words(self) -> str:
         """What it is, for people."""
         return f"point ({self.x:g}, {self.y:g}) m held along {self.directions}"
-
-    @property
-    def discs(self) -> Sequence[Disc]:
-        """None."""
-        return ()
 
     @property
     def lines(self) -> tuple[Sequence[float], Sequence[float]]:

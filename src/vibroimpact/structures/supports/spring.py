@@ -2,22 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from vibroimpact.errors import InputError
 from vibroimpact.structures.mesh import Floats
-from vibroimpact.structures.rectangle import Disc
 from vibroimpact.structures.supports.constraints import Constraints
+from vibroimpact.structures.supports.support import Support
 from vibroimpact.structures.surface import surface_motion
 
 _RINGS, _SPOKES = 6, 24  # of the rule that spreads a pad; exact to polynomials of degree 11 and 23
 
 
 @dataclass(frozen=True)
-class Spring:
+class Spring(Support):
     """A spring between the lower side and the ground, spread evenly over a disc, or at a point.
 
     Parameters
@@ -44,16 +43,6 @@ class Spring:
         return f"spring of {self.stiffness:g} N/m at ({self.x:g}, {self.y:g}) m" + (
             f", spread over a radius of {self.radius:g} m" if self.radius else ""
         )
-
-    @property
-    def discs(self) -> Sequence[Disc]:
-        """None: what a pad does has no edge that elements must follow."""
-        return ()
-
-    @property
-    def lines(self) -> tuple[Sequence[float], Sequence[float]]:
-        """None."""
-        return (), ()
 
     def hold(self, constraints: Constraints) -> None:
         """Add the stiffness of the pad."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Protocol
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -15,23 +15,34 @@ from vibroimpact.structures.supports.constraints import Constraints, HeldStructu
 from vibroimpact.structures.surface import lower_nodes
 
 
-class Support(Protocol):
-    """Anything that holds a structure: a frozen dataclass, as its numbers are part of the key under which modes are kept."""
+@dataclass(frozen=True)
+class Support:
+    """Base of what holds a structure: frozen, as its numbers are part of the key under which modes are kept."""
 
     @property
     def words(self) -> str:
         """What it is, for people."""
+        raise NotImplementedError
 
     @property
     def discs(self) -> Sequence[Disc]:
-        """The discs whose rims should be edges of elements in a mesh made for it."""
+        """The discs whose rims should be edges of elements in a mesh made for it: none unless it says so."""
+        return ()
 
     @property
     def lines(self) -> tuple[Sequence[float], Sequence[float]]:
-        """The x and y [m] that should be edges of elements in a mesh made for it."""
+        """The x and y [m] that should be edges of elements in a mesh made for it: none unless it says so."""
+        return (), ()
 
     def hold(self, constraints: Constraints) -> None:
-        """Hold the structure of the constraints."""
+        """Hold the structure of the constraints.
+
+        Raises
+        ------
+        InputError
+            If there is nothing to hold, or another support holds it.
+        """
+        raise NotImplementedError
 
 
 def held_by(structure: Structure, supports: Sequence[Support] = ()) -> HeldStructure:
