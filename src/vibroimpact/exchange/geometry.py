@@ -31,7 +31,7 @@ def mesh_geometry(path: str | PathLike[str], size: float | None = None, order: i
     path : path
         The file: .step, .stp or .brep.
     size : float, optional
-        About the largest length of an element [m]; by default a twentieth of the largest extent.
+        About the largest length of an element [m]; by default a twelfth of the largest extent.
     order : int, default 2
         Order of the elements, 1 or 2.
     unit_in_metres : float, default 1

@@ -13,7 +13,7 @@ DEFAULT_FRACTION = 12
 
 
 def make_mesh(geometry: str, mesh: str, size: float, order: int) -> None:
-    """Mesh the one solid of a geometry; a size of 0 stands for a twentieth of the largest extent.
+    """Mesh the one solid of a geometry; a size of 0 stands for a twelfth of the largest extent.
 
     Raises
     ------

@@ -35,7 +35,7 @@ def read_mesh(path: str | PathLike[str], unit_in_metres: float = 1.0, size: floa
     unit_in_metres : float, default 1
         The unit of its coordinates [m], such as 0.001 for millimetres; a STEP file names its own.
     size : float, optional
-        About the largest length of an element of a geometry [m]; by default a twentieth of the largest extent.
+        About the largest length of an element of a geometry [m]; by default a twelfth of the largest extent.
 
     Raises
     ------
