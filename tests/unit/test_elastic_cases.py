@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import csv
 import json
+import subprocess
+import sys
 import tomllib
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 import numpy as np
 import pytest
@@ -16,9 +18,12 @@ import vibroimpact as vi
 from support import plain_case
 from vibroimpact.cases.build import resolved
 from vibroimpact.cases.build_elastic import elastic_bodies
+from vibroimpact.cases.elastic_fields import Kind
+from vibroimpact.cases.supports_field import EdgeName
 from vibroimpact.cli import main
-from vibroimpact.structures.lattice import box_mesh, mesh_of_blocks
+from vibroimpact.structures.lattice import SOLID_KINDS, box_mesh, mesh_of_blocks
 from vibroimpact.structures.supports.bar import Bar
+from vibroimpact.structures.supports.edge import EDGES
 from vibroimpact.structures.supports.patch import Patch
 
 PLATE = {"size": ["520 mm", "420 mm", "8 mm"], "material": "steel-paper", "model": "elastic", "supports": "clamped", "modes": 4}
@@ -147,6 +152,16 @@ def test_a_graded_sphere_has_more_elements_or_is_doubted() -> None:
     coarse = {**sphere, "mesh": {"grading": 4, "elements_across": 8}}
     (doubt,) = vi.compute_modes(vi.read_case(plain_case(sphere=coarse)))["sphere"].doubts
     assert "its elements are too large" in doubt
+
+
+def test_a_rigid_case_loads_no_finite_elements() -> None:
+    code = "import sys, vibroimpact as vi; vi.load_case('paper:type1-theory').to_problem(); assert 'scipy.sparse' not in sys.modules"
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+
+
+def test_the_words_of_a_case_are_those_of_the_structures() -> None:
+    assert set(get_args(Kind)) == set(SOLID_KINDS)
+    assert get_args(EdgeName) == EDGES
 
 
 def test_rigid_bodies_have_no_modes() -> None:

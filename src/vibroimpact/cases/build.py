@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from vibroimpact.bodies.plate import rigid_plate
 from vibroimpact.bodies.sphere import rigid_sphere
-from vibroimpact.cases.build_elastic import elastic_bodies, elastic_table
 from vibroimpact.cases.material_field import material_table
 from vibroimpact.contact.law import CompliantLaw, ContactLaw, find_contact_law, loses_nothing
 from vibroimpact.contact.pair import ContactPair, effective_modulus
@@ -72,7 +71,16 @@ def check_case(case: Case) -> None:
         if isinstance(law, CompliantLaw) and law.lasting and case.drop.same_spot and loses_nothing(law.after_compression(1.0)):
             words = f"and {law.name} loses none on a dent that it has made"
             raise InputError(f'"all" needs a law that loses energy, {words}; {remedy}, or drop.same_spot = false', "run.impacts")
-    elastic_bodies(case)
+    if elastic_names(case):
+        from vibroimpact.cases.build_elastic import elastic_bodies  # which loads sparse matrices
+
+        elastic_bodies(case)
+
+
+def elastic_names(case: Case) -> list[Literal["sphere", "plate"]]:
+    """Return which bodies of a case are elastic."""
+    names: tuple[Literal["sphere", "plate"], ...] = ("sphere", "plate")
+    return [name for name in names if getattr(case, name).model == "elastic"]
 
 
 def problem_of(case: Case) -> Problem:
@@ -84,7 +92,7 @@ def problem_of(case: Case) -> Problem:
         What `check_case` raises; and for elastic bodies, whose drop can't be simulated yet.
     """
     check_case(case)
-    for name in elastic_bodies(case):
+    for name in elastic_names(case):
         raise InputError(
             'a drop of elastic bodies is not simulated yet; "vibroimpact modes" gives their modes, and model = "rigid" the drop',
             f"{name}.model",
@@ -140,6 +148,8 @@ def _body(case: Case, name: Literal["sphere", "plate"]) -> dict[str, Any]:
     if section.model == "rigid":
         found = {key: found[key] for key in ("radius", "size", "model") if key in found}
     else:
+        from vibroimpact.cases.build_elastic import elastic_table  # which loads sparse matrices
+
         found |= elastic_table(case, name)
     if "size" in found:
         found["size"] = list(found["size"])

@@ -6,6 +6,7 @@ import math
 from typing import TYPE_CHECKING, Any, Literal
 
 from vibroimpact.bodies.elastic import ElasticBody, plate_recipe, sphere_recipe
+from vibroimpact.cases.build import elastic_names
 from vibroimpact.cases.damping_field import damping_of, damping_table
 from vibroimpact.cases.elastic_fields import BroughtMeshTable, PlateMeshTable, SphereMeshTable, reduction_of
 from vibroimpact.cases.supports_field import supports_of, supports_table
@@ -27,13 +28,12 @@ def elastic_bodies(case: Case) -> dict[str, ElasticBody]:
     InputError
         If one can't be made.
     """
-    found = {}
-    for name, make in (("sphere", _sphere), ("plate", _plate)):
-        if getattr(case, name).model == "elastic":
-            try:
-                found[name] = make(case)
-            except InputError as error:
-                raise InputError(error.message, f"{name}.{error.key}".rstrip(".")) from None
+    found: dict[str, ElasticBody] = {}
+    for name in elastic_names(case):
+        try:
+            found[name] = (_sphere if name == "sphere" else _plate)(case)
+        except InputError as error:
+            raise InputError(error.message, f"{name}.{error.key}".rstrip(".")) from None
     return found
 
 

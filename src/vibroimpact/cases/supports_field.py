@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from itertools import product
-from typing import Annotated, Any, ClassVar, Literal
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, get_args
 
 from pydantic import AfterValidator, BeforeValidator, Field, WithJsonSchema, model_validator
 
@@ -14,14 +14,11 @@ from vibroimpact.cases.section import Section, read_table
 from vibroimpact.errors import InputError, did_you_mean
 from vibroimpact.materials import RIGID, Material
 from vibroimpact.ranges import Range
-from vibroimpact.structures.supports.bar import Bar
-from vibroimpact.structures.supports.edge import EDGES, Edge, EdgeName
-from vibroimpact.structures.supports.node_set import NodeSet
-from vibroimpact.structures.supports.patch import Patch, RectangularPatch
-from vibroimpact.structures.supports.point import Point
-from vibroimpact.structures.supports.spring import Spring
-from vibroimpact.structures.supports.support import Support
 
+if TYPE_CHECKING:  # they load sparse matrices, which a case of rigid bodies does without
+    from vibroimpact.structures.supports.support import Support
+
+EdgeName = Literal["x-min", "x-max", "y-min", "y-max"]
 _Length = Annotated[float, Quantity("m", "length", Range(above=0))]
 _Position = tuple[Annotated[float, Quantity("m", "x")], Annotated[float, Quantity("m", "y")]]
 _Radius = Annotated[float, Quantity("m", "radius", Range(above=0))]
@@ -56,6 +53,8 @@ class PatchTable(_Table):
 
     def made(self) -> tuple[Support, ...]:
         """Return the patch."""
+        from vibroimpact.structures.supports.patch import Patch, RectangularPatch
+
         if self.size is not None:
             return (RectangularPatch(*self.position, *self.size),)
         return (Patch(*self.position, self.radius or 0.0),)
@@ -71,6 +70,8 @@ class PatchesTable(_Table):
 
     def made(self) -> tuple[Support, ...]:
         """Return the four."""
+        from vibroimpact.structures.supports.patch import Patch
+
         return tuple(Patch(x, y, self.radius) for x, y in _corners(self.spacing))
 
 
@@ -100,6 +101,8 @@ class BarTable(_Table):
 
     def made(self) -> tuple[Support, ...]:
         """Return the column."""
+        from vibroimpact.structures.supports.bar import Bar
+
         return (Bar(*self.position, self.radius, self.length, _plain(self.material)),)
 
 
@@ -115,6 +118,8 @@ class BarsTable(_Table):
 
     def made(self) -> tuple[Support, ...]:
         """Return the four."""
+        from vibroimpact.structures.supports.bar import Bar
+
         return tuple(Bar(x, y, self.radius, self.length, _plain(self.material)) for x, y in _corners(self.spacing))
 
 
@@ -128,6 +133,8 @@ class EdgeTable(_Table):
 
     def made(self) -> tuple[Support, ...]:
         """Return the edge."""
+        from vibroimpact.structures.supports.edge import Edge
+
         return (Edge(self.edge, self.condition),)
 
 
@@ -141,6 +148,8 @@ class PointTable(_Table):
 
     def made(self) -> tuple[Support, ...]:
         """Return the point."""
+        from vibroimpact.structures.supports.point import Point
+
         return (Point(*self.position, self.directions),)
 
 
@@ -156,6 +165,8 @@ class SpringTable(_Table):
 
     def made(self) -> tuple[Support, ...]:
         """Return the spring."""
+        from vibroimpact.structures.supports.spring import Spring
+
         return (Spring(*self.position, self.stiffness, self.horizontal_stiffness, self.radius),)
 
 
@@ -169,6 +180,8 @@ class SetTable(_Table):
 
     def made(self) -> tuple[Support, ...]:
         """Return the set."""
+        from vibroimpact.structures.supports.node_set import NodeSet
+
         return (NodeSet(self.name, self.directions),)
 
 
@@ -221,7 +234,9 @@ SupportsField = Annotated[Any, BeforeValidator(_read_supports), WithJsonSchema(_
 def supports_of(value: str | tuple[_Table, ...]) -> tuple[Support, ...]:
     """Return the supports that a case states."""
     if isinstance(value, str):
-        return () if value == "free" else tuple(Edge(edge, value) for edge in EDGES)  # type: ignore[arg-type]
+        from vibroimpact.structures.supports.edge import Edge
+
+        return () if value == "free" else tuple(Edge(edge, value) for edge in get_args(EdgeName))  # type: ignore[arg-type]
     return tuple(support for table in value for support in table.made())
 
 

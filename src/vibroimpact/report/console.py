@@ -12,7 +12,7 @@ from rich.markup import escape
 from rich.table import Table
 from rich.text import Text
 
-from vibroimpact.cases.build import contact_laws_of, contact_pair, first_speed, impacts_of, resolved
+from vibroimpact.cases.build import contact_laws_of, contact_pair, elastic_names, first_speed, impacts_of, resolved
 from vibroimpact.cases.doubts import doubts
 from vibroimpact.cases.schema import Case
 from vibroimpact.contact.law import CompliantLaw, ContactLaw
@@ -22,7 +22,6 @@ from vibroimpact.dynamics.columns import LEDGER
 from vibroimpact.errors import InputError
 from vibroimpact.materials import RIGID, Material, find_material, material_library
 from vibroimpact.report.comparison import Comparison, comparison_table, free_parameter_words
-from vibroimpact.report.modes_text import elastic_rows
 from vibroimpact.storage.result import Result
 
 # column, heading, factor, digits
@@ -158,7 +157,7 @@ def case_explained(case: Case) -> RenderableType:
             f"{'rigid, held fixed' if case.plate.model == 'rigid' else 'elastic'}, of {_stuff(case.plate.material)}"
             + (f", {' x '.join(f'{side:g}' for side in case.plate.size)} m" if case.plate.size else ""),
         ),
-        *elastic_rows(case),
+        *_elastic_rows(case),
         ("effective modulus", f"{pair.effective_modulus:.6g} Pa"),
         ("first approach speed", f"{speed:.6g} m/s, gravity {gravity:g} m/s2"),
         ("contact law", f"{case.contact.law}: {laws[0].equation}"),
@@ -191,6 +190,14 @@ def case_explained(case: Case) -> RenderableType:
     for row in rows:
         table.add_row(*(escape(cell) for cell in row))
     return Group(Text(case.name or "a drop", style="bold"), table, *_doubt_lines(found))
+
+
+def _elastic_rows(case: Case) -> list[tuple[str, str]]:
+    if not elastic_names(case):
+        return []
+    from vibroimpact.report.modes_text import elastic_rows  # which loads sparse matrices
+
+    return elastic_rows(case)
 
 
 def _restitution_lines(law: ContactLaw, mass: float, speed: float) -> list[str]:
