@@ -12,10 +12,10 @@ from vibroimpact.structures.lattice import box_mesh
 from vibroimpact.structures.modes import Elastic
 from vibroimpact.structures.plate_mesh import plate_mesh
 from vibroimpact.structures.sphere_mesh import sphere_mesh
-from vibroimpact.structures.structure import Structure, plate_structure, solid_structure
+from vibroimpact.structures.structure import plate_structure, solid_structure
 from vibroimpact.structures.supports.edge import EDGES, Edge
 from vibroimpact.structures.supports.patch import Patch
-from vibroimpact.structures.supports.support import Support, held_by
+from vibroimpact.structures.supports.support import held_by
 
 STEEL = find_material("steel-paper")
 PATCHES = tuple(Patch(x, y, 0.02) for x in (-0.2, 0.2) for y in (-0.15, 0.15))
@@ -37,10 +37,6 @@ BODIES = {
 @pytest.mark.parametrize("body", BODIES)
 def test_modes_of_arpack(body: str) -> None:
     structure, supports, number, tolerance = BODIES[body]()
-    _compare(structure, supports, number, tolerance)
-
-
-def _compare(structure: Structure, supports: tuple[Support, ...], number: int, tolerance: float) -> None:
     held = held_by(structure, supports)
     elastic = Elastic(held.stiffness, held.mass, held.rigid, held.order)
     modes = elastic.modes(number)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Any, Literal
 
 from vibroimpact.errors import InputError
@@ -57,7 +57,7 @@ class ElasticBody:
         return modal_basis(model, self.damping, self.contact, self.side, self.watched)
 
 
-def sphere_recipe(radius: float, material: Material, reduction: Reduction, shape: Shape | None = None) -> Recipe:
+def sphere_recipe(radius: float, material: Material, reduction: Reduction, **mesh: Any) -> Recipe:
     """Return the recipe of an elastic sphere.
 
     Parameters
@@ -68,8 +68,8 @@ def sphere_recipe(radius: float, material: Material, reduction: Reduction, shape
         Of the sphere.
     reduction : Reduction
         Which modes are kept.
-    shape : optional
-        Its mesh; by default one that resolves the modes asked for.
+    **mesh : optional
+        What `SphereOfSolids` takes; `elements_across` is chosen to resolve the modes, and the grading, unless given.
 
     Examples
     --------
@@ -77,11 +77,11 @@ def sphere_recipe(radius: float, material: Material, reduction: Reduction, shape
     >>> sphere_recipe(0.025, find_material("rock-paper"), Reduction(modes=10)).shape
     SphereOfSolids(radius=0.025, elements_across=8, kind='hex27', grading=1.0)
     """
-    if shape is None:
+    if not mesh.get("elements_across"):
         wave_number = _shear_wave_number(radius, material, reduction) * radius
         across = max(_ACROSS, 2 * math.ceil(_PER_WAVE * wave_number / (2.0 * math.pi)))
-        shape = SphereOfSolids(radius, across)
-    return _recipe(shape, material, reduction)
+        mesh["elements_across"] = 2 * math.ceil(0.5 * across * math.sqrt(mesh.get("grading", 1.0)))
+    return recipe_of(SphereOfSolids(radius, **mesh), material, reduction)
 
 
 def plate_recipe(
@@ -120,13 +120,20 @@ def plate_recipe(
         step, least = (_PLATE_STEP, _SIDE) if element == "plate" else (_SOLID_STEP, _SOLID_SIDE)
         mesh["element_size"] = float(f"{min(step * wave, max(size[:2]) / least):.3g}")
     kind = PlateOfPlates if element == "plate" else PlateOfSolids
-    return replace(_recipe(kind(size=size, **mesh), material, reduction), supports=supports)
+    return recipe_of(kind(size=size, **mesh), material, reduction, supports)
 
 
-def _recipe(shape: Shape, material: Material, reduction: Reduction) -> Recipe:
+def recipe_of(shape: Shape, material: Material, reduction: Reduction, supports: tuple[Support, ...] = ()) -> Recipe:
+    """Return the recipe of a body of a shape.
+
+    Raises
+    ------
+    InputError
+        If the material is rigid.
+    """
     if not math.isfinite(material.youngs_modulus):
         raise InputError('"rigid" does not deform; an elastic body needs a material with a modulus', "material")
-    return Recipe(shape, material.density, material.youngs_modulus, material.poissons_ratio, reduction=reduction)
+    return Recipe(shape, material.density, material.youngs_modulus, material.poissons_ratio, supports, reduction)
 
 
 def _shear_wave_number(radius: float, material: Material, reduction: Reduction) -> float:
@@ -134,9 +141,8 @@ def _shear_wave_number(radius: float, material: Material, reduction: Reduction) 
     speed = math.sqrt(material.youngs_modulus / (2.0 * (1.0 + material.poissons_ratio) * material.density))
     if reduction.modes is None:
         return 2.0 * math.pi * (reduction.max_frequency or 0.0) / speed
-    return float(
-        1.9 * (reduction.modes + 1) ** (1.0 / 3.0) / radius
-    )  # Weyl's count of modes in a ball, V k^3 / (6 pi^2) for each of three waves
+    # Weyl's count of modes in a ball, V k^3 / (6 pi^2) for each of three waves
+    return float(1.9 * (reduction.modes + 1) ** (1.0 / 3.0) / radius)
 
 
 def shortest_bending_wave(thickness: float, material: Material, frequency: float) -> float:

@@ -5,13 +5,13 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any, Literal
 
-from vibroimpact.bodies.elastic import ElasticBody, plate_recipe, sphere_recipe
+from vibroimpact.bodies.elastic import ElasticBody, plate_recipe, recipe_of, sphere_recipe
 from vibroimpact.cases.build import elastic_names
 from vibroimpact.cases.damping_field import damping_of, damping_table
 from vibroimpact.cases.elastic_fields import BroughtMeshTable, PlateMeshTable, SphereMeshTable, reduction_of
 from vibroimpact.cases.supports_field import supports_of, supports_table
 from vibroimpact.errors import InputError
-from vibroimpact.structures.recipe import BroughtMesh, Recipe, SphereOfSolids, to_follow
+from vibroimpact.structures.recipe import BroughtMesh, Recipe, to_follow
 from vibroimpact.structures.rectangle import rectangle_blocks
 from vibroimpact.structures.supports.support import Support
 from vibroimpact.structures.surface import Spot
@@ -28,18 +28,19 @@ def elastic_bodies(case: Case) -> dict[str, ElasticBody]:
     InputError
         If one can't be made.
     """
-    found: dict[str, ElasticBody] = {}
-    for name in elastic_names(case):
-        try:
-            found[name] = (_sphere if name == "sphere" else _plate)(case)
-        except InputError as error:
-            raise InputError(error.message, f"{name}.{error.key}".rstrip(".")) from None
-    return found
+    return {name: _body(case, name) for name in elastic_names(case)}
+
+
+def _body(case: Case, name: Literal["sphere", "plate"]) -> ElasticBody:
+    try:
+        return (_sphere if name == "sphere" else _plate)(case)
+    except InputError as error:
+        raise InputError(error.message, f"{name}.{error.key}".rstrip(".")) from None
 
 
 def elastic_table(case: Case, name: Literal["sphere", "plate"]) -> dict[str, Any]:
     """Return the keys of an elastic body with what was chosen for it: its mesh, its modes and its damping."""
-    section, body = getattr(case, name), elastic_bodies(case)[name]
+    section, body = getattr(case, name), _body(case, name)
     shape, reduction = body.recipe.shape, body.recipe.reduction
     damping = body.damping if section.damping is None else section.damping
     table: dict[str, Any] = {"reduction": reduction.method, "damping": damping_table(damping)}
@@ -60,13 +61,11 @@ def _sphere(case: Case) -> ElasticBody:
     section, mesh = case.sphere, case.sphere.mesh
     contact = mesh.contact if isinstance(mesh, BroughtMeshTable) else None
     reduction = reduction_of("sphere", section, (contact, "lower"))
-    shape = mesh.brought() if isinstance(mesh, BroughtMeshTable) else None
-    recipe = sphere_recipe(section.radius, section.material, reduction, shape)
-    if isinstance(mesh, SphereMeshTable):
-        default = recipe.shape
-        assert isinstance(default, SphereOfSolids)
-        across = mesh.elements_across or 2 * math.ceil(0.5 * default.elements_across * math.sqrt(mesh.grading))
-        recipe = sphere_recipe(section.radius, section.material, reduction, SphereOfSolids(section.radius, across, mesh.kind, mesh.grading))
+    if isinstance(mesh, BroughtMeshTable):
+        recipe = recipe_of(mesh.brought(), section.material, reduction)
+    else:
+        options = mesh.model_dump(exclude_none=True) if isinstance(mesh, SphereMeshTable) else {}
+        recipe = sphere_recipe(section.radius, section.material, reduction, **options)
     return ElasticBody(recipe, "lower", contact, damping_of(section.damping, section.material.loss_factor))
 
 
@@ -83,15 +82,14 @@ def _plate_recipe(case: Case, contact: Spot) -> Recipe:
     section, mesh = case.plate, case.plate.mesh
     reduction = reduction_of("plate", section, (contact, "upper"))
     supports = supports_of(section.supports)
-    material = section.material
     if isinstance(mesh, BroughtMeshTable):
-        return Recipe(mesh.brought(), material.density, material.youngs_modulus, material.poissons_ratio, supports, reduction)
+        return recipe_of(mesh.brought(), section.material, reduction, supports)
     assert section.size is not None  # the section has seen to it
     element = section.element or "plate"
     options = mesh.model_dump(exclude_none=True, exclude={"elements"}) if isinstance(mesh, PlateMeshTable) else {}
     if isinstance(mesh, PlateMeshTable) and mesh.elements:
         options |= _about(section.size, mesh.elements, mesh.layers, supports)
-    return plate_recipe(section.size, material, reduction, supports, element, **options)
+    return plate_recipe(section.size, section.material, reduction, supports, element, **options)
 
 
 def _about(size: tuple[float, float, float], elements: int, layers: int | None, supports: tuple[Support, ...]) -> dict[str, Any]:

@@ -6,12 +6,14 @@ from typing import Annotated, Any
 
 from pydantic import BeforeValidator, WithJsonSchema
 
+from vibroimpact.cases.quantities import read_quantity
 from vibroimpact.errors import InputError, did_you_mean
 from vibroimpact.ranges import Range
 from vibroimpact.structures.damping import AdamsDefault, ConstantRatio, Damping, LossFactor, RatioOfEach, RatioTable, Rayleigh
 
 ADAMS = "adams-default"
 MATERIAL = "loss-factor"
+_DAMPINGS = (AdamsDefault, ConstantRatio, LossFactor, RatioOfEach, RatioTable, Rayleigh)
 _NOT_NEGATIVE = Range(at_least=0)
 _ALLOWED = (
     f'a damping ratio, "{ADAMS}", "{MATERIAL}" (of the material), {{ rayleigh = [1/s, s] }}, {{ loss_factor = x }}, '
@@ -20,7 +22,7 @@ _ALLOWED = (
 
 
 def _read_damping(value: Any) -> Any:
-    if isinstance(value, Damping_) or value == MATERIAL:
+    if isinstance(value, _DAMPINGS) or value == MATERIAL:
         return value
     if isinstance(value, str):
         if value != ADAMS:
@@ -34,12 +36,7 @@ def _read_damping(value: Any) -> Any:
     return ConstantRatio(float(value))
 
 
-Damping_ = (AdamsDefault, ConstantRatio, LossFactor, RatioOfEach, RatioTable, Rayleigh)
-
-
 def _read_table(value: dict[str, Any]) -> Damping:
-    from vibroimpact.cases.quantities import read_quantity
-
     def numbers(key: str, unit: str = "") -> tuple[float, ...]:
         given = value[key]
         if not isinstance(given, list) or not given:

@@ -20,10 +20,13 @@ if TYPE_CHECKING:  # they load sparse matrices, which a case of rigid bodies doe
 
 EdgeName = Literal["x-min", "x-max", "y-min", "y-max"]
 _Length = Annotated[float, Quantity("m", "length", Range(above=0))]
-_Position = tuple[Annotated[float, Quantity("m", "x")], Annotated[float, Quantity("m", "y")]]
+_Position = Annotated[
+    tuple[Annotated[float, Quantity("m", "x")], Annotated[float, Quantity("m", "y")]],
+    Field(description="two lengths: x and y on the plate, from its centre"),
+]
 _Radius = Annotated[float, Quantity("m", "radius", Range(above=0))]
 _Directions = Literal["x", "y", "z", "xy", "xz", "yz", "xyz"]
-_Spacing = tuple[_Length, _Length]
+_Spacing = Annotated[tuple[_Length, _Length], Field(description="two lengths: between centres along x and along y")]
 
 WORDS = ("free", "clamped", "simply-supported")
 
@@ -41,7 +44,7 @@ class PatchTable(_Table):
 
     what = "a rigid patch of the lower side, held still: a disc of a radius, or a rectangle of a size"
     type: Literal["patch"] = "patch"
-    position: _Position = Field(description="two lengths: x and y on the plate, from its centre")
+    position: _Position
     radius: _Radius | None = None
     size: tuple[_Length, _Length] | None = Field(None, description="two lengths: along x and along y")
 
@@ -65,7 +68,7 @@ class PatchesTable(_Table):
 
     what = "four rigid circular patches of the lower side, at the corners of a rectangle of this spacing around the centre"
     type: Literal["patches"] = "patches"
-    spacing: _Spacing = Field(description="two lengths: between centres along x and along y")
+    spacing: _Spacing
     radius: _Radius
 
     def made(self) -> tuple[Support, ...]:
@@ -94,7 +97,7 @@ class BarTable(_Table):
 
     what = "an elastic round column under the plate, fixed to the ground"
     type: Literal["bar"] = "bar"
-    position: _Position = Field(description="two lengths: x and y on the plate, from its centre")
+    position: _Position
     radius: _Radius
     length: _Length
     material: _BarMaterial
@@ -111,7 +114,7 @@ class BarsTable(_Table):
 
     what = "four elastic round columns, at the corners of a rectangle of this spacing around the centre"
     type: Literal["bars"] = "bars"
-    spacing: _Spacing = Field(description="two lengths: between centres along x and along y")
+    spacing: _Spacing
     radius: _Radius
     length: _Length
     material: _BarMaterial
@@ -143,7 +146,7 @@ class PointTable(_Table):
 
     what = "a point of the lower side, held along some axes"
     type: Literal["point"] = "point"
-    position: _Position = Field(description="two lengths: x and y on the plate, from its centre")
+    position: _Position
     directions: _Directions = Field("z", description="the axes along which it is held")
 
     def made(self) -> tuple[Support, ...]:
@@ -158,7 +161,7 @@ class SpringTable(_Table):
 
     what = "a spring under a point, or an elastic pad of a radius"
     type: Literal["spring"] = "spring"
-    position: _Position = Field(description="two lengths: x and y on the plate, from its centre")
+    position: _Position
     stiffness: Annotated[float, Quantity("N/m", "vertical stiffness", Range(above=0))]
     horizontal_stiffness: Annotated[float, Quantity("N/m", "stiffness along x, and along y", Range(at_least=0))] = 0.0
     radius: Annotated[float, Quantity("m", "radius", Range(at_least=0))] = 0.0

@@ -15,7 +15,7 @@ from vibroimpact.cases.build_elastic import elastic_bodies
 from vibroimpact.cases.modes import BodyModes
 from vibroimpact.cases.schema import Case
 from vibroimpact.structures.store import has_model, key_of
-from vibroimpact.structures.surface import check_place
+from vibroimpact.structures.surface import place_of, surface_motion
 
 _ROWS = 20
 
@@ -77,9 +77,9 @@ def elastic_rows(case: Case) -> list[tuple[str, str]]:
     rows: list[tuple[str, str]] = []
     for name, body in elastic_bodies(case).items():
         mesh = body.recipe.shape.mesh(body.recipe.supports)
-        check_place(mesh, body.contact, body.side, f"{name}: the contact point")
-        for sensor, place in body.watched.items():
-            check_place(mesh, *place, f'{name}: sensor "{sensor}"')
+        points = {"the contact point": (body.contact, body.side), **{f'sensor "{key}"': place for key, place in body.watched.items()}}
+        for what, (spot, side) in points.items():  # are they on the body?
+            surface_motion(mesh, np.array([place_of(mesh, spot, side)]), side, what=f"{name}: {what}")
         elements = ", ".join(f"{len(block.connectivity)} {block.kind}" for block in mesh.blocks)
         reduction = body.recipe.reduction
         kept = f"{reduction.modes} modes" if reduction.modes else f"modes up to {reduction.max_frequency:g} Hz"

@@ -12,7 +12,7 @@ from vibroimpact.structures.geometry import MassProperties
 from vibroimpact.structures.mesh import Floats, Mesh
 from vibroimpact.structures.modes import Eigenmodes
 from vibroimpact.structures.supports.constraints import HeldStructure
-from vibroimpact.structures.surface import Side, Spot, check_place, place_of, surface_motion
+from vibroimpact.structures.surface import Side, Spot, place_of, surface_motion
 
 
 @dataclass(frozen=True)
@@ -62,15 +62,17 @@ class ModalModel:
         """Return how the nodes move in a mode (from 0), shape (nodes, 3) [kg^-1/2]."""
         return np.asarray(self.shapes[mode].reshape(len(self.mesh.nodes), -1)[:, :3])
 
-    def at(self, places: Floats, side: Side = "upper") -> tuple[Floats, Floats]:
+    def at(self, places: Floats, side: Side = "upper", what: str = "") -> tuple[Floats, Floats]:
         """Return the mode shapes at places on one side, shape (modes, points, 3), and where these lie, (points, 3) [m].
+
+        `what` is there, for the message if it lies beside the body.
 
         Raises
         ------
         InputError
             If a place lies beside the body.
         """
-        motion, positions = surface_motion(self.mesh, places, side, self.thickness)
+        motion, positions = surface_motion(self.mesh, places, side, self.thickness, what)
         dofs = np.unique(motion.indices)  # few of many: the others need not be read
         return np.asarray(self.shapes[:, dofs] @ motion[:, dofs].T.toarray()).reshape(len(self.shapes), -1, 3), positions
 
@@ -152,8 +154,7 @@ def modal_basis(
     """
 
     def seen(spot: Spot, face: Side, what: str = "the contact point") -> Floats:
-        check_place(model.mesh, spot, face, what)
-        return model.at(np.array([place_of(model.mesh, spot, face)]), face)[0][:, 0]
+        return model.at(np.array([place_of(model.mesh, spot, face)]), face, what)[0][:, 0]
 
     return ModalBasis(
         model.frequencies,

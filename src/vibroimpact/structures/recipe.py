@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Literal, Protocol
+from typing import Literal
 
 import numpy as np
 
@@ -28,18 +28,21 @@ Place = tuple[Spot, Side]
 """A spot, and the side of the body that it is on."""
 
 
-class Shape(Protocol):
-    """Anything that a body can be made of: a frozen dataclass."""
+@dataclass(frozen=True)
+class Shape:
+    """Base of what a body can be made of: a mesh, of solid elements unless it says otherwise."""
 
-    def mesh(self, supports: tuple[Support, ...]) -> Mesh:
+    def mesh(self, supports: tuple[Support, ...] = ()) -> Mesh:
         """Make the mesh; it follows the supports where it is made here."""
+        raise NotImplementedError
 
     def structure(self, mesh: Mesh, material: Material) -> Structure:
         """Make the finite elements of the mesh."""
+        return solid_structure(mesh, material)
 
 
 @dataclass(frozen=True)
-class SphereOfSolids:
+class SphereOfSolids(Shape):
     """A solid sphere, meshed here: see `sphere_mesh`."""
 
     radius: float
@@ -51,13 +54,9 @@ class SphereOfSolids:
         """Make the mesh."""
         return sphere_mesh(self.radius, self.elements_across, self.kind, self.grading)
 
-    def structure(self, mesh: Mesh, material: Material) -> Structure:
-        """Make the finite elements."""
-        return solid_structure(mesh, material)
-
 
 @dataclass(frozen=True)
-class PlateOfSolids:
+class PlateOfSolids(Shape):
     """A plate of solid elements, meshed here: see `solid_plate_mesh`."""
 
     size: tuple[float, float, float]
@@ -70,13 +69,9 @@ class PlateOfSolids:
         """Make the mesh."""
         return solid_plate_mesh(self.size, self.element_size, self.layers, self.kind, *to_follow(supports), self.splits)
 
-    def structure(self, mesh: Mesh, material: Material) -> Structure:
-        """Make the finite elements."""
-        return solid_structure(mesh, material)
-
 
 @dataclass(frozen=True)
-class PlateOfPlates:
+class PlateOfPlates(Shape):
     """A plate of plate elements, meshed here: see `plate_mesh` and `assemble_plate`."""
 
     size: tuple[float, float, float]
@@ -93,7 +88,7 @@ class PlateOfPlates:
 
 
 @dataclass(frozen=True)
-class BroughtMesh:
+class BroughtMesh(Shape):
     """A mesh that was brought.
 
     Parameters
@@ -110,10 +105,6 @@ class BroughtMesh:
     def mesh(self, supports: tuple[Support, ...] = ()) -> Mesh:
         """Read the mesh."""
         return self.read()
-
-    def structure(self, mesh: Mesh, material: Material) -> Structure:
-        """Make the finite elements."""
-        return solid_structure(mesh, material)
 
 
 @dataclass(frozen=True)

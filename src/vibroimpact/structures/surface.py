@@ -114,21 +114,7 @@ def place_of(mesh: Mesh, spot: Spot, side: Side) -> tuple[float, float]:
     return float(x), float(y)
 
 
-def check_place(mesh: Mesh, spot: Spot, side: Side, what: str) -> None:
-    """Raise unless a spot lies on a side of a body.
-
-    Raises
-    ------
-    InputError
-        With what it is.
-    """
-    try:
-        surface_motion(mesh, np.array([place_of(mesh, spot, side)]), side)
-    except InputError as error:
-        raise InputError(f"{what}: {error.message}") from None
-
-
-def surface_motion(mesh: Mesh, places: Floats, side: Side = "upper", thickness: float = 0.0) -> tuple[csr_array, Floats]:
+def surface_motion(mesh: Mesh, places: Floats, side: Side = "upper", thickness: float = 0.0, what: str = "") -> tuple[csr_array, Floats]:
     """Return how places on one side of a body move with its degrees of freedom.
 
     Parameters
@@ -141,6 +127,8 @@ def surface_motion(mesh: Mesh, places: Floats, side: Side = "upper", thickness: 
         "upper" or "lower"; where several faces lie above one another, the outermost counts.
     thickness : float, default 0
         Thickness of plate elements [m], whose sides lie half of it above and below the nodes.
+    what : str, optional
+        What is there, for the message if it lies beside the body.
 
     Returns
     -------
@@ -184,7 +172,7 @@ def surface_motion(mesh: Mesh, places: Floats, side: Side = "upper", thickness: 
         x, y = places[beside[0]]
         low, high = mesh.nodes.min(axis=0), mesh.nodes.max(axis=0)
         raise InputError(
-            f"({x:g}, {y:g}) m is not on the body, which reaches from {low[0]:g} to {high[0]:g} m along x and "
+            f"{what}{': ' if what else ''}({x:g}, {y:g}) m is not on the body, which reaches from {low[0]:g} to {high[0]:g} m along x and "
             f"from {low[1]:g} to {high[1]:g} m along y"
         )
     height = sign * 0.5 * thickness if mesh.is_flat else 0.0

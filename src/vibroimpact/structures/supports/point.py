@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from vibroimpact.errors import InputError
 from vibroimpact.structures.supports.constraints import Constraints
 from vibroimpact.structures.supports.support import Support
 from vibroimpact.structures.surface import surface_motion
@@ -45,8 +44,5 @@ class Point(Support):
     def hold(self, constraints: Constraints) -> None:
         """Hold the point, by the shape functions of the element that it is on."""
         structure = constraints.structure
-        try:
-            motion, _ = surface_motion(structure.mesh, np.array([[self.x, self.y]]), "lower", structure.thickness)
-        except InputError as error:
-            raise InputError(f"{self.words}: {error.message}") from None
+        motion, _ = surface_motion(structure.mesh, np.array([[self.x, self.y]]), "lower", structure.thickness, self.words)
         constraints.hold_motion(motion[["xyz".index(letter) for letter in self.directions]])

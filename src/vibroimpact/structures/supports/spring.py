@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from vibroimpact.errors import InputError
 from vibroimpact.structures.mesh import Floats
 from vibroimpact.structures.supports.constraints import Constraints
 from vibroimpact.structures.supports.support import Support
@@ -48,10 +47,7 @@ class Spring(Support):
         """Add the stiffness of the pad."""
         places, weights = disc_rule(self.radius)
         structure = constraints.structure
-        try:
-            motion, _ = surface_motion(structure.mesh, places + np.array([self.x, self.y]), "lower", structure.thickness)
-        except InputError as error:
-            raise InputError(f"{self.words}: {error.message}") from None
+        motion, _ = surface_motion(structure.mesh, places + np.array([self.x, self.y]), "lower", structure.thickness, self.words)
         stiffness = np.outer(weights, [self.horizontal_stiffness, self.horizontal_stiffness, self.stiffness]).ravel()
         dofs = np.unique(motion.indices)
         local = motion[:, dofs].toarray()
