@@ -57,7 +57,8 @@ class YieldingSphereLaw(ElasticPlasticLaw):
     def loading_work(self, delta: Array) -> Array:
         """Return the integral of the loading force from zero [J]."""
         yielded, elastic = self._split(delta)
-        return 0.4 * self.stiffness * elastic**2 * np.sqrt(elastic) + self.plastic_loading_work(yielded)
+        plastic = np.where(delta > elastic, self.plastic_loading_work(yielded), 0.0)  # which rounding would not leave at zero
+        return 0.4 * self.stiffness * elastic**2 * np.sqrt(elastic) + plastic
 
     def elastic_part(self, deepest: Array) -> Array:
         """Return how far the contact springs back [m]: all of it, if it has not yielded."""

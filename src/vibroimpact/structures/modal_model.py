@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from vibroimpact.structures.damping import Damping
+from vibroimpact.structures.disc import HERTZ, disc_points
 from vibroimpact.structures.geometry import MassProperties
 from vibroimpact.structures.mesh import Floats, Mesh
 from vibroimpact.structures.modes import Eigenmodes
@@ -76,6 +77,28 @@ class ModalModel:
         dofs = np.unique(motion.indices)  # few of many: the others need not be read
         return np.asarray(self.shapes[:, dofs] @ motion[:, dofs].T.toarray()).reshape(len(self.shapes), -1, 3), positions
 
+    def averaged(self, place: tuple[float, float], radius: float, side: Side = "upper", what: str = "") -> Floats:
+        """Return the mode shapes at a place, averaged over a disc with the weight of Hertz's pressure, shape (modes, 3) [kg^-1/2].
+
+        Parameters
+        ----------
+        place : tuple of two floats
+            x and y [m] of the middle.
+        radius : float
+            Of the disc [m]; of 0 it is the point.
+        side : str, default "upper"
+            "upper" or "lower".
+        what : str, optional
+            What is there, for the message if some of the disc lies beside the body.
+
+        Raises
+        ------
+        InputError
+            If some of the disc lies beside the body.
+        """
+        places, weights = disc_points(HERTZ)
+        return np.asarray(np.einsum("mpi,p->mi", self.at(np.asarray(place) + radius * places, side, what)[0], weights))
+
 
 def modal_model(held: HeldStructure, modes: Eigenmodes, facts: Mapping[str, str] | None = None) -> ModalModel:
     """Make the modal model of a held structure from the modes of its free degrees of freedom."""
@@ -111,6 +134,10 @@ class ModalBasis:
         Momentum of each mode [kg^1/2]; over the mass it is how far the centre of mass moves.
     points : mapping of str to array, shape (modes, 3)
         How the points watched move [kg^-1/2].
+    mass : float, default NaN
+        Mass of the whole body [kg].
+    rotation : array, shape (modes, 3), optional
+        How it turns as a whole [-]: of the modal velocities v, the energy of that is half the square of v times this.
     """
 
     frequencies: Floats
@@ -118,6 +145,8 @@ class ModalBasis:
     contact: Floats
     participation: Floats
     points: Mapping[str, Floats] = field(default_factory=dict)
+    mass: float = np.nan
+    rotation: Floats | None = None
 
     @property
     def angular_frequencies(self) -> Floats:
@@ -162,4 +191,12 @@ def modal_basis(
         seen(contact, side)[:, 2],
         model.participation[:, :3],
         {name: seen(*point, f'sensor "{name}"') for name, point in (points or {}).items()},
+        model.properties.mass,
+        _rotation(model),
     )
+
+
+def _rotation(model: ModalModel) -> Floats:
+    """Return the angular momentum of each mode in the root of the inertia: half its square is energy of rotation."""
+    moments, axes = np.linalg.eigh(model.properties.inertia)
+    return np.asarray(model.participation[:, 3:] @ axes / np.sqrt(moments))

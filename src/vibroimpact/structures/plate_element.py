@@ -13,6 +13,11 @@ from vibroimpact.structures.mesh import Mesh
 _THIN_SHEAR = 1e4  # how much stiffer in shear the thin plate is made
 
 
+def shear_factor(poissons_ratio: float) -> float:
+    """Return the factor of the shear stiffness of a plate [-]: 5 / (6 - nu), J. R. Hutchinson's (J. Appl. Mech. 51:581, 1984)."""
+    return 5.0 / (6.0 - poissons_ratio)
+
+
 def assemble_plate(
     mesh: Mesh, material: Material, thickness: float, theory: str = "thick", shear_correction: float | None = None
 ) -> tuple[csr_array, csr_array]:
@@ -64,7 +69,7 @@ def assemble_plate(
     modulus, ratio = material.youngs_modulus, material.poissons_ratio
     mu = modulus / (2.0 * (1.0 + ratio))
     lame = modulus * ratio / (1.0 - ratio**2)  # of plane stress
-    factor = 5.0 / (6.0 - ratio) if shear_correction is None else shear_correction
+    factor = shear_factor(ratio) if shear_correction is None else shear_correction
     shear = factor * mu * thickness * (1.0 if theory == "thick" else _THIN_SHEAR)
     second_moment = thickness**3 / 12.0
     shapes = list(scaled_shapes(mesh, mesh.blocks[0]))

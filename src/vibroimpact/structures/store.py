@@ -1,4 +1,4 @@
-"""A store of modal models on disk, under the key of all that determines them, so that nothing is computed twice."""
+"""A store of modal models and static compliances on disk, under the key of all that determines them: nothing is computed twice."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ import math
 import os
 import tempfile
 import zlib
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -27,7 +27,11 @@ PLACE = "VIBROIMPACT_STORE"
 """The environment variable that moves the store."""
 
 _LARGEST = 4_000_000_000  # bytes; the entries that were not used for longest go first
-_SUFFIX = ".modes"
+_MODES = "modes"
+KINDS = (_MODES, "compliance")
+"""What entries hold, and how their names end."""
+
+Content = TypeVar("Content")
 
 
 def store_folder() -> Path:
@@ -70,30 +74,49 @@ def _content(value: Any) -> Any:
 
 
 def has_model(key: str) -> bool:
-    """Is there an entry under a key?"""
-    return (store_folder() / (key + _SUFFIX)).is_file()
+    """Is there a model under a key?"""
+    return _path(key, _MODES).is_file()
 
 
 def load_model(key: str) -> tuple[ModalModel | None, str]:
-    """Return the model under a key, or None; and what was wrong with its entry, or "".
+    """Return the model under a key, or None; and what was wrong with its entry, or ""."""
+    return load_entry(key, _MODES, _model)
+
+
+def save_model(key: str, model: ModalModel) -> str:
+    """Keep a model under a key; return what prevented it, or ""."""
+    return save_entry(key, _MODES, _parts(model))
+
+
+def load_entry(key: str, kind: str, read: Callable[[Mapping[str, Any]], Content]) -> tuple[Content | None, str]:
+    """Return what an entry holds, or None; and what was wrong with it, or "".
 
     An entry carries a check sum of all of it, so that a damaged one is known and taken as absent.
+
+    Parameters
+    ----------
+    key : str
+        Its key.
+    kind : str
+        What it is: one of `KINDS`.
+    read : callable
+        Makes the content of its arrays.
     """
-    path = store_folder() / (key + _SUFFIX)
+    path = _path(key, kind)
     try:
-        model = _model(_unpacked(path.read_bytes()))
+        content = read(_unpacked(path.read_bytes()))
         os.utime(path)  # it was used just now
     except FileNotFoundError:
         return None, ""
     except OSError as error:
-        return None, f"the stored modes in {path} can't be read ({error.strerror}); they are computed again"
+        return None, f"the {kind} stored in {path} can't be read ({error.strerror}) and will be computed again"
     except (ValueError, KeyError) as error:
-        return None, f"the stored modes in {path} are damaged ({error}); they are computed again"
-    return model, ""
+        return None, f"the {kind} stored in {path} can't be used: the file is damaged ({error}), and its content will be computed again"
+    return content, ""
 
 
-def save_model(key: str, model: ModalModel) -> str:
-    """Keep a model under a key; return what prevented it, or "".
+def save_entry(key: str, kind: str, parts: Mapping[str, Any]) -> str:
+    """Keep arrays under a key; return what prevented it, or "".
 
     The entry appears whole or not at all, so that several processes may save and load at once.
     """
@@ -103,15 +126,19 @@ def save_model(key: str, model: ModalModel) -> str:
         handle, name = tempfile.mkstemp(prefix=f".{key}.", dir=folder)
         try:
             with os.fdopen(handle, "wb") as file:
-                file.writelines(_packed(_parts(model)))
-            os.replace(name, folder / (key + _SUFFIX))
+                file.writelines(_packed(parts))
+            os.replace(name, _path(key, kind))
         except BaseException:
             Path(name).unlink(missing_ok=True)
             raise
         _make_room(folder)
     except OSError as error:
-        return f"the modes can't be kept in {folder} ({error.strerror}); they will be computed again next time"
+        return f"the {kind} can't be kept in {folder} ({error.strerror}) and will be computed again next time"
     return ""
+
+
+def _path(key: str, kind: str) -> Path:
+    return store_folder() / f"{key}.{kind}"
 
 
 def _packed(parts: Mapping[str, Any]) -> list[bytes]:
@@ -135,7 +162,7 @@ def _unpacked(data: bytes) -> dict[str, Any]:
     """
     view = memoryview(data)
     if len(view) < 12 or zlib.crc32(view[4:]) != int.from_bytes(view[:4], "little"):
-        raise ValueError("their check sum does not agree")
+        raise ValueError("its check sum does not agree")
     end = 12 + int.from_bytes(view[4:12], "little")
     found = {}
     for name, kind, shape in json.loads(bytes(view[12:end])):
@@ -147,7 +174,7 @@ def _unpacked(data: bytes) -> dict[str, Any]:
 
 def entries() -> list[Path]:
     """Return the files of the store, the one that was used last at the end."""
-    found = [(path.stat().st_mtime, path) for path in store_folder().glob("*" + _SUFFIX)]
+    found = [(path.stat().st_mtime, path) for kind in KINDS for path in store_folder().glob(f"*.{kind}")]
     return [path for _, path in sorted(found)]
 
 

@@ -1,0 +1,159 @@
+r"""What plate theory, or the other face, lacks of the compliance of a plate at the point where it is loaded.
+
+A pressure of wave number k on the upper face of a layer moves it by A + S, and the lower face by A - S, with
+:math:`A = \frac{2(1-\nu^2)}{E k}\frac{\cosh^2 x}{\sinh 2x - 2x}`, :math:`S = \frac{2(1-\nu^2)}{E k}\frac{\sinh^2 x}{\sinh 2x + 2x}`
+and x = k h / 2 (I. N. Sneddon, Fourier Transforms, 1951, section 46), and the half space by :math:`2(1-\nu^2)/(E k)`. The structural
+compliance is that of a point under a normal force less that of the half space, of the kernel :math:`A + S - 2(1-\nu^2)/(E k)`.
+
+Finite elements give it under an average over a disc instead, of the transform :math:`d(k) = 1 - k^2 \overline{r^2}/4 + \ldots`, on
+both the load and the response. The mean of r^2 is chosen so that the two kernels agree to :math:`k^{-4}` and :math:`k^{-2}`: then the
+integral of their difference over :math:`k\,dk/2\pi` is of the layer around the point alone, whatever the edges of the plate and what
+holds them.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from vibroimpact.structures.mesh import Floats
+
+_NODES = 16  # of Gauss's rule on each part of an integral
+_DEEPEST = 40.0  # wave number times thickness: beyond it the faces know nothing of each other
+_FINEST = 100.0  # wave number times radius: what is beyond it is 1e-6 of the term
+
+
+@dataclass(frozen=True)
+class Average:
+    r"""An average over a disc, of the weight :math:`1 + \beta (1 - 2 r^2 / b^2)`.
+
+    Parameters
+    ----------
+    radius : float
+        Radius b [m], >= 0.
+    tilt : float
+        beta [-]; at 3 the mean of r^2 is zero.
+    """
+
+    radius: float
+    tilt: float
+
+    def weights(self, places: Floats) -> Floats:
+        """Return the weight at places on the unit disc, shape (points, 2)."""
+        return np.asarray(1.0 + self.tilt * (1.0 - 2.0 * (places**2).sum(axis=1)))
+
+    def transform(self, k: Floats) -> Floats:
+        """Return the average of waves of a wave number k [1/m]."""
+        from scipy.special import jv
+
+        z = k * self.radius
+        return np.asarray(jv(0, z) + jv(2, z) + self.tilt / 3.0 * (jv(2, z) + jv(4, z)))
+
+
+def through_thickness_average(radius: float) -> Average:
+    """Return the average over a disc [m] that goes with `through_thickness_term`: the mean of r^2 is zero."""
+    return Average(radius, 3.0)
+
+
+def through_thickness_term(thickness: float, youngs_modulus: float, poissons_ratio: float, average: Average) -> float:
+    r"""Return the structural compliance of a plate less the response of its other face under an average [m/N].
+
+    Parameters
+    ----------
+    thickness : float
+        Thickness h [m], > 0.
+    youngs_modulus, poissons_ratio : float
+        E [Pa] and nu [-].
+    average : Average
+        Of the force on one face, and of the displacement of the other: `through_thickness_average`.
+
+    Notes
+    -----
+    The other kernel is :math:`(A - S)\,d^2`. For points, of radius 0, the bending in A drops out and the term is
+    :math:`\frac{2(1-\nu^2)}{\pi E h} \int_0^\infty \left(\frac{2\sinh^2 x}{\sinh 2x + 2x} - 1\right) dx
+    = -1.1676\,\frac{2(1-\nu^2)}{\pi E h}`.
+
+    Examples
+    --------
+    >>> round(through_thickness_term(0.01, 210e9, 0.3, through_thickness_average(0.0)) * 210e9 * 0.01 * 3.14159265 / (2 * 0.91), 4)
+    -1.1676
+    """
+    modulus = youngs_modulus / (1.0 - poissons_ratio**2)  # of plane strain
+
+    def kernel(k: Floats) -> Floats:
+        bending, squeezing = _layer(k * thickness)
+        return np.asarray(2.0 / (modulus * k) * (bending + squeezing - 1.0 - (bending - squeezing) * average.transform(k) ** 2))
+
+    return _integral(kernel, thickness, average)
+
+
+def plate_theory_average(radius: float, thickness: float, poissons_ratio: float, shear_factor: float) -> Average:
+    r"""Return the average over a disc [m] that goes with `plate_theory_term`.
+
+    Notes
+    -----
+    :math:`\overline{r^2} = 2 h^2 \left(\frac{1}{6 (1 - \nu) \kappa} - \frac15\right)`.
+    """
+    mean_square = 2.0 * thickness**2 * (1.0 / (6.0 * (1.0 - poissons_ratio) * shear_factor) - 0.2)
+    return Average(radius, 3.0 - 6.0 * mean_square / radius**2)
+
+
+def plate_theory_term(thickness: float, youngs_modulus: float, poissons_ratio: float, shear_factor: float, average: Average) -> float:
+    r"""Return the structural compliance of a plate less what plate theory has under an average [m/N].
+
+    Parameters
+    ----------
+    thickness : float
+        Thickness h [m], > 0.
+    youngs_modulus, poissons_ratio : float
+        E [Pa] and nu [-].
+    shear_factor : float
+        Factor kappa of the shear stiffness [-]; infinite in the thin theory.
+    average : Average
+        Of the force and of the displacement: `plate_theory_average`, of a radius > 0.
+
+    Notes
+    -----
+    The other kernel is :math:`\left(\frac{1}{D k^4} + \frac{1}{\kappa G h k^2}\right) d^2` (R. D. Mindlin, J. Appl. Mech. 18:31, 1951).
+
+    Examples
+    --------
+    >>> average = plate_theory_average(0.0075, 0.01, 0.3, 5 / 5.7)
+    >>> round(plate_theory_term(0.01, 210e9, 0.3, 5 / 5.7, average) * 210e9 * 0.01, 4)
+    -0.5982
+    """
+    modulus = youngs_modulus / (1.0 - poissons_ratio**2)
+    rigidity = modulus * thickness**3 / 12.0
+    shear = shear_factor * 0.5 * (1.0 - poissons_ratio) * modulus * thickness
+
+    def kernel(k: Floats) -> Floats:
+        structural = 2.0 / (modulus * k) * (np.sum(_layer(k * thickness), axis=0) - 1.0)
+        return np.asarray(structural - (1.0 / (rigidity * k**4) + 1.0 / (shear * k**2)) * average.transform(k) ** 2)
+
+    return _integral(kernel, thickness, average)
+
+
+def _layer(y: Floats) -> tuple[Floats, Floats]:
+    """Return A and S over the kernel of the half space, at y = k h; where the layer is deep each is a half."""
+    y = np.minimum(y, _DEEPEST)
+    return (1.0 + np.cosh(y)) / (2.0 * _sinh_less(y)), (np.cosh(y) - 1.0) / (2.0 * (np.sinh(y) + y))
+
+
+def _sinh_less(y: Floats) -> Floats:
+    """Return sinh y - y, by its series where little would be left of the difference."""
+    series = np.ones_like(y)
+    for n in range(17, 3, -2):
+        series = 1.0 + y**2 / (n * (n - 1)) * series
+    return np.asarray(np.where(y < 2.0, y**3 / 6.0 * series, np.sinh(y) - y))
+
+
+def _integral(kernel: Callable[[Floats], Floats], thickness: float, average: Average) -> float:
+    """Return the integral of a kernel over k dk / 2 pi from zero, by Gauss's rule on equal parts."""
+    largest = max(thickness, average.radius)
+    parts = math.ceil(largest * max(_DEEPEST / thickness, _FINEST / average.radius if average.radius else 0.0))
+    nodes, weights = np.polynomial.legendre.leggauss(_NODES)
+    k = (np.arange(parts)[:, None] + 0.5 * (nodes + 1.0)).ravel() / largest
+    return float(kernel(k) @ (k * np.tile(weights, parts)) / (4.0 * math.pi * largest))

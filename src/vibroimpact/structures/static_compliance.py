@@ -1,0 +1,137 @@
+"""The structural compliance of a plate where it is met, from one static solve of its finite elements."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vibroimpact.errors import InputError
+from vibroimpact.materials import Material
+from vibroimpact.structures.disc import UNIFORM, disc_points
+from vibroimpact.structures.mesh import Floats, Mesh
+from vibroimpact.structures.modes import Elastic
+from vibroimpact.structures.plate_compliance import (
+    Average,
+    plate_theory_average,
+    plate_theory_term,
+    through_thickness_average,
+    through_thickness_term,
+)
+from vibroimpact.structures.plate_element import shear_factor
+from vibroimpact.structures.recipe import PlateOfPlates, Recipe, Reduction
+from vibroimpact.structures.store import key_of, load_entry, save_entry
+from vibroimpact.structures.supports.constraints import HeldStructure
+from vibroimpact.structures.supports.support import held_by
+from vibroimpact.structures.surface import Side, surface_motion
+
+_KIND = "compliance"
+_FACES: tuple[Side, Side] = ("upper", "lower")
+_RADIUS = 0.75  # of the disc, thicknesses: elements of that size suffice
+_STILL = 1e-6
+
+
+def static_compliance(recipe: Recipe, place: tuple[float, float], side: Side = "upper", tell: Callable[[str], None] | None = None) -> float:
+    """Return the structural compliance of a held plate where it is met [m/N], from the store if it is there.
+
+    It is the displacement of a point under a unit normal force, less that of the half space, which a contact law carries.
+
+    Parameters
+    ----------
+    recipe : Recipe
+        The plate and its supports; which modes are kept plays no part.
+    place : tuple of two floats
+        x and y [m].
+    side : str, default "upper"
+        The face that is met: "upper" or "lower".
+    tell : callable, optional
+        Called with a sentence if something is wrong with the store.
+
+    Raises
+    ------
+    InputError
+        If the place is not on the body, the supports let it move vertically, or the mesh or a support is wrong.
+    ComputationError
+        If the stiffness is singular.
+
+    Notes
+    -----
+    Under a point force the displacement is infinite, and finite elements miss what is near it; so neither is asked for. The force is
+    spread over a disc of 0.75 thicknesses, or over what lies of it on the body near an edge; and the response, averaged in the same
+    way, is that of the plate elements, to which `plate_theory_term` is added, or that of the other face of solids, to which
+    `through_thickness_term` is added. These terms are exact for a plate that reaches a few thicknesses around the place.
+
+    Examples
+    --------
+    >>> from vibroimpact.structures.supports.edge import EDGES, Edge
+    >>> edges = tuple(Edge(edge, "simply-supported") for edge in EDGES)
+    >>> recipe = Recipe(PlateOfPlates((0.5, 0.5, 0.01), 0.125), 7850.0, 210e9, 0.3, edges)
+    >>> stiffness = 210e9 * 0.01**3 / (12 * 0.91)
+    >>> round(static_compliance(recipe, (0.0, 0.0)) * stiffness / 0.5**2, 4)  # 0.0116 is Navier's
+    0.0116
+    """
+    recipe, say = replace(recipe, reduction=Reduction()), tell or (lambda text: None)
+    key = key_of(["static compliance", recipe, place, side])
+    found, trouble = load_entry(key, _KIND, lambda parts: float(parts[_KIND].item()))
+    if trouble:
+        say(trouble)
+    if found is None:
+        found = computed_compliance(recipe, place, side)
+        trouble = save_entry(key, _KIND, {_KIND: np.array(found)})
+        if trouble:
+            say(trouble)
+    return found
+
+
+def computed_compliance(recipe: Recipe, place: tuple[float, float], side: Side = "upper") -> float:
+    """Compute the structural compliance of a held plate; takes and raises what `static_compliance` does."""
+    material = Material(recipe.density, recipe.youngs_modulus, recipe.poissons_ratio)
+    structure = recipe.shape.structure(recipe.shape.mesh(recipe.supports), material)
+    top, bottom = (surface_motion(structure.mesh, np.array([place]), face, structure.thickness)[1] for face in _FACES)
+    thickness = float(np.linalg.norm(top - bottom))
+    held = held_by(structure, recipe.supports)
+    if np.abs(held.left[:, 2:5]).max(initial=0.0) > _STILL * np.abs(held.left).max(initial=0.0):
+        raise InputError("the supports let the body move vertically; a static compliance needs supports that stop it")
+    thin = isinstance(recipe.shape, PlateOfPlates) and recipe.shape.theory == "thin"
+    factor = math.inf if thin else shear_factor(material.poissons_ratio)
+    elastic = thickness, material.youngs_modulus, material.poissons_ratio
+    if structure.mesh.is_flat:
+        average = plate_theory_average(_RADIUS * thickness, thickness, material.poissons_ratio, factor)
+        correction = plate_theory_term(*elastic, factor, average)
+    else:
+        average = through_thickness_average(_RADIUS * thickness)
+        correction = through_thickness_term(*elastic, average)
+    upper, lower = _faces(held, place, average)
+    load, seen = (upper, lower) if side == "upper" else (lower, upper)
+    return float(seen @ Elastic(held.stiffness, held.mass, held.rigid, held.order).static(load)) + correction
+
+
+def _faces(held: HeldStructure, place: tuple[float, float], average: Average) -> list[Floats]:
+    """Return how the free degrees of freedom move the upper and the lower face vertically, averaged around a place."""
+    mesh = held.structure.mesh
+    discs, weights = disc_points(UNIFORM)
+    places = np.asarray(place) + average.radius * discs
+    inside = _lie_on(mesh, places)
+    weights = np.where(inside, weights * average.weights(discs), 0.0)
+    if not inside.any():
+        raise InputError(f"the body is too narrow at ({place[0]:g}, {place[1]:g}) m to be taken for a plate")
+    places, weights = places[inside], weights[inside] / weights.sum()
+    return [(weights @ surface_motion(mesh, places, face)[0][2::3]) @ held.expansion for face in _FACES]
+
+
+def _lie_on(mesh: Mesh, places: Floats) -> NDArray[np.bool_]:
+    """Return which places lie on the body: first those in the box around it are asked for at once, as it is quick."""
+
+    def lie(some: Floats) -> bool:
+        try:
+            for face in _FACES:
+                surface_motion(mesh, some, face)
+        except InputError:
+            return False
+        return True
+
+    in_box = ((places >= mesh.nodes[:, :2].min(axis=0)) & (places <= mesh.nodes[:, :2].max(axis=0))).all(axis=1)
+    return in_box if in_box.any() and lie(places[in_box]) else np.array([lie(place) for place in places])

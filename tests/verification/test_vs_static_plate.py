@@ -1,0 +1,95 @@
+"""The static compliance of plates: closed forms, the layer's own solution, and plate elements against solids."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from vibroimpact.structures.plate_compliance import plate_theory_average, plate_theory_term
+from vibroimpact.structures.recipe import PlateOfPlates, PlateOfSolids, Recipe, Shape
+from vibroimpact.structures.static_compliance import computed_compliance
+from vibroimpact.structures.supports.edge import EDGES, Edge
+from vibroimpact.structures.supports.patch import Patch
+
+SIDE, NU, MODULUS = 0.5, 0.3, 210e9
+SIMPLE = tuple(Edge(edge, "simply-supported") for edge in EDGES)
+CLAMPED = tuple(Edge(edge, "clamped") for edge in EDGES)
+
+
+def recipe(shape: Shape, supports: tuple = SIMPLE) -> Recipe:
+    return Recipe(shape, 7850.0, MODULUS, NU, supports)
+
+
+def rigidity(thickness: float) -> float:
+    return MODULUS * thickness**3 / (12 * (1 - NU**2))
+
+
+def exact(thickness: float, x: float = 0.0, y: float = 0.0) -> float:
+    """A simply supported square layer is solved by its half waves, each as in an infinite one; the half space has no edges.
+
+    Both under a Gaussian load so narrow (of width b) that neither the images of the half space nor the layer see that it is no point.
+    """
+    numbers = np.arange(1, int(60 * SIDE / thickness / np.pi)) * np.pi / SIDE
+    k = np.hypot(*np.meshgrid(numbers, numbers, indexing="ij"))
+    half = 0.5 * k * thickness
+    layer = np.cosh(half) ** 2 / (np.sinh(2 * half) - 2 * half) + np.sinh(half) ** 2 / (np.sinh(2 * half) + 2 * half)
+    shape = 4 / SIDE**2 * np.outer(*(np.sin(numbers * (at + SIDE / 2)) ** 2 for at in (x, y)))
+    b = 0.15 * thickness
+    images = (shape / k * np.exp(-((b * k) ** 2))).sum() - 1 / (4 * np.sqrt(np.pi) * b)
+    return float(2 * (1 - NU**2) / MODULUS * ((shape / k * (layer - 1)).sum() + images))
+
+
+def test_a_thin_plate_has_the_closed_form() -> None:
+    """0.011600 F a^2 / D (C. L. M. H. Navier; Timoshenko and Woinowsky-Krieger, table 23): what remains when the terms are taken away."""
+    thickness = 0.002
+    found = computed_compliance(recipe(PlateOfPlates((SIDE, SIDE, thickness), SIDE / 8, "thin")), (0.0, 0.0))
+    average = plate_theory_average(0.75 * thickness, thickness, NU, np.inf)
+    term = plate_theory_term(thickness, MODULUS, NU, np.inf, average)
+    assert (found - term) * rigidity(thickness) / SIDE**2 == pytest.approx(0.011600, rel=1e-3)
+
+
+@pytest.mark.parametrize("place", [(0.0, 0.0), (0.17, 0.03)])
+@pytest.mark.parametrize(
+    ("shape", "tolerance"),
+    [
+        (PlateOfPlates((SIDE, SIDE, 0.05), SIDE / 7), 6e-4),
+        (PlateOfPlates((SIDE, SIDE, 0.05), SIDE / 7, "thin"), 5e-3),
+        (PlateOfSolids((SIDE, SIDE, 0.05), SIDE / 16, 2), 8e-3),
+        (PlateOfPlates((SIDE, SIDE, 0.01), SIDE / 11), 2e-3),
+    ],
+    ids=["thick", "thick by the thin theory", "thick of solids", "thin"],
+)
+def test_simply_supported(shape: PlateOfPlates | PlateOfSolids, tolerance: float, place: tuple[float, float]) -> None:
+    assert computed_compliance(recipe(shape), place) == pytest.approx(exact(shape.size[2], *place), rel=tolerance)
+
+
+def test_what_thin_theory_would_miss() -> None:
+    """The deflection of a point in Kirchhoff's theory, against that of a layer a tenth as thick as long."""
+    assert exact(0.05) * rigidity(0.05) / SIDE**2 == pytest.approx(0.0116, rel=0.03)
+    assert exact(0.05) * rigidity(0.05) / SIDE**2 != pytest.approx(0.0116, rel=0.015)
+
+
+@pytest.mark.parametrize(
+    ("thickness", "solid", "layers", "of_shear"), [(0.05, 0.025, 3, 0.06), (0.01, 0.02, 2, 0.005)], ids=["thick", "thin"]
+)
+def test_clamped_plates_of_either_elements(thickness: float, solid: float, layers: int, of_shear: float) -> None:
+    """Within 1 %, which the bricks lack at the clamped edge; the thin theory lacks the shear that goes with the bending there."""
+    plates = PlateOfPlates((SIDE, SIDE, thickness), SIDE / 8)
+    solids = PlateOfSolids((SIDE, SIDE, thickness), solid, layers)
+    thick, thin, bricks = (
+        computed_compliance(recipe(shape, CLAMPED), (0.06, -0.04)) for shape in (plates, replace(plates, theory="thin"), solids)
+    )
+    assert bricks == pytest.approx(thick, rel=0.01)
+    assert thin == pytest.approx(thick * (1 - of_shear), rel=0.01)
+
+
+def test_the_plate_of_the_paper() -> None:
+    """On patches, in the middle: both elements agree."""
+    patches = tuple(Patch(x, y, 0.015) for x in (-0.22, 0.22) for y in (-0.17, 0.17))
+    size = (0.52, 0.42, 0.008)
+    found = [
+        computed_compliance(recipe(shape, patches), (0.0, 0.0)) for shape in (PlateOfPlates(size, 0.07), PlateOfSolids(size, 0.026, 2))
+    ]
+    assert found[1] == pytest.approx(found[0], rel=0.01)
