@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from vibroimpact.bodies.body import Body as Body
     from vibroimpact.bodies.plate import rigid_plate as rigid_plate
     from vibroimpact.bodies.sphere import rigid_sphere as rigid_sphere
+    from vibroimpact.calibration.local_element import identify_local_element as identify_local_element
     from vibroimpact.cases.modes import BodyModes as BodyModes
     from vibroimpact.cases.modes import compute_modes as compute_modes
     from vibroimpact.cases.reader import load_case as load_case
@@ -29,11 +30,15 @@ if TYPE_CHECKING:
     from vibroimpact.contact.law import ContactLaw as ContactLaw
     from vibroimpact.contact.law import contact_laws as contact_laws
     from vibroimpact.contact.law import find_contact_law as find_contact_law
+    from vibroimpact.contact.quasi_static import QuasiStatic as QuasiStatic
     from vibroimpact.contact.restitution import achieved_restitution as achieved_restitution
     from vibroimpact.contact.restitution import integrated_restitution as integrated_restitution
     from vibroimpact.dynamics.problem import Problem as Problem
+    from vibroimpact.dynamics.recording import Signal as Signal
     from vibroimpact.dynamics.response import Outcome as Outcome
     from vibroimpact.dynamics.response import Response as Response
+    from vibroimpact.dynamics.sensor import Accelerometer as Accelerometer
+    from vibroimpact.dynamics.sensor import Sensor as Sensor
     from vibroimpact.dynamics.simulate import simulate as simulate
     from vibroimpact.errors import ComputationError as ComputationError
     from vibroimpact.errors import InputError as InputError
@@ -58,6 +63,7 @@ if TYPE_CHECKING:
     from vibroimpact.units import to_si as to_si
 
 _HOME = {
+    "Accelerometer": "dynamics.sensor",
     "Body": "bodies.body",
     "BodyModes": "cases.modes",
     "Case": "cases.schema",
@@ -70,8 +76,11 @@ _HOME = {
     "ModalBasis": "structures.modal_model",
     "Outcome": "dynamics.response",
     "Problem": "dynamics.problem",
+    "QuasiStatic": "contact.quasi_static",
     "Response": "dynamics.response",
     "Result": "storage.result",
+    "Sensor": "dynamics.sensor",
+    "Signal": "dynamics.recording",
     "VibroimpactError": "errors",
     "achieved_restitution": "contact.restitution",
     "case_schema": "cases.schema",
@@ -80,6 +89,7 @@ _HOME = {
     "contact_laws": "contact.law",
     "find_contact_law": "contact.law",
     "find_material": "materials",
+    "identify_local_element": "calibration.local_element",
     "integrated_restitution": "contact.restitution",
     "load_case": "cases.reader",
     "material_library": "materials",

@@ -263,20 +263,21 @@ def _run(name: str, output: Path | None, *, force: bool) -> None:
     from vibroimpact.report.console import result_summary
     from vibroimpact.report.progress import patient_progress
     from vibroimpact.report.save import save_result
-    from vibroimpact.storage.folder import check_free
-    from vibroimpact.storage.result import result_of
+    from vibroimpact.storage.folder import check_free, read_result
 
     case: Case = load_case(name)
     target = Path(_stem(name)) if output is None else output
     check_free(target, force=force)  # before the work, not after it
     console = _console()
     try:
+        with patient_progress("computing modes", console) as progress:
+            problem = case.to_problem(progress, lambda text: typer.echo(f"vibroimpact: {text}", err=True))
         with patient_progress("simulating", console) as progress:
-            response = simulate(case, progress)
+            response = simulate(problem, progress)
         folder = save_result(response, target, force=force)
     except KeyboardInterrupt:
         _fail("interrupted; nothing was written", 130)
-    console.print(result_summary(result_of(response), console.width))
+    console.print(result_summary(read_result(folder), console.width))
     typer.echo(f"wrote {folder / 'report.html'}")
 
 

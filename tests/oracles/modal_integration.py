@@ -1,9 +1,8 @@
 """A mass that falls on modes, step by step with scipy's DOP853 (an oracle: imports nothing of vibroimpact).
 
-In contact the equations of motion are integrated at 1e-12 until the approach is back at zero; apart, everything moves in closed form, by the
-exponential of each mode's 2 by 2 matrix, and the next touch is where the gap changes sign between samples an eightieth of the shortest period
-apart. A law is what it is: a static force and a factor on the rate.
-"""
+In contact the equations of motion are integrated at 1e-12 until the approach is back at zero; apart, everything moves in closed form, by
+the exponential of each mode's 2 by 2 matrix, and the next touch is where the gap changes sign between samples an eightieth of the
+shortest period apart. A law is what it is: a static force and a factor on the rate."""
 
 from __future__ import annotations
 
@@ -34,9 +33,10 @@ class Touch:
 class Drop:
     """The mass, what it meets, and where all of it is.
 
-    `law(indentation, speed at touch)` returns the static force and the dashpot's constant. `series`: linear compliance in series with the static
-    force. `local`: stiffness and damping of an element in series with the whole force. `inside`: modes that only the static force drives, and
-    whose motion the dashpot does not feel. `clip`: may it not pull?
+    `law(indentation, speed at touch)` returns the static force and the dashpot's constant. `series`: linear compliance in series with
+    the static force. `local`: stiffness and damping of an element in series with the whole force. `inside`: modes that only the static
+    force drives, and whose motion the dashpot does not feel. `clip`: may it not pull? Where it would, it does nothing, to the modes inside
+    either.
     """
 
     mass: float
@@ -68,7 +68,8 @@ class Drop:
         indentation = max(self.approach(y), 0.0)
         if self.series and indentation:
             whole = indentation
-            indentation = brentq(lambda delta: delta + self.series * self.law(delta, at_touch)[0] - whole, 0.0, whole, xtol=1e-18, rtol=1e-14)
+            settings = {"xtol": 1e-18, "rtol": 1e-14}
+            indentation = brentq(lambda delta: delta + self.series * self.law(delta, at_touch)[0] - whole, 0.0, whole, **settings)
         static, dashpot = self.law(indentation, at_touch)
         rate = y[1] + self.outer @ y[2 + count : 2 + 2 * count]
         if self.local:
@@ -76,13 +77,14 @@ class Drop:
             force = (static + dashpot * (rate - stiffness / damping * y[-1])) / (1.0 + dashpot / damping)
         else:
             force = static + dashpot * rate
-        return (max(force, 0.0) if self.clip else force), static
+        return (0.0, 0.0) if self.clip and force < 0.0 else (force, static)
 
     def slopes(self, _: float, y: Floats, at_touch: float) -> Floats:
         count = len(self.omega)
         force, static = self.forces(y, at_touch)
         displacement, velocity = y[2 : 2 + count], y[2 + count : 2 + 2 * count]
-        push = -2.0 * self.damping * self.omega * velocity - self.omega**2 * displacement - np.where(self.inside, static, force) * self.shape
+        push = -np.where(self.inside, static, force) * self.shape
+        push -= self.omega * (2.0 * self.damping * velocity + self.omega * displacement)
         local = 0.0 if self.local is None else -(self.local[0] * y[-1] + force) / self.local[1]
         return np.concatenate([[y[1], self.gravity - force / self.mass], velocity, push, [local]])
 

@@ -169,11 +169,6 @@ def test_rigid_bodies_have_no_modes() -> None:
         vi.compute_modes(vi.read_case(plain_case()))
 
 
-def test_drop_of_elastic_bodies_is_not_there_yet() -> None:
-    with pytest.raises(vi.InputError, match=r"plate\.model: a drop of elastic bodies is not simulated yet"):
-        vi.simulate(vi.read_case(plate_case()))
-
-
 @pytest.mark.parametrize(
     ("supports", "number", "kind"),
     [

@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from vibroimpact.contact.pair import Array
 from vibroimpact.errors import InputError
+
+if TYPE_CHECKING:
+    from vibroimpact.structures.modal_model import ModalBasis  # which loads sparse matrices
 
 
 @dataclass(frozen=True)
@@ -20,10 +24,13 @@ class Body:
         Mass [kg], > 0; infinite for a body that is held fixed.
     contact_offset : float or array
         Distance of the point of contact from the centre of mass [m], >= 0.
+    modes : ModalBasis, optional
+        How it vibrates; a body without modes is rigid.
     """
 
     mass: Array
     contact_offset: Array
+    modes: ModalBasis | None = None
 
     def __post_init__(self) -> None:
         for name in ("mass", "contact_offset"):

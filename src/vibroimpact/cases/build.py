@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import fields
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -71,6 +72,13 @@ def check_case(case: Case) -> None:
         if isinstance(law, CompliantLaw) and law.lasting and case.drop.same_spot and loses_nothing(law.after_compression(1.0)):
             words = f"and {law.name} loses none on a dent that it has made"
             raise InputError(f'"all" needs a law that loses energy, {words}; {remedy}, or drop.same_spot = false', "run.impacts")
+    if case.sensors and case.plate.model == "rigid":
+        raise InputError(
+            'the plate is rigid, so that its points do not move; give it model = "elastic", or leave out the sensors', "sensors"
+        )
+    local = case.contact.local
+    if local.local_compliance == "identified" and case.sphere.model == "elastic":
+        raise InputError('the local element of "identified" stands for the deformation of the sphere; leave it "rigid"', "sphere.model")
     if elastic_names(case):
         from vibroimpact.cases.build_elastic import elastic_bodies  # which loads sparse matrices
 
@@ -83,20 +91,34 @@ def elastic_names(case: Case) -> list[Literal["sphere", "plate"]]:
     return [name for name in names if getattr(case, name).model == "elastic"]
 
 
-def problem_of(case: Case) -> Problem:
+def problem_of(case: Case, progress: Callable[[float], None] | None = None, tell: Callable[[str], None] | None = None) -> Problem:
     """Return the problem that a case states.
+
+    Parameters
+    ----------
+    case : Case
+        The case.
+    progress : callable, optional
+        Called with a number from 0 to 1 while modes of elastic bodies are computed.
+    tell : callable, optional
+        Called with a sentence if something is wrong with the store of modes.
 
     Raises
     ------
     InputError
-        What `check_case` raises; and for elastic bodies, whose drop can't be simulated yet.
+        What `check_case` raises; and if elastic bodies do not fit the treatment of local compliance, or no local element fits
+        what was measured.
     """
     check_case(case)
-    for name in elastic_names(case):
-        raise InputError(
-            'a drop of elastic bodies is not simulated yet; "vibroimpact modes" gives their modes, and model = "rigid" the drop',
-            f"{name}.model",
-        )
+    problem = _rigid_problem(case)
+    if not elastic_names(case) and case.contact.local.local_compliance != "identified":
+        return problem
+    from vibroimpact.cases.coupling import coupled  # which loads finite elements
+
+    return coupled(case, problem, progress, tell)
+
+
+def _rigid_problem(case: Case) -> Problem:
     return Problem(
         sphere=rigid_sphere(case.sphere.radius, case.sphere.material),
         plate=rigid_plate(case.plate.size[2] if case.plate.size else 0.0),
@@ -135,9 +157,9 @@ def resolved(case: Case) -> dict[str, Any]:
         "sphere": _body(case, "sphere"),
         "plate": _body(case, "plate"),
         "drop": {**case.drop.model_dump(exclude_none=True), "position": list(case.drop.position)},
-        "contact": contact,
+        "contact": {**contact, **case.contact.local.model_dump(exclude_none=True)},
         "run": {**case.run.model_dump(exclude_none=True, exclude={"impacts"}), "impacts": "all" if number is None else number},
-        **({"sensors": [sensor.model_dump() for sensor in case.sensors]} if case.sensors else {}),
+        **({"sensors": [sensor.model_dump(exclude_none=True, mode="json") for sensor in case.sensors]} if case.sensors else {}),
     }
 
 

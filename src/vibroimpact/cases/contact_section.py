@@ -6,17 +6,23 @@ from collections.abc import Mapping
 from dataclasses import Field, dataclass, fields
 from typing import Any
 
+from vibroimpact.cases.local_section import LocalSection
 from vibroimpact.cases.quantities import quantity_schema, read_quantity
+from vibroimpact.cases.section import read_table
 from vibroimpact.contact.law import ContactLaw, contact_laws, find_contact_law
 from vibroimpact.errors import InputError, did_you_mean
 
 
 @dataclass(frozen=True)
 class ContactSection:
-    """A contact law's name and its parameters in SI; a tuple is one value an impact, the last one goes on."""
+    """A contact law's name and its parameters in SI; a tuple is one value an impact, the last one goes on.
+
+    `local` says how the local deformation of elastic bodies goes together with it.
+    """
 
     law: str
     parameters: Mapping[str, float | tuple[float, ...]]
+    local: LocalSection = LocalSection()
 
 
 def read_contact(value: Any) -> ContactSection:
@@ -36,10 +42,12 @@ def read_contact(value: Any) -> ContactSection:
     exponent = value.get("exponent", known["exponent"].default if "exponent" in known else 1.0)
     parameters: dict[str, float | tuple[float, ...]] = {}
     for key, given in value.items():
-        if key == "law":
+        if key == "law" or key in LocalSection.model_fields:
             continue
         if key not in known:
-            raise InputError(f'unknown key "{key}"; {law.name} takes {", ".join(known)}.{did_you_mean(key, known)}', key)
+            others = ", ".join(LocalSection.model_fields)
+            hint = did_you_mean(key, [*known, *LocalSection.model_fields])
+            raise InputError(f'unknown key "{key}"; {law.name} takes {", ".join(known)}, and every law {others}.{hint}', key)
         unit, allowed = unit_of(known[key], exponent), known[key].metadata["range"]
         try:
             if isinstance(given, list):
@@ -50,7 +58,8 @@ def read_contact(value: Any) -> ContactSection:
                 parameters[key] = read_quantity(given, unit, allowed)
         except InputError as error:
             raise InputError(error.message, key) from None
-    return ContactSection(law.name, parameters)
+    local = {key: value[key] for key in LocalSection.model_fields if key in value}
+    return ContactSection(law.name, parameters, read_table(LocalSection, local))
 
 
 def unit_of(item: Field[Any], exponent: Any) -> str:
@@ -68,6 +77,7 @@ def contact_schema() -> dict[str, Any]:
 
 def _law_schema(law: type[ContactLaw]) -> dict[str, Any]:
     properties: dict[str, Any] = {"law": {"const": law.name, "description": f"{law.equation} ({law.source})"}}
+    properties |= LocalSection.model_json_schema()["properties"]
     for item in fields(law):
         one = quantity_schema(item.metadata["unit"], item.metadata["meaning"])
         properties[item.name] = {"anyOf": [one, {"type": "array", "items": one, "minItems": 1}], "description": one["description"]}

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from vibroimpact.contact.elastic_plastic import ElasticPlasticLaw
 from vibroimpact.contact.law import InstantaneousLaw, find_contact_law
 from vibroimpact.contact.pair import effective_modulus
+from vibroimpact.dynamics.recording import Signal
 from vibroimpact.materials import RIGID, Material
 
 _SMALL_CONTACT = 0.3  # of the radius: beyond it Hertz's pressure and the finite sphere differ by several per cent
@@ -52,6 +53,25 @@ def doubts(case: Mapping[str, Any], depth: float, force: float) -> list[str]:
                 f"{min(strengths) / 1e6:.3g} MPa: the contact would yield, and {contact['law']} does not"
             )
     return found
+
+
+def sensor_doubts(signals: Iterable[Signal], frequencies: Sequence[float]) -> list[str]:
+    """Return what to doubt of signals: which of them hold fewer modes than the plate has.
+
+    Parameters
+    ----------
+    signals : iterable of Signal
+        What sensors on the plate recorded.
+    frequencies : sequence of float
+        Of the modes of the plate [Hz], ascending.
+    """
+    return [
+        f'sensor "{signal.sensor.name}" takes {signal.sensor.rate:g} samples per second, and the highest mode kept, of '
+        f"{frequencies[-1]:.5g} Hz, needs more than {2.0 * frequencies[-1]:.5g}: {signal.left_out} of the {len(frequencies)} modes are "
+        "left out of its signal"
+        for signal in signals
+        if signal.left_out
+    ]
 
 
 def _material(given: Mapping[str, Any] | str) -> Material:

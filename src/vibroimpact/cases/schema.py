@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, StrictBool, model_validator
@@ -25,6 +26,7 @@ from vibroimpact.cases.quantities import Quantity
 from vibroimpact.cases.section import Section
 from vibroimpact.cases.supports_field import SupportsField
 from vibroimpact.dynamics.problem import MOST_IMPACTS, STANDARD_GRAVITY, Problem
+from vibroimpact.dynamics.sensor import Accelerometer, Sensor
 from vibroimpact.errors import InputError
 from vibroimpact.materials import RIGID
 from vibroimpact.ranges import Range
@@ -109,6 +111,19 @@ def _read_impacts(value: Any) -> Any:
     raise InputError(f'{shown} is not allowed; it must be a whole number from 1 to {MOST_IMPACTS}, or "all" to go on to rest')
 
 
+class AccelerometerTable(Section):
+    """What an accelerometer adds to the acceleration of its base."""
+
+    resonance: Annotated[float, Quantity("Hz", "its mounted resonance", Range(above=0))] | None = None
+    damping_ratio: Annotated[float, Quantity("", "damping ratio of its resonance", Range(above=0))] = 0.02
+    range: Annotated[float, Quantity("m/s^2", "largest magnitude that it reads", Range(above=0))] | None = None
+    noise: Annotated[float, Quantity("m/s^2", "standard deviation of the noise in its samples", Range(at_least=0))] = 0.0
+    resolution: Annotated[float, Quantity("m/s^2", "step of its readings", Range(above=0))] | None = None
+
+
+_DIRECTIONS = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
+
+
 class SensorSection(Section):
     """A point of the plate that is watched."""
 
@@ -117,6 +132,25 @@ class SensorSection(Section):
         description="on the plate, from its centre [m]; or the name of a set of a mesh that was brought"
     )
     face: Literal["upper", "lower"] = Field("upper", description="the side of the plate that it is on")
+    quantity: Literal["displacement", "velocity", "acceleration"] = Field("acceleration", description="what it takes")
+    direction: Literal["x", "y", "z"] | tuple[float, float, float] = Field("z", description="along which it takes it; z is upwards")
+    rate: Annotated[float, Quantity("Hz", "samples per second", Range(above=0))] = 50e3
+    accelerometer: AccelerometerTable | None = Field(None, description="the resonance, range, noise and resolution of what reads it")
+
+    @model_validator(mode="after")
+    def _fits(self) -> SensorSection:
+        if self.accelerometer is not None and self.quantity != "acceleration":
+            raise InputError("an accelerometer reads acceleration; leave out quantity, or the accelerometer", "quantity")
+        if not isinstance(self.direction, str) and not any(self.direction):
+            raise InputError("it has no length; give x, y and z of the direction, such as [0, 0, 1]", "direction")
+        return self
+
+    def sensor(self) -> Sensor:
+        """Return the sensor."""
+        along = _DIRECTIONS[self.direction] if isinstance(self.direction, str) else self.direction
+        x, y, z = (part / math.hypot(*along) for part in along)
+        meter = Accelerometer(**self.accelerometer.model_dump()) if self.accelerometer else None
+        return Sensor(self.name, self.quantity, (x, y, z), self.rate, meter)
 
 
 class RunSection(Section):
@@ -169,15 +203,22 @@ class Case(Section):
             raise InputError(f'two sensors are called "{twice}"; each needs a name of its own', "sensors")
         return self
 
-    def to_problem(self) -> Problem:
-        """Return the problem that the case states.
+    def to_problem(self, progress: Callable[[float], None] | None = None, tell: Callable[[str], None] | None = None) -> Problem:
+        """Return the problem that the case states; modes of elastic bodies are computed, or fetched from the store.
+
+        Parameters
+        ----------
+        progress : callable, optional
+            Called with a number from 0 to 1 while modes are computed.
+        tell : callable, optional
+            Called with a sentence if something is wrong with the store.
 
         Raises
         ------
         InputError
-            If the contact law can't be made for these two bodies.
+            If the contact law can't be made for these two bodies, or an elastic body can't.
         """
-        return problem_of(self)
+        return problem_of(self, progress, tell)
 
 
 def case_schema() -> dict[str, Any]:

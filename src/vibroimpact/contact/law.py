@@ -241,6 +241,11 @@ class CompliantLaw(ContactLaw):
         """
         raise NotImplementedError
 
+    @property
+    def yields(self) -> bool:
+        """Does it do plastic work?"""
+        return type(self).plastic_work is not CompliantLaw.plastic_work
+
     def plastic_work(self, delta: Array) -> Array:
         """Return the work spent on plastic deformation, from the state remembered to the indentation `delta` [J]."""
         return np.zeros_like(delta)

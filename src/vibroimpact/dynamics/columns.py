@@ -21,6 +21,13 @@ IMPACT_COLUMNS: dict[str, tuple[str, str]] = {
 }
 """Columns of the impact table, one row an impact: unit and meaning."""
 
+VIBRATION_IMPACT_COLUMNS: dict[str, tuple[str, str]] = {
+    "closing_speed_m_s": ("m/s", "speed at which the surfaces meet at first touch"),
+    "contacts": ("1", "number of contacts between first touch and last release"),
+    "energy_to_vibration_J": ("J", "energy that went into vibration, what its damping took by the last release included"),
+}
+"""Further columns of the impact table, where a body vibrates."""
+
 HISTORY_COLUMNS: dict[str, tuple[str, str]] = {
     "time_s": ("s", "time since the start"),
     "position_m": ("m", "height of the sphere's centre above the plate's upper surface"),
@@ -36,6 +43,26 @@ HISTORY_COLUMNS: dict[str, tuple[str, str]] = {
     "written_off_at_rest_J": ("J", "energy written off when the sphere was found to be at rest"),
 }
 """Columns of a history: unit and meaning."""
+
+VIBRATION_HISTORY_COLUMNS: dict[str, tuple[str, str]] = {
+    "sphere_vibration_J": ("J", "kinetic energy of the sphere's vibration, beside that of its centre"),
+    "sphere_strain_J": ("J", "strain energy of the sphere's modes"),
+    "sphere_damping_J": ("J", "energy lost so far in the damping of the sphere's modes"),
+    "sphere_rotational_J": ("J", "kinetic energy of the sphere's rotation"),
+    "plate_kinetic_J": ("J", "kinetic energy of the plate"),
+    "plate_strain_J": ("J", "strain energy of the plate's modes, from where it rests under its own weight"),
+    "plate_damping_J": ("J", "energy lost so far in the damping of the plate's modes"),
+    "plate_rotational_J": ("J", "the part of the plate's kinetic energy in its turning as a whole"),
+    "plate_potential_J": ("J", "change of the plate's potential energy, which the strain of its weight makes up for"),
+    "plate_displacement_m": ("m", "displacement of the plate's centre of mass, upwards"),
+    "plate_velocity_m_s": ("m/s", "velocity of the plate's centre of mass, upwards"),
+    "plate_acceleration_m_s2": ("m/s2", "acceleration of the plate's centre of mass, upwards"),
+    "plate_deflection_m": ("m", "displacement of the plate at the contact point, upwards"),
+}
+"""Further columns of a history, where a body vibrates."""
+
+VIBRATION_LEDGER = ("sphere_vibration_J", "sphere_strain_J", "sphere_damping_J", "plate_kinetic_J", "plate_strain_J", "plate_damping_J")
+"""The further columns that share the energy put in."""
 
 LEDGER = ("kinetic_J", "potential_J", "contact_elastic_J", "contact_dissipated_J", "plastic_work_J", "written_off_at_rest_J")
 """The columns of a history that share the energy put in; their sum is constant."""

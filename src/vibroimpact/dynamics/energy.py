@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 
 from vibroimpact.contact.phase.collocation import Floats
-from vibroimpact.dynamics.columns import LEDGER
 
 CLOSURE_LIMIT = 1e-6
 """The part of the energy put in that may be missing; above it a run has failed."""
@@ -21,7 +20,7 @@ def close_ledger(energy_in: Floats, sagging: Floats, entries: dict[str, Floats])
     sagging : array, shape (B,)
         What gravity adds in the deepest indentation [J]; of a sphere put down softly, more than `energy_in`.
     entries : dict of str to array
-        The entries of `LEDGER` at the end [J].
+        The entries of the ledger at the end [J].
 
     Returns
     -------
@@ -29,6 +28,6 @@ def close_ledger(energy_in: Floats, sagging: Floats, entries: dict[str, Floats])
         `input_J`, the entries, `closure_J` (entries less input) and `closure_relative`, its part of the energy
         put in by the drop and by gravity.
     """
-    closure = sum((entries[name] for name in LEDGER), -energy_in)
+    closure = sum(entries.values(), -energy_in)
     relative = np.abs(closure) / (energy_in + sagging)
-    return {"input_J": energy_in, **{name: entries[name] for name in LEDGER}, "closure_J": closure, "closure_relative": relative}
+    return {"input_J": energy_in, **entries, "closure_J": closure, "closure_relative": relative}

@@ -5,14 +5,19 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
 from numbers import Integral
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
 from vibroimpact.bodies.body import Body
-from vibroimpact.contact.law import ContactLaw
+from vibroimpact.contact.law import ContactLaw, InstantaneousLaw
 from vibroimpact.contact.pair import Array
+from vibroimpact.contact.quasi_static import QuasiStatic
+from vibroimpact.dynamics.sensor import Sensor
 from vibroimpact.errors import InputError
+
+if TYPE_CHECKING:
+    from vibroimpact.structures.modal_model import ModalModel  # which loads sparse matrices
 
 STANDARD_GRAVITY = 9.80665
 """Standard acceleration of gravity [m/s^2], CGPM 1901."""
@@ -28,7 +33,7 @@ class Problem:
     Parameters
     ----------
     sphere, plate : Body
-        The bodies. The plate is held fixed: its mass is infinite.
+        The bodies. The plate is held fixed: its mass is infinite. They vibrate in the modes that they have.
     laws : tuple of ContactLaw
         The contact law of the first impact, the second, ...; the last one goes on. All of one kind.
     height : float or array, optional
@@ -48,10 +53,23 @@ class Problem:
     same_spot : bool, default True
         Does each impact fall where the last one did, with the same part of the sphere? Then a law whose
         memory lasts (a permanent dent) goes on with it; else each impact finds fresh surfaces.
+    sphere_inside : bool, default True
+        Do the modes of the sphere lie inside the contact: in series with the spring of the law, and spanned by its dashpot? Then
+        what the law loses does not depend on how many there are. Else they are in series with all of it.
+    quasi_static : QuasiStatic, optional
+        Quasi-static compliance in series with the law.
+    local_element : tuple of two floats, optional
+        Stiffness [N/m] and damping [N s/m], > 0, of a spring and a dashpot side by side, in series with the law.
+    sensors : tuple of Sensor, optional
+        What watches the plate.
     tolerance : float, default 1e-9
         Relative error allowed in the state at the end of a contact; 1e-13 to 1e-6.
     source : mapping, optional
         The case that the problem was made from, for provenance.
+    facts : mapping, optional
+        What is told of how the deformation is modelled; names end in their units.
+    models : mapping, optional
+        The modes of "sphere" and "plate" on their meshes, for pictures of their deflection.
 
     Raises
     ------
@@ -77,8 +95,14 @@ class Problem:
     duration: float | None = None
     rest_speed: Array | None = None
     same_spot: bool = True
+    sphere_inside: bool = True
+    quasi_static: QuasiStatic = QuasiStatic()
+    local_element: tuple[float, float] | None = None
+    sensors: tuple[Sensor, ...] = ()
     tolerance: float = 1e-9
     source: Mapping[str, Any] | None = field(default=None, compare=False)
+    facts: Mapping[str, float | str] = field(default_factory=dict, compare=False)
+    models: Mapping[str, ModalModel] = field(default_factory=dict, compare=False)
 
     def __post_init__(self) -> None:
         if isinstance(self.laws, ContactLaw):
@@ -115,12 +139,22 @@ class Problem:
             raise InputError("duration must be greater than 0 s and finite")
         if not 1e-13 <= self.tolerance <= 1e-6:
             raise InputError("tolerance must lie between 1e-13 and 1e-6")
+        if self.local_element is not None and not all(0.0 < value < np.inf for value in self.local_element):
+            raise InputError("stiffness and damping of the local element must be greater than 0 and finite")
+        if self.vibrates and isinstance(self.laws[0], InstantaneousLaw):
+            raise InputError(f"{self.laws[0].name} gives no force, and bodies that deform need one; take another law")
         try:
             _ = self.shape
         except ValueError:
             raise InputError("the arrays of a batch must agree in shape: one value a drop") from None
         if len(self.shape) > 1 or 0 in self.shape:
             raise InputError(f"a batch has one axis with at least one drop, not the shape {self.shape}")
+
+    @property
+    def vibrates(self) -> bool:
+        """Does anything but the contact itself deform?"""
+        modes = (self.sphere.modes, self.plate.modes, self.local_element)
+        return any(part is not None for part in modes) or bool(self.quasi_static)
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -140,7 +174,7 @@ class Problem:
             return value if np.ndim(value) == 0 else np.asarray(value)[drop]
 
         def part(body: Body) -> Body:
-            return Body(mass=one(body.mass), contact_offset=one(body.contact_offset))
+            return replace(body, mass=one(body.mass), contact_offset=one(body.contact_offset))
 
         return replace(
             self,

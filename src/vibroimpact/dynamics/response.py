@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
 from functools import cached_property
@@ -15,12 +16,20 @@ from numpy.typing import NDArray
 from vibroimpact.contact.phase.collocation import Floats
 from vibroimpact.contact.phase.contact import Contact
 from vibroimpact.contact.phase.encounter import Encounter
+from vibroimpact.contact.phase.glide import Glide
+from vibroimpact.contact.phase.oscillators import FreeMotion
 from vibroimpact.contact.phase.stretch import Stretch
-from vibroimpact.dynamics.columns import HISTORY_COLUMNS
+from vibroimpact.dynamics.columns import HISTORY_COLUMNS, VIBRATION_HISTORY_COLUMNS
 from vibroimpact.dynamics.energy import CLOSURE_LIMIT
 from vibroimpact.dynamics.flight import Flight
 from vibroimpact.dynamics.problem import Problem
+from vibroimpact.dynamics.recording import Signal, record
 from vibroimpact.dynamics.segments import FlightSegment, GlideSegment, RestSegment, Segment, StretchSegment
+from vibroimpact.dynamics.sensor import Sensor
+from vibroimpact.dynamics.truncation import truncation_estimates
+from vibroimpact.dynamics.vibrating_history import vibrating_history
+from vibroimpact.dynamics.vibrating_segment import VibratingSegment, vibrating_timeline
+from vibroimpact.dynamics.vibration import modes_of
 from vibroimpact.errors import InputError
 
 
@@ -56,6 +65,8 @@ class Leg:
     contact_drops: NDArray[np.intp]
     contact: Contact | None = None
     encounter: Encounter | None = None
+    motions: tuple[FreeMotion, ...] = ()
+    """Of each of the drops, in flight, where a body vibrates."""
 
 
 @dataclass(frozen=True)
@@ -141,6 +152,11 @@ class Response:
         return replace(self, impacts=impacts, energy={name: value[0] for name, value in self.energy.items()})
 
     @property
+    def history_columns(self) -> dict[str, tuple[str, str]]:
+        """The columns of a history: unit and meaning."""
+        return {**HISTORY_COLUMNS, **(VIBRATION_HISTORY_COLUMNS if self.problem.vibrates else {})}
+
+    @property
     def status(self) -> str:
         """One sentence: why the run ended, and when.
 
@@ -194,7 +210,7 @@ class Response:
         Returns
         -------
         dict of str to array
-            One entry a column (`HISTORY_COLUMNS`), in the shape of `times`.
+            One entry a column (`history_columns`), in the shape of `times`.
 
         Raises
         ------
@@ -215,7 +231,7 @@ class Response:
             raise InputError(f"times must lie within the run, 0 to {end:.6g} s")
         starts = np.array([segment.start for segment in self._segments])
         index = np.maximum(np.searchsorted(starts, flat, side="right") - 1, 0)
-        columns = {name: np.empty(flat.shape) for name in HISTORY_COLUMNS}
+        columns = {name: np.empty(flat.shape) for name in self.history_columns}
         for number in np.unique(index):
             here = index == number
             for name, values in self._history(int(number), flat[here] - starts[number]).items():
@@ -242,9 +258,54 @@ class Response:
     def history(self) -> dict[str, Floats]:
         """Return the history of one drop on a grid that resolves every contact, with both sides of each event."""
         parts = [self._history(number, segment.grid()) for number, segment in enumerate(self._segments)]
-        history = {name: np.concatenate([part[name] for part in parts]) for name in HISTORY_COLUMNS}
+        history = {name: np.concatenate([part[name] for part in parts]) for name in self.history_columns}
         history["time_s"] = np.maximum.accumulate(history["time_s"])  # the two sides of an event may differ by rounding
         return history
+
+    def modal(self, times: Any) -> dict[str, Floats]:
+        """Return the modal coordinates of the bodies that vibrate at times within the run.
+
+        Parameters
+        ----------
+        times : array_like
+            Times since the start [s] (T,).
+
+        Returns
+        -------
+        dict of str to array
+            "sphere" and "plate", (T, modes) [kg^1/2 m]; times a mode's shape they are displacements.
+        """
+        flat = np.atleast_1d(np.asarray(times, dtype=float))
+        starts = np.array([segment.start for segment in self._segments])
+        index = np.maximum(np.searchsorted(starts, flat, side="right") - 1, 0)
+        found = np.zeros((len(flat), modes_of(self.problem.sphere) + modes_of(self.problem.plate)))
+        for number in np.unique(index):
+            segment, here = self._segments[int(number)], index == number
+            if isinstance(segment, VibratingSegment):
+                found[here] = segment.state(np.minimum(flat[here], segment.end) - segment.start).displacement
+        at = modes_of(self.problem.sphere)
+        return {"sphere": found[:, :at], "plate": found[:, at:]}
+
+    def signals(self, *sensors: Sensor) -> dict[str, Signal]:
+        """Return what sensors on the plate record over the whole run, by their names.
+
+        Parameters
+        ----------
+        *sensors : Sensor
+            What is watched; by default the sensors of the problem.
+
+        Raises
+        ------
+        InputError
+            If the plate is rigid or has no such point, there would be too many samples, or the response is of several drops.
+        """
+        segments = [segment for segment in self._segments if isinstance(segment, VibratingSegment)]
+        return record(self.problem, segments, sensors or self.problem.sensors, float(self.end_time[0]))
+
+    @cached_property
+    def truncation(self) -> dict[str, float]:
+        """About how far the largest force is off for the modes that were left out, as a part of it, by the name of the body."""
+        return truncation_estimates(self.problem, self.impacts) if self.problem.vibrates else {}
 
     def save(self, directory: str | PathLike[str], *, force: bool = False) -> None:
         """Write the result folder: case, table, summary, NetCDF file, figures and report.
@@ -272,6 +333,8 @@ class Response:
     def _history(self, number: int, times: Floats) -> dict[str, Floats]:
         """Return all columns at times since the start of one segment."""
         segment, problem = self._segments[number], self.problem
+        if isinstance(segment, VibratingSegment):
+            return vibrating_history(self.problem, segment, times)
         mass, gravity = float(problem.sphere.mass), float(problem.gravity)
         gap, velocity, force, stored, lost, plastic = segment.at(times)
         lost_before, plastic_before = self._spent_before[number]
@@ -292,7 +355,11 @@ class Response:
         }
 
     @cached_property
-    def _segments(self) -> list[Segment]:
+    def _segments(self) -> Sequence[Segment | VibratingSegment]:
+        if self.problem.vibrates:
+            if self.problem.shape != ():
+                raise InputError(_OF_ONE)
+            return vibrating_timeline(self.legs, self.rest if self.outcomes[0].at_rest else None, float(self.end_time[0]))
         return [segment for segment, _ in self._timeline]
 
     @cached_property
@@ -304,7 +371,7 @@ class Response:
     def _timeline(self) -> list[tuple[Segment, Floats]]:
         """The segments of one drop in order, each with the energy lost before it in damping and in plastic deformation [J]."""
         if self.problem.shape != ():
-            raise InputError("a history belongs to one drop: ask response.drop(0), response.drop(1), ...")
+            raise InputError(_OF_ONE)
         timeline: list[tuple[Segment, Floats]] = []
         plastic = self.impacts["plastic_work_J"]
         spent_in_impacts = np.zeros((len(plastic) + 1, 2))
@@ -322,6 +389,7 @@ class Response:
                 if isinstance(piece.motion, Stretch):
                     segment = StretchSegment(begin, finish, piece.motion, leg.encounter.under(piece.law))
                 else:
+                    assert isinstance(piece.motion, Glide)
                     segment = GlideSegment(begin, finish, piece.motion, piece.law)
                 timeline.append((segment, spent))
                 spent = spent + [float(part[0]) for part in segment.at(piece.motion.duration)[-2:]]
@@ -333,6 +401,9 @@ class Response:
         return timeline
 
 
+_OF_ONE = "a history belongs to one drop: ask response.drop(0), response.drop(1), ..."
+
+
 def _leg_of(leg: Leg, index: int) -> Leg | None:
     """Return the leg of one drop of a batch, or None if it takes no part."""
     here = np.flatnonzero(leg.drops == index)
@@ -341,6 +412,7 @@ def _leg_of(leg: Leg, index: int) -> Leg | None:
     one = np.zeros(1, dtype=np.intp)
     flight = Flight(leg.flight.start[here], leg.flight.gap[here], leg.flight.velocity[here], leg.flight.gravity[here])
     contact_here = np.flatnonzero(leg.contact_drops == index)
+    motions = leg.motions[int(here[0]) : int(here[0]) + 1]
     if leg.contact is None or leg.encounter is None or not contact_here.size:
-        return Leg(one, flight, leg.flight_end[here], one[: contact_here.size])
-    return Leg(one, flight, leg.flight_end[here], one, leg.contact.of(int(contact_here[0])), leg.encounter.take(contact_here))
+        return Leg(one, flight, leg.flight_end[here], one[: contact_here.size], motions=motions)
+    return Leg(one, flight, leg.flight_end[here], one, leg.contact.of(int(contact_here[0])), leg.encounter.take(contact_here), motions)

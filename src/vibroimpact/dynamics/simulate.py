@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,14 +13,16 @@ from vibroimpact.contact.phase.collocation import Floats
 from vibroimpact.contact.phase.contact import CAPTURED, FAILED, Contact, Drops
 from vibroimpact.contact.phase.contact_phase import contact_phase
 from vibroimpact.contact.phase.encounter import Encounter, encounter_of
+from vibroimpact.contact.phase.oscillators import FreeMotion
 from vibroimpact.contact.phase.peaks import force_peak
 from vibroimpact.contact.phase.warm_starts import WarmStarts
 from vibroimpact.contact.static import static_indentation
-from vibroimpact.dynamics.columns import IMPACT_COLUMNS
+from vibroimpact.dynamics.columns import IMPACT_COLUMNS, VIBRATION_IMPACT_COLUMNS
 from vibroimpact.dynamics.energy import CLOSURE_LIMIT, close_ledger
 from vibroimpact.dynamics.flight import Flight
 from vibroimpact.dynamics.problem import MOST_IMPACTS, Problem, StatesProblem
 from vibroimpact.dynamics.response import Leg, Outcome, Response, Rest
+from vibroimpact.dynamics.vibration import Vibration, contact_of
 from vibroimpact.errors import ComputationError, InputError
 
 
@@ -28,7 +31,8 @@ def simulate(problem: StatesProblem, progress: Callable[[float], None] | None = 
 
     Flight is exact. Touch and release are located as roots; between them the contact is integrated by
     Radau collocation, of order 31 at the default tolerance, in a time in which the force is smooth. A batch
-    runs as arrays; one drop is a batch of one.
+    runs as arrays; one drop is a batch of one. Bodies that have modes vibrate: between contacts exactly, and the
+    next touch is the first meeting with the surface as it moves.
 
     Parameters
     ----------
@@ -92,6 +96,8 @@ class _Run:
         self.sag, self.stored, self.written_off = np.zeros(self.size), np.zeros(self.size), np.zeros(self.size)
         self.rest_speed = self.default_rest_speed() if problem.rest_speed is None else self.spread(problem.rest_speed)
         self.warm_starts = WarmStarts(self.size)
+        self.vibration = Vibration(problem, self.size) if problem.vibrates else None
+        self.columns = {**IMPACT_COLUMNS, **(VIBRATION_IMPACT_COLUMNS if self.vibration else {})}
         self.memories = {name: self.spread(value) for name, value in problem.laws[0].memories().items()}
         self.legs: list[Leg] = []
         self.rows: list[dict[str, Floats]] = []
@@ -135,7 +141,13 @@ class _Run:
         drops = np.flatnonzero(self.moving)
         flight = Flight(self.time[drops], self.gap[drops], self.velocity[drops], self.gravity[drops])
         law = self.law().take(drops)
-        touch, speed = flight.touch(-law.touch_level if isinstance(law, CompliantLaw) else np.zeros(1))
+        motions: tuple[FreeMotion, ...] = ()
+        if self.vibration is None:
+            touch, speed = flight.touch(-law.touch_level if isinstance(law, CompliantLaw) else np.zeros(1))
+        else:
+            motions = self.vibration.flights(drops, -self.gap[drops], -self.velocity[drops], self.gravity[drops])
+            assert isinstance(law, CompliantLaw)  # the problem has seen to it
+            touch = flight.start + np.asarray(self.vibration.touches(motions, law))
         end = np.inf if self.problem.duration is None else self.problem.duration
         last, outcome = np.full(len(drops), end), Outcome.IMPACTS
         if len(self.rows) in (self.problem.impacts, MOST_IMPACTS):
@@ -148,14 +160,19 @@ class _Run:
         self.stop(drops[stops], outcome, last[stops])
         self.stop(drops[stops & by_time], Outcome.DURATION, last[stops & by_time])
         self.stop(drops[gone], Outcome.LEFT, flight.start[gone])
-        leg = Leg(drops, flight, np.where(gone, flight.start, np.where(stops, last, touch)), drops[~stops])
+        leg = Leg(drops, flight, np.where(gone, flight.start, np.where(stops, last, touch)), drops[~stops], motions=motions)
+        if self.vibration is not None:
+            gap, velocity = flight.at(leg.flight_end)
+            speed = -velocity
+            self.gap[drops[~stops]], self.velocity[drops[~stops]] = gap[~stops], velocity[~stops]
+            self.vibration.pass_freely(drops, motions, leg.flight_end - flight.start)
         if not stops.all():
             leg = self.collide(leg, touch[~stops], speed[~stops])
         self.legs.append(leg)
 
     def collide(self, leg: Leg, touch: Floats, speed: Floats) -> Leg:
         """Take drops through a contact: write the row of the impact, return the leg with its contact."""
-        drops, row = leg.contact_drops, {name: np.full(self.size, np.nan) for name in IMPACT_COLUMNS}
+        drops, row = leg.contact_drops, {name: np.full(self.size, np.nan) for name in self.columns}
         law = self.law().take(drops)
         self.rows.append(row)
         row["impact"][drops], row["time_s"][drops], row["approach_speed_m_s"][drops] = len(self.rows), touch, speed
@@ -167,7 +184,8 @@ class _Run:
             lost = 0.5 * self.mass[drops] * (speed**2 - self.velocity[drops] ** 2)
         else:
             assert isinstance(law, CompliantLaw)
-            leg, lost = self.deform(leg, encounter_of(law, self.mass[drops], self.gravity[drops], speed), touch, row)
+            closing = speed if self.vibration is None else self.vibration.closing_speed(drops, speed)
+            leg, lost = self.deform(leg, encounter_of(law, self.mass[drops], self.gravity[drops], closing), touch, row)
             lost += row["plastic_work_J"][drops]
             law = self.law().take(drops)  # with what it remembers of this impact
         self.dissipated[drops] += lost - row["plastic_work_J"][drops]
@@ -185,8 +203,13 @@ class _Run:
     def deform(self, leg: Leg, encounter: Encounter, touch: Floats, row: dict[str, Floats]) -> tuple[Leg, Floats]:
         """Integrate a contact; return the leg with it, and the energy lost [J]."""
         drops = leg.contact_drops
-        contact = contact_phase(encounter, self.problem.tolerance, self.warm_starts, drops)
-        force, when = force_peak(contact, encounter)
+        if self.vibration is None:
+            contact = contact_phase(encounter, self.problem.tolerance, self.warm_starts, drops)
+            force, when = force_peak(contact, encounter)
+        else:
+            visits = self.vibration.visit(drops, -self.gap[drops], -self.velocity[drops], encounter, row)
+            contact = contact_of(visits, encounter.law)
+            force, when = (np.array([getattr(found, name) for found in visits]) for name in ("max_force", "time_of_max_force"))
         self.deepest[drops] = np.maximum(self.deepest[drops], contact.max_delta)
         self.time[drops] = touch + contact.duration
         self.gap[drops], self.velocity[drops] = -contact.final_delta, -contact.final_rate
@@ -197,15 +220,16 @@ class _Run:
         for name, values in contact.law.memories().items():
             self.memories[name][drops] = values
         failed, captured = contact.outcome == FAILED, contact.outcome == CAPTURED
-        captured |= ~failed & (contact.final_rate**2 < 2.0 * self.gravity[drops] * self.overlap(contact, drops))
+        if self.vibration is None:
+            captured |= ~failed & (contact.final_rate**2 < 2.0 * self.gravity[drops] * self.overlap(contact, drops))
         row["separation_speed_m_s"][drops] = np.where(failed, np.nan, np.where(captured, 0.0, -contact.final_rate))
-        stored = contact.law.elastic_energy(contact.final_delta)
+        stored = contact.stored
         sticks = captured & (contact.law.elastic_energy(contact.law.release_level + np.zeros(len(drops))) > 0.0)
         for these, outcome in ((failed, Outcome.FAILED), (captured & ~sticks, Outcome.CAPTURED), (sticks, Outcome.STUCK)):
             self.stop(drops[these], outcome, self.time[drops[these]])
         if captured.any():
             self.lie_down(drops[captured], contact.law.take(np.flatnonzero(captured)), self.time[drops[captured]], stored[captured])
-        return Leg(leg.drops, leg.flight, leg.flight_end, drops, contact, encounter), contact.dissipated + np.where(captured, 0.0, stored)
+        return replace(leg, contact=contact, encounter=encounter), contact.dissipated + np.where(captured, 0.0, stored)
 
     def overlap(self, contact: Contact, drops: Drops) -> Floats:
         """Return how far drops that have parted must still rise until the next touch is a new one [m]."""
@@ -247,21 +271,28 @@ class _Run:
         if self.problem.duration is not None:
             self.end_time[at_rest] = np.maximum(self.end_time, self.problem.duration)[at_rest]
         final_gap, final_velocity = self.final_motion(at_rest)
+        if self.vibration is not None:
+            lying = np.flatnonzero(at_rest)  # what they lie on moves on
+            nothing = np.zeros(len(lying))
+            motions = self.vibration.flights(lying, -self.gap[lying], nothing, nothing)
+            self.vibration.pass_freely(lying, motions, np.maximum(self.end_time[lying] - self.time[lying], 0.0))
+        vibration = {} if self.vibration is None else self.vibration.energies()
         energy = close_ledger(
             self.energy_in,
             self.mass * self.gravity * self.deepest,
             {
                 "kinetic_J": 0.5 * self.mass * final_velocity**2,
                 "potential_J": self.mass * self.gravity * final_gap,
-                "contact_elastic_J": self.stored,
-                "contact_dissipated_J": self.dissipated,
+                "contact_elastic_J": self.stored + vibration.pop("local_J", 0.0),
+                "contact_dissipated_J": self.dissipated + vibration.pop("local_damping_J", 0.0),
                 "plastic_work_J": self.plastic,
                 "written_off_at_rest_J": self.written_off,
+                **vibration,
             },
         )
         for drop in np.flatnonzero(~(energy["closure_relative"] <= CLOSURE_LIMIT)):
             self.outcomes[drop] = Outcome.FAILED
-        table = {name: np.array([row[name] for row in self.rows]).reshape(-1, self.size).T for name in IMPACT_COLUMNS}
+        table = {name: np.array([row[name] for row in self.rows]).reshape(-1, self.size).T for name in self.columns}
         response = Response(
             self.problem,
             table,

@@ -15,7 +15,7 @@ from vibroimpact.exchange.export import nine_node_shells, write_text
 from vibroimpact.structures.mesh import Integers, Mesh
 
 _CELLS = {"tet4": 10, "tet10": 24, "hex8": 12, "hex20": 25, "hex27": 29, "quad25": 28}
-_TYPES = {"f": "Float64", "i": "Int64", "u": "UInt8"}
+_TYPES = {"float64": "Float64", "float32": "Float32", "int64": "Int64", "int32": "Int32", "uint8": "UInt8"}
 
 
 def write_vtu(mesh: Mesh, path: str | PathLike[str], point_data: Mapping[str, ArrayLike] | None = None) -> None:
@@ -48,6 +48,12 @@ def write_vtu(mesh: Mesh, path: str | PathLike[str], point_data: Mapping[str, Ar
     ...     "displacement_m" in Path(folder, "tet.vtu").read_text()
     True
     """
+    values = {name: checked_values(name, data, len(mesh.nodes)) for name, data in (point_data or {}).items()}
+    write_text(path, vtu_text(np.asarray(mesh.nodes, dtype=float), *cells_of(mesh), values))
+
+
+def cells_of(mesh: Mesh) -> tuple[Integers, Integers, NDArray[np.uint8]]:
+    """Return the cells of a mesh as VTK has them: their nodes one after another, where each ends, and of which type they are."""
     cells: list[tuple[int, Integers]] = [
         (_CELLS[block.kind], nine_node_shells(block.connectivity) if block.kind == "quad25" else block.connectivity)
         for block in mesh.blocks
@@ -55,32 +61,49 @@ def write_vtu(mesh: Mesh, path: str | PathLike[str], point_data: Mapping[str, Ar
     sizes = np.concatenate([np.zeros(0, dtype=np.int64), *(np.full(len(nodes), nodes.shape[1]) for _, nodes in cells)])
     nodes = np.concatenate([np.zeros(0, dtype=np.int64), *(nodes.ravel() for _, nodes in cells)])
     types = np.concatenate([np.zeros(0, dtype=np.uint8), *(np.full(len(nodes), cell, dtype=np.uint8) for cell, nodes in cells)])
-    values = {name: _checked(name, data, len(mesh.nodes)) for name, data in (point_data or {}).items()}
+    return nodes, np.cumsum(sizes), types
+
+
+def vtu_text(
+    points: NDArray[np.floating],
+    nodes: NDArray[np.integer],
+    ends: NDArray[np.integer],
+    types: NDArray[np.uint8],
+    point_data: Mapping[str, NDArray[np.floating]],
+) -> str:
+    """Return a whole file; each array is written in the precision that it has."""
     rows = [
         '<?xml version="1.0"?>',
         '<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian" header_type="UInt64">',
         "<UnstructuredGrid>",
-        f'<Piece NumberOfPoints="{len(mesh.nodes)}" NumberOfCells="{len(types)}">',
+        f'<Piece NumberOfPoints="{len(points)}" NumberOfCells="{len(types)}">',
         "<Points>",
-        _array("Points", np.asarray(mesh.nodes, dtype=float)),
+        _array("Points", points),
         "</Points>",
         "<Cells>",
         _array("connectivity", nodes),
-        _array("offsets", np.cumsum(sizes)),
+        _array("offsets", ends),
         _array("types", types),
         "</Cells>",
         "<PointData>",
-        *(_array(name, data) for name, data in values.items()),
+        *(_array(name, data) for name, data in point_data.items()),
         "</PointData>",
         "</Piece>",
         "</UnstructuredGrid>",
         "</VTKFile>",
         "",
     ]
-    write_text(path, "\n".join(rows))
+    return "\n".join(rows)
 
 
-def _checked(name: str, data: ArrayLike, nodes: int) -> NDArray[np.float64]:
+def checked_values(name: str, data: ArrayLike, nodes: int) -> NDArray[np.float64]:
+    """Return values at all nodes.
+
+    Raises
+    ------
+    InputError
+        If they are no real numbers, or have another shape than (nodes,) or (nodes, 3).
+    """
     try:
         values = np.asarray(data)
         if np.iscomplexobj(values):
@@ -99,4 +122,4 @@ def _array(name: str, values: NDArray[np.generic]) -> str:
     text = base64.b64encode(len(raw).to_bytes(8, "little") + raw).decode("ascii")
     label = quoteattr("".join(letter for letter in name if letter.isprintable()))
     components = f' NumberOfComponents="{values.shape[1]}"' if values.ndim == 2 else ""
-    return f'<DataArray type="{_TYPES[values.dtype.kind]}" Name={label}{components} format="binary">{text}</DataArray>'
+    return f'<DataArray type="{_TYPES[values.dtype.name]}" Name={label}{components} format="binary">{text}</DataArray>'

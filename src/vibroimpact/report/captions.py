@@ -5,14 +5,24 @@ from __future__ import annotations
 import numpy as np
 
 from vibroimpact.dynamics.problem import STANDARD_GRAVITY
+from vibroimpact.report.captions_motion import (
+    deflection_caption,
+    plate_energy_caption,
+    plate_motion_caption,
+    sensor_caption,
+    sphere_energy_caption,
+)
 from vibroimpact.report.excerpt import contacts, enlarged
 from vibroimpact.report.quantity import digits, fixed, text
+from vibroimpact.report.sensor_figures import drawn_sensors
 from vibroimpact.report.style import ENLARGED
 from vibroimpact.storage.result import Result
 
 
 def caption(name: str, result: Result) -> str:
     """Return the caption of a figure that the result has."""
+    if name in (sensors := drawn_sensors(result)):
+        return sensor_caption(result, sensors[name])
     return _WRITERS[name](result)
 
 
@@ -81,7 +91,10 @@ def _loops(result: Result) -> str:
     if np.max(lost) < 1e-9 * result.energy["input_J"]:
         return "The way in and the way out coincide: no energy is lost in contact."
     first, last = (text(float(lost[impact]), "J") for impact in (found[0], found[-1]))
-    words = f"The area that a loop encloses is the energy lost in that contact: {first} in impact {found[0] + 1}"
+    also = " and what goes into the sphere's own vibration. Lost" if "sphere" in result.peaks else ""
+    if result.deformation.get("treatment") == "identified":
+        also = " and what the local element still holds at release. Lost"
+    words = f"The area that a loop encloses is the energy lost in that contact{also}: {first} in impact {found[0] + 1}"
     return f"{words}, {last} in impact {found[-1] + 1}." if len(found) > 1 else f"{words}."
 
 
@@ -89,9 +102,21 @@ def _energy(result: Result) -> str:
     energy, put_in = result.energy, result.energy["input_J"]
     lost = energy["contact_dissipated_J"] + energy["plastic_work_J"]
     words = f"Of {text(put_in, 'J')} put in, {text(lost, 'J')} ({fixed(100.0 * lost / put_in, 1)} %) are lost in contact by the end."
+    words += _vibration(result) if result.vibrates else ""
     if np.min(result.history["potential_J"]) < -0.01 * put_in:
         words += " Below the height of first touch the potential energy is negative; there the other bands begin below zero."
     return words + " The bands add up to the energy put in at all times."
+
+
+def _vibration(result: Result) -> str:
+    """Tell where the energy of vibration went: what is left of it, and what its damping took."""
+    energy, put_in = result.energy, result.energy["input_J"]
+    damped = energy["sphere_damping_J"] + energy["plate_damping_J"]
+    left = sum(energy[name] for name in ("sphere_vibration_J", "sphere_strain_J", "plate_kinetic_J", "plate_strain_J"))
+    return (
+        f" The damping of the bodies took {text(damped, 'J')} ({fixed(100.0 * damped / put_in, 1)} %), and {text(left, 'J')} "
+        f"({fixed(100.0 * left / put_in, 1)} %) are still in their vibration."
+    )
 
 
 def _enlarged(result: Result) -> str:
@@ -115,4 +140,8 @@ _WRITERS = {
     "acceleration": _acceleration,
     "force_indentation": _loops,
     "energy": _energy,
+    "sphere_energy": sphere_energy_caption,
+    "plate_motion": plate_motion_caption,
+    "plate_energy": plate_energy_caption,
+    "deflection": deflection_caption,
 }

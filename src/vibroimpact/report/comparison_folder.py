@@ -9,13 +9,12 @@ from pathlib import Path
 import tomli_w
 
 from vibroimpact._version import __version__
-from vibroimpact.dynamics.columns import IMPACT_COLUMNS
 from vibroimpact.report.comparison import Comparison, comparison_table, free_parameter_words
 from vibroimpact.report.comparison_figures import draw_comparison
 from vibroimpact.report.figures import save_figures
 from vibroimpact.report.page import picture, template
 from vibroimpact.storage.folder import SUMMARY, new_folder
-from vibroimpact.storage.tables import impact_rows, write_csv
+from vibroimpact.storage.tables import impact_columns, impact_rows, write_csv
 
 _TITLES = {
     "position": ("Position", "The sphere's centre above the plate, under each law."),
@@ -51,7 +50,8 @@ def save_comparison(comparison: Comparison, directory: str | PathLike[str], *, f
     """
     with new_folder(directory, force=force) as folder:
         rows = [{"law": name, **row} for name, one in comparison.results.items() for row in impact_rows(one.impacts)]
-        write_csv(rows, ["law", *IMPACT_COLUMNS], folder / "comparison.csv")
+        columns = impact_columns(name for one in comparison.results.values() for name in one.impacts)
+        write_csv(rows, ["law", *columns], folder / "comparison.csv")
         laws = {
             name: {"status": one.status, "impacts": impact_rows(one.impacts), "energy": one.energy, "doubts": one.doubts}
             for name, one in comparison.results.items()

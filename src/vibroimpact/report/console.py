@@ -18,10 +18,12 @@ from vibroimpact.cases.schema import Case
 from vibroimpact.contact.law import CompliantLaw, ContactLaw
 from vibroimpact.contact.phase.encounter import encounter_of
 from vibroimpact.contact.restitution import achieved_restitution
-from vibroimpact.dynamics.columns import LEDGER
+from vibroimpact.dynamics.columns import LEDGER, VIBRATION_LEDGER
 from vibroimpact.errors import InputError
 from vibroimpact.materials import RIGID, Material, find_material, material_library
 from vibroimpact.report.comparison import Comparison, comparison_table, free_parameter_words
+from vibroimpact.report.deformation import deformation_rows, treatment_sentence
+from vibroimpact.report.tables import several_contacts
 from vibroimpact.storage.result import Result
 
 # column, heading, factor, digits
@@ -37,9 +39,11 @@ _IMPACT_TABLE = (
     ("max_acceleration_m_s2", "acceleration\n[m/s2]", 1.0, 6),
     ("rebound_height_m", "rebound\n[m]", 1.0, 5),
     ("energy_lost_J", "lost\n[J]", 1.0, 4),
+    ("contacts", "con-\ntacts", 1.0, 3),
 )
 _LEFT_OUT_WHEN_NARROW = {"separation_speed_m_s", "max_acceleration_m_s2", "energy_lost_J"}
 _NARROW = 110  # columns of a terminal
+_ONE_MORE = 8  # for the column of contacts, where a visit has several
 _FIRST_ROWS, _LAST_ROWS = 15, 3
 
 
@@ -48,7 +52,11 @@ def impact_table(impacts: Mapping[str, np.ndarray], width: int) -> RenderableTyp
     number = len(impacts["impact"])
     if not number:
         return Text("No impact within the run.")
-    columns = [column for column in _IMPACT_TABLE if width >= _NARROW or column[0] not in _LEFT_OUT_WHEN_NARROW]
+    several = several_contacts(impacts)
+    wide = width >= _NARROW + several * _ONE_MORE
+    left_out = set() if wide else _LEFT_OUT_WHEN_NARROW | ({"restitution_asked"} if several else set())
+    left_out = left_out if several else left_out | {"contacts"}
+    columns = [column for column in _IMPACT_TABLE if column[0] not in left_out]
     table = Table(box=None, padding=(0, 1), header_style="bold")
     table.add_column("\n#", justify="right")
     for _, heading, _, _ in columns:
@@ -70,7 +78,7 @@ def energy_table(energy: Mapping[str, float]) -> RenderableType:
     table.add_column(escape("[J]"), justify="right")
     table.add_column("%", justify="right")
     whole = energy["input_J"]
-    for name in LEDGER:
+    for name in (*LEDGER, *(name for name in VIBRATION_LEDGER if name in energy)):
         part = energy[name] / whole
         if abs(part) > 1e-12:  # less is rounding
             table.add_row(name.removesuffix("_J").replace("_", " "), _number(energy[name], 6), _number(100.0 * part, 4))
@@ -87,8 +95,18 @@ def result_summary(result: Result, width: int) -> RenderableType:
         energy_table(result.energy),
         Text(),
         Text(result.status),
+        *_deformation(result),
         *_doubt_lines(result.doubts),
     )
+
+
+def _deformation(result: Result) -> list[RenderableType]:
+    """Return how the bodies deform, where they do: a sentence, and its numbers."""
+    rows, table = deformation_rows(result), Table.grid(padding=(0, 2))
+    for words, value in rows:
+        table.add_row(f" {escape(words)}", escape(value))
+    sentence = treatment_sentence(result)
+    return [Text(), *([Text(sentence)] if sentence else []), table] if rows or sentence else []
 
 
 def comparison_summary(comparison: Comparison) -> RenderableType:

@@ -12,11 +12,14 @@ from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 from PIL import Image
 
+from vibroimpact.report.deflection_figure import draw_deflection
 from vibroimpact.report.excerpt import contacts
 from vibroimpact.report.histories import draw_history
 from vibroimpact.report.ledger import draw_ledger
 from vibroimpact.report.loops import draw_loops
+from vibroimpact.report.motion_figures import draw_plate_energy, draw_plate_motion, draw_sphere_energy
 from vibroimpact.report.quantities import ACCELERATION, FORCE, POSITION, VELOCITY
+from vibroimpact.report.sensor_figures import draw_sensor, drawn_sensors
 from vibroimpact.report.style import style
 from vibroimpact.storage.result import Result
 
@@ -35,7 +38,8 @@ def draw_figures(result: Result) -> dict[str, Figure]:
     -------
     dict of str to Figure
         In the order of the report: `position`, `force`, `velocity`, `acceleration`, `force_indentation`
-        and `energy`. Those of force, acceleration and indentation are left out where no contact has a
+        and `energy`; where bodies vibrate also `sphere_energy`, `plate_motion`, `plate_energy`, `deflection` and one
+        for each sensor. Those of force, acceleration and indentation are left out where no contact has a
         duration: with an instantaneous law they do not exist.
     """
     in_contact = bool(len(contacts(result)))
@@ -48,6 +52,16 @@ def draw_figures(result: Result) -> dict[str, Figure]:
             figures["acceleration"] = draw_history(result, ACCELERATION)
             figures["force_indentation"] = draw_loops(result)
         figures["energy"] = draw_ledger(result)
+        figures |= _of_vibration(result) if result.vibrates and len(result.impacts["time_s"]) else {}
+    return figures
+
+
+def _of_vibration(result: Result) -> dict[str, Figure]:
+    figures = {"sphere_energy": draw_sphere_energy(result)}
+    if "plate" in result.peaks:
+        figures |= {"plate_motion": draw_plate_motion(result), "plate_energy": draw_plate_energy(result)}
+        figures |= {"deflection": draw_deflection(result)} if result.deflection is not None else {}
+        figures |= {figure: draw_sensor(result, name) for figure, name in drawn_sensors(result).items()}
     return figures
 
 

@@ -7,7 +7,6 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from vibroimpact.dynamics.columns import LEDGER
 from vibroimpact.report.excerpt import MARGIN, Floats, around, enlarged
 from vibroimpact.report.layout import label_vertical, new_figure, wide_axes
 from vibroimpact.report.quantity import Multiple, multiple
@@ -33,10 +32,10 @@ def draw_ledger(result: Result) -> Figure:
 
 
 def _draw_run(axes: Axes, result: Result, scale: Multiple) -> None:
-    history = result.history
+    history = bands_of(result.history)
     kept = _that_show(result)
     clock = multiple("s", history["time_s"])
-    _stack(axes, result, {name: history[name][kept] for name in ("time_s", *LEDGER)}, clock, scale)
+    _stack(axes, result, {name: values[kept] for name, values in history.items()}, clock, scale)
     sinks = np.min(history["potential_J"]) < -0.01 * result.energy["input_J"]
     axes.set_title("Energy, whole run" + (" (bands stand on the potential energy where it is negative)" if sinks else ""))
     axes.set_xlabel(f"Time [{clock.unit}]")
@@ -44,7 +43,7 @@ def _draw_run(axes: Axes, result: Result, scale: Multiple) -> None:
 
 def _draw_contact(axes: Axes, result: Result, impact: int, scale: Multiple) -> None:
     duration = result.impacts["duration_s"][impact]
-    part = _resampled(around(result, impact))
+    part = _resampled(bands_of(around(result, impact)))
     clock = multiple("s", duration)
     _stack(axes, result, part, clock, scale)
     for edge in (0.0, duration / clock.size):
@@ -55,18 +54,31 @@ def _draw_contact(axes: Axes, result: Result, impact: int, scale: Multiple) -> N
 
 
 def _stack(axes: Axes, result: Result, part: dict[str, Floats], clock: Multiple, scale: Multiple) -> None:
-    time = part["time_s"] / clock.size
+    time, whole = part["time_s"] / clock.size, bands_of(result.history)
+    shown = [name for name in BANDS if name in part]
     # below the height of first touch the potential energy is negative: the other bands stand on it
-    bottom = sum((np.minimum(part[name], 0.0) for name in BANDS), np.zeros_like(time)) / scale.size
-    for name, (label, colour, hatch) in BANDS.items():
+    bottom = sum((np.minimum(part[name], 0.0) for name in shown), np.zeros_like(time)) / scale.size
+    for name in shown:
+        label, colour, hatch = BANDS[name]
+        if name == "contact_dissipated_J" and "plate_motion_J" in part:
+            label = "damping of the contact"  # beside that of the bodies
         top = bottom + np.maximum(part[name], 0.0) / scale.size
-        if np.any(result.history[name] > 1e-6 * result.energy["input_J"]):
+        if np.any(whole[name] > 1e-6 * result.energy["input_J"]):
             axes.fill_between(time, bottom, top, facecolor=colour, hatch=hatch, edgecolor="#3d3d3d", linewidth=0.3, label=label)
         bottom = top
     axes.axhline(result.energy["input_J"] / scale.size, color=INK, linewidth=1.6, linestyle="--", label="total put in")
     label_vertical(axes, f"Energy [{scale.unit}]")
     axes.margins(x=0.0)
     axes.set_ylim(top=1.06 * result.energy["input_J"] / scale.size)
+
+
+def bands_of(history: dict[str, Floats]) -> dict[str, Floats]:
+    """Return time and bands of a history. Kinetic and strain energy of a body that vibrates change into each other: they are one."""
+    bands = {name: values for name, values in history.items() if name in BANDS or name == "time_s"}
+    if "plate_strain_J" in history:
+        bands["sphere_motion_J"] = history["sphere_vibration_J"] + history["sphere_strain_J"]
+        bands["plate_motion_J"] = history["plate_kinetic_J"] + history["plate_strain_J"]
+    return bands
 
 
 def _that_show(result: Result) -> NDArray[np.intp]:
@@ -80,6 +92,10 @@ def _that_show(result: Result) -> NDArray[np.intp]:
     close = close[result.history["indentation_m"][close.clip(max=len(time) - 1)] > 0.0]
     beside = [np.searchsorted(time, touch), np.searchsorted(time, release, side="right") - 1, [len(time) - 1]]
     kept = np.unique(np.concatenate([spread, close, *beside]).clip(0, len(time) - 1))
+    # what a local element holds at release is lost at once: the bands go on from where it is
+    calm = np.flatnonzero(result.history["contact_elastic_J"] <= 1e-4 * result.energy["input_J"])
+    after = np.searchsorted(calm, np.searchsorted(time, release, side="right") - 1)
+    kept = np.union1d(kept, calm[after[after < len(calm)]])
     # one that is not would show as a hairline wherever a point happened to fall into it
     impact = np.searchsorted(result.impacts["time_s"], time[kept], side="right") - 1
     brief = np.append(result.impacts["duration_s"], 0.0)[impact] < 3.0 * (time[-1] - time[0]) / _COLUMNS

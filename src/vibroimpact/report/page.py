@@ -12,9 +12,13 @@ import tomli_w
 from jinja2 import Environment, FunctionLoader, StrictUndefined, Template
 
 from vibroimpact.dynamics.energy import CLOSURE_LIMIT
+from vibroimpact.report.animation import animate
 from vibroimpact.report.captions import caption, left_out
+from vibroimpact.report.captions_motion import animation_caption, sensors_left_out
+from vibroimpact.report.deformation import deformation_rows, treatment_sentence
 from vibroimpact.report.figures import draw_figures, save_figures
 from vibroimpact.report.quantity import digits
+from vibroimpact.report.sensor_figures import drawn_sensors
 from vibroimpact.report.tables import impact_table, ledger_table
 from vibroimpact.storage.result import Result
 
@@ -25,7 +29,15 @@ _TITLES = {
     "acceleration": "Acceleration",
     "force_indentation": "Force over indentation",
     "energy": "Energy",
+    "sphere_energy": "Energy of the sphere",
+    "plate_motion": "Motion of the plate",
+    "plate_energy": "Energy of the plate",
+    "deflection": "Deflection of the plate",
 }
+
+
+ANIMATION = "figures/plate.gif"
+_LARGEST_HELD = 1_500_000  # bytes of an animation that the page holds
 
 
 class Picture(NamedTuple):
@@ -49,10 +61,13 @@ def write_report(result: Result, directory: Path) -> None:
     """
     (directory / "figures").mkdir(exist_ok=True)
     pictures = save_figures(draw_figures(result), directory / "figures")
-    (directory / "report.html").write_text(render_page(result, pictures), encoding="utf-8")
+    animation = animate(result) if result.deflection is not None else b""
+    if animation:
+        (directory / ANIMATION).write_bytes(animation)
+    (directory / "report.html").write_text(render_page(result, pictures, animation), encoding="utf-8")
 
 
-def render_page(result: Result, pictures: Mapping[str, bytes]) -> str:
+def render_page(result: Result, pictures: Mapping[str, bytes], animation: bytes = b"") -> str:
     """Return the report as one HTML page that needs neither network nor script.
 
     Parameters
@@ -61,6 +76,8 @@ def render_page(result: Result, pictures: Mapping[str, bytes]) -> str:
         A run of one drop.
     pictures : mapping of str to bytes
         Each figure as SVG, by its name, in the order of the page.
+    animation : bytes, optional
+        Plate and ball as GIF; a large one is not held by the page, which then names its file.
     """
     return template("page.html.j2").render(
         name=result.name[:1].upper() + result.name[1:],
@@ -73,6 +90,11 @@ def render_page(result: Result, pictures: Mapping[str, bytes]) -> str:
         closure_limit=digits(CLOSURE_LIMIT, 1),
         pictures=_pictures(result, pictures),
         left_out=left_out(result),
+        sentence=treatment_sentence(result),
+        deformation=deformation_rows(result),
+        sensors_left_out=sensors_left_out(result),
+        animation=_animation(result, animation),
+        animation_file=ANIMATION,
         case=_as_text(result.case),
         doubts=result.doubts,
         provenance=result.provenance,
@@ -92,7 +114,16 @@ def picture(name: str, title: str, words: str, svg: bytes) -> Picture:
 
 
 def _pictures(result: Result, pictures: Mapping[str, bytes]) -> list[Picture]:
-    return [picture(name, _TITLES[name], caption(name, result), svg) for name, svg in pictures.items()]
+    titles = {**_TITLES, **{figure: f"Sensor {name}" for figure, name in drawn_sensors(result).items()}}
+    return [picture(name, titles[name], caption(name, result), svg) for name, svg in pictures.items()]
+
+
+def _animation(result: Result, gif: bytes) -> Picture | None:
+    """Return the animation for the page; without source, if it is too large to be held."""
+    if not gif:
+        return None
+    source = f"data:image/gif;base64,{b64encode(gif).decode()}" if len(gif) <= _LARGEST_HELD else ""
+    return Picture("animation", "Plate and ball in slow motion", animation_caption(result), source)
 
 
 def _as_text(case: Mapping[str, Any]) -> str:

@@ -37,4 +37,5 @@ def patient_progress(what: str, console: Console) -> Iterator[Callable[[float], 
     try:
         yield tell
     finally:
-        bar.stop()
+        if shown:  # one that was never started would leave an empty line
+            bar.stop()

@@ -30,7 +30,10 @@ def tops_of_rebounds(result: Result) -> Points:
 
 
 def _deepest(result: Result) -> Points:
-    return result.impacts["time_of_max_indentation_s"], touch_height(result) - result.impacts["max_indentation_m"]
+    when = result.impacts["time_of_max_indentation_s"]
+    if result.vibrates:  # then the sphere and what it presses on both move
+        return when, np.interp(when, result.history["time_s"], result.history["position_m"])
+    return when, touch_height(result) - result.impacts["max_indentation_m"]
 
 
 def _force_peaks(result: Result) -> Points:

@@ -11,6 +11,7 @@ from vibroimpact.dynamics.response import Response
 from vibroimpact.errors import InputError
 from vibroimpact.report.page import write_report
 from vibroimpact.storage.folder import new_folder, read_result, write_result
+from vibroimpact.storage.paraview import write_paraview
 from vibroimpact.storage.result import result_of
 
 
@@ -39,6 +40,7 @@ def save_result(response: Response, directory: str | PathLike[str], *, force: bo
     with new_folder(directory, force=force) as folder:
         result = result_of(response)
         write_result(result, folder)
+        write_paraview(response, folder)
         write_report(result, folder)
     return Path(directory)
 

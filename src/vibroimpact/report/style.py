@@ -33,8 +33,12 @@ LOOPS: tuple[tuple[str, str | tuple[int, tuple[int, ...]]], ...] = (
 BANDS: dict[str, tuple[str, str, str]] = {
     "contact_dissipated_J": ("damping and adhesion", "#404040", ""),
     "plastic_work_J": ("plastic work", "#9c6b52", ".."),
+    "sphere_damping_J": ("damping of the sphere", "#7d7d7d", "\\\\\\\\"),
+    "plate_damping_J": ("damping of the plate", "#a3a3a3", "||||"),
     "written_off_at_rest_J": ("written off at rest", "#ffffff", "xx"),
     "contact_elastic_J": ("stored in the contact", "#f7cd6b", "////"),
+    "sphere_motion_J": ("vibration of the sphere", "#e8a0a0", "...."),
+    "plate_motion_J": ("vibration of the plate", "#c9e3b4", "----"),
     "potential_J": ("potential", "#d6e6f4", ""),
     "kinetic_J": ("kinetic", "#4a8cc7", "\\\\"),
 }

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from typing import NamedTuple
+
+import numpy as np
 
 from vibroimpact.report.excerpt import Floats
 from vibroimpact.report.quantity import digits, fixed, multiple
@@ -11,6 +14,9 @@ from vibroimpact.storage.result import Result
 
 _MOST_ROWS, _FIRST, _LAST = 50, 45, 3
 """A table of more rows shows only its first and last ones."""
+
+_CONTACTS = {"contacts": "Contacts in the visit"}
+"""Shown where a visit has more than one: the plate comes back to the sphere, or the sphere's own vibration does."""
 
 HEADERS = {
     "impact": "Impact",
@@ -36,6 +42,14 @@ _ENTRIES = {
     "plastic_work_J": "Lost in plastic deformation",
     "written_off_at_rest_J": "Written off when the sphere was found to be at rest",
 }
+_OF_VIBRATION = {
+    "sphere_vibration_J": "Kinetic energy of the sphere's vibration, beside that of its centre",
+    "sphere_strain_J": "Strain energy of the sphere's modes",
+    "sphere_damping_J": "Lost in the damping of the sphere's modes",
+    "plate_kinetic_J": "Kinetic energy of the plate",
+    "plate_strain_J": "Strain energy of the plate's modes, from where it rests",
+    "plate_damping_J": "Lost in the damping of the plate's modes",
+}
 _UNITS = {"_m_s2": "m/s2", "_m_s": "m/s", "_s": "s", "_m": "m", "_N": "N", "_J": "J"}
 """Units by the ends of column names, the longest first."""
 
@@ -51,18 +65,24 @@ class Table(NamedTuple):
 
 def impact_table(result: Result) -> Table:
     """Return the impact table in multiples of units; a long one without its middle."""
-    columns = [column(name, result.impacts[name]) for name in HEADERS]
-    headers = [(header, unit) for header, (unit, _) in zip(HEADERS.values(), columns, strict=True)]
+    shown = {**HEADERS, **(_CONTACTS if several_contacts(result.impacts) else {})}
+    columns = [column(name, result.impacts[name]) for name in shown]
+    headers = [(header, unit) for header, (unit, _) in zip(shown.values(), columns, strict=True)]
     rows = [list(row) for row in zip(*(cells for _, cells in columns), strict=True)]
     if len(rows) <= _MOST_ROWS:
         return Table(headers, rows, 0, [])
     return Table(headers, rows[:_FIRST], len(rows) - _FIRST - _LAST, rows[-_LAST:])
 
 
+def several_contacts(impacts: Mapping[str, Floats]) -> bool:
+    """Has any visit more than one contact?"""
+    return bool(np.max(impacts.get("contacts", np.ones(1)), initial=1.0) > 1.0)
+
+
 def ledger_table(result: Result) -> list[tuple[str, str, str]]:
     """Return the ledger at the end: entry, energy [J] and part of the energy put in [%]."""
     put_in = result.energy["input_J"]
-    entries = [(title, result.energy[name]) for name, title in _ENTRIES.items()]
+    entries = [(title, result.energy[name]) for name, title in {**_ENTRIES, **_OF_VIBRATION}.items() if name in result.energy]
     lines = [*entries, ("Sum", sum(value for _, value in entries)), ("Put in at the start", put_in)]
     return [(title, _beside(value, put_in, 6), _beside(100.0 * value / put_in, 100.0, 6)) for title, value in lines]
 
@@ -79,7 +99,7 @@ def _beside(value: float, whole: float, significant: int) -> str:
 
 def column(name: str, values: Floats) -> tuple[str, list[str]]:
     """Return unit and cells of a column of the impact table."""
-    if name == "impact":
+    if name in ("impact", "contacts"):
         return "", [fixed(value, 0) for value in values]
     if name.startswith("restitution"):
         return "", [fixed(value, 4) for value in values]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import os
 import shutil
 import tempfile
@@ -19,7 +20,9 @@ from vibroimpact.dynamics.columns import IMPACT_COLUMNS
 from vibroimpact.errors import InputError
 from vibroimpact.storage.netcdf import read_groups, write_groups
 from vibroimpact.storage.result import Result
-from vibroimpact.storage.tables import impact_rows, write_csv
+from vibroimpact.storage.signal_csv import write_signal_files
+from vibroimpact.storage.summary import summary_of
+from vibroimpact.storage.tables import history_columns, impact_columns, impact_rows, write_csv
 
 SUMMARY = "summary.json"
 
@@ -83,21 +86,13 @@ def check_free(directory: str | PathLike[str], *, force: bool = False) -> None:
 
 
 def write_result(result: Result, directory: Path) -> None:
-    """Write the data files of a result into a folder: case.toml, impacts.csv, summary.json, result.nc."""
+    """Write the data files of a result into a folder: case.toml, impacts.csv, summary.json, result.nc, and short signals as CSV."""
     if result.case:  # a problem made in Python has no case; its provenance says what it was
         (directory / "case.toml").write_text(tomli_w.dumps(result.case), encoding="utf-8")
-    write_csv(impact_rows(result.impacts), list(IMPACT_COLUMNS), directory / "impacts.csv")
-    summary = {
-        "name": result.name,
-        "status": result.status,
-        "version": result.provenance.get("version", ""),
-        "impacts": impact_rows(result.impacts),
-        "energy": result.energy,
-        "doubts": result.doubts,
-        "provenance": dict(result.provenance),
-    }
-    (directory / SUMMARY).write_text(json.dumps(summary, indent=2, allow_nan=False) + "\n", encoding="utf-8")
+    write_csv(impact_rows(result.impacts), list(impact_columns(result.impacts)), directory / "impacts.csv")
+    (directory / SUMMARY).write_text(json.dumps(summary_of(result), indent=2, allow_nan=False) + "\n", encoding="utf-8")
     write_groups(result, directory / "result.nc")
+    write_signal_files(result.signals, directory / "sensors")
 
 
 def read_result(directory: str | PathLike[str]) -> Result:
@@ -127,8 +122,20 @@ def read_result(directory: str | PathLike[str]) -> Result:
         if missing:
             raise KeyError(f"no {', '.join(sorted(missing))}")
         energy = {key: float(value) for key, value in groups["energy"].items()}
-        impacts = {key: np.atleast_1d(groups["impacts"][key]) for key in IMPACT_COLUMNS}
-        return Result(case, impacts, groups["history"], energy, str(summary["status"]), dict(summary["provenance"]))
+        impacts = {key: np.atleast_1d(groups["impacts"][key]) for key in impact_columns(groups["impacts"])}
+        return Result(
+            case,
+            impacts,
+            {key: groups["history"][key] for key in history_columns(groups["history"])},
+            energy,
+            str(summary["status"]),
+            dict(summary["provenance"]),
+            dict(summary.get("deformation", {})),
+            {body: math.nan if value is None else float(value) for body, value in summary.get("truncation", {}).items()},
+            {body: dict(summary[body]) for body in ("sphere", "plate") if body in summary},
+            groups["sensors"],
+            groups["deflection"]["deflection"],
+        )
     except (OSError, ValueError, KeyError, TypeError) as error:
         raise InputError(f"{folder / name}: the file is missing or damaged: {error}") from None
 

@@ -9,28 +9,41 @@ from typing import Any
 import h5py
 import numpy as np
 
-from vibroimpact.dynamics.columns import HISTORY_COLUMNS, IMPACT_COLUMNS
+from vibroimpact.storage.netcdf_motion import read_deflection, read_signals, write_deflection, write_signals
 from vibroimpact.storage.result import Result
+from vibroimpact.storage.tables import history_columns, impact_columns
 
 
 def write_groups(result: Result, path: Path) -> None:
-    """Write impacts, history and energy as groups of a NetCDF-4 file."""
+    """Write a result as groups of a NetCDF-4 file: impacts, history, energy, and the signals and the deflection if there are any."""
     with h5py.File(path, "w", track_order=True) as file:
         file.attrs["title"] = result.name
         file.attrs["status"] = result.status
         for key, value in result.provenance.items():
             file.attrs[key] = value
-        _write_group(file, "impacts", "impact", result.impacts, IMPACT_COLUMNS)
-        _write_group(file, "history", "time_s", result.history, HISTORY_COLUMNS)
+        _write_group(file, "impacts", "impact", result.impacts, impact_columns(result.impacts))
+        _write_group(file, "history", "time_s", result.history, history_columns(result.history))
         group = file.create_group("energy", track_order=True)
         for name, number in result.energy.items():
             group.create_dataset(name, data=float(number)).attrs["units"] = "J" if name.endswith("_J") else "1"
+        write_signals(file, result.signals)
+        write_deflection(file, result.deflection)
 
 
 def read_groups(path: Path) -> dict[str, dict[str, Any]]:
-    """Return the variables of each group of a file that `write_groups` wrote."""
+    """Return the variables of each group of a file that `write_groups` wrote.
+
+    Returns
+    -------
+    dict of str to dict
+        "impacts", "history" and "energy" by their columns; "sensors": the signals by the names of their sensors; and
+        "deflection": the keyword "deflection", which may be None.
+    """
     with h5py.File(path, "r") as file:
-        return {group: {name: np.asarray(file[group][name]) for name in file[group]} for group in ("impacts", "history", "energy")}
+        groups: dict[str, dict[str, Any]] = {
+            group: {name: np.asarray(file[group][name]) for name in file[group]} for group in ("impacts", "history", "energy")
+        }
+        return {**groups, "sensors": dict(read_signals(file)), "deflection": {"deflection": read_deflection(file)}}
 
 
 def _write_group(file: h5py.File, name: str, dimension: str, columns: Mapping[str, Any], meaning: Mapping[str, tuple[str, str]]) -> None:

@@ -13,8 +13,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vibroimpact._version import __version__
-from vibroimpact.cases.doubts import doubts
+from vibroimpact.cases.doubts import doubts, sensor_doubts
+from vibroimpact.dynamics.recording import Signal
 from vibroimpact.dynamics.response import Response
+from vibroimpact.storage.deflection import Deflection, deflection_of
+from vibroimpact.storage.fine_history import fine_history
+from vibroimpact.storage.peaks import Peaks, peaks_of
 
 
 @dataclass(frozen=True)
@@ -35,6 +39,18 @@ class Result:
         Why the run ended.
     provenance : mapping
         Version, time and machine that made it.
+    deformation : mapping
+        How the deformation of the bodies is modelled: words and numbers, whose names end in their units.
+    truncation : mapping of str to float
+        About how far the largest force is off for the modes left out, as a part of it, by the name of the body.
+    peaks : mapping
+        Peaks and frequencies of "sphere" and "plate", where they have modes.
+    signals : mapping of str to Signal
+        What the sensors recorded.
+    deflection : Deflection, optional
+        The plate's upper side at chosen times.
+
+    The last five are empty where nothing but the contact deforms.
     """
 
     case: Mapping[str, Any]
@@ -43,12 +59,29 @@ class Result:
     energy: dict[str, float]
     status: str
     provenance: Mapping[str, str] = field(default_factory=dict)
+    deformation: Mapping[str, float | str] = field(default_factory=dict)
+    truncation: Mapping[str, float] = field(default_factory=dict)
+    peaks: Mapping[str, Peaks] = field(default_factory=dict)
+    signals: Mapping[str, Signal] = field(default_factory=dict)
+    deflection: Deflection | None = None
+
+    @property
+    def vibrates(self) -> bool:
+        """Does anything but the contact deform?"""
+        return "plate_deflection_m" in self.history
+
+    def frequencies(self, body: str) -> list[float]:
+        """Return the frequencies of the modes of "sphere" or "plate" [Hz], ascending; none of a rigid one."""
+        found = self.peaks.get(body, {}).get("frequencies_Hz", [])
+        return found if isinstance(found, list) else []
 
     @property
     def doubts(self) -> list[str]:
         """What to doubt of it: where its assumptions are strained."""
         peaks = (self.impacts[name] for name in ("max_indentation_m", "max_force_N"))
-        return doubts(self.case, *(float(peak.max()) if len(peak) else math.nan for peak in peaks))
+        found = doubts(self.case, *(float(peak.max()) if len(peak) else math.nan for peak in peaks))
+        found += str(self.deformation.get("doubts", "")).splitlines()  # of the meshes
+        return found + sensor_doubts(self.signals.values(), self.frequencies("plate"))
 
     @property
     def name(self) -> str:
@@ -64,10 +97,11 @@ def result_of(response: Response) -> Result:
     InputError
         If the response is of several drops.
     """
+    history = fine_history(response)
     return Result(
         case=response.problem.source or {},
         impacts=response.impacts,
-        history=response.history(),
+        history=history,
         energy={name: float(value) for name, value in response.energy.items()},
         status=response.status,
         provenance={
@@ -79,4 +113,9 @@ def result_of(response: Response) -> Result:
             "tolerance": f"{response.problem.tolerance:g}",
             **({} if response.problem.source else {"problem": repr(response.problem)}),
         },
+        deformation=dict(response.problem.facts),
+        truncation=response.truncation,
+        peaks=peaks_of(response, history),
+        signals=response.signals() if response.problem.sensors else {},
+        deflection=deflection_of(response),
     )

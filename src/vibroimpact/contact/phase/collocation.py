@@ -95,6 +95,10 @@ class Rule:
         slope = self.slope if values.ndim == 1 else self.slope[:, None]
         return np.asarray(legendre.legvander(2.0 * x - 1.0, len(self.nodes)) @ (self.antiderivative @ (slope * values)))
 
+    def integral_to(self, x: Floats) -> Floats:
+        """Return the matrix of `integrate`, from values at the nodes to time integrals per unit duration up to x (T,): (T, N)."""
+        return np.asarray(legendre.legvander(2.0 * x - 1.0, len(self.nodes)) @ self.antiderivative * self.slope)
+
     def weights(self, x: Floats) -> Floats:
         """Return the weights of the values at 0 and at the nodes for the polynomials at x, of any shape: (N + 1, ...)."""
         shape = (-1,) + (1,) * x.ndim

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +19,17 @@ COMPRESSION, RESTITUTION, GLIDE, RELEASED, CAPTURED, FAILED = range(6)
 """Where a drop is in its contact; from RELEASED on it is over."""
 
 
+class PartOfVisit(Protocol):
+    """A part of the contact of bodies that vibrate, of one drop."""
+
+    @property
+    def duration(self) -> Floats:
+        """How long it lasts [s], (1,)."""
+
+    def take(self, drops: NDArray[np.bool_]) -> PartOfVisit:
+        """Return itself."""
+
+
 @dataclass(frozen=True)
 class Piece:
     """One piece of the history of some drops' contact: a solved stretch or a free glide."""
@@ -25,7 +37,7 @@ class Piece:
     drops: Drops
     start: Floats
     """Time since first touch at which it begins [s], (b,)."""
-    motion: Stretch | Glide
+    motion: Stretch | Glide | PartOfVisit
     law: CompliantLaw
     """The law with its memories then, of all B drops of the contact."""
 
@@ -36,7 +48,8 @@ class Contact:
 
     `outcome` is RELEASED, CAPTURED (its energy no longer suffices to get out of the indentation) or FAILED.
     `final_delta`, `final_rate`: indentation [m] and its rate [m/s] at the end. `dissipated`, `plastic`: work
-    lost in damping and in plastic deformation [J]. `law`: the law with what it remembers of this contact.
+    lost in damping and in plastic deformation [J]. `stored`: energy left in the contact [J]. `law`: the law with what
+    it remembers of this contact.
     """
 
     pieces: list[Piece]
@@ -48,6 +61,7 @@ class Contact:
     time_of_max_delta: Floats
     dissipated: Floats
     plastic: Floats
+    stored: Floats
     law: CompliantLaw
 
     def of(self, index: int) -> Contact:

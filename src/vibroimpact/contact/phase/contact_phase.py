@@ -96,6 +96,7 @@ class _Phase:
             self.time_of_max_delta,
             self.dissipated,
             self.plastic,
+            self.law.elastic_energy(self.delta),
             self.law,
         )
 

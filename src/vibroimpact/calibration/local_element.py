@@ -1,0 +1,128 @@
+"""Stiffness and damping of a local element, from the largest force and the rebound of one impact."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from vibroimpact.contact.phase.collocation import Floats
+from vibroimpact.dynamics.problem import Problem
+from vibroimpact.dynamics.simulate import simulate
+from vibroimpact.errors import ComputationError, InputError
+
+_WITHIN = 1e-9  # relative, of force and speed
+_SWEEPS = 40
+_LOSSES = np.geomspace(0.02, 50.0, 8)  # damping over that of a critical oscillator of the sphere's mass, to search
+
+
+def identify_local_element(
+    problem: Problem, max_force: float, *, separation_speed: float | None = None, rebound_height: float | None = None
+) -> tuple[float, float]:
+    """Return stiffness [N/m] and damping [N s/m] of the local element with which an impact comes out as it was measured.
+
+    Parameters
+    ----------
+    problem : Problem
+        The drop; only its first impact counts, and a local element that it has does not.
+    max_force : float
+        Largest contact force of the first impact [N], > 0.
+    separation_speed : float, optional
+        Speed of the sphere's centre after it [m/s], > 0.
+    rebound_height : float, optional
+        Height of the sphere's centre at the top of its rebound [m], instead of the speed.
+
+    Returns
+    -------
+    tuple of two floats
+        Such that both are met to 1e-9.
+
+    Raises
+    ------
+    InputError
+        If no local element gives both, the message says what can be reached; or not one of speed and height is given.
+
+    Examples
+    --------
+    >>> import vibroimpact as vi
+    >>> problem = vi.load_case("paper:type1-constant").to_problem()
+    >>> stiffness, damping = identify_local_element(problem, 3582.036, rebound_height=0.26228)
+    >>> f"{stiffness:.3g} N/m, {damping:.3g} N s/m"
+    '1.16e+06 N/m, 581 N s/m'
+    """
+    if (separation_speed is None) == (rebound_height is None):
+        raise InputError("give either separation_speed [m/s] or rebound_height [m]")
+    column, rebound, unit = (
+        ("separation_speed_m_s", separation_speed, "m/s") if rebound_height is None else ("rebound_height_m", rebound_height, "m")
+    )
+    wanted = np.array([max_force, rebound], dtype=float)
+    problem = replace(problem, impacts=1, duration=None, local_element=None)
+
+    def outcome(element: tuple[float, float] | None) -> Floats:
+        impacts = simulate(replace(problem, local_element=element)).impacts
+        return np.array([impacts["max_force_N"][0], impacts[column][0]])
+
+    hard = outcome(None)
+    if not max_force < hard[0]:
+        raise InputError(
+            f"a local element only makes the impact softer: without one the largest force is {hard[0]:.5g} N, and {max_force:.5g} N "
+            "was measured"
+        )
+    mass = float(problem.sphere.mass)
+    speed = float(simulate(problem).impacts["approach_speed_m_s"][0])
+    soft = (max_force / speed) ** 2 / mass  # of a linear spring with that force
+
+    def misses(logarithms: Floats) -> Floats:
+        stiffness, damping = np.exp(logarithms).tolist()
+        return np.asarray(outcome((stiffness, damping)) / wanted - 1.0)
+
+    for loss in (1.0, 0.2, 5.0):
+        found = _newton(misses, np.log([soft, 2.0 * loss * np.sqrt(soft * mass)]))
+        if found is not None:
+            stiffness, damping = np.exp(found).tolist()
+            return stiffness, damping
+    reached = _reached(outcome, max_force, soft, mass)
+    raise InputError(
+        f"no local element gives both: with a largest force of {max_force:.5g} N the rebound can be {min(reached):.3g} to "
+        f"{max(reached):.3g} {unit}, and {rebound:.5g} {unit} was measured"
+    )
+
+
+def _newton(function: Callable[[Floats], Floats], start: Floats) -> Floats | None:
+    """Return where a function of two variables vanishes, or None if the way from the start does not lead there."""
+    place = start
+    try:
+        value = function(place)
+        for _ in range(_SWEEPS):
+            if np.abs(value).max() < _WITHIN:
+                return place
+            slopes = np.stack([(function(place + step) - value) / 1e-5 for step in 1e-5 * np.eye(2)], axis=1)
+            step = np.linalg.solve(slopes, value)
+            step *= min(1.0, 1.0 / float(np.abs(step).max()))
+            for _ in range(6):
+                new = function(place - step)
+                if np.abs(new).max() < np.abs(value).max():
+                    break
+                step = 0.5 * step
+            else:
+                return None
+            place, value = place - step, new
+    except (np.linalg.LinAlgError, ComputationError):
+        return None
+    return None
+
+
+def _reached(outcome: Callable[[tuple[float, float]], Floats], max_force: float, soft: float, mass: float) -> list[float]:
+    """Return rebounds that elements with the measured force give, from little damping to much."""
+    reached = []
+    for loss in _LOSSES:
+        low, high = 1e-6 * soft, 1e6 * soft
+        for _ in range(40):  # the force grows with the stiffness, and with the damping that goes with it
+            middle = float(np.sqrt(low * high))
+            force, rebound = outcome((middle, 2.0 * loss * float(np.sqrt(middle * mass)))).tolist()
+            low, high = (low, middle) if force > max_force else (middle, high)
+            if abs(force / max_force - 1.0) < 1e-3:
+                reached.append(rebound)
+                break
+    return reached or [float("nan")]

@@ -1,0 +1,209 @@
+"""How the deformation of the bodies of a case goes together with its contact law: the three treatments."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, cast
+
+import numpy as np
+
+from vibroimpact.calibration.local_element import identify_local_element
+from vibroimpact.cases.build import contact_laws_of, contact_pair, first_speed
+from vibroimpact.cases.local_section import MeasuredImpact
+from vibroimpact.cases.modes import BodyModes, compute_modes
+from vibroimpact.contact.law import CompliantLaw
+from vibroimpact.contact.local import LocalContact
+from vibroimpact.contact.phase.encounter import encounter_of
+from vibroimpact.contact.quasi_static import QuasiStatic
+from vibroimpact.dynamics.problem import Problem
+from vibroimpact.errors import InputError
+from vibroimpact.structures.modal_model import ModalBasis, ModalModel
+from vibroimpact.structures.sphere_compliance import sphere_term
+from vibroimpact.structures.static_compliance import static_compliance
+from vibroimpact.structures.surface import place_of
+
+if TYPE_CHECKING:
+    from vibroimpact.cases.schema import Case
+
+_LARGEST_PATCH = 0.35  # of the sphere's radius: beyond it the finite-size term is not fitted
+_LEAST_SLOPE = 0.25  # of the contact's own compliance that must be left when what the modes carry is taken out
+
+
+@dataclass(frozen=True)
+class Coupling:
+    """What the dynamics need of elastic bodies, and what is told of it.
+
+    Parameters
+    ----------
+    modes : mapping of str to ModalBasis
+        By the name of the body.
+    quasi_static : QuasiStatic
+        What is in series with the law.
+    facts : mapping of str to float or str
+        What was done, with numbers: names end in their units.
+    models : mapping of str to ModalModel
+        The modes on their meshes.
+    """
+
+    modes: Mapping[str, ModalBasis]
+    quasi_static: QuasiStatic
+    facts: Mapping[str, float | str]
+    models: Mapping[str, ModalModel]
+
+
+def treatment_of(case: Case) -> str:
+    """Return which treatment of local compliance a case has."""
+    return case.contact.local.local_compliance or "consistent"
+
+
+def coupling_of(case: Case, progress: Callable[[float], None] | None = None, tell: Callable[[str], None] | None = None) -> Coupling:
+    """Compute, or fetch from the store, how the elastic bodies of a case deform.
+
+    Raises
+    ------
+    InputError
+        If a body can't be made, the plate is not held, or the basis is ill-posed for the treatment.
+    """
+    treatment = treatment_of(case)
+    bodies = compute_modes(case, progress, tell) if any(getattr(case, name).model == "elastic" for name in ("sphere", "plate")) else {}
+    modes = {name: body.basis for name, body in bodies.items()}
+    facts: dict[str, float | str] = {"treatment": treatment}
+    if told := [doubt for body in bodies.values() for doubt in body.doubts]:
+        facts["doubts"] = "\n".join(told)
+    linear, unit, factors, force = 0.0, 0.0, (0.0, 0.0, 0.0, 0.0), 1.0
+    pair = contact_pair(case)
+    if "plate" in bodies:
+        if not bodies["plate"].model.is_held_vertically:
+            raise InputError("the supports let the plate fall or tilt; hold it vertically, or leave it rigid", "plate.supports")
+        carried = _compliance(modes["plate"])
+        facts["plate_modal_compliance_m_N"] = carried
+        if treatment != "superposed":
+            static = _plate_compliance(bodies["plate"], tell)
+            facts["plate_static_compliance_m_N"] = static
+            linear += static - carried
+    if "sphere" in bodies and treatment == "consistent":
+        patch = min(_contact_radius(case), _LARGEST_PATCH * case.sphere.radius)
+        modes["sphere"] = _averaged(bodies["sphere"], patch)
+        facts["contact_patch_m"] = patch
+        linear -= _compliance(modes["sphere"])
+        unit = 1.0 / (case.sphere.material.youngs_modulus * case.sphere.radius)
+        term = sphere_term(case.sphere.material.poissons_ratio)
+        factors = (term.constant, term.logarithm, term.linear, term.square)
+        force = 4.0 / 3.0 * pair.effective_modulus * case.sphere.radius**2
+        if not math.isfinite(force):
+            raise InputError("the consistent treatment needs the moduli of the bodies", "sphere.material")
+        facts["finite_sphere_factor"] = float(term.factor(patch / case.sphere.radius))
+    if "sphere" in bodies:
+        facts["sphere_modal_compliance_m_N"] = _compliance(modes["sphere"])
+    series = QuasiStatic(linear, unit, factors, force)
+    if series:
+        facts["series_compliance_m_N"] = linear
+        _refuse_ill_posed(case, series, facts)
+    return Coupling(modes, series, facts, {name: body.model for name, body in bodies.items()})
+
+
+def _compliance(basis: ModalBasis) -> float:
+    """Return the static compliance of modes at their contact point [m/N]."""
+    return float(((basis.contact / basis.angular_frequencies) ** 2).sum())
+
+
+def _plate_compliance(body: BodyModes, tell: Callable[[str], None] | None) -> float:
+    place = place_of(body.model.mesh, body.body.contact, body.body.side)
+    return static_compliance(body.body.recipe, place, body.body.side, tell)
+
+
+def _averaged(body: BodyModes, radius: float) -> ModalBasis:
+    """Return the modes of a sphere, the contact point averaged over the contact patch: at a point they have no limit."""
+    place = place_of(body.model.mesh, body.body.contact, body.body.side)
+    shapes = body.model.averaged(place, radius, body.body.side, "the contact patch")
+    return replace(body.basis, contact=shapes[:, 2])
+
+
+def _first_contact(case: Case) -> tuple[CompliantLaw, float]:
+    """Return the law of the first impact and how deep it would get undamped between rigid bodies [m]."""
+    law = contact_laws_of(case)[0]
+    if not isinstance(law, CompliantLaw):
+        raise InputError(f"{law.name} gives no force, and bodies that deform need one; take another law", "contact.law")
+    mass, gravity, speed = (np.array([value]) for value in (contact_pair(case).effective_mass, case.drop.gravity, first_speed(case)))
+    return law, float(encounter_of(law, mass, gravity, speed).depth[0])
+
+
+def _contact_radius(case: Case) -> float:
+    """Return Hertz's contact radius of the first impact at its deepest [m]."""
+    return math.sqrt(case.sphere.radius * _first_contact(case)[1])
+
+
+def _refuse_ill_posed(case: Case, series: QuasiStatic, facts: Mapping[str, float | str]) -> None:
+    """Raise if what is taken out of the contact leaves too little of it, anywhere up to the deepest point.
+
+    Raises
+    ------
+    InputError
+        With the reason, and what can be done.
+    """
+    law, depth = _first_contact(case)
+    local = LocalContact(law, series, first_speed(case))
+    delta = np.linspace(0.0, 1.2 * depth, 200)[1:]
+    slopes = np.gradient(local.approach_at(delta), delta)
+    if slopes.min() >= _LEAST_SLOPE:
+        return
+    place = float(delta[slopes < _LEAST_SLOPE][0])
+    taken = cast(float, facts.get("sphere_modal_compliance_m_N", 0.0))
+    raise InputError(
+        f"the modes of the sphere carry {taken:.3g} m/N of its quasi-static compliance, and taking that out of the contact leaves less "
+        f"than {_LEAST_SLOPE:g} of the law's own from an indentation of {place:.2g} m on, so that the force would not be definite; "
+        "keep fewer modes (10 hold all that matters), or leave out attachment_mode or craig-bampton",
+        "sphere.modes",
+    )
+
+
+def _rebound(case: Case, measured: MeasuredImpact) -> dict[str, float]:
+    """Return the rebound that was measured as `identify_local_element` takes it."""
+    if measured.separation_speed is not None:
+        return {"separation_speed": measured.separation_speed}
+    if measured.restitution is not None:
+        return {"separation_speed": measured.restitution * first_speed(case)}
+    height = measured.rebound_height or 0.0
+    if height <= case.sphere.radius:
+        words = f"{height:g} m is no rebound: it is the height of the centre, which rests at {case.sphere.radius:g} m"
+        raise InputError(words, "contact.measured.rebound_height")
+    return {"rebound_height": height}
+
+
+def coupled(
+    case: Case, problem: Problem, progress: Callable[[float], None] | None = None, tell: Callable[[str], None] | None = None
+) -> Problem:
+    """Return the problem of a case with its bodies deforming; `problem` is that of rigid ones.
+
+    Raises
+    ------
+    InputError
+        What `coupling_of` raises; and if no local element fits what was measured.
+    """
+    coupling = coupling_of(case, progress, tell)
+    bodies = {name: replace(getattr(problem, name), modes=basis) for name, basis in coupling.modes.items()}
+    found = replace(
+        problem,
+        **bodies,
+        sphere_inside=treatment_of(case) == "consistent",
+        quasi_static=coupling.quasi_static,
+        sensors=tuple(sensor.sensor() for sensor in case.sensors) if "plate" in coupling.modes else (),
+        facts=coupling.facts,
+        models=coupling.models,
+    )
+    local = case.contact.local
+    if local.local_compliance != "identified":
+        return found
+    if local.measured is None:
+        assert local.local_stiffness is not None  # the section has seen to it
+        assert local.local_damping is not None
+        return replace(found, local_element=(local.local_stiffness, local.local_damping))
+    tried = problem if local.measured.plate == "rigid" else found
+    try:
+        element = identify_local_element(tried, local.measured.max_force, **_rebound(case, local.measured))
+    except InputError as error:
+        raise InputError(error.message, error.key or "contact.measured") from None
+    facts = {**coupling.facts, "local_stiffness_N_m": element[0], "local_damping_N_s_m": element[1]}
+    return replace(found, local_element=element, facts=facts)

@@ -1,0 +1,78 @@
+"""The first meeting of a sphere with a surface that moves."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from vibroimpact.contact.phase.oscillators import FreeMotion
+
+_MOST_STEPS = 100_000
+_MOST_HORIZONS = 10_000
+_SAMPLES = np.linspace(0.0, 1.0, 33)[1:]
+
+
+def next_touch(motion: FreeMotion, level: float, until: float) -> float:
+    r"""Return when the indentation first rises to a level [s since the start]; infinite if not before `until`.
+
+    No meeting is stepped over: with a bound M of the acceleration from here on, a gap G that opens at the rate
+    :math:`\dot G` can't close before :math:`\tau = (\dot G + \sqrt{\dot G^2 + 2 M G}) / M`, so the search goes from
+    bound to bound, which are as near as Newton's steps once the meeting is close. Far away, the surface reaches no
+    farther than its energy allows, and the sphere's parabola says when it is that near.
+
+    Parameters
+    ----------
+    motion : FreeMotion
+        From a state on. Where the surfaces overlap beyond the level, as in a dent that the next contact does not find again, they
+        part first.
+    level : float
+        Indentation at which the surfaces meet [m].
+    until : float
+        Where to give up [s]; may be infinite.
+    """
+    of, gravity = motion.oscillators, motion.gravity
+    omega, size = of.angular_frequency, np.abs(of.shape)
+    time = time_to_part(motion, level)
+    if not time < until:
+        return np.inf
+    for _ in range(_MOST_STEPS):
+        state = motion.state(np.array(time))
+        gap, opening = level - float(of.approach(state)), -float(of.rates(state))
+        if time > 0.0 and opening <= 0.0 and gap <= -4e-16 * opening * time:
+            return time
+        swing = np.sqrt(2.0 * sum(of.energies(state)))  # no oscillator is ever faster again
+        reach = float(size @ (swing / omega)) + float(np.abs(state.local).sum())
+        far = _fall_time(float(state.approach), float(state.speed), gravity, level - reach)
+        most = float(size @ (swing * omega * (1.0 + 2.0 * of.damping_ratio))) + float(np.abs(state.local) @ of.rate**2) + gravity
+        near = (opening + np.sqrt(opening * opening + 2.0 * most * max(gap, 0.0))) / most if most > 0.0 else gap / max(-opening, 1e-300)
+        step = max(far, near)
+        if time + step > until or not np.isfinite(step):
+            return np.inf
+        if time + step == time:
+            return time if gap <= 1e-12 * reach or opening <= 0.0 else np.inf
+        time += step
+    return time
+
+
+def time_to_part(motion: FreeMotion, level: float) -> float:
+    """Return when surfaces that overlap beyond a level have come back to it [s]; 0 if they do not, infinite if they never will."""
+    time = 0.0
+    for _ in range(_MOST_HORIZONS):
+        approach, rate = (float(part) for part in motion.motion(np.array(time)))
+        if approach <= level:
+            return time
+        horizon = 2.0 * (approach - level) / abs(rate) if rate else 1e-6
+        times = time + horizon * _SAMPLES
+        parted = motion.motion(times)[0] <= level
+        time = float(times[parted.argmax() if parted.any() else -1])
+    return np.inf
+
+
+def _fall_time(approach: float, speed: float, gravity: float, level: float) -> float:
+    """Return when a free sphere comes down to a level of its approach [s]; 0 if it is there, infinite if it never will."""
+    height = level - approach
+    if height <= 0.0:
+        return 0.0
+    if gravity == 0.0:
+        return height / speed if speed > 0.0 else np.inf
+    root = np.sqrt(speed * speed + 2.0 * gravity * height)
+    return float(2.0 * height / (root + speed) if speed > 0.0 else (root - speed) / gravity)

@@ -1,0 +1,312 @@
+r"""A stretch of contact of bodies that vibrate, solved at once on the nodes of Radau collocation.
+
+The unknowns are the contact forces at the nodes. All else is linear in them: collocation integrates by a matrix
+Q, and with its eigenvalues :math:`\lambda_k` the oscillators are seen only through their receptance at the complex
+frequencies :math:`1/\sigma_k`, :math:`\sigma_k = h \lambda_k`,
+
+.. math:: G(\sigma) = \sum_i \frac{\chi_i^2 \sigma^2}{1 + 2 \zeta_i \omega_i \sigma + \omega_i^2 \sigma^2}
+
+so that their number hardly counts. Radau collocation is stable however stiff an oscillator is: one that is much
+faster than the stretch follows the force, and one that is not is integrated with order 2 N - 1.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache, cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vibroimpact.contact.local import LocalContact
+from vibroimpact.contact.phase.collocation import Floats, Map, Rule, collocation_rule
+from vibroimpact.contact.phase.oscillators import Oscillators, State
+
+Complex = NDArray[np.complex128]
+
+NODES = 12
+"""More would make the eigenvectors of the integration matrix too ill-conditioned, fewer the stretches too short."""
+
+_SWEEPS = 25
+_UNIT = np.eye(NODES)
+_CONVERGED, _STALLED = 1e-13, 1e-11
+
+
+@dataclass(frozen=True)
+class Spectrum:
+    """A collocation rule with the eigenvalues of its integration matrix; constants and the time in its eigenvectors."""
+
+    rule: Rule
+    values: Complex
+    vectors: Complex
+    inverse: Complex
+    constant: Complex
+    time: Complex
+
+
+@cache
+def spectrum(time_map: Map, root: int) -> Spectrum:
+    """Return the spectrum of a rule."""
+    rule = collocation_rule(NODES, time_map, root)
+    values, vectors = np.linalg.eig(rule.integral)
+    inverse = np.linalg.inv(vectors)
+    return Spectrum(rule, values, vectors, inverse, inverse.sum(axis=1), np.asarray(inverse @ rule.time, dtype=np.complex128))
+
+
+@dataclass(frozen=True)
+class Surroundings:
+    """What surrounds the contact of one drop: the sphere's mass [kg], gravity [m/s^2], and what vibrates."""
+
+    mass: float
+    gravity: float
+    oscillators: Oscillators
+
+
+@dataclass(frozen=True)
+class VibratingStretch:
+    """A solved stretch of one drop.
+
+    `length`: how long it lasts [s]. `start`: the state then. `static`, `dissipative`: parts of the force at the nodes [N].
+    `approach`, `rate`: of the surfaces [m], and what the dashpot of the law feels [m/s], at its start and at the nodes
+    (N + 1,). `solved`: whether Newton's method converged. `broken`: what is lost at its end, as a sticking contact breaks [J].
+    """
+
+    around: Surroundings
+    local: LocalContact
+    spectrum: Spectrum
+    length: float
+    start: State
+    static: Floats
+    dissipative: Floats
+    approach: Floats
+    rate: Floats
+    solved: bool
+    broken: float = 0.0
+
+    @property
+    def force(self) -> Floats:
+        """The force at the nodes [N]."""
+        return self.static + self.dissipative
+
+    @property
+    def duration(self) -> Floats:
+        """How long it lasts [s], as an array of one."""
+        return np.array([self.length])
+
+    def take(self, drops: NDArray[np.bool_]) -> VibratingStretch:
+        """Return itself: it is of one drop."""
+        return self
+
+    @property
+    def rule(self) -> Rule:
+        """Nodes and time map."""
+        return self.spectrum.rule
+
+    @cached_property
+    def accelerations(self) -> tuple[Floats, Floats]:
+        """Accelerations of the oscillators (N, n), and rates of the massless elements (N, k), at the nodes."""
+        of, at = self.around.oscillators, self.spectrum
+        sigma = self.length * at.values[:, None]
+        force, static = ((at.inverse @ part)[:, None] for part in (self.force, self.static))
+        omega, damping = of.angular_frequency, 2.0 * of.damping_ratio * of.angular_frequency
+        pull = damping * self.start.velocity + omega**2 * self.start.displacement
+        drive = -of.outer * force - (of.shape - of.outer) * static - at.constant[:, None] * pull
+        drive -= (self.length * at.time)[:, None] * (omega**2 * self.start.velocity)
+        oscillators = at.vectors @ (drive / (1.0 + sigma * (damping + omega**2 * sigma)))
+        massless = -of.mobility * force - at.constant[:, None] * (of.rate * self.start.local)
+        return np.asarray(oscillators.real), np.asarray((at.vectors @ (massless / (1.0 + of.rate * sigma))).real)
+
+    @cached_property
+    def velocities(self) -> Floats:
+        """Velocities of the oscillators at the nodes (N, n)."""
+        return np.asarray(self.start.velocity + self.length * (self.rule.integral @ self.accelerations[0]))
+
+    @property
+    def closing(self) -> Floats:
+        """Rate of the approach of the surfaces, the oscillators inside the contact included, at the start and the nodes (N + 1,)."""
+        of = self.around.oscillators
+        if not of.inside.any():
+            return self.rate
+        return self.rate + np.concatenate([self.start.velocity[None], self.velocities]) @ (of.shape - of.outer)
+
+    def state(self, time: Floats) -> State:
+        """Return the state at times since the start [s] (T,)."""
+        start, h, across, gravity = self.start, self.length, np.asarray(time), self.around.gravity
+        integral, (accelerations, massless) = h * self.rule.integral_to(self._x(time)), self.accelerations
+        pull = -self.force / self.around.mass
+        return State(
+            start.approach + across * (start.speed + 0.5 * gravity * across) + integral @ (h * (self.rule.integral @ pull)),
+            start.speed + gravity * across + integral @ pull,
+            start.displacement + integral @ self.velocities,
+            start.velocity + integral @ accelerations,
+            start.local + integral @ massless,
+        )
+
+    @cached_property
+    def end(self) -> State:
+        """The state at the end."""
+        start, h, last = self.start, self.length, self.rule.integral[-1]
+        gained, (_, massless) = self.rule.integral @ self.force, self.accelerations
+        gravity, mass = self.around.gravity, self.around.mass
+        return State(
+            start.approach + h * (start.speed + 0.5 * gravity * h) - h * h * (last @ gained) / mass,
+            start.speed + gravity * h - h * gained[-1] / mass,
+            start.displacement + h * (last @ self.velocities),
+            self.velocities[-1],
+            start.local + h * (last @ massless),
+        )
+
+    def motion(self, x: Floats) -> tuple[Floats, Floats]:
+        """Return approach [m], at least that of release, and rate [m/s] of the surfaces at x in [0, 1]."""
+        weights = self.rule.weights(np.asarray(x, dtype=float)).T
+        return np.maximum(weights @ self.approach, self.local.release_level), weights @ self.rate
+
+    def force_at(self, x: Floats) -> Floats:
+        """Return the contact force, clipped where the law may not pull [N], at x in [0, 1]."""
+        static, dissipative = self.local.forces(*self.motion(x))
+        force = static + dissipative
+        return np.asarray(force if self.local.law.tension == "kept" else np.maximum(force, 0.0))
+
+    def indentation_at(self, x: Floats) -> Floats:
+        """Return the approach of the sphere's centre to the surface of the body below [m] at x in [0, 1]."""
+        return np.asarray(self.rule.weights(np.asarray(x, dtype=float)).T @ self._indentations)
+
+    @cached_property
+    def _indentations(self) -> Floats:
+        """The same at the start and at the nodes, (N + 1,)."""
+        of, start, h, rule = self.around.oscillators, self.start, self.length, self.rule
+        velocity = start.speed - h / self.around.mass * (rule.integral @ self.force) + self.velocities @ np.where(of.ground, of.shape, 0.0)
+        gravity = 0.5 * self.around.gravity * (h * rule.time) ** 2
+        begun = float(of.indentation(start))
+        return np.append(begun, begun + h * (rule.integral @ velocity) + gravity)
+
+    @cached_property
+    def powers(self) -> Floats:
+        """What is lost at the nodes [W], (N, n + 1): in each oscillator; last, in the law and the massless elements."""
+        of = self.around.oscillators
+        contact = self.dissipative * self.rate[1:] + (self.accelerations[1] ** 2 / of.mobility).sum(axis=1)
+        return np.concatenate([2.0 * of.damping_ratio * of.angular_frequency * self.velocities**2, contact[:, None]], axis=1)
+
+    @cached_property
+    def lost(self) -> Floats:
+        """What is lost over the stretch, with what is at its end [J], (n + 1,) as in `powers`."""
+        lost = self.length * (self.rule.integral[-1] @ self.powers)
+        lost[-1] += self.broken
+        return np.asarray(lost)
+
+    def lost_by(self, time: Floats) -> Floats:
+        """Return what is lost since the start [J] at times since then [s], (T, n + 1) as in `powers`."""
+        return np.asarray(self.length * self.rule.integrate(self._x(time), self.powers))
+
+    def forget(self) -> None:
+        """Let go of the motion of the oscillators at the nodes, which is found again when it is asked for."""
+        for name in ("accelerations", "velocities", "powers", "_indentations"):
+            self.__dict__.pop(name, None)
+
+    def _x(self, time: Floats) -> Floats:
+        return self.rule.unmap_time(np.asarray(time) / self.length)
+
+    def resolved(self, tolerance: float, speed: float) -> bool:
+        """Is it solved, and its error within a relative tolerance, for motions of about a speed [m/s]?
+
+        Two measures that know nothing of each other: the last Legendre coefficients of the force, with whose square the
+        error at the end goes, and the balance of energy.
+        """
+        if not self.solved:
+            return False
+        force = self.around.mass * np.abs(self.rate).max() / self.length
+        if not float(self.rule.tail(self.force[:, None], np.array([force]))[0]) ** 2 <= tolerance:
+            return False
+        lost = float(self.lost.sum())
+        begun, done = self.local.work(np.maximum(self.approach[[0, -1]], self.local.release_level))
+        gain = mechanical_energy(self.around, self.end) + done - mechanical_energy(self.around, self.start) - begun
+        return bool(abs(gain + lost) <= 0.03 * tolerance * self.around.mass * speed**2)
+
+
+def mechanical_energy(around: Surroundings, state: State) -> float:
+    """Return kinetic, potential and strain energy [J] of a state, without what the contact law holds."""
+    of = around.oscillators
+    sphere = around.mass * (0.5 * state.speed**2 - around.gravity * state.approach)
+    return float(sphere + sum(part.sum() for part in of.energies(state)) + of.local_energy(state))
+
+
+def solve_vibrating(
+    around: Surroundings,
+    local: LocalContact,
+    time_map: Map,
+    length: float,
+    start: State,
+    forces: tuple[Floats, Floats] | None = None,
+) -> VibratingStretch:
+    """Solve the motion through a stretch of contact of given length [s]; a guess of both parts of the force makes it quicker."""
+    of, at, floor = around.oscillators, spectrum(time_map, local.law.root), local.release_level
+    rule = at.rule
+    free_approach, free_rate = _free(of, at, length, start, around.gravity)
+    by_force, rate_by, by_static = _receptance(around, at, length)
+    begun, begun_rate = max(float(of.approach(start)), floor), float(of.outer_rates(start))
+    if forces is None:  # that at the start goes on, and what the motion under it gives
+        static, dissipative = (np.full(NODES, float(part)) for part in local.forces(np.array(begun), np.array(begun_rate)))
+        approach = np.maximum(free_approach - by_force @ (static + dissipative) - by_static @ static, floor)
+        static, dissipative = local.forces(approach, free_rate - rate_by @ (static + dissipative))
+    else:
+        static, dissipative = forces
+    scale = around.mass * (np.abs(free_rate).max() / length + around.gravity)
+    solved, before, guess = False, np.inf, None
+    for _ in range(_SWEEPS):
+        force = static + dissipative
+        approach, rate = free_approach - by_force @ force - by_static @ static, free_rate - rate_by @ force
+        now = local.linearised(np.maximum(approach, floor), rate, guess)
+        guess, held = now.delta, (approach > floor)[:, None]
+        static_slope, slope = now.static_by_approach[:, None] * held, now.dissipative_by_approach[:, None] * held
+        damped = slope * by_force + now.dissipative_by_rate[:, None] * rate_by
+        jacobian = np.block(
+            [[_UNIT + static_slope * (by_force + by_static), static_slope * by_force], [damped + slope * by_static, _UNIT + damped]]
+        )
+        try:
+            change = np.linalg.solve(jacobian, np.concatenate([static - now.static, dissipative - now.dissipative]))
+        except np.linalg.LinAlgError:
+            break
+        static, dissipative = static - change[:NODES], dissipative - change[NODES:]
+        size = float(np.abs(change).max()) / (scale + float(np.abs(static).max()))
+        solved = size < _CONVERGED or (size < _STALLED and size > 0.3 * before)
+        if solved or not np.isfinite(size):
+            break
+        before = size
+    force = static + dissipative
+    approach, rate = free_approach - by_force @ force - by_static @ static, free_rate - rate_by @ force
+    if of.mobility.size:  # a dashpot takes up a jump of the force at once
+        begun_rate = float(rule.interpolate(np.zeros(1), rate)[0])
+    return VibratingStretch(
+        around, local, at, length, start, static, dissipative, np.append(begun, approach), np.append(begun_rate, rate), solved
+    )
+
+
+def _free(of: Oscillators, at: Spectrum, length: float, start: State, gravity: float) -> tuple[Floats, Floats]:
+    """Return the approach [m], and the rate outside the contact [m/s], at the nodes as they would be without contact force."""
+    sigma, time = length * at.values, length * at.rule.time
+    omega, damping = of.angular_frequency, 2.0 * of.damping_ratio * of.angular_frequency
+    pull = damping * start.velocity + omega**2 * start.displacement
+    drive = at.constant[:, None] * pull + (length * at.time)[:, None] * (omega**2 * start.velocity)
+    responses = -drive / _impedance(of, sigma)
+    massless = -at.constant * ((of.rate * start.local) / (1.0 + of.rate * sigma[:, None])).sum(axis=1)
+    rate = float(start.speed + start.velocity @ of.outer) + gravity * time
+    rate = rate + (at.vectors @ (sigma * (responses @ of.outer) + massless)).real
+    approach = of.approach(start) + time * (start.speed + start.velocity @ of.shape + 0.5 * gravity * time)
+    return np.asarray(approach + (at.vectors @ (sigma * (sigma * (responses @ of.shape) + massless))).real), rate
+
+
+def _receptance(around: Surroundings, at: Spectrum, length: float) -> tuple[Floats, Floats, Floats]:
+    """Return by how much forces at the nodes take back the approach and the rate there, and static ones the approach, (N, N)."""
+    of, sigma, mass = around.oscillators, length * at.values, around.mass
+    squares = of.shape**2 / _impedance(of, sigma)
+    rates = sigma * squares[:, ~of.inside].sum(axis=1) + (of.mobility / (1.0 + of.rate * sigma[:, None])).sum(axis=1)
+    parts = (sigma * rates, rates, sigma * sigma * squares[:, of.inside].sum(axis=1))
+    by_force, rate_by, by_static = (((at.vectors * part) @ at.inverse).real for part in parts)
+    by_force += length * length / mass * at.rule.integral_twice
+    return by_force, rate_by + length / mass * at.rule.integral, by_static
+
+
+def _impedance(of: Oscillators, sigma: Complex) -> Complex:
+    """Return 1 + 2 zeta omega sigma + omega^2 sigma^2 of each oscillator, (N, n)."""
+    column, omega = sigma[:, None], of.angular_frequency
+    return np.asarray(1.0 + column * (2.0 * of.damping_ratio * omega + omega**2 * column))

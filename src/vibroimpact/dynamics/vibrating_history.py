@@ -1,0 +1,90 @@
+"""The columns of a history of bodies that vibrate."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from vibroimpact.bodies.body import Body
+from vibroimpact.contact.local import LocalContact
+from vibroimpact.contact.phase.collocation import Floats
+from vibroimpact.contact.phase.oscillators import Oscillators, State
+from vibroimpact.contact.phase.vibrating_stretch import VibratingStretch
+from vibroimpact.contact.phase.visit import Apart
+from vibroimpact.dynamics.problem import Problem
+from vibroimpact.dynamics.vibrating_segment import VibratingSegment
+from vibroimpact.dynamics.vibration import modes_of
+
+
+def vibrating_history(problem: Problem, segment: VibratingSegment, time: Floats) -> dict[str, Floats]:
+    """Return all columns at times since the start of a segment [s] (T,)."""
+    of, motion, rest = segment.oscillators, segment.motion, segment.at_rest
+    state, same = segment.state(time), np.ones_like(time)
+    mass, gravity = float(problem.sphere.mass), float(problem.gravity)
+    stored, plastic, force, lost = of.local_energy(state), 0.0 * same, 0.0 * same, segment.spent[:-1]
+    if isinstance(motion, VibratingStretch):
+        force = motion.force_at(motion.rule.unmap_time(time / motion.length))
+        lost = lost + motion.lost_by(time)
+        motion.forget()
+    else:
+        lost = lost + motion.lost_at(state)
+    local = motion.local if isinstance(motion, (VibratingStretch, Apart)) else None
+    if local is not None:
+        held, plastic = _held(local, of, state)
+        stored = stored + held
+        if isinstance(motion, VibratingStretch):
+            plastic = plastic - local.plastic_work(max(float(motion.approach[0]), local.release_level))
+    return {
+        "time_s": segment.start + time,
+        "position_m": float(problem.sphere.contact_offset) - state.approach,
+        "velocity_m_s": -state.speed * same,
+        "acceleration_m_s2": force / mass - gravity if rest is None else 0.0 * same,
+        "force_N": force if rest is None else mass * gravity * same,
+        "indentation_m": np.maximum(of.indentation(state), 0.0) if segment.in_contact else 0.0 * same,
+        "kinetic_J": 0.5 * mass * state.speed**2 * same,
+        "potential_J": -mass * gravity * state.approach * same,
+        "contact_elastic_J": stored if rest is None else stored + rest.stored[0],
+        "contact_dissipated_J": lost[:, -1].copy(),  # else the history of every mode stays in memory
+        "plastic_work_J": segment.spent[-1] + plastic,
+        "written_off_at_rest_J": 0.0 * same if rest is None else rest.written_off[0] * same,
+        **_of_bodies(problem, of, state, lost, force),
+    }
+
+
+def _held(local: LocalContact, of: Oscillators, state: State) -> tuple[Floats, Floats]:
+    """Return what the contact holds, and its plastic work since what the law remembers [J]."""
+    approach = np.maximum(of.approach(state), local.release_level)
+    plastic = local.plastic_work(approach) if local.law.yields else np.zeros_like(approach)
+    return np.asarray(local.elastic_energy(approach)), np.asarray(plastic)
+
+
+def _of_bodies(problem: Problem, of: Oscillators, state: State, lost: Floats, force: Floats) -> dict[str, Floats]:
+    """Return the columns that only bodies that vibrate have."""
+    at, plate, gravity = modes_of(problem.sphere), problem.plate.modes, float(problem.gravity)
+    kinetic, strain = of.energies(state)
+    displacement, velocity = state.displacement[:, at:], state.velocity[:, at:]
+    omega, damping = of.angular_frequency[at:], 2.0 * of.damping_ratio[at:] * of.angular_frequency[at:]
+    acceleration = -damping * velocity - omega**2 * displacement - of.shape[at:] * force[:, None]
+    whole = plate.participation[:, 2] if plate is not None else np.zeros(len(omega))
+    mass = plate.mass if plate is not None else np.inf
+    return {
+        "sphere_vibration_J": kinetic[:, :at].sum(axis=1),
+        "sphere_strain_J": strain[:, :at].sum(axis=1),
+        "sphere_damping_J": lost[:, :at].sum(axis=1),
+        "sphere_rotational_J": _rotational(problem.sphere, state.velocity[:, :at]),
+        "plate_kinetic_J": kinetic[:, at:].sum(axis=1),
+        "plate_strain_J": strain[:, at:].sum(axis=1),
+        "plate_damping_J": lost[:, at:-1].sum(axis=1),
+        "plate_rotational_J": _rotational(problem.plate, velocity),
+        "plate_potential_J": gravity * (displacement @ whole),
+        "plate_displacement_m": displacement @ whole / mass,
+        "plate_velocity_m_s": velocity @ whole / mass,
+        "plate_acceleration_m_s2": acceleration @ whole / mass,
+        "plate_deflection_m": displacement @ of.shape[at:],
+    }
+
+
+def _rotational(body: Body, velocity: Floats) -> Floats:
+    """Return the energy of turning as a whole [J], from modal velocities (T, modes)."""
+    if body.modes is None or body.modes.rotation is None:
+        return np.zeros(len(velocity))
+    return np.asarray(0.5 * ((velocity @ body.modes.rotation) ** 2).sum(axis=1))

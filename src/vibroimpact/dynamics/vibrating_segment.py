@@ -1,0 +1,108 @@
+"""The history of one drop whose bodies vibrate, as a row of segments that can be asked at any time within them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from vibroimpact.contact.phase.collocation import Floats
+from vibroimpact.contact.phase.oscillators import FreeMotion, Oscillators, State
+from vibroimpact.contact.phase.vibrating_stretch import VibratingStretch
+from vibroimpact.contact.phase.visit import Apart
+
+if TYPE_CHECKING:
+    from vibroimpact.dynamics.response import Leg, Rest
+
+_STRETCH_POINTS = 25
+_FREE_POINTS, _LATER_POINTS, _PERIODS = 2001, 1001, 10.0
+"""How a free motion is drawn: so many points in so many periods of the lowest mode, and so many in what is left."""
+
+
+@dataclass(frozen=True)
+class VibratingSegment:
+    """A part of the history of one drop: a flight, a stretch of contact, a gap between two, or rest.
+
+    `start`, `end` [s]. `spent`: energy lost before [J], (n + 2,): in each oscillator, in the contact, in plastic deformation.
+    `at_rest`: how the sphere lies on the plate, if it does.
+    """
+
+    start: float
+    end: float
+    motion: VibratingStretch | Apart | FreeMotion
+    spent: Floats
+    at_rest: Rest | None = None
+
+    @property
+    def moving(self) -> VibratingStretch | FreeMotion:
+        """What can be asked for states."""
+        return self.motion.free if isinstance(self.motion, Apart) else self.motion
+
+    @property
+    def oscillators(self) -> Oscillators:
+        """What vibrates."""
+        moving = self.moving
+        return moving.oscillators if isinstance(moving, FreeMotion) else moving.around.oscillators
+
+    @property
+    def in_contact(self) -> bool:
+        """Do the surfaces overlap?"""
+        return isinstance(self.motion, VibratingStretch) or (isinstance(self.motion, Apart) and self.motion.local is not None)
+
+    def grid(self) -> Floats:
+        """Times since its start that draw the segment well [s]."""
+        span = self.end - self.start
+        if isinstance(self.motion, VibratingStretch):
+            return np.asarray(span * self.motion.rule.map_time(np.linspace(0.0, 1.0, _STRETCH_POINTS)))
+        if isinstance(self.motion, Apart):
+            return np.linspace(0.0, span, _STRETCH_POINTS)
+        lowest = float(self.motion.oscillators.angular_frequency.min(initial=np.inf))
+        early = min(span, _PERIODS * 2.0 * np.pi / lowest) if np.isfinite(lowest) else 0.0
+        return np.concatenate([np.linspace(0.0, early, _FREE_POINTS)[:-1], np.linspace(early, span, _LATER_POINTS)])
+
+    @property
+    def spent_after(self) -> Floats:
+        """Energy lost by its end [J], as in `spent`."""
+        if isinstance(self.motion, VibratingStretch):
+            stretch = self.motion
+            before, now = np.maximum(stretch.approach[[0, -1]], stretch.local.release_level)
+            plastic = float(stretch.local.plastic_work(now) - stretch.local.plastic_work(before)) if stretch.local.law.yields else 0.0
+            return np.asarray(self.spent + np.append(stretch.lost, plastic))
+        return np.asarray(self.spent + np.append(self.motion.lost_by(np.array([self.end - self.start]))[0], 0.0))
+
+    def state(self, time: Floats) -> State:
+        """Return the state at times since the start [s] (T,)."""
+        return self.moving.state(time)
+
+
+def vibrating_timeline(legs: Sequence[Leg], at_rest: Rest | None, end: float) -> list[VibratingSegment]:
+    """Return the history of one drop as segments in order.
+
+    Parameters
+    ----------
+    legs : sequence of Leg
+        Its flights and visits.
+    at_rest : Rest or None
+        How it lies, if it comes to rest.
+    end : float
+        When the run ends [s].
+    """
+    segments: list[VibratingSegment] = []
+    spent = np.zeros(len(legs[0].motions[0].oscillators.shape) + 2)
+    for leg in legs:
+        touch = float(leg.flight_end[0])
+        segments.append(VibratingSegment(float(leg.flight.start[0]), touch, leg.motions[0], spent))
+        spent = segments[-1].spent_after
+        for piece in leg.contact.pieces if leg.contact is not None else ():
+            begin = touch + float(piece.start[0])
+            assert isinstance(piece.motion, (VibratingStretch, Apart))
+            segments.append(VibratingSegment(begin, begin + piece.motion.length, piece.motion, spent))
+            spent = segments[-1].spent_after
+    if at_rest is not None:
+        last = segments[-1]
+        state = last.state(np.array([last.end - last.start]))
+        lying = State(at_rest.sag[0], np.zeros(()), state.displacement[0], state.velocity[0], state.local[0])
+        segments.append(VibratingSegment(last.end, end, FreeMotion(last.oscillators, lying, 0.0), spent, at_rest))
+    return segments

@@ -1,0 +1,144 @@
+"""The vibration of the bodies of a run: where the oscillators are, and what their damping takes."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from vibroimpact.bodies.body import Body
+from vibroimpact.contact.law import CompliantLaw
+from vibroimpact.contact.phase.collocation import Floats
+from vibroimpact.contact.phase.contact import Contact, Drops, Piece
+from vibroimpact.contact.phase.encounter import Encounter
+from vibroimpact.contact.phase.next_touch import next_touch
+from vibroimpact.contact.phase.oscillators import FreeMotion, Oscillators, State
+from vibroimpact.contact.phase.vibrating_stretch import Surroundings
+from vibroimpact.contact.phase.visit import Visit, visit
+from vibroimpact.dynamics.problem import Problem
+
+
+def oscillators_of(problem: Problem) -> Oscillators:
+    """Return what vibrates in a problem: the modes of the sphere, then those of the plate; and the local element."""
+    bodies = [(body.modes, sign) for body, sign in ((problem.sphere, -1.0), (problem.plate, 1.0)) if body.modes is not None]
+
+    def of_all(parts: list[Floats]) -> Floats:
+        return np.concatenate([np.zeros(0), *parts])
+
+    local = [problem.local_element] if problem.local_element else []
+    of_sphere = np.arange(sum(len(modes.frequencies) for modes, _ in bodies)) < modes_of(problem.sphere)
+    return Oscillators(
+        of_all([modes.angular_frequencies for modes, _ in bodies]),
+        of_all([modes.damping_ratios for modes, _ in bodies]),
+        of_all([sign * modes.contact for modes, sign in bodies]),
+        np.array([stiffness / damping for stiffness, damping in local]),
+        np.array([1.0 / damping for _, damping in local]),
+        of_sphere & problem.sphere_inside,
+        ~of_sphere,
+    )
+
+
+def modes_of(body: Body) -> int:
+    """Return how many modes a body has."""
+    return 0 if body.modes is None else len(body.modes.frequencies)
+
+
+class Vibration:
+    """The oscillators of B drops that share their bodies' modes."""
+
+    def __init__(self, problem: Problem, size: int) -> None:
+        self.problem, self.oscillators = problem, oscillators_of(problem)
+        self.first_of_plate = modes_of(problem.sphere)
+        count, massless = len(self.oscillators.shape), len(self.oscillators.rate)
+        self.displacement, self.velocity = np.zeros((size, count)), np.zeros((size, count))
+        self.local = np.zeros((size, massless))
+        self.lost = np.zeros((size, count + 1))
+
+    def flights(self, drops: Drops, approach: Floats, speed: Floats, gravity: Floats) -> tuple[FreeMotion, ...]:
+        """Return the free motions of drops: approach [m] and speed [m/s] are their centres', downwards."""
+        return tuple(
+            FreeMotion(self.oscillators, self.state(drop, *centre), float(down))
+            for drop, down, *centre in zip(drops, gravity, approach, speed, strict=True)
+        )
+
+    def state(self, drop: int, approach: float, speed: float) -> State:
+        """Return the state of a drop."""
+        parts = (part[drop].copy() for part in (self.displacement, self.velocity, self.local))  # which go on changing
+        return State(np.asarray(approach), np.asarray(speed), *parts)
+
+    def touches(self, motions: tuple[FreeMotion, ...], law: CompliantLaw) -> Floats:
+        """Return when free drops next touch [s since their start]; the law is theirs."""
+        level = law.touch_level + np.zeros(len(motions))
+        return np.array([next_touch(motion, float(at), np.inf) for motion, at in zip(motions, level, strict=True)])
+
+    def pass_freely(self, drops: Drops, motions: tuple[FreeMotion, ...], elapsed: Floats) -> None:
+        """Let the oscillators of drops move freely for some time [s]."""
+        for drop, motion, time in zip(drops, motions, elapsed, strict=True):
+            self.lost[drop] += motion.lost_by(time)
+            self.place(drop, motion.state(time))
+
+    def place(self, drop: int, state: State) -> None:
+        """Note where the oscillators of a drop are."""
+        self.displacement[drop], self.velocity[drop], self.local[drop] = state.displacement, state.velocity, state.local
+
+    def closing_speed(self, drops: Drops, speed: Floats) -> Floats:
+        """Return the speed at which the surfaces approach each other [m/s], where the centres come down at `speed`."""
+        of = self.oscillators
+        return np.asarray(speed + self.velocity[drops] @ of.outer - self.local[drops] @ of.rate)
+
+    def visit(self, drops: Drops, approach: Floats, speed: Floats, encounter: Encounter, row: dict[str, Floats]) -> list[Visit]:
+        """Take drops through their visits; write what only vibrating bodies have into the row of the impact."""
+        visits = []
+        for number, drop in enumerate(drops):
+            one = encounter.pick(np.array([number]))
+            around = Surroundings(float(one.mass[0]), float(one.gravity[0]), self.oscillators)
+            pace = 3.0 * float(one.depth[0] / one.speed_scale[0])
+            start = self.state(drop, approach[number], speed[number])
+            problem = self.problem
+            found = visit(around, one.law.take(0), problem.quasi_static, start, problem.tolerance, pace, not problem.same_spot)
+            before, after = (float(np.sum(self.oscillators.energies(state))) for state in (start, found.state))
+            row["closing_speed_m_s"][drop], row["contacts"][drop] = one.approach_speed[0], found.contacts
+            row["energy_to_vibration_J"][drop] = after - before + found.lost[:-1].sum()
+            self.lost[drop, :-1] += found.lost[:-1]
+            self.place(drop, found.state)
+            visits.append(found)
+        return visits
+
+    def energies(self) -> dict[str, Floats]:
+        """Return the entries of the ledger [J], (B,); what the local elements hold, and lost in flight, apart."""
+        state = State(np.zeros(1), np.zeros(1), self.displacement, self.velocity, self.local)
+        kinetic, strain = self.oscillators.energies(state)
+        at = self.first_of_plate
+        return {
+            "sphere_vibration_J": kinetic[:, :at].sum(axis=1),
+            "sphere_strain_J": strain[:, :at].sum(axis=1),
+            "sphere_damping_J": self.lost[:, :at].sum(axis=1),
+            "plate_kinetic_J": kinetic[:, at:].sum(axis=1),
+            "plate_strain_J": strain[:, at:].sum(axis=1),
+            "plate_damping_J": self.lost[:, at:-1].sum(axis=1),
+            "local_J": self.oscillators.local_energy(state),
+            "local_damping_J": self.lost[:, -1],
+        }
+
+
+def contact_of(visits: list[Visit], law: CompliantLaw) -> Contact:
+    """Return visits of several drops as one contact of them all; `law` is theirs before it."""
+
+    def gathered(name: str) -> Floats:
+        return np.array([getattr(found, name) for found in visits], dtype=float)
+
+    pieces = [
+        Piece(np.array([drop]), np.array([part.start]), part.motion, law) for drop, found in enumerate(visits) for part in found.parts
+    ]
+    memories = {name: np.array([found.law.memories()[name] for found in visits], dtype=float) for name in law.memories()}
+    return Contact(
+        pieces,
+        gathered("outcome").astype(np.int8),
+        gathered("duration"),
+        np.array([float(found.state.approach) for found in visits]),
+        np.array([float(found.state.speed) for found in visits]),
+        gathered("max_indentation"),
+        gathered("time_of_max_indentation"),
+        np.array([found.lost[-1] for found in visits]),
+        gathered("plastic"),
+        gathered("stored"),
+        law.changed(memories),
+    )

@@ -1,0 +1,104 @@
+"""The signals of sensors and the deflection of the plate, as groups of a NetCDF-4 file."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from typing import Any
+
+import h5py
+import numpy as np
+
+from vibroimpact.dynamics.recording import Signal
+from vibroimpact.dynamics.sensor import Sensor
+from vibroimpact.storage.deflection import Deflection
+
+_PACKED: dict[str, Any] = {"compression": "gzip", "compression_opts": 1, "shuffle": True}
+"""For what is smooth: it gets several times smaller, in little time."""
+
+
+def plain_names(names: list[str]) -> dict[str, str]:
+    """Return for each name one that can be a file's and a group's: letters, digits and a few signs, and no two alike.
+
+    Examples
+    --------
+    >>> plain_names(["a1", "left/upper", "left upper"])
+    {'a1': 'a1', 'left/upper': 'left_upper', 'left upper': 'left_upper_2'}
+    """
+    found: dict[str, str] = {}
+    for name in names:
+        plain = re.sub(r"[^\w-]+", "_", name, flags=re.ASCII).strip("_") or "sensor"
+        number, tried = 1, plain
+        while tried.lower() in {taken.lower() for taken in found.values()}:
+            number += 1
+            tried = f"{plain}_{number}"
+        found[name] = tried
+    return found
+
+
+def write_signals(file: h5py.File, signals: Mapping[str, Signal]) -> None:
+    """Write each signal as a group of `sensors`, with `time_s` and `value`; nothing if there is none."""
+    for name, plain in plain_names(list(signals)).items():
+        signal = signals[name]
+        sensor, group = signal.sensor, file.create_group(f"sensors/{plain}", track_order=True)
+        group.attrs["name"], group.attrs["quantity"], group.attrs["rate_Hz"] = name, sensor.quantity, sensor.rate
+        group.attrs["direction"], group.attrs["modes_left_out"] = np.array(sensor.direction), signal.left_out
+        time = group.create_dataset("time_s", data=signal.time, **_PACKED)
+        time.make_scale("time_s")
+        _tell(time, "s", "time since the start")
+        value = group.create_dataset("value", data=signal.value)
+        value.dims[0].attach_scale(time)
+        _tell(value, sensor.unit, f"{sensor.quantity} that the sensor {name} reads")
+
+
+def read_signals(file: h5py.File) -> dict[str, Signal]:
+    """Return the signals by the names of their sensors; what an accelerometer added is in them, and only the case tells it."""
+    found = {}
+    for group in file["sensors"].values() if "sensors" in file else ():
+        name, told = str(group.attrs["name"]), group.attrs
+        x, y, z = (float(part) for part in told["direction"])
+        sensor = Sensor(name, told["quantity"], (x, y, z), float(told["rate_Hz"]))
+        found[name] = Signal(sensor, np.asarray(group["time_s"]), np.asarray(group["value"]), int(told["modes_left_out"]))
+    return found
+
+
+def write_deflection(file: h5py.File, deflection: Deflection | None) -> None:
+    """Write the plate's upper side as the group `deflection`; nothing if there is none."""
+    if deflection is None:
+        return
+    group = file.create_group("deflection", track_order=True)
+    group.attrs["contact_x_m"], group.attrs["contact_y_m"] = deflection.contact
+    scales = []
+    for name, values, unit, meaning in (
+        ("time_s", deflection.time, "s", "time since the start"),
+        ("y_m", deflection.y, "m", "y on the plate"),
+        ("x_m", deflection.x, "m", "x on the plate"),
+    ):
+        scales.append(group.create_dataset(name, data=values))
+        scales[-1].make_scale(name)
+        _tell(scales[-1], unit, meaning)
+    height = group.create_dataset("deflection_m", data=deflection.height, **_PACKED)
+    _tell(height, "m", "displacement of the plate's upper side, upwards")
+    for dimension, scale in zip(height.dims, scales, strict=True):
+        dimension.attach_scale(scale)
+    for name, values, meaning in (
+        ("sphere_position_m", deflection.sphere_position, "height of the sphere's centre above the plate's upper surface at rest"),
+        ("contact_deflection_m", deflection.contact_deflection, "displacement of the plate at the contact point, upwards"),
+    ):
+        data = group.create_dataset(name, data=values)
+        data.dims[0].attach_scale(scales[0])
+        _tell(data, "m", meaning)
+
+
+def read_deflection(file: h5py.File) -> Deflection | None:
+    """Return the plate's upper side; None if the file has none."""
+    if "deflection" not in file:
+        return None
+    group = file["deflection"]
+    names = ("time_s", "x_m", "y_m", "deflection_m", "sphere_position_m", "contact_deflection_m")
+    time, x, y, height, position, contact = (np.asarray(group[name]) for name in names)
+    return Deflection(time, x, y, height, position, contact, (float(group.attrs["contact_x_m"]), float(group.attrs["contact_y_m"])))
+
+
+def _tell(data: h5py.Dataset, unit: str, meaning: str) -> None:
+    data.attrs["units"], data.attrs["long_name"] = unit, meaning

@@ -1,0 +1,64 @@
+"""The peaks of bodies that vibrate, as `summary.json` tells them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from vibroimpact.dynamics.response import Response
+
+Floats = NDArray[np.float64]
+Peaks = dict[str, float | list[float]]
+
+
+def peaks_of(response: Response, history: Mapping[str, Floats]) -> dict[str, Peaks]:
+    """Return the peaks of the bodies that have modes, by the name of the body.
+
+    Displacement, velocity and acceleration are vertical magnitudes of the centre of mass; the displacement counts from where it
+    is at the start, the plate's from rest. They are the largest of the points of the history, and of the impact table.
+
+    Parameters
+    ----------
+    response : Response
+        A run of one drop.
+    history : mapping of str to array
+        Its history.
+    """
+    problem, found = response.problem, {}
+    if problem.sphere.modes is not None:
+        rise = history["position_m"] - history["position_m"][0]
+        impact = float(np.max(response.impacts["max_acceleration_m_s2"], initial=0.0))
+        acceleration = max(impact, _largest(history["acceleration_m_s2"]))
+        kinetic = history["kinetic_J"] + history["sphere_vibration_J"]
+        found["sphere"] = _peaks(
+            problem.sphere.modes.frequencies, rise, history["velocity_m_s"], acceleration, kinetic, history["sphere_strain_J"]
+        )
+    if problem.plate.modes is not None:
+        found["plate"] = _peaks(
+            problem.plate.modes.frequencies,
+            history["plate_displacement_m"],
+            history["plate_velocity_m_s"],
+            _largest(history["plate_acceleration_m_s2"]),
+            history["plate_kinetic_J"],
+            history["plate_strain_J"],
+        )
+    return found
+
+
+def _peaks(frequencies: Floats, displacement: Floats, velocity: Floats, acceleration: float, kinetic: Floats, strain: Floats) -> Peaks:
+    return {
+        "max_displacement_m": _largest(displacement),
+        "max_velocity_m_s": _largest(velocity),
+        "max_acceleration_m_s2": acceleration,
+        "max_kinetic_energy_J": _largest(kinetic),
+        "max_strain_energy_J": _largest(strain),
+        "frequencies_Hz": frequencies.tolist(),
+    }
+
+
+def _largest(values: Floats) -> float:
+    return float(np.abs(values).max())

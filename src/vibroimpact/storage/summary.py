@@ -1,0 +1,44 @@
+"""What `summary.json` holds of a result."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from vibroimpact.storage.result import Result
+from vibroimpact.storage.tables import impact_rows
+
+
+def summary_of(result: Result) -> dict[str, Any]:
+    """Return a result in short: the impact table, the ledger at the end, and of bodies that vibrate their peaks."""
+    return {
+        "name": result.name,
+        "status": result.status,
+        "version": result.provenance.get("version", ""),
+        "impacts": impact_rows(result.impacts),
+        "energy": result.energy,
+        **_of_vibration(result),
+        "doubts": result.doubts,
+        "provenance": dict(result.provenance),
+    }
+
+
+def _of_vibration(result: Result) -> dict[str, Any]:
+    """Return what the summary has only where bodies vibrate; None in it where a number does not exist."""
+    if not result.vibrates:
+        return {}
+    truncation = {name: value if math.isfinite(value) else None for name, value in result.truncation.items()}
+    sensors = {
+        name: {
+            "quantity": signal.sensor.quantity,
+            "unit": signal.sensor.unit,
+            "rate_Hz": signal.sensor.rate,
+            "samples": len(signal.value),
+            "max_magnitude": float(np.abs(signal.value).max()),
+            "modes_left_out": signal.left_out,
+        }
+        for name, signal in result.signals.items()
+    }
+    return {**result.peaks, "deformation": dict(result.deformation), "truncation": truncation, "sensors": sensors}

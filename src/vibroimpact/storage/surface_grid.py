@@ -1,0 +1,140 @@
+"""A regular grid over the upper side of a mesh, and how its points move with the nodes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vibroimpact.structures.mesh import Floats, Integers, Mesh
+
+if TYPE_CHECKING:
+    from scipy.sparse import csr_array
+
+POINTS = 3000
+"""About how many points a grid has."""
+
+_FEWEST, _MOST = 11, 241  # along one side
+_EDGE = 1e-6  # of a triangle: a point on its edge is on it, in spite of rounding
+_FINE = 3  # steps of the surface within one of the grid: between its points it is straight
+
+
+@dataclass(frozen=True)
+class SurfaceGrid:
+    """Points over the upper side of a mesh.
+
+    `x`, `y` [m] (columns,), (rows,). `weights`: how the points, row by row, move with the nodes. `on_body` (rows, columns):
+    which of them lie on the body.
+    """
+
+    x: Floats
+    y: Floats
+    weights: csr_array
+    on_body: NDArray[np.bool_]
+
+    def of(self, values: Floats) -> Floats:
+        """Return values at the points (..., rows, columns) of those at the nodes (..., nodes); NaN beside the body."""
+        flat = values.reshape(-1, values.shape[-1])
+        found = np.asarray((self.weights @ flat.T).T).reshape(-1, *self.on_body.shape)
+        found[:, ~self.on_body] = np.nan
+        return np.asarray(found.reshape(*values.shape[:-1], *self.on_body.shape))
+
+
+def surface_grid(mesh: Mesh) -> SurfaceGrid:
+    """Return a grid of about 3000 points over a mesh, with a point in the middle.
+
+    The outer faces are cut into triangles much smaller than the steps of the grid, of which each point takes the uppermost:
+    that needs no search for a point's place in its element, and a mesh may have any outline and holes.
+
+    Examples
+    --------
+    >>> from vibroimpact.structures.lattice import box_mesh
+    >>> grid = surface_grid(box_mesh((1.0, 1.0, 0.1), (3, 3, 1)))
+    >>> grid.on_body.shape, bool(grid.on_body.all())
+    ((55, 55), True)
+    """
+    from scipy.sparse import csr_array
+
+    low, high = mesh.nodes.min(axis=0)[:2], mesh.nodes.max(axis=0)[:2]
+    span = high - low
+    sides = np.sqrt(POINTS * span / span[::-1])
+    columns, rows = (2 * int(np.clip(side, _FEWEST, _MOST) / 2) + 1 for side in sides)
+    x, y = np.linspace(low[0], high[0], columns), np.linspace(low[1], high[1], rows)
+    step = np.array([x[1] - x[0], y[1] - y[0]])
+    at, motion, triangles = _triangles(mesh, step)
+    corner = (at[:, :2] - low) / step  # in steps of the grid
+    found = np.full(columns * rows, -np.inf)
+    nodes, weight = np.zeros((len(found), 3), dtype=np.int64), np.zeros((len(found), 3))
+    first = np.ceil(corner[triangles].min(axis=1) - _EDGE).astype(int)
+    last = np.floor(corner[triangles].max(axis=1) + _EDGE).astype(int)
+    reach = (last - first).max(axis=0, initial=-1) + 1
+    for column in range(reach[0]):
+        for row in range(reach[1]):
+            point = first + np.array([column, row])
+            here = np.flatnonzero((point <= np.minimum(last, (columns - 1, rows - 1))).all(axis=1) & (point >= 0).all(axis=1))
+            share = _shares(corner[triangles[here]], point[here])
+            inside = share.min(axis=1) >= -_EDGE
+            here, share = here[inside], share[inside]
+            height = np.einsum("tk,tk->t", share, at[triangles[here], 2])
+            order = np.argsort(height, kind="stable")  # of several above one another the uppermost is written last
+            index, height = (point[here, 1] * columns + point[here, 0])[order], height[order]
+            higher = height > found[index]
+            index = index[higher]
+            found[index], nodes[index], weight[index] = height[higher], triangles[here[order][higher]], share[order][higher]
+    points = np.repeat(np.arange(len(found)), 3)
+    chosen = csr_array((weight.ravel(), (points, nodes.ravel())), shape=(len(found), len(at)))
+    return SurfaceGrid(x, y, csr_array(chosen @ motion), np.isfinite(found).reshape(rows, columns))
+
+
+def _shares(corner: Floats, point: Integers) -> Floats:
+    """Return the barycentric coordinates of points in triangles (triangles, 3); of a triangle without area -1."""
+    a, b = corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]
+    to = point - corner[:, 0]
+    area = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
+    flat = np.abs(area) < 1e-9
+    area = np.where(flat, 1.0, area)
+    second = (to[:, 0] * b[:, 1] - to[:, 1] * b[:, 0]) / area
+    third = (a[:, 0] * to[:, 1] - a[:, 1] * to[:, 0]) / area
+    share = np.stack([1.0 - second - third, second, third], axis=1)
+    share[flat] = -1.0
+    return share
+
+
+def _triangles(mesh: Mesh, step: Floats) -> tuple[Floats, csr_array, Integers]:
+    """Return points of the outer faces, how they move with the nodes, and small triangles between them."""
+    from scipy.sparse import csr_array, vstack
+
+    from vibroimpact.structures.surface import outer_faces
+
+    points, motions, triangles, start = [], [], [], 0
+    for group in outer_faces(mesh):
+        corner = mesh.nodes[group.connectivity[:, list(group.corners)], :2]
+        size = np.ptp(corner, axis=1) / step
+        for fine in np.unique(cuts := np.maximum(1, np.ceil(_FINE * size.max(axis=1))).astype(int)):
+            nodes = group.connectivity[cuts == fine]
+            local, pattern = _lattice(len(group.corners), int(fine))
+            weights = group.slopes(local)[0]
+            at = np.einsum("qk,eki->eqi", weights, mesh.nodes[nodes]).reshape(-1, 3)
+            rows = np.repeat(np.arange(len(at)), weights.shape[1])
+            columns = np.repeat(nodes, len(local), axis=0).ravel()
+            values = np.tile(weights.ravel(), len(nodes))
+            points.append(at)
+            motions.append(csr_array((values, (rows, columns)), shape=(len(at), len(mesh.nodes))))
+            triangles.append((pattern[None] + len(local) * np.arange(len(nodes))[:, None, None]).reshape(-1, 3) + start)
+            start += len(at)
+    return np.concatenate(points), csr_array(vstack(motions)), np.concatenate(triangles)
+
+
+def _lattice(corners: int, fine: int) -> tuple[Floats, Integers]:
+    """Return places on a face of the reference element, `fine` steps along each side, and the triangles between them."""
+    a, b = (side.ravel() for side in np.meshgrid(np.arange(fine + 1), np.arange(fine + 1), indexing="ij"))
+    if corners == 3:
+        a, b = a[a + b <= fine], b[a + b <= fine]
+    number = np.full((fine + 2, fine + 2), -1)
+    number[a, b] = np.arange(len(a))
+    lower = np.stack([number[a, b], number[a + 1, b], number[a, b + 1]], axis=1)
+    upper = np.stack([number[a + 1, b], number[a + 1, b + 1], number[a, b + 1]], axis=1)
+    triangles = np.concatenate([lower, upper])
+    return np.stack([a, b], axis=1) / fine, triangles[(triangles >= 0).all(axis=1)]

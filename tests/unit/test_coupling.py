@@ -1,0 +1,108 @@
+"""How elastic bodies go together with a contact law: what is refused, and in which words."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+import vibroimpact as vi
+from vibroimpact.cases.build import resolved
+
+SPHERE = {"radius": "25 mm", "material": "rock-paper"}
+PLATE = {"size": [0.52, 0.42, 0.008], "material": "steel-paper", "model": "elastic", "modes": 10, "supports": "clamped"}
+RIGID = {"model": "rigid", "modes": None, "supports": None}
+SENSOR = {"name": "a1", "position": [0.1, 0.05]}
+MEASURED = {"max_force": 3582.0, "rebound_height": 0.26}
+
+
+def case(sphere: dict[str, Any] | None = None, plate: dict[str, Any] | None = None, **sections: Any) -> dict[str, Any]:
+    """A drop on an elastic plate with some keys of it changed."""
+    whole: dict[str, Any] = {
+        "sphere": {**SPHERE, **(sphere or {})},
+        "plate": {**PLATE, **(plate or {})},
+        "drop": {"height": 1.0},
+        "contact": {"law": "hertz"},
+        "run": {"impacts": 1},
+    }
+    whole["plate"] = {key: value for key, value in whole["plate"].items() if value is not None}
+    return {**whole, **sections}
+
+
+def contact(**keys: Any) -> dict[str, Any]:
+    return {"contact": {"law": "hertz", **keys}}
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"sensors": [{**SENSOR, "position": [0.3, 0.0]}]}, r'sensor "a1": \(0\.3, 0\) m is not on the body'),
+        ({"sensors": [{**SENSOR, "rate": 0}]}, r"sensors\.0\.rate: 0 is not allowed; it must be greater than 0 Hz"),
+        ({"sensors": [{**SENSOR, "direction": [0, 0, 0]}]}, r"sensors\.0\.direction: it has no length"),
+        ({"sensors": [{**SENSOR, "quantity": "velocity", "accelerometer": {}}]}, "an accelerometer reads acceleration"),
+        (
+            {"plate": {"material": "rigid", "model": "rigid", "modes": None, "supports": None}, "sensors": [SENSOR]},
+            "sensors: the plate is rigid",
+        ),
+        ({"drop": {"height": 1.0, "position": [0.3, 0.0]}}, r"drop\.position: \(0\.3, 0\) m lies outside the plate"),
+        ({"plate": {"supports": "free"}}, r"plate\.supports: the supports let the plate fall or tilt"),
+        ({"contact": {"law": "newton", "restitution": 0.5}}, r"contact\.law: newton gives no force"),
+        (contact(local_compliance="consitent"), r"contact\.local_compliance: .* must be 'consistent', 'superposed' or 'identified'"),
+        (contact(local_compliance="identified"), "needs local_stiffness and local_damping, or measured"),
+        (contact(local_compliance="identified", local_stiffness=1e6), "needs local_stiffness and local_damping, or measured"),
+        (contact(local_stiffness=1e6), r'contact\.local_stiffness: only local_compliance = "identified" takes it'),
+        (
+            contact(local_compliance="identified", measured={"max_force": 1.0}),
+            "one of rebound_height, separation_speed and restitution, not none",
+        ),
+        (contact(local_compliance="identified", measured={**MEASURED, "restitution": 0.5}), "not rebound_height and restitution"),
+        (contact(local_compliance="identified", measured={**MEASURED, "rebound_height": 0.02}), "0.02 m is no rebound"),
+        (contact(local_compliance="identified", measured={**MEASURED, "max_force": 1e5}), "a local element only makes the impact softer"),
+        (contact(stiffnes=1e6), 'Did you mean "stiffness"'),
+    ],
+)
+def test_what_does_not_fit_is_named(changes: dict[str, Any], message: str) -> None:
+    with pytest.raises(vi.InputError, match=message):
+        vi.simulate(vi.read_case(case(**changes)))
+
+
+def test_an_elastic_sphere_has_no_local_element_as_well() -> None:
+    sphere = {"model": "elastic", "modes": 8}
+    with pytest.raises(vi.InputError, match=r'sphere\.model: the local element of "identified" stands for the deformation of the sphere'):
+        vi.simulate(vi.read_case(case(sphere, **contact(local_compliance="identified", measured=MEASURED))))
+
+
+def test_a_rebound_that_no_local_element_gives_is_refused_with_what_it_can() -> None:
+    rigid = case(plate=RIGID)
+    rigid["contact"] = {"law": "hertz", "local_compliance": "identified", "measured": {"max_force": 1000.0, "restitution": 0.01}}
+    with pytest.raises(vi.InputError, match=r"contact\.measured: no local element gives both: .* the rebound can be"):
+        vi.read_case(rigid).to_problem()
+
+
+def test_a_basis_that_leaves_nothing_of_the_law_is_refused() -> None:
+    sphere = {"model": "elastic", "modes": 8, "attachment_mode": True}
+    with pytest.raises(vi.InputError, match=r"sphere\.modes: the modes of the sphere carry .* so that the force would not be definite"):
+        vi.read_case(case(sphere, RIGID)).to_problem()
+
+
+@pytest.mark.parametrize("name", [f"paper:type{number}{kind}" for number in (2, 3) for kind in ("", "-superposed", "-identified")])
+def test_shipped_cases_come_back_from_their_resolved_form(name: str) -> None:
+    shipped = vi.load_case(name)
+    assert resolved(vi.read_case(resolved(shipped))) == resolved(shipped)
+
+
+def test_consistent_bodies_tell_what_was_done() -> None:
+    problem = vi.read_case(case({"model": "elastic", "modes": 10, "damping": 0.01})).to_problem()
+    assert problem.facts["treatment"] == "consistent"
+    assert problem.sphere_inside
+    assert problem.quasi_static.unit == pytest.approx(1.0 / (2.26e9 * 0.025))
+    carried = float(problem.facts["sphere_modal_compliance_m_N"])
+    left_out = float(problem.facts["plate_static_compliance_m_N"]) - float(problem.facts["plate_modal_compliance_m_N"])
+    assert problem.quasi_static.linear == pytest.approx(left_out - carried)
+    assert set(problem.models) == {"sphere", "plate"}
+
+
+def test_superposed_bodies_have_nothing_taken_out() -> None:
+    problem = vi.read_case(case({"model": "elastic", "modes": 10}, **contact(local_compliance="superposed"))).to_problem()
+    assert not problem.quasi_static
+    assert not problem.sphere_inside

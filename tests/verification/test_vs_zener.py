@@ -1,0 +1,76 @@
+r"""Zener's sphere on an infinite thin plate, against a plate so large that no wave comes back during the contact.
+
+An infinite plate gives way at a speed in proportion to the force, :math:`\dot w = F / (8 \sqrt{D \rho h})`, which takes energy away for
+good. In Hertz's contact of a mass m at a speed v one parameter is left, :math:`\lambda = m / (8 \sqrt{D \rho h}\, T)` with :math:`T = (m
+/ (K \sqrt v))^{2/5}`; the restitution is that of :math:`\sigma'' + (1 + \lambda\, d/d\tau) \sigma^{3/2} = 0`. The plate here is square
+and simply supported, with closed-form modes of Kirchhoff's theory, without damping; what its modes leave out of its static compliance,
+0.01160084 L^2 / D in all, is in series with the law.
+
+Source: Zener, C. (1941). The intrinsic inelasticity of large plates. Phys. Rev. 59, 669-673.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+import vibroimpact as vi
+from vibrating import STIFFNESS, drop_on, modes_of
+from vibroimpact.contact.laws.hertz import Hertz
+from vibroimpact.contact.quasi_static import QuasiStatic
+
+MASS, SPEED, SIDE = 0.09032078879, 8.826664149, 30.0
+TIME = (MASS / (STIFFNESS * np.sqrt(SPEED))) ** 0.4
+TABLE = [(0.05, 0.917772), (0.1, 0.843339), (0.2, 0.714045), (0.5, 0.436895), (1.0, 0.184123), (0.17680, 0.74196)]
+
+
+def plate_response(inelasticity: float, highest: float = 60.0, residual: bool = True, side: float = SIDE) -> vi.Response:
+    """The impact on a plate of side SIDE * sqrt(c T), c = sqrt(D / rho h) = 1, with the modes up to `highest` / T."""
+    rigidity = MASS / (8.0 * inelasticity * TIME)  # and mass per area
+    length = side * np.sqrt(TIME)
+    number = 2 * np.arange(int(np.sqrt(highest / TIME) * length / np.pi)) + 1  # those with a node line at the centre are not met
+    omega = (np.pi / length) ** 2 * (number[:, None] ** 2 + number**2).ravel()
+    omega = np.sort(omega[omega < highest / TIME])
+    shape = 2.0 / np.sqrt(rigidity * length**2)
+    left_out = 0.01160084 * length**2 / rigidity - float((shape**2 / omega**2).sum())
+    modes = modes_of(omega / (2.0 * np.pi), shape)
+    series = QuasiStatic(linear=left_out if residual else 0.0)
+    return vi.simulate(drop_on(Hertz(stiffness=STIFFNESS), modes, speed=SPEED, gravity=0.0, quasi_static=series))
+
+
+@pytest.mark.parametrize(("inelasticity", "restitution"), TABLE)
+def test_restitution(inelasticity: float, restitution: float) -> None:
+    response = plate_response(inelasticity)
+    assert response.impacts["contacts"][0] == 1
+    assert response.impacts["restitution_achieved"][0] == pytest.approx(restitution, rel=3e-5)
+    assert response.impacts["energy_to_vibration_J"][0] / response.energy["input_J"] == pytest.approx(1.0 - restitution**2, rel=3e-5)
+
+
+def test_history_of_the_force() -> None:
+    """Of the equation of Zener itself: peak, duration, and its course, as a part of the peak."""
+    inelasticity = 0.1768
+
+    def slopes(_: float, y: np.ndarray) -> list[float]:
+        root = np.sqrt(max(y[0], 0.0))
+        return [y[1], -root * max(y[0], 0.0) - 1.5 * inelasticity * root * y[1]]
+
+    def apart(_: float, y: np.ndarray) -> float:
+        return float(y[0])
+
+    apart.terminal, apart.direction = True, -1  # type: ignore[attr-defined]
+    exact = solve_ivp(slopes, (0.0, 10.0), [0.0, 1.0], method="DOP853", rtol=1e-10, atol=1e-12, events=apart, dense_output=True)
+    response = plate_response(inelasticity)
+    end = float(response.impacts["duration_s"][0]) / TIME
+    assert end == pytest.approx(exact.t[-1], rel=1e-4)
+    tau = np.linspace(0.0, 0.999 * min(end, exact.t[-1]), 200)
+    unit = MASS * SPEED / TIME
+    force = np.maximum(exact.sol(tau)[0], 0.0) ** 1.5
+    assert response.impacts["max_force_N"][0] == pytest.approx(unit * force.max(), rel=1e-4)
+    assert np.abs(response.at(tau * TIME)["force_N"] / unit - force).max() < 1e-3 * force.max()
+
+
+def test_what_is_not_an_infinite_plate() -> None:
+    """Where waves come back during the contact, and where the compliance of the modes left out is forgotten."""
+    assert plate_response(0.1768, side=5.0).impacts["restitution_achieved"][0] < 0.95 * 0.74196
+    assert plate_response(1.0, residual=False).impacts["restitution_achieved"][0] < 0.99 * 0.184123
