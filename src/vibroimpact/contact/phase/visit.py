@@ -162,10 +162,13 @@ class _Visit:
         found.contacts = 1
         while True:
             found.outcome = self.contact()
-            if found.outcome != RELEASED or not self.meets_again():
+            if found.outcome != RELEASED:
+                break
+            meets = self.meets_again()
+            if not meets and self.state.speed <= 0.0:
                 break
             found.contacts += 1
-            if found.contacts > _MOST_CONTACTS:
+            if not meets or found.contacts > _MOST_CONTACTS:  # still on its way down, it chatters in steps below rounding, or for good
                 found.outcome, self.left = CAPTURED, self.time
                 break
         found.law, found.state, found.duration = self.local.law, self.state, self.left
@@ -179,6 +182,7 @@ class _Visit:
         while True:
             if not self.touching and self.here() <= self.floor and self.around.oscillators.rates(self.state) < 0.0:
                 self.left = self.time  # by less than rounding tells
+                self.break_off()
                 return RELEASED
             self.stretches += 1
             if self.stretches > _MOST_STRETCHES or self.pace < 1e-12 * self.span:
@@ -290,6 +294,13 @@ class _Visit:
         found.lost += stretch.lost
         self.touching = False
         stretch.forget()  # thousands of stretches would not fit into memory
+
+    def break_off(self) -> None:
+        """Lose what a contact still holds as it ends with a stretch that was taken already."""
+        last, held = self.found.parts[-1], float(self.local.elastic_energy(self.floor))
+        if held and isinstance(last.motion, VibratingStretch):
+            self.found.parts[-1] = replace(last, motion=replace(last.motion, broken=held))
+            self.found.lost[-1] += held
 
     def turn(self) -> None:
         """Go on with a law that remembers how deep it has been."""
