@@ -176,6 +176,7 @@ def case_explained(case: Case) -> RenderableType:
             + (f", {' x '.join(f'{side:g}' for side in case.plate.size)} m" if case.plate.size else ""),
         ),
         *_elastic_rows(case),
+        *_coupling_rows(case),
         ("effective modulus", f"{pair.effective_modulus:.6g} Pa"),
         ("first approach speed", f"{speed:.6g} m/s, gravity {gravity:g} m/s2"),
         ("contact law", f"{case.contact.law}: {laws[0].equation}"),
@@ -195,14 +196,16 @@ def case_explained(case: Case) -> RenderableType:
     if isinstance(laws[0], CompliantLaw) and laws[0].lasting:
         where = "on the same spot: the dent of the last one lasts" if case.drop.same_spot else "on fresh surfaces"
         rows.append(("each impact", f"{where} (drop.same_spot = {str(case.drop.same_spot).lower()})"))
-    rows += [("" if number else "restitution", line) for number, line in enumerate(_restitution_lines(laws[0], mass, speed))]
+    rigid = not _deforms(case)
+    label = "restitution" if rigid else "between rigid bodies"
+    rows += [("" if number else label, line) for number, line in enumerate(_restitution_lines(laws[0], mass, speed))]
     law, found = laws[0], []
     if isinstance(law, CompliantLaw):
         one = np.ones(1)
         encounter = encounter_of(law, mass * one, gravity * one, speed * one)
         depth = float(encounter.depth[0])
         force = float(np.asarray(law.forces(encounter.depth, 0.0 * one, encounter.approach_speed)[0])[0])
-        rows.append(("if nothing were lost", f"indentation {depth:.4g} m, force {force:.4g} N"))
+        rows.append(("if nothing were lost" + ("" if rigid else ", rigid"), f"indentation {depth:.4g} m, force {force:.4g} N"))
         found = doubts(resolved(case), depth, force)
     table = Table.grid(padding=(0, 2))
     for row in rows:
@@ -216,6 +219,28 @@ def _elastic_rows(case: Case) -> list[tuple[str, str]]:
     from vibroimpact.report.modes_text import elastic_rows  # which loads sparse matrices
 
     return elastic_rows(case)
+
+
+def _deforms(case: Case) -> bool:
+    return bool(elastic_names(case)) or case.contact.local.local_compliance == "identified"
+
+
+def _coupling_rows(case: Case) -> list[tuple[str, str]]:
+    """Say how local indentation is treated, and what is watched."""
+    if not _deforms(case):
+        return []
+    local = case.contact.local
+    words: list[str] = [local.local_compliance or "consistent, by default"]
+    if local.local_stiffness is not None:
+        words.append(f"local element of {local.local_stiffness:.6g} N/m and {local.local_damping:.6g} N s/m")
+    if local.measured is not None:
+        where = "on a rigid plate" if local.measured.plate == "rigid" else "on this plate"
+        words.append(f"local element found from a largest force of {local.measured.max_force:.6g} N {where}")
+    rows = [("local compliance", "; ".join(words))]
+    for sensor in case.sensors:
+        place = sensor.position if isinstance(sensor.position, str) else f"({sensor.position[0]:g}, {sensor.position[1]:g}) m"
+        rows.append((f"sensor {sensor.name}", f"{sensor.quantity} at {place}, {sensor.face} face, {sensor.rate:g} Hz"))
+    return rows
 
 
 def _restitution_lines(law: ContactLaw, mass: float, speed: float) -> list[str]:
