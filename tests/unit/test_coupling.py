@@ -106,3 +106,21 @@ def test_superposed_bodies_have_nothing_taken_out() -> None:
     problem = vi.read_case(case({"model": "elastic", "modes": 10}, **contact(local_compliance="superposed"))).to_problem()
     assert not problem.quasi_static
     assert not problem.sphere_inside
+
+
+def test_too_few_modes_and_an_overdriven_accelerometer_are_doubted() -> None:
+    from vibroimpact.storage.result import result_of
+
+    sensor = {**SENSOR, "rate": "1 kHz", "accelerometer": {"range": 1e-3}}
+    few, driven, slow = result_of(vi.simulate(vi.read_case(case(plate={"modes": 3}, sensors=[sensor])))).doubts
+    assert few.startswith("the modes of the plate end at ")
+    assert "max_frequency" in few
+    assert driven.startswith('the accelerometer of sensor "a1" is driven to the end of its range, 0.001 m/s2, in ')
+    assert 'sensor "a1" takes 1000 samples per second' in slow
+
+
+def test_an_unknown_key_of_an_accelerometer_is_named_with_the_others() -> None:
+    with pytest.raises(
+        vi.InputError, match=r'unknown key "nois"; .* takes resonance, damping_ratio, range, noise, resolution\. Did you mean "noise"'
+    ):
+        vi.read_case(case(sensors=[{**SENSOR, "accelerometer": {"nois": 0.5}}]))

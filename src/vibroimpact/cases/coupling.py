@@ -199,7 +199,9 @@ def coupled(
     if local.measured is None:
         assert local.local_stiffness is not None  # the section has seen to it
         assert local.local_damping is not None
-        return replace(found, local_element=(local.local_stiffness, local.local_damping))
+        given = (local.local_stiffness, local.local_damping)
+        facts = {**coupling.facts, "local_stiffness_N_m": given[0], "local_damping_N_s_m": given[1]}
+        return replace(found, local_element=given, facts=facts)
     tried = problem if local.measured.plate == "rigid" else found
     try:
         element = identify_local_element(tried, local.measured.max_force, **_rebound(case, local.measured))

@@ -13,6 +13,8 @@ from vibroimpact.dynamics.recording import Signal
 from vibroimpact.materials import RIGID, Material
 
 _SMALL_CONTACT = 0.3  # of the radius: beyond it Hertz's pressure and the finite sphere differ by several per cent
+_TRUNCATED = 0.05  # of the largest force
+_CYCLES, _ENOUGH = 1.5, 3.0  # periods of the highest mode in a contact: too few, and enough
 _YIELD = 1.6  # Johnson 1985, section 6.1: yield begins where the peak pressure is 1.6 times the yield strength
 
 
@@ -72,6 +74,41 @@ def sensor_doubts(signals: Iterable[Signal], frequencies: Sequence[float]) -> li
         for signal in signals
         if signal.left_out
     ]
+
+
+def truncation_doubts(truncation: Mapping[str, float], frequencies: Mapping[str, Sequence[float]], duration: float) -> list[str]:
+    """Return which bodies have too few modes for a contact.
+
+    Parameters
+    ----------
+    truncation : mapping of str to float
+        About how far the largest force is off, as a part of it, by the name of the body.
+    frequencies : mapping of str to sequence of float
+        Of the modes of each [Hz], ascending.
+    duration : float
+        Of the contact [s]; NaN where there is none.
+    """
+    found = []
+    for body, part in truncation.items():
+        highest = frequencies[body][-1]
+        if part > _TRUNCATED or highest * duration < _CYCLES:
+            found.append(
+                f"the modes of the {body} end at {highest:.4g} Hz, and the contact lasts {duration:.3g} s: those left out may change the "
+                f"largest force by up to {100.0 * part:.2g} %, and rebound and vibration by more; ask for "
+                f'max_frequency = "{_ENOUGH / duration / 1e3:.3g} kHz" or so'
+            )
+    return found
+
+
+def range_doubts(sensors: Sequence[Mapping[str, Any]], signals: Mapping[str, Signal]) -> list[str]:
+    """Return which accelerometers were driven to the end of their range; `sensors` are those of a resolved case."""
+    found = []
+    for sensor in sensors:
+        end, name = sensor.get("accelerometer", {}).get("range"), sensor["name"]
+        clipped = int((abs(signals[name].value) >= end).sum()) if end is not None and name in signals else 0
+        if clipped:
+            found.append(f'the accelerometer of sensor "{name}" is driven to the end of its range, {end:g} m/s2, in {clipped} samples')
+    return found
 
 
 def _material(given: Mapping[str, Any] | str) -> Material:

@@ -14,7 +14,7 @@ from pydantic import BaseModel, ValidationError
 from vibroimpact.cases.build import check_case
 from vibroimpact.cases.explain import explained
 from vibroimpact.cases.material_field import InlineMaterial
-from vibroimpact.cases.schema import Case, DropSection, PlateSection, RunSection, SensorSection, SphereSection
+from vibroimpact.cases.schema import AccelerometerTable, Case, DropSection, PlateSection, RunSection, SensorSection, SphereSection
 from vibroimpact.errors import InputError, did_you_mean
 
 LARGEST_FILE = 1_000_000
@@ -27,6 +27,7 @@ _SECTIONS: dict[tuple[str, ...], type[BaseModel]] = {
     ("drop",): DropSection,
     ("run",): RunSection,
     ("sensors",): SensorSection,
+    ("sensors", "accelerometer"): AccelerometerTable,
 }
 
 

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vibroimpact._version import __version__
-from vibroimpact.cases.doubts import doubts, sensor_doubts
+from vibroimpact.cases.doubts import doubts, range_doubts, sensor_doubts, truncation_doubts
 from vibroimpact.dynamics.recording import Signal
 from vibroimpact.dynamics.response import Response
 from vibroimpact.storage.deflection import Deflection, deflection_of
@@ -81,6 +81,12 @@ class Result:
         peaks = (self.impacts[name] for name in ("max_indentation_m", "max_force_N"))
         found = doubts(self.case, *(float(peak.max()) if len(peak) else math.nan for peak in peaks))
         found += str(self.deformation.get("doubts", "")).splitlines()  # of the meshes
+        duration = float(self.impacts["duration_s"][0]) if len(self.impacts["impact"]) else math.nan
+        # of a superposed sphere more modes would only make it softer
+        bodies = [body for body in self.truncation if body == "plate" or self.deformation.get("treatment") != "superposed"]
+        modes = {body: self.frequencies(body) for body in bodies}
+        found += truncation_doubts({body: self.truncation[body] for body in bodies}, modes, duration)
+        found += range_doubts(self.case.get("sensors", ()), self.signals)
         return found + sensor_doubts(self.signals.values(), self.frequencies("plate"))
 
     @property
