@@ -91,6 +91,11 @@ def elastic_names(case: Case) -> list[Literal["sphere", "plate"]]:
     return [name for name in names if getattr(case, name).model == "elastic"]
 
 
+def deforms(case: Case) -> bool:
+    """Does anything of a case but the contact itself deform?"""
+    return bool(elastic_names(case)) or case.contact.local.local_compliance == "identified"
+
+
 def problem_of(case: Case, progress: Callable[[float], None] | None = None, tell: Callable[[str], None] | None = None) -> Problem:
     """Return the problem that a case states.
 
@@ -111,7 +116,7 @@ def problem_of(case: Case, progress: Callable[[float], None] | None = None, tell
     """
     check_case(case)
     problem = _rigid_problem(case)
-    if not elastic_names(case) and case.contact.local.local_compliance != "identified":
+    if not deforms(case):
         return problem
     from vibroimpact.cases.coupling import coupled  # which loads finite elements
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, cast
 import numpy as np
 
 from vibroimpact.calibration.local_element import identify_local_element
-from vibroimpact.cases.build import contact_laws_of, contact_pair, first_speed
+from vibroimpact.cases.build import contact_laws_of, contact_pair, elastic_names, first_speed
 from vibroimpact.cases.local_section import MeasuredImpact
 from vibroimpact.cases.modes import BodyModes, compute_modes
 from vibroimpact.contact.law import CompliantLaw
@@ -67,7 +67,7 @@ def coupling_of(case: Case, progress: Callable[[float], None] | None = None, tel
         If a body can't be made, the plate is not held, or the basis is ill-posed for the treatment.
     """
     treatment = treatment_of(case)
-    bodies = compute_modes(case, progress, tell) if any(getattr(case, name).model == "elastic" for name in ("sphere", "plate")) else {}
+    bodies = compute_modes(case, progress, tell) if elastic_names(case) else {}
     modes = {name: body.basis for name, body in bodies.items()}
     facts: dict[str, float | str] = {"treatment": treatment}
     if told := [doubt for body in bodies.values() for doubt in body.doubts]:

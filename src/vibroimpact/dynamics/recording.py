@@ -16,7 +16,7 @@ from vibroimpact.contact.phase.oscillators import FreeMotion, Oscillators
 from vibroimpact.contact.phase.vibrating_stretch import VibratingStretch
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.sensor import Sensor
-from vibroimpact.dynamics.vibration import modes_of, oscillators_of
+from vibroimpact.dynamics.vibration import oscillators_of
 from vibroimpact.errors import InputError
 
 if TYPE_CHECKING:
@@ -108,21 +108,19 @@ def _sampled(problem: Problem, segments: Sequence[VibratingSegment], sensors: Se
         offset = first / rate - segment.start
         moving = segment.moving
         if isinstance(moving, VibratingStretch):
-            values[:, first:last] = _in_contact(problem, moving, sensors, shapes, offset + np.arange(last - first) / rate)
+            values[:, first:last] = _in_contact(moving, sensors, shapes, offset + np.arange(last - first) / rate)
             moving.forget()
         else:
             values[:, first:last] = _in_free_motion(blocks, moving, sensors, shapes, offset, last - first)
     return values
 
 
-def _in_contact(problem: Problem, stretch: VibratingStretch, sensors: Sequence[Sensor], shapes: Floats, times: Floats) -> Floats:
-    of, at = stretch.around.oscillators, modes_of(problem.sphere)
+def _in_contact(stretch: VibratingStretch, sensors: Sequence[Sensor], shapes: Floats, times: Floats) -> Floats:
+    of = stretch.around.oscillators
     times = np.clip(times, 0.0, stretch.length)
     state, force = stretch.state(times), stretch.force_at(stretch.rule.unmap_time(times / stretch.length))
-    omega, damping = of.angular_frequency[at:], 2.0 * of.damping_ratio[at:] * of.angular_frequency[at:]
-    displacement, velocity = state.displacement[:, at:], state.velocity[:, at:]
-    acceleration = -damping * velocity - omega**2 * displacement - of.shape[at:] * force[:, None]
-    of_each = {"displacement": displacement, "velocity": velocity, "acceleration": acceleration}
+    of_all = {"displacement": state.displacement, "velocity": state.velocity, "acceleration": of.accelerations(state, force)}
+    of_each = {name: values[:, of.ground] for name, values in of_all.items()}
     return np.stack([of_each[sensor.quantity] @ shape for sensor, shape in zip(sensors, shapes, strict=True)])
 
 
@@ -142,7 +140,7 @@ class _Blocks:
         """Return displacements and velocities (2, modes) a block later."""
         displacement, velocity = place
         cosine, sine, omega = self.cosine[-1], self.sine[-1], self.of.angular_frequency
-        later = -(omega**2) * sine * displacement + (cosine - 2.0 * self.of.damping_ratio * omega * sine) * velocity
+        later = -(omega**2) * sine * displacement + (cosine - self.of.damping * sine) * velocity
         return np.stack([cosine * displacement + sine * velocity, later])
 
 
@@ -177,7 +175,7 @@ def _swing(of: Oscillators, place: Floats) -> Floats:
 
 def _at_points(blocks: _Blocks, places: Floats, sensors: Sequence[Sensor], shapes: Floats) -> Floats:
     """Return what points do over whole blocks that begin at places (blocks, 2, modes)."""
-    omega, damping = blocks.of.angular_frequency, 2.0 * blocks.of.damping_ratio * blocks.of.angular_frequency
+    omega, damping = blocks.of.angular_frequency, blocks.of.damping
     displacement, velocity = places[:, 0], places[:, 1]
     push = -(omega**2) * displacement - damping * velocity
     of_each = {

@@ -61,10 +61,8 @@ def _of_bodies(problem: Problem, of: Oscillators, state: State, lost: Floats, fo
     """Return the columns that only bodies that vibrate have."""
     at, plate, gravity = modes_of(problem.sphere), problem.plate.modes, float(problem.gravity)
     kinetic, strain = of.energies(state)
-    displacement, velocity = state.displacement[:, at:], state.velocity[:, at:]
-    omega, damping = of.angular_frequency[at:], 2.0 * of.damping_ratio[at:] * of.angular_frequency[at:]
-    acceleration = -damping * velocity - omega**2 * displacement - of.shape[at:] * force[:, None]
-    whole = plate.participation[:, 2] if plate is not None else np.zeros(len(omega))
+    displacement, velocity, acceleration = (part[:, at:] for part in (state.displacement, state.velocity, of.accelerations(state, force)))
+    whole = plate.participation[:, 2] if plate is not None else np.zeros(displacement.shape[1])
     mass = plate.mass if plate is not None else np.inf
     return {
         "sphere_vibration_J": kinetic[:, :at].sum(axis=1),

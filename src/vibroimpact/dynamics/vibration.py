@@ -81,8 +81,8 @@ class Vibration:
 
     def closing_speed(self, drops: Drops, speed: Floats) -> Floats:
         """Return the speed at which the surfaces approach each other [m/s], where the centres come down at `speed`."""
-        of = self.oscillators
-        return np.asarray(speed + self.velocity[drops] @ of.outer - self.local[drops] @ of.rate)
+        state = State(np.zeros(len(drops)), speed, self.displacement[drops], self.velocity[drops], self.local[drops])
+        return self.oscillators.outer_rates(state)
 
     def visit(self, drops: Drops, approach: Floats, speed: Floats, encounter: Encounter, row: dict[str, Floats]) -> list[Visit]:
         """Take drops through their visits; write what only vibrating bodies have into the row of the impact."""

@@ -12,7 +12,7 @@ from rich.markup import escape
 from rich.table import Table
 from rich.text import Text
 
-from vibroimpact.cases.build import contact_laws_of, contact_pair, elastic_names, first_speed, impacts_of, resolved
+from vibroimpact.cases.build import contact_laws_of, contact_pair, deforms, elastic_names, first_speed, impacts_of, resolved
 from vibroimpact.cases.doubts import doubts
 from vibroimpact.cases.schema import Case
 from vibroimpact.contact.law import CompliantLaw, ContactLaw
@@ -196,7 +196,7 @@ def case_explained(case: Case) -> RenderableType:
     if isinstance(laws[0], CompliantLaw) and laws[0].lasting:
         where = "on the same spot: the dent of the last one lasts" if case.drop.same_spot else "on fresh surfaces"
         rows.append(("each impact", f"{where} (drop.same_spot = {str(case.drop.same_spot).lower()})"))
-    rigid = not _deforms(case)
+    rigid = not deforms(case)
     label = "restitution" if rigid else "between rigid bodies"
     rows += [("" if number else label, line) for number, line in enumerate(_restitution_lines(laws[0], mass, speed))]
     law, found = laws[0], []
@@ -221,13 +221,9 @@ def _elastic_rows(case: Case) -> list[tuple[str, str]]:
     return elastic_rows(case)
 
 
-def _deforms(case: Case) -> bool:
-    return bool(elastic_names(case)) or case.contact.local.local_compliance == "identified"
-
-
 def _coupling_rows(case: Case) -> list[tuple[str, str]]:
     """Say how local indentation is treated, and what is watched."""
-    if not _deforms(case):
+    if not deforms(case):
         return []
     local = case.contact.local
     words: list[str] = [local.local_compliance or "consistent, by default"]

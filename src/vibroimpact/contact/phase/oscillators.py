@@ -48,6 +48,16 @@ class Oscillators:
     ground: NDArray[np.bool_]
 
     @cached_property
+    def damping(self) -> Floats:
+        """Twice the damping ratio times the angular frequency [1/s] (n,)."""
+        return 2.0 * self.damping_ratio * self.angular_frequency
+
+    @cached_property
+    def below(self) -> Floats:
+        """The shape of the oscillators of the body below, zero of the others (n,)."""
+        return np.where(self.ground, self.shape, 0.0)
+
+    @cached_property
     def outer(self) -> Floats:
         """The shape of the oscillators outside the contact, zero of those inside (n,)."""
         return np.where(self.inside, 0.0, self.shape)
@@ -98,7 +108,12 @@ class Oscillators:
 
     def indentation(self, state: State) -> Floats:
         """Return the approach of the sphere's centre to the surface of the body below [m]."""
-        return np.asarray(state.approach + state.displacement @ np.where(self.ground, self.shape, 0.0))
+        return np.asarray(state.approach + state.displacement @ self.below)
+
+    def accelerations(self, state: State, force: Floats) -> Floats:
+        """Return the accelerations of the oscillators outside the contact, under contact forces [N] (T,): (T, n)."""
+        own = -self.damping * state.velocity - self.angular_frequency**2 * state.displacement
+        return np.asarray(own - self.outer * force[:, None])
 
 
 @dataclass(frozen=True)
@@ -133,7 +148,7 @@ class FreeMotion:
         cosine, sine = of.propagators(time)
         displacement = cosine * start.displacement + sine * start.velocity
         velocity = -(of.angular_frequency**2) * sine * start.displacement
-        velocity += (cosine - 2.0 * of.damping_ratio * of.angular_frequency * sine) * start.velocity
+        velocity += (cosine - of.damping * sine) * start.velocity
         return State(
             start.approach + time * (start.speed + 0.5 * self.gravity * time),
             start.speed + self.gravity * time,

@@ -105,16 +105,12 @@ class VibratingStretch:
     @cached_property
     def accelerations(self) -> tuple[Floats, Floats]:
         """Accelerations of the oscillators (N, n), and rates of the massless elements (N, k), at the nodes."""
-        of, at = self.around.oscillators, self.spectrum
-        sigma = self.length * at.values[:, None]
+        of, at, sigma = self.around.oscillators, self.spectrum, self.length * self.spectrum.values
         force, static = ((at.inverse @ part)[:, None] for part in (self.force, self.static))
-        omega, damping = of.angular_frequency, 2.0 * of.damping_ratio * of.angular_frequency
-        pull = damping * self.start.velocity + omega**2 * self.start.displacement
-        drive = -of.outer * force - (of.shape - of.outer) * static - at.constant[:, None] * pull
-        drive -= (self.length * at.time)[:, None] * (omega**2 * self.start.velocity)
-        oscillators = at.vectors @ (drive / (1.0 + sigma * (damping + omega**2 * sigma)))
+        drive = _own_drive(of, at, self.length, self.start) - of.outer * force - (of.shape - of.outer) * static
+        oscillators = at.vectors @ (drive / _impedance(of, sigma))
         massless = -of.mobility * force - at.constant[:, None] * (of.rate * self.start.local)
-        return np.asarray(oscillators.real), np.asarray((at.vectors @ (massless / (1.0 + of.rate * sigma))).real)
+        return np.asarray(oscillators.real), np.asarray((at.vectors @ (massless / (1.0 + of.rate * sigma[:, None]))).real)
 
     @cached_property
     def velocities(self) -> Floats:
@@ -175,7 +171,7 @@ class VibratingStretch:
     def _indentations(self) -> Floats:
         """The same at the start and at the nodes, (N + 1,)."""
         of, start, h, rule = self.around.oscillators, self.start, self.length, self.rule
-        velocity = start.speed - h / self.around.mass * (rule.integral @ self.force) + self.velocities @ np.where(of.ground, of.shape, 0.0)
+        velocity = start.speed - h / self.around.mass * (rule.integral @ self.force) + self.velocities @ of.below
         gravity = 0.5 * self.around.gravity * (h * rule.time) ** 2
         begun = float(of.indentation(start))
         return np.append(begun, begun + h * (rule.integral @ velocity) + gravity)
@@ -185,7 +181,7 @@ class VibratingStretch:
         """What is lost at the nodes [W], (N, n + 1): in each oscillator; last, in the law and the massless elements."""
         of = self.around.oscillators
         contact = self.dissipative * self.rate[1:] + (self.accelerations[1] ** 2 / of.mobility).sum(axis=1)
-        return np.concatenate([2.0 * of.damping_ratio * of.angular_frequency * self.velocities**2, contact[:, None]], axis=1)
+        return np.concatenate([of.damping * self.velocities**2, contact[:, None]], axis=1)
 
     @cached_property
     def lost(self) -> Floats:
@@ -206,16 +202,18 @@ class VibratingStretch:
     def _x(self, time: Floats) -> Floats:
         return self.rule.unmap_time(np.asarray(time) / self.length)
 
+    @property
+    def roughness(self) -> float:
+        """The last Legendre coefficients of the force, beside what matters: with the square of it the error at the end goes."""
+        force = self.around.mass * np.abs(self.rate).max() / self.length
+        return float(self.rule.tail(self.force[:, None], np.array([force]))[0])
+
     def resolved(self, tolerance: float, speed: float) -> bool:
         """Is it solved, and its error within a relative tolerance, for motions of about a speed [m/s]?
 
-        Two measures that know nothing of each other: the last Legendre coefficients of the force, with whose square the
-        error at the end goes, and the balance of energy.
+        Two measures that know nothing of each other: the roughness of the force, and the balance of energy.
         """
-        if not self.solved:
-            return False
-        force = self.around.mass * np.abs(self.rate).max() / self.length
-        if not float(self.rule.tail(self.force[:, None], np.array([force]))[0]) ** 2 <= tolerance:
+        if not (self.solved and self.roughness**2 <= tolerance):
             return False
         lost = float(self.lost.sum())
         begun, done = self.local.work(np.maximum(self.approach[[0, -1]], self.local.release_level))
@@ -241,8 +239,9 @@ def solve_vibrating(
     """Solve the motion through a stretch of contact of given length [s]; a guess of both parts of the force makes it quicker."""
     of, at, floor = around.oscillators, spectrum(time_map, local.law.root), local.release_level
     rule = at.rule
-    free_approach, free_rate = _free(of, at, length, start, around.gravity)
-    by_force, rate_by, by_static = _receptance(around, at, length)
+    impedance = _impedance(of, length * at.values)
+    free_approach, free_rate = _free(of, at, length, start, around.gravity, impedance)
+    by_force, rate_by, by_static = _receptance(around, at, length, impedance)
     begun, begun_rate = max(float(of.approach(start)), floor), float(of.outer_rates(start))
     if forces is None:  # that at the start goes on, and what the motion under it gives
         static, dissipative = (np.full(NODES, float(part)) for part in local.forces(np.array(begun), np.array(begun_rate)))
@@ -281,13 +280,17 @@ def solve_vibrating(
     )
 
 
-def _free(of: Oscillators, at: Spectrum, length: float, start: State, gravity: float) -> tuple[Floats, Floats]:
+def _own_drive(of: Oscillators, at: Spectrum, length: float, start: State) -> Complex:
+    """Return what drives each oscillator without contact force, in the eigenvectors (N, n): its motion at the start, going on."""
+    stiffness = of.angular_frequency**2
+    pull = of.damping * start.velocity + stiffness * start.displacement
+    return np.asarray(-at.constant[:, None] * pull - (length * at.time)[:, None] * (stiffness * start.velocity))
+
+
+def _free(of: Oscillators, at: Spectrum, length: float, start: State, gravity: float, impedance: Complex) -> tuple[Floats, Floats]:
     """Return the approach [m], and the rate outside the contact [m/s], at the nodes as they would be without contact force."""
     sigma, time = length * at.values, length * at.rule.time
-    omega, damping = of.angular_frequency, 2.0 * of.damping_ratio * of.angular_frequency
-    pull = damping * start.velocity + omega**2 * start.displacement
-    drive = at.constant[:, None] * pull + (length * at.time)[:, None] * (omega**2 * start.velocity)
-    responses = -drive / _impedance(of, sigma)
+    responses = _own_drive(of, at, length, start) / impedance
     massless = -at.constant * ((of.rate * start.local) / (1.0 + of.rate * sigma[:, None])).sum(axis=1)
     rate = float(start.speed + start.velocity @ of.outer) + gravity * time
     rate = rate + (at.vectors @ (sigma * (responses @ of.outer) + massless)).real
@@ -295,10 +298,10 @@ def _free(of: Oscillators, at: Spectrum, length: float, start: State, gravity: f
     return np.asarray(approach + (at.vectors @ (sigma * (sigma * (responses @ of.shape) + massless))).real), rate
 
 
-def _receptance(around: Surroundings, at: Spectrum, length: float) -> tuple[Floats, Floats, Floats]:
+def _receptance(around: Surroundings, at: Spectrum, length: float, impedance: Complex) -> tuple[Floats, Floats, Floats]:
     """Return by how much forces at the nodes take back the approach and the rate there, and static ones the approach, (N, N)."""
     of, sigma, mass = around.oscillators, length * at.values, around.mass
-    squares = of.shape**2 / _impedance(of, sigma)
+    squares = of.shape**2 / impedance
     rates = sigma * squares[:, ~of.inside].sum(axis=1) + (of.mobility / (1.0 + of.rate * sigma[:, None])).sum(axis=1)
     parts = (sigma * rates, rates, sigma * sigma * squares[:, of.inside].sum(axis=1))
     by_force, rate_by, by_static = (((at.vectors * part) @ at.inverse).real for part in parts)
@@ -308,5 +311,5 @@ def _receptance(around: Surroundings, at: Spectrum, length: float) -> tuple[Floa
 
 def _impedance(of: Oscillators, sigma: Complex) -> Complex:
     """Return 1 + 2 zeta omega sigma + omega^2 sigma^2 of each oscillator, (N, n)."""
-    column, omega = sigma[:, None], of.angular_frequency
-    return np.asarray(1.0 + column * (2.0 * of.damping_ratio * omega + omega**2 * column))
+    column = sigma[:, None]
+    return np.asarray(1.0 + column * (of.damping + of.angular_frequency**2 * column))

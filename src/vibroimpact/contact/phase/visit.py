@@ -194,8 +194,7 @@ class _Visit:
             event = self.first_event(stretch)
             if event is None:
                 self.accept(stretch)
-                force = self.around.mass * np.abs(stretch.rate).max() / stretch.length
-                if float(stretch.rule.tail(stretch.force[:, None], np.array([force]))[0]) ** 2 < 1e-4 * self.tolerance:
+                if stretch.roughness**2 < 1e-4 * self.tolerance:
                     self.pace *= 1.5
             else:
                 ended = self.end_at(stretch, event)
@@ -229,11 +228,11 @@ class _Visit:
         return self.local.release_level
 
     def here(self) -> float:
-        return max(float(self.around.oscillators.approach(self.state)), self.local.release_level)
+        return max(float(self.around.oscillators.approach(self.state)), self.floor)
 
     def first_event(self, stretch: VibratingStretch) -> Event | None:
         """Return the first event in a stretch."""
-        weights, floor = stretch.rule.weights(_GRID).T, self.local.release_level
+        weights, floor = stretch.rule.weights(_GRID).T, self.floor
         approach, rate = weights @ stretch.approach, weights @ stretch.rate
         events: list[tuple[str, NDArray[np.bool_], Callable[[VibratingStretch], Floats]]] = []
         out = approach < floor - _ROUNDING * (approach.max() - floor)
@@ -312,7 +311,7 @@ class _Visit:
         """Is there too little energy left to get out of the indentation?"""
         here, around = self.here(), self.around
         energy = mechanical_energy(around, self.state) + float(self.local.work(here))
-        out = float(self.local.elastic_energy(self.local.release_level)) - around.mass * around.gravity * self.local.release_level
+        out = float(self.local.elastic_energy(self.floor)) - around.mass * around.gravity * self.floor
         return energy < out + 0.5 * around.mass * (self.tolerance * self.speed) ** 2
 
     def note_peaks(self, stretch: VibratingStretch) -> None:
@@ -330,7 +329,7 @@ class _Visit:
 
     def glide(self) -> bool:
         """Follow the free motion inside the indentation; return True if the surfaces part, False if the law pushes again."""
-        free, floor = FreeMotion(self.around.oscillators, self.state, self.around.gravity), self.local.release_level
+        free, floor = FreeMotion(self.around.oscillators, self.state, self.around.gravity), self.floor
 
         def push(time: Floats) -> Floats:
             state = free.state(time)
