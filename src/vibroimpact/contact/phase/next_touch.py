@@ -58,12 +58,15 @@ def time_to_part(motion: FreeMotion, level: float) -> float:
     time = 0.0
     for _ in range(_MOST_HORIZONS):
         approach, rate = (float(part) for part in motion.motion(np.array(time)))
+        horizon = 2.0 * (approach - level) / abs(rate) if rate else 1e-6
         if approach <= level:
             return time
-        horizon = 2.0 * (approach - level) / abs(rate) if rate else 1e-6
         times = time + horizon * _SAMPLES
         parted = motion.motion(times)[0] <= level
-        time = float(times[parted.argmax() if parted.any() else -1])
+        later = float(times[parted.argmax() if parted.any() else -1])
+        if later == time:  # rounding alone keeps them together
+            return time
+        time = later
     return np.inf
 
 
