@@ -5,8 +5,6 @@ Always without gravity: for a mass that comes with a speed and leaves with anoth
 
 from __future__ import annotations
 
-import itertools
-from collections.abc import Callable
 from dataclasses import fields
 from typing import TypeVar
 
@@ -19,7 +17,7 @@ from vibroimpact.contact.phase.contact import CAPTURED, FAILED
 from vibroimpact.contact.phase.contact_phase import contact_phase
 from vibroimpact.contact.phase.encounter import Encounter, encounter_of
 from vibroimpact.contact.phase.warm_starts import WarmStarts
-from vibroimpact.contact.roots import find_root
+from vibroimpact.contact.roots import solve_monotonic
 from vibroimpact.errors import ComputationError, InputError
 from vibroimpact.ranges import Range
 
@@ -27,8 +25,6 @@ Law = TypeVar("Law", bound=ContactLaw)
 
 _CHUNK = 2000  # drops integrated at once: enough for arrays to pay, few enough to stay in the cache
 _INVERSE_TOLERANCE = 1e-12
-_FARTHEST = 20  # steps of four from its present value in which a free parameter is looked for
-_EXACT = 1e-11  # as near as this to what is wanted is there
 
 
 def achieved_restitution(law: ContactLaw, mass: Array, speed: Array, *, tolerance: float = 1e-9) -> Array:
@@ -159,47 +155,16 @@ def law_achieving(law: Law, restitution: Array, mass: Array, speed: Array) -> La
         return np.asarray(_by_integration(trial, mass, speed, _INVERSE_TOLERANCE) if found is None else found)
 
     now = np.broadcast_to(np.asarray(getattr(law, name), dtype=float), shape)
-    if allowed.at_least == 0.0 and not np.isfinite(allowed.at_most):  # a damping: nothing achieves more than none of it
-        most = achieved(np.zeros(shape))
-        if np.any(out_of_reach := most < wanted - _EXACT):
-            first = np.flatnonzero(out_of_reach.ravel())[0]
-            numbers = (float(np.broadcast_to(value, shape).ravel()[first]) for value in (most, speed, wanted))
-            raise InputError("{} reaches restitutions up to {:.4g} at {:.4g} m/s, not {:g}".format(law.name, *numbers))
-    low, high, (least, most) = _bracket(achieved, wanted, np.where(now > 0.0, now, 1.0), allowed)
-    missed = np.isnan(low) | np.isnan(high)
+    damps = allowed.at_least == 0.0 and not np.isfinite(allowed.at_most)  # nothing achieves more than no damping
+    found = solve_monotonic(achieved, wanted, np.where(now > 0.0, now, 1.0), allowed, falls=damps)
+    missed = np.isnan(found.place)
     if missed.any():
         first = np.flatnonzero(missed.ravel())[0]
-        numbers = (float(np.broadcast_to(value, shape).ravel()[first]) for value in (least, most, speed, wanted))
-        raise InputError("{} reaches restitutions from {:.4g} to {:.4g} at {:.4g} m/s, not {:g}".format(law.name, *numbers))
-    found = find_root(lambda value: achieved(value) - wanted, low, high)
-    return law.changed({name: found if shape else float(found)})
-
-
-def _bracket(achieved: Callable[[Array], Array], wanted: Array, start: Array, allowed: Range) -> tuple[Array, Array, tuple[Array, Array]]:
-    """Return values of a parameter that achieve no more than is wanted, and more; NaN where none was found.
-
-    Also the least and the largest restitution that were seen. Looks at the ends of the range and in steps of four away
-    from the start.
-    """
-    low, high, least, most = (
-        np.full_like(start, np.nan),
-        np.full_like(start, np.nan),
-        np.full_like(start, np.inf),
-        np.full_like(start, -np.inf),
-    )
-    ends = [end + 0.0 * start for end in (allowed.at_least, allowed.at_most) if np.isfinite(end)]
-    steps = (start * 4.0**power for count in range(_FARTHEST) for power in ((-count, count) if count else (0,)))
-    for value in itertools.chain(ends, steps):
-        trial = np.clip(value, allowed.at_least, allowed.at_most)
-        restitution = achieved(trial)
-        least, most = np.fmin(least, restitution), np.fmax(most, restitution)
-        low = np.where(np.isnan(low) & (restitution <= wanted), trial, low)
-        high = np.where(np.isnan(high) & (restitution > wanted), trial, high)
-        exact = np.abs(restitution - wanted) <= _EXACT
-        low, high = np.where(exact, trial, low), np.where(exact, trial, high)
-        if not (np.isnan(low) | np.isnan(high)).any():
-            break
-    return low, high, (least, most)
+        numbers = (float(np.broadcast_to(value, shape).ravel()[first]) for value in (found.least, found.most, speed, wanted))
+        least, most, at, asked = numbers
+        reach = f"up to {most:.4g}" if damps and asked > most else f"from {least:.4g} to {most:.4g}"
+        raise InputError(f"{law.name} reaches restitutions {reach} at {at:.4g} m/s, not {asked:g}")
+    return law.changed({name: found.place if shape else float(found.place)})
 
 
 def _between(values: Array) -> str:
