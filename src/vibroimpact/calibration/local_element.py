@@ -14,6 +14,7 @@ from vibroimpact.errors import ComputationError, InputError
 
 _WITHIN = 1e-9  # relative, of force and speed
 _SWEEPS = 40
+_STEP = 1e-4  # relative, of difference quotients
 _LOSSES = np.geomspace(0.02, 50.0, 8)  # damping over that of a critical oscillator of the sphere's mass, to search
 
 
@@ -60,8 +61,7 @@ def identify_local_element(
     problem = replace(problem, impacts=1, duration=None, local_element=None)
 
     def outcome(element: tuple[float, float] | None) -> Floats:
-        impacts = simulate(replace(problem, local_element=element)).impacts
-        return np.array([impacts["max_force_N"][0], impacts[column][0]])
+        return _outcome(problem, element, column)
 
     hard = outcome(None)
     if not max_force < hard[0]:
@@ -87,6 +87,48 @@ def identify_local_element(
         f"no local element gives both: with a largest force of {max_force:.5g} N the rebound can be {min(reached):.3g} to "
         f"{max(reached):.3g} {unit}, and {rebound:.5g} {unit} was measured"
     )
+
+
+def local_element_deviations(
+    problem: Problem, element: tuple[float, float], max_force_deviation: float, separation_speed_deviation: float
+) -> tuple[float, float]:
+    """Return how well a force and a rebound tell stiffness [N/m] and damping [N s/m] of a local element: standard deviations.
+
+    To first order, from readings that are independent of each other.
+
+    Parameters
+    ----------
+    problem : Problem
+        The drop; only its first impact counts.
+    element : tuple of two floats
+        Stiffness [N/m] and damping [N s/m], as `identify_local_element` found them.
+    max_force_deviation, separation_speed_deviation : float
+        Standard deviations of the largest force [N] and of the separation speed [m/s].
+
+    Examples
+    --------
+    >>> import vibroimpact as vi
+    >>> problem = vi.load_case("paper:type1-constant").to_problem()
+    >>> element = identify_local_element(problem, 3582.036, rebound_height=0.26228)
+    >>> stiffness, damping = local_element_deviations(problem, element, 36.0, 0.02)
+    >>> f"{stiffness:.2g} N/m, {damping:.2g} N s/m"
+    '2.4e+04 N/m, 9.5 N s/m'
+    """
+    problem = replace(problem, impacts=1, duration=None)
+    column, slopes = "separation_speed_m_s", []
+    for number in range(2):
+        high, low = ([value * (1.0 + side * _STEP * (place == number)) for place, value in enumerate(element)] for side in (1.0, -1.0))
+        change = _outcome(problem, (high[0], high[1]), column) - _outcome(problem, (low[0], low[1]), column)
+        slopes.append(change / (2.0 * _STEP * element[number]))
+    noise = np.linalg.inv(np.array(slopes).T) * [max_force_deviation, separation_speed_deviation]
+    stiffness, damping = np.linalg.norm(noise, axis=1).tolist()
+    return stiffness, damping
+
+
+def _outcome(problem: Problem, element: tuple[float, float] | None, column: str) -> Floats:
+    """Return the largest force [N] and a rebound of the first impact with a local element."""
+    impacts = simulate(replace(problem, local_element=element)).impacts
+    return np.array([impacts["max_force_N"][0], impacts[column][0]])
 
 
 def _newton(function: Callable[[Floats], Floats], start: Floats) -> Floats | None:

@@ -15,10 +15,10 @@ _FARTHEST = 20  # steps of four from its start in which a value is looked for
 _EXACT = 1e-11  # as near as this to what is wanted is there
 
 
-def find_root(function: Callable[[Array], Array], low: Array, high: Array, *, tolerance: float = 1e-13) -> Array:
+def find_root(function: Callable[[Array], Array], low: Array, high: Array, *, tolerance: float = 1e-13, close: float = 0.0) -> Array:
     """Return where a function becomes positive between `low` (it is not) and `high` (it is).
 
-    The Illinois method, with a bisection wherever it is slow.
+    Inverse quadratic interpolation where three values allow it, else bisection, as Chandrupatla (1997) decides between them.
 
     Parameters
     ----------
@@ -28,34 +28,55 @@ def find_root(function: Callable[[Array], Array], low: Array, high: Array, *, to
         The brackets; which of the two is the larger does not matter.
     tolerance : float, default 1e-13
         How near the brackets come, as a part of the larger.
+    close : float, default 0.0
+        Where the function is less than this, it is taken for zero.
 
     Returns
     -------
     array
-        The bracket at which the function is positive.
+        The bracket at which the function is positive, or where it is taken for zero.
+
+    References
+    ----------
+    Chandrupatla, T. R. (1997). A new hybrid quadratic/bisection algorithm for finding the zero of a nonlinear function
+    without using derivatives. Advances in Engineering Software 28, 145-149.
 
     Examples
     --------
     >>> find_root(lambda x: x * x - np.array([2.0, 9.0]), np.zeros(2), np.array([2.0, 10.0])).round(12).tolist()
     [1.414213562373, 3.0]
     """
-    low, high = np.array(low, dtype=float), np.array(high, dtype=float)
-    below, above = function(low), function(high)
-    side = np.zeros(low.shape, dtype=int)
-    for sweep in range(200):
-        with np.errstate(all="ignore"):
-            middle = (low * above - high * below) / (above - below)
-        halved = (sweep % 4 == 3) | ~np.isfinite(middle)
-        middle = np.where(halved, 0.5 * (low + high), middle)
-        value = function(middle)
-        up = value > 0.0
-        below = np.where(up, np.where(side > 0, 0.5 * below, below), value)
-        above = np.where(up, value, np.where(side < 0, 0.5 * above, above))
-        low, high = np.where(up, low, middle), np.where(up, middle, high)
-        side = np.where(up, 1, -1)
-        if not np.any(np.abs(high - low) > tolerance * np.maximum(np.abs(low), np.abs(high))):
+    # `new` and `far` bracket the root, and `old` is the one before
+    new, far = (np.asarray(end, dtype=float) for end in (low, high))
+    new_value, far_value = function(new), function(far)
+    with np.errstate(all="ignore"):
+        part = new_value / (new_value - far_value)
+    part = np.where(np.isfinite(part), np.clip(part, 0.05, 0.95), 0.5)
+    old: Array
+    old_value: Array
+    for _ in range(200):
+        place = new + part * (far - new)
+        value = function(place)
+        same = np.equal(value > 0.0, new_value > 0.0)
+        old, old_value = np.where(same, new, far), np.where(same, new_value, far_value)
+        far, far_value = np.where(same, far, new), np.where(same, far_value, new_value)
+        new, new_value = place, value
+        width = np.abs(far - new)
+        least = tolerance * np.maximum(np.abs(new), np.abs(far))
+        zero = np.minimum(np.abs(new_value), np.abs(far_value)) < close
+        if not np.any((width > least) & ~zero):
             break
-    return high
+        with np.errstate(all="ignore"):
+            across, up = (new - far) / (old - far), (new_value - far_value) / (old_value - far_value)
+            curved = (up * up < across) & ((1.0 - up) ** 2 < 1.0 - across)
+            part = new_value / (far_value - new_value) * old_value / (far_value - old_value)
+            part += (old - new) / (far - new) * new_value / (old_value - new_value) * far_value / (old_value - far_value)
+            edge = np.minimum(least / width, 0.5)
+        part = np.where(curved & np.isfinite(part), np.clip(part, edge, 1.0 - edge), 0.5)
+        part = np.where(zero, np.where(np.abs(new_value) <= np.abs(far_value), 0.0, 1.0), part)  # stay there
+    nearer = np.abs(new_value) <= np.abs(far_value)
+    zero = np.minimum(np.abs(new_value), np.abs(far_value)) < close
+    return np.where(np.where(zero, nearer, new_value > 0.0), new, far)
 
 
 class Sought(NamedTuple):
@@ -107,5 +128,6 @@ def solve_monotonic(function: Callable[[Array], Array], wanted: Array, start: Ar
     missed = np.isnan(low) | np.isnan(high)
     if missed.all():
         return Sought(np.full_like(start, np.nan), least, most)
-    place = find_root(lambda value: function(value) - wanted, np.where(missed, start, low), np.where(missed, start, high))
+    low, high = (np.where(missed, start, bound) for bound in (low, high))
+    place = find_root(lambda value: function(value) - wanted, low, high, close=_EXACT)
     return Sought(np.where(missed, np.nan, place), least, most)

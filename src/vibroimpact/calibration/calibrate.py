@@ -1,0 +1,309 @@
+"""The parameter of a contact law with which a sphere bounces as it is wanted to, or as it was measured to."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+import numpy as np
+
+from vibroimpact.calibration.drops import by_function, drops_with, impacts_of, shortened
+from vibroimpact.calibration.fitting import Fit, fit_observations, fit_values, value_noise
+from vibroimpact.calibration.matching import Tunable, match
+from vibroimpact.calibration.observations import Floats, Observations, scaled
+from vibroimpact.calibration.one_impact import one_impact, stacked
+from vibroimpact.calibration.outcomes import REBOUND, check_weights
+from vibroimpact.calibration.reach import check_reached, other_parameters
+from vibroimpact.calibration.tunables import law_parameter
+from vibroimpact.calibration.uncertainty import default_draws, redrawn, undetermined, with_nearest_end
+from vibroimpact.dynamics.problem import Problem, StatesProblem
+from vibroimpact.dynamics.simulate import simulate
+from vibroimpact.errors import InputError
+
+_CURVE_POINTS = 41
+_PASSES = 20
+_MET = 1e-6  # of what is wanted
+
+
+@dataclass(frozen=True)
+class Calibration:
+    """What a calibration found.
+
+    Parameters
+    ----------
+    problem : Problem
+        The drop with its contact law as it was given.
+    parameter, unit : str
+        What was tuned.
+    weights : mapping of str to float
+        What was matched, by the names of `OUTCOMES`.
+    observations : Observations
+        The impacts that were matched: approach speeds and what was wanted.
+    values : array, shape (n,)
+        The value with which each comes out as wanted; the end of the range where noise puts it out of reach.
+    intervals : array, shape (n, 2), optional
+        Between which each value lies; None where nothing tells.
+    outcomes : mapping of str to array, shape (n,)
+        What the impacts are like with these values.
+    given : array, shape (n,)
+        The values as the problem gives them.
+    as_given : mapping of str to array, shape (n,)
+        What the impacts are like with those.
+    others : mapping of str to float
+        Values of other parameters of the law that would meet the first impact instead, the rest as given; none if it is met so.
+    fit : Fit
+        The value as a function of the approach speed.
+    curve : tuple of two arrays, optional
+        Approach speeds [m/s] and the exact value at each.
+    impacts : tuple of two arrays
+        Approach speed [m/s] and value of each impact of the drop.
+    drops : mapping of str to mapping
+        Impact tables of the drop: "target", where that can be simulated, and with the value "constant", "variable" from
+        impact to impact, and by the fitted "function".
+    confidence : float
+        Of the intervals.
+    bootstrap : int
+        How many measurements were drawn again for them; 0 if they are of first order.
+    doubts : tuple of str
+        What to doubt of it.
+    """
+
+    problem: Problem = field(repr=False)
+    parameter: str
+    unit: str
+    weights: Mapping[str, float]
+    observations: Observations = field(repr=False)
+    values: Floats
+    intervals: Floats | None
+    outcomes: Mapping[str, Floats] = field(repr=False)
+    given: Floats
+    as_given: Mapping[str, Floats] = field(repr=False)
+    others: Mapping[str, float]
+    fit: Fit
+    curve: tuple[Floats, Floats] | None = field(repr=False)
+    impacts: tuple[Floats, Floats]
+    drops: Mapping[str, Mapping[str, Floats]] = field(repr=False)
+    confidence: float
+    bootstrap: int
+    doubts: tuple[str, ...]
+
+
+def calibrate(
+    problem: StatesProblem,
+    target: StatesProblem | Observations,
+    *,
+    tunable: Tunable | None = None,
+    weights: Mapping[str, float] = REBOUND,
+    degree: int | None = None,
+    speeds: Sequence[float] | Floats | None = None,
+    confidence: float = 0.95,
+    bootstrap: int | None = None,
+    seed: int = 0,
+    progress: Callable[[float], None] | None = None,
+) -> Calibration:
+    """Find the value of a contact law's parameter with which impacts come out as wanted, and fit it over the approach speed.
+
+    Each impact is matched by itself, at the approach speed that it has, with gravity, to rounding. Where the target is a
+    drop, a polynomial goes through the values of its impacts by least squares, all alike. Where it is a measurement, the
+    polynomial is the one with which impacts are most likely to have been measured so, readings weighed by their noise.
+
+    Parameters
+    ----------
+    problem : Problem or Case
+        The drop whose contact law is calibrated.
+    target : Problem, Case or Observations
+        How it is to bounce: the same drop under another law, or what was measured.
+    tunable : Tunable, optional
+        What is tuned; by default the law's own free parameter.
+    weights : mapping of str to float
+        What is matched, by the names of `OUTCOMES`: one, or several with their weights. By default the rebound.
+    degree : int, optional
+        Of the polynomial; by default 2, or less where there are fewer speeds.
+    speeds : array, optional
+        Approach speeds [m/s] that the polynomial is fitted over in place of those of the drop; not with a measurement.
+    confidence : float, default 0.95
+        Of all intervals.
+    bootstrap : int, optional
+        How many times the measurement is drawn again to find the intervals; 0: they are of first order. By default by
+        bootstrap where those are wide.
+    seed : int, default 0
+        Of the drawing.
+    progress : callable, optional
+        Called with the fraction done, in [0, 1].
+
+    Raises
+    ------
+    InputError
+        If no value meets an impact: the message says which, what can be reached, and which other parameter would.
+
+    References
+    ----------
+    The rebound matched impact by impact by the damping of Adams' IMPACT, and the polynomial of the approach speed: "Study on
+    the Vibroimpact Response of the Particle Elastic Impact on the Metal Plate", Shock and Vibration.
+
+    Examples
+    --------
+    >>> import vibroimpact as vi
+    >>> found = calibrate(vi.load_case("paper:type1-constant"), vi.load_case("paper:type1-theory"))
+    >>> found.values.round(3).tolist()
+    [179.79, 172.746, 166.419, 160.869, 156.663]
+    >>> [float(f"{value:.5g}") for value in found.fit.function.coefficients]
+    [139.41, 5.8629, -0.1456]
+    """
+    tell = progress or (lambda done: None)
+    stated = problem.to_problem()
+    check_weights(weights)
+    _check(stated, confidence, bootstrap)
+    tuned = law_parameter(stated) if tunable is None else tunable
+    if isinstance(target, Observations):
+        if speeds is not None:
+            raise InputError("what was measured is known at its own speeds alone; leave the speeds out", "speeds")
+        found = _from_measurement(tuned, stated, target, weights, degree, confidence, bootstrap, seed, tell)
+    else:
+        found = _from_drop(tuned, stated, target.to_problem(), weights, degree, speeds, tell)
+    tell(0.9)
+    along, values = by_function(tuned, stated, found.fit.function)
+    chain = (found.seen.speeds, found.values) if found.seen.of_the_drop else (along, values)
+    drops = drops_with(tuned, chain[1], values)
+    if not isinstance(target, Observations):
+        drops = {"target": simulate(shortened(target.to_problem(), len(chain[1]))).impacts, **drops}
+    given = tuned.given[np.minimum(np.arange(len(found.values)), len(tuned.given) - 1)]
+    rows = np.arange(len(given))
+    as_given = {} if np.isnan(given).any() else tuned.respond(found.seen.speeds, given, rows)
+    missed = as_given and any(not np.allclose(as_given[name], found.seen.wanted[name], rtol=_MET, atol=0.0) for name in weights)
+    tell(1.0)
+    return Calibration(
+        problem=stated,
+        parameter=tuned.name,
+        unit=tuned.unit,
+        weights=dict(weights),
+        observations=found.seen,
+        values=found.values,
+        intervals=found.intervals,
+        outcomes=tuned.respond(found.seen.speeds, found.values, rows),
+        given=given,
+        as_given=as_given,
+        others=other_parameters(stated, tuned, found.seen, weights) if missed else {},
+        fit=found.fit,
+        curve=found.curve,
+        impacts=chain,
+        drops=drops,
+        confidence=confidence,
+        bootstrap=found.draws,
+        doubts=tuple(found.doubts),
+    )
+
+
+class _Found(NamedTuple):
+    seen: Observations
+    values: Floats
+    fit: Fit
+    intervals: Floats | None = None
+    curve: tuple[Floats, Floats] | None = None
+    draws: int = 0
+    doubts: Sequence[str] = ()
+
+
+def _from_drop(
+    tuned: Tunable,
+    problem: Problem,
+    target: Problem,
+    weights: Mapping[str, float],
+    degree: int | None,
+    speeds: Sequence[float] | Floats | None,
+    tell: Callable[[float], None],
+) -> _Found:
+    """Match the impacts of a drop under another law."""
+    table = simulate(shortened(target, impacts_of(problem))).impacts
+    at = table["approach_speed_m_s"][table["separation_speed_m_s"] > 0.0]
+    if not len(at):
+        raise InputError("under the law of the target the sphere does not leave the plate; there is no rebound to match", "target")
+
+    def wanted_at(fast: Floats) -> tuple[Observations, Floats]:
+        outcomes = one_impact(target, stacked(target.laws, len(fast)), fast)
+        labels = tuple(f"impact {number + 1}" for number in range(len(fast)))
+        seen = Observations(fast, {name: outcomes[name] for name in weights}, labels=labels)
+        return seen, check_reached(tuned, problem, seen, weights, match(tuned, fast, seen.wanted, weights))
+
+    for _ in range(_PASSES):
+        seen, values = wanted_at(at)
+        tell(0.3)
+        if set(weights) != {"separation_speed"}:
+            break  # it bounces otherwise than the target does, whose impacts are matched all the same
+        # a law that lets go before the overlap is gone comes down again a little faster than it left
+        after = tuned.respond(at, values, np.arange(len(at)))["next_speed"][:-1]
+        if np.allclose(after, at[1:], rtol=1e-10, atol=0.0):
+            break
+        at = np.append(at[0], after)
+    over, curve = seen.speeds, None
+    if speeds is not None:
+        over = np.asarray(speeds, dtype=float)
+    elif len(at) > 1 and len(weights) == 1 and not problem.vibrates:
+        over = np.linspace(at.min(), at.max(), _CURVE_POINTS)
+    if len(over) != len(at):
+        curve = (over, _along(tuned, problem, target, weights, over, asked=speeds is not None))
+    through = curve if curve is not None and speeds is not None else (seen.speeds, values)
+    return _Found(seen, values, fit_values(*through, _degree(through[0], degree)), curve=curve)
+
+
+def _along(tuned: Tunable, problem: Problem, target: Problem, weights: Mapping[str, float], speeds: Floats, *, asked: bool) -> Floats:
+    """Return the values at approach speeds, under the first laws; NaN where there is none, unless they were asked for."""
+    outcomes = one_impact(target, target.laws[0], speeds)
+    labels = tuple(f"an impact at {speed:.4g} m/s" for speed in speeds)
+    seen = Observations(speeds, {name: outcomes[name] for name in weights}, labels=labels, of_the_drop=False)
+    first = np.zeros(len(speeds), dtype=int)
+    found = match(tuned, speeds, seen.wanted, weights, first)
+    return check_reached(tuned, problem, seen, weights, found) if asked else found.values
+
+
+def _from_measurement(
+    tuned: Tunable,
+    problem: Problem,
+    seen: Observations,
+    weights: Mapping[str, float],
+    degree: int | None,
+    confidence: float,
+    bootstrap: int | None,
+    seed: int,
+    tell: Callable[[float], None],
+) -> _Found:
+    """Match what was measured."""
+    missing = [name for name in weights if name not in seen.wanted]
+    if missing:
+        raise InputError(f"{', '.join(missing)} was not measured; there is {', '.join(seen.wanted)}", "match")
+    rows = np.arange(len(seen.speeds))
+    found = match(tuned, seen.speeds, seen.wanted, weights)
+    alone = check_reached(tuned, problem, seen, weights, found)
+    tell(0.3)
+    fit = fit_observations(tuned, seen, weights, _degree(seen.speeds, degree), alone)
+    tell(0.5)
+    values = with_nearest_end(tuned, alone, seen.speeds, seen.wanted, weights, rows)
+    doubts = [
+        f"{label}: nothing that {tuned.name} can be meets it, but its noise explains that"
+        for label, value in zip(seen.labels, alone, strict=True)
+        if np.isnan(value)
+    ]
+    sized = seen if seen.deviations_known else scaled(seen, fit.scatter)
+    deviations = np.linalg.norm(value_noise(tuned, sized, weights, values), axis=1)
+    half, draws = fit.quantile(confidence) * deviations, 0
+    intervals = np.stack([values - half, values + half], axis=1) if np.isfinite(half).all() else None
+    if intervals is not None:
+        draws = default_draws(values, half) if bootstrap is None else bootstrap
+    if draws:
+        intervals, fit = redrawn(tuned, sized, weights, fit, deviations, draws, confidence, seed, lambda done: tell(0.5 + 0.4 * done))
+    doubts += undetermined(tuned, values, intervals, seen, fit, confidence)
+    return _Found(seen, values, fit, intervals, None, draws, doubts)
+
+
+def _check(problem: Problem, confidence: float, bootstrap: int | None) -> None:
+    if problem.shape != ():
+        raise InputError("one drop is calibrated at a time; take one of the batch")
+    if not 0.0 < confidence < 1.0:
+        raise InputError(f"{confidence:g} is not allowed; it must lie between 0 and 1", "confidence")
+    if bootstrap is not None and bootstrap != 0 and not bootstrap >= 20:
+        raise InputError(f"{bootstrap} draws tell no interval; it must be 0, or at least 20", "bootstrap")
+
+
+def _degree(speeds: Floats, degree: int | None) -> int:
+    return min(2, len(np.unique(speeds)) - 1) if degree is None else degree

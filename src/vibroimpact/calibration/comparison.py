@@ -1,0 +1,64 @@
+"""What a calibration still gets wrong: its drops beside what was wanted, impact by impact."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from vibroimpact.calibration.calibrate import Calibration
+from vibroimpact.calibration.observations import Floats
+from vibroimpact.calibration.outcomes import OUTCOMES
+
+COMPARED = {
+    "max_indentation_m": "Largest indentation",
+    "max_force_N": "Largest force",
+    "duration_s": "Contact duration",
+    "rebound_height_m": "Rebound height",
+    "separation_speed_m_s": "Separation speed",
+}
+"""Columns of the impact table that are compared, and how they are headed."""
+
+WAYS = ("constant", "variable", "function")
+"""The ways to give the value: that of the first impact throughout, each its own, and by the fitted function."""
+
+
+def reference(found: Calibration) -> dict[str, Floats]:
+    """Return what the impacts of the drop were wanted to be, by column: simulated, or measured where that was of the drop."""
+    number = len(found.impacts[1])
+    if "target" in found.drops:
+        table = found.drops["target"]
+        return {column: table[column][:number] for column in COMPARED if np.any(table[column][:number] > 0.0)}
+    if not found.observations.of_the_drop:
+        return {}
+    seen = found.observations.wanted
+    return {column: seen[name] for name, (column, _) in OUTCOMES.items() if name in seen}
+
+
+def differences(found: Calibration) -> dict[str, Mapping[str, Floats]]:
+    """Return how far each way is off from what was wanted, as a part of it, by column and way; NaN after its last impact.
+
+    Examples
+    --------
+    >>> import vibroimpact as vi
+    >>> from vibroimpact.calibration.calibrate import calibrate
+    >>> found = calibrate(vi.load_case("paper:type1-constant"), vi.load_case("paper:type1-theory"))
+    >>> [round(100.0 * value, 2) for value in differences(found)["max_indentation_m"]["constant"].tolist()]
+    [-0.38, -0.67, -1.7, -3.41, -5.7]
+    """
+    return {
+        column: {way: _padded(found.drops[way][column], len(wanted)) / wanted - 1.0 for way in WAYS}
+        for column, wanted in reference(found).items()
+    }
+
+
+def largest_misfit(found: Calibration) -> float:
+    """Return how far the polynomial is off at most from the exact values, over the speeds that it was fitted over."""
+    speeds, values = found.curve if found.curve is not None else (found.observations.speeds, found.values)
+    function = found.fit.function
+    inside = (speeds >= function.slowest * (1.0 - 1e-9)) & (speeds <= function.fastest * (1.0 + 1e-9))
+    return float(np.nanmax(np.abs(function(speeds) - values)[inside], initial=0.0))
+
+
+def _padded(values: Floats, number: int) -> Floats:
+    return np.append(values, np.full(max(number - len(values), 0), np.nan))[:number]

@@ -1,0 +1,153 @@
+"""The value of a parameter with which each impact comes out as it is wanted."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vibroimpact.calibration.observations import Floats
+from vibroimpact.contact.roots import find_root, solve_monotonic
+from vibroimpact.dynamics.problem import Problem
+from vibroimpact.ranges import Range
+
+_STEP = 1e-4
+"""Relative step of difference quotients: with impacts good to 1e-12, both of its errors are about 1e-8."""
+
+_GRID = np.append(0.0, 2.0 ** np.arange(-8.0, 9.0))
+"""Of the start: values among which the best is looked for first, where several outcomes can't all be met."""
+
+
+@dataclass(frozen=True)
+class Tunable:
+    """A parameter and what impacts are like with it.
+
+    Parameters
+    ----------
+    name, unit : str
+        The parameter.
+    allowed : Range
+        Of its value.
+    start : float
+        Where to begin, > 0.
+    given : array, shape (n,) or ()
+        Its value as the case gives it, one an impact; NaN where the case does not.
+    respond : callable
+        Takes approach speeds [m/s] (m,), values (m,), and which impact each stands for (m,); returns the outcomes, as
+        `one_impact` does.
+    drop : callable
+        Takes values, one an impact, and returns the drop with them; the last one goes on.
+    damps : bool
+        Is it known that the separation speed falls as the value rises from its lower end?
+    """
+
+    name: str
+    unit: str
+    allowed: Range
+    start: float
+    given: Floats
+    respond: Callable[[Floats, Floats, NDArray[np.intp]], dict[str, Floats]]
+    drop: Callable[[Floats], Problem]
+    damps: bool = False
+
+
+@dataclass(frozen=True)
+class Match:
+    """Values (n,), NaN where nothing fits; and the least and the largest outcome that was seen on the way, where one is matched."""
+
+    values: Floats
+    least: Floats
+    most: Floats
+
+
+def match(
+    tunable: Tunable, speeds: Floats, wanted: Mapping[str, Floats], weights: Mapping[str, float], which: NDArray[np.intp] | None = None
+) -> Match:
+    """Return the value with which each impact comes out as wanted, or as near to that as can be.
+
+    Parameters
+    ----------
+    tunable : Tunable
+        The parameter.
+    speeds : array, shape (n,)
+        Approach speeds [m/s].
+    wanted : mapping of str to array, shape (n,)
+        Outcomes in SI.
+    weights : mapping of str to float
+        Of each outcome that counts. With several, the sum over them of weight times squared relative deviation becomes least.
+    which : array of int, optional
+        Which impact of the drop each stands for.
+    """
+    rows = np.arange(len(speeds)) if which is None else which
+    scales = {name: speeds if name == "separation_speed" else np.abs(wanted[name]) for name in weights}
+
+    def misses(values: Floats) -> dict[str, Floats]:
+        found = tunable.respond(speeds, values, rows)
+        return {name: (found[name] - wanted[name]) / scales[name] for name in weights}
+
+    start = np.full(len(speeds), tunable.start)
+    if len(weights) == 1:
+        (name,) = weights
+        falls = tunable.damps and name == "separation_speed"
+        found = solve_monotonic(lambda values: misses(values)[name] + 1.0, np.ones(len(speeds)), start, tunable.allowed, falls=falls)
+        least, most = ((bound - 1.0) * scales[name] + wanted[name] for bound in (found.least, found.most))
+        return Match(found.place, least, most)
+    return Match(_best(misses, start, weights, tunable.allowed), *np.full((2, len(speeds)), np.nan))
+
+
+def _best(misses: Callable[[Floats], dict[str, Floats]], start: Floats, weights: Mapping[str, float], allowed: Range) -> Floats:
+    """Return where the weighted sum of squares is least: the best of a grid, then the root of the slope beside it."""
+
+    def cost(values: Floats) -> Floats:
+        return np.asarray(sum(weight * misses(values)[name] ** 2 for name, weight in weights.items()))
+
+    inside = [clip(factor * start, allowed) for factor in _GRID]
+    costs = np.array([cost(values) for values in inside])
+    best = np.nanargmin(np.where(np.isnan(costs), np.inf, costs), axis=0)
+    ends = [np.stack(inside)[np.clip(best + side, 0, len(inside) - 1), np.arange(len(start))] for side in (-1, 1)]
+
+    def slope(values: Floats) -> Floats:
+        step = _STEP * np.maximum(values, start * 1e-3)
+        up, down = (misses(clip(values + side * step, allowed)) for side in (1.0, -1.0))
+        return np.asarray(sum(weight * (up[name] ** 2 - down[name] ** 2) for name, weight in weights.items()))
+
+    turns = (slope(ends[0]) < 0.0) & (slope(ends[1]) > 0.0)
+    if not turns.any():
+        return np.where(best == 0, inside[0], np.nan)
+    found = find_root(slope, *ends, tolerance=1e-10)
+    return np.where(turns, found, np.where(best == 0, inside[0], np.nan))
+
+
+def clip(values: Floats, allowed: Range) -> Floats:
+    """Return values moved into a range, just inside where an end of it is left out."""
+    low = allowed.above * (1.0 + 1e-12) + 1e-300 if np.isfinite(allowed.above) else allowed.at_least
+    high = allowed.below * (1.0 - 1e-12) if np.isfinite(allowed.below) else allowed.at_most
+    return np.clip(values, low, high)
+
+
+@dataclass(frozen=True)
+class Slopes:
+    """Outcomes (n,) by name, and their derivatives by the value of the parameter and by the approach speed."""
+
+    outcomes: dict[str, Floats]
+    by_value: dict[str, Floats]
+    by_speed: dict[str, Floats]
+
+
+def slopes(tunable: Tunable, speeds: Floats, values: Floats) -> Slopes:
+    """Return outcomes of impacts and their derivatives, by central differences inside the range of the parameter."""
+    step = _STEP * np.maximum(np.abs(values), 1e-3 * tunable.start)
+    high, low = clip(values + step, tunable.allowed), clip(values - step, tunable.allowed)
+    faster, slower = speeds * (1.0 + _STEP), speeds * (1.0 - _STEP)
+    rows = np.tile(np.arange(len(speeds)), 5)
+    every = tunable.respond(
+        np.concatenate([speeds, speeds, speeds, faster, slower]), np.concatenate([values, high, low, values, values]), rows
+    )
+    parts = {name: found.reshape(5, -1) for name, found in every.items()}
+    return Slopes(
+        {name: part[0] for name, part in parts.items()},
+        {name: (part[1] - part[2]) / (high - low) for name, part in parts.items()},
+        {name: (part[3] - part[4]) / (faster - slower) for name, part in parts.items()},
+    )

@@ -1,0 +1,36 @@
+"""What of an impact can be matched."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+from vibroimpact.errors import InputError, did_you_mean
+
+OUTCOMES = {
+    "separation_speed": ("separation_speed_m_s", "m/s"),
+    "max_force": ("max_force_N", "N"),
+    "max_indentation": ("max_indentation_m", "m"),
+    "duration": ("duration_s", "s"),
+}
+"""What of an impact can be matched: its column of the impact table, and unit."""
+
+REBOUND: Mapping[str, float] = {"separation_speed": 1.0}
+"""What is matched by default."""
+
+
+def check_weights(weights: Mapping[str, float]) -> None:
+    """Raise unless these are outcomes that can be matched, with weights.
+
+    Raises
+    ------
+    InputError
+        If one is not known, or a weight is not positive.
+    """
+    for name, weight in weights.items():
+        if name not in OUTCOMES:
+            raise InputError(f'"{name}" can\'t be matched; there are {", ".join(OUTCOMES)}.{did_you_mean(name, OUTCOMES)}', "match")
+        if not 0.0 < weight < math.inf:
+            raise InputError(f"{weight:g} is not allowed as a weight; it must be greater than 0", f"match.{name}")
+    if not weights:
+        raise InputError(f"name at least one of {', '.join(OUTCOMES)}", "match")

@@ -1,0 +1,78 @@
+"""Targets that no value meets: which, what can be reached, and which other parameter would."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import fields
+
+import numpy as np
+
+from vibroimpact.calibration.matching import Match, Tunable, match
+from vibroimpact.calibration.observations import Floats, Observations
+from vibroimpact.calibration.outcomes import OUTCOMES
+from vibroimpact.calibration.tunables import law_parameter
+from vibroimpact.contact.law import CompliantLaw
+from vibroimpact.dynamics.problem import Problem
+from vibroimpact.errors import InputError
+
+_BEYOND_NOISE = 3.0  # standard deviations
+_WORDS = {
+    "separation_speed": "separation speed",
+    "max_force": "largest force",
+    "max_indentation": "largest indentation",
+    "duration": "contact duration",
+}
+
+
+def check_reached(tunable: Tunable, problem: Problem, seen: Observations, weights: Mapping[str, float], found: Match) -> Floats:
+    """Return the values found; those that noise puts out of reach are NaN.
+
+    Raises
+    ------
+    InputError
+        If one is out of reach and noise does not explain it.
+    """
+    missed = np.flatnonzero(np.isnan(found.values))
+    if len(weights) > 1:
+        if missed.size:
+            raise InputError(f"{seen.labels[missed[0]]}: no value of {tunable.name} is better than all others", "target")
+        return found.values
+    (name,) = weights
+    wanted, unit = seen.wanted[name], OUTCOMES[name][1]
+    for row in missed:
+        beyond = max(wanted[row] - found.most[row], found.least[row] - wanted[row])
+        noise = float(np.linalg.norm(seen.noise[name][row])) if seen.deviations_known else 0.0
+        if beyond <= _BEYOND_NOISE * noise:
+            continue
+        others = other_parameters(problem, tunable, seen, weights, row=int(row))
+        hint = "; with the rest as given it would take " + " or ".join(_value(problem, *item) for item in others.items()) if others else ""
+        asked = f"{seen.labels[row]}: after {seen.speeds[row]:.5g} m/s a {_WORDS[name]} of {wanted[row]:.5g} {unit} is wanted"
+        given = f"{problem.laws[0].name} gives {found.least[row]:.5g} to {found.most[row]:.5g} {unit}, whatever {tunable.name} is"
+        raise InputError(f"{asked}, and {given}{hint}", "target")
+    return found.values
+
+
+def other_parameters(
+    problem: Problem, tunable: Tunable, seen: Observations, weights: Mapping[str, float], row: int = 0
+) -> dict[str, float]:
+    """Return values of the other parameters of the law, each of which would meet an impact with the rest as given.
+
+    None with several outcomes, or where bodies vibrate.
+    """
+    law = problem.laws[0]
+    if len(weights) > 1 or problem.vibrates or not isinstance(law, CompliantLaw):
+        return {}
+    found = {}
+    for item in fields(law):
+        if item.metadata["memory"] or item.name == tunable.name or not isinstance(getattr(law, item.name), float):
+            continue
+        other = law_parameter(problem, item.name)
+        wanted = {name: values[[row]] for name, values in seen.wanted.items()}
+        value = match(other, seen.speeds[[row]], wanted, weights, np.array([row])).values[0]
+        if np.isfinite(value):
+            found[item.name] = float(value)
+    return found
+
+
+def _value(problem: Problem, name: str, value: float) -> str:
+    return f"{name} = {value:.5g} {law_parameter(problem, name).unit}".rstrip()

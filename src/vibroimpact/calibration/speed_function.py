@@ -1,0 +1,39 @@
+"""A parameter of a contact law as a polynomial of the approach speed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from numpy.polynomial import polynomial
+
+
+@dataclass(frozen=True)
+class SpeedFunction:
+    """A polynomial of the approach speed, and the speeds that it was fitted over.
+
+    Parameters
+    ----------
+    coefficients : tuple of float
+        Lowest power first; of the power k in the unit of the parameter over (m/s)^k.
+    slowest, fastest : float
+        The range of speeds that it was fitted over [m/s].
+
+    Examples
+    --------
+    >>> f"{SpeedFunction((138.93525, 6.00288, -0.15582), 3.2, 8.8)(8.8266):.2f}"
+    '179.78'
+    """
+
+    coefficients: tuple[float, ...]
+    slowest: float
+    fastest: float
+
+    @property
+    def degree(self) -> int:
+        """The highest power."""
+        return len(self.coefficients) - 1
+
+    def __call__(self, speed: Any) -> Any:
+        """Return the parameter at an approach speed [m/s]."""
+        return polynomial.polyval(speed, self.coefficients)

@@ -1,0 +1,112 @@
+"""What can be tuned: a parameter of the contact law, or the damping of a body's modes."""
+
+from __future__ import annotations
+
+from dataclasses import fields, replace
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vibroimpact.calibration.matching import Tunable
+from vibroimpact.calibration.observations import Floats
+from vibroimpact.calibration.one_impact import one_impact, stacked
+from vibroimpact.contact.law import ContactLaw
+from vibroimpact.dynamics.problem import Problem
+from vibroimpact.errors import InputError, did_you_mean
+from vibroimpact.ranges import Range
+
+_MODAL_START = 0.02
+
+
+def law_parameter(problem: Problem, name: str | None = None) -> Tunable:
+    """Return a parameter of the contact law of a drop as something to tune.
+
+    Parameters
+    ----------
+    problem : Problem
+        The drop.
+    name : str, optional
+        The parameter; by default the one that sets how much is lost.
+
+    Raises
+    ------
+    InputError
+        If the law has no such parameter, or none that sets its loss.
+
+    Examples
+    --------
+    >>> import vibroimpact as vi
+    >>> law_parameter(vi.load_case("paper:type1-constant").to_problem()).given.tolist()
+    [179.75]
+    """
+    laws, first = problem.laws, problem.laws[0]
+    known = {item.name: item for item in fields(first) if not item.metadata["memory"] and getattr(first, item.name) is not None}
+    if name is None and first.free_parameter is None:
+        raise InputError(f"{first.name} has no parameter that sets its loss; name another law, or one of {', '.join(known)}", "parameter")
+    chosen = name or str(first.free_parameter)
+    if chosen not in known:
+        raise InputError(f'{first.name} has no parameter "{chosen}"; it has {", ".join(known)}.{did_you_mean(chosen, known)}', "parameter")
+    told = known[chosen].metadata
+    given = np.array([float(getattr(law, chosen)) for law in laws])
+    start = next((value for value in (given[0], told["example"]) if value), 1.0)
+
+    def respond(speeds: Floats, values: Floats, which: NDArray[np.intp]) -> dict[str, Floats]:
+        law = stacked(laws, int(which.max()) + 1)
+        return one_impact(problem, law.take(which).changed({chosen: values}), speeds)
+
+    def drop(values: Floats) -> Problem:
+        number = max(len(values), len(laws))
+        return replace(problem, laws=tuple(_law(laws, impact).changed({chosen: _at(values, impact)}) for impact in range(number)))
+
+    unit = str(told["unit"])
+    if unit == "N/m^n":
+        exponent = float(getattr(first, "exponent", 1.0))
+        unit = "N/m" if exponent == 1.0 else f"N/m^{exponent:g}"
+    allowed: Range = told["range"]
+    damps = chosen == first.free_parameter and allowed.at_least == 0.0 and not np.isfinite(allowed.at_most)
+    return Tunable(chosen, unit, allowed, float(start), given, respond, drop, damps)
+
+
+def modal_damping(problem: Problem, body: Literal["sphere", "plate"]) -> Tunable:
+    """Return the damping ratio of the modes of a body, one for all of them, as something to tune.
+
+    Parameters
+    ----------
+    problem : Problem
+        The drop.
+    body : "sphere" or "plate"
+        Which of its bodies.
+
+    Raises
+    ------
+    InputError
+        If the body has no modes.
+    """
+    modes = getattr(problem, body).modes
+    if modes is None:
+        raise InputError(f'the {body} is rigid and has no modes to damp; give it model = "elastic"', "parameter")
+
+    def damped(ratio: float) -> Problem:
+        ratios = np.where(modes.frequencies > 0.0, ratio, 0.0)
+        return replace(problem, **{body: replace(getattr(problem, body), modes=replace(modes, damping_ratios=ratios))})
+
+    def respond(speeds: Floats, values: Floats, which: NDArray[np.intp]) -> dict[str, Floats]:
+        each = [
+            one_impact(damped(float(value)), _law(problem.laws, int(impact)), np.array([speed]))
+            for speed, value, impact in zip(speeds, values, which, strict=True)
+        ]
+        return {name: np.concatenate([one[name] for one in each]) for name in each[0]}
+
+    ratios = np.unique(modes.damping_ratios[modes.frequencies > 0.0])
+    given = np.array([ratios[0] if len(ratios) == 1 else np.nan])
+    start = float(given[0]) if given[0] > 0.0 else _MODAL_START
+    return Tunable(f"{body}.damping", "", Range(at_least=0, at_most=10), start, given, respond, lambda values: damped(float(values[0])))
+
+
+def _law(laws: tuple[ContactLaw, ...], impact: int) -> ContactLaw:
+    return laws[min(impact, len(laws) - 1)]
+
+
+def _at(values: Floats, impact: int) -> float:
+    return float(values[min(impact, len(values) - 1)])

@@ -1,0 +1,139 @@
+"""How well measurements determine a value: intervals by drawing them again, and what to doubt."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+
+import numpy as np
+from numpy.polynomial import polynomial
+from numpy.typing import NDArray
+
+from vibroimpact.calibration.fitting import Fit
+from vibroimpact.calibration.matching import Tunable, clip, match
+from vibroimpact.calibration.observations import Floats, Observations
+
+_DRAWN_VALUES = 2000  # that a bootstrap finds unless more is asked for, so that it takes seconds
+_FEWEST_DRAWS, _MOST_DRAWS = 100, 400
+_MOST_IMPACTS = 20
+_WIDE = 0.25
+_DETERMINED = 1.0
+"""Widths of an interval, as a part of its value, from which first order is not trusted, and from which nothing is determined."""
+
+_AT_ONCE = 500
+_MOST_TOLD = 5
+
+
+def default_draws(values: Floats, half_widths: Floats) -> int:
+    """Return how many measurements to draw again: some where intervals are too wide to trust first order, else none.
+
+    With many impacts first order is enough for the function, which is what they are for.
+    """
+    if len(values) > _MOST_IMPACTS or not np.isfinite(half_widths).all() or np.all(half_widths <= _WIDE * np.abs(values)):
+        return 0
+    return int(np.clip(_DRAWN_VALUES // len(values), _FEWEST_DRAWS, _MOST_DRAWS))
+
+
+def redrawn(
+    tunable: Tunable,
+    observations: Observations,
+    weights: Mapping[str, float],
+    fit: Fit,
+    deviations: Floats,
+    draws: int,
+    confidence: float,
+    seed: int,
+    progress: Callable[[float], None],
+) -> tuple[Floats, Fit]:
+    """Return intervals of the values, (n, 2), and the fit with the covariance of its coefficients, by a parametric bootstrap.
+
+    The measurement is drawn again with its own noise about itself, and matched again. A draw that no value meets counts with the
+    end of the range that comes nearest.
+
+    Parameters
+    ----------
+    tunable : Tunable
+        The parameter.
+    observations : Observations
+        What was measured, with noise of known size.
+    weights : mapping of str to float
+        Outcomes that count.
+    fit : Fit
+        The fit of what was measured.
+    deviations : array, shape (n,)
+        Standard deviations of the values to first order, by which they count in the polynomials through the draws.
+    draws : int
+        How many measurements are drawn.
+    confidence : float
+        Of the intervals.
+    seed : int
+        Of the drawing.
+    progress : callable
+        Called with the fraction done.
+    """
+    random, number = np.random.default_rng(seed), len(observations.speeds)
+    values, speeds, at_once = [], [], max(1, _AT_ONCE // number)
+    for begin in range(0, draws, at_once):
+        drawn = [observations.redrawn(random) for _ in range(min(at_once, draws - begin))]
+        fast = np.concatenate([one[0] for one in drawn])
+        wanted = {name: np.concatenate([one[1][name] for one in drawn]) for name in weights}
+        which = np.tile(np.arange(number), len(drawn))
+        found = match(tunable, fast, wanted, weights, which).values
+        values.append(with_nearest_end(tunable, found, fast, wanted, weights, which).reshape(len(drawn), number))
+        speeds.append(fast.reshape(len(drawn), number))
+        progress(min(1.0, (begin + at_once) / draws))
+    every, fast = np.concatenate(values), np.concatenate(speeds)
+    tails = 50.0 * (1.0 - confidence)
+    intervals = np.percentile(every, [tails, 100.0 - tails], axis=0).T
+    counts = 1.0 / deviations
+    coefficients = [polynomial.polyfit(at, row, fit.function.degree, w=counts) for at, row in zip(fast, every, strict=True)]
+    return intervals, replace(fit, covariance=np.atleast_2d(np.cov(np.array(coefficients).T)))
+
+
+def with_nearest_end(
+    tunable: Tunable,
+    values: Floats,
+    speeds: Floats,
+    wanted: Mapping[str, Floats],
+    weights: Mapping[str, float],
+    which: NDArray[np.intp],
+) -> Floats:
+    """Return values, with the end of the range that comes nearest to what is wanted where nothing meets it."""
+    missing = np.flatnonzero(np.isnan(values))
+    if not missing.size:
+        return values
+    ends = [clip(np.full(missing.size, side), tunable.allowed) for side in (-np.inf, np.inf)]
+    ends = [end for end in ends if np.isfinite(end).all()]
+    misses = []
+    for end in ends:
+        found = tunable.respond(speeds[missing], end, which[missing])
+        misses.append(sum(weight * (found[name] / wanted[name][missing] - 1.0) ** 2 for name, weight in weights.items()))
+    filled = values.copy()
+    filled[missing] = np.choose(np.argmin(np.array(misses), axis=0), ends) if ends else np.nan
+    return filled
+
+
+def undetermined(
+    tunable: Tunable, values: Floats, intervals: Floats | None, observations: Observations, fit: Fit, confidence: float
+) -> list[str]:
+    """Return sentences about values and coefficients that the measurement does not determine."""
+    told, percent = [], f"{100.0 * confidence:g} %"
+    if intervals is None:
+        if fit.freedom <= 0:
+            told.append("as many impacts as coefficients, and no standard deviation: nothing tells how well these are known")
+        return told
+    wide = intervals[:, 1] - intervals[:, 0] > _DETERMINED * np.abs(values)
+    for label, value, (low, high) in zip(observations.labels, values, intervals, strict=True):
+        if high - low > _DETERMINED * abs(value):
+            told.append(
+                f"{label} does not determine {tunable.name}: {value:.4g} {tunable.unit}".rstrip()
+                + f", but {max(low, tunable.allowed.at_least):.4g} to {high:.4g} at {percent}"
+            )
+        if len(told) == _MOST_TOLD:
+            told.append(f"so it is with {int(wide.sum()) - _MOST_TOLD} more")
+            break
+    highest, half = fit.function.coefficients[-1], fit.half_widths(confidence)[-1]
+    if fit.function.degree and not abs(highest) > half:
+        known = f"the highest coefficient is {highest:.3g}, known to {half:.2g} at {percent}"
+        told.append(f"the measurement does not call for degree {fit.function.degree}: {known}; a lower degree will do")
+    return told
