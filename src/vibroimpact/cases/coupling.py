@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
-from vibroimpact.calibration.local_element import identify_local_element
+from vibroimpact.calibration.local_element import identify_local_element, local_element_deviations
 from vibroimpact.cases.build import contact_laws_of, contact_pair, elastic_names, first_speed
 from vibroimpact.cases.local_section import MeasuredImpact
 from vibroimpact.cases.modes import BodyModes, compute_modes
@@ -18,6 +18,7 @@ from vibroimpact.contact.local import LocalContact
 from vibroimpact.contact.phase.encounter import encounter_of
 from vibroimpact.contact.quasi_static import QuasiStatic
 from vibroimpact.dynamics.problem import Problem
+from vibroimpact.dynamics.simulate import simulate
 from vibroimpact.errors import InputError
 from vibroimpact.structures.modal_model import ModalBasis, ModalModel
 from vibroimpact.structures.sphere_compliance import sphere_term
@@ -202,10 +203,22 @@ def coupled(
         given = (local.local_stiffness, local.local_damping)
         facts = {**coupling.facts, "local_stiffness_N_m": given[0], "local_damping_N_s_m": given[1]}
         return replace(found, local_element=given, facts=facts)
-    tried = problem if local.measured.plate == "rigid" else found
+    element, facts = _identified(case, local.measured, problem if local.measured.plate == "rigid" else found)
+    return replace(found, local_element=element, facts={**coupling.facts, **facts})
+
+
+def _identified(case: Case, measured: MeasuredImpact, problem: Problem) -> tuple[tuple[float, float], dict[str, float | str]]:
+    """Return the local element that gives what was measured, and what is told of it."""
     try:
-        element = identify_local_element(tried, local.measured.max_force, **_rebound(case, local.measured))
+        element = identify_local_element(problem, measured.max_force, **_rebound(case, measured))
     except InputError as error:
         raise InputError(error.message, error.key or "contact.measured") from None
-    facts = {**coupling.facts, "local_stiffness_N_m": element[0], "local_damping_N_s_m": element[1]}
-    return replace(found, local_element=element, facts=facts)
+    facts: dict[str, float | str] = {"local_stiffness_N_m": element[0], "local_damping_N_s_m": element[1]}
+    if measured.relative_deviation is not None:
+        speed = float(simulate(replace(problem, impacts=1, duration=None, local_element=element)).impacts["separation_speed_m_s"][0])
+        part = measured.relative_deviation
+        height = measured.rebound_height
+        of_speed = part * speed if height is None else part * height * case.drop.gravity / speed
+        deviations = local_element_deviations(problem, element, part * measured.max_force, of_speed)
+        facts |= {"local_stiffness_deviation_N_m": deviations[0], "local_damping_deviation_N_s_m": deviations[1]}
+    return element, facts

@@ -19,6 +19,7 @@ class MeasuredImpact(Section):
     rebound_height: Annotated[float, Quantity("m", "height of the sphere's centre at the top of the rebound", Range(above=0))] | None = None
     separation_speed: Annotated[float, Quantity("m/s", "speed after the impact", Range(above=0))] | None = None
     restitution: Annotated[float, Quantity("", "speed after over speed before", Range(above=0, below=1))] | None = None
+    relative_deviation: Annotated[float, Quantity("", "standard deviation of each, as a part of it", Range(above=0, below=1))] | None = None
     plate: Literal["as here", "rigid"] = Field("as here", description="what it fell on: the plate of the case, or a rigid one")
 
     @model_validator(mode="after")

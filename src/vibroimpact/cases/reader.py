@@ -3,19 +3,22 @@
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from importlib.resources import files
 from os import PathLike
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from pydantic import BaseModel, ValidationError
 
 from vibroimpact.cases.build import check_case
+from vibroimpact.cases.calibrate_section import CalibrateSection, SpeedsTable
 from vibroimpact.cases.explain import explained
 from vibroimpact.cases.material_field import InlineMaterial
 from vibroimpact.cases.schema import AccelerometerTable, Case, DropSection, PlateSection, RunSection, SensorSection, SphereSection
 from vibroimpact.errors import InputError, did_you_mean
+
+Read = TypeVar("Read")
 
 LARGEST_FILE = 1_000_000
 """Bytes; a case is a page of text, and more is a mistake."""
@@ -26,6 +29,8 @@ _SECTIONS: dict[tuple[str, ...], type[BaseModel]] = {
     ("plate",): PlateSection,
     ("drop",): DropSection,
     ("run",): RunSection,
+    ("calibrate",): CalibrateSection,
+    ("calibrate", "speeds"): SpeedsTable,
     ("sensors",): SensorSection,
     ("sensors", "accelerometer"): AccelerometerTable,
 }
@@ -53,19 +58,33 @@ def load_case(source: str | PathLike[str]) -> Case:
     >>> load_case("paper:type1-theory").sphere.radius
     0.025
     """
-    name = str(source)
-    text = _shipped(name) if name.startswith("paper:") else _file(Path(source))
+    return named(source, lambda: read_case(load_table(source)))
+
+
+def load_table(source: str | PathLike[str]) -> dict[str, Any]:
+    """Read a case file, or a shipped case, without looking at what it says; files that it names are found beside it.
+
+    Raises
+    ------
+    InputError
+        If it can't be read or is not TOML; the message does not name the source.
+    """
+    text = _shipped(str(source)) if str(source).startswith("paper:") else _file(Path(source))
     try:
         table = tomllib.loads(text)
     except ValueError as error:  # tomllib's own, or a number of thousands of digits
-        raise InputError(f"{name}: this is not valid TOML: {error}") from None
+        raise InputError(f"this is not valid TOML: {error}") from None
     except RecursionError:
-        raise InputError(f"{name}: this is not a case: its tables are nested too deeply") from None
+        raise InputError("this is not a case: its tables are nested too deeply") from None
+    return _beside(table, Path(source).parent)
+
+
+def named(source: str | PathLike[str], read: Callable[[], Read]) -> Read:
+    """Return what is read from a source, whose name stands before each line of an error."""
     try:
-        return read_case(_beside(table, Path(source).parent))
+        return read()
     except InputError as error:
-        lines = str(error).splitlines()
-        raise InputError("\n".join(f"{name}: {line}" for line in lines)) from None
+        raise InputError("\n".join(f"{source}: {line}" for line in str(error).splitlines())) from None
 
 
 def read_case(table: Mapping[str, Any]) -> Case:
@@ -99,7 +118,7 @@ def shipped_cases() -> dict[str, str]:
 
 
 def _beside(table: dict[str, Any], folder: Path) -> dict[str, Any]:
-    """Return a case whose mesh files are found beside it, wherever it is read from."""
+    """Return a case whose files are found beside it, wherever it is read from."""
     for body in ("sphere", "plate"):
         section = table.get(body)
         mesh = section.get("mesh") if isinstance(section, dict) else None
@@ -107,6 +126,11 @@ def _beside(table: dict[str, Any], folder: Path) -> dict[str, Any]:
         if isinstance(section, dict) and isinstance(file, str) and file.strip():
             path = str((folder / file).absolute())
             section["mesh"] = {**mesh, "file": path} if isinstance(mesh, dict) else path
+    wanted = table.get("calibrate")
+    target = wanted.get("target") if isinstance(wanted, dict) else None
+    file = target.get("file") if isinstance(target, dict) else target
+    if isinstance(wanted, dict) and isinstance(file, str) and file.strip():
+        wanted["target"] = {"file": str((folder / file).absolute())}
     return table
 
 
@@ -121,16 +145,16 @@ def _shipped(name: str) -> str:
 def _file(path: Path) -> str:
     try:
         if path.is_dir():
-            raise InputError(f"{path}: this is a directory; a case is a TOML file")
+            raise InputError("this is a directory; a case is a TOML file")
         with path.open("rb") as file:
             data = file.read(LARGEST_FILE + 1)
         if len(data) > LARGEST_FILE:
-            raise InputError(f"{path}: the file is larger than {LARGEST_FILE // 1_000_000} MB; a case is a page of text")
+            raise InputError(f"the file is larger than {LARGEST_FILE // 1_000_000} MB; a case is a page of text")
         return data.decode("utf-8-sig")  # some editors put a byte-order mark first
     except FileNotFoundError:
-        raise InputError(f'{path}: there is no such file; a case is a TOML file, or a shipped one such as "paper:type1-theory"') from None
+        raise InputError('there is no such file; a case is a TOML file, or a shipped one such as "paper:type1-theory"') from None
     except (OSError, ValueError) as error:
         reason = "it is not UTF-8 text" if isinstance(error, UnicodeDecodeError) else getattr(error, "strerror", None) or str(error)
         if isinstance(error, InputError):
             raise
-        raise InputError(f"{path}: the file can't be read: {reason}") from None
+        raise InputError(f"the file can't be read: {reason}") from None

@@ -9,6 +9,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BeforeValidator, Field, StrictBool, model_validator
 
 from vibroimpact.cases.build import problem_of
+from vibroimpact.cases.calibrate_section import CalibrateSection
 from vibroimpact.cases.contact_section import ContactSection, contact_schema, read_contact
 from vibroimpact.cases.damping_field import DampingField
 from vibroimpact.cases.elastic_fields import (
@@ -180,6 +181,7 @@ class Case(Section):
     contact: Annotated[ContactSection, BeforeValidator(read_contact)]
     run: RunSection = RunSection()
     sensors: tuple[SensorSection, ...] = Field((), description="the points of the plate that are watched")
+    calibrate: CalibrateSection | None = Field(None, description="what `vibroimpact calibrate` does with it")
 
     @model_validator(mode="after")
     def _fits_together(self) -> Case:
@@ -227,7 +229,7 @@ def case_schema() -> dict[str, Any]:
     Examples
     --------
     >>> sorted(case_schema()["properties"])
-    ['contact', 'drop', 'name', 'plate', 'run', 'schema_version', 'sensors', 'sphere']
+    ['calibrate', 'contact', 'drop', 'name', 'plate', 'run', 'schema_version', 'sensors', 'sphere']
     """
     schema = Case.model_json_schema()
     schema["$schema"] = "https://json-schema.org/draft/2020-12/schema"

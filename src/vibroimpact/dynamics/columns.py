@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 IMPACT_COLUMNS: dict[str, tuple[str, str]] = {
     "impact": ("1", "number of the impact, from 1"),
     "time_s": ("s", "time of first touch"),
@@ -66,3 +68,18 @@ VIBRATION_LEDGER = ("sphere_vibration_J", "sphere_strain_J", "sphere_damping_J",
 
 LEDGER = ("kinetic_J", "potential_J", "contact_elastic_J", "contact_dissipated_J", "plastic_work_J", "written_off_at_rest_J")
 """The columns of a history that share the energy put in; their sum is constant."""
+
+COUNTS = ("impact", "contacts")
+"""The columns of the impact table that count."""
+
+
+def impact_columns(impacts: Iterable[str]) -> dict[str, tuple[str, str]]:
+    """Return unit and meaning of the columns that an impact table has: more where a body vibrates."""
+    has = set(impacts)
+    return {name: told for name, told in {**IMPACT_COLUMNS, **VIBRATION_IMPACT_COLUMNS}.items() if name in has}
+
+
+def history_columns(history: Iterable[str]) -> dict[str, tuple[str, str]]:
+    """Return unit and meaning of the columns that a history has: more where a body vibrates."""
+    has = set(history)
+    return {name: told for name, told in {**HISTORY_COLUMNS, **VIBRATION_HISTORY_COLUMNS}.items() if name in has}

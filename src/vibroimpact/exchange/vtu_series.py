@@ -65,13 +65,15 @@ def write_vtu_series(mesh: Mesh, path: str | PathLike[str], times: ArrayLike, po
         write_text(files[-1], vtu_text(points, *cells, single))
     if len(files) < len(instants) or next(data, None) is not None:
         raise InputError(f"there must be values for each of the {len(instants)} times, and no more", "point_data")
-    rows = [
-        f'<DataSet timestep="{time!r}" part="0" file={quoteattr(f"{target.stem}/{file.name}")}/>'
-        for time, file in zip(instants.tolist(), files, strict=True)
-    ]
-    head = '<?xml version="1.0"?>\n<VTKFile type="Collection" version="0.1" byte_order="LittleEndian">\n<Collection>'
-    write_text(target, "\n".join([head, *rows, "</Collection>", "</VTKFile>", ""]))
+    write_text(target, collection_text(instants.tolist(), [f"{target.stem}/{file.name}" for file in files]))
     return files
+
+
+def collection_text(times: Iterable[float], files: Iterable[str]) -> str:
+    """Return the .pvd file that names a file for each time [s]."""
+    rows = [f'<DataSet timestep="{time!r}" part="0" file={quoteattr(file)}/>' for time, file in zip(times, files, strict=True)]
+    head = '<?xml version="1.0"?>\n<VTKFile type="Collection" version="0.1" byte_order="LittleEndian">\n<Collection>'
+    return "\n".join([head, *rows, "</Collection>", "</VTKFile>", ""])
 
 
 def series_size(mesh: Mesh, vectors: int) -> int:

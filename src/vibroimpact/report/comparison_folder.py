@@ -9,12 +9,13 @@ from pathlib import Path
 import tomli_w
 
 from vibroimpact._version import __version__
+from vibroimpact.dynamics.columns import impact_columns
 from vibroimpact.report.comparison import Comparison, comparison_table, free_parameter_words
 from vibroimpact.report.comparison_figures import draw_comparison
 from vibroimpact.report.figures import save_figures
 from vibroimpact.report.page import picture, template
 from vibroimpact.storage.folder import SUMMARY, new_folder
-from vibroimpact.storage.tables import impact_columns, impact_rows, write_csv
+from vibroimpact.storage.tables import impact_rows, write_csv
 
 _TITLES = {
     "position": ("Position", "The sphere's centre above the plate, under each law."),

@@ -193,6 +193,9 @@ def case_explained(case: Case) -> RenderableType:
     stop = ["at rest"] + ([f"after {number} impact{'' if number == 1 else 's'}"] if number else [])
     stop += [f"at {case.run.duration:g} s"] if case.run.duration else []
     rows += [("stops", " or ".join(stop)), ("tolerance", f"{case.run.tolerance:g}")]
+    if case.calibrate is not None:
+        tuned = case.calibrate.parameter or "what sets the loss of the law"
+        rows.append(("to calibrate", f"{tuned}; a run takes no notice of [calibrate]"))
     if isinstance(laws[0], CompliantLaw) and laws[0].lasting:
         where = "on the same spot: the dent of the last one lasts" if case.drop.same_spot else "on fresh surfaces"
         rows.append(("each impact", f"{where} (drop.same_spot = {str(case.drop.same_spot).lower()})"))

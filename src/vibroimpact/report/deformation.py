@@ -71,7 +71,9 @@ def _local_element(result: Result) -> list[tuple[str, str]]:
     damping = facts.get("local_damping_N_s_m", contact.get("local_damping"))
     if stiffness is None or damping is None:
         return []
+    known = [facts.get(f"local_{name}_deviation_{unit}") for name, unit in (("stiffness", "N_m"), ("damping", "N_s_m"))]
+    told = ["" if deviation is None else f" ± {digits(float(deviation), 2)}" for deviation in known]
     return [
-        ("Stiffness of the local element", f"{digits(float(stiffness))}\u00a0N/m"),
-        ("Damping of the local element", f"{digits(float(damping))}\u00a0N\u00a0s/m"),
+        ("Stiffness of the local element", f"{digits(float(stiffness))}{told[0]}\u00a0N/m"),
+        ("Damping of the local element", f"{digits(float(damping))}{told[1]}\u00a0N\u00a0s/m"),
     ]

@@ -16,13 +16,13 @@ from pathlib import Path
 import numpy as np
 import tomli_w
 
-from vibroimpact.dynamics.columns import IMPACT_COLUMNS
+from vibroimpact.dynamics.columns import IMPACT_COLUMNS, history_columns, impact_columns
 from vibroimpact.errors import InputError
 from vibroimpact.storage.netcdf import read_groups, write_groups
 from vibroimpact.storage.result import Result
 from vibroimpact.storage.signal_csv import write_signal_files
 from vibroimpact.storage.summary import summary_of
-from vibroimpact.storage.tables import history_columns, impact_columns, impact_rows, write_csv
+from vibroimpact.storage.tables import impact_rows, write_csv
 
 SUMMARY = "summary.json"
 
@@ -111,6 +111,8 @@ def read_result(directory: str | PathLike[str]) -> Result:
         summary = json.loads((folder / name).read_text(encoding="utf-8"))
         if "laws" in summary:
             raise InputError(f"{folder}: this is a comparison of contact laws, not the result of a run; make it anew with compare")
+        if "calibration" in summary:
+            raise InputError(f"{folder}: this is a calibration, not the result of a run; run its case.toml, or make it anew with calibrate")
         if "modes" in summary:
             raise InputError(f"{folder}: these are modes of elastic bodies, not the result of a run; make them anew with modes")
         name = "case.toml"

@@ -9,9 +9,9 @@ from typing import Any
 import h5py
 import numpy as np
 
+from vibroimpact.dynamics.columns import history_columns, impact_columns
 from vibroimpact.storage.netcdf_motion import read_deflection, read_signals, write_deflection, write_signals
 from vibroimpact.storage.result import Result
-from vibroimpact.storage.tables import history_columns, impact_columns
 
 
 def write_groups(result: Result, path: Path) -> None:

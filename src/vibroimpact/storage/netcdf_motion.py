@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping
 from typing import Any
 
@@ -11,29 +10,11 @@ import numpy as np
 
 from vibroimpact.dynamics.recording import Signal
 from vibroimpact.dynamics.sensor import Sensor
+from vibroimpact.exchange.plain_names import plain_names
 from vibroimpact.storage.deflection import Deflection
 
 _PACKED: dict[str, Any] = {"compression": "gzip", "compression_opts": 1, "shuffle": True}
 """For what is smooth: it gets several times smaller, in little time."""
-
-
-def plain_names(names: list[str]) -> dict[str, str]:
-    """Return for each name one that can be a file's and a group's: letters, digits and a few signs, and no two alike.
-
-    Examples
-    --------
-    >>> plain_names(["a1", "left/upper", "left upper"])
-    {'a1': 'a1', 'left/upper': 'left_upper', 'left upper': 'left_upper_2'}
-    """
-    found: dict[str, str] = {}
-    for name in names:
-        plain = re.sub(r"[^\w-]+", "_", name, flags=re.ASCII).strip("_") or "sensor"
-        number, tried = 1, plain
-        while tried.lower() in {taken.lower() for taken in found.values()}:
-            number += 1
-            tried = f"{plain}_{number}"
-        found[name] = tried
-    return found
 
 
 def write_signals(file: h5py.File, signals: Mapping[str, Signal]) -> None:

@@ -6,7 +6,8 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from vibroimpact.dynamics.recording import Signal
-from vibroimpact.storage.netcdf_motion import plain_names
+from vibroimpact.exchange.drop_tables import signal_csv
+from vibroimpact.exchange.plain_names import plain_names
 
 MOST_SAMPLES = 250_000
 """Of a signal that is written; a longer one is in `result.nc` alone."""
@@ -19,7 +20,4 @@ def write_signal_files(signals: Mapping[str, Signal], directory: Path) -> None:
         if len(signal.value) > MOST_SAMPLES:
             continue
         directory.mkdir(exist_ok=True)
-        unit = signal.sensor.unit.replace("/", "_")
-        rows = [f"{time:.12g},{value!r}" for time, value in zip(signal.time.tolist(), signal.value.tolist(), strict=True)]
-        text = "\n".join([f"time_s,{signal.sensor.quantity}_{unit}", *rows, ""])
-        (directory / f"{plain}.csv").write_text(text, encoding="utf-8", newline="\n")
+        (directory / f"{plain}.csv").write_text(signal_csv(signal), encoding="utf-8", newline="\n")

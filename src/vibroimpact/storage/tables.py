@@ -4,25 +4,10 @@ from __future__ import annotations
 
 import csv
 import math
-from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-from vibroimpact.dynamics.columns import HISTORY_COLUMNS, IMPACT_COLUMNS, VIBRATION_HISTORY_COLUMNS, VIBRATION_IMPACT_COLUMNS
-
-_COUNTS = ("impact", "contacts")
-
-
-def impact_columns(impacts: Iterable[str]) -> dict[str, tuple[str, str]]:
-    """Return unit and meaning of the columns that an impact table has: more where a body vibrates."""
-    has = set(impacts)
-    return {name: told for name, told in {**IMPACT_COLUMNS, **VIBRATION_IMPACT_COLUMNS}.items() if name in has}
-
-
-def history_columns(history: Iterable[str]) -> dict[str, tuple[str, str]]:
-    """Return unit and meaning of the columns that a history has: more where a body vibrates."""
-    has = set(history)
-    return {name: told for name, told in {**HISTORY_COLUMNS, **VIBRATION_HISTORY_COLUMNS}.items() if name in has}
+from vibroimpact.dynamics.columns import COUNTS, impact_columns
 
 
 def impact_rows(impacts: dict[str, Any]) -> list[dict[str, float | int | None]]:
@@ -31,6 +16,7 @@ def impact_rows(impacts: dict[str, Any]) -> list[dict[str, float | int | None]]:
     Examples
     --------
     >>> import numpy as np
+    >>> from vibroimpact.dynamics.columns import IMPACT_COLUMNS
     >>> impact_rows({name: np.array([1.0]) for name in IMPACT_COLUMNS})[0]["impact"]
     1
     """
@@ -40,7 +26,7 @@ def impact_rows(impacts: dict[str, Any]) -> list[dict[str, float | int | None]]:
         row: dict[str, float | int | None] = {}
         for name in columns:
             value = float(impacts[name][index])
-            row[name] = (int(value) if name in _COUNTS else value) if math.isfinite(value) else None
+            row[name] = (int(value) if name in COUNTS else value) if math.isfinite(value) else None
         rows.append(row)
     return rows
 

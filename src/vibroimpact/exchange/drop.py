@@ -1,0 +1,78 @@
+"""A drop and what came of it as plain data in SI: what every export format writes from."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vibroimpact.calibration.speed_function import SpeedFunction
+from vibroimpact.contact.law import ContactLaw
+from vibroimpact.dynamics.recording import Signal
+from vibroimpact.materials import Material
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Drop:
+    """A sphere that falls on a plate which is held, as another program is told of it.
+
+    Parameters
+    ----------
+    name : str
+        What the case is called.
+    radius, mass : float
+        Of the sphere [m], [kg].
+    sphere_material, plate_material : Material
+        What they are made of; the plate's modulus may be infinite.
+    plate_size : tuple of three floats, optional
+        Length (x), width (y) and thickness (z) [m].
+    position : tuple of two floats
+        Where it falls, from the plate's centre [m].
+    height : float
+        Height of the sphere's centre above the plate's upper surface at the start [m]; the radius if it starts at first touch.
+    speed : float
+        Its downward speed at the start [m/s]; zero if it is let go.
+    gravity : float
+        Acceleration of gravity [m/s^2].
+    laws : tuple of ContactLaw
+        The contact law of the first impact, the second, ...; the last one goes on.
+    function : tuple of str and SpeedFunction, optional
+        A parameter of the law, and its value as a function of the approach speed; then it stands in place of the laws' values.
+    elastic : tuple of str
+        Which of "sphere" and "plate" deform in the case; a program that takes them as rigid gets the contact alone.
+    end_time : float
+        When the run ends [s].
+    impacts : mapping of str to array
+        The impact table as computed here, (impacts,) a column, named as in `impacts.csv`.
+    history : mapping of str to array
+        The history, (times,) a column; empty of a calibration.
+    signals : mapping of str to Signal
+        What the sensors recorded.
+    surface : mapping of str to array
+        Of an elastic plate's upper side: `time` [s] (frames,), `x` [m] (columns,) and `y` [m] (rows,) of a grid in the plate's
+        coordinates, `height`: its upward displacement [m] (frames, rows, columns), NaN beside the plate, and `sphere_position`: height
+        of the sphere's centre [m] (frames,). Empty if there is none.
+    """
+
+    name: str
+    radius: float
+    mass: float
+    sphere_material: Material
+    plate_material: Material
+    plate_size: tuple[float, float, float] | None = None
+    position: tuple[float, float] = (0.0, 0.0)
+    height: float
+    speed: float = 0.0
+    gravity: float
+    laws: tuple[ContactLaw, ...]
+    function: tuple[str, SpeedFunction] | None = None
+    elastic: tuple[str, ...] = ()
+    end_time: float
+    impacts: Mapping[str, Floats] = field(repr=False)
+    history: Mapping[str, Floats] = field(default_factory=dict, repr=False)
+    signals: Mapping[str, Signal] = field(default_factory=dict, repr=False)
+    surface: Mapping[str, Floats] = field(default_factory=dict, repr=False)

@@ -1,0 +1,65 @@
+"""The tables of a drop with their units: what CSV, Parquet and MATLAB files hold alike."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vibroimpact.dynamics.columns import COUNTS, history_columns, impact_columns
+from vibroimpact.dynamics.recording import Signal
+from vibroimpact.errors import InputError
+from vibroimpact.exchange.drop import Drop
+from vibroimpact.exchange.plain_names import plain_names
+
+
+class Column(NamedTuple):
+    """Values (rows,), their unit, and what they mean."""
+
+    values: NDArray[np.generic]
+    unit: str
+    meaning: str
+
+
+Table = dict[str, Column]
+
+
+def tables_of(drop: Drop) -> dict[str, Table]:
+    """Return "impacts", "history", and "sensors/NAME" of each sensor; what the drop does not have is not among them.
+
+    Raises
+    ------
+    InputError
+        If it has none of them.
+    """
+    tables: dict[str, Table] = {}
+    if drop.impacts:
+        tables["impacts"] = _table(drop.impacts, impact_columns(drop.impacts))
+    if drop.history:
+        tables["history"] = _table(drop.history, history_columns(drop.history))
+    for name, plain in plain_names(list(drop.signals)).items():
+        tables[f"sensors/{plain}"] = _of_signal(drop.signals[name])
+    if not tables:
+        raise InputError(f'"{drop.name}" has no impacts, no history and no signals; there is nothing to write')
+    return tables
+
+
+def signal_csv(signal: Signal) -> str:
+    """Return a signal as the text of a CSV file, with every digit of its values."""
+    (time_name, time), (name, column) = _of_signal(signal).items()
+    rows = (f"{at:.12g},{value!r}" for at, value in zip(time.values.tolist(), column.values.tolist(), strict=True))
+    return "\n".join([f"{time_name},{name}", *rows, ""])
+
+
+def _table(columns: Mapping[str, NDArray[np.float64]], told: Mapping[str, tuple[str, str]]) -> Table:
+    whole = {name: np.asarray(columns[name], dtype=np.int64 if name in COUNTS else np.float64) for name in told}
+    return {name: Column(whole[name], *told[name]) for name in told}
+
+
+def _of_signal(signal: Signal) -> Table:
+    sensor = signal.sensor
+    name = f"{sensor.quantity}_{sensor.unit.replace('/', '_')}"
+    meaning = f"{sensor.quantity} that the sensor {sensor.name} reads"
+    return {"time_s": Column(signal.time, "s", "time since the start"), name: Column(signal.value, sensor.unit, meaning)}

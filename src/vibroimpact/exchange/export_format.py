@@ -1,0 +1,72 @@
+"""The registry of export formats: one file of this package each, which names itself with an `ExportFormat`."""
+
+from __future__ import annotations
+
+import importlib
+import pkgutil
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import cache
+
+from vibroimpact.errors import InputError, did_you_mean
+from vibroimpact.exchange.drop import Drop
+
+
+@dataclass(frozen=True)
+class ExportFormat:
+    """A format that a drop can be written in.
+
+    Parameters
+    ----------
+    name : str
+        As `vibroimpact export --to` takes it.
+    program : str
+        What reads it.
+    files : str
+        What is written, in a few words.
+    tested : str
+        What the writer was tested against.
+    write : callable
+        Takes a `Drop`, returns the bytes of each file by its name. Raises InputError if the format can't hold the drop.
+    notes : callable
+        Takes a `Drop`, returns what the format can't represent of it, one sentence each.
+    """
+
+    name: str
+    program: str
+    files: str
+    tested: str
+    write: Callable[[Drop], Mapping[str, bytes]]
+    notes: Callable[[Drop], list[str]] = lambda drop: []
+
+
+@cache
+def export_formats() -> Mapping[str, ExportFormat]:
+    """Return every export format by its name.
+
+    Examples
+    --------
+    >>> "adams" in export_formats()
+    True
+    """
+    package = importlib.import_module("vibroimpact.exchange.formats")
+    modules = [
+        importlib.import_module(f"{package.__name__}.{info.name}")
+        for info in sorted(pkgutil.iter_modules(package.__path__), key=lambda info: info.name)
+    ]
+    found = [value for module in modules for value in vars(module).values() if isinstance(value, ExportFormat)]
+    return {one.name: one for one in sorted(found, key=lambda one: one.name)}
+
+
+def find_export_format(name: str) -> ExportFormat:
+    """Return the export format called `name`.
+
+    Raises
+    ------
+    InputError
+        If there is none; the message names the closest.
+    """
+    formats = export_formats()
+    if name not in formats:
+        raise InputError(f'there is no export format "{name}"; there are {", ".join(formats)}.{did_you_mean(name, formats)}')
+    return formats[name]

@@ -1,0 +1,55 @@
+"""The motion of the sphere at times of one's own, from a history that is dense in contact and sparse in flight."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+
+
+def motion_at(history: Mapping[str, Floats], times: Floats) -> dict[str, Floats]:
+    """Return position, velocity, acceleration and force of the sphere, by the names of their columns.
+
+    Position and velocity follow cubics that keep their slopes, so that free flight is exact; acceleration and force are
+    straight between the points of the history.
+
+    Parameters
+    ----------
+    history : mapping of str to array
+        As in a `Drop`; time does not decrease, and is twice in it where something jumps.
+    times : array, shape (times,)
+        Within the history [s].
+
+    Examples
+    --------
+    >>> fall = {"time_s": [0, 1], "position_m": [5, 0], "velocity_m_s": [0, -10], "acceleration_m_s2": [-10, -10], "force_N": [0, 0]}
+    >>> motion_at({name: np.array(values, dtype=float) for name, values in fall.items()}, np.array([0.5]))["position_m"].tolist()
+    [3.75]
+    """
+    time = history["time_s"]
+    before = np.clip(np.searchsorted(time, times, side="right") - 1, 0, len(time) - 2)
+    step = time[before + 1] - time[before]
+    # a step of no length is only met at the end, where its later side counts
+    part = np.divide(times - time[before], step, out=np.ones_like(times), where=step > 0.0)
+    position, velocity = history["position_m"], history["velocity_m_s"]
+    acceleration, force = history["acceleration_m_s2"], history["force_N"]
+    return {
+        "position_m": _cubic(position, velocity, before, step, part),
+        "velocity_m_s": _cubic(velocity, acceleration, before, step, part),
+        "acceleration_m_s2": _straight(acceleration, before, part),
+        "force_N": _straight(force, before, part),
+    }
+
+
+def _straight(values: Floats, before: NDArray[np.intp], part: Floats) -> Floats:
+    return values[before] + part * (values[before + 1] - values[before])
+
+
+def _cubic(values: Floats, slopes: Floats, before: NDArray[np.intp], step: Floats, part: Floats) -> Floats:
+    """Return the cubic that has the values and slopes of both ends of each step."""
+    rise = values[before + 1] - values[before]
+    bend, twist = step * slopes[before] - rise, step * slopes[before + 1] - rise
+    return values[before] + part * (rise + (1.0 - part) * ((1.0 - part) * bend - part * twist))

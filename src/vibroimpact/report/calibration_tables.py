@@ -1,0 +1,164 @@
+"""The tables and sentences of a calibration, as text that is ready to show."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from vibroimpact.calibration.calibrate import Calibration
+from vibroimpact.calibration.comparison import COMPARED, WAYS, differences, largest_misfit
+from vibroimpact.calibration.outcomes import OUTCOMES
+from vibroimpact.calibration.tunables import law_parameter
+from vibroimpact.report.quantity import MISSING, digits, fixed, text
+from vibroimpact.report.tables import column
+
+_MOST_ROWS = 50
+_MET = 1e-3  # of what is wanted
+_WORDS = {
+    "separation_speed": "the separation speed",
+    "max_force": "the largest force",
+    "max_indentation": "the largest indentation",
+    "duration": "the duration",
+}
+_SHORT = {
+    "max_indentation_m": "Indentation",
+    "max_force_N": "Force",
+    "duration_s": "Duration",
+    "rebound_height_m": "Rebound",
+    "separation_speed_m_s": "Separation",
+}
+_POWERS = ("", " v", " v²", " v³")
+_MEANING = {
+    "constant": "the value of the first impact throughout",
+    "variable": "each impact its own value",
+    "function": "the polynomial of the approach speed",
+}
+
+Cells = tuple[list[tuple[str, str]], list[list[str]]]
+
+
+def values_table(found: Calibration) -> Cells:
+    """Return headers with units, and a row for each impact that was matched."""
+    seen = found.observations
+    headers = [("", ""), ("Approach speed", "m/s"), (found.parameter, found.unit)]
+    columns = [list(seen.labels), [digits(value) for value in seen.speeds], [digits(value, 6) for value in found.values]]
+    if found.intervals is not None:
+        headers.append((f"Interval, {_percent(found.confidence)}", found.unit))
+        columns.append([f"{digits(low)} to {digits(high)}" for low, high in found.intervals])
+    if found.as_given:
+        headers.append(("As the case gives it", found.unit))
+        columns.append([digits(value, 6) for value in found.given])
+    for name in found.weights:
+        header = _WORDS[name].removeprefix("the ").capitalize()
+        unit, cells = column(OUTCOMES[name][0], np.concatenate([seen.wanted[name], found.outcomes[name]]))
+        headers += [(f"{header} wanted", unit), ("found", unit)]
+        columns += [cells[: len(seen.speeds)], cells[len(seen.speeds) :]]
+        if found.as_given:
+            headers.append(("as given, off by", "%"))
+            columns.append([_off(value) for value in found.as_given[name] / seen.wanted[name] - 1.0])
+    rows = [list(row) for row in zip(*columns, strict=True)]
+    return headers, rows if len(rows) <= _MOST_ROWS else [*rows[: _MOST_ROWS - 1], ["…", *[""] * (len(headers) - 1)]]
+
+
+def differences_table(found: Calibration) -> Cells:
+    """Return headers, and a row an impact: how far each way is off [%]; empty where nothing is there to compare with."""
+    off = differences(found)
+    if not off:
+        return [], []
+    shown = [name for name in COMPARED if name in off]
+    if "rebound_height_m" in shown:
+        shown.remove("separation_speed_m_s")  # which says the same
+    headers = [("Impact", "")] + [(f"{_SHORT[name]}, {way}", "%") for name in shown for way in WAYS]
+    number = len(next(iter(off[shown[0]].values())))
+    rows = [[str(impact + 1), *(_off(off[name][way][impact]) for name in shown for way in WAYS)] for impact in range(number)]
+    return headers, rows[:_MOST_ROWS]
+
+
+def function_words(found: Calibration) -> str:
+    """Return the fitted polynomial in words.
+
+    Examples
+    --------
+    >>> import vibroimpact as vi
+    >>> from vibroimpact.calibration.calibrate import calibrate
+    >>> found = calibrate(vi.load_case("paper:type1-constant"), vi.load_case("paper:type1-theory"))
+    >>> print(function_words(found).replace("\u2212", "-"))
+    damping_max = 139.408 + 5.86289 v - 0.145602 v² [N s/m], v in m/s from 3.180 to 8.827
+    """
+    function, words = found.fit.function, ""
+    for power, value in enumerate(function.coefficients):
+        minus = "\u2212" if value < 0.0 else "+" if words else ""
+        words += f" {minus} " if words else minus
+        words += digits(abs(value), 6) + (_POWERS[power] if power < len(_POWERS) else f" v^{power}")
+    unit = f" [{found.unit}]" if found.unit else ""
+    if not function.degree:
+        return f"{found.parameter} = {words}{unit}"
+    speeds = f"v in m/s from {digits(function.slowest)} to {digits(function.fastest)}"
+    return f"{found.parameter} = {words}{unit}, {speeds}"
+
+
+def fit_sentences(found: Calibration) -> list[str]:
+    """Return how good the polynomial is: how well it is known, and how far it is off."""
+    fit, seen = found.fit, found.observations
+    told = []
+    if seen.measured:
+        half = fit.half_widths(found.confidence)
+        if np.isfinite(half).all():
+            told.append(f"Its coefficients are known to ± {', '.join(digits(value, 3) for value in half)} at {_percent(found.confidence)}.")
+        way = f"by drawing the measurement {found.bootstrap} times again" if found.bootstrap else "to first order"
+        if found.intervals is not None:
+            told.append(f"Intervals are {way}, {'from the given' if seen.deviations_known else 'with the scatter as'} standard deviations.")
+        if seen.deviations_known and np.isfinite(fit.scatter):
+            told.append(f"Residuals are {digits(fit.scatter, 3)} times as large as their standard deviations.")
+    else:
+        where = "between the impacts" if found.curve is not None else "at the impacts"
+        told.append(f"It is off by {digits(largest_misfit(found), 3)} {found.unit} at most {where}.".replace("  ", " "))
+    return told
+
+
+def given_sentences(found: Calibration) -> list[str]:
+    """Return how far the value that the case gives is off, and what would meet the target instead."""
+    told, missed = [], False
+    for name in found.weights if found.as_given else ():
+        wanted, comes = found.observations.wanted[name], found.as_given[name]
+        off = comes / wanted - 1.0
+        if np.all(np.abs(off) < 1e-6):
+            continue
+        worst = int(np.nanargmax(np.abs(off)))
+        given, meets = (f"{digits(value, 6)} {found.unit}".rstrip() for value in (found.given[worst], found.values[worst]))
+        words = f"With {found.parameter} = {given}, as the case gives it, {_WORDS[name]} of {found.observations.labels[worst]}"
+        height = f", a rebound to {_height(found, comes[worst])} instead of {_height(found, wanted[worst])}"
+        rebound = height if name == "separation_speed" and found.problem.gravity > 0.0 else ""
+        verdict = ": the target can't be met so" if abs(off[worst]) > _MET else ""
+        told.append(f"{words} is off by {_off(float(off[worst]))} %{rebound}{verdict}. {meets} meets it.")
+        missed |= bool(verdict)
+    if missed and found.others:
+        each = [f"{name} = {digits(value, 6)} {law_parameter(found.problem, name).unit}".rstrip() for name, value in found.others.items()]
+        told.append(f"So would, at the first impact and with the rest as given: {'; '.join(each)}.")
+    return told
+
+
+def _height(found: Calibration, speed: float) -> str:
+    """Return the rebound height of the sphere's centre that belongs to a separation speed [m/s]."""
+    return text(float(found.problem.sphere.contact_offset + 0.5 * speed**2 / found.problem.gravity), "m", 5)
+
+
+def match_words(found: Calibration) -> str:
+    """Return what was matched, in words."""
+    if len(found.weights) == 1:
+        return _WORDS[next(iter(found.weights))]
+    return " and ".join(f"{_WORDS[name]} (weight {weight:g})" for name, weight in found.weights.items())
+
+
+def ways_words() -> str:
+    """Return what the ways to give the value mean."""
+    return "; ".join(f"{way}: {_MEANING[way]}" for way in WAYS)
+
+
+def _off(value: float) -> str:
+    if not np.isfinite(value):
+        return MISSING
+    return "0" if abs(value) < 5e-9 else fixed(100.0 * value, 3) if abs(value) < 0.1 else fixed(100.0 * value, 2)
+
+
+def _percent(confidence: float) -> str:
+    return f"{100.0 * confidence:g} %"

@@ -1,0 +1,41 @@
+"""What the export command prints: the formats there are, and what was written."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from os.path import commonpath
+from pathlib import Path
+
+from rich.console import Group, RenderableType
+from rich.markup import escape
+from rich.table import Table
+from rich.text import Text
+
+from vibroimpact.exchange.drop import Drop
+from vibroimpact.exchange.export_format import ExportFormat, export_formats
+
+_MOST = 6
+"""Files that are named; of more, the first ones, and how many there are."""
+
+
+def format_table() -> RenderableType:
+    """Return the table of export formats."""
+    table = Table(box=None, padding=(0, 1), header_style="bold")
+    table.add_column("format", no_wrap=True)
+    for heading in ("read by", "files", "tested"):
+        table.add_column(heading, overflow="fold")
+    for name, one in export_formats().items():
+        table.add_row(name, escape(one.program), escape(one.files), escape(one.tested))
+    return Group(table, Text(), Text("vibroimpact export DIR --to FORMAT writes a result folder, or a calibration folder, in one of them."))
+
+
+def export_summary(drop: Drop, format: ExportFormat, files: Sequence[Path]) -> RenderableType:
+    """Return what was written, what the format can't represent, and what its writer was tested against."""
+    shown = files if len(files) <= _MOST else files[: _MOST - 1]
+    more = f"and {len(files) - len(shown)} more files in {commonpath(files)}"
+    return Group(
+        *(Text(f"wrote {file}") for file in shown),
+        *([Text(more)] if len(shown) < len(files) else []),
+        *(Text(f"Note: {note[:1].upper()}{note[1:]}", style="yellow") for note in format.notes(drop)),
+        Text(f"Tested: {format.tested}.", style="dim"),
+    )

@@ -1,0 +1,111 @@
+"""A calibration as JSON, and the tables of it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from vibroimpact._version import __version__
+from vibroimpact.calibration.calibrate import Calibration
+from vibroimpact.calibration.comparison import COMPARED, WAYS, differences, largest_misfit, reference
+from vibroimpact.calibration.outcomes import OUTCOMES
+from vibroimpact.cases.build import resolved
+from vibroimpact.cases.schema import Case
+
+CALIBRATION = "calibration.json"
+
+
+def calibration_table(case: Case, found: Calibration) -> dict[str, Any]:
+    """Return a calibration as `calibration.json` holds it; null where there is no value.
+
+    Parameters
+    ----------
+    case : Case
+        The case that was calibrated.
+    found : Calibration
+        What was found.
+    """
+    fit, (speeds, values) = found.fit, found.impacts
+    curve = None if found.curve is None else {"approach_speed_m_s": _plain(found.curve[0]), "value": _plain(found.curve[1])}
+    return {
+        "version": __version__,
+        "name": case.name,
+        "law": case.contact.law,
+        "parameter": found.parameter,
+        "unit": found.unit,
+        "match": dict(found.weights),
+        "impacts": [
+            {"impact": number + 1, "approach_speed_m_s": float(speed), "value": float(value)}
+            for number, (speed, value) in enumerate(zip(speeds, values, strict=True))
+        ],
+        "fit": {
+            "degree": fit.function.degree,
+            "coefficients": list(fit.function.coefficients),
+            "from_speed_m_s": fit.function.slowest,
+            "to_speed_m_s": fit.function.fastest,
+            "half_widths": _plain(fit.half_widths(found.confidence)),
+            "covariance": [_plain(row) for row in fit.covariance],
+            "degrees_of_freedom": _finite(fit.freedom),
+            "scatter": _finite(fit.scatter),
+            "largest_misfit": largest_misfit(found),
+        },
+        "confidence": found.confidence,
+        "bootstrap": found.bootstrap,
+        "matched": matched_rows(found),
+        "curve": curve,
+        "differences": {column: {way: _plain(values) for way, values in ways.items()} for column, ways in differences(found).items()},
+        "other_parameters": dict(found.others),
+        "doubts": list(found.doubts),
+        "case": resolved(case),
+    }
+
+
+def matched_rows(found: Calibration) -> list[dict[str, Any]]:
+    """Return the impacts that were matched, one mapping each: what was wanted, what comes out, and as the case gave it."""
+    rows = []
+    for number, label in enumerate(found.observations.labels):
+        row: dict[str, Any] = {"label": label, "approach_speed_m_s": float(found.observations.speeds[number])}
+        row["value"] = _finite(found.values[number])
+        row["low"], row["high"] = (None, None) if found.intervals is None else (_finite(end) for end in found.intervals[number])
+        row["given"] = _finite(found.given[number])
+        for name, (column, _) in OUTCOMES.items():
+            if name in found.observations.wanted:
+                row[f"wanted_{column}"] = _finite(found.observations.wanted[name][number])
+            row[column] = _finite(found.outcomes[name][number])
+            if found.as_given:
+                row[f"as_given_{column}"] = _finite(found.as_given[name][number])
+        rows.append(row)
+    return rows
+
+
+def comparison_rows(found: Calibration) -> list[dict[str, Any]]:
+    """Return the impacts of the drop with each way to give the value, beside what was wanted, one mapping an impact and way."""
+    wanted, off = reference(found), differences(found)
+    rows = []
+    for way in WAYS:
+        table = found.drops[way]
+        for number in range(len(table["impact"])):
+            row: dict[str, Any] = {"way": way, "impact": number + 1, "approach_speed_m_s": float(table["approach_speed_m_s"][number])}
+            for column in COMPARED:
+                row[column] = _finite(table[column][number])
+                if column in wanted and number < len(wanted[column]):
+                    row[f"wanted_{column}"] = _finite(wanted[column][number])
+                    row[f"difference_{column.rsplit('_', 1)[0]}_percent"] = _finite(100.0 * off[column][way][number])
+            rows.append(row)
+    return rows
+
+
+def columns_of(rows: list[Mapping[str, Any]] | list[dict[str, Any]]) -> list[str]:
+    """Return the columns of rows, in the order in which they are first met."""
+    return list(dict.fromkeys(name for row in rows for name in row))
+
+
+def _plain(values: Any) -> list[float | None]:
+    return [_finite(value) for value in np.asarray(values, dtype=float)]
+
+
+def _finite(value: Any) -> float | None:
+    return float(value) if math.isfinite(value) else None

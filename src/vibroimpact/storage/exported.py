@@ -1,0 +1,102 @@
+"""What is exported of a folder: the drop that it holds, as plain data."""
+
+from __future__ import annotations
+
+import json
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+from vibroimpact.calibration.speed_function import SpeedFunction
+from vibroimpact.cases.build import contact_laws_of, contact_pair, elastic_names
+from vibroimpact.cases.reader import load_case, read_case
+from vibroimpact.cases.schema import Case
+from vibroimpact.errors import InputError
+from vibroimpact.exchange.drop import Drop
+from vibroimpact.storage.calibration_file import CALIBRATION
+from vibroimpact.storage.folder import read_result
+from vibroimpact.storage.result import Result, result_of
+
+
+def drop_of(directory: str | PathLike[str]) -> Drop:
+    """Return the drop that a result folder holds, or the one that a calibration folder states, simulated.
+
+    Parameters
+    ----------
+    directory : path
+        A result folder or a calibration folder.
+
+    Raises
+    ------
+    InputError
+        If it is neither, a file of it is missing or damaged, or it is the result of a problem made in Python, which has no case.
+    """
+    folder = Path(directory)
+    if (folder / CALIBRATION).is_file():
+        return _of_calibration(folder)
+    result = read_result(folder)
+    if not result.case:
+        raise InputError(f"{folder}: this run has no case.toml, for its problem was made in Python; what is exported needs its case")
+    try:
+        return drop_of_result(result, read_case(result.case))
+    except InputError as error:
+        raise InputError(f"{folder / 'case.toml'}: {error}") from None
+
+
+def drop_of_result(result: Result, case: Case, function: tuple[str, SpeedFunction] | None = None) -> Drop:
+    """Return a run as a drop.
+
+    Parameters
+    ----------
+    result : Result
+        What came of it.
+    case : Case
+        What was run.
+    function : tuple of str and SpeedFunction, optional
+        A parameter of the contact law as a function of the approach speed.
+    """
+    found, dropped = result.deflection, case.drop
+    surface = {} if found is None else {"time": found.time, "x": found.x, "y": found.y, "height": found.height.astype(float)}
+    if found is not None:
+        surface["sphere_position"] = found.sphere_position
+    return Drop(
+        name=result.name,
+        radius=case.sphere.radius,
+        mass=float(contact_pair(case).effective_mass),
+        sphere_material=case.sphere.material,
+        plate_material=case.plate.material,
+        plate_size=case.plate.size,
+        position=dropped.position if found is None else found.contact,  # which may be a set of a mesh that was brought
+        height=case.sphere.radius if dropped.height is None else dropped.height,
+        speed=dropped.speed or 0.0,
+        gravity=dropped.gravity,
+        laws=contact_laws_of(case),
+        function=function,
+        elastic=tuple(elastic_names(case)),
+        end_time=float(result.history["time_s"][-1]),
+        impacts=result.impacts,
+        history=result.history,
+        signals=result.signals,
+        surface=surface,
+    )
+
+
+def _of_calibration(folder: Path) -> Drop:
+    """Return the drop of a calibration: its case, simulated, and the function that was fitted, if one was."""
+    from vibroimpact.dynamics.simulate import simulate
+
+    file = folder / CALIBRATION
+    try:
+        function = _fitted(json.loads(file.read_text(encoding="utf-8")))
+    except (OSError, ValueError, KeyError, TypeError) as error:
+        raise InputError(f"{file}: the file is missing or damaged: {error}") from None
+    case = load_case(folder / "case.toml")
+    return drop_of_result(result_of(simulate(case.to_problem())), case, function)
+
+
+def _fitted(found: dict[str, Any]) -> tuple[str, SpeedFunction] | None:
+    fit = found["fit"]
+    if fit is None:
+        return None
+    coefficients = tuple(float(one) for one in fit["coefficients"])
+    return str(found["parameter"]), SpeedFunction(coefficients, float(fit["from_speed_m_s"]), float(fit["to_speed_m_s"]))

