@@ -17,10 +17,10 @@ demo: $(VENV)/installed
 	$(BIN)/vibroimpact demo --output $(OUTPUT) --force
 
 test: $(VENV)/installed-test
-	$(BIN)/pytest -m "not slow and not peers"
+	OPENBLAS_NUM_THREADS=1 $(BIN)/pytest -m "not slow and not peers" -n auto --dist loadfile
 
 test-all: $(VENV)/installed-test
-	$(BIN)/pytest -m "not peers"
+	OPENBLAS_NUM_THREADS=1 $(BIN)/pytest -m "not peers" -n auto --dist loadfile
 
 test-peers: $(VENV)/installed-peers
 	$(BIN)/pytest -m peers

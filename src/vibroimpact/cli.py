@@ -175,6 +175,7 @@ def calibrate(
     damping of Adams' IMPACT is found with which the sphere bounces as under the law of the case.
     """
     from vibroimpact.cases.calibration import calibrate_case, load_calibration
+    from vibroimpact.cases.reader import named
     from vibroimpact.report.calibration_folder import save_calibration
     from vibroimpact.report.calibration_text import calibration_summary
     from vibroimpact.report.progress import patient_progress
@@ -186,7 +187,7 @@ def calibrate(
     console = _console()
     try:
         with patient_progress("calibrating", console) as progress:
-            found = calibrate_case(what, progress, lambda text: typer.echo(f"vibroimpact: {text}", err=True))
+            found = named(case, lambda: calibrate_case(what, progress, lambda text: typer.echo(f"vibroimpact: {text}", err=True)))
         folder = save_calibration(what.case, found, target, force=force)
     except KeyboardInterrupt:
         _fail("interrupted; nothing was written", 130)

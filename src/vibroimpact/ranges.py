@@ -32,6 +32,18 @@ class Range:
         bounds = (("greater than", self.above), ("at least", self.at_least), ("less than", self.below), ("at most", self.at_most))
         return " and ".join(f"{word} {bound:g}" for word, bound in bounds if math.isfinite(bound))
 
+    def clip(self, values: Any) -> Any:
+        """Return values moved into the range, just inside where an end of it is left out.
+
+        Examples
+        --------
+        >>> Range(at_least=0).clip(np.array([-1.0, 2.0])).tolist()
+        [0.0, 2.0]
+        """
+        low = self.above + 1e-12 * abs(self.above) + 1e-300 if math.isfinite(self.above) else self.at_least
+        high = self.below - 1e-12 * abs(self.below) if math.isfinite(self.below) else self.at_most
+        return np.clip(values, low, high)
+
     def check(self, values: Any, unit: str = "", shown: str = "") -> None:
         """Raise unless all `values` are finite and inside.
 

@@ -122,6 +122,7 @@ def read_quantity(text: str) -> tuple[float, str]:
     match = _QUANTITY.fullmatch(text) if len(text) <= 80 else None
     if match is None or not match[2]:
         raise InputError(f'"{text[:80]}" is not a number with a unit, such as "5.115e8 N/m^1.5"')
+    _check_comma(text, match[2].strip())
     return _finite(float(match[1]), text), match[2].strip()
 
 
@@ -234,6 +235,7 @@ def _parse(text: str, unit: str) -> float:
     if match is None:
         raise InputError(f'"{text[:80]}" is not {_wanted(unit)}')
     number, given = float(match[1]), (match[2] or "").strip()
+    _check_comma(text, given)
     if not unit:
         if given:
             raise InputError(f'"{text}" has a unit, but a plain number is wanted: write {number / 100 if given == "%" else number:g}')
@@ -241,6 +243,12 @@ def _parse(text: str, unit: str) -> float:
     if not given:
         raise InputError(f'"{text}" has no unit: write {number:g} (it is then in {unit}) or "{number:g} {unit}"')
     return float(number * _factor(given, unit, text))
+
+
+def _check_comma(text: str, unit: str) -> None:
+    """Raise if what follows the number is the rest of one with a decimal comma."""
+    if re.match(r",\d", unit):
+        raise InputError(f'"{text}" has a comma in its number; write a point: {text.replace(",", ".", 1)}')
 
 
 def _factor(given: str, unit: str, text: str) -> float:

@@ -116,10 +116,9 @@ def test_shipped_cases_are_written_or_refused(
         assert written(format, rigid[name]) == found[name], "the same drop gives the same bytes"
 
 
-@every_format
-def test_every_law_is_written_or_refused(format: ExportFormat) -> None:
-    if format.name in DATA:
-        pytest.skip("it holds no law")
+@pytest.mark.parametrize("name", sorted(set(export_formats()) - DATA))
+def test_every_law_is_written_or_refused(name: str) -> None:
+    format = find_export_format(name)
     pair = ContactPair(effective_modulus=2.4e9, effective_radius=RADIUS, effective_mass=MASS, yield_strength=5e7, poissons_ratio=0.28)
     for law in contact_laws().values():
         drop = told(law.example(pair), number=1)

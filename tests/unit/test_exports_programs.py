@@ -76,7 +76,7 @@ class TestAll:
 
     def test_elastic_bodies_are_noted(self, form: Any) -> None:
         notes = form.notes(replace(told(TSUJI), elastic=("sphere", "plate")))
-        assert any("sphere and the plate are written as rigid" in note for note in notes)
+        assert any("sphere and plate are written as rigid" in note for note in notes)
 
 
 @pytest.mark.parametrize("form", [lammps.FORMAT, yade.FORMAT], ids=lambda form: form.name)

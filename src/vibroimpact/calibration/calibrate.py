@@ -3,20 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from typing import NamedTuple
 
 import numpy as np
 
 from vibroimpact.calibration.drops import by_function, drops_with, impacts_of, shortened
-from vibroimpact.calibration.fitting import Fit, fit_observations, fit_values, value_noise
+from vibroimpact.calibration.fitting import Fit, distinct, fit_observations, fit_values, value_noise
 from vibroimpact.calibration.matching import Tunable, match
 from vibroimpact.calibration.observations import Floats, Observations, scaled
 from vibroimpact.calibration.one_impact import one_impact, stacked
-from vibroimpact.calibration.outcomes import REBOUND, check_weights
+from vibroimpact.calibration.outcomes import OUTCOMES, REBOUND, check_weights
 from vibroimpact.calibration.reach import check_reached, other_parameters
 from vibroimpact.calibration.tunables import law_parameter
-from vibroimpact.calibration.uncertainty import default_draws, redrawn, undetermined, with_nearest_end
+from vibroimpact.calibration.uncertainty import default_draws, of_the_whole, redrawn, undetermined, with_nearest_end
 from vibroimpact.dynamics.problem import Problem, StatesProblem
 from vibroimpact.dynamics.simulate import simulate
 from vibroimpact.errors import InputError
@@ -94,7 +94,7 @@ def calibrate(
     target: StatesProblem | Observations,
     *,
     tunable: Tunable | None = None,
-    weights: Mapping[str, float] = REBOUND,
+    weights: Mapping[str, float] | None = None,
     degree: int | None = None,
     speeds: Sequence[float] | Floats | None = None,
     confidence: float = 0.95,
@@ -116,8 +116,9 @@ def calibrate(
         How it is to bounce: the same drop under another law, or what was measured.
     tunable : Tunable, optional
         What is tuned; by default the law's own free parameter.
-    weights : mapping of str to float
-        What is matched, by the names of `OUTCOMES`: one, or several with their weights. By default the rebound.
+    weights : mapping of str to float, optional
+        What is matched, by the names of `OUTCOMES`: one, or several with their weights. By default the rebound; or all that was
+        measured, if that was not.
     degree : int, optional
         Of the polynomial; by default 2, or less where there are fewer speeds.
     speeds : array, optional
@@ -153,6 +154,12 @@ def calibrate(
     """
     tell = progress or (lambda done: None)
     stated = problem.to_problem()
+    if weights is None:
+        seen = target.wanted if isinstance(target, Observations) else REBOUND
+        weights = REBOUND if "separation_speed" in seen else dict.fromkeys(seen, 1.0)
+    if isinstance(target, Observations) and "separation_speed" in weights and "rebound_height" in target.wanted:
+        # two readings of one thing, of which the height was measured
+        weights = {name.replace("separation_speed", "rebound_height"): weight for name, weight in weights.items()}
     check_weights(weights)
     _check(stated, confidence, bootstrap)
     tuned = law_parameter(stated) if tunable is None else tunable
@@ -191,7 +198,7 @@ def calibrate(
         drops=drops,
         confidence=confidence,
         bootstrap=found.draws,
-        doubts=tuple(found.doubts),
+        doubts=(*found.doubts, *of_the_whole(stated, tuned, found.seen, found.fit, found.curve, along)),
     )
 
 
@@ -220,6 +227,11 @@ def _from_drop(
     if not len(at):
         raise InputError("under the law of the target the sphere does not leave the plate; there is no rebound to match", "target")
 
+    for name in weights:
+        column = OUTCOMES[name][0]
+        if not np.all(table[column][: len(at)] > 0.0):
+            raise InputError(f"{name} is not told by the target, {target.laws[0].name}; match something else", "match")
+
     def wanted_at(fast: Floats) -> tuple[Observations, Floats]:
         outcomes = one_impact(target, stacked(target.laws, len(fast)), fast)
         labels = tuple(f"impact {number + 1}" for number in range(len(fast)))
@@ -236,15 +248,18 @@ def _from_drop(
         if np.allclose(after, at[1:], rtol=1e-10, atol=0.0):
             break
         at = np.append(at[0], after)
-    over, curve = seen.speeds, None
+    over, curve = None, None
+    alike = len(target.laws) == 1 and _alike(problem, tuned)
     if speeds is not None:
         over = np.asarray(speeds, dtype=float)
-    elif len(at) > 1 and len(weights) == 1 and not problem.vibrates:
+        if not alike:
+            raise InputError("a contact law has one value an impact, and over a range of speeds it must have one for all", "speeds")
+    elif len(at) > 1 and len(weights) == 1 and not problem.vibrates and alike:
         over = np.linspace(at.min(), at.max(), _CURVE_POINTS)
-    if len(over) != len(at):
+    if over is not None:
         curve = (over, _along(tuned, problem, target, weights, over, asked=speeds is not None))
-    through = curve if curve is not None and speeds is not None else (seen.speeds, values)
-    return _Found(seen, values, fit_values(*through, _degree(through[0], degree)), curve=curve)
+    along, through = curve if curve is not None and speeds is not None else (seen.speeds, values)
+    return _Found(seen, values, fit_values(along, through, _degree(along, degree)), curve=curve)
 
 
 def _along(tuned: Tunable, problem: Problem, target: Problem, weights: Mapping[str, float], speeds: Floats, *, asked: bool) -> Floats:
@@ -279,17 +294,17 @@ def _from_measurement(
     fit = fit_observations(tuned, seen, weights, _degree(seen.speeds, degree), alone)
     tell(0.5)
     values = with_nearest_end(tuned, alone, seen.speeds, seen.wanted, weights, rows)
-    doubts = [
+    doubts = list(seen.doubts) + [
         f"{label}: nothing that {tuned.name} can be meets it, but its noise explains that"
         for label, value in zip(seen.labels, alone, strict=True)
         if np.isnan(value)
     ]
-    sized = seen if seen.deviations_known else scaled(seen, fit.scatter)
+    sized = seen if seen.deviations_known else scaled(seen, fit.scatter, weights)
     deviations = np.linalg.norm(value_noise(tuned, sized, weights, values), axis=1)
     half, draws = fit.quantile(confidence) * deviations, 0
     intervals = np.stack([values - half, values + half], axis=1) if np.isfinite(half).all() else None
     if intervals is not None:
-        draws = default_draws(values, half) if bootstrap is None else bootstrap
+        draws = default_draws(values, deviations) if bootstrap is None else bootstrap
     if draws:
         intervals, fit = redrawn(tuned, sized, weights, fit, deviations, draws, confidence, seed, lambda done: tell(0.5 + 0.4 * done))
     doubts += undetermined(tuned, values, intervals, seen, fit, confidence)
@@ -305,5 +320,13 @@ def _check(problem: Problem, confidence: float, bootstrap: int | None) -> None:
         raise InputError(f"{bootstrap} draws tell no interval; it must be 0, or at least 20", "bootstrap")
 
 
+def _alike(problem: Problem, tuned: Tunable) -> bool:
+    """Is the contact law the same at each impact, but for what is tuned?"""
+    first = problem.laws[0]
+    return all(
+        getattr(law, item.name) == getattr(first, item.name) for law in problem.laws for item in fields(law) if item.name != tuned.name
+    )
+
+
 def _degree(speeds: Floats, degree: int | None) -> int:
-    return min(2, len(np.unique(speeds)) - 1) if degree is None else degree
+    return min(2, distinct(speeds) - 1) if degree is None else degree

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from vibroimpact.calibration.matching import Tunable, clip
+from vibroimpact.calibration.matching import Tunable
 from vibroimpact.calibration.observations import Floats
 from vibroimpact.calibration.one_impact import first_speed
 from vibroimpact.calibration.speed_function import SpeedFunction
@@ -27,7 +27,7 @@ def by_function(tunable: Tunable, problem: Problem, function: SpeedFunction) -> 
     """Return approach speeds [m/s] and values of the impacts of a drop whose value follows its approach speed."""
     speeds, values, speed = [], [], first_speed(problem)
     for impact in range(impacts_of(problem)):
-        value = clip(np.array([function(speed)]), tunable.allowed)
+        value = tunable.allowed.clip(np.array([function(speed)]))
         speeds.append(speed)
         values.append(float(value[0]))
         speed = float(tunable.respond(np.array([speed]), value, np.array([impact]))["next_speed"][0])

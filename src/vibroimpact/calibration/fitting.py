@@ -6,8 +6,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.polynomial import polynomial
 
-from vibroimpact.calibration.matching import Tunable, clip, slopes
+from vibroimpact.calibration.matching import Tunable, scale_of, slopes
 from vibroimpact.calibration.observations import Floats, Observations
 from vibroimpact.calibration.speed_function import SpeedFunction
 from vibroimpact.errors import ComputationError, InputError
@@ -27,7 +28,8 @@ class Fit:
     covariance : array, shape (k, k)
         Of its coefficients; NaN if there are no more observations than coefficients, and the noise is not known.
     freedom : float
-        Degrees of freedom of the estimate of the noise; infinite where the noise is known.
+        Degrees of freedom of the estimate of the noise; infinite where the noise is known, and explains the residuals. Where it does
+        not, the covariance is that of the residuals.
     scatter : float
         Standard deviation of the values about the polynomial, or of the residuals over their noise.
     """
@@ -47,12 +49,13 @@ class Fit:
 
     def half_widths(self, confidence: float) -> Floats:
         """Return the half widths of the intervals of the coefficients."""
-        return np.asarray(self.quantile(confidence) * np.sqrt(np.diag(self.covariance)))
+        return np.asarray(self.quantile(confidence) * np.sqrt(np.maximum(np.diag(self.covariance), 0.0)))
 
     def band(self, speeds: Floats, confidence: float) -> Floats:
         """Return the half width of the band of the polynomial at approach speeds [m/s]."""
         powers = _powers(np.asarray(speeds, dtype=float), self.function.degree)
-        return np.asarray(self.quantile(confidence) * np.sqrt(np.einsum("ni,ij,nj->n", powers, self.covariance, powers)))
+        spread = np.einsum("ni,ij,nj->n", powers, self.covariance, powers)
+        return np.asarray(self.quantile(confidence) * np.sqrt(np.maximum(spread, 0.0)))
 
 
 def check_degree(speeds: Floats, degree: int) -> None:
@@ -63,11 +66,22 @@ def check_degree(speeds: Floats, degree: int) -> None:
     InputError
         If there are not.
     """
-    different = len(np.unique(speeds))
+    different = distinct(speeds)
     if degree >= different:
         have = "one speed is" if different == 1 else f"{different} different speeds are"
         needs = f"a polynomial of degree {degree} needs {degree + 1} speeds"
         raise InputError(f"{needs}, and {have} there; take {different - 1} at most", "degree")
+
+
+def distinct(speeds: Floats) -> int:
+    """Return how many speeds differ by more than a hundredth of the largest.
+
+    Examples
+    --------
+    >>> distinct(np.array([1.0, 1.001, 2.0]))
+    2
+    """
+    return 1 + int(np.count_nonzero(np.diff(np.sort(speeds)) > 0.01 * speeds.max()))
 
 
 def fit_values(speeds: Floats, values: Floats, degree: int) -> Fit:
@@ -115,9 +129,9 @@ def fit_observations(tunable: Tunable, observations: Observations, weights: Mapp
     check_degree(speeds, degree)
     powers = _powers(speeds, degree)
     some = np.isfinite(values)
-    first = min(degree, len(np.unique(speeds[some])) - 1)
+    first = min(degree, distinct(speeds[some]) - 1) if some.any() else 0
     begin = fit_values(speeds[some], values[some], first).function(speeds) if some.any() else np.full(len(speeds), tunable.start)
-    at = clip(begin, tunable.allowed)
+    at = tunable.allowed.clip(begin)
     coefficients = _least_squares(powers, at)[0]
     for _ in range(_SWEEPS):
         found = slopes(tunable, speeds, at)
@@ -127,13 +141,15 @@ def fit_observations(tunable: Tunable, observations: Observations, weights: Mapp
             by_value = found.by_value[name]
             rows.append((by_value[:, None] * powers)[here])
             targets.append((observations.wanted[name] - found.outcomes[name] + by_value * at)[here])
-            noise = observations.noise[name] - found.by_speed[name][:, None] * observations.speed_noise
+            # at another approach speed the polynomial says another value, too
+            along = found.by_speed[name] + by_value * polynomial.polyval(speeds, polynomial.polyder(coefficients))
+            noise = observations.noise[name] - along[:, None] * observations.speed_noise
             noises.append((noise / (1.0 if known else np.sqrt(weight)))[here])
         noise = np.concatenate(noises)
         root = np.linalg.cholesky(noise @ noise.T)
         whitened = [np.linalg.solve(root, part) for part in (np.concatenate(rows), np.concatenate(targets))]
         coefficients, covariance = _least_squares(whitened[0], whitened[1])
-        before, at = at, clip(powers @ coefficients, tunable.allowed)
+        before, at = at, tunable.allowed.clip(powers @ coefficients)
         if np.all(np.abs(at - before) <= _WITHIN * np.abs(at).max()):
             break
     else:
@@ -141,7 +157,16 @@ def fit_observations(tunable: Tunable, observations: Observations, weights: Mapp
     left = whitened[1] - whitened[0] @ coefficients
     freedom = len(left) - degree - 1
     scatter = float(np.sqrt((left @ left) / freedom)) if freedom else np.nan
-    return Fit(_function(coefficients, speeds), covariance if known else scatter**2 * covariance, np.inf if known else freedom, scatter)
+    if known and not (freedom and _misfits(scatter, freedom)):
+        return Fit(_function(coefficients, speeds), covariance, np.inf, scatter)
+    return Fit(_function(coefficients, speeds), scatter**2 * covariance, freedom, scatter)
+
+
+def _misfits(scatter: float, freedom: int) -> bool:
+    """Are residuals larger than noise of the given size would leave once in a thousand times?"""
+    from scipy.stats import chi2
+
+    return bool(scatter**2 * freedom > chi2.ppf(0.999, freedom))
 
 
 def value_noise(tunable: Tunable, observations: Observations, weights: Mapping[str, float], values: Floats) -> Floats:
@@ -149,7 +174,7 @@ def value_noise(tunable: Tunable, observations: Observations, weights: Mapping[s
     found = slopes(tunable, observations.speeds, np.where(np.isfinite(values), values, tunable.start))
     above, below = np.zeros((len(values), observations.speed_noise.shape[1])), np.zeros((len(values), 1))
     for name, weight in weights.items():
-        scale = observations.speeds if name == "separation_speed" else np.abs(observations.wanted[name])
+        scale = scale_of(name, observations.speeds, observations.wanted[name])
         by_value = (found.by_value[name] / scale)[:, None]
         noise = observations.noise[name] - found.by_speed[name][:, None] * observations.speed_noise
         above += weight * by_value * noise / scale[:, None]

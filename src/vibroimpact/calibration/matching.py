@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vibroimpact.calibration.observations import Floats
+from vibroimpact.calibration.outcomes import REBOUNDS
 from vibroimpact.contact.roots import find_root, solve_monotonic
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.ranges import Range
@@ -16,7 +17,8 @@ from vibroimpact.ranges import Range
 _STEP = 1e-4
 """Relative step of difference quotients: with impacts good to 1e-12, both of its errors are about 1e-8."""
 
-_GRID = np.append(0.0, 2.0 ** np.arange(-8.0, 9.0))
+_CLOSE = 1e-11
+_GRID = np.append(0.0, 4.0 ** np.arange(-8.0, 9.0))
 """Of the start: values among which the best is looked for first, where several outcomes can't all be met."""
 
 
@@ -63,7 +65,12 @@ class Match:
 
 
 def match(
-    tunable: Tunable, speeds: Floats, wanted: Mapping[str, Floats], weights: Mapping[str, float], which: NDArray[np.intp] | None = None
+    tunable: Tunable,
+    speeds: Floats,
+    wanted: Mapping[str, Floats],
+    weights: Mapping[str, float],
+    which: NDArray[np.intp] | None = None,
+    farthest: int = 20,
 ) -> Match:
     """Return the value with which each impact comes out as wanted, or as near to that as can be.
 
@@ -79,9 +86,11 @@ def match(
         Of each outcome that counts. With several, the sum over them of weight times squared relative deviation becomes least.
     which : array of int, optional
         Which impact of the drop each stands for.
+    farthest : int, default 20
+        How many steps of four from where it begins to look for one outcome.
     """
     rows = np.arange(len(speeds)) if which is None else which
-    scales = {name: speeds if name == "separation_speed" else np.abs(wanted[name]) for name in weights}
+    scales = {name: scale_of(name, speeds, wanted[name]) for name in weights}
 
     def misses(values: Floats) -> dict[str, Floats]:
         found = tunable.respond(speeds, values, rows)
@@ -90,11 +99,30 @@ def match(
     start = np.full(len(speeds), tunable.start)
     if len(weights) == 1:
         (name,) = weights
-        falls = tunable.damps and name == "separation_speed"
-        found = solve_monotonic(lambda values: misses(values)[name] + 1.0, np.ones(len(speeds)), start, tunable.allowed, falls=falls)
+        falls = tunable.damps and name in REBOUNDS
+        if tunable.damps and not falls:  # a force falls with a little damping and rises with much: the smallest counts
+            grid = [tunable.allowed.clip(factor * start) for factor in _GRID]
+            seen = np.array([misses(values)[name] for values in grid])
+            least, most = (bound * scales[name] + wanted[name] for bound in (np.nanmin(seen, axis=0), np.nanmax(seen, axis=0)))
+            return Match(_smallest(lambda values: misses(values)[name], start, grid, seen), least, most)
+        found = solve_monotonic(
+            lambda values: misses(values)[name] + 1.0, np.ones(len(speeds)), start, tunable.allowed, falls=falls, farthest=farthest
+        )
         least, most = ((bound - 1.0) * scales[name] + wanted[name] for bound in (found.least, found.most))
         return Match(found.place, least, most)
     return Match(_best(misses, start, weights, tunable.allowed), *np.full((2, len(speeds)), np.nan))
+
+
+def _smallest(miss: Callable[[Floats], Floats], start: Floats, grid: list[Floats], misses: Floats) -> Floats:
+    """Return the smallest value at which a miss changes its sign, NaN where it does not on the grid, whose misses are (values, n)."""
+    above = misses > 0.0
+    turns = above[1:] != above[:-1]
+    first, which = turns.argmax(axis=0), np.arange(len(start))
+    some = turns.any(axis=0)
+    ends = [np.where(some, np.stack(grid)[first + side, which], start) for side in (0, 1)]
+    upwards = above[first + 1, which]  # the root is sought where the function becomes positive
+    low, high = (np.where(upwards, ends[side], ends[1 - side]) for side in (0, 1))
+    return np.where(some, find_root(miss, low, high, close=_CLOSE), np.nan)
 
 
 def _best(misses: Callable[[Floats], dict[str, Floats]], start: Floats, weights: Mapping[str, float], allowed: Range) -> Floats:
@@ -103,14 +131,14 @@ def _best(misses: Callable[[Floats], dict[str, Floats]], start: Floats, weights:
     def cost(values: Floats) -> Floats:
         return np.asarray(sum(weight * misses(values)[name] ** 2 for name, weight in weights.items()))
 
-    inside = [clip(factor * start, allowed) for factor in _GRID]
+    inside = [allowed.clip(factor * start) for factor in _GRID]
     costs = np.array([cost(values) for values in inside])
     best = np.nanargmin(np.where(np.isnan(costs), np.inf, costs), axis=0)
     ends = [np.stack(inside)[np.clip(best + side, 0, len(inside) - 1), np.arange(len(start))] for side in (-1, 1)]
 
     def slope(values: Floats) -> Floats:
         step = _STEP * np.maximum(values, start * 1e-3)
-        up, down = (misses(clip(values + side * step, allowed)) for side in (1.0, -1.0))
+        up, down = (misses(allowed.clip(values + side * step)) for side in (1.0, -1.0))
         return np.asarray(sum(weight * (up[name] ** 2 - down[name] ** 2) for name, weight in weights.items()))
 
     turns = (slope(ends[0]) < 0.0) & (slope(ends[1]) > 0.0)
@@ -120,11 +148,9 @@ def _best(misses: Callable[[Floats], dict[str, Floats]], start: Floats, weights:
     return np.where(turns, found, np.where(best == 0, inside[0], np.nan))
 
 
-def clip(values: Floats, allowed: Range) -> Floats:
-    """Return values moved into a range, just inside where an end of it is left out."""
-    low = allowed.above * (1.0 + 1e-12) + 1e-300 if np.isfinite(allowed.above) else allowed.at_least
-    high = allowed.below * (1.0 - 1e-12) if np.isfinite(allowed.below) else allowed.at_most
-    return np.clip(values, low, high)
+def scale_of(name: str, speeds: Floats, wanted: Floats) -> Floats:
+    """Return what a miss of an outcome is compared with: what is wanted; of a separation speed, which may be zero, the approach speed."""
+    return speeds if name == "separation_speed" else np.abs(wanted)
 
 
 @dataclass(frozen=True)
@@ -139,7 +165,7 @@ class Slopes:
 def slopes(tunable: Tunable, speeds: Floats, values: Floats) -> Slopes:
     """Return outcomes of impacts and their derivatives, by central differences inside the range of the parameter."""
     step = _STEP * np.maximum(np.abs(values), 1e-3 * tunable.start)
-    high, low = clip(values + step, tunable.allowed), clip(values - step, tunable.allowed)
+    high, low = tunable.allowed.clip(values + step), tunable.allowed.clip(values - step)
     faster, slower = speeds * (1.0 + _STEP), speeds * (1.0 - _STEP)
     rows = np.tile(np.arange(len(speeds)), 5)
     every = tunable.respond(

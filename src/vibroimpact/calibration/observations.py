@@ -34,6 +34,10 @@ class Observations:
         What each is called in messages, such as "impact 3" or "row 7".
     of_the_drop : bool
         Are they the impacts of the drop, in order?
+    noise_from : str
+        Where the sizes of the sources come from, in words.
+    doubts : tuple of str
+        What to doubt of them.
     """
 
     speeds: Floats
@@ -43,6 +47,8 @@ class Observations:
     deviations_known: bool = False
     labels: tuple[str, ...] = ()
     of_the_drop: bool = True
+    noise_from: str = "the given standard deviations"
+    doubts: tuple[str, ...] = ()
 
     @property
     def measured(self) -> bool:
@@ -58,9 +64,9 @@ class Observations:
 def from_heights(
     heights: Floats, deviation: Floats | None, *, first_speed: float, radius: float, gravity: float, labels: tuple[str, ...] = ()
 ) -> Observations:
-    """Return the impacts between measured rebound heights.
+    r"""Return the impacts between measured rebound heights.
 
-    The speed after an impact is :math:`\\sqrt{2 g (h - R)}`, and with it the sphere comes down to the next.
+    With :math:`\sqrt{2 g (h - R)}` the sphere comes down from a height h to the next.
 
     Parameters
     ----------
@@ -72,34 +78,38 @@ def from_heights(
         Speed of the first touch [m/s], taken as exact.
     radius, gravity : float
         Of the sphere [m], and acceleration [m/s^2].
+    labels : tuple of str, optional
+        What each is called.
 
     Examples
     --------
-    >>> found = from_heights(np.array([0.525]), None, first_speed=4.0, radius=0.025, gravity=9.8)
-    >>> found.wanted["separation_speed"].round(4).tolist()
-    [3.1305]
+    >>> found = from_heights(np.array([0.525, 0.1]), None, first_speed=4.0, radius=0.025, gravity=9.8)
+    >>> found.speeds.round(4).tolist(), found.wanted["rebound_height"].tolist()
+    ([4.0, 3.1305], [0.525, 0.1])
     """
-    separation = np.sqrt(2.0 * gravity * (heights - radius))
-    slope = gravity / separation * (np.ones(len(heights)) if deviation is None else deviation)
-    noise = np.diag(slope)
-    before = np.vstack([np.zeros(len(heights)), noise[:-1]])
-    speeds = np.append(first_speed, separation[:-1])
+    falls = np.sqrt(2.0 * gravity * (heights - radius))
+    noise = np.diag(np.ones(len(heights)) if deviation is None else deviation)
+    before = np.vstack([np.zeros(len(heights)), (gravity / falls)[:-1, None] * noise[:-1]])
     names = labels or tuple(f"impact {number + 1}" for number in range(len(heights)))
-    return Observations(speeds, {"separation_speed": separation}, before, {"separation_speed": noise}, deviation is not None, names)
+    speeds = np.append(first_speed, falls[:-1])
+    return Observations(speeds, {"rebound_height": heights}, before, {"rebound_height": noise}, deviation is not None, names)
 
 
-def scaled(seen: Observations, scatter: float) -> Observations:
-    """Return observations whose noise, so far only compared, has a size: `scatter` times what it was."""
-    noise = {name: scatter * values for name, values in seen.noise.items()}
+def scaled(seen: Observations, scatter: float, weights: Mapping[str, float]) -> Observations:
+    """Return observations whose noise, so far only compared, has a size: `scatter` times what it was, less where a weight says so."""
+    noise = {name: scatter / np.sqrt(weights.get(name, 1.0)) * values for name, values in seen.noise.items()}
     return replace(seen, speed_noise=scatter * seen.speed_noise, noise=noise, deviations_known=True)
 
 
 def from_table(
-    speeds: Floats, wanted: Mapping[str, Floats], deviations: Mapping[str, Floats] | None, labels: tuple[str, ...]
+    speeds: Floats,
+    wanted: Mapping[str, Floats],
+    deviations: Mapping[str, Floats] | None,
+    labels: tuple[str, ...],
+    *,
+    of_the_drop: bool = False,
 ) -> Observations:
     """Return impacts that were measured apart from each other, at approach speeds that are exact.
-
-    One alone is the first of the drop.
 
     Parameters
     ----------
@@ -111,6 +121,8 @@ def from_table(
         Their standard deviations, in the same units.
     labels : tuple of str
         What each impact is called.
+    of_the_drop : bool, default False
+        Are they the impacts of the drop, in order?
     """
     number, several = len(speeds), len(wanted)
     noise = {}
@@ -119,4 +131,4 @@ def from_table(
         block = np.zeros((number, number * several))
         block[:, place * number : (place + 1) * number] = np.diag(size)
         noise[name] = block
-    return Observations(speeds, wanted, np.zeros((number, number * several)), noise, deviations is not None, labels, number == 1)
+    return Observations(speeds, wanted, np.zeros((number, number * several)), noise, deviations is not None, labels, of_the_drop)

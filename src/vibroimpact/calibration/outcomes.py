@@ -12,8 +12,12 @@ OUTCOMES = {
     "max_force": ("max_force_N", "N"),
     "max_indentation": ("max_indentation_m", "m"),
     "duration": ("duration_s", "s"),
+    "rebound_height": ("rebound_height_m", "m"),
 }
 """What of an impact can be matched: its column of the impact table, and unit."""
+
+REBOUNDS = ("separation_speed", "rebound_height")
+"""Two readings of one thing; they differ a little under a law that lets go before the bodies have stopped overlapping."""
 
 REBOUND: Mapping[str, float] = {"separation_speed": 1.0}
 """What is matched by default."""

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import itertools
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from vibroimpact.calibration.observations import Floats, Observations
-from vibroimpact.calibration.record_noise import ABOVE_NOISE, record_noise
+from vibroimpact.calibration.record_noise import ABOVE_NOISE, named_samples, record_noise
 from vibroimpact.errors import InputError
 
 _FEWEST = 5
@@ -22,14 +23,21 @@ _FAR = 0.5  # of the radius, that flights may meet above or below where the sphe
 
 
 class _Flight(NamedTuple):
-    """A parabola with standard deviations: height of its top [m], and when it is there [s]."""
+    """A parabola: height of its top [m] and when it is there [s]; the standard deviation of the height under noise of one; the sum
+    of squares that is left of how many degrees of freedom; then its standard deviation [m].
+    """
 
     top: float
-    deviation: float
     when: float
+    under_noise: float
+    left: float
+    freedom: int
+    deviation: float = 0.0
 
 
-def impacts_in_position(time: Floats, position: Floats, *, radius: float, gravity: float, first_speed: float) -> Observations:
+def impacts_in_position(
+    time: Floats, position: Floats, *, radius: float, gravity: float, first_speed: float, lines: Sequence[int] | None = None
+) -> Observations:
     """Return the impacts of a sphere whose height was recorded.
 
     A parabola with the given gravity goes through each flight by least squares; its top tells the speeds at its ends. Samples
@@ -43,6 +51,8 @@ def impacts_in_position(time: Floats, position: Floats, *, radius: float, gravit
         Of the sphere [m], and acceleration [m/s^2], > 0.
     first_speed : float
         Of the first touch [m/s]; used if the record begins too late to tell it.
+    lines : sequence of int, optional
+        The line of a file that each sample stands on, for messages.
 
     Returns
     -------
@@ -52,17 +62,17 @@ def impacts_in_position(time: Floats, position: Floats, *, radius: float, gravit
     Raises
     ------
     InputError
-        If the record does not show an impact, or a flight has too few samples; rows count from 1.
+        If the record does not show an impact, or a flight has too few samples.
 
     Examples
     --------
     >>> t = np.linspace(0.0, 1.2, 601)
     >>> y = np.where(t < 0.5, 0.025 + 4.9 * (0.25 - t**2), 0.025 + np.maximum(3.0 * (t - 0.5) - 4.9 * (t - 0.5) ** 2, 0.0))
     >>> found = impacts_in_position(t, y, radius=0.025, gravity=9.8, first_speed=4.9)
-    >>> found.speeds.round(3).tolist(), found.wanted["separation_speed"].round(3).tolist()
-    ([4.9], [3.0])
+    >>> found.speeds.round(3).tolist(), found.wanted["rebound_height"].round(4).tolist()
+    ([4.9], [0.4842])
     """
-    noise = record_noise(position)
+    noise, at = record_noise(position), named_samples(lines)
     lows = _lowest(position, noise)
     if not len(lows):
         raise InputError("the record does not show an impact: nowhere does the sphere stop falling and rise again")
@@ -75,35 +85,41 @@ def impacts_in_position(time: Floats, position: Floats, *, radius: float, gravit
         if len(inside) < _FEWEST:
             if 0 < number < len(ends) - 2:
                 raise InputError(
-                    f"between the impacts at rows {begin + 1} and {end + 1} only {len(inside)} samples show the sphere in flight, and it "
-                    f"takes {_FEWEST}; sample faster, or end the record sooner"
+                    f"between the impacts at {at(begin)} and {at(end)} only {len(inside)} samples show the sphere above its radius, and it "
+                    f"takes {_FEWEST}; sample faster, end the record sooner, or look at sign and unit of the position"
                 )
             flights.append(None)
             continue
         flights.append(_parabola(time[inside], position[inside], gravity))
+    if any(flights):
+        flights = _pooled(flights, _LEAST * float(np.ptp(position)))
     if flights[1] is None:
         raise InputError("the record ends before it shows how high the sphere rebounds from the first impact")
     last = len(flights) if flights[-1] is not None else len(flights) - 1
     known = [flight for flight in flights[1:last] if flight is not None]
-    _check_level(flights, radius, gravity)
+    _check_level(flights, [at(low) for low in lows], radius, gravity)
     tops = np.array([flight.top for flight in known])
     if np.any(tops <= radius):
         raise InputError("the sphere never rises above its radius; position must be the height of its centre above the plate")
-    return _between_flights(flights[0], known, tops, radius, gravity, first_speed, [int(low) + 1 for low in lows])
+    return _between_flights(flights[0], known, tops, radius, gravity, first_speed, [at(low) for low in lows])
 
 
 def _between_flights(
-    first: _Flight | None, known: list[_Flight], tops: Floats, radius: float, gravity: float, first_speed: float, rows: list[int]
+    first: _Flight | None, known: list[_Flight], tops: Floats, radius: float, gravity: float, first_speed: float, places: list[str]
 ) -> Observations:
-    separation = np.sqrt(2.0 * gravity * (tops - radius))
-    slopes = gravity / separation * np.array([flight.deviation for flight in known])
-    sources = np.diag(np.append(0.0, slopes))
+    falls = np.sqrt(2.0 * gravity * (tops - radius))
+    deviations = np.array([flight.deviation for flight in known])
+    number = len(known)
+    sources, before = np.zeros((number, number + 1)), np.zeros((number, number + 1))
+    sources[:, 1:] = np.diag(deviations)
+    before[1:, 1:] = np.diag(gravity / falls * deviations)[:-1]
     if first is not None and first.top > radius:
         first_speed = float(np.sqrt(2.0 * gravity * (first.top - radius)))
-        sources[0, 0] = gravity / first_speed * first.deviation
-    labels = tuple(f"impact {number + 1}, row {row}" for number, row in enumerate(rows[: len(known)]))
-    speeds = np.append(first_speed, separation[:-1])
-    return Observations(speeds, {"separation_speed": separation}, sources[:-1], {"separation_speed": sources[1:]}, True, labels)
+        before[0, 0] = gravity / first_speed * first.deviation
+    labels = tuple(f"impact {number + 1}, {place}" for number, place in enumerate(places[: len(known)]))
+    speeds = np.append(first_speed, falls[:-1])
+    noise_from = "the scatter of the record"
+    return Observations(speeds, {"rebound_height": tops}, before, {"rebound_height": sources}, True, labels, noise_from=noise_from)
 
 
 def _parabola(time: Floats, position: Floats, gravity: float) -> _Flight:
@@ -114,15 +130,22 @@ def _parabola(time: Floats, position: Floats, gravity: float) -> _Flight:
     fallen = position + 0.5 * gravity * across**2
     (height, speed), *_ = np.linalg.lstsq(powers, fallen, rcond=None)
     left = fallen - powers @ np.array([height, speed])
-    variance = float(left @ left) / (len(time) - 2) + (_LEAST * float(np.ptp(position))) ** 2
-    covariance = variance * np.linalg.inv(powers.T @ powers)
     slope = np.array([1.0, speed / gravity])
-    return _Flight(float(height + 0.5 * speed**2 / gravity), float(np.sqrt(slope @ covariance @ slope)), float(middle + speed / gravity))
+    under_noise = float(np.sqrt(slope @ np.linalg.inv(powers.T @ powers) @ slope))
+    when = float(middle + speed / gravity)
+    return _Flight(float(height + 0.5 * speed**2 / gravity), when, under_noise, float(left @ left), len(time) - 2)
 
 
-def _check_level(flights: list[_Flight | None], radius: float, gravity: float) -> None:
+def _pooled(flights: list[_Flight | None], least: float) -> list[_Flight | None]:
+    """Return flights with their standard deviations, from what is left over of all of them."""
+    known = [flight for flight in flights if flight is not None]
+    noise = float(np.hypot(np.sqrt(sum(flight.left for flight in known) / sum(flight.freedom for flight in known)), least))
+    return [flight and flight._replace(deviation=noise * flight.under_noise) for flight in flights]
+
+
+def _check_level(flights: list[_Flight | None], places: list[str], radius: float, gravity: float) -> None:
     """Raise unless neighbouring flights meet about where the sphere touches the plate."""
-    for one, other in itertools.pairwise(flights):
+    for (one, other), place in zip(itertools.pairwise(flights), places, strict=True):
         if one is None or other is None:
             continue
         # where two parabolas of the same gravity cross
@@ -131,8 +154,8 @@ def _check_level(flights: list[_Flight | None], radius: float, gravity: float) -
         level = one.top - 0.5 * gravity * at**2
         if abs(level - radius) > _FAR * radius:
             raise InputError(
-                f"the flights meet at {level:.4g} m, and the sphere touches at its radius, {radius:g} m; position must be the height of "
-                "its centre above the plate, in the unit that the column says"
+                f"the flights before and after {place} meet at {level:.4g} m, and the sphere touches at its radius, {radius:g} m; position "
+                "must be the height of its centre above the plate, and its unit, time and gravity those of the record"
             )
 
 

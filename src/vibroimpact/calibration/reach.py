@@ -7,7 +7,7 @@ from dataclasses import fields
 
 import numpy as np
 
-from vibroimpact.calibration.matching import Match, Tunable, match
+from vibroimpact.calibration.matching import Match, Tunable, match, slopes
 from vibroimpact.calibration.observations import Floats, Observations
 from vibroimpact.calibration.outcomes import OUTCOMES
 from vibroimpact.calibration.tunables import law_parameter
@@ -16,11 +16,13 @@ from vibroimpact.dynamics.problem import Problem
 from vibroimpact.errors import InputError
 
 _BEYOND_NOISE = 3.0  # standard deviations
+_NEAR = 3  # steps of four from what is given, in which another parameter is looked for
 _WORDS = {
     "separation_speed": "separation speed",
     "max_force": "largest force",
     "max_indentation": "largest indentation",
     "duration": "contact duration",
+    "rebound_height": "rebound height",
 }
 
 
@@ -41,15 +43,26 @@ def check_reached(tunable: Tunable, problem: Problem, seen: Observations, weight
     wanted, unit = seen.wanted[name], OUTCOMES[name][1]
     for row in missed:
         beyond = max(wanted[row] - found.most[row], found.least[row] - wanted[row])
-        noise = float(np.linalg.norm(seen.noise[name][row])) if seen.deviations_known else 0.0
-        if beyond <= _BEYOND_NOISE * noise:
+        if 0.0 < beyond <= _BEYOND_NOISE * _noise_of(tunable, seen, name, int(row)):
             continue
         others = other_parameters(problem, tunable, seen, weights, row=int(row))
         hint = "; with the rest as given it would take " + " or ".join(_value(problem, *item) for item in others.items()) if others else ""
         asked = f"{seen.labels[row]}: after {seen.speeds[row]:.5g} m/s a {_WORDS[name]} of {wanted[row]:.5g} {unit} is wanted"
-        given = f"{problem.laws[0].name} gives {found.least[row]:.5g} to {found.most[row]:.5g} {unit}, whatever {tunable.name} is"
-        raise InputError(f"{asked}, and {given}{hint}", "target")
+        reach = f"{found.least[row]:.5g} to {found.most[row]:.5g} {unit}, whatever {tunable.name} is"
+        if beyond <= 0.0:
+            reach = f"{reach}, but jumps over this one"
+        elif tunable.damps and wanted[row] > found.most[row]:
+            reach = f"at most {found.most[row]:.5g} {unit}, without any {tunable.name}"
+        raise InputError(f"{asked}, and {problem.laws[0].name} gives {reach}{hint}", "target")
     return found.values
+
+
+def _noise_of(tunable: Tunable, seen: Observations, name: str, row: int) -> float:
+    """Return the standard deviation of what is wanted less what would come of it, where the sizes of the noise are known."""
+    if not seen.deviations_known:
+        return 0.0
+    near = slopes(tunable, seen.speeds[[row]], tunable.allowed.clip(np.array([1e-3 * tunable.start])))
+    return float(np.linalg.norm(seen.noise[name][row] - near.by_speed[name][0] * seen.speed_noise[row]))
 
 
 def other_parameters(
@@ -68,7 +81,7 @@ def other_parameters(
             continue
         other = law_parameter(problem, item.name)
         wanted = {name: values[[row]] for name, values in seen.wanted.items()}
-        value = match(other, seen.speeds[[row]], wanted, weights, np.array([row])).values[0]
+        value = match(other, seen.speeds[[row]], wanted, weights, np.array([row]), _NEAR).values[0]
         if np.isfinite(value):
             found[item.name] = float(value)
     return found

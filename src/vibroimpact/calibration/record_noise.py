@@ -1,6 +1,8 @@
-"""The noise of a record that is smooth."""
+"""What records of position and force share: their noise, and what a sample is called."""
 
 from __future__ import annotations
+
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -21,3 +23,8 @@ def record_noise(values: Floats) -> float:
     """
     third = np.diff(values, 3)
     return float(np.median(np.abs(third)) / 0.6745 / np.sqrt(20.0)) if len(third) else 0.0
+
+
+def named_samples(lines: Sequence[int] | None) -> Callable[[int], str]:
+    """Return what tells where a sample is: its line of a file, if that is known."""
+    return (lambda index: f"sample {index + 1}") if lines is None else (lambda index: f"line {lines[index]}")

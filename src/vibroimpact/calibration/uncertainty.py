@@ -9,9 +9,11 @@ import numpy as np
 from numpy.polynomial import polynomial
 from numpy.typing import NDArray
 
+from vibroimpact.calibration.drops import impacts_of
 from vibroimpact.calibration.fitting import Fit
-from vibroimpact.calibration.matching import Tunable, clip, match
+from vibroimpact.calibration.matching import Tunable, match
 from vibroimpact.calibration.observations import Floats, Observations
+from vibroimpact.dynamics.problem import Problem
 
 _DRAWN_VALUES = 2000  # that a bootstrap finds unless more is asked for, so that it takes seconds
 _FEWEST_DRAWS, _MOST_DRAWS = 100, 400
@@ -20,16 +22,19 @@ _WIDE = 0.25
 _DETERMINED = 1.0
 """Widths of an interval, as a part of its value, from which first order is not trusted, and from which nothing is determined."""
 
+_FOLLOWS, _BEYOND = 0.02, 1.05
+"""How far a polynomial may be off, as a part, and how far beyond its speeds it may be used, before it is told."""
+
 _AT_ONCE = 500
 _MOST_TOLD = 5
 
 
-def default_draws(values: Floats, half_widths: Floats) -> int:
-    """Return how many measurements to draw again: some where intervals are too wide to trust first order, else none.
+def default_draws(values: Floats, deviations: Floats) -> int:
+    """Return how many measurements to draw again: some where noise is too large to trust first order, else none.
 
     With many impacts first order is enough for the function, which is what they are for.
     """
-    if len(values) > _MOST_IMPACTS or not np.isfinite(half_widths).all() or np.all(half_widths <= _WIDE * np.abs(values)):
+    if len(values) > _MOST_IMPACTS or np.all(2.0 * deviations <= _WIDE * np.abs(values)):
         return 0
     return int(np.clip(_DRAWN_VALUES // len(values), _FEWEST_DRAWS, _MOST_DRAWS))
 
@@ -84,7 +89,10 @@ def redrawn(
         progress(min(1.0, (begin + at_once) / draws))
     every, fast = np.concatenate(values), np.concatenate(speeds)
     tails = 50.0 * (1.0 - confidence)
-    intervals = np.percentile(every, [tails, 100.0 - tails], axis=0).T
+    ends = np.percentile(every, [tails, 100.0 - tails], axis=0).T
+    # of noise whose size is only estimated the draws know nothing
+    wider = fit.quantile(confidence) / replace(fit, freedom=np.inf).quantile(confidence)
+    intervals = np.median(every, axis=0)[:, None] + wider * (ends - np.median(every, axis=0)[:, None])
     counts = 1.0 / deviations
     coefficients = [polynomial.polyfit(at, row, fit.function.degree, w=counts) for at, row in zip(fast, every, strict=True)]
     return intervals, replace(fit, covariance=np.atleast_2d(np.cov(np.array(coefficients).T)))
@@ -102,7 +110,7 @@ def with_nearest_end(
     missing = np.flatnonzero(np.isnan(values))
     if not missing.size:
         return values
-    ends = [clip(np.full(missing.size, side), tunable.allowed) for side in (-np.inf, np.inf)]
+    ends = [tunable.allowed.clip(np.full(missing.size, side)) for side in (-np.inf, np.inf)]
     ends = [end for end in ends if np.isfinite(end).all()]
     misses = []
     for end in ends:
@@ -119,7 +127,9 @@ def undetermined(
     """Return sentences about values and coefficients that the measurement does not determine."""
     told, percent = [], f"{100.0 * confidence:g} %"
     if intervals is None:
-        if fit.freedom <= 0:
+        if fit.freedom > 0:
+            told.append(f"{tunable.name} has no influence on one of the impacts, so that no interval can be told")
+        else:
             told.append("as many impacts as coefficients, and no standard deviation: nothing tells how well these are known")
         return told
     wide = intervals[:, 1] - intervals[:, 0] > _DETERMINED * np.abs(values)
@@ -136,4 +146,36 @@ def undetermined(
     if fit.function.degree and not abs(highest) > half:
         known = f"the highest coefficient is {highest:.3g}, known to {half:.2g} at {percent}"
         told.append(f"the measurement does not call for degree {fit.function.degree}: {known}; a lower degree will do")
+    return told
+
+
+def of_the_whole(
+    problem: Problem, tunable: Tunable, seen: Observations, fit: Fit, curve: tuple[Floats, Floats] | None, speeds: Floats
+) -> list[str]:
+    """Return sentences about a polynomial that does not follow what it was fitted to, or is used beyond it; and other limits.
+
+    `speeds`: the approach speeds of the drop [m/s].
+    """
+    told, function = [], fit.function
+    if np.isfinite(fit.freedom) and seen.deviations_known and fit.freedom > 0:
+        told.append(
+            f"residuals are {fit.scatter:.3g} times as large as their standard deviations: a polynomial of degree {function.degree} does "
+            "not follow the measurement, or its noise is larger; the intervals of the polynomial are widened by that"
+        )
+    along, values = (seen.speeds, function(seen.speeds)) if curve is None else curve
+    inside = (along >= function.slowest) & (along <= function.fastest)
+    off = np.abs(function(along) / values - 1.0)[inside] if curve is not None else np.zeros(1)
+    if np.nanmax(off, initial=0.0) > _FOLLOWS:
+        told.append(
+            f"the polynomial of degree {function.degree} is off by up to {100.0 * np.nanmax(off):.2g} %; take a higher degree, or a "
+            "narrower range of speeds"
+        )
+    beyond = speeds[(speeds > _BEYOND * function.fastest) | (speeds * _BEYOND < function.slowest)]
+    if beyond.size and function.degree:
+        told.append(
+            f"the drop has impacts at {beyond.min():.4g} to {beyond.max():.4g} m/s, and the polynomial was fitted over "
+            f"{function.slowest:.4g} to {function.fastest:.4g} m/s: what it says there is a guess"
+        )
+    if problem.vibrates and impacts_of(problem) > 1:
+        told.append(f"{tunable.name} is matched on bodies at rest; at later impacts they still ring, and the rebound differs")
     return told

@@ -65,11 +65,7 @@ def check_case(case: Case) -> None:
     InputError
         If the contact law can't be made for these bodies, the sphere would bounce for ever, or an elastic body can't be made.
     """
-    try:
-        law = contact_laws_of(case)[-1]
-    except InputError as error:
-        hint = "; `vibroimpact calibrate` finds it" if case.calibrate is not None and "missing" in error.message else ""
-        raise InputError(f"{error.message}{hint}", error.key) from None
+    law = contact_laws_of(case)[-1]
     if impacts_of(case) is None and case.run.duration is None:
         remedy = "give a number or a duration"
         if loses_nothing(law):

@@ -7,11 +7,11 @@ from typing import Annotated, Any, Literal
 import numpy as np
 from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
 
-from vibroimpact.calibration.outcomes import OUTCOMES, REBOUND, check_weights
+from vibroimpact.calibration.outcomes import OUTCOMES, check_weights
 from vibroimpact.cases.contact_section import ContactSection, law_schema, read_contact
 from vibroimpact.cases.quantities import Quantity
 from vibroimpact.cases.section import Section, read_table
-from vibroimpact.errors import InputError
+from vibroimpact.errors import InputError, did_you_mean
 from vibroimpact.ranges import Range
 
 MOST_SPEEDS = 10_000
@@ -26,7 +26,9 @@ class RestitutionTarget(Section):
     """A restitution: one for every impact, or one at each of several approach speeds."""
 
     restitution: _Restitution | tuple[_Restitution, ...] = Field(description="separation speed over approach speed")
-    approach_speed: tuple[_Speed, ...] | None = Field(None, description="at which each of several was measured [m/s]")
+    approach_speed: tuple[_Speed, ...] | None = Field(
+        None, description="a list of speeds [m/s] at which each of several restitutions was measured"
+    )
     standard_deviation: Annotated[float, Quantity("", "standard deviation of each", _POSITIVE)] | None = None
 
     @model_validator(mode="after")
@@ -44,7 +46,9 @@ class RestitutionTarget(Section):
 class HeightsTarget(Section):
     """Measured rebound heights, from the first impact on."""
 
-    rebound_heights: tuple[_Height, ...] = Field(min_length=1, description="of the sphere's centre above the plate, one an impact [m]")
+    rebound_heights: tuple[_Height, ...] = Field(
+        min_length=1, description="a list of heights of the sphere's centre above the plate, one an impact [m]"
+    )
     standard_deviation: Annotated[float, Quantity("m", "standard deviation of each", _POSITIVE)] | None = None
 
 
@@ -93,8 +97,14 @@ def _read_target(value: Any) -> Any:
         return read_contact(value)
     kind = next((key for key in _KEYS if key in value), None)
     if kind is None:
-        raise InputError(f"it needs one of law, {', '.join(_KEYS)}")
+        keys = ["law", *_KEYS]
+        hint = next((words for key in value if (words := did_you_mean(key, keys))), "")
+        raise InputError(f"it needs one of {', '.join(keys)}.{hint}")
     return read_table(_KEYS[kind], value)
+
+
+def _read_model(value: Any) -> Any:
+    return read_contact({"law": value} if isinstance(value, str) else value)
 
 
 def _read_match(value: Any) -> Any:
@@ -155,13 +165,15 @@ class CalibrateSection(Section):
     target: Annotated[Any, BeforeValidator(_read_target), WithJsonSchema(_TARGET_SCHEMA)] = Field(
         None, description="what impacts are to be like; by default what they are under the law of the case, and the model is Adams' IMPACT"
     )
-    model: Annotated[Any, BeforeValidator(read_contact), WithJsonSchema(law_schema())] = Field(
+    model: Annotated[Any, BeforeValidator(_read_model), WithJsonSchema(law_schema())] = Field(
         None, description="the contact law that is tuned; by default that of the case"
     )
     parameter: str | None = Field(
         None, description='what is tuned: a parameter of the law, "sphere.damping" or "plate.damping"; by default what sets the law\'s loss'
     )
-    match: Annotated[Any, BeforeValidator(_read_match), WithJsonSchema(_MATCH_SCHEMA)] = REBOUND
+    match: Annotated[Any, BeforeValidator(_read_match), WithJsonSchema(_MATCH_SCHEMA)] = Field(
+        None, description="what of an impact is matched: one, or a table of several with weights; by default the separation speed"
+    )
     degree: Annotated[int, Field(ge=0, le=12, strict=True)] | None = Field(
         None, description="of the polynomial of the approach speed; by default 2, or less where there are fewer speeds"
     )

@@ -14,6 +14,7 @@ from vibroimpact.calibration.drops import impacts_of
 from vibroimpact.calibration.matching import Tunable
 from vibroimpact.calibration.tunables import law_parameter, modal_damping
 from vibroimpact.cases.build import problem_of, resolved
+from vibroimpact.cases.calibrate_section import CalibrateSection
 from vibroimpact.cases.contact_section import read_contact
 from vibroimpact.cases.local_section import LocalSection
 from vibroimpact.cases.reader import load_table, named, read_case
@@ -61,8 +62,9 @@ def read_calibration(table: Mapping[str, Any]) -> ToCalibrate:
     whole = dict(table)
     section = dict(whole.get("calibrate") or {}) if isinstance(whole.get("calibrate", {}), dict) else whole["calibrate"]
     contact = whole.get("contact")
-    if isinstance(section, dict) and isinstance(contact, dict):
+    if isinstance(section, dict) and isinstance(contact, dict) and set(section) <= set(CalibrateSection.model_fields):
         model = section.pop("model", None)
+        model = {"law": model} if isinstance(model, str) else model
         if "target" not in section:
             if contact.get("law") == MODEL and model is None:
                 words = f"nothing says what impacts are to be like, since the law of the case is {MODEL} itself"
@@ -74,7 +76,12 @@ def read_calibration(table: Mapping[str, Any]) -> ToCalibrate:
             whole["contact"] = contact = {**kept, **model} if isinstance(model, dict) else model
         whole["contact"] = started = _with_start(contact, section.get("parameter"))
         whole["calibrate"] = section
-        return ToCalibrate(read_case(whole), started is contact)
+        try:
+            return ToCalibrate(read_case(whole), started is contact)
+        except InputError as error:
+            lines = str(error).splitlines()
+            named = [f"calibrate.model{line.removeprefix('contact')}" if line.startswith("contact") else line for line in lines]
+            raise InputError("\n".join(named if model is not None else lines)) from None
     return ToCalibrate(read_case(whole), True)
 
 

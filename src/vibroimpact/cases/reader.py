@@ -58,7 +58,16 @@ def load_case(source: str | PathLike[str]) -> Case:
     >>> load_case("paper:type1-theory").sphere.radius
     0.025
     """
-    return named(source, lambda: read_case(load_table(source)))
+    return named(source, lambda: _read_to_run(load_table(source)))
+
+
+def _read_to_run(table: dict[str, Any]) -> Case:
+    try:
+        return read_case(table)
+    except InputError as error:
+        if "calibrate" in table and "contact" in str(error) and "missing" in str(error):
+            raise InputError(f"{error}; `vibroimpact calibrate` finds it") from None
+        raise
 
 
 def load_table(source: str | PathLike[str]) -> dict[str, Any]:

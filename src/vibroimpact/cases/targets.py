@@ -8,7 +8,7 @@ import numpy as np
 
 from vibroimpact.calibration.force_record import impacts_in_force
 from vibroimpact.calibration.observations import Floats, Observations, from_heights, from_table
-from vibroimpact.calibration.outcomes import OUTCOMES
+from vibroimpact.calibration.outcomes import OUTCOMES, REBOUND, REBOUNDS
 from vibroimpact.calibration.position_record import impacts_in_position
 from vibroimpact.cases.build import contact_laws_of, contact_pair, first_speed
 from vibroimpact.cases.calibrate_section import CalibrateSection, HeightsTarget, ImpactTarget, RestitutionTarget
@@ -27,10 +27,12 @@ _COLUMNS = {
     "force": "N",
     "approach_speed": "m/s",
     "restitution": "",
+    "restitution_achieved": "",
     "rebound_height": "m",
     **_OUTCOMES,
     **{f"{name}{_DEVIATION}": unit for name, unit in {"restitution": "", "rebound_height": "m", **_OUTCOMES}.items()},
 }
+_NOISE_OF_RESTITUTION = 0.1
 _KINDS = (
     "approach_speed with restitution, separation_speed, max_force, max_indentation or duration; rebound_height; "
     "or a record of time with position or force"
@@ -45,7 +47,7 @@ def target_of(case: Case, problem: Problem, section: CalibrateSection) -> Proble
     InputError
         If a file can't be read, or does not tell of impacts; with the line.
     """
-    target, speed, radius = section.target, first_speed(case), case.sphere.radius
+    target, speed = section.target, first_speed(case)
     if isinstance(target, ContactSection):
         try:
             return replace(problem, laws=contact_laws_of(case.model_copy(update={"contact": target})))
@@ -62,28 +64,40 @@ def target_of(case: Case, problem: Problem, section: CalibrateSection) -> Proble
         if isinstance(target.restitution, tuple):
             return _of_speeds(target)
         if problem.vibrates:  # where a law without a force has no meaning: the first impact, on a plate at rest
-            return from_table(np.array([speed]), {"separation_speed": np.array([target.restitution * speed])}, None, ("impact 1",))
+            return from_table(
+                np.array([speed]), {"separation_speed": np.array([target.restitution * speed])}, None, ("impact 1",), of_the_drop=True
+            )
         return replace(problem, laws=(Newton(restitution=target.restitution),))
-    table = read_table_file(target.file, _COLUMNS)
+    return _of_file(case, read_table_file(target.file, _COLUMNS), set(section.match or REBOUND) <= set(REBOUNDS))
+
+
+def _of_file(case: Case, table: TableFile, by_rebound: bool) -> Observations:
+    """Return what a file tells; of a record of both, the position if only the rebound is matched."""
     columns = table.columns
     if "approach_speed" in columns:
         return _of_rows(table)
-    if "rebound_height" in columns:
-        deviation = columns.get(f"rebound_height{_DEVIATION}")
-        return _from_heights(case, columns["rebound_height"], deviation, tuple(f"line {line}" for line in table.lines))
-    missing = [name for name in ("time",) if name not in columns]
-    if missing or not ("position" in columns or "force" in columns):
-        raise InputError(f"{table.path}: the columns {', '.join(columns)} do not tell of impacts; a file has {_KINDS}", "target")
-    rising(table, "time")
-    by_force = "position" not in columns or ("force" in columns and set(section.match) != {"separation_speed"})
-    time, gravity = columns["time"], case.drop.gravity
     try:
-        if by_force:
+        if "rebound_height" in columns:
+            if table.empty:
+                words = "the line is empty; rebound heights are those of one impact after another, and none can be missing"
+                raise InputError(f"line {table.empty[0]}: {words}")
+            labels = tuple(f"line {line}" for line in table.lines)
+            return _from_heights(case, columns["rebound_height"], columns.get(f"rebound_height{_DEVIATION}"), labels)
+        if "time" not in columns or not ("position" in columns or "force" in columns):
+            raise InputError(f"the columns {', '.join(columns)} do not tell of impacts; a file has {_KINDS}")
+        table = rising(table, "time")
+        columns, gravity, speed = table.columns, case.drop.gravity, first_speed(case)
+        time, lines = columns["time"], table.lines
+        if "position" not in columns or ("force" in columns and not by_rebound):
             mass = contact_pair(case).effective_mass
-            return impacts_in_force(time, columns["force"], mass=mass, gravity=gravity, first_speed=speed)
-        return impacts_in_position(time, columns["position"], radius=radius, gravity=gravity, first_speed=speed)
+            return impacts_in_force(time, columns["force"], mass=mass, gravity=gravity, first_speed=speed, lines=lines)
+        if gravity == 0.0:
+            raise InputError("without gravity a sphere rises for ever; a record of its position tells nothing")
+        radius = case.sphere.radius
+        return impacts_in_position(time, columns["position"], radius=radius, gravity=gravity, first_speed=speed, lines=lines)
     except InputError as error:
-        raise InputError(f"{table.path}: {error.message}", "target") from None
+        told = error.message if str(table.path) in error.message else f"{table.path}: {error.message}"
+        raise InputError(told, "target") from None
 
 
 def _from_heights(case: Case, heights: Floats, deviation: Floats | None, labels: tuple[str, ...]) -> Observations:
@@ -93,6 +107,12 @@ def _from_heights(case: Case, heights: Floats, deviation: Floats | None, labels:
     if low.size:
         what = f"{heights[low[0]]:g} m is not above where the sphere lies on the plate, with its centre at {case.sphere.radius:g} m"
         raise InputError(f"{labels[low[0]]}: {what}", "target")
+    fallen = np.append(case.drop.height or case.sphere.radius + 0.5 * first_speed(case) ** 2 / case.drop.gravity, heights[:-1])
+    noise = 0.0 if deviation is None else 6.0 * deviation  # of both heights
+    higher = np.flatnonzero(heights > fallen + noise)
+    if higher.size:
+        at = int(higher[0])
+        raise InputError(f"{labels[at]}: {heights[at]:g} m is higher than the {fallen[at]:g} m from which the sphere fell", "target")
     speed, gravity = first_speed(case), case.drop.gravity
     return from_heights(heights, deviation, first_speed=speed, radius=case.sphere.radius, gravity=gravity, labels=labels)
 
@@ -103,13 +123,11 @@ def _of_first(case: Case, target: ImpactTarget) -> Observations:
     if target.restitution is not None:
         found["separation_speed"] = target.restitution * speed
     if target.rebound_height is not None:
-        found["separation_speed"] = _from_heights(case, np.array([target.rebound_height]), None, ("impact 1",)).wanted["separation_speed"][
-            0
-        ]
+        _from_heights(case, np.array([target.rebound_height]), None, ("impact 1",))  # which looks at it
     wanted = {name: np.array([value]) for name, value in found.items() if value is not None}
     part = target.relative_deviation
     deviations = None if part is None else {name: part * value for name, value in wanted.items()}
-    return from_table(np.array([speed]), wanted, deviations, ("impact 1",))
+    return from_table(np.array([speed]), wanted, deviations, ("impact 1",), of_the_drop=True)
 
 
 def _of_speeds(target: RestitutionTarget) -> Observations:
@@ -123,7 +141,14 @@ def _of_speeds(target: RestitutionTarget) -> Observations:
 def _of_rows(table: TableFile) -> Observations:
     """Return impacts that a file gives one a row."""
     columns, speeds = dict(table.columns), table.columns["approach_speed"]
-    _positive(table, "approach_speed")
+    if "restitution_achieved" in columns:  # as the impact table of a result calls it
+        columns.setdefault("restitution", columns["restitution_achieved"])
+    for name in ("approach_speed", *(name for name in columns if name.endswith(_DEVIATION))):
+        _positive(table, name)
+    over = np.flatnonzero(columns.get("restitution", np.zeros(1)) > 1.0 + _NOISE_OF_RESTITUTION)
+    if over.size:
+        value = columns["restitution"][over[0]]
+        raise InputError(f"{table.path}, line {table.lines[over[0]]}: restitution is {value:g}; it is 1 at most", "target")
     for ending in ("", _DEVIATION):  # a restitution is a separation speed over the approach speed
         if f"restitution{ending}" in columns:
             columns.setdefault(f"separation_speed{ending}", columns[f"restitution{ending}"] * speeds)
@@ -131,7 +156,7 @@ def _of_rows(table: TableFile) -> Observations:
     if not wanted:
         raise InputError(f"{table.path}: beside approach_speed a column is missing: restitution, {', '.join(OUTCOMES)}", "target")
     for name in wanted:
-        _positive(table, name if name in table.columns else "restitution")
+        _positive(table, next(column for column in (name, "restitution", "restitution_achieved") if column in table.columns))
     known = [name for name in wanted if f"{name}{_DEVIATION}" in columns]
     if known and len(known) < len(wanted):
         without = next(name for name in wanted if name not in known)

@@ -13,6 +13,7 @@ from vibroimpact.ranges import Range
 
 _FARTHEST = 20  # steps of four from its start in which a value is looked for
 _EXACT = 1e-11  # as near as this to what is wanted is there
+_JUMP = 1e-8  # farther than this is a jump
 
 
 def find_root(function: Callable[[Array], Array], low: Array, high: Array, *, tolerance: float = 1e-13, close: float = 0.0) -> Array:
@@ -87,7 +88,9 @@ class Sought(NamedTuple):
     most: Array
 
 
-def solve_monotonic(function: Callable[[Array], Array], wanted: Array, start: Array, allowed: Range, *, falls: bool = False) -> Sought:
+def solve_monotonic(
+    function: Callable[[Array], Array], wanted: Array, start: Array, allowed: Range, *, falls: bool = False, farthest: int = _FARTHEST
+) -> Sought:
     """Return where a function, that rises or falls with its argument, has wanted values of the order of one.
 
     Looks at the ends of the range and in steps of four away from the start, then closes in.
@@ -102,6 +105,12 @@ def solve_monotonic(function: Callable[[Array], Array], wanted: Array, start: Ar
         Of the argument.
     falls : bool, default False
         Is it known to fall? Then what is above its value at the lower end of the range is not looked for.
+    farthest : int, default 20
+        How many steps of four to look to either side.
+
+    Notes
+    -----
+    Where the function jumps over what is wanted, nothing is found.
 
     Examples
     --------
@@ -112,9 +121,9 @@ def solve_monotonic(function: Callable[[Array], Array], wanted: Array, start: Ar
     least, most = np.full_like(start, np.inf), np.full_like(start, -np.inf)
     hopeless = np.zeros(start.shape, dtype=bool)
     ends = [end + 0.0 * start for end in (allowed.at_least, allowed.at_most) if np.isfinite(end)]
-    steps = (start * 4.0**power for count in range(_FARTHEST) for power in ((-count, count) if count else (0,)))
+    steps = (start * 4.0**power for count in range(farthest) for power in ((-count, count) if count else (0,)))
     for number, value in enumerate(itertools.chain(ends, steps)):
-        trial = np.clip(value, allowed.at_least, allowed.at_most)
+        trial = allowed.clip(value)
         found = function(trial)
         least, most = np.fmin(least, found), np.fmax(most, found)
         low = np.where(np.isnan(low) & (found <= wanted), trial, low)
@@ -130,4 +139,5 @@ def solve_monotonic(function: Callable[[Array], Array], wanted: Array, start: Ar
         return Sought(np.full_like(start, np.nan), least, most)
     low, high = (np.where(missed, start, bound) for bound in (low, high))
     place = find_root(lambda value: function(value) - wanted, low, high, close=_EXACT)
-    return Sought(np.where(missed, np.nan, place), least, most)
+    jumps = ~(np.abs(function(place) - wanted) <= _JUMP)
+    return Sought(np.where(missed | jumps, np.nan, place), least, most)

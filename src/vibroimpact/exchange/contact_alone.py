@@ -103,10 +103,18 @@ def first_contact(law: ContactLaw, drop: Drop) -> tuple[float, float]:
 
 
 def shared_notes(drop: Drop) -> list[str]:
-    """Return what no program with rigid bodies takes of a drop."""
-    if not drop.elastic:
-        return []
-    return [f"the {' and the '.join(drop.elastic)} are written as rigid; the contact law is written alone, without what vibrates."]
+    """Return what no program with rigid bodies takes of a drop, and where its function is used beyond its speeds."""
+    notes = []
+    if drop.elastic:
+        what = f"{' and '.join(drop.elastic)} {'is' if len(drop.elastic) == 1 else 'are'} written as rigid"
+        notes.append(f"{what}; the contact law is written alone, without what vibrates.")
+    if drop.function is not None and drop.function[1].degree:
+        name, function = drop.function
+        speeds = np.array(approach_speeds(drop))
+        if speeds.max() > 1.05 * function.fastest or 1.05 * speeds.min() < function.slowest:
+            range_of = f"{function.slowest:.4g} to {function.fastest:.4g} m/s"
+            notes.append(f"{name} was fitted over {range_of}, and this drop has impacts at {speeds.min():.4g} to {speeds.max():.4g} m/s.")
+    return notes
 
 
 def clipped_dashpot(stiffness: float, exponent: float, restitution: float, mass: float, speed: float) -> float:

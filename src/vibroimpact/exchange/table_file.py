@@ -20,6 +20,8 @@ Floats = NDArray[np.float64]
 LARGEST = 500_000_000
 """Bytes of a file that is read."""
 
+_LONGEST = 100_000  # characters of a line
+
 _BRACKETS = re.compile(r"(.*?)\s*[\[(]\s*([^\])]*)\s*[\])]\s*")
 _ENDINGS = {
     "_m_s2": "m/s^2",
@@ -37,11 +39,12 @@ _ENDINGS = {
 
 @dataclass(frozen=True)
 class TableFile:
-    """What a file holds: columns (rows,) in SI by their names, and the line of the file that each row stands on."""
+    """What a file holds: columns (rows,) in SI by their names, the line that each row stands on, and empty lines before the last."""
 
     path: Path
     columns: Mapping[str, Floats]
     lines: Sequence[int]
+    empty: Sequence[int] = ()
 
 
 def read_table_file(path: str | PathLike[str], units: Mapping[str, str]) -> TableFile:
@@ -73,7 +76,11 @@ def read_table_file(path: str | PathLike[str], units: Mapping[str, str]) -> Tabl
     """
     file = Path(path)
     text = _text(file)
-    lines = [(number, line) for number, line in enumerate(text.splitlines(), 1) if line.strip() and not line.lstrip().startswith("#")]
+    longest = max(map(len, text.splitlines()), default=0)
+    if longest > _LONGEST:
+        raise InputError(f"{file}: a line has {longest} characters; this is not a table")
+    plain = (line.partition("#")[0].rstrip() for line in text.splitlines())  # without comments
+    lines = [(number, line) for number, line in enumerate(plain, 1) if line.strip(" ,;\t")]
     if not lines:
         raise InputError(f"{file}: the file is empty")
     first = lines[0][1]
@@ -91,6 +98,7 @@ def read_table_file(path: str | PathLike[str], units: Mapping[str, str]) -> Tabl
         names = [_name_and_unit(cell)[0] for cell in header]
         hint = next((words for name in names if (words := did_you_mean(name, units))), "")
         raise InputError(f"{file}, line {lines[0][0]}: no column is known among {', '.join(names)}; {_allowed(units)}.{hint}")
+    _check_width(file, lines, len(header), mark)
     cells = csv.reader((line for _, line in lines[1:]), delimiter=mark)
     rows = [
         [_number(file, number, header[place], row, place, mark) * factor for place, factor in found.values()]
@@ -99,23 +107,36 @@ def read_table_file(path: str | PathLike[str], units: Mapping[str, str]) -> Tabl
     if not rows:
         raise InputError(f"{file}: there are no rows under the header")
     table = np.array(rows, dtype=float).T
-    return TableFile(file, dict(zip(found, table, strict=True)), [number for number, _ in lines[1:]])
+    empty = [number for number, line in enumerate(text.splitlines(), 1) if not line.strip(" ,;\t") and number < lines[-1][0]]
+    return TableFile(file, dict(zip(found, table, strict=True)), [number for number, _ in lines[1:]], empty)
 
 
-def rising(table: TableFile, column: str) -> None:
-    """Raise unless a column rises from row to row.
+def _check_width(file: Path, lines: Sequence[tuple[int, str]], width: int, mark: str) -> None:
+    """Raise if a row has more cells than the header."""
+    for number, line in lines[1:]:
+        cells = len(next(csv.reader([line], delimiter=mark)))
+        if cells > width:
+            hint = "; where a comma is the decimal point, semicolons separate the fields" if mark == "," else ""
+            raise InputError(f"{file}, line {number}: there are {cells} fields, and the header has {width}{hint}")
+
+
+def rising(table: TableFile, column: str) -> TableFile:
+    """Return a table without the rows at which a column stands still; raise if it goes backwards.
 
     Raises
     ------
     InputError
         With the line where it does not.
     """
-    values = table.columns[column]
-    back = np.flatnonzero(~(np.diff(values) > 0.0))
+    steps = np.diff(table.columns[column])
+    back = np.flatnonzero(steps < 0.0)
     if back.size:
         at = int(back[0])
-        step = "stands still" if values[at + 1] == values[at] else "goes backwards"
-        raise InputError(f"{table.path}, line {table.lines[at + 1]}: {column} {step}, from {values[at]:.6g} to {values[at + 1]:.6g}")
+        one, other = table.columns[column][at : at + 2]
+        raise InputError(f"{table.path}, line {table.lines[at + 1]}: {column} goes backwards, from {one:.9g} to {other:.9g}")
+    kept = np.append(True, steps > 0.0)
+    lines = [line for line, keep in zip(table.lines, kept, strict=True) if keep]
+    return TableFile(table.path, {name: values[kept] for name, values in table.columns.items()}, lines)
 
 
 def _text(file: Path) -> str:
@@ -170,6 +191,8 @@ def _number(file: Path, line: int, column: str, row: list[str], place: int, mark
         raise InputError(f"{where}: the cell is missing; the line has {len(row)}")
     text = row[place].strip()
     try:
+        if "_" in text:  # which Python takes in a number
+            raise ValueError(text)
         value = float(text.replace(",", ".") if mark != "," else text)
     except ValueError:
         raise InputError(f'{where}: "{text[:40]}" is not a number' if text else f"{where}: the cell is empty") from None
@@ -179,4 +202,4 @@ def _number(file: Path, line: int, column: str, row: list[str], place: int, mark
 
 
 def _allowed(units: Mapping[str, str]) -> str:
-    return "known are " + ", ".join(f"{name} [{unit}]" if unit else name for name, unit in units.items())
+    return "known are " + ", ".join(f"{name} [{unit}]" if unit else name for name, unit in units.items() if "deviation" not in name)

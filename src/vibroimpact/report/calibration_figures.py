@@ -29,7 +29,7 @@ def draw_calibration(found: Calibration) -> dict[str, Figure]:
     """
     with style():
         figures = {"parameter": _draw_parameter(found)}
-        if differences(found):
+        if differences(found) and len(found.impacts[1]) > 1:
             figures["differences"] = _draw_differences(found)
     return figures
 
@@ -42,7 +42,8 @@ def _draw_parameter(found: Calibration) -> Figure:
         smooth = np.linspace(function.slowest, function.fastest, _SMOOTH)
         fitted, band = function(smooth), found.fit.band(smooth, found.confidence)
         if np.isfinite(band).all():
-            label = f"{100.0 * found.confidence:g} % band"
+            of_what = "band" if found.observations.measured else "band of the misfit"
+            label = f"{100.0 * found.confidence:g} % {of_what}"
             axes.fill_between(smooth, fitted - band, fitted + band, color=ACCENT, alpha=0.15, linewidth=0.0, label=label)
         name = ("constant", "line")[function.degree] if function.degree < 2 else f"polynomial of degree {function.degree}"
         axes.plot(smooth, fitted, color=ACCENT, linestyle=(0, (6, 2)), label=name)

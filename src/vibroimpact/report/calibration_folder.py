@@ -15,7 +15,7 @@ from vibroimpact.cases.calibration import calibrated_case
 from vibroimpact.cases.schema import Case
 from vibroimpact.report.calibration_figures import draw_calibration
 from vibroimpact.report.calibration_tables import (
-    differences_table,
+    differences_tables,
     fit_sentences,
     function_words,
     given_sentences,
@@ -76,8 +76,8 @@ def save_calibration(case: Case, found: Calibration, directory: str | PathLike[s
             fit=fit_sentences(found),
             given=given_sentences(found),
             values=values_table(found),
-            differences=differences_table(found),
-            ways=ways_words(),
+            differences=differences_tables(found),
+            ways=ways_words(found),
             doubts=found.doubts,
             pictures=[picture(name, *_TITLES[name], svg) for name, svg in pictures.items()],
             case=tomli_w.dumps(resolved(case)),

@@ -6,7 +6,7 @@ import numpy as np
 
 from vibroimpact.calibration.calibrate import Calibration
 from vibroimpact.calibration.comparison import COMPARED, WAYS, differences, largest_misfit
-from vibroimpact.calibration.outcomes import OUTCOMES
+from vibroimpact.calibration.outcomes import OUTCOMES, REBOUNDS
 from vibroimpact.calibration.tunables import law_parameter
 from vibroimpact.report.quantity import MISSING, digits, fixed, text
 from vibroimpact.report.tables import column
@@ -18,13 +18,7 @@ _WORDS = {
     "max_force": "the largest force",
     "max_indentation": "the largest indentation",
     "duration": "the duration",
-}
-_SHORT = {
-    "max_indentation_m": "Indentation",
-    "max_force_N": "Force",
-    "duration_s": "Duration",
-    "rebound_height_m": "Rebound",
-    "separation_speed_m_s": "Separation",
+    "rebound_height": "the rebound height",
 }
 _POWERS = ("", " v", " v²", " v³")
 _MEANING = {
@@ -43,7 +37,7 @@ def values_table(found: Calibration) -> Cells:
     columns = [list(seen.labels), [digits(value) for value in seen.speeds], [digits(value, 6) for value in found.values]]
     if found.intervals is not None:
         headers.append((f"Interval, {_percent(found.confidence)}", found.unit))
-        columns.append([f"{digits(low)} to {digits(high)}" for low, high in found.intervals])
+        columns.append([f"{digits(low, 6)} to {digits(high, 6)}" for low, high in found.intervals])
     if found.as_given:
         headers.append(("As the case gives it", found.unit))
         columns.append([digits(value, 6) for value in found.given])
@@ -59,18 +53,20 @@ def values_table(found: Calibration) -> Cells:
     return headers, rows if len(rows) <= _MOST_ROWS else [*rows[: _MOST_ROWS - 1], ["…", *[""] * (len(headers) - 1)]]
 
 
-def differences_table(found: Calibration) -> Cells:
-    """Return headers, and a row an impact: how far each way is off [%]; empty where nothing is there to compare with."""
+def differences_tables(found: Calibration) -> dict[str, Cells]:
+    """Return headers, and a row an impact, for each quantity that is compared: how far each way is off [%].
+
+    None for a single impact, which is matched, and where nothing is there to compare with.
+    """
     off = differences(found)
-    if not off:
-        return [], []
-    shown = [name for name in COMPARED if name in off]
-    if "rebound_height_m" in shown:
-        shown.remove("separation_speed_m_s")  # which says the same
-    headers = [("Impact", "")] + [(f"{_SHORT[name]}, {way}", "%") for name in shown for way in WAYS]
-    number = len(next(iter(off[shown[0]].values())))
-    rows = [[str(impact + 1), *(_off(off[name][way][impact]) for name in shown for way in WAYS)] for impact in range(number)]
-    return headers, rows[:_MOST_ROWS]
+    if "rebound_height_m" in off and "separation_speed_m_s" in off:
+        del off["separation_speed_m_s"]  # which says the same
+    tables = {}
+    for name, ways in off.items():
+        number = len(next(iter(ways.values())))
+        rows = [[str(impact + 1), *(_off(ways[way][impact]) for way in WAYS)] for impact in range(number)]
+        tables[COMPARED[name]] = ([("Impact", ""), *((way, "%") for way in WAYS)], rows[:_MOST_ROWS])
+    return tables if len(found.impacts[1]) > 1 else {}
 
 
 def function_words(found: Calibration) -> str:
@@ -106,11 +102,11 @@ def fit_sentences(found: Calibration) -> list[str]:
             told.append(f"Its coefficients are known to ± {', '.join(digits(value, 3) for value in half)} at {_percent(found.confidence)}.")
         way = f"by drawing the measurement {found.bootstrap} times again" if found.bootstrap else "to first order"
         if found.intervals is not None:
-            told.append(f"Intervals are {way}, {'from the given' if seen.deviations_known else 'with the scatter as'} standard deviations.")
+            told.append(f"Intervals are {way}, from {seen.noise_from if seen.deviations_known else 'the scatter of what was measured'}.")
         if seen.deviations_known and np.isfinite(fit.scatter):
             told.append(f"Residuals are {digits(fit.scatter, 3)} times as large as their standard deviations.")
     else:
-        where = "between the impacts" if found.curve is not None else "at the impacts"
+        where = "over these speeds" if found.curve is not None else "at the impacts"
         told.append(f"It is off by {digits(largest_misfit(found), 3)} {found.unit} at most {where}.".replace("  ", " "))
     return told
 
@@ -145,13 +141,15 @@ def _height(found: Calibration, speed: float) -> str:
 def match_words(found: Calibration) -> str:
     """Return what was matched, in words."""
     if len(found.weights) == 1:
-        return _WORDS[next(iter(found.weights))]
-    return " and ".join(f"{_WORDS[name]} (weight {weight:g})" for name, weight in found.weights.items())
+        return f"{_WORDS[next(iter(found.weights))]} of each impact comes out as wanted"
+    every = " and ".join(f"{_WORDS[name]} (weight {weight:g})" for name, weight in found.weights.items())
+    return f"{every} of each impact come as near to what is wanted as one number can make them"
 
 
-def ways_words() -> str:
+def ways_words(found: Calibration) -> str:
     """Return what the ways to give the value mean."""
-    return "; ".join(f"{way}: {_MEANING[way]}" for way in WAYS)
+    chain = "" if set(found.weights) & set(REBOUNDS) else ". The rebound is not matched, so later impacts come at other speeds"
+    return "; ".join(f"{way}: {_MEANING[way]}" for way in WAYS) + chain
 
 
 def _off(value: float) -> str:

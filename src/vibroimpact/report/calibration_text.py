@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from rich.columns import Columns
 from rich.console import Group, RenderableType
 from rich.markup import escape
 from rich.table import Table
@@ -11,7 +12,7 @@ from vibroimpact.calibration.calibrate import Calibration
 from vibroimpact.cases.schema import Case
 from vibroimpact.report.calibration_tables import (
     Cells,
-    differences_table,
+    differences_tables,
     fit_sentences,
     function_words,
     given_sentences,
@@ -25,7 +26,7 @@ def calibration_summary(case: Case, found: Calibration) -> RenderableType:
     """Return the function, the value of each impact, what it still gets wrong, and what to doubt."""
     parts: list[RenderableType] = [
         Text(case.name or "a drop", style="bold"),
-        Text(f"{case.contact.law}, so that {match_words(found)} of each impact comes out as wanted"),
+        Text(f"{case.contact.law}, so that {match_words(found)}"),
         Text(),
         _table(values_table(found)),
         Text(),
@@ -34,19 +35,20 @@ def calibration_summary(case: Case, found: Calibration) -> RenderableType:
     ]
     if sentences := given_sentences(found):
         parts += [Text(), *(Text(sentence) for sentence in sentences)]
-    off = differences_table(found)
-    if off[1]:
-        parts += [Text(), Text("What is still wrong [%]", style="bold"), _table(off), Text(f" {ways_words()}", style="dim")]
+    if tables := differences_tables(found):
+        parts += [Text(), Text("What is still wrong", style="bold")]
+        parts.append(Columns([_table(cells, title) for title, cells in tables.items()], padding=(0, 4)))
+        parts.append(Text(f" {ways_words(found)}", style="dim"))
     parts += [Text(), *(Text(f"Doubt: {doubt}.") for doubt in found.doubts)] if found.doubts else []
     return Group(*parts)
 
 
-def _table(cells: Cells) -> Table:
+def _table(cells: Cells, title: str | None = None) -> Table:
     headers, rows = cells
-    table = Table(box=None, padding=(0, 1), header_style="bold")
+    table = Table(box=None, padding=(0, 1), header_style="bold", title=title, title_justify="left", title_style="")
     for number, (heading, unit) in enumerate(headers):
         words = f"{heading}\n[{unit}]".replace(", ", ",\n") if unit else heading
-        table.add_column(escape(words), justify="right" if number else "left", no_wrap=not number, vertical="bottom")
+        table.add_column(escape(words), justify="right" if number else "left", overflow="fold", vertical="bottom")
     for row in rows:
         table.add_row(*(escape(cell) for cell in row))
     return table

@@ -56,7 +56,9 @@ def converted(value: float, unit: str, to: str) -> RenderableType:
         As `convert_units`.
     """
     there = convert_units(value, unit, to)
-    return Group(Text(f"{number_text(value)} {unit} = {number_text(there)} {to}"), *_trap(unit))
+    power = dimension_of(unit).get("length", 0.0)
+    from_metres = value != 0.0 and abs(there / value * 1000.0**-power - 1.0) < 1e-9
+    return Group(Text(f"{number_text(value)} {unit} = {number_text(there)} {to}"), *(_trap(unit) if from_metres else []))
 
 
 def unit_table(value: float, unit: str) -> RenderableType:

@@ -16,6 +16,7 @@ from vibroimpact.cases.build import resolved
 from vibroimpact.cases.schema import Case
 
 CALIBRATION = "calibration.json"
+_SHORT = {column: name for name, (column, _) in OUTCOMES.items()}
 
 
 def calibration_table(case: Case, found: Calibration) -> dict[str, Any]:
@@ -93,7 +94,7 @@ def comparison_rows(found: Calibration) -> list[dict[str, Any]]:
                 row[column] = _finite(table[column][number])
                 if column in wanted and number < len(wanted[column]):
                     row[f"wanted_{column}"] = _finite(wanted[column][number])
-                    row[f"difference_{column.rsplit('_', 1)[0]}_percent"] = _finite(100.0 * off[column][way][number])
+                    row[f"difference_{_SHORT[column]}_percent"] = _finite(100.0 * off[column][way][number])
             rows.append(row)
     return rows
 

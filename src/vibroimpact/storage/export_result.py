@@ -13,6 +13,8 @@ from vibroimpact.exchange.drop import Drop
 from vibroimpact.exchange.export_format import ExportFormat, find_export_format
 from vibroimpact.storage.exported import drop_of
 
+_MOST_NAMED = 3
+
 
 def export_result(
     directory: str | PathLike[str], format: str, output: str | PathLike[str] | None = None, *, force: bool = False
@@ -93,7 +95,9 @@ def _targets(contents: Mapping[str, bytes], output: Path) -> dict[str, Path]:
         if len(contents) == 1:
             return dict.fromkeys(contents, output)
         if output.suffix.lower() in suffixes:
-            raise InputError(f"{output}: there are {len(contents)} files to write ({', '.join(list(contents)[:3])}, ...); name a folder")
+            more = ", ..." if len(contents) > _MOST_NAMED else ""
+            shown = ", ".join(list(contents)[:_MOST_NAMED])
+            raise InputError(f"{output}: there are {len(contents)} files to write ({shown}{more}); name a folder")
     return {name: output / name for name in contents}
 
 

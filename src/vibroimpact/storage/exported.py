@@ -88,7 +88,9 @@ def _of_calibration(folder: Path) -> Drop:
     file = folder / CALIBRATION
     try:
         function = _fitted(json.loads(file.read_text(encoding="utf-8")))
-    except (OSError, ValueError, KeyError, TypeError) as error:
+    except KeyError as error:
+        raise InputError(f"{file}: the file is damaged: it has no {error}") from None
+    except (OSError, ValueError, TypeError) as error:
         raise InputError(f"{file}: the file is missing or damaged: {error}") from None
     case = load_case(folder / "case.toml")
     return drop_of_result(result_of(simulate(case.to_problem())), case, function)
@@ -96,7 +98,7 @@ def _of_calibration(folder: Path) -> Drop:
 
 def _fitted(found: dict[str, Any]) -> tuple[str, SpeedFunction] | None:
     fit = found["fit"]
-    if fit is None:
+    if fit is None or "." in found["parameter"]:  # the damping of a body is no parameter of the law
         return None
     coefficients = tuple(float(one) for one in fit["coefficients"])
     return str(found["parameter"]), SpeedFunction(coefficients, float(fit["from_speed_m_s"]), float(fit["to_speed_m_s"]))

@@ -138,6 +138,8 @@ def read_result(directory: str | PathLike[str]) -> Result:
             groups["sensors"],
             groups["deflection"]["deflection"],
         )
+    except InputError:
+        raise
     except (OSError, ValueError, KeyError, TypeError) as error:
         raise InputError(f"{folder / name}: the file is missing or damaged: {error}") from None
 
