@@ -19,8 +19,8 @@ if TYPE_CHECKING:
     from vibroimpact.bodies.body import Body as Body
     from vibroimpact.bodies.plate import rigid_plate as rigid_plate
     from vibroimpact.bodies.sphere import rigid_sphere as rigid_sphere
-    from vibroimpact.calibration.calibrate import Calibration as Calibration
     from vibroimpact.calibration.calibrate import calibrate as calibrate
+    from vibroimpact.calibration.calibration import Calibration as Calibration
     from vibroimpact.calibration.force_record import impacts_in_force as impacts_in_force
     from vibroimpact.calibration.local_element import identify_local_element as identify_local_element
     from vibroimpact.calibration.local_element import local_element_deviations as local_element_deviations
@@ -83,7 +83,7 @@ _HOME = {
     "Accelerometer": "dynamics.sensor",
     "Body": "bodies.body",
     "BodyModes": "cases.modes",
-    "Calibration": "calibration.calibrate",
+    "Calibration": "calibration.calibration",
     "Case": "cases.schema",
     "Comparison": "report.comparison",
     "ComputationError": "errors",

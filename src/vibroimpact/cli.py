@@ -250,8 +250,13 @@ def units(
     from vibroimpact.report.unit_table import converted, unit_table
     from vibroimpact.units import read_quantity
 
-    value, unit = read_quantity(" ".join(quantity))
-    _console().print(unit_table(value, unit) if to is None else converted(value, unit, to))
+    try:
+        value, unit = read_quantity(" ".join(quantity))
+        shown = unit_table(value, unit) if to is None else converted(value, unit, to)
+    except InputError as error:
+        hint = '; a unit with blanks needs quotes, as in --to "N s/mm"' if to and " " not in to and len(quantity) > 1 else ""
+        raise InputError(f"{error}{hint}") from None
+    _console().print(shown)
 
 
 @app.command()

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, fields
+from dataclasses import fields
 from typing import NamedTuple
 
 import numpy as np
 
+from vibroimpact.calibration.calibration import Calibration
 from vibroimpact.calibration.drops import by_function, drops_with, impacts_of, shortened
 from vibroimpact.calibration.fitting import Fit, distinct, fit_observations, fit_values, value_noise
 from vibroimpact.calibration.matching import Tunable, match
@@ -24,69 +25,6 @@ from vibroimpact.errors import InputError
 _CURVE_POINTS = 41
 _PASSES = 20
 _MET = 1e-6  # of what is wanted
-
-
-@dataclass(frozen=True)
-class Calibration:
-    """What a calibration found.
-
-    Parameters
-    ----------
-    problem : Problem
-        The drop with its contact law as it was given.
-    parameter, unit : str
-        What was tuned.
-    weights : mapping of str to float
-        What was matched, by the names of `OUTCOMES`.
-    observations : Observations
-        The impacts that were matched: approach speeds and what was wanted.
-    values : array, shape (n,)
-        The value with which each comes out as wanted; the end of the range where noise puts it out of reach.
-    intervals : array, shape (n, 2), optional
-        Between which each value lies; None where nothing tells.
-    outcomes : mapping of str to array, shape (n,)
-        What the impacts are like with these values.
-    given : array, shape (n,)
-        The values as the problem gives them.
-    as_given : mapping of str to array, shape (n,)
-        What the impacts are like with those.
-    others : mapping of str to float
-        Values of other parameters of the law that would meet the first impact instead, the rest as given; none if it is met so.
-    fit : Fit
-        The value as a function of the approach speed.
-    curve : tuple of two arrays, optional
-        Approach speeds [m/s] and the exact value at each.
-    impacts : tuple of two arrays
-        Approach speed [m/s] and value of each impact of the drop.
-    drops : mapping of str to mapping
-        Impact tables of the drop: "target", where that can be simulated, and with the value "constant", "variable" from
-        impact to impact, and by the fitted "function".
-    confidence : float
-        Of the intervals.
-    bootstrap : int
-        How many measurements were drawn again for them; 0 if they are of first order.
-    doubts : tuple of str
-        What to doubt of it.
-    """
-
-    problem: Problem = field(repr=False)
-    parameter: str
-    unit: str
-    weights: Mapping[str, float]
-    observations: Observations = field(repr=False)
-    values: Floats
-    intervals: Floats | None
-    outcomes: Mapping[str, Floats] = field(repr=False)
-    given: Floats
-    as_given: Mapping[str, Floats] = field(repr=False)
-    others: Mapping[str, float]
-    fit: Fit
-    curve: tuple[Floats, Floats] | None = field(repr=False)
-    impacts: tuple[Floats, Floats]
-    drops: Mapping[str, Mapping[str, Floats]] = field(repr=False)
-    confidence: float
-    bootstrap: int
-    doubts: tuple[str, ...]
 
 
 def calibrate(

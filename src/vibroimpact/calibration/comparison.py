@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from vibroimpact.calibration.calibrate import Calibration
+from vibroimpact.calibration.calibration import Calibration
 from vibroimpact.calibration.observations import Floats
 from vibroimpact.calibration.outcomes import OUTCOMES
 

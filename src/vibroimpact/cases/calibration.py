@@ -9,7 +9,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from vibroimpact.calibration.calibrate import Calibration, calibrate
+from vibroimpact.calibration.calibrate import calibrate
+from vibroimpact.calibration.calibration import Calibration
 from vibroimpact.calibration.drops import impacts_of
 from vibroimpact.calibration.matching import Tunable
 from vibroimpact.calibration.tunables import law_parameter, modal_damping

@@ -9,7 +9,7 @@ from pathlib import Path
 import tomli_w
 
 from vibroimpact._version import __version__
-from vibroimpact.calibration.calibrate import Calibration
+from vibroimpact.calibration.calibration import Calibration
 from vibroimpact.cases.build import resolved
 from vibroimpact.cases.calibration import calibrated_case
 from vibroimpact.cases.schema import Case

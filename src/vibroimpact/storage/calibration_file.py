@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from vibroimpact._version import __version__
-from vibroimpact.calibration.calibrate import Calibration
+from vibroimpact.calibration.calibration import Calibration
 from vibroimpact.calibration.comparison import COMPARED, WAYS, differences, largest_misfit, reference
 from vibroimpact.calibration.outcomes import OUTCOMES
 from vibroimpact.cases.build import resolved
