@@ -223,6 +223,8 @@ def export(
     from vibroimpact.storage.export_result import default_output, save_export
     from vibroimpact.storage.exported import drop_of
 
+    if formats and (to is not None or output is not None or force):
+        raise InputError("--formats lists them, and takes no other option")
     if formats or to is None:
         if output is not None or force:
             raise InputError("name the format: vibroimpact export DIR --to FORMAT")
@@ -254,7 +256,7 @@ def units(
         value, unit = read_quantity(" ".join(quantity))
         shown = unit_table(value, unit) if to is None else converted(value, unit, to)
     except InputError as error:
-        hint = '; a unit with blanks needs quotes, as in --to "N s/mm"' if to and " " not in to and len(quantity) > 1 else ""
+        hint = '; a unit with blanks needs quotes, as in --to "N s/mm"' if to and " " not in to and len(quantity) > 2 else ""
         raise InputError(f"{error}{hint}") from None
     _console().print(shown)
 

@@ -14,7 +14,7 @@ from vibroimpact.calibration.fitting import Fit, distinct, fit_observations, fit
 from vibroimpact.calibration.matching import Tunable, match
 from vibroimpact.calibration.observations import Floats, Observations, scaled
 from vibroimpact.calibration.one_impact import one_impact, stacked
-from vibroimpact.calibration.outcomes import OUTCOMES, REBOUND, check_weights
+from vibroimpact.calibration.outcomes import OUTCOMES, REBOUND, REBOUNDS, check_weights
 from vibroimpact.calibration.reach import check_reached, other_parameters
 from vibroimpact.calibration.tunables import law_parameter
 from vibroimpact.calibration.uncertainty import default_draws, of_the_whole, redrawn, undetermined, with_nearest_end
@@ -94,8 +94,8 @@ def calibrate(
     stated = problem.to_problem()
     if weights is None:
         seen = target.wanted if isinstance(target, Observations) else REBOUND
-        weights = REBOUND if "separation_speed" in seen else dict.fromkeys(seen, 1.0)
-    if isinstance(target, Observations) and "separation_speed" in weights and "rebound_height" in target.wanted:
+        weights = REBOUND if set(REBOUNDS) & set(seen) else dict.fromkeys(seen, 1.0)
+    if isinstance(target, Observations) and "separation_speed" not in target.wanted and "rebound_height" in target.wanted:
         # two readings of one thing, of which the height was measured
         weights = {name.replace("separation_speed", "rebound_height"): weight for name, weight in weights.items()}
     check_weights(weights)
@@ -111,12 +111,13 @@ def calibrate(
     along, values = by_function(tuned, stated, found.fit.function)
     chain = (found.seen.speeds, found.values) if found.seen.of_the_drop else (along, values)
     drops = drops_with(tuned, chain[1], values)
+    along = along[: len(drops["function"]["impact"])]
     if not isinstance(target, Observations):
         drops = {"target": simulate(shortened(target.to_problem(), len(chain[1]))).impacts, **drops}
-    given = tuned.given[np.minimum(np.arange(len(found.values)), len(tuned.given) - 1)]
-    rows = np.arange(len(given))
+    rows = found.seen.which
+    given = tuned.given[np.minimum(rows, len(tuned.given) - 1)]
     as_given = {} if np.isnan(given).any() else tuned.respond(found.seen.speeds, given, rows)
-    missed = as_given and any(not np.allclose(as_given[name], found.seen.wanted[name], rtol=_MET, atol=0.0) for name in weights)
+    missed = bool(as_given) and any(not np.allclose(as_given[name], found.seen.wanted[name], rtol=_MET, atol=0.0) for name in weights)
     tell(1.0)
     return Calibration(
         problem=stated,
@@ -161,7 +162,8 @@ def _from_drop(
 ) -> _Found:
     """Match the impacts of a drop under another law."""
     table = simulate(shortened(target, impacts_of(problem))).impacts
-    at = table["approach_speed_m_s"][table["separation_speed_m_s"] > 0.0]
+    least = float(simulate(shortened(problem, 1)).rest.speed[0])  # what leaves more slowly stays
+    at = table["approach_speed_m_s"][table["separation_speed_m_s"] > least]
     if not len(at):
         raise InputError("under the law of the target the sphere does not leave the plate; there is no rebound to match", "target")
 
@@ -174,7 +176,7 @@ def _from_drop(
         outcomes = one_impact(target, stacked(target.laws, len(fast)), fast)
         labels = tuple(f"impact {number + 1}" for number in range(len(fast)))
         seen = Observations(fast, {name: outcomes[name] for name in weights}, labels=labels)
-        return seen, check_reached(tuned, problem, seen, weights, match(tuned, fast, seen.wanted, weights))
+        return seen, check_reached(tuned, problem, seen, weights, match(tuned, fast, seen.wanted, weights, seen.which))
 
     for _ in range(_PASSES):
         seen, values = wanted_at(at)
@@ -205,8 +207,7 @@ def _along(tuned: Tunable, problem: Problem, target: Problem, weights: Mapping[s
     outcomes = one_impact(target, target.laws[0], speeds)
     labels = tuple(f"an impact at {speed:.4g} m/s" for speed in speeds)
     seen = Observations(speeds, {name: outcomes[name] for name in weights}, labels=labels, of_the_drop=False)
-    first = np.zeros(len(speeds), dtype=int)
-    found = match(tuned, speeds, seen.wanted, weights, first)
+    found = match(tuned, speeds, seen.wanted, weights, seen.which)
     return check_reached(tuned, problem, seen, weights, found) if asked else found.values
 
 
@@ -225,13 +226,12 @@ def _from_measurement(
     missing = [name for name in weights if name not in seen.wanted]
     if missing:
         raise InputError(f"{', '.join(missing)} was not measured; there is {', '.join(seen.wanted)}", "match")
-    rows = np.arange(len(seen.speeds))
-    found = match(tuned, seen.speeds, seen.wanted, weights)
+    found = match(tuned, seen.speeds, seen.wanted, weights, seen.which)
     alone = check_reached(tuned, problem, seen, weights, found)
     tell(0.3)
     fit = fit_observations(tuned, seen, weights, _degree(seen.speeds, degree), alone)
     tell(0.5)
-    values = with_nearest_end(tuned, alone, seen.speeds, seen.wanted, weights, rows)
+    values = with_nearest_end(tuned, alone, seen.speeds, seen.wanted, weights, seen.which)
     doubts = list(seen.doubts) + [
         f"{label}: nothing that {tuned.name} can be meets it, but its noise explains that"
         for label, value in zip(seen.labels, alone, strict=True)

@@ -45,5 +45,5 @@ def drops_with(tunable: Tunable, values: Floats, by_speed: Floats) -> dict[str, 
 
 
 def shortened(problem: Problem, impacts: int) -> Problem:
-    """Return a drop that stops after so many impacts."""
-    return replace(problem, impacts=impacts, duration=None, sensors=())
+    """Return a drop that stops after so many impacts at the latest."""
+    return replace(problem, impacts=impacts, sensors=())

@@ -43,9 +43,7 @@ class Fit:
         """Return how many standard deviations an interval reaches to either side."""
         from scipy.stats import t as students_t  # which takes longer to load than a calibration
 
-        if np.isinf(self.freedom):
-            return float(students_t.ppf(0.5 + 0.5 * confidence, 1e9))
-        return float(students_t.ppf(0.5 + 0.5 * confidence, self.freedom)) if self.freedom > 0 else np.nan
+        return float(students_t.ppf(0.5 + 0.5 * confidence, self.freedom))
 
     def half_widths(self, confidence: float) -> Floats:
         """Return the half widths of the intervals of the coefficients."""
@@ -68,7 +66,7 @@ def check_degree(speeds: Floats, degree: int) -> None:
     """
     different = distinct(speeds)
     if degree >= different:
-        have = "one speed is" if different == 1 else f"{different} different speeds are"
+        have = "one speed is" if different == 1 else f"{different} that differ by more than 1 % of the largest are"
         needs = f"a polynomial of degree {degree} needs {degree + 1} speeds"
         raise InputError(f"{needs}, and {have} there; take {different - 1} at most", "degree")
 
@@ -134,17 +132,18 @@ def fit_observations(tunable: Tunable, observations: Observations, weights: Mapp
     at = tunable.allowed.clip(begin)
     coefficients = _least_squares(powers, at)[0]
     for _ in range(_SWEEPS):
-        found = slopes(tunable, speeds, at)
+        found = slopes(tunable, speeds, at, observations.which)
         rows, targets, noises = [], [], []
         for name, weight in weights.items():
-            here = np.isfinite(observations.wanted[name])
             by_value = found.by_value[name]
-            rows.append((by_value[:, None] * powers)[here])
-            targets.append((observations.wanted[name] - found.outcomes[name] + by_value * at)[here])
+            rows.append(by_value[:, None] * powers)
+            targets.append(observations.wanted[name] - found.outcomes[name] + by_value * at)
             # at another approach speed the polynomial says another value, too
             along = found.by_speed[name] + by_value * polynomial.polyval(speeds, polynomial.polyder(coefficients))
             noise = observations.noise[name] - along[:, None] * observations.speed_noise
-            noises.append((noise / (1.0 if known else np.sqrt(weight)))[here])
+            noises.append(noise / (1.0 if known else np.sqrt(weight)))
+        if not any(np.any(row) for row in rows):
+            raise InputError(f"{tunable.name} has no influence on what was measured, which can't tell it", "parameter")
         noise = np.concatenate(noises)
         root = np.linalg.cholesky(noise @ noise.T)
         whitened = [np.linalg.solve(root, part) for part in (np.concatenate(rows), np.concatenate(targets))]
@@ -171,7 +170,7 @@ def _misfits(scatter: float, freedom: int) -> bool:
 
 def value_noise(tunable: Tunable, observations: Observations, weights: Mapping[str, float], values: Floats) -> Floats:
     """Return what each source of noise adds to the value that fits each impact alone, to first order, (n, m)."""
-    found = slopes(tunable, observations.speeds, np.where(np.isfinite(values), values, tunable.start))
+    found = slopes(tunable, observations.speeds, np.where(np.isfinite(values), values, tunable.start), observations.which)
     above, below = np.zeros((len(values), observations.speed_noise.shape[1])), np.zeros((len(values), 1))
     for name, weight in weights.items():
         scale = scale_of(name, observations.speeds, observations.wanted[name])

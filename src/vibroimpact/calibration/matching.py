@@ -69,7 +69,7 @@ def match(
     speeds: Floats,
     wanted: Mapping[str, Floats],
     weights: Mapping[str, float],
-    which: NDArray[np.intp] | None = None,
+    which: NDArray[np.intp],
     farthest: int = 20,
 ) -> Match:
     """Return the value with which each impact comes out as wanted, or as near to that as can be.
@@ -84,16 +84,15 @@ def match(
         Outcomes in SI.
     weights : mapping of str to float
         Of each outcome that counts. With several, the sum over them of weight times squared relative deviation becomes least.
-    which : array of int, optional
+    which : array of int, shape (n,)
         Which impact of the drop each stands for.
     farthest : int, default 20
         How many steps of four from where it begins to look for one outcome.
     """
-    rows = np.arange(len(speeds)) if which is None else which
     scales = {name: scale_of(name, speeds, wanted[name]) for name in weights}
 
     def misses(values: Floats) -> dict[str, Floats]:
-        found = tunable.respond(speeds, values, rows)
+        found = tunable.respond(speeds, values, which)
         return {name: (found[name] - wanted[name]) / scales[name] for name in weights}
 
     start = np.full(len(speeds), tunable.start)
@@ -162,12 +161,12 @@ class Slopes:
     by_speed: dict[str, Floats]
 
 
-def slopes(tunable: Tunable, speeds: Floats, values: Floats) -> Slopes:
+def slopes(tunable: Tunable, speeds: Floats, values: Floats, which: NDArray[np.intp]) -> Slopes:
     """Return outcomes of impacts and their derivatives, by central differences inside the range of the parameter."""
     step = _STEP * np.maximum(np.abs(values), 1e-3 * tunable.start)
     high, low = tunable.allowed.clip(values + step), tunable.allowed.clip(values - step)
     faster, slower = speeds * (1.0 + _STEP), speeds * (1.0 - _STEP)
-    rows = np.tile(np.arange(len(speeds)), 5)
+    rows = np.tile(which, 5)
     every = tunable.respond(
         np.concatenate([speeds, speeds, speeds, faster, slower]), np.concatenate([values, high, low, values, values]), rows
     )

@@ -23,7 +23,7 @@ class Observations:
     speeds : array, shape (n,)
         Approach speeds [m/s].
     wanted : mapping of str to array, shape (n,)
-        By the names of `OUTCOMES` in SI; NaN where one was not observed.
+        By the names of `OUTCOMES` in SI.
     speed_noise : array, shape (n, m)
         What each source adds to the approach speeds [m/s].
     noise : mapping of str to array, shape (n, m)
@@ -54,6 +54,11 @@ class Observations:
     def measured(self) -> bool:
         """Do they come from a measurement, and not from a rule?"""
         return bool(self.noise)
+
+    @property
+    def which(self) -> NDArray[np.intp]:
+        """Which impact of the drop each stands for; those that were measured apart from it for the first, (n,)."""
+        return np.arange(len(self.speeds)) if self.of_the_drop else np.zeros(len(self.speeds), dtype=np.intp)
 
     def redrawn(self, random: np.random.Generator) -> tuple[Floats, dict[str, Floats]]:
         """Return approach speeds and what is wanted, as another measurement might have found them."""

@@ -6,15 +6,13 @@ from collections.abc import Sequence
 from dataclasses import fields, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from vibroimpact.calibration.observations import Floats
 from vibroimpact.calibration.outcomes import OUTCOMES
 from vibroimpact.contact.law import ContactLaw
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.response import Outcome
 from vibroimpact.dynamics.simulate import simulate
-
-Floats = NDArray[np.float64]
 
 _TOLERANCE = 1e-12
 

@@ -36,5 +36,7 @@ def check_weights(weights: Mapping[str, float]) -> None:
             raise InputError(f'"{name}" can\'t be matched; there are {", ".join(OUTCOMES)}.{did_you_mean(name, OUTCOMES)}', "match")
         if not 0.0 < weight < math.inf:
             raise InputError(f"{weight:g} is not allowed as a weight; it must be greater than 0", f"match.{name}")
+    if set(REBOUNDS) <= set(weights):
+        raise InputError(f"{' and '.join(REBOUNDS)} say the same; give one of them", "match")
     if not weights:
         raise InputError(f"name at least one of {', '.join(OUTCOMES)}", "match")

@@ -61,7 +61,7 @@ def _noise_of(tunable: Tunable, seen: Observations, name: str, row: int) -> floa
     """Return the standard deviation of what is wanted less what would come of it, where the sizes of the noise are known."""
     if not seen.deviations_known:
         return 0.0
-    near = slopes(tunable, seen.speeds[[row]], tunable.allowed.clip(np.array([1e-3 * tunable.start])))
+    near = slopes(tunable, seen.speeds[[row]], tunable.allowed.clip(np.array([1e-3 * tunable.start])), seen.which[[row]])
     return float(np.linalg.norm(seen.noise[name][row] - near.by_speed[name][0] * seen.speed_noise[row]))
 
 
@@ -81,7 +81,7 @@ def other_parameters(
             continue
         other = law_parameter(problem, item.name)
         wanted = {name: values[[row]] for name, values in seen.wanted.items()}
-        value = match(other, seen.speeds[[row]], wanted, weights, np.array([row]), _NEAR).values[0]
+        value = match(other, seen.speeds[[row]], wanted, weights, seen.which[[row]], _NEAR).values[0]
         if np.isfinite(value):
             found[item.name] = float(value)
     return found

@@ -7,6 +7,8 @@ from typing import Any
 
 from numpy.polynomial import polynomial
 
+_BEYOND = 1.05  # times its ends
+
 
 @dataclass(frozen=True)
 class SpeedFunction:
@@ -37,3 +39,7 @@ class SpeedFunction:
     def __call__(self, speed: Any) -> Any:
         """Return the parameter at an approach speed [m/s]."""
         return polynomial.polyval(speed, self.coefficients)
+
+    def beyond(self, speeds: Any) -> Any:
+        """Return those of some speeds that lie clearly outside the range that it was fitted over."""
+        return speeds[(speeds > _BEYOND * self.fastest) | (speeds * _BEYOND < self.slowest)]

@@ -20,10 +20,10 @@ _FEWEST_DRAWS, _MOST_DRAWS = 100, 400
 _MOST_IMPACTS = 20
 _WIDE = 0.25
 _DETERMINED = 1.0
-"""Widths of an interval, as a part of its value, from which first order is not trusted, and from which nothing is determined."""
+"""Parts of a value: two standard deviations from which first order is not trusted, and a width of its interval that tells nothing."""
 
-_FOLLOWS, _BEYOND = 0.02, 1.05
-"""How far a polynomial may be off, as a part, and how far beyond its speeds it may be used, before it is told."""
+_FOLLOWS = 0.02
+"""How far a polynomial may be off before it is told, as a part of the largest value."""
 
 _AT_ONCE = 500
 _MOST_TOLD = 5
@@ -82,7 +82,7 @@ def redrawn(
         drawn = [observations.redrawn(random) for _ in range(min(at_once, draws - begin))]
         fast = np.concatenate([one[0] for one in drawn])
         wanted = {name: np.concatenate([one[1][name] for one in drawn]) for name in weights}
-        which = np.tile(np.arange(number), len(drawn))
+        which = np.tile(observations.which, len(drawn))
         found = match(tunable, fast, wanted, weights, which).values
         values.append(with_nearest_end(tunable, found, fast, wanted, weights, which).reshape(len(drawn), number))
         speeds.append(fast.reshape(len(drawn), number))
@@ -132,16 +132,13 @@ def undetermined(
         else:
             told.append("as many impacts as coefficients, and no standard deviation: nothing tells how well these are known")
         return told
-    wide = intervals[:, 1] - intervals[:, 0] > _DETERMINED * np.abs(values)
-    for label, value, (low, high) in zip(observations.labels, values, intervals, strict=True):
-        if high - low > _DETERMINED * abs(value):
-            told.append(
-                f"{label} does not determine {tunable.name}: {value:.4g} {tunable.unit}".rstrip()
-                + f", but {max(low, tunable.allowed.at_least):.4g} to {high:.4g} at {percent}"
-            )
-        if len(told) == _MOST_TOLD:
-            told.append(f"so it is with {int(wide.sum()) - _MOST_TOLD} more")
-            break
+    wide = np.flatnonzero(intervals[:, 1] - intervals[:, 0] > _DETERMINED * np.abs(values))
+    for row in wide[:_MOST_TOLD]:
+        low, high = max(intervals[row, 0], tunable.allowed.at_least), intervals[row, 1]
+        value = f"{values[row]:.4g} {tunable.unit}".rstrip()
+        told.append(f"{observations.labels[row]} does not determine {tunable.name}: {value}, but {low:.4g} to {high:.4g} at {percent}")
+    if len(wide) > _MOST_TOLD:
+        told.append(f"so it is with {len(wide) - _MOST_TOLD} more")
     highest, half = fit.function.coefficients[-1], fit.half_widths(confidence)[-1]
     if fit.function.degree and not abs(highest) > half:
         known = f"the highest coefficient is {highest:.3g}, known to {half:.2g} at {percent}"
@@ -162,15 +159,16 @@ def of_the_whole(
             f"residuals are {fit.scatter:.3g} times as large as their standard deviations: a polynomial of degree {function.degree} does "
             "not follow the measurement, or its noise is larger; the intervals of the polynomial are widened by that"
         )
-    along, values = (seen.speeds, function(seen.speeds)) if curve is None else curve
-    inside = (along >= function.slowest) & (along <= function.fastest)
-    off = np.abs(function(along) / values - 1.0)[inside] if curve is not None else np.zeros(1)
-    if np.nanmax(off, initial=0.0) > _FOLLOWS:
-        told.append(
-            f"the polynomial of degree {function.degree} is off by up to {100.0 * np.nanmax(off):.2g} %; take a higher degree, or a "
-            "narrower range of speeds"
-        )
-    beyond = speeds[(speeds > _BEYOND * function.fastest) | (speeds * _BEYOND < function.slowest)]
+    if curve is not None:
+        along, values = curve
+        inside = (along >= function.slowest) & (along <= function.fastest)
+        off, size = np.nanmax(np.abs(function(along) - values)[inside], initial=0.0), np.nanmax(np.abs(values), initial=0.0)
+        if off > _FOLLOWS * size:
+            told.append(
+                f"the polynomial of degree {function.degree} is off by up to {off:.3g} {tunable.unit}, of {size:.3g} at most; take a "
+                "higher degree, or a narrower range of speeds"
+            )
+    beyond = function.beyond(speeds)
     if beyond.size and function.degree:
         told.append(
             f"the drop has impacts at {beyond.min():.4g} to {beyond.max():.4g} m/s, and the polynomial was fitted over "

@@ -172,7 +172,7 @@ class CalibrateSection(Section):
         None, description='what is tuned: a parameter of the law, "sphere.damping" or "plate.damping"; by default what sets the law\'s loss'
     )
     match: Annotated[Any, BeforeValidator(_read_match), WithJsonSchema(_MATCH_SCHEMA)] = Field(
-        None, description="what of an impact is matched: one, or a table of several with weights; by default the separation speed"
+        None, description="what of an impact is matched: one, or a table of several with weights; by default the rebound, if it is there"
     )
     degree: Annotated[int, Field(ge=0, le=12, strict=True)] | None = Field(
         None, description="of the polynomial of the approach speed; by default 2, or less where there are fewer speeds"
@@ -180,7 +180,8 @@ class CalibrateSection(Section):
     speeds: SpeedsTable | None = Field(None, description="what the polynomial is fitted over, instead of the impacts of the drop")
     confidence: Annotated[float, Quantity("", "of the intervals", Range(above=0, below=1))] = 0.95
     bootstrap: Annotated[int, Field(ge=0, le=100_000, strict=True)] | None = Field(
-        None, description="how many times the measurement is drawn again for the intervals; by default where they are wide"
+        None,
+        description="how often the measurement is drawn again for the intervals, 0 or at least 20; by default where they are wide",
     )
     seed: Annotated[int, Field(ge=0, strict=True)] = Field(0, description="of the drawing")
 

@@ -66,7 +66,8 @@ def read_calibration(table: Mapping[str, Any]) -> ToCalibrate:
     if isinstance(section, dict) and isinstance(contact, dict) and set(section) <= set(CalibrateSection.model_fields):
         model = section.pop("model", None)
         model = {"law": model} if isinstance(model, str) else model
-        if "target" not in section:
+        own = "target" in section
+        if not own:
             if contact.get("law") == MODEL and model is None:
                 words = f"nothing says what impacts are to be like, since the law of the case is {MODEL} itself"
                 raise InputError(f"{words}; give a target, such as {{ restitution = 0.7 }}", "calibrate.target")
@@ -80,9 +81,7 @@ def read_calibration(table: Mapping[str, Any]) -> ToCalibrate:
         try:
             return ToCalibrate(read_case(whole), started is contact)
         except InputError as error:
-            lines = str(error).splitlines()
-            named = [f"calibrate.model{line.removeprefix('contact')}" if line.startswith("contact") else line for line in lines]
-            raise InputError("\n".join(named if model is not None else lines)) from None
+            raise InputError("\n".join(_where(line, own, model is not None) for line in str(error).splitlines())) from None
     return ToCalibrate(read_case(whole), True)
 
 
@@ -152,6 +151,15 @@ def calibrated_case(case: Case, found: Calibration) -> Case:
         body = found.parameter.partition(".")[0]
         return read_case({**table, body: {**table[body], "damping": values[0]}})
     return read_case({**table, "contact": {**table["contact"], found.parameter: values}})
+
+
+def _where(line: str, own_target: bool, own_model: bool) -> str:
+    """Return a fault under the key that it was written at: target and law may come from [contact], the law from calibrate.model."""
+    if not own_target and line.startswith("calibrate.target"):
+        return line.replace("calibrate.target", "contact", 1)
+    if own_model and line.startswith("contact") and not line.startswith(tuple(f"contact.{key}" for key in _LOCAL)):
+        return line.replace("contact", "calibrate.model", 1)
+    return line
 
 
 def _with_start(contact: dict[str, Any], parameter: str | None) -> dict[str, Any]:

@@ -66,7 +66,7 @@ def _read_to_run(table: dict[str, Any]) -> Case:
         return read_case(table)
     except InputError as error:
         if "calibrate" in table and "contact" in str(error) and "missing" in str(error):
-            raise InputError(f"{error}; `vibroimpact calibrate` finds it") from None
+            raise InputError(f"{error}; for `vibroimpact calibrate` what it tunes may be left out") from None
         raise
 
 

@@ -34,7 +34,7 @@ _COLUMNS = {
 }
 _NOISE_OF_RESTITUTION = 0.1
 _KINDS = (
-    "approach_speed with restitution, separation_speed, max_force, max_indentation or duration; rebound_height; "
+    "approach_speed with restitution, separation_speed, rebound_height, max_force, max_indentation or duration; rebound_height; "
     "or a record of time with position or force"
 )
 

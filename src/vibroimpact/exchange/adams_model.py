@@ -80,7 +80,7 @@ def adams_model(drop: Drop) -> AdamsModel:
     """
     contact = adams_contact(drop)
     duration, _ = first_contact(laws_of_impacts(drop)[0], drop)
-    materials = {material.name: material for material in (drop.sphere_material, drop.plate_material)}
+    both = [drop.sphere_material] if drop.sphere_material == drop.plate_material else [drop.sphere_material, drop.plate_material]
     x, y = drop.position
     return AdamsModel(
         name=legal_name(drop.name),
@@ -90,7 +90,7 @@ def adams_model(drop: Drop) -> AdamsModel:
         centre=(1e3 * x, 1e3 * y, 1e3 * drop.height),
         velocity=-1e3 * drop.speed,
         plate=None if drop.plate_size is None else (1e3 * drop.plate_size[0], 1e3 * drop.plate_size[1], 1e3 * drop.plate_size[2]),
-        materials=tuple(_material(material) for material in materials.values() if _is_elastic(material)),
+        materials=_material_data([material for material in both if _is_elastic(material)]),
         end=drop.end_time,
         longest_step=_round_down(duration / _STEPS),
         output_step=_round_down(duration / _OUTPUTS),
@@ -151,9 +151,14 @@ def _is_elastic(material: Material) -> bool:
     return math.isfinite(material.density) and math.isfinite(material.youngs_modulus)
 
 
-def _material(material: Material) -> MaterialData:
-    name = legal_name(material.name or "material")
-    return MaterialData(name, 1e-9 * material.density, 1e-6 * material.youngs_modulus, material.poissons_ratio)
+def _material_data(materials: list[Material]) -> tuple[MaterialData, ...]:
+    """Return materials under names that differ."""
+    names: list[str] = []
+    for material in materials:
+        name = legal_name(material.name or "material")
+        names.append(f"{name}_{len(names) + 1}" if name in names else name)
+    each = zip(names, materials, strict=True)
+    return tuple(MaterialData(name, 1e-9 * one.density, 1e-6 * one.youngs_modulus, one.poissons_ratio) for name, one in each)
 
 
 def _round_down(value: float) -> float:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import fields
 from functools import cache
 
 import numpy as np
@@ -18,6 +19,7 @@ from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.simulate import simulate
 from vibroimpact.errors import InputError
 from vibroimpact.exchange.drop import Drop
+from vibroimpact.ranges import Range
 
 
 def approach_speeds(drop: Drop) -> list[float]:
@@ -45,7 +47,8 @@ def laws_of_impacts(drop: Drop) -> list[ContactLaw]:
     if drop.function is None:
         return list(drop.laws[: len(speeds)])
     name, function = drop.function
-    return [drop.laws[0].changed({name: float(function(speed))}) for speed in speeds]
+    allowed: Range = next(item for item in fields(drop.laws[0]) if item.name == name).metadata["range"]
+    return [drop.laws[0].changed({name: float(allowed.clip(function(speed)))}) for speed in speeds]
 
 
 def spring(law: ContactLaw, program: str) -> tuple[float, float]:
@@ -110,10 +113,10 @@ def shared_notes(drop: Drop) -> list[str]:
         notes.append(f"{what}; the contact law is written alone, without what vibrates.")
     if drop.function is not None and drop.function[1].degree:
         name, function = drop.function
-        speeds = np.array(approach_speeds(drop))
-        if speeds.max() > 1.05 * function.fastest or 1.05 * speeds.min() < function.slowest:
-            range_of = f"{function.slowest:.4g} to {function.fastest:.4g} m/s"
-            notes.append(f"{name} was fitted over {range_of}, and this drop has impacts at {speeds.min():.4g} to {speeds.max():.4g} m/s.")
+        speeds = function.beyond(np.array(approach_speeds(drop)))
+        if speeds.size:
+            fitted = f"the function of {name} was fitted over {function.slowest:.4g} to {function.fastest:.4g} m/s"
+            notes.append(f"{fitted}, and this drop has impacts at {speeds.min():.4g} to {speeds.max():.4g} m/s.")
     return notes
 
 

@@ -49,7 +49,7 @@ class Drop:
     impacts : mapping of str to array
         The impact table as computed here, (impacts,) a column, named as in `impacts.csv`.
     history : mapping of str to array
-        The history, (times,) a column; empty of a calibration.
+        The history, (times,) a column.
     signals : mapping of str to Signal
         What the sensors recorded.
     surface : mapping of str to array

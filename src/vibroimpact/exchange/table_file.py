@@ -75,11 +75,11 @@ def read_table_file(path: str | PathLike[str], units: Mapping[str, str]) -> Tabl
     [0.0, 0.001]
     """
     file = Path(path)
-    text = _text(file)
-    longest = max(map(len, text.splitlines()), default=0)
+    raw = _text(file).splitlines()
+    longest = max(map(len, raw), default=0)
     if longest > _LONGEST:
         raise InputError(f"{file}: a line has {longest} characters; this is not a table")
-    plain = (line.partition("#")[0].rstrip() for line in text.splitlines())  # without comments
+    plain = (line.partition("#")[0].rstrip() for line in raw)  # without comments
     lines = [(number, line) for number, line in enumerate(plain, 1) if line.strip(" ,;\t")]
     if not lines:
         raise InputError(f"{file}: the file is empty")
@@ -98,26 +98,18 @@ def read_table_file(path: str | PathLike[str], units: Mapping[str, str]) -> Tabl
         names = [_name_and_unit(cell)[0] for cell in header]
         hint = next((words for name in names if (words := did_you_mean(name, units))), "")
         raise InputError(f"{file}, line {lines[0][0]}: no column is known among {', '.join(names)}; {_allowed(units)}.{hint}")
-    _check_width(file, lines, len(header), mark)
-    cells = csv.reader((line for _, line in lines[1:]), delimiter=mark)
-    rows = [
-        [_number(file, number, header[place], row, place, mark) * factor for place, factor in found.values()]
-        for (number, _), row in zip(lines[1:], cells, strict=True)
-    ]
+    rows = []
+    for number, line in lines[1:]:
+        cells = next(csv.reader([line], delimiter=mark))
+        if len(cells) > len(header):
+            hint = "; where a comma is the decimal point, semicolons separate the fields" if mark == "," else ""
+            raise InputError(f"{file}, line {number}: there are {len(cells)} fields, and the header has {len(header)}{hint}")
+        rows.append([_number(file, number, header[place], cells, place, mark) * factor for place, factor in found.values()])
     if not rows:
         raise InputError(f"{file}: there are no rows under the header")
     table = np.array(rows, dtype=float).T
-    empty = [number for number, line in enumerate(text.splitlines(), 1) if not line.strip(" ,;\t") and number < lines[-1][0]]
+    empty = [number for number, line in enumerate(raw, 1) if not line.strip(" ,;\t") and number < lines[-1][0]]
     return TableFile(file, dict(zip(found, table, strict=True)), [number for number, _ in lines[1:]], empty)
-
-
-def _check_width(file: Path, lines: Sequence[tuple[int, str]], width: int, mark: str) -> None:
-    """Raise if a row has more cells than the header."""
-    for number, line in lines[1:]:
-        cells = len(next(csv.reader([line], delimiter=mark)))
-        if cells > width:
-            hint = "; where a comma is the decimal point, semicolons separate the fields" if mark == "," else ""
-            raise InputError(f"{file}, line {number}: there are {cells} fields, and the header has {width}{hint}")
 
 
 def rising(table: TableFile, column: str) -> TableFile:

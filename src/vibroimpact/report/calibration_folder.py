@@ -50,7 +50,12 @@ def save_calibration(case: Case, found: Calibration, directory: str | PathLike[s
     directory : path
         The folder to make.
     force : bool, default False
-        Replace a result folder that is there.
+        Replace the folder that is there.
+
+    Returns
+    -------
+    pathlib.Path
+        The folder.
 
     Raises
     ------

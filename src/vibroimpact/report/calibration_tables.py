@@ -122,8 +122,9 @@ def given_sentences(found: Calibration) -> list[str]:
         worst = int(np.nanargmax(np.abs(off)))
         given, meets = (f"{digits(value, 6)} {found.unit}".rstrip() for value in (found.given[worst], found.values[worst]))
         words = f"With {found.parameter} = {given}, as the case gives it, {_WORDS[name]} of {found.observations.labels[worst]}"
-        height = f", a rebound to {_height(found, comes[worst])} instead of {_height(found, wanted[worst])}"
-        rebound = height if name == "separation_speed" and found.problem.gravity > 0.0 else ""
+        rebound = ""
+        if name == "separation_speed" and found.problem.gravity > 0.0:
+            rebound = f", a rebound to {_height(found, comes[worst])} instead of {_height(found, wanted[worst])}"
         verdict = ": the target can't be met so" if abs(off[worst]) > _MET else ""
         told.append(f"{words} is off by {_off(float(off[worst]))} %{rebound}{verdict}. {meets} meets it.")
         missed |= bool(verdict)

@@ -36,6 +36,6 @@ def export_summary(drop: Drop, format: ExportFormat, files: Sequence[Path]) -> R
     return Group(
         *(Text(f"wrote {file}") for file in shown),
         *([Text(more)] if len(shown) < len(files) else []),
-        *(Text(f"Note: {note[:1].upper()}{note[1:]}", style="yellow") for note in format.notes(drop)),
+        *(Text(f"Note: {note}", style="yellow") for note in format.notes(drop)),
         Text(f"Tested: {format.tested}.", style="dim"),
     )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -99,7 +99,7 @@ def comparison_rows(found: Calibration) -> list[dict[str, Any]]:
     return rows
 
 
-def columns_of(rows: list[Mapping[str, Any]] | list[dict[str, Any]]) -> list[str]:
+def columns_of(rows: Sequence[Mapping[str, Any]]) -> list[str]:
     """Return the columns of rows, in the order in which they are first met."""
     return list(dict.fromkeys(name for row in rows for name in row))
 

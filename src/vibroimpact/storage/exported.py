@@ -82,7 +82,7 @@ def drop_of_result(result: Result, case: Case, function: tuple[str, SpeedFunctio
 
 
 def _of_calibration(folder: Path) -> Drop:
-    """Return the drop of a calibration: its case, simulated, and the function that was fitted, if one was."""
+    """Return the drop of a calibration: its case, simulated, and the function that was fitted."""
     from vibroimpact.dynamics.simulate import simulate
 
     file = folder / CALIBRATION
@@ -97,8 +97,9 @@ def _of_calibration(folder: Path) -> Drop:
 
 
 def _fitted(found: dict[str, Any]) -> tuple[str, SpeedFunction] | None:
+    """Return the function of a calibration; None where it is one number, which the case has, or of no parameter of the law."""
     fit = found["fit"]
-    if fit is None or "." in found["parameter"]:  # the damping of a body is no parameter of the law
-        return None
     coefficients = tuple(float(one) for one in fit["coefficients"])
+    if len(coefficients) == 1 or "." in found["parameter"]:
+        return None
     return str(found["parameter"]), SpeedFunction(coefficients, float(fit["from_speed_m_s"]), float(fit["to_speed_m_s"]))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import fields
 
@@ -12,6 +13,7 @@ from vibroimpact.errors import InputError
 from vibroimpact.exchange.contact_alone import approach_speeds, comment_lines, file_name, first_contact, one_line, shared_notes
 from vibroimpact.exchange.drop import Drop
 from vibroimpact.exchange.export_format import ExportFormat
+from vibroimpact.ranges import Range
 
 # the damping factor D of the laws F = K delta^n (1 + D rate / approach), by the restitution e that is asked for
 _FACTORS = {
@@ -84,7 +86,11 @@ def _function(drop: Drop) -> str:
         return ""
     name, polynomial = drop.function
     terms = " + ".join(f"{value!r} * approach**{power}" for power, value in enumerate(map(float, polynomial.coefficients)))
-    return f"    p.{name} = {terms}  # of the approach speed, fitted from {polynomial.slowest:.6g} to {polynomial.fastest:.6g} m/s\n"
+    allowed: Range = next(item for item in fields(drop.laws[0]) if item.name == name).metadata["range"]
+    low, high = float(allowed.clip(-math.inf)), float(allowed.clip(math.inf))
+    inside = f"max({terms}, {low!r})" if math.isfinite(low) else terms
+    inside = f"min({inside}, {high!r})" if math.isfinite(high) else inside
+    return f"    p.{name} = {inside}  # of the approach speed, fitted from {polynomial.slowest:.6g} to {polynomial.fastest:.6g} m/s\n"
 
 
 def _write(drop: Drop) -> Mapping[str, bytes]:

@@ -169,7 +169,7 @@ def _notes(drop: Drop) -> list[str]:
         notes.append(f"The history is left out: {_why_no_history(drop)}.")
     else:
         notes.append(f"The history is sampled at {rate:g} Hz: at least {_IN_CONTACT} times in the shortest contact.")
-        notes.append("Signals and history are not filtered against aliasing.")
+    notes.append("Nothing is filtered against aliasing.")
     slanting = [name for name, signal in drop.signals.items() if not _direction(signal.sensor.direction)]
     if slanting:
         notes.append(f"The direction of {', '.join(slanting)} lies along no axis; it is written as a scalar.")
