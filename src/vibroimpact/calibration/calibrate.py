@@ -168,7 +168,7 @@ def _from_drop(
         raise InputError("under the law of the target the sphere does not leave the plate; there is no rebound to match", "target")
 
     for name in weights:
-        column = OUTCOMES[name][0]
+        column = OUTCOMES[name].column
         if not np.all(table[column][: len(at)] > 0.0):
             raise InputError(f"{name} is not told by the target, {target.laws[0].name}; match something else", "match")
 

@@ -11,11 +11,8 @@ from vibroimpact.calibration.observations import Floats
 from vibroimpact.calibration.outcomes import OUTCOMES
 
 COMPARED = {
-    "max_indentation_m": "Largest indentation",
-    "max_force_N": "Largest force",
-    "duration_s": "Contact duration",
-    "rebound_height_m": "Rebound height",
-    "separation_speed_m_s": "Separation speed",
+    OUTCOMES[name].column: OUTCOMES[name].words.capitalize()
+    for name in ("max_indentation", "max_force", "duration", "rebound_height", "separation_speed")
 }
 """Columns of the impact table that are compared, and how they are headed."""
 
@@ -32,7 +29,7 @@ def reference(found: Calibration) -> dict[str, Floats]:
     if not found.observations.of_the_drop:
         return {}
     seen = found.observations.wanted
-    return {column: seen[name] for name, (column, _) in OUTCOMES.items() if name in seen}
+    return {OUTCOMES[name].column: values for name, values in seen.items()}
 
 
 def differences(found: Calibration) -> dict[str, Mapping[str, Floats]]:

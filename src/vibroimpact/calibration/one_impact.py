@@ -47,7 +47,7 @@ def one_impact(problem: Problem, law: ContactLaw, speeds: Floats) -> dict[str, F
     begun = replace(problem, laws=(law,), height=None, speed=np.asarray(speeds, dtype=float), tolerance=_TOLERANCE)
     response = simulate(replace(begun, impacts=1, duration=None, rest_speed=0.0, sensors=()))
     failed = np.array([outcome is Outcome.FAILED for outcome in response.outcomes])
-    found = {name: np.where(failed, np.nan, response.impacts[column][:, 0]) for name, (column, _) in OUTCOMES.items()}
+    found = {name: np.where(failed, np.nan, response.impacts[column][:, 0]) for name, (column, *_) in OUTCOMES.items()}
     rise = np.maximum(response.impacts["rebound_height_m"][:, 0] - problem.sphere.contact_offset, 0.0)
     return {**found, "next_speed": np.sqrt(2.0 * problem.gravity * rise)}
 

@@ -4,17 +4,27 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from typing import NamedTuple
 
 from vibroimpact.errors import InputError, did_you_mean
 
+
+class Outcome(NamedTuple):
+    """What of an impact can be matched: its column of the impact table, SI unit, and words."""
+
+    column: str
+    unit: str
+    words: str
+
+
 OUTCOMES = {
-    "separation_speed": ("separation_speed_m_s", "m/s"),
-    "max_force": ("max_force_N", "N"),
-    "max_indentation": ("max_indentation_m", "m"),
-    "duration": ("duration_s", "s"),
-    "rebound_height": ("rebound_height_m", "m"),
+    "separation_speed": Outcome("separation_speed_m_s", "m/s", "separation speed"),
+    "max_force": Outcome("max_force_N", "N", "largest force"),
+    "max_indentation": Outcome("max_indentation_m", "m", "largest indentation"),
+    "duration": Outcome("duration_s", "s", "contact duration"),
+    "rebound_height": Outcome("rebound_height_m", "m", "rebound height"),
 }
-"""What of an impact can be matched: its column of the impact table, and unit."""
+"""What can be matched, by name."""
 
 REBOUNDS = ("separation_speed", "rebound_height")
 """Two readings of one thing; they differ a little under a law that lets go before the bodies have stopped overlapping."""

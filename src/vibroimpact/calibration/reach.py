@@ -17,13 +17,6 @@ from vibroimpact.errors import InputError
 
 _BEYOND_NOISE = 3.0  # standard deviations
 _NEAR = 3  # steps of four from what is given, in which another parameter is looked for
-_WORDS = {
-    "separation_speed": "separation speed",
-    "max_force": "largest force",
-    "max_indentation": "largest indentation",
-    "duration": "contact duration",
-    "rebound_height": "rebound height",
-}
 
 
 def check_reached(tunable: Tunable, problem: Problem, seen: Observations, weights: Mapping[str, float], found: Match) -> Floats:
@@ -40,14 +33,14 @@ def check_reached(tunable: Tunable, problem: Problem, seen: Observations, weight
             raise InputError(f"{seen.labels[missed[0]]}: no value of {tunable.name} is better than all others", "target")
         return found.values
     (name,) = weights
-    wanted, unit = seen.wanted[name], OUTCOMES[name][1]
+    wanted, (_, unit, words) = seen.wanted[name], OUTCOMES[name]
     for row in missed:
         beyond = max(wanted[row] - found.most[row], found.least[row] - wanted[row])
         if 0.0 < beyond <= _BEYOND_NOISE * _noise_of(tunable, seen, name, int(row)):
             continue
         others = other_parameters(problem, tunable, seen, weights, row=int(row))
         hint = "; with the rest as given it would take " + " or ".join(_value(problem, *item) for item in others.items()) if others else ""
-        asked = f"{seen.labels[row]}: after {seen.speeds[row]:.5g} m/s a {_WORDS[name]} of {wanted[row]:.5g} {unit} is wanted"
+        asked = f"{seen.labels[row]}: after {seen.speeds[row]:.5g} m/s a {words} of {wanted[row]:.5g} {unit} is wanted"
         reach = f"{found.least[row]:.5g} to {found.most[row]:.5g} {unit}, whatever {tunable.name} is"
         if beyond <= 0.0:
             reach = f"{reach}, but jumps over this one"

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from vibroimpact.calibration.matching import Tunable
 from vibroimpact.calibration.observations import Floats
 from vibroimpact.calibration.one_impact import one_impact, stacked
-from vibroimpact.contact.law import ContactLaw
+from vibroimpact.contact.law import ContactLaw, unit_of
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.errors import InputError, did_you_mean
 from vibroimpact.ranges import Range
@@ -59,10 +59,7 @@ def law_parameter(problem: Problem, name: str | None = None) -> Tunable:
         number = max(len(values), len(laws))
         return replace(problem, laws=tuple(_law(laws, impact).changed({chosen: _at(values, impact)}) for impact in range(number)))
 
-    unit = str(told["unit"])
-    if unit == "N/m^n":
-        exponent = float(getattr(first, "exponent", 1.0))
-        unit = "N/m" if exponent == 1.0 else f"N/m^{exponent:g}"
+    unit = unit_of(known[chosen], getattr(first, "exponent", 1.0))
     allowed: Range = told["range"]
     damps = chosen == first.free_parameter and allowed.at_least == 0.0 and not np.isfinite(allowed.at_most)
     return Tunable(chosen, unit, allowed, float(start), given, respond, drop, damps)

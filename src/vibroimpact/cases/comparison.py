@@ -7,10 +7,9 @@ from dataclasses import MISSING, Field, fields
 from typing import Any
 
 from vibroimpact.cases.build import contact_laws_of, contact_pair, first_speed, resolved
-from vibroimpact.cases.contact_section import unit_of
 from vibroimpact.cases.reader import read_case
 from vibroimpact.cases.schema import Case
-from vibroimpact.contact.law import ContactLaw, find_contact_law
+from vibroimpact.contact.law import ContactLaw, find_contact_law, unit_of
 from vibroimpact.errors import InputError, did_you_mean
 
 

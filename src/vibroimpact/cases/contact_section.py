@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import Field, dataclass, fields
+from dataclasses import dataclass, fields
 from typing import Any
 
 from vibroimpact.cases.local_section import LocalSection
 from vibroimpact.cases.quantities import quantity_schema, read_quantity
 from vibroimpact.cases.section import read_table
-from vibroimpact.contact.law import ContactLaw, contact_laws, find_contact_law
+from vibroimpact.contact.law import ContactLaw, contact_laws, find_contact_law, unit_of
 from vibroimpact.errors import InputError, did_you_mean
 
 
@@ -60,14 +60,6 @@ def read_contact(value: Any) -> ContactSection:
             raise InputError(error.message, key) from None
     local = {key: value[key] for key in LocalSection.model_fields if key in value}
     return ContactSection(law.name, parameters, read_table(LocalSection, local))
-
-
-def unit_of(item: Field[Any], exponent: Any) -> str:
-    """Return a parameter's SI unit, with the exponent of the force filled in."""
-    unit = str(item.metadata["unit"])
-    if unit == "N/m^n":
-        return f"N/m^{exponent:g}" if isinstance(exponent, (int, float)) and exponent != 1 else "N/m"
-    return unit
 
 
 def contact_schema() -> dict[str, Any]:

@@ -19,7 +19,7 @@ from vibroimpact.dynamics.problem import Problem
 from vibroimpact.errors import InputError
 from vibroimpact.exchange.table_file import TableFile, read_table_file, rising
 
-_OUTCOMES = {name: unit for name, (_, unit) in OUTCOMES.items()}
+_OUTCOMES = {name: outcome.unit for name, outcome in OUTCOMES.items()}
 _DEVIATION = "_standard_deviation"
 _COLUMNS = {
     "time": "s",

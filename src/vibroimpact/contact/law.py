@@ -276,6 +276,21 @@ class InstantaneousLaw(ContactLaw):
         return self.separation_speed(speed, mass) / speed + 0.0 * mass
 
 
+def unit_of(item: dataclasses.Field[Any], exponent: Any) -> str:
+    """Return a parameter's SI unit, with the exponent of the force filled in.
+
+    Examples
+    --------
+    >>> stiffness = find_contact_law("hertz").__dataclass_fields__["stiffness"]
+    >>> unit_of(stiffness, 1.5), unit_of(stiffness, 1.0)
+    ('N/m^1.5', 'N/m')
+    """
+    unit = str(item.metadata["unit"])
+    if unit == "N/m^n":
+        return f"N/m^{exponent:g}" if isinstance(exponent, (int, float)) and exponent != 1 else "N/m"
+    return unit
+
+
 def loses_nothing(law: ContactLaw) -> bool:
     """Is the law without any loss, so that a ball under it bounces for ever?
 

@@ -13,13 +13,6 @@ from vibroimpact.report.tables import column
 
 _MOST_ROWS = 50
 _MET = 1e-3  # of what is wanted
-_WORDS = {
-    "separation_speed": "the separation speed",
-    "max_force": "the largest force",
-    "max_indentation": "the largest indentation",
-    "duration": "the duration",
-    "rebound_height": "the rebound height",
-}
 _POWERS = ("", " v", " v²", " v³")
 _MEANING = {
     "constant": "the value of the first impact throughout",
@@ -42,8 +35,8 @@ def values_table(found: Calibration) -> Cells:
         headers.append(("As the case gives it", found.unit))
         columns.append([digits(value, 6) for value in found.given])
     for name in found.weights:
-        header = _WORDS[name].removeprefix("the ").capitalize()
-        unit, cells = column(OUTCOMES[name][0], np.concatenate([seen.wanted[name], found.outcomes[name]]))
+        header = OUTCOMES[name].words.capitalize()
+        unit, cells = column(OUTCOMES[name].column, np.concatenate([seen.wanted[name], found.outcomes[name]]))
         headers += [(f"{header} wanted", unit), ("found", unit)]
         columns += [cells[: len(seen.speeds)], cells[len(seen.speeds) :]]
         if found.as_given:
@@ -121,7 +114,7 @@ def given_sentences(found: Calibration) -> list[str]:
             continue
         worst = int(np.nanargmax(np.abs(off)))
         given, meets = (f"{digits(value, 6)} {found.unit}".rstrip() for value in (found.given[worst], found.values[worst]))
-        words = f"With {found.parameter} = {given}, as the case gives it, {_WORDS[name]} of {found.observations.labels[worst]}"
+        words = f"With {found.parameter} = {given}, as the case gives it, the {OUTCOMES[name].words} of {found.observations.labels[worst]}"
         rebound = ""
         if name == "separation_speed" and found.problem.gravity > 0.0:
             rebound = f", a rebound to {_height(found, comes[worst])} instead of {_height(found, wanted[worst])}"
@@ -142,8 +135,8 @@ def _height(found: Calibration, speed: float) -> str:
 def match_words(found: Calibration) -> str:
     """Return what was matched, in words."""
     if len(found.weights) == 1:
-        return f"{_WORDS[next(iter(found.weights))]} of each impact comes out as wanted"
-    every = " and ".join(f"{_WORDS[name]} (weight {weight:g})" for name, weight in found.weights.items())
+        return f"the {OUTCOMES[next(iter(found.weights))].words} of each impact comes out as wanted"
+    every = " and ".join(f"the {OUTCOMES[name].words} (weight {weight:g})" for name, weight in found.weights.items())
     return f"{every} of each impact come as near to what is wanted as one number can make them"
 
 

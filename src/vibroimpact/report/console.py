@@ -15,7 +15,7 @@ from rich.text import Text
 from vibroimpact.cases.build import contact_laws_of, contact_pair, deforms, elastic_names, first_speed, impacts_of, resolved
 from vibroimpact.cases.doubts import doubts
 from vibroimpact.cases.schema import Case
-from vibroimpact.contact.law import CompliantLaw, ContactLaw
+from vibroimpact.contact.law import CompliantLaw, ContactLaw, unit_of
 from vibroimpact.contact.phase.encounter import encounter_of
 from vibroimpact.contact.restitution import achieved_restitution
 from vibroimpact.dynamics.columns import LEDGER, VIBRATION_LEDGER
@@ -188,7 +188,7 @@ def case_explained(case: Case) -> RenderableType:
         shown = (
             ", ".join(f"{value:.9g}" for value in values) if len(set(values)) > 1 else f"{values[0]:.9g}" if values[0] is not None else "-"
         )
-        rows.append((f"  {item.name}", f"{shown} {item.metadata['unit']}".replace("N/m^n", f"N/m^{getattr(laws[0], 'exponent', 1):g}")))
+        rows.append((f"  {item.name}", f"{shown} {unit_of(item, getattr(laws[0], 'exponent', 1))}"))
     number = impacts_of(case)
     stop = ["at rest"] + ([f"after {number} impact{'' if number == 1 else 's'}"] if number else [])
     stop += [f"at {case.run.duration:g} s"] if case.run.duration else []

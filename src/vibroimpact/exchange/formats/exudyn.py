@@ -10,9 +10,10 @@ from vibroimpact.contact.hysteretic import HystereticLaw
 from vibroimpact.contact.law import ContactLaw
 from vibroimpact.contact.laws.linear_spring_dashpot import LinearSpringDashpot
 from vibroimpact.errors import InputError
-from vibroimpact.exchange.contact_alone import approach_speeds, comment_lines, file_name, first_contact, one_line, shared_notes
+from vibroimpact.exchange.contact_alone import approach_speeds, first_contact, shared_notes
 from vibroimpact.exchange.drop import Drop
 from vibroimpact.exchange.export_format import ExportFormat
+from vibroimpact.exchange.script_text import comment_lines, file_name, one_line
 from vibroimpact.ranges import Range
 
 # the damping factor D of the laws F = K delta^n (1 + D rate / approach), by the restitution e that is asked for

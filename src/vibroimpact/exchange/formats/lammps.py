@@ -16,16 +16,14 @@ from vibroimpact.contact.restitution import achieved_restitution
 from vibroimpact.exchange.contact_alone import (
     approach_speeds,
     clipped_dashpot,
-    comment_lines,
-    file_name,
     first_contact,
     laws_of_impacts,
     linear_or_hertzian,
-    one_line,
     shared_notes,
 )
 from vibroimpact.exchange.drop import Drop
 from vibroimpact.exchange.export_format import ExportFormat
+from vibroimpact.exchange.script_text import comment_lines, file_name, one_line
 
 _STEPS = 20_000
 """Steps in the first contact: restitution and largest force are then right to 5e-5 (LAMMPS takes the damping half a step late)."""

@@ -11,11 +11,12 @@ from typing import Any
 import numpy as np
 
 from vibroimpact._version import __version__
-from vibroimpact.exchange.contact_alone import file_name
+from vibroimpact.contact.law import unit_of
 from vibroimpact.exchange.drop import Drop
 from vibroimpact.exchange.drop_tables import Table, tables_of
 from vibroimpact.exchange.export_format import ExportFormat
 from vibroimpact.exchange.plain_names import plain_names
+from vibroimpact.exchange.script_text import file_name
 
 _LONGEST = 63
 """Of a name in MATLAB."""
@@ -119,7 +120,7 @@ def _facts(drop: Drop) -> tuple[dict[str, Any], dict[str, Any]]:
     for item in fields(drop.laws[0]):
         values = [getattr(one, item.name) for one in drop.laws]
         if values[0] is not None and not item.metadata["memory"]:
-            unit = item.metadata["unit"].replace("N/m^n", f"N/m^{getattr(drop.laws[0], 'exponent', 1):g}")
+            unit = unit_of(item, getattr(drop.laws[0], "exponent", 1))
             law[item.name], law_units[item.name] = np.asarray(values), unit
     facts["law"], units["law"] = law, law_units
     if drop.function is not None:

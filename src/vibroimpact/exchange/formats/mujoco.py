@@ -8,19 +8,10 @@ from xml.sax.saxutils import quoteattr
 
 from vibroimpact.contact.laws.adams_impact import AdamsImpact
 from vibroimpact.contact.restitution import achieved_restitution
-from vibroimpact.exchange.contact_alone import (
-    approach_speeds,
-    clipped_dashpot,
-    comment_lines,
-    file_name,
-    first_contact,
-    laws_of_impacts,
-    one_line,
-    shared_notes,
-    spring,
-)
+from vibroimpact.exchange.contact_alone import approach_speeds, clipped_dashpot, first_contact, laws_of_impacts, shared_notes, spring
 from vibroimpact.exchange.drop import Drop
 from vibroimpact.exchange.export_format import ExportFormat
+from vibroimpact.exchange.script_text import comment_lines, file_name, one_line
 
 _STEPS = 1000
 """Steps in the first contact: its restitution is then right to 1e-3."""

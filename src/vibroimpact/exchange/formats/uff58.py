@@ -15,10 +15,10 @@ from numpy.typing import NDArray
 
 from vibroimpact._version import __version__
 from vibroimpact.errors import InputError
-from vibroimpact.exchange.contact_alone import file_name
 from vibroimpact.exchange.drop import Drop
 from vibroimpact.exchange.export_format import ExportFormat
 from vibroimpact.exchange.resample import motion_at
+from vibroimpact.exchange.script_text import file_name
 
 _IN_CONTACT = 20
 """Samples of the history in the shortest contact, at least: then a half-sine's peak is read to 0.3 %."""

@@ -15,16 +15,14 @@ from vibroimpact.contact.restitution import achieved_restitution
 from vibroimpact.exchange.contact_alone import (
     approach_speeds,
     clipped_dashpot,
-    comment_lines,
-    file_name,
     first_contact,
     laws_of_impacts,
     linear_or_hertzian,
-    one_line,
     shared_notes,
 )
 from vibroimpact.exchange.drop import Drop
 from vibroimpact.exchange.export_format import ExportFormat
+from vibroimpact.exchange.script_text import comment_lines, file_name, one_line
 
 _STEPS = 10_000
 """Steps in the first contact: restitutions and largest forces are then right to 1e-4, but for gravity: damping is calibrated without."""
