@@ -115,21 +115,14 @@ def given_sentences(found: Calibration) -> list[str]:
         worst = int(np.nanargmax(np.abs(off)))
         given, meets = (f"{digits(value, 6)} {found.unit}".rstrip() for value in (found.given[worst], found.values[worst]))
         words = f"With {found.parameter} = {given}, as the case gives it, the {OUTCOMES[name].words} of {found.observations.labels[worst]}"
-        rebound = ""
-        if name == "separation_speed" and found.problem.gravity > 0.0:
-            rebound = f", a rebound to {_height(found, comes[worst])} instead of {_height(found, wanted[worst])}"
+        instead, asked = (text(float(value), OUTCOMES[name].unit, 5) for value in (comes[worst], wanted[worst]))
         verdict = ": the target can't be met so" if abs(off[worst]) > _MET else ""
-        told.append(f"{words} is off by {_off(float(off[worst]))} %{rebound}{verdict}. {meets} meets it.")
+        told.append(f"{words} is {instead} instead of {asked}, off by {_off(float(off[worst]))} %{verdict}. {meets} meets it.")
         missed |= bool(verdict)
     if missed and found.others:
         each = [f"{name} = {digits(value, 6)} {law_parameter(found.problem, name).unit}".rstrip() for name, value in found.others.items()]
         told.append(f"So would, at the first impact and with the rest as given: {'; '.join(each)}.")
     return told
-
-
-def _height(found: Calibration, speed: float) -> str:
-    """Return the rebound height of the sphere's centre that belongs to a separation speed [m/s]."""
-    return text(float(found.problem.sphere.contact_offset + 0.5 * speed**2 / found.problem.gravity), "m", 5)
 
 
 def match_words(found: Calibration) -> str:

@@ -15,7 +15,7 @@ from vibroimpact.bodies.body import Body
 from vibroimpact.bodies.plate import rigid_plate
 from vibroimpact.cases.build import contact_pair
 from vibroimpact.cases.reader import read_case
-from vibroimpact.contact.law import CompliantLaw, ContactLaw, find_contact_law
+from vibroimpact.contact.law import CompliantLaw, ContactLaw, find_contact_law, unit_of
 from vibroimpact.contact.pair import ContactPair
 from vibroimpact.contact.restitution import achieved_restitution
 from vibroimpact.dynamics.problem import Problem
@@ -194,11 +194,7 @@ def _draw_restitution(axes: Axes, scene: _Scene, restitution: Floats, speeds: tu
 def _caption(scene: _Scene) -> str:
     """Return the bodies and the parameters, three a line."""
     values = [(item, getattr(scene.law, item.name)) for item in fields(scene.law) if not item.metadata["memory"]]
-    unit = {"N/m^n": f"N/m^{getattr(scene.law, 'exponent', 1.5):g}"}
-    parts = [
-        f"{item.name} {value:.4g} {unit.get(item.metadata['unit'], item.metadata['unit'])}".rstrip()
-        for item, value in values
-        if value is not None
-    ]
+    exponent = getattr(scene.law, "exponent", 1.5)
+    parts = [f"{item.name} {value:.4g} {unit_of(item, exponent)}".rstrip() for item, value in values if value is not None]
     lines = [", ".join(parts[start : start + 4]) for start in range(0, len(parts), 4)]
     return "\n".join([f"{scene.words}, without gravity", *lines])
