@@ -7,11 +7,13 @@ import re
 import shutil
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+import vibroimpact as vi
 from told import MASS, STIFFNESS, told, told_case
 from vibroimpact.contact.law import ContactLaw, contact_laws
 from vibroimpact.contact.pair import ContactPair
@@ -50,6 +52,15 @@ def assert_agree(found: dict[str, np.ndarray], drop: Drop, tolerance: float, col
 
 
 SHORT = COLUMNS[:3]  # without the force
+
+
+@pytest.fixture(scope="module")
+def calibrated() -> Drop:
+    """The paper's drop under Adams' IMPACT whose damping follows the approach speed, by a calibration."""
+    found = vi.calibrate(vi.load_case("paper:type1-constant"), vi.load_case("paper:type1-theory"))
+    function = (found.parameter, found.fit.function)
+    return replace(told_case("paper:type1-constant"), function=function, impacts=found.drops["function"])
+
 
 EXACT_IN_LAMMPS = {
     "hertz": law("hertz"),
@@ -106,6 +117,10 @@ class TestLammps:
         drop = told(EXACT_IN_EXUDYN[name], height=4.0, number=1)
         assert_agree(self.run(drop, tmp_path), drop, 3e-4, SHORT)
 
+    def test_a_function_of_the_approach_speed(self, calibrated: Drop, tmp_path: Path) -> None:
+        """Whose values at the impacts of this drop it gets."""
+        assert_agree(self.run(calibrated, tmp_path), calibrated, 5e-4, SHORT)
+
     def test_the_papers_drop(self, tmp_path: Path) -> None:
         drop = told_case("paper:type1-variable")
         assert_agree(self.run(drop, tmp_path), drop, 3e-4, SHORT)
@@ -158,6 +173,10 @@ class TestExudyn:
     def test_the_papers_drop(self, tmp_path: Path) -> None:
         drop = told_case("paper:type1-variable")
         assert_agree(self.run(drop, tmp_path), drop, 1e-6, SHORT)
+
+    def test_a_function_of_the_approach_speed(self, calibrated: Drop, tmp_path: Path) -> None:
+        """Which EXUDYN evaluates itself, at each impact."""
+        assert_agree(self.run(calibrated, tmp_path), calibrated, 1e-6, SHORT)
 
 
 class TestMujoco:
