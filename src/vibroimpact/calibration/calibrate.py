@@ -3,27 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import fields
-from typing import NamedTuple
 
 import numpy as np
 
 from vibroimpact.calibration.calibration import Calibration
-from vibroimpact.calibration.drops import by_function, drops_with, impacts_of, shortened
-from vibroimpact.calibration.fitting import Fit, distinct, fit_observations, fit_values, value_noise
-from vibroimpact.calibration.matching import Tunable, match
-from vibroimpact.calibration.observations import Floats, Observations, scaled
-from vibroimpact.calibration.one_impact import one_impact, stacked
-from vibroimpact.calibration.outcomes import OUTCOMES, REBOUND, REBOUNDS, check_weights
-from vibroimpact.calibration.reach import check_reached, other_parameters
+from vibroimpact.calibration.drops import by_function, drops_with, shortened
+from vibroimpact.calibration.match_drop import match_drop
+from vibroimpact.calibration.match_measurement import match_measurement
+from vibroimpact.calibration.matching import Tunable
+from vibroimpact.calibration.observations import Floats, Observations
+from vibroimpact.calibration.outcomes import REBOUND, REBOUNDS, check_weights
+from vibroimpact.calibration.reach import other_parameters
 from vibroimpact.calibration.tunables import law_parameter
-from vibroimpact.calibration.uncertainty import default_draws, of_the_whole, redrawn, undetermined, with_nearest_end
+from vibroimpact.calibration.uncertainty import of_the_whole
 from vibroimpact.dynamics.problem import Problem, StatesProblem
 from vibroimpact.dynamics.simulate import simulate
 from vibroimpact.errors import InputError
 
-_CURVE_POINTS = 41
-_PASSES = 20
 _MET = 1e-6  # of what is wanted
 
 
@@ -104,9 +100,9 @@ def calibrate(
     if isinstance(target, Observations):
         if speeds is not None:
             raise InputError("what was measured is known at its own speeds alone; leave the speeds out", "speeds")
-        found = _from_measurement(tuned, stated, target, weights, degree, confidence, bootstrap, seed, tell)
+        found = match_measurement(tuned, stated, target, weights, degree, confidence, bootstrap, seed, tell)
     else:
-        found = _from_drop(tuned, stated, target.to_problem(), weights, degree, speeds, tell)
+        found = match_drop(tuned, stated, target.to_problem(), weights, degree, speeds, tell)
     tell(0.9)
     along, values = by_function(tuned, stated, found.fit.function)
     chain = (found.seen.speeds, found.values) if found.seen.of_the_drop else (along, values)
@@ -141,114 +137,6 @@ def calibrate(
     )
 
 
-class _Found(NamedTuple):
-    seen: Observations
-    values: Floats
-    fit: Fit
-    intervals: Floats | None = None
-    curve: tuple[Floats, Floats] | None = None
-    draws: int = 0
-    doubts: Sequence[str] = ()
-
-
-def _from_drop(
-    tuned: Tunable,
-    problem: Problem,
-    target: Problem,
-    weights: Mapping[str, float],
-    degree: int | None,
-    speeds: Sequence[float] | Floats | None,
-    tell: Callable[[float], None],
-) -> _Found:
-    """Match the impacts of a drop under another law."""
-    table = simulate(shortened(target, impacts_of(problem))).impacts
-    least = float(simulate(shortened(problem, 1)).rest.speed[0])  # what leaves more slowly stays
-    at = table["approach_speed_m_s"][table["separation_speed_m_s"] > least]
-    if not len(at):
-        raise InputError("under the law of the target the sphere does not leave the plate; there is no rebound to match", "target")
-
-    for name in weights:
-        column = OUTCOMES[name].column
-        if not np.all(table[column][: len(at)] > 0.0):
-            raise InputError(f"{name} is not told by the target, {target.laws[0].name}; match something else", "match")
-
-    def wanted_at(fast: Floats) -> tuple[Observations, Floats]:
-        outcomes = one_impact(target, stacked(target.laws, len(fast)), fast)
-        labels = tuple(f"impact {number + 1}" for number in range(len(fast)))
-        seen = Observations(fast, {name: outcomes[name] for name in weights}, labels=labels)
-        return seen, check_reached(tuned, problem, seen, weights, match(tuned, fast, seen.wanted, weights, seen.which))
-
-    for _ in range(_PASSES):
-        seen, values = wanted_at(at)
-        tell(0.3)
-        if set(weights) != {"separation_speed"}:
-            break  # it bounces otherwise than the target does, whose impacts are matched all the same
-        # a law that lets go before the overlap is gone comes down again a little faster than it left
-        after = tuned.respond(at, values, np.arange(len(at)))["next_speed"][:-1]
-        if np.allclose(after, at[1:], rtol=1e-10, atol=0.0):
-            break
-        at = np.append(at[0], after)
-    over, curve = None, None
-    alike = len(target.laws) == 1 and _alike(problem, tuned)
-    if speeds is not None:
-        over = np.asarray(speeds, dtype=float)
-        if not alike:
-            raise InputError("a contact law has one value an impact, and over a range of speeds it must have one for all", "speeds")
-    elif len(at) > 1 and len(weights) == 1 and not problem.vibrates and alike:
-        over = np.linspace(at.min(), at.max(), _CURVE_POINTS)
-    if over is not None:
-        curve = (over, _along(tuned, problem, target, weights, over, asked=speeds is not None))
-    along, through = curve if curve is not None and speeds is not None else (seen.speeds, values)
-    return _Found(seen, values, fit_values(along, through, _degree(along, degree)), curve=curve)
-
-
-def _along(tuned: Tunable, problem: Problem, target: Problem, weights: Mapping[str, float], speeds: Floats, *, asked: bool) -> Floats:
-    """Return the values at approach speeds, under the first laws; NaN where there is none, unless they were asked for."""
-    outcomes = one_impact(target, target.laws[0], speeds)
-    labels = tuple(f"an impact at {speed:.4g} m/s" for speed in speeds)
-    seen = Observations(speeds, {name: outcomes[name] for name in weights}, labels=labels, of_the_drop=False)
-    found = match(tuned, speeds, seen.wanted, weights, seen.which)
-    return check_reached(tuned, problem, seen, weights, found) if asked else found.values
-
-
-def _from_measurement(
-    tuned: Tunable,
-    problem: Problem,
-    seen: Observations,
-    weights: Mapping[str, float],
-    degree: int | None,
-    confidence: float,
-    bootstrap: int | None,
-    seed: int,
-    tell: Callable[[float], None],
-) -> _Found:
-    """Match what was measured."""
-    missing = [name for name in weights if name not in seen.wanted]
-    if missing:
-        raise InputError(f"{', '.join(missing)} was not measured; there is {', '.join(seen.wanted)}", "match")
-    found = match(tuned, seen.speeds, seen.wanted, weights, seen.which)
-    alone = check_reached(tuned, problem, seen, weights, found)
-    tell(0.3)
-    fit = fit_observations(tuned, seen, weights, _degree(seen.speeds, degree), alone)
-    tell(0.5)
-    values = with_nearest_end(tuned, alone, seen.speeds, seen.wanted, weights, seen.which)
-    doubts = list(seen.doubts) + [
-        f"{label}: nothing that {tuned.name} can be meets it, but its noise explains that"
-        for label, value in zip(seen.labels, alone, strict=True)
-        if np.isnan(value)
-    ]
-    sized = seen if seen.deviations_known else scaled(seen, fit.scatter, weights)
-    deviations = np.linalg.norm(value_noise(tuned, sized, weights, values), axis=1)
-    half, draws = fit.quantile(confidence) * deviations, 0
-    intervals = np.stack([values - half, values + half], axis=1) if np.isfinite(half).all() else None
-    if intervals is not None:
-        draws = default_draws(values, deviations) if bootstrap is None else bootstrap
-    if draws:
-        intervals, fit = redrawn(tuned, sized, weights, fit, deviations, draws, confidence, seed, lambda done: tell(0.5 + 0.4 * done))
-    doubts += undetermined(tuned, values, intervals, seen, fit, confidence)
-    return _Found(seen, values, fit, intervals, None, draws, doubts)
-
-
 def _check(problem: Problem, confidence: float, bootstrap: int | None) -> None:
     if problem.shape != ():
         raise InputError("one drop is calibrated at a time; take one of the batch")
@@ -256,15 +144,3 @@ def _check(problem: Problem, confidence: float, bootstrap: int | None) -> None:
         raise InputError(f"{confidence:g} is not allowed; it must lie between 0 and 1", "confidence")
     if bootstrap is not None and bootstrap != 0 and not bootstrap >= 20:
         raise InputError(f"{bootstrap} draws tell no interval; it must be 0, or at least 20", "bootstrap")
-
-
-def _alike(problem: Problem, tuned: Tunable) -> bool:
-    """Is the contact law the same at each impact, but for what is tuned?"""
-    first = problem.laws[0]
-    return all(
-        getattr(law, item.name) == getattr(first, item.name) for law in problem.laws for item in fields(law) if item.name != tuned.name
-    )
-
-
-def _degree(speeds: Floats, degree: int | None) -> int:
-    return min(2, distinct(speeds) - 1) if degree is None else degree
