@@ -119,11 +119,10 @@ def read_quantity(text: str) -> tuple[float, str]:
     >>> read_quantity("179.75 N s/m")
     (179.75, 'N s/m')
     """
-    match = _QUANTITY.fullmatch(text) if len(text) <= 80 else None
-    if match is None or not match[2]:
+    parts = _split(text)
+    if parts is None or not parts[1]:
         raise InputError(f'"{text[:80]}" is not a number with a unit, such as "5.115e8 N/m^1.5"')
-    _check_comma(text, match[2].strip())
-    return _finite(float(match[1]), text), match[2].strip()
+    return _finite(parts[0], text), parts[1]
 
 
 def convert_units(value: float, unit: str, to: str) -> float:
@@ -223,19 +222,16 @@ def _dimension_words(unit: pint.Unit) -> str:
 
 def _known_unit(text: str) -> pint.Unit:
     try:
-        if not _UNIT.fullmatch(text) or re.search(r"\d{4}", text):
-            raise ValueError(text)
-        return _registry().parse_units(text)
+        return _parse_unit(text)
     except Exception as error:  # pint raises many kinds for a unit that it can't read
         raise InputError(f'"{text}" is not a unit that is known; write it as "N/mm^1.5", "N s/m" or "kg/s"') from error
 
 
 def _parse(text: str, unit: str) -> float:
-    match = _QUANTITY.fullmatch(text) if len(text) <= 80 else None
-    if match is None:
+    parts = _split(text)
+    if parts is None:
         raise InputError(f'"{text[:80]}" is not {_wanted(unit)}')
-    number, given = float(match[1]), (match[2] or "").strip()
-    _check_comma(text, given)
+    number, given = parts
     if not unit:
         if given:
             raise InputError(f'"{text}" has a unit, but a plain number is wanted: write {number / 100 if given == "%" else number:g}')
@@ -245,10 +241,22 @@ def _parse(text: str, unit: str) -> float:
     return float(number * _factor(given, unit, text))
 
 
-def _check_comma(text: str, unit: str) -> None:
-    """Raise if what follows the number is the rest of one with a decimal comma."""
+def _split(text: str) -> tuple[float, str] | None:
+    """Return number and unit of a text, "" without one; None if it begins with no number."""
+    match = _QUANTITY.fullmatch(text) if len(text) <= 80 else None
+    if match is None:
+        return None
+    unit = (match[2] or "").strip()
     if re.match(r",\d", unit):
         raise InputError(f'"{text}" has a comma in its number; write a point: {text.replace(",", ".", 1)}')
+    return float(match[1]), unit
+
+
+def _parse_unit(text: str) -> pint.Unit:
+    """Return a unit; raises ValueError, and whatever pint does for one that it can't read."""
+    if not _UNIT.fullmatch(text) or re.search(r"\d{4}", text):
+        raise ValueError(text)
+    return _registry().parse_units(text)
 
 
 def _factor(given: str, unit: str, text: str) -> float:
@@ -257,9 +265,7 @@ def _factor(given: str, unit: str, text: str) -> float:
 
     registry = _registry()
     try:
-        if not _UNIT.fullmatch(given) or re.search(r"\d{4}", given):
-            raise ValueError(given)
-        have, want = registry.Quantity(1.0, registry.parse_units(given)), registry.parse_units(unit)
+        have, want = registry.Quantity(1.0, _parse_unit(given)), registry.parse_units(unit)
         return float(have.to(want).magnitude)
     except pint.DimensionalityError:
         kind = next((k for u, k in _KIND.items() if u and have.check(registry.parse_units(u).dimensionality)), None)

@@ -51,10 +51,7 @@ def differences(found: Calibration) -> dict[str, Mapping[str, Floats]]:
 
 def largest_misfit(found: Calibration) -> float:
     """Return how far the polynomial is off at most from the exact values, over the speeds that it was fitted over."""
-    speeds, values = found.curve if found.curve is not None else (found.observations.speeds, found.values)
-    function = found.fit.function
-    inside = (speeds >= function.slowest * (1.0 - 1e-9)) & (speeds <= function.fastest * (1.0 + 1e-9))
-    return float(np.nanmax(np.abs(function(speeds) - values)[inside], initial=0.0))
+    return found.fit.function.misfit(*(found.curve if found.curve is not None else (found.observations.speeds, found.values)))
 
 
 def _padded(values: Floats, number: int) -> Floats:

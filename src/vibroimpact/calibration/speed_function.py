@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
 from numpy.polynomial import polynomial
 
 _BEYOND = 1.05  # times its ends
@@ -43,3 +44,8 @@ class SpeedFunction:
     def beyond(self, speeds: Any) -> Any:
         """Return those of some speeds that lie clearly outside the range that it was fitted over."""
         return speeds[(speeds > _BEYOND * self.fastest) | (speeds * _BEYOND < self.slowest)]
+
+    def misfit(self, speeds: Any, values: Any) -> float:
+        """Return how far it is off at most from exact values, over the speeds that it was fitted over."""
+        inside = (speeds >= self.slowest * (1.0 - 1e-9)) & (speeds <= self.fastest * (1.0 + 1e-9))
+        return float(np.nanmax(np.abs(self(speeds) - values)[inside], initial=0.0))

@@ -160,9 +160,7 @@ def of_the_whole(
             "not follow the measurement, or its noise is larger; the intervals of the polynomial are widened by that"
         )
     if curve is not None:
-        along, values = curve
-        inside = (along >= function.slowest) & (along <= function.fastest)
-        off, size = np.nanmax(np.abs(function(along) - values)[inside], initial=0.0), np.nanmax(np.abs(values), initial=0.0)
+        off, size = function.misfit(*curve), np.nanmax(np.abs(curve[1]), initial=0.0)
         if off > _FOLLOWS * size:
             told.append(
                 f"the polynomial of degree {function.degree} is off by up to {off:.3g} {tunable.unit}, of {size:.3g} at most; take a "

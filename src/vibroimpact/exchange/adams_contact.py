@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import NamedTuple
@@ -31,6 +31,16 @@ class Names(NamedTuple):
     speed: str
     damping: str
 
+    @property
+    def height(self) -> str:
+        """The height of the sphere's centre over the plate [mm]."""
+        return f"DZ({self.centre}, {self.spot}, {self.spot})"
+
+    @property
+    def velocity(self) -> str:
+        """Its velocity upwards [mm/s]."""
+        return f"VZ({self.centre}, {self.spot}, {self.spot}, {self.spot})"
+
 
 @dataclass(frozen=True)
 class AdamsContact:
@@ -57,12 +67,11 @@ class AdamsContact:
 
     def gap(self, names: Names) -> str:
         """Return the distance of the surfaces [mm], negative in contact."""
-        return f"DZ({names.centre}, {names.spot}, {names.spot}) - {number(self.radius)}"
+        return f"{names.height} - {number(self.radius)}"
 
     def coming_speed(self, names: Names) -> str:
         """Return the speed that the sphere will next touch with [mm/s], right at any moment of a flight: its energy does not change."""
-        velocity = f"VZ({names.centre}, {names.spot}, {names.spot}, {names.spot})"
-        return f"SQRT({velocity}**2 + {number(2.0 * self.gravity)} * MAX({self.gap(names)}, 0.0))"
+        return f"SQRT({names.velocity}**2 + {number(2.0 * self.gravity)} * MAX({self.gap(names)}, 0.0))"
 
     def held_speed(self, names: Names) -> str:
         """Return the approach speed of the contact under way [mm/s]; the first one as long as the sensor has not fired."""
@@ -75,13 +84,24 @@ class AdamsContact:
 
     def force(self, names: Names) -> str:
         """Return the contact force [N]."""
-        height = f"DZ({names.centre}, {names.spot}, {names.spot})"
-        velocity = f"VZ({names.centre}, {names.spot}, {names.spot}, {names.spot})"
+        height, velocity = names.height, names.velocity
         stiffness, exponent, radius = number(self.stiffness), number(self.exponent), number(self.radius)
         damping = f"VARVAL({names.damping})" if self.varies else self.damping
         if self.penetration is not None:
             return f"IMPACT({height}, {velocity}, {radius}, {stiffness}, {exponent}, {damping}, {number(self.penetration)})"
         return f"{stiffness} * MAX({radius} - {height}, 0.0)**{exponent} * (1.0 - {damping} * {velocity} / VARVAL({names.speed}))"
+
+    def readings(self, names: Names, force: str) -> dict[int, tuple[str, str]]:
+        """Return title and expression of what a run is asked for, by the column of a request; the first and fifth are magnitudes.
+
+        Height [mm], velocity [mm/s] and the force [N], which the file calls `force`; approach speed and damping where they are held.
+        """
+        asked = {2: ("height", names.height), 3: ("velocity", names.velocity), 4: ("force", f"SFORCE({force}, 0, 4, {names.spot})")}
+        if self.holds_speed:
+            asked[6] = ("approach_speed", f"VARVAL({names.speed})")
+        if self.varies:
+            asked[7] = ("damping", f"VARVAL({names.damping})")
+        return asked
 
 
 def adams_contact(drop: Drop) -> AdamsContact:
@@ -144,6 +164,16 @@ def number(value: float) -> str:
     """
     mantissa, _, exponent = repr(float(f"{value:.15g}")).partition("e")
     return (mantissa if "." in mantissa else f"{mantissa}.0") + (f"E{exponent}" if exponent else "")
+
+
+def numbers(values: Sequence[float]) -> str:
+    """Return numbers as a list."""
+    return ", ".join(map(number, values))
+
+
+def titles(readings: Mapping[int, tuple[str, str]]) -> str:
+    """Return the titles of all columns up to the last that is read, empty where none is."""
+    return ", ".join(f'"{readings.get(column, ("",))[0]}"' for column in range(1, max(readings) + 1))
 
 
 def _spring(law: ContactLaw) -> tuple[float, float, float | None]:

@@ -15,6 +15,9 @@ from vibroimpact.materials import Material
 _STEPS, _OUTPUTS = 50, 20  # a contact, at least
 _LONGEST_NAME = 40
 
+LINE = 80
+"""Columns of a line, at most."""
+
 ACCURACY = 1e-6
 """Error that the integrator is allowed; of displacements [mm]."""
 

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 
-from vibroimpact.exchange.adams_contact import Names, number
-from vibroimpact.exchange.adams_model import ACCURACY, SENSOR_ERROR, TESTED, AdamsModel, adams_model, broken, remarks
+from vibroimpact.exchange.adams_contact import Names, number, numbers, titles
+from vibroimpact.exchange.adams_model import ACCURACY, LINE, SENSOR_ERROR, TESTED, AdamsModel, adams_model, broken, remarks
 from vibroimpact.exchange.contact_alone import shared_notes
 from vibroimpact.exchange.drop import Drop
 from vibroimpact.exchange.export_format import ExportFormat
 
-_LINE = 80
 _NAMES = Names(centre="11", spot="1", sensor="1", speed="1", damping="2")
 _GROUND, _SPHERE, _CORNER = 1, 2, 2  # parts, and the marker at the plate's corner
 
@@ -33,20 +32,27 @@ def _dataset(model: AdamsModel) -> Iterator[str]:
     # the first line is always taken as the title; Adams View takes the model's name from it, and others from comments
     yield f"Adams View model name: {model.name}"
     for remark in (model.title, *remarks(model)):
-        yield from (f"! {line}" for line in broken(remark, _LINE - 2))
+        yield from (f"! {line}" for line in broken(remark, LINE - 2))
     yield from _statement("UNITS/", FORCE="NEWTON", MASS="KILOGRAM", LENGTH="MILLIMETER", TIME="SECOND")
     yield from _headed("ground", "PART", _GROUND, "GROUND")
     x, y, z = model.centre
-    yield from _headed("spot", "MARKER", int(_NAMES.spot), PART=str(_GROUND), QP=_list((x, y, 0.0)))
+    yield from _headed("spot", "MARKER", int(_NAMES.spot), PART=str(_GROUND), QP=numbers((x, y, 0.0)))
     if model.plate is not None:
-        yield from _headed("corner", "MARKER", _CORNER, PART=str(_GROUND), QP=_list(model.corner))
+        yield from _headed("corner", "MARKER", _CORNER, PART=str(_GROUND), QP=numbers(model.corner))
         size = dict(zip("XYZ", map(number, model.plate), strict=True))
         yield from _headed("plate", "GRAPHICS", 1, "BOX", CORNER=str(_CORNER), **size)
     velocity = {"VZ": number(model.velocity)} if model.velocity else {}
     yield from _headed(
-        "sphere", "PART", _SPHERE, QG=_list((x, y, z)), **velocity, MASS=number(model.mass), CM=_NAMES.centre, IP=_list([model.inertia] * 3)
+        "sphere",
+        "PART",
+        _SPHERE,
+        QG=numbers((x, y, z)),
+        **velocity,
+        MASS=number(model.mass),
+        CM=_NAMES.centre,
+        IP=numbers([model.inertia] * 3),
     )
-    yield from _headed("cm", "MARKER", int(_NAMES.centre), PART=str(_SPHERE), QP=_list((0.0, 0.0, 0.0)))
+    yield from _headed("cm", "MARKER", int(_NAMES.centre), PART=str(_SPHERE), QP=numbers((0.0, 0.0, 0.0)))
     diameter = number(2.0 * model.radius)
     yield from _headed("ball", "GRAPHICS", 2, "ELLIPSOID", CM=_NAMES.centre, XSCALE=diameter, YSCALE=diameter, ZSCALE=diameter)
     for identifier, material in enumerate(model.materials, 1):
@@ -93,29 +99,11 @@ def _dataset(model: AdamsModel) -> Iterator[str]:
 
 
 def _requests(model: AdamsModel) -> Iterator[str]:
-    """Yield the statement that asks for height [mm], velocity [mm/s] and force [N]; approach speed and damping where they are held."""
-    centre, spot = _NAMES.centre, _NAMES.spot
-    asked = {
-        "height": f"DZ({centre}, {spot}, {spot})",
-        "velocity": f"VZ({centre}, {spot}, {spot}, {spot})",
-        "force": f"SFORCE(1, 0, 4, {spot})",
-    }
-    if model.contact.holds_speed:
-        asked["approach_speed"] = f"VARVAL({_NAMES.speed})"
-    if model.contact.varies:
-        asked["damping"] = f"VARVAL({_NAMES.damping})"
-    columns = [2, 3, 4, 6, 7]  # the first and the fifth are magnitudes
-    titles = dict(zip(columns, asked, strict=False))
-    names = ", ".join(f'"{titles.get(column, "")}"' for column in range(1, max(titles) + 1))
-    functions = {f"F{column}": expression for column, expression in zip(columns, asked.values(), strict=False)}
-    last = list(functions)[-1]
-    yield from _headed(
-        "motion",
-        "REQUEST",
-        1,
-        CNAMES=names,
-        **{key: expression + ("" if key == last else "\\") for key, expression in functions.items()},
-    )
+    """Yield the statement that asks for what a run shows."""
+    readings = model.contact.readings(_NAMES, "1")
+    last = max(readings)
+    functions = {f"F{column}": expression + ("" if column == last else "\\") for column, (_, expression) in readings.items()}
+    yield from _headed("motion", "REQUEST", 1, CNAMES=titles(readings), **functions)
 
 
 def _headed(name: str, kind: str, identifier: int, *flags: str, **arguments: str) -> Iterator[str]:
@@ -132,11 +120,7 @@ def _statement(head: str, *flags: str, **arguments: str) -> Iterator[str]:
     yield head
     yield from (f", {flag}" for flag in flags)
     for name, value in arguments.items():
-        yield from (f", {line}" for line in broken(f"{name} = {value}", _LINE - 2))
-
-
-def _list(values: Sequence[float]) -> str:
-    return ", ".join(map(number, values))
+        yield from (f", {line}" for line in broken(f"{name} = {value}", LINE - 2))
 
 
 FORMAT = ExportFormat(

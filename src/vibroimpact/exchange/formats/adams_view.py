@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from vibroimpact.exchange.adams_contact import Names, number
-from vibroimpact.exchange.adams_model import ACCURACY, SENSOR_ERROR, TESTED, AdamsModel, adams_model, broken, remarks
+from vibroimpact.exchange.adams_contact import Names, number, numbers, titles
+from vibroimpact.exchange.adams_model import ACCURACY, LINE, SENSOR_ERROR, TESTED, AdamsModel, adams_model, broken, remarks
 from vibroimpact.exchange.contact_alone import shared_notes
 from vibroimpact.exchange.drop import Drop
 from vibroimpact.exchange.export_format import ExportFormat
 
-_LINE = 80
 _UPRIGHT = "0.0d, 0.0d, 0.0d"
 
 
@@ -31,7 +30,7 @@ def _commands(model: AdamsModel) -> Iterator[str]:
     ground, sphere = f"{top}.ground", f"{top}.sphere"
     names = Names(f"{sphere}.cm", f"{ground}.spot", f"{top}.touch", f"{top}.approach_speed", f"{top}.damping")
     for remark in (model.title, *remarks(model)):
-        yield from (f"! {line}" for line in broken(remark, _LINE - 2))
+        yield from (f"! {line}" for line in broken(remark, LINE - 2))
     yield from _command("defaults units", length="mm", angle="deg", force="newton", mass="kg", time="sec")
     yield from _command("defaults units", coordinate_system_type="cartesian", orientation_type="body313")
     yield from _command("model create", model_name=model.name)
@@ -52,9 +51,9 @@ def _commands(model: AdamsModel) -> Iterator[str]:
             "geometry create shape block",
             block_name=f"{ground}.plate",
             corner_marker=f"{ground}.corner",
-            diag_corner_coords=_list(model.plate),
+            diag_corner_coords=numbers(model.plate),
         )
-    yield from _command("part create rigid_body name_and_position", part_name=sphere, location=_list((x, y, z)), orientation=_UPRIGHT)
+    yield from _command("part create rigid_body name_and_position", part_name=sphere, location=numbers((x, y, z)), orientation=_UPRIGHT)
     yield from _inside(sphere)
     yield from _marker(names.centre, (0.0, 0.0, 0.0))
     moments = dict.fromkeys(("ixx", "iyy", "izz"), number(model.inertia)) | dict.fromkeys(("ixy", "izx", "iyz"), "0.0")
@@ -109,25 +108,14 @@ def _commands(model: AdamsModel) -> Iterator[str]:
 
 
 def _request(model: AdamsModel, names: Names) -> Iterator[str]:
-    """Yield the command that asks for height [mm], velocity [mm/s] and force [N]; approach speed and damping where they are held."""
-    centre, spot = names.centre, names.spot
-    functions = {
-        "f2": f"DZ({centre}, {spot}, {spot})",
-        "f3": f"VZ({centre}, {spot}, {spot}, {spot})",
-        "f4": f"SFORCE(.{model.name}.contact, 0, 4, {spot})",
-    }
-    if model.contact.holds_speed:
-        functions["f6"] = f"VARVAL({names.speed})"
-    if model.contact.varies:
-        functions["f7"] = f"VARVAL({names.damping})"
-    titles = {"f2": "height", "f3": "velocity", "f4": "force", "f6": "approach_speed", "f7": "damping"}
-    columns = [f"f{column}" for column in range(1, int(list(functions)[-1][1:]) + 1)]
+    """Yield the command that asks for what a run shows."""
+    readings = model.contact.readings(names, f".{model.name}.contact")
     yield from _command(
         "output_control create request",
         request_name=f".{model.name}.motion",
-        component_names=", ".join(f'"{titles.get(column, "")}"' for column in columns),
+        component_names=titles(readings),
         results_name='"motion"',
-        **{name: _quoted(function) for name, function in functions.items()},
+        **{f"f{column}": _quoted(expression) for column, (_, expression) in readings.items()},
     )
 
 
@@ -137,7 +125,7 @@ def _inside(part: str) -> Iterator[str]:
 
 
 def _marker(name: str, location: Sequence[float]) -> Iterator[str]:
-    return _command("marker create", marker_name=name, location=_list(location), orientation=_UPRIGHT)
+    return _command("marker create", marker_name=name, location=numbers(location), orientation=_UPRIGHT)
 
 
 def _variable(name: str, function: str) -> Iterator[str]:
@@ -155,12 +143,8 @@ def _command(words: str, **parameters: str) -> Iterator[str]:
 
 def _quoted(function: str) -> str:
     """Return a function as a series of quoted strings, a line each; Adams View joins them."""
-    *first, last = broken(function, _LINE - 20)
+    *first, last = broken(function, LINE - 20)
     return ",\n".join([*(f'"{line} "' for line in first), f'"{last}"'])
-
-
-def _list(values: Sequence[float]) -> str:
-    return ", ".join(map(number, values))
 
 
 FORMAT = ExportFormat(

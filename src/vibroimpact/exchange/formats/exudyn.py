@@ -6,7 +6,6 @@ import math
 from collections.abc import Mapping
 from dataclasses import fields
 
-from vibroimpact.contact.hysteretic import HystereticLaw
 from vibroimpact.contact.law import ContactLaw
 from vibroimpact.contact.laws.linear_spring_dashpot import LinearSpringDashpot
 from vibroimpact.errors import InputError
@@ -62,7 +61,7 @@ def _force(law: ContactLaw) -> str:
     """Return the body of the function that gives the force of a law."""
     if isinstance(law, LinearSpringDashpot) and law.damping is not None:
         return "return p.stiffness * delta + p.damping * rate"
-    if law.name not in _FORCES or (isinstance(law, HystereticLaw) and law.name not in _FACTORS):
+    if law.name not in _FORCES:
         raise InputError(
             f"{law.name} can't be written for EXUDYN; {', '.join(sorted(_FORCES))} can. "
             'Take one of them, with the parameter that "vibroimpact calibrate" finds'
@@ -103,7 +102,7 @@ def _write(drop: Drop) -> Mapping[str, bytes]:
 """A sphere that falls on a plate, for EXUDYN 1.13 or later. Units: m, kg, s, N."""
 # {one_line(drop.name)}
 # The contact law is {law.name}: {law.equation}
-{comment_lines(_notes(drop))}
+{comment_lines(shared_notes(drop))}
 import math
 from types import SimpleNamespace
 
@@ -217,15 +216,11 @@ for impact in range(IMPACTS):
     }
 
 
-def _notes(drop: Drop) -> list[str]:
-    return shared_notes(drop)
-
-
 FORMAT = ExportFormat(
     name="exudyn",
     program="EXUDYN",
     files="a Python script (.py)",
     tested="run with EXUDYN 1.13.6",
     write=_write,
-    notes=_notes,
+    notes=shared_notes,
 )
