@@ -4,6 +4,7 @@
 # make check     lint, formatting and types, as CI does
 # make bench     the benchmarks
 # make docs      write the pages of the contact laws again
+# make reproduce reproduce the paper, and write the page of the documentation that shows it
 # make help      this list
 
 PYTHON ?= python3
@@ -11,7 +12,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 OUTPUT := vibroimpact-demo
 
-.PHONY: help demo test test-all test-peers check bench docs clean
+.PHONY: help demo test test-all test-peers check bench docs reproduce clean
 
 demo: $(VENV)/installed
 	$(BIN)/vibroimpact demo --output $(OUTPUT) --force
@@ -35,6 +36,10 @@ bench: $(VENV)/installed
 
 docs: $(VENV)/installed
 	$(BIN)/python -m vibroimpact.report.law_pages docs
+
+reproduce: $(VENV)/installed
+	$(BIN)/vibroimpact reproduce -o vibroimpact-paper --force
+	$(BIN)/python -m vibroimpact.report.reproduction.documented vibroimpact-paper docs
 
 $(VENV)/bin/python:
 	@command -v $(PYTHON) >/dev/null || { \

@@ -69,6 +69,7 @@ if TYPE_CHECKING:
     from vibroimpact.report.comparison import compare_laws as compare_laws
     from vibroimpact.report.comparison_folder import save_comparison as save_comparison
     from vibroimpact.report.modes_folder import save_modes as save_modes
+    from vibroimpact.report.reproduction.folder import reproduce_paper as reproduce_paper
     from vibroimpact.report.save import remake_report as remake_report
     from vibroimpact.report.save import save_result as save_result
     from vibroimpact.storage.export_result import export_result as export_result
@@ -130,6 +131,7 @@ _HOME = {
     "read_mesh": "exchange.mesh_file",
     "read_result": "storage.folder",
     "remake_report": "report.save",
+    "reproduce_paper": "report.reproduction.folder",
     "rigid_plate": "bodies.plate",
     "rigid_sphere": "bodies.sphere",
     "save_calibration": "report.calibration_folder",

@@ -22,6 +22,7 @@ LAYERS = [
     {"exchange"},
     {"cases"},
     {"storage"},
+    {"reproduction"},
     {"report", "doctor"},
     {"cli", "app"},
     {"__main__", "__init__"},

@@ -48,12 +48,20 @@ def save_result(response: Response, directory: str | PathLike[str], *, force: bo
 def remake_report(directory: str | PathLike[str]) -> Path:
     """Make figures and report of a result folder again, from its data; its other files stay as they are.
 
+    Of a reproduction of the paper, the report is made again from the parts that are there.
+
     Raises
     ------
     InputError
         If it is not a result folder, its data are damaged, or it can't be written to.
     """
-    folder, result = Path(directory), read_result(directory)
+    from vibroimpact.report.reproduction.folder import is_reproduction, write_reproduction_report  # which loads what a run does not need
+
+    folder = Path(directory)
+    if is_reproduction(folder):
+        write_reproduction_report(folder)
+        return folder
+    result = read_result(directory)
     try:
         with TemporaryDirectory(prefix=".report.", dir=folder) as working:
             write_report(result, Path(working))

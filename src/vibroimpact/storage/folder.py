@@ -113,6 +113,8 @@ def read_result(directory: str | PathLike[str]) -> Result:
             raise InputError(f"{folder}: this is a comparison of contact laws, not the result of a run; make it anew with compare")
         if "calibration" in summary:
             raise InputError(f"{folder}: this is a calibration, not the result of a run; run its case.toml, or make it anew with calibrate")
+        if "reproduction" in summary:
+            raise InputError(f"{folder}: this is a reproduction of the paper, not the result of a run; make it anew with reproduce")
         if "modes" in summary:
             raise InputError(f"{folder}: these are modes of elastic bodies, not the result of a run; make them anew with modes")
         name = "case.toml"

@@ -1,0 +1,77 @@
+"""The command that runs one case under several laws."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from vibroimpact.cli.shared import CaseArgument, Force, app, console, fail, stem
+from vibroimpact.errors import InputError
+
+
+@app.command()
+def compare(
+    case: CaseArgument,
+    laws: Annotated[str, typer.Option("--laws", metavar="A,B,C", help="The contact laws, separated by commas.")],
+    given: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--set", metavar="KEY=VALUE", help="A parameter for every law that has it, or LAW.KEY=VALUE for one; may be repeated."
+        ),
+    ] = None,
+    achieving: Annotated[
+        float | None,
+        typer.Option("--achieving", metavar="E", help="Tune each law so that the first impact achieves this restitution."),
+    ] = None,
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", metavar="DIR", help="The folder to make; by default CASE-compared.")
+    ] = None,
+    force: Force = False,
+) -> None:
+    """Run one case under several contact laws.
+
+    Parameters that the case's own law has are used where another law has the same.
+    """
+    from vibroimpact.cases.reader import load_case
+    from vibroimpact.report.comparison import compare_laws
+    from vibroimpact.report.comparison_folder import save_comparison
+    from vibroimpact.report.console import comparison_summary
+    from vibroimpact.report.progress import patient_progress
+    from vibroimpact.storage.folder import check_free
+
+    found = load_case(case)
+    target = Path(f"{stem(case)}-compared") if output is None else output
+    check_free(target, force=force)
+    screen = console()
+    try:
+        with patient_progress("comparing", screen) as progress:
+            comparison = compare_laws(
+                found,
+                [name.strip() for name in laws.split(",") if name.strip()],
+                _settings(given or []),
+                achieving=achieving,
+                progress=progress,
+            )
+        folder = save_comparison(comparison, target, force=force)
+    except KeyboardInterrupt:
+        fail("interrupted; nothing was written", 130)
+    screen.print(comparison_summary(comparison))
+    typer.echo(f"wrote {folder / 'report.html'}")
+
+
+def _settings(given: list[str]) -> dict[str, object]:
+    """Read KEY=VALUE as a case file would: a number, a list, or a text with its unit."""
+    import tomllib
+
+    settings: dict[str, object] = {}
+    for item in given:
+        key, equals, value = item.partition("=")
+        if not (equals and key.strip() and value.strip()):
+            raise InputError(f'--set "{item}": give KEY=VALUE, such as restitution=0.7 or adams-impact.damping_max=180')
+        try:
+            settings[key.strip()] = tomllib.loads(f"value = {value}")["value"]
+        except ValueError:
+            settings[key.strip()] = value.strip()  # 5 mm needs no quotes here
+    return settings

@@ -1,0 +1,109 @@
+"""Commands for one case: run it, explain it, compute its modes, remake its report."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from vibroimpact.cli.shared import CaseArgument, Force, app, console, fail, note, stem
+
+
+@app.command()
+def demo(
+    output: Annotated[Path, typer.Option("-o", "--output", metavar="DIR", help="The result folder to make.")] = Path("vibroimpact-demo"),
+    force: Force = False,
+) -> None:
+    """Run the paper's Type 1 as a first example.
+
+    A rock sphere falls 4 m on a steel plate and bounces five times.
+    """
+    _run("paper:type1-variable", output, force=force)
+
+
+@app.command()
+def run(
+    case: CaseArgument,
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", metavar="DIR", help="The result folder to make; by default named after the case.")
+    ] = None,
+    force: Force = False,
+) -> None:
+    """Run a case and write its result folder.
+
+    The folder holds the case in full, the impact table, the data as NetCDF, figures, and a report.
+    """
+    _run(case, output, force=force)
+
+
+@app.command()
+def check(case: CaseArgument) -> None:
+    """Validate a case and explain it; run nothing."""
+    from vibroimpact.cases.reader import load_case
+    from vibroimpact.report.console import case_explained
+
+    console().print(case_explained(load_case(case)))
+
+
+def _run(name: str, output: Path | None, *, force: bool) -> None:
+    from vibroimpact.cases.reader import load_case
+    from vibroimpact.dynamics.simulate import simulate
+    from vibroimpact.report.console import result_summary
+    from vibroimpact.report.progress import patient_progress
+    from vibroimpact.report.save import save_result
+    from vibroimpact.storage.folder import check_free, read_result
+
+    case = load_case(name)
+    target = Path(stem(name)) if output is None else output
+    check_free(target, force=force)  # before the work, not after it
+    screen = console()
+    try:
+        with patient_progress("computing modes", screen) as progress:
+            problem = case.to_problem(progress, note)
+        with patient_progress("simulating", screen) as progress:
+            response = simulate(problem, progress)
+        folder = save_result(response, target, force=force)
+    except KeyboardInterrupt:
+        fail("interrupted; nothing was written", 130)
+    screen.print(result_summary(read_result(folder), screen.width))
+    typer.echo(f"wrote {folder / 'report.html'}")
+
+
+@app.command()
+def modes(
+    case: CaseArgument,
+    output: Annotated[Path | None, typer.Option("-o", "--output", metavar="DIR", help="The folder to make; by default CASE-modes.")] = None,
+    force: Force = False,
+) -> None:
+    """Compute the modes of the elastic bodies of a case.
+
+    The folder holds a table of frequencies, pictures of the first modes, and the meshes for ParaView, Nastran and Abaqus.
+    """
+    from vibroimpact.cases.modes import compute_modes
+    from vibroimpact.cases.reader import load_case
+    from vibroimpact.report.modes_folder import save_modes
+    from vibroimpact.report.modes_text import modes_summary
+    from vibroimpact.report.progress import patient_progress
+    from vibroimpact.storage.folder import check_free
+
+    found = load_case(case)
+    target = Path(f"{stem(case)}-modes") if output is None else output
+    check_free(target, force=force)
+    screen = console()
+    try:
+        with patient_progress("computing modes", screen) as progress:
+            bodies = compute_modes(found, progress, note)
+        folder = save_modes(found, bodies, target, force=force)
+    except KeyboardInterrupt:
+        fail("interrupted; nothing was written", 130)
+    screen.print(modes_summary(found, bodies))
+    typer.echo(f"wrote {folder / 'modes.csv'}, and pictures and meshes beside it")
+
+
+@app.command()
+def report(directory: Annotated[Path, typer.Argument(metavar="DIR", help="A result folder.")]) -> None:
+    """Remake the report of a result folder."""
+    from vibroimpact.report.save import remake_report
+
+    typer.echo(f"wrote {remake_report(directory) / 'report.html'}")

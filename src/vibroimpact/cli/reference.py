@@ -1,0 +1,79 @@
+"""Commands that tell what there is: laws, materials, the schema, this installation."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from vibroimpact.cli.shared import app, console
+from vibroimpact.errors import ComputationError, InputError
+
+
+@app.command()
+def laws(
+    name: Annotated[str | None, typer.Argument(metavar="[NAME]", help="Show one law, and draw its curves.")] = None,
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", metavar="PNG", help="The picture of its curves; by default NAME.png.")
+    ] = None,
+    force: Annotated[bool, typer.Option("--force", help="Replace an existing picture.")] = False,
+) -> None:
+    """List the contact laws, or show one: equation, parameters, sources, and a picture of its curves."""
+    from vibroimpact.report.law_sheet import law_sheet, law_table
+
+    screen = console()
+    if name is None:
+        if output is not None:
+            raise InputError("name the law that is to be drawn: vibroimpact laws NAME -o PNG")
+        screen.print(law_table(screen.width))
+        return
+    from vibroimpact.report.law_curves import picture_path, save_law_picture
+
+    sheet, target = law_sheet(name), picture_path(name, output)
+    screen.print(sheet)
+    typer.echo()
+    if target.exists() and not force:
+        typer.echo(f"{target} is there already and was left as it is; --force draws it anew")
+    else:
+        typer.echo(f"wrote {save_law_picture(name, target)}")
+
+
+@app.command()
+def materials(
+    name: Annotated[str | None, typer.Argument(metavar="[NAME]", help="Show one material, with the source of each number.")] = None,
+) -> None:
+    """List the shipped materials, or one with its sources."""
+    from vibroimpact.report.console import material_sheet, material_table
+
+    console().print(material_sheet(name) if name else material_table())
+
+
+@app.command()
+def schema() -> None:
+    """Print the JSON schema of a case file."""
+    import json
+
+    from vibroimpact.cases.schema import case_schema
+
+    typer.echo(json.dumps(case_schema(), indent=2))
+
+
+@app.command()
+def doctor(
+    clear_store: Annotated[bool, typer.Option("--clear-store", help="Empty the store of computed modes.")] = False,
+) -> None:
+    """Show versions and the store of modes, and test this installation."""
+    from vibroimpact.doctor import diagnose, first_rebound_error
+    from vibroimpact.report.console import versions_table
+
+    if clear_store:
+        from vibroimpact.structures.store import clear_store as clear
+
+        typer.echo(f"removed {clear()} entries from the store of modes")
+        return
+    console().print(versions_table(diagnose()))
+    error = first_rebound_error()
+    if not error < 2e-6:
+        raise ComputationError(f"the self-test is off by {error:.1e}; reinstall the package")
+    typer.echo(f"self-test passed: the paper's first rebound, off by {error:.1e}")

@@ -1,0 +1,66 @@
+"""What all commands share: the application, common options, the console, and how a run ends in failure."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, NoReturn
+
+import typer
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+# heavy imports live inside the commands, so that --help is quick
+
+app = typer.Typer(
+    name="vibroimpact",
+    no_args_is_help=True,
+    add_completion=False,
+    rich_markup_mode=None,
+    pretty_exceptions_enable=False,
+)
+
+CaseArgument = Annotated[str, typer.Argument(metavar="CASE", help='A TOML file, or a shipped case such as "paper:type1-theory".')]
+Force = Annotated[bool, typer.Option("--force", help="Replace an existing result folder.")]
+
+
+def _show_version(wanted: bool) -> None:
+    if wanted:
+        from vibroimpact._version import __version__
+
+        typer.echo(f"vibroimpact {__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def common(
+    version: Annotated[bool, typer.Option("--version", callback=_show_version, is_eager=True, help="Show the version and leave.")] = False,
+) -> None:
+    """What happens when a particle hits a plate: contact, energy and vibration, in a second."""
+
+
+def stem(case: str) -> str:
+    """Return what a folder made from a case is called."""
+    return Path(case.removeprefix("paper:")).stem
+
+
+def console() -> Console:
+    """Return the console, wide where it is no terminal."""
+    from rich.console import Console
+
+    screen = Console()
+    if not screen.is_terminal:
+        screen = Console(width=160)  # a pipe or a file has no width; tables must not be cut
+    return screen
+
+
+def note(text: str) -> None:
+    """Tell what takes long, apart from what the command prints."""
+    typer.echo(f"vibroimpact: {text}", err=True)
+
+
+def fail(message: str, status: int) -> NoReturn:
+    """Say what went wrong, and leave with an exit status."""
+    typer.echo("\n".join(f"vibroimpact: {line}" for line in message.splitlines()), err=True)
+    sys.exit(status)

@@ -1,0 +1,157 @@
+"""The folder of a reproduction: part by part, each whole or not at all, and a report of the parts that are there."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Callable, Iterable
+from os import PathLike
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+from vibroimpact._version import __version__
+from vibroimpact.errors import InputError
+from vibroimpact.report.figures import save_figures
+from vibroimpact.report.reproduction.made import make_part
+from vibroimpact.report.reproduction.markdown import FIGURES
+from vibroimpact.report.reproduction.page import report_html, report_text
+from vibroimpact.report.reproduction.parts import PARTS, Part, find_parts
+from vibroimpact.reproduction.runs import Runs
+from vibroimpact.storage.folder import SUMMARY, check_free, new_folder
+from vibroimpact.storage.tables import write_csv
+
+_PARTS = "parts"
+
+
+def reproduce_paper(
+    directory: str | PathLike[str],
+    only: Iterable[str] | None = None,
+    *,
+    force: bool = False,
+    progress: Callable[[float], None] | None = None,
+    tell: Callable[[str], None] | None = None,
+) -> Path:
+    """Reproduce the paper, or parts of it, in a folder: report, figures and a table of all values.
+
+    Each part appears whole or not at all, and stays if the run is interrupted.
+
+    Parameters
+    ----------
+    directory : path
+        The folder to make; with `only` it may be one that was made before, whose other parts stay.
+    only : iterable of str, optional
+        Names of parts, such as "table2" and "fig4"; by default all.
+    force : bool, default False
+        Replace a folder that is there.
+    progress : callable, optional
+        Is told the fraction done, in [0, 1].
+    tell : callable, optional
+        Is told, in words, what takes long.
+
+    Returns
+    -------
+    pathlib.Path
+        The folder; it holds `report.html`, `report.md`, `values.csv` and `figures`.
+
+    Raises
+    ------
+    InputError
+        If there is no part of a name, or something else is there already.
+    """
+    parts = list(PARTS.values()) if only is None else find_parts(only)
+    folder = Path(directory)
+    if only is None or not is_reproduction(folder):
+        check_free(folder, force=force)
+        with new_folder(folder, force=force) as working:
+            summary = {"name": "the paper, reproduced", "version": __version__, "reproduction": True}
+            (working / SUMMARY).write_text(json.dumps(summary) + "\n", encoding="utf-8")
+            for name in (_PARTS, FIGURES):
+                (working / name).mkdir()
+    runs = Runs(tell)
+    try:
+        for done, part in enumerate(parts):
+            if progress is not None:
+                progress(done / len(parts))
+            _write_part(part, runs, folder)
+    finally:
+        write_reproduction_report(folder)  # of what is there, even if not all is
+    if progress is not None:
+        progress(1.0)
+    return folder
+
+
+def missing_parts(directory: str | PathLike[str]) -> list[str]:
+    """Return the names of the parts that a folder does not have yet."""
+    return [name for name in PARTS if not _file(Path(directory), name).is_file()]
+
+
+def write_reproduction_report(folder: Path) -> None:
+    """Write the report and the table of values from the parts that a folder has.
+
+    Raises
+    ------
+    InputError
+        If a part is damaged.
+    """
+    parts = read_parts(folder)
+    rows = [row for part in parts.values() for row in part["rows"]]
+    text = report_text(parts)
+    with TemporaryDirectory(prefix=".report.", dir=folder) as working:
+        for name, page in {"report.md": text, "report.html": report_html(text, folder)}.items():
+            (Path(working) / name).write_text(page, encoding="utf-8")
+        if rows:
+            write_csv(rows, list(rows[0]), Path(working) / "values.csv")
+        for file in Path(working).iterdir():
+            os.replace(file, folder / file.name)
+
+
+def read_parts(folder: Path) -> dict[str, dict[str, Any]]:
+    """Return the parts that a folder has, by their names, in the order of the report.
+
+    Raises
+    ------
+    InputError
+        If it is not the folder of a reproduction, or a part is damaged.
+    """
+    if not is_reproduction(folder):
+        raise InputError(f"{folder}: this is not the folder of a reproduction")
+    found = {}
+    for name in PARTS:
+        file = _file(folder, name)
+        if file.is_file():
+            try:
+                found[name] = dict(json.loads(file.read_text(encoding="utf-8")))
+                _ = found[name]["text"], found[name]["rows"]
+            except (OSError, ValueError, KeyError, TypeError):
+                raise InputError(f"{file}: the file is damaged; make it anew: vibroimpact reproduce -o {folder} --only {name}") from None
+    return found
+
+
+def is_reproduction(folder: Path) -> bool:
+    """Is it the folder of a reproduction?"""
+    try:
+        return bool(json.loads((folder / SUMMARY).read_text(encoding="utf-8")).get("reproduction"))
+    except (OSError, ValueError, AttributeError):
+        return False
+
+
+def _file(folder: Path, part: str) -> Path:
+    return folder / _PARTS / f"{part}.json"
+
+
+def _write_part(part: Part, runs: Runs, folder: Path) -> None:
+    """Make a part, and put it in place once all of it is there."""
+    made = make_part(part, runs)
+    try:
+        with TemporaryDirectory(prefix=".part.", dir=folder) as working:
+            files = []
+            if made.drawing is not None:
+                save_figures({part.name: made.drawing.figure}, Path(working))
+                files = [(Path(working) / f"{part.name}.{kind}", folder / FIGURES / f"{part.name}.{kind}") for kind in ("png", "svg")]
+            table = {"version": __version__, "text": made.text, "rows": made.rows}
+            (Path(working) / "part.json").write_text(json.dumps(table, indent=1) + "\n", encoding="utf-8")
+            for here, there in [*files, (Path(working) / "part.json", _file(folder, part.name))]:
+                os.replace(here, there)
+    except OSError as error:
+        raise InputError(f"{folder}: the part {part.name} can't be written: {error.strerror}") from None

@@ -1,0 +1,62 @@
+"""A part of the reproduction, made: its text, its values and its figure."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+from vibroimpact.report.reproduction.drawing import Drawing
+from vibroimpact.report.reproduction.markdown import drawing_text, section_text, verdict_text
+from vibroimpact.report.reproduction.parts import Part
+from vibroimpact.report.style import style
+from vibroimpact.reproduction.row import Row
+from vibroimpact.reproduction.runs import Runs
+
+
+class Made(NamedTuple):
+    """A part of the reproduction.
+
+    Parameters
+    ----------
+    text : str
+        Words, tables and the place of the figure, as Markdown.
+    rows : list of mappings
+        The values printed and computed, as the table of values has them.
+    drawing : Drawing, optional
+        The figure.
+    """
+
+    text: str
+    rows: list[dict[str, Any]]
+    drawing: Drawing | None
+
+
+def make_part(part: Part, runs: Runs) -> Made:
+    """Make a part."""
+    section = part.section(runs) if part.section is not None else None
+    with style():
+        drawing = part.draw(runs) if part.draw is not None else None
+    texts = [] if section is None else [section_text(section)]
+    if drawing is not None:
+        texts.append(drawing_text(part.name, drawing, heading=section is None))
+    return Made("\n".join(texts), [_told(part.name, row) for row in (section.rows if section else ())], drawing)
+
+
+def _told(part: str, row: Row) -> dict[str, Any]:
+    """Return a row as the table of values has it, with every digit."""
+    value, verdict = row.printed, verdict_text(row)
+    return {
+        "part": part,
+        "name": value.name,
+        "what": value.what,
+        "place": value.place,
+        "read": value.read,
+        "unit": value.unit,
+        "relation": value.relation,
+        "printed": value.text,
+        "by": row.by,
+        "computed": row.computed,
+        "difference": row.difference if value.relation == "=" else None,
+        "allowed": row.allowed if value.relation == "=" else None,
+        "verdict": row.verdict.value,
+        "why": verdict.partition(": ")[2],
+    }

@@ -1,0 +1,143 @@
+"""Section 5.2: where the energy of the sphere is in Types 2 and 3."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import lru_cache
+
+import numpy as np
+
+from vibroimpact.contact.phase.collocation import Floats
+from vibroimpact.dynamics.problem import Problem
+from vibroimpact.dynamics.response import Response
+from vibroimpact.reproduction.coupled import Measure, mesh_mass, treated
+from vibroimpact.reproduction.printed import printed
+from vibroimpact.reproduction.row import Account, Row
+from vibroimpact.reproduction.runs import TREATMENTS, Runs, history_of
+from vibroimpact.reproduction.section import Section
+from vibroimpact.reproduction.unresolved import unresolved_range
+
+
+def section_5_2(runs: Runs) -> Section:
+    """Return the energies of the sphere in the first impact."""
+    rows: list[Row] = []
+    for kind in (2, 3):
+        rows += [_at_touch(runs, kind), *_released(runs, kind), _from_height(runs, kind)]
+        rows += treated(runs, kind, printed(f"type{kind}.energy_at_separation"), energy_at_separation)
+        rows += [_part(kind, "energy_left", "energy_at_separation"), _part(kind, "strain_part", "strain_energy")]
+        rows += treated(
+            runs, kind, printed(f"type{kind}.strain_energy"), largest_of(sphere_strain), unresolved_range(runs, kind, "sphere_strain_J")
+        )
+        rows += treated(runs, kind, printed(f"type{kind}.rotational_energy"), largest_of(sphere_rotation))
+    return Section(
+        "Section 5.2: the energy of the sphere",
+        (
+            "What is printed is checked twice: against the other printed numbers, which tells how it was obtained, and against the three "
+            "treatments. In the identified treatment the strain energy is that of the spring which stands for the sphere. A sphere that "
+            "falls upright on a plate's middle does not turn: what is printed of rotation is rounding, there as here.",
+        ),
+        tuple(rows),
+    )
+
+
+@lru_cache(maxsize=16)
+def sphere_strain(response: Response) -> tuple[Floats, Floats]:
+    """Return times [s] and the strain energy of the sphere [J]: of its modes, or of the local element that stands for them.
+
+    Spring and dashpot of the local element lie side by side and carry the contact force: k x + c dx/dt = F. Between two points of
+    the history F is taken for a straight line, for which x is exact.
+    """
+    element, history = response.problem.local_element, history_of(response)
+    time, force = history["time_s"], history["force_N"]
+    if element is None:
+        return time, history["sphere_strain_J"]
+    stiffness, damping = element
+    rate = stiffness / damping
+    elongation = np.zeros_like(time)
+    for index in range(1, len(time)):
+        step = time[index] - time[index - 1]
+        if step <= 0.0:
+            elongation[index] = elongation[index - 1]
+            continue
+        lag = (force[index] - force[index - 1]) / step / rate
+        begin = (force[index - 1] - lag) / stiffness
+        elongation[index] = (force[index] - lag) / stiffness + (elongation[index - 1] - begin) * np.exp(-rate * step)
+    return time, 0.5 * stiffness * elongation**2
+
+
+def sphere_rotation(response: Response) -> tuple[Floats, Floats]:
+    """Return times [s] and the energy of the sphere's rotation [J]; what is below 1e-15 J is rounding, and left out."""
+    history = history_of(response)
+    return history["time_s"], np.round(history["sphere_rotational_J"], 15)
+
+
+def energy_at_separation(response: Response) -> float:
+    """Return the kinetic energy of the sphere's centre at the first separation [J]."""
+    return 0.5 * float(response.problem.sphere.mass) * float(response.impacts["separation_speed_m_s"][0]) ** 2
+
+
+def largest_of(timeline: Callable[[Response], tuple[Floats, Floats]]) -> Measure:
+    """Return what gives the largest magnitude over time."""
+    return lambda response: float(np.nanmax(np.abs(timeline(response)[1])))
+
+
+def _fall(runs: Runs) -> tuple[float, float, float]:
+    """Return mass [kg], gravity [m/s^2] and the height of the fall to first touch [m]."""
+    problem = runs.problem("type1-variable")
+    assert problem.height is not None
+    return float(problem.sphere.mass), float(problem.gravity), float(problem.height) - float(problem.sphere.contact_offset)
+
+
+def _at_touch(runs: Runs, kind: int) -> Row:
+    """Return the energy of the fall to first touch."""
+    mass, gravity, fall = _fall(runs)
+    sag = _sag(runs.treated(kind, "superposed").problem)
+    least, most = (weight * gravity * fall for weight in mesh_mass(kind, gravity))
+    most *= 1.0 + sag / fall
+    lower = f", and a plate that its weight lets sag by {1e6 * sag:.1f} µm," if sag else ""
+    account = Account(f"with the mass of the mesh, as above{lower} {least:.6f} to {most:.6f} J", least, most)
+    by = f"m g times the fall of {fall:g} m"
+    return Row(printed(f"type{kind}.energy_at_touch"), mass * gravity * fall, by=by, accounts=(account,))
+
+
+def _sag(problem: Problem) -> float:
+    """Return by how much the plate's own weight lowers it where it is hit [m]; zero of a rigid one."""
+    modes = problem.plate.modes
+    if modes is None:
+        return 0.0
+    return float(problem.gravity * (modes.contact * modes.participation[:, 2] / modes.angular_frequencies**2).sum())
+
+
+def _released(runs: Runs, kind: int) -> list[Row]:
+    """Return the potential energy released down to the deepest point, of each treatment."""
+    mass, gravity, fall = _fall(runs)
+    value, touch = printed(f"type{kind}.potential_energy"), printed(f"type{kind}.energy_at_touch")
+    deep = 1e3 * (value.value - touch.value) / (mesh_mass(kind, gravity)[0] * gravity)
+    rows = []
+    for treatment in TREATMENTS:
+        potential = history_of(runs.treated(kind, treatment))["potential_J"]
+        released = float(potential[0] - potential.min())
+        beyond = 1e3 * (released / (mass * gravity) - fall)
+        why = f"printed is a fall of {deep:.2f} mm beyond first touch, and it is {beyond:.2f} mm here"
+        rows.append(Row(value, released, by=treatment, otherwise=why))
+    return rows
+
+
+def _from_height(runs: Runs, kind: int) -> Row:
+    """Return the energy at separation that the printed rebound height tells."""
+    mass, gravity, _ = _fall(runs)
+    height, radius = printed(f"type{kind}.rebound_height").value, float(runs.problem("type1-variable").sphere.contact_offset)
+    response = runs.treated(kind, "identified")
+    climbed = energy_at_separation(response) - mass * gravity * float(response.impacts["rebound_height_m"][0] - radius)
+    low, high = mesh_mass(kind, gravity)[0] * gravity * (height - radius), mass * gravity * (height - radius) + climbed
+    reason = f"the sphere leaves while it is still pressed in, and lighter by the mesh: {low:.5f} to {high:.5f} J"
+    value = printed(f"type{kind}.energy_at_separation")
+    return Row(value, mass * gravity * (height - radius), by="m g times the printed rebound", accounts=(Account(reason, low, high),))
+
+
+def _part(kind: int, part: str, of: str) -> Row:
+    """Return a printed part in per cent beside the two numbers that it is made of."""
+    over, under = printed(f"type{kind}.{of}"), printed(f"type{kind}.potential_energy")
+    ratio = 100.0 * over.value / under.value
+    why = f"{over.text} J of {under.text} J are {ratio:.2f} %: a misprint"
+    return Row(printed(f"type{kind}.{part}"), ratio, by="the printed energies", otherwise=why)

@@ -1,0 +1,56 @@
+"""The inputs: Table 1 and section 3.1, beside what the shipped cases have."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from vibroimpact.cases.build import contact_pair, resolved
+from vibroimpact.cases.reader import load_case
+from vibroimpact.contact.laws.adams_impact import AdamsImpact
+from vibroimpact.dynamics.simulate import simulate
+from vibroimpact.reproduction.printed import printed
+from vibroimpact.reproduction.row import Row
+from vibroimpact.reproduction.runs import Runs
+from vibroimpact.reproduction.section import Section
+
+
+def table1(runs: Runs) -> Section:
+    """Return Table 1 beside the shipped case of Type 3, which has all of it."""
+    case = resolved(load_case("paper:type3"))
+    sphere, plate, drop = case["sphere"], case["plate"], case["drop"]
+    values = {f"{body}.{name}": case[body]["material"][name] for body in ("sphere", "plate") for name in _MATERIAL}
+    values["sphere.radius"] = 1e3 * sphere["radius"]
+    values |= {f"plate.size.{number}": 1e3 * length for number, length in enumerate(plate["size"], start=1)}
+    values |= {f"plate.spacing.{number}": 1e3 * length for number, length in enumerate(plate["supports"][0]["spacing"], start=1)}
+    values |= {"gravity": drop["gravity"], "drop.height": drop["height"]}
+    return Section(
+        "Table 1: the inputs",
+        ("What the shipped cases have, beside what is printed.",),
+        tuple(Row(printed(name), value, by="the shipped case") for name, value in values.items()),
+    )
+
+
+_MATERIAL = ("density", "youngs_modulus", "poissons_ratio")
+
+
+def section_3_1(runs: Runs) -> Section:
+    """Return the parameters of the contact beside Hertz's theory and the shipped cases."""
+    problem, thin = runs.problem("type1-variable"), printed("full_damping_penetration")
+    law = problem.laws[0]
+    assert isinstance(law, AdamsImpact)
+    laws = (replace(law, full_damping_penetration=thin.value),)
+    rebound = simulate(replace(problem, laws=laws, impacts=1)).impacts["rebound_height_m"][0]
+    return Section(
+        "Section 3.1: the contact",
+        ("The stiffness is Hertz's, by the corrected equations (3) and (4). The full-damping penetration is not the one printed.",),
+        (
+            Row(printed("stiffness"), float(contact_pair(load_case("paper:type1-variable")).hertz_stiffness), by="Hertz"),
+            Row(printed("exponent"), float(law.exponent), by="Hertz"),
+            Row(
+                thin,
+                float(law.full_damping_penetration),
+                by="the shipped case",
+                otherwise=f"with it the first rebound would be {rebound:.5f} m, and {printed('type1.rebound_height').text} m is printed",
+            ),
+        ),
+    )

@@ -1,0 +1,112 @@
+"""Section 5.3: the vibration of the plate in Type 3."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from vibroimpact.contact.phase.collocation import Floats
+from vibroimpact.dynamics.response import Response
+from vibroimpact.reproduction.coupled import Measure, treated
+from vibroimpact.reproduction.implicit_euler import PEAKS
+from vibroimpact.reproduction.printed import printed
+from vibroimpact.reproduction.row import Account, Row
+from vibroimpact.reproduction.runs import TREATMENTS, Runs, history_of
+from vibroimpact.reproduction.section import Section, Table
+from vibroimpact.reproduction.unresolved import unresolved_range
+
+_PEAKS = {
+    "displacement": "plate_displacement_m",
+    "velocity": "plate_velocity_m_s",
+    "acceleration": "plate_acceleration_m_s2",
+    "kinetic_energy": "plate_kinetic_J",
+    "strain_energy": "plate_strain_J",
+    "potential_energy": "plate_potential_J",
+}
+"""What is printed of the plate, and the column of the history that has it."""
+
+
+def section_5_3(runs: Runs) -> Section:
+    """Return the peaks of the plate's motion and energies."""
+    rows: list[Row] = [_impact_speed(runs)]
+    for name, column in _PEAKS.items():
+        unresolved = unresolved_range(runs, 3, column) if column in PEAKS else None
+        rows += treated(runs, 3, printed(f"plate.{name}"), _peak(column), unresolved)
+    rows += treated(runs, 3, printed("plate.acceleration.5"), _fifth_acceleration)
+    rows += _parts()
+    rows += treated(runs, 3, printed("plate.energy_part"), _energy_part)
+    table, words = _decay(runs)
+    return Section(
+        "Section 5.3: the vibration of the plate",
+        ("Peaks of the whole run, of the plate's centre of mass and of its energies.",),
+        tuple(rows),
+        (table,),
+        (words,),
+    )
+
+
+def _peak(column: str) -> Measure:
+    return lambda response: float(np.abs(history_of(response)[column]).max())
+
+
+def _peaks_by_impact(response: Response, column: str) -> Floats:
+    """Return the largest magnitude of a column of the history after each impact, before the next."""
+    history, touches = history_of(response), response.impacts["time_s"]
+    which = np.searchsorted(touches, history["time_s"], side="right")
+    return np.array([np.abs(history[column][which == impact]).max() for impact in range(1, len(touches) + 1)])
+
+
+def _fifth_acceleration(response: Response) -> float:
+    return float(_peaks_by_impact(response, "plate_acceleration_m_s2")[4])
+
+
+def _energy_part(response: Response) -> float:
+    """Return the plate's largest kinetic and strain energy, added, of the energy released [%]: as the paper counts."""
+    history = history_of(response)
+    released = history["potential_J"][0] - history["potential_J"].min()
+    return 100.0 * float((history["plate_kinetic_J"].max() + history["plate_strain_J"].max()) / released)
+
+
+def _impact_speed(runs: Runs) -> Row:
+    problem = runs.problem("type1-variable")
+    assert problem.height is not None
+    whole = float(np.sqrt(2.0 * problem.gravity * problem.height))
+    account = Account(
+        f"a fall of the full {float(problem.height):g} m, to the centre instead of to first touch: {whole:.3f} m/s", whole, whole
+    )
+    speed = float(runs.response("type1-variable").impacts["approach_speed_m_s"][0])
+    return Row(printed("impact_speed"), speed, by="the fall to first touch", accounts=(account,))
+
+
+def _parts() -> list[Row]:
+    """Return the printed parts in per cent beside the numbers that they are made of."""
+    released, thickness = printed("type3.potential_energy"), printed("plate.size.3")
+    kinetic, strain = (printed(f"plate.{name}_energy") for name in ("kinetic", "strain"))
+    return [
+        Row(
+            printed("plate.displacement_part"),
+            100.0 * printed("plate.displacement").value / (1e-3 * thickness.value),
+            by="the printed displacement and thickness",
+        ),
+        Row(printed("plate.kinetic_part"), 100.0 * kinetic.value / released.value, by="the printed energies"),
+        Row(printed("plate.strain_part"), 100.0 * strain.value / released.value, by="the printed energies"),
+        Row(printed("plate.energy_part"), 100.0 * (kinetic.value + strain.value) / released.value, by="the printed energies"),
+    ]
+
+
+def _decay(runs: Runs) -> tuple[Table, str]:
+    """Return how the peaks fall from impact to impact, and whether the acceleration falls most slowly, as the paper says."""
+    cells, slowest = [], []
+    for treatment in TREATMENTS:
+        response, left = runs.treated(3, treatment), {}
+        for name in ("displacement", "velocity", "acceleration"):
+            peaks = _peaks_by_impact(response, _PEAKS[name])
+            cells.append((treatment, name, *(f"{100.0 * peak / peaks[0]:.2f}" for peak in peaks)))
+            left[name] = float(peaks[-1] / peaks[0])
+        slowest += [treatment] if left["acceleration"] == max(left.values()) else []
+    headers = ("Treatment", "Peak of the plate's centre of mass", *(f"Impact {number} [%]" for number in range(1, 6)))
+    where = f"this holds in these treatments: {', '.join(slowest)}" if slowest else "this holds in none of the three treatments"
+    words = (
+        "The paper says that from impact to impact the acceleration of the plate's centre of mass decreases more slowly than its "
+        f"displacement and velocity: {where}."
+    )
+    return Table(headers, tuple(cells), "Peaks after each impact, of those after the first"), words
