@@ -13,7 +13,7 @@ PACKAGE = Path(vibroimpact.__file__).parent
 LAYERS = [
     {"errors", "_version"},
     {"ranges"},
-    {"units", "materials"},
+    {"units", "materials", "quantity"},
     {"contact"},
     {"structures"},
     {"bodies"},

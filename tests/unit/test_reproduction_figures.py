@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 import pytest
 
 from vibroimpact.dynamics.response import Response
-from vibroimpact.report.figures import render_png, render_svg
+from vibroimpact.quantity import digits
 from vibroimpact.report.reproduction.compared import beside_printed
 from vibroimpact.report.reproduction.paper_figures import PAPER_FIGURES
-from vibroimpact.report.reproduction.timeline import column, falling_potential, in_first_impact
 from vibroimpact.report.reproduction.type_figures import ENERGY, MOTION
-from vibroimpact.reproduction.energies import largest_of
+from vibroimpact.report.style import style
+from vibroimpact.reproduction.measures import column, falling_potential, largest_of
 from vibroimpact.reproduction.printed import printed
 from vibroimpact.reproduction.runs import Runs
 
@@ -26,6 +28,12 @@ class RigidRuns(Runs):
 @pytest.fixture(scope="module")
 def runs() -> Runs:
     return RigidRuns()
+
+
+@pytest.fixture(autouse=True)
+def in_style() -> Iterator[None]:
+    with style():
+        yield
 
 
 def test_every_figure_with_results_is_drawn() -> None:
@@ -80,7 +88,6 @@ def test_figures_by_treatment(runs: Runs, name: str) -> None:
     solid = 3 if int(name[3:]) < 14 else 2
     assert all(len(axes.lines) >= solid for axes in figure.axes)
     assert "Types 2 and 3" in sentence
-    render_png(figure)
 
 
 def test_printed_values_are_marked_where_they_lie(runs: Runs) -> None:
@@ -96,7 +103,7 @@ def test_the_sentence_names_the_nearest_treatment(runs: Runs) -> None:
     far = 100.0 * (force.value(runs.treated(3, "consistent")) / printed("type3.max_force").value - 1.0)
     sentence = beside_printed(force, (2, 3), runs)
     assert "Nearest to that of Type 3 is the consistent treatment" in sentence
-    assert f"{far:.0f} % above it." in sentence
+    assert f"{digits(far, 2)} % above it." in sentence
     assert "the paper prints none" in beside_printed(MOTION[2], (2, 3), runs)
 
 
@@ -116,17 +123,7 @@ def test_the_sentence_tells_who_keeps_below_a_bound(runs: Runs) -> None:
     assert beside_printed(bound._replace(value=lambda response: 0.0), (2, 3), runs).endswith("and so are all.")
 
 
-def test_values_of_a_timeline(runs: Runs) -> None:
+def test_largest_of_a_timeline(runs: Runs) -> None:
     response = runs.response("type1-theory")
     assert largest_of(column("position_m"))(response) == 4.0
-    assert in_first_impact("max_force_N")(response) == response.impacts["max_force_N"][0]
-
-
-@pytest.mark.slow
-def test_all_figures_are_drawn_and_rendered() -> None:
-    elastic = Runs()
-    for name, draw in PAPER_FIGURES.items():
-        figure, title, sentence = draw(elastic)
-        assert title.startswith(f"Figure {name[3:]}: "), name
-        assert sentence.endswith("."), name
-        assert len(render_svg(figure)) < 500_000, name
+    assert largest_of(lambda _: (np.zeros(3), np.array([1.0, np.nan, -2.0])))(response) == 2.0

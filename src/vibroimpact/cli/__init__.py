@@ -8,6 +8,7 @@ import sys
 from vibroimpact.cli import drops as drops  # isort: skip
 from vibroimpact.cli import comparison as comparison  # isort: skip
 from vibroimpact.cli import calibration as calibration  # isort: skip
+from vibroimpact.cli import export as export  # isort: skip
 from vibroimpact.cli import reproduction as reproduction  # isort: skip
 from vibroimpact.cli import reference as reference  # isort: skip
 from vibroimpact.cli.shared import app, fail
@@ -26,11 +27,10 @@ def main() -> None:
         fail(str(error), 1)
     except MemoryError:
         fail("there is not enough memory for this; use larger elements, or ask for less", 1)
-    except KeyboardInterrupt:
-        fail("interrupted; nothing was written", 130)
     except BrokenPipeError:
         # the reader of our output has gone; leave quietly, as other tools do
         sys.stderr.close()
         sys.exit(1)
     except OSError as error:
-        fail(f"the computer says: {error.strerror or error}", 1)
+        where = f"{error.filename}: " if error.filename else ""
+        fail(f"{where}the computer says: {error.strerror or error}", 1)

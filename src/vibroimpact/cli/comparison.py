@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from vibroimpact.cli.shared import CaseArgument, Force, app, console, fail, stem
+from vibroimpact.cli.shared import CaseArgument, Force, app, console, stem, whole_or_nothing
 from vibroimpact.errors import InputError
 
 
@@ -45,7 +45,7 @@ def compare(
     target = Path(f"{stem(case)}-compared") if output is None else output
     check_free(target, force=force)
     screen = console()
-    try:
+    with whole_or_nothing():
         with patient_progress("comparing", screen) as progress:
             comparison = compare_laws(
                 found,
@@ -55,8 +55,6 @@ def compare(
                 progress=progress,
             )
         folder = save_comparison(comparison, target, force=force)
-    except KeyboardInterrupt:
-        fail("interrupted; nothing was written", 130)
     screen.print(comparison_summary(comparison))
     typer.echo(f"wrote {folder / 'report.html'}")
 

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from vibroimpact.cli.shared import CaseArgument, Force, app, console, fail, note, stem
+from vibroimpact.cli.shared import CaseArgument, Force, app, console, note, stem, whole_or_nothing
 
 
 @app.command()
@@ -58,14 +58,12 @@ def _run(name: str, output: Path | None, *, force: bool) -> None:
     target = Path(stem(name)) if output is None else output
     check_free(target, force=force)  # before the work, not after it
     screen = console()
-    try:
+    with whole_or_nothing():
         with patient_progress("computing modes", screen) as progress:
             problem = case.to_problem(progress, note)
         with patient_progress("simulating", screen) as progress:
             response = simulate(problem, progress)
         folder = save_result(response, target, force=force)
-    except KeyboardInterrupt:
-        fail("interrupted; nothing was written", 130)
     screen.print(result_summary(read_result(folder), screen.width))
     typer.echo(f"wrote {folder / 'report.html'}")
 
@@ -91,12 +89,10 @@ def modes(
     target = Path(f"{stem(case)}-modes") if output is None else output
     check_free(target, force=force)
     screen = console()
-    try:
+    with whole_or_nothing():
         with patient_progress("computing modes", screen) as progress:
             bodies = compute_modes(found, progress, note)
         folder = save_modes(found, bodies, target, force=force)
-    except KeyboardInterrupt:
-        fail("interrupted; nothing was written", 130)
     screen.print(modes_summary(found, bodies))
     typer.echo(f"wrote {folder / 'modes.csv'}, and pictures and meshes beside it")
 

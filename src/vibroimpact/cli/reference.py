@@ -1,4 +1,4 @@
-"""Commands that tell what there is: laws, materials, the schema, this installation."""
+"""Commands that tell what there is: units, laws, materials, the schema, this installation."""
 
 from __future__ import annotations
 
@@ -9,6 +9,29 @@ import typer
 
 from vibroimpact.cli.shared import app, console
 from vibroimpact.errors import ComputationError, InputError
+
+
+@app.command(context_settings={"ignore_unknown_options": True})  # a number may be negative
+def units(
+    quantity: Annotated[list[str], typer.Argument(metavar="NUMBER UNIT", help='Such as 5.115e8 N/m^1.5, or "179.75 N s/m".')],
+    to: Annotated[
+        str | None, typer.Option("--to", metavar="UNIT", help="In quotes if it has blanks; without it the common unit systems are shown.")
+    ] = None,
+) -> None:
+    """Convert a parameter of a contact to another unit.
+
+    A stiffness in N/m^n is 1000^n times one in N/mm^n, not 1000 times.
+    """
+    from vibroimpact.report.unit_table import converted, unit_table
+    from vibroimpact.units import read_quantity
+
+    try:
+        value, unit = read_quantity(" ".join(quantity))
+        shown = unit_table(value, unit) if to is None else converted(value, unit, to)
+    except InputError as error:
+        hint = '; a unit with blanks needs quotes, as in --to "N s/mm"' if to and " " not in to and len(quantity) > 2 else ""
+        raise InputError(f"{error}{hint}") from None
+    console().print(shown)
 
 
 @app.command()

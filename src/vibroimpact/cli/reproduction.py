@@ -2,28 +2,30 @@
 
 from __future__ import annotations
 
+import shlex
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from vibroimpact.cli.shared import Force, app, console, fail, note
+from vibroimpact.cli.shared import app, console, fail, note
 
 
 @app.command()
 def reproduce(
-    output: Annotated[Path, typer.Option("-o", "--output", metavar="DIR", help="The folder to make, or to add to with --only.")] = Path(
+    output: Annotated[Path, typer.Option("-o", "--output", metavar="DIR", help="The folder to make, or to go on with.")] = Path(
         "vibroimpact-paper"
     ),
-    only: Annotated[
-        str | None, typer.Option("--only", metavar="A,B,C", help="Only these parts, such as table2,fig4; those in DIR already stay.")
-    ] = None,
-    force: Force = False,
+    only: Annotated[str | None, typer.Option("--only", metavar="A,B,C", help="Only these parts; made anew if they are there.")] = None,
+    force: Annotated[bool, typer.Option("--force", help="Replace an existing folder, with all parts that are in it.")] = False,
 ) -> None:
     """Reproduce the paper: each printed number beside the computed one, and its figures.
 
-    The report says of each whether it is reproduced, explained, or not reproduced, and why. What is done stays done: an
-    interrupted run goes on with --only.
+    The report says of each number whether it is reproduced, explained, or not reproduced, and why. It takes about half a minute. A
+    run that was interrupted goes on with the same command.
+
+    The parts: table1, section3.1, fig3, section3.2, fig4 to fig8, damping, table2, section4, fig9, section5.1, fig10 to fig13,
+    section5.2, fig14 to fig17, section5.3, fig18 to fig23, conclusions, recovery, sampling, unresolved, corrections.
     """
     from vibroimpact.report.progress import patient_progress
     from vibroimpact.report.reproduction.folder import missing_parts, reproduce_paper
@@ -35,8 +37,8 @@ def reproduce(
         with patient_progress("reproducing", screen) as progress:
             folder = reproduce_paper(output, names, force=force, progress=progress, tell=note)
     except KeyboardInterrupt:
-        left = missing_parts(output)
-        go_on = f"; go on with: vibroimpact reproduce -o {output} --only {','.join(left)}" if left else ""
-        fail(f"interrupted; the parts that are done stay{go_on}", 130)
+        left = [name for name in missing_parts(output) if names is not None and name in names]
+        some = f" --only {','.join(left)}" if left else ""
+        fail(f"interrupted; the parts that are done stay; go on with: vibroimpact reproduce -o {shlex.quote(str(output))}{some}", 130)
     screen.print(summary_table(folder))
     typer.echo(f"wrote {folder / 'report.html'}")

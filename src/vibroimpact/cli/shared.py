@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, NoReturn
 
@@ -58,6 +60,15 @@ def console() -> Console:
 def note(text: str) -> None:
     """Tell what takes long, apart from what the command prints."""
     typer.echo(f"vibroimpact: {text}", err=True)
+
+
+@contextmanager
+def whole_or_nothing() -> Iterator[None]:
+    """Say on Ctrl-C that nothing was written: what is done inside is written whole at its end."""
+    try:
+        yield
+    except KeyboardInterrupt:
+        fail("interrupted; nothing was written", 130)
 
 
 def fail(message: str, status: int) -> NoReturn:

@@ -15,9 +15,9 @@ from matplotlib.patches import Circle, Ellipse
 from numpy.typing import NDArray
 from PIL import Image
 
+from vibroimpact.quantity import fixed, text
 from vibroimpact.report.excerpt import touch_height
 from vibroimpact.report.projection import TILT, depth, project, show_whole
-from vibroimpact.report.quantity import fixed, text
 from vibroimpact.report.style import INK, style
 from vibroimpact.storage.deflection import Deflection, Floats
 from vibroimpact.storage.result import Result

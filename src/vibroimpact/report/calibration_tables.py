@@ -8,7 +8,7 @@ from vibroimpact.calibration.calibration import Calibration
 from vibroimpact.calibration.comparison import COMPARED, WAYS, differences, largest_misfit
 from vibroimpact.calibration.outcomes import OUTCOMES, REBOUNDS
 from vibroimpact.calibration.tunables import law_parameter
-from vibroimpact.report.quantity import MISSING, digits, fixed, text
+from vibroimpact.quantity import MISSING, digits, fixed, text
 from vibroimpact.report.tables import column
 
 _MOST_ROWS = 50

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from vibroimpact.dynamics.problem import STANDARD_GRAVITY
+from vibroimpact.quantity import digits, fixed, text
 from vibroimpact.report.captions_motion import (
     deflection_caption,
     plate_energy_caption,
@@ -13,7 +14,6 @@ from vibroimpact.report.captions_motion import (
     sphere_energy_caption,
 )
 from vibroimpact.report.excerpt import contacts, enlarged
-from vibroimpact.report.quantity import digits, fixed, text
 from vibroimpact.report.sensor_figures import drawn_sensors
 from vibroimpact.report.style import ENLARGED
 from vibroimpact.storage.result import Result

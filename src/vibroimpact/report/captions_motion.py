@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from vibroimpact.quantity import digits, fixed, text
 from vibroimpact.report.animation import exaggeration
-from vibroimpact.report.quantity import digits, fixed, text
 from vibroimpact.report.sensor_figures import MOST
 from vibroimpact.report.spectrum import amplitude_spectrum, first_response
 from vibroimpact.storage.result import Result

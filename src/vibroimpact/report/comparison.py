@@ -14,7 +14,7 @@ from vibroimpact.cases.schema import Case
 from vibroimpact.contact.law import ContactLaw
 from vibroimpact.contact.restitution import achieved_restitution
 from vibroimpact.dynamics.simulate import simulate
-from vibroimpact.report.quantity import MISSING, fixed
+from vibroimpact.quantity import MISSING, fixed
 from vibroimpact.report.tables import HEADERS, column
 from vibroimpact.storage.result import Result, result_of
 

@@ -9,8 +9,8 @@ from matplotlib.image import AxesImage
 from matplotlib.patheffects import withStroke
 from scipy.ndimage import maximum_filter
 
+from vibroimpact.quantity import Multiple, digits, multiple, text
 from vibroimpact.report.layout import WIDTH, new_figure
-from vibroimpact.report.quantity import Multiple, digits, multiple, text
 from vibroimpact.report.style import INK
 from vibroimpact.storage.deflection import Deflection
 from vibroimpact.storage.result import Result

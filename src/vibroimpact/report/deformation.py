@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from vibroimpact.report.quantity import digits, fixed, text
+from vibroimpact.quantity import digits, fixed, text
 from vibroimpact.storage.result import Result
 
 _SENTENCES = {

@@ -11,9 +11,9 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
+from vibroimpact.quantity import Multiple, multiple
 from vibroimpact.report.excerpt import MARGIN, Floats, around, contacts, enlarged, thinned, touch_height
 from vibroimpact.report.layout import heading, label_vertical, new_figure, row_of_axes, wide_axes
-from vibroimpact.report.quantity import Multiple, multiple
 from vibroimpact.report.style import ACCENT, CONTACT, INK, MARK
 from vibroimpact.storage.result import Result
 

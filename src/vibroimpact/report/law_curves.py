@@ -21,11 +21,11 @@ from vibroimpact.contact.restitution import achieved_restitution
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.simulate import simulate
 from vibroimpact.errors import InputError
+from vibroimpact.quantity import multiple, text
 from vibroimpact.report.excerpt import Floats
 from vibroimpact.report.figures import render_png
 from vibroimpact.report.law_text import paper_pair
 from vibroimpact.report.layout import label_vertical, new_figure, row_of_axes
-from vibroimpact.report.quantity import multiple, text
 from vibroimpact.report.style import ACCENT, INK, LOOPS, style
 
 _SPEEDS = np.geomspace(1e-3, 30.0, 60)

@@ -7,9 +7,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from vibroimpact.quantity import Multiple, multiple, text
 from vibroimpact.report.excerpt import Floats, contacts, pressed
 from vibroimpact.report.layout import label_vertical, new_figure, wide_axes
-from vibroimpact.report.quantity import Multiple, multiple, text
 from vibroimpact.report.style import ENLARGED, LOOPS, MARK
 from vibroimpact.storage.result import Result
 

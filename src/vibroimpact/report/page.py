@@ -12,12 +12,12 @@ import tomli_w
 from jinja2 import Environment, FunctionLoader, StrictUndefined, Template
 
 from vibroimpact.dynamics.energy import CLOSURE_LIMIT
+from vibroimpact.quantity import digits
 from vibroimpact.report.animation import animate
 from vibroimpact.report.captions import caption, left_out
 from vibroimpact.report.captions_motion import animation_caption, sensors_left_out
 from vibroimpact.report.deformation import deformation_rows, treatment_sentence
 from vibroimpact.report.figures import draw_figures, save_figures
-from vibroimpact.report.quantity import digits
 from vibroimpact.report.sensor_figures import drawn_sensors
 from vibroimpact.report.tables import impact_table, ledger_table
 from vibroimpact.storage.result import Result

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from vibroimpact.quantity import digits, text
 from vibroimpact.report.excerpt import Floats, gravity, touch_height
 from vibroimpact.report.histories import Quantity
-from vibroimpact.report.quantity import digits, text
 from vibroimpact.storage.result import Result
 
 Points = tuple[Floats, Floats]

@@ -8,10 +8,10 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from vibroimpact.exchange.plain_names import plain_names
+from vibroimpact.quantity import Multiple, largest, multiple
 from vibroimpact.report.excerpt import thinned
 from vibroimpact.report.layout import label_vertical, new_figure, row_of_axes, wide_axes
 from vibroimpact.report.motion_figures import plate_span
-from vibroimpact.report.quantity import Multiple, largest, multiple
 from vibroimpact.report.spectrum import amplitude_spectrum, first_response
 from vibroimpact.report.style import ACCENT, INK, MARK
 from vibroimpact.storage.result import Result

@@ -8,8 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from vibroimpact.quantity import digits, fixed, multiple
 from vibroimpact.report.excerpt import Floats
-from vibroimpact.report.quantity import digits, fixed, multiple
 from vibroimpact.storage.result import Result
 
 _MOST_ROWS, _FIRST, _LAST = 50, 45, 3

@@ -2,19 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from functools import lru_cache
-
-import numpy as np
-
-from vibroimpact.contact.phase.collocation import Floats
 from vibroimpact.dynamics.problem import Problem
-from vibroimpact.dynamics.response import Response
-from vibroimpact.reproduction.coupled import Measure, mesh_mass, treated
+from vibroimpact.reproduction.measures import energy_at_separation, largest_of, sphere_rotation, sphere_strain
+from vibroimpact.reproduction.mesh_mass import fall_beyond_touch, mesh_mass
 from vibroimpact.reproduction.printed import printed
 from vibroimpact.reproduction.row import Account, Row
 from vibroimpact.reproduction.runs import TREATMENTS, Runs, history_of
 from vibroimpact.reproduction.section import Section
+from vibroimpact.reproduction.treatments import rows_by_treatment
 from vibroimpact.reproduction.unresolved import unresolved_range
 
 
@@ -23,62 +18,21 @@ def section_5_2(runs: Runs) -> Section:
     rows: list[Row] = []
     for kind in (2, 3):
         rows += [_at_touch(runs, kind), *_released(runs, kind), _from_height(runs, kind)]
-        rows += treated(runs, kind, printed(f"type{kind}.energy_at_separation"), energy_at_separation)
+        rows += rows_by_treatment(runs, kind, printed(f"type{kind}.energy_at_separation"), energy_at_separation)
         rows += [_part(kind, "energy_left", "energy_at_separation"), _part(kind, "strain_part", "strain_energy")]
-        rows += treated(
-            runs, kind, printed(f"type{kind}.strain_energy"), largest_of(sphere_strain), unresolved_range(runs, kind, "sphere_strain_J")
-        )
-        rows += treated(runs, kind, printed(f"type{kind}.rotational_energy"), largest_of(sphere_rotation))
+        unresolved = unresolved_range(runs, kind, "sphere_strain_J")
+        rows += rows_by_treatment(runs, kind, printed(f"type{kind}.strain_energy"), largest_of(sphere_strain), unresolved)
+        rows += rows_by_treatment(runs, kind, printed(f"type{kind}.rotational_energy"), largest_of(sphere_rotation))
     return Section(
         "Section 5.2: the energy of the sphere",
         (
             "What is printed is checked twice: against the other printed numbers, which tells how it was obtained, and against the three "
-            "treatments. In the identified treatment the strain energy is that of the spring which stands for the sphere. A sphere that "
-            "falls upright on a plate's middle does not turn: what is printed of rotation is rounding, there as here.",
+            "treatments. The strain energy is that of the modes, as a multibody program tells it; in the consistent treatment the contact "
+            "law carries most of the sphere's strain beside them, and in the identified one it is the spring that stands for the sphere. "
+            "A sphere that falls upright on a plate's middle does not turn: what is printed of rotation is rounding, there as here.",
         ),
         tuple(rows),
     )
-
-
-@lru_cache(maxsize=16)
-def sphere_strain(response: Response) -> tuple[Floats, Floats]:
-    """Return times [s] and the strain energy of the sphere [J]: of its modes, or of the local element that stands for them.
-
-    Spring and dashpot of the local element lie side by side and carry the contact force: k x + c dx/dt = F. Between two points of
-    the history F is taken for a straight line, for which x is exact.
-    """
-    element, history = response.problem.local_element, history_of(response)
-    time, force = history["time_s"], history["force_N"]
-    if element is None:
-        return time, history["sphere_strain_J"]
-    stiffness, damping = element
-    rate = stiffness / damping
-    elongation = np.zeros_like(time)
-    for index in range(1, len(time)):
-        step = time[index] - time[index - 1]
-        if step <= 0.0:
-            elongation[index] = elongation[index - 1]
-            continue
-        lag = (force[index] - force[index - 1]) / step / rate
-        begin = (force[index - 1] - lag) / stiffness
-        elongation[index] = (force[index] - lag) / stiffness + (elongation[index - 1] - begin) * np.exp(-rate * step)
-    return time, 0.5 * stiffness * elongation**2
-
-
-def sphere_rotation(response: Response) -> tuple[Floats, Floats]:
-    """Return times [s] and the energy of the sphere's rotation [J]; what is below 1e-15 J is rounding, and left out."""
-    history = history_of(response)
-    return history["time_s"], np.round(history["sphere_rotational_J"], 15)
-
-
-def energy_at_separation(response: Response) -> float:
-    """Return the kinetic energy of the sphere's centre at the first separation [J]."""
-    return 0.5 * float(response.problem.sphere.mass) * float(response.impacts["separation_speed_m_s"][0]) ** 2
-
-
-def largest_of(timeline: Callable[[Response], tuple[Floats, Floats]]) -> Measure:
-    """Return what gives the largest magnitude over time."""
-    return lambda response: float(np.nanmax(np.abs(timeline(response)[1])))
 
 
 def _fall(runs: Runs) -> tuple[float, float, float]:
@@ -111,8 +65,7 @@ def _sag(problem: Problem) -> float:
 def _released(runs: Runs, kind: int) -> list[Row]:
     """Return the potential energy released down to the deepest point, of each treatment."""
     mass, gravity, fall = _fall(runs)
-    value, touch = printed(f"type{kind}.potential_energy"), printed(f"type{kind}.energy_at_touch")
-    deep = 1e3 * (value.value - touch.value) / (mesh_mass(kind, gravity)[0] * gravity)
+    value, deep = printed(f"type{kind}.potential_energy"), 1e3 * fall_beyond_touch(kind, gravity)
     rows = []
     for treatment in TREATMENTS:
         potential = history_of(runs.treated(kind, treatment))["potential_J"]

@@ -19,6 +19,7 @@ from functools import cached_property
 
 import numpy as np
 
+from vibroimpact.calibration.one_impact import first_speed
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.phase.collocation import Floats
 from vibroimpact.contact.phase.oscillators import Oscillators, State
@@ -35,8 +36,9 @@ PEAKS = (
     "plate_displacement_m",
     "plate_velocity_m_s",
     "plate_acceleration_m_s2",
+    "beyond_touch_m",
 )
-"""What is found at its largest; the last three are magnitudes, of the plate's centre of mass."""
+"""What is found at its largest: magnitudes, three of the plate's centre of mass; and how far the sphere's centre falls after touch."""
 
 SPENT = ("kinetic_J", "potential_J", "vibration_J", "contact_dissipated_J", "modal_damping_J", "integrator_J")
 """Where the energy of the touch is at separation: in the sphere's motion and height, in all modes; lost in damping and by the method."""
@@ -85,7 +87,7 @@ def unresolved_impact(problem: Problem, step: float, phases: Floats) -> dict[str
         of_bodies = (strain[:, :at].sum(axis=1), kinetic[:, at:].sum(axis=1), strain[:, at:].sum(axis=1))
         acceleration = (state.velocity - before.velocity) / step
         of_centre = (part[:, at:] @ whole for part in (state.displacement, state.velocity, acceleration))
-        for name, value in zip(PEAKS, (force, *of_bodies, *of_centre), strict=True):
+        for name, value in zip(PEAKS, (force, *of_bodies, *of_centre, np.maximum(state.approach, 0.0)), strict=True):
             peaks[name] = np.maximum(peaks[name], np.abs(value))
         leaves = (way.of.approach(state) < 0.0) & (state.speed < 0.0)
         of_sphere = 0.5 * way.mass * state.speed**2, -way.mass * way.gravity * state.approach
@@ -177,7 +179,4 @@ def _method(problem: Problem, step: float) -> _Method:
     more = problem.local_element or problem.quasi_static or (problem.sphere_inside and problem.sphere.modes is not None)
     if problem.shape != () or more or not isinstance(law, CompliantLaw) or law.memories():
         raise InputError("the implicit Euler method is for one drop of the superposed model, under a law with a force and no memory")
-    gravity = float(problem.gravity)
-    fall = float(problem.height - problem.sphere.contact_offset) if problem.height is not None else 0.0
-    touch_speed = float(problem.speed) if problem.speed is not None else float(np.sqrt(2.0 * gravity * fall))
-    return _Method(oscillators_of(problem), law, float(problem.sphere.mass), gravity, touch_speed, step)
+    return _Method(oscillators_of(problem), law, float(problem.sphere.mass), float(problem.gravity), first_speed(problem), step)

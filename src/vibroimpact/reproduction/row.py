@@ -14,6 +14,7 @@ class Verdict(Enum):
 
     REPRODUCED = "reproduced"
     EXPLAINED = "explained"
+    FITTED = "fitted"
     NOT_REPRODUCED = "not reproduced"
 
 
@@ -58,6 +59,8 @@ class Row:
         What is to be said if none holds.
     fitted : bool
         Was the model fitted to the printed value, so that it proves nothing?
+    digits : int
+        How many digits of the computed value are shown at most: fewer of what depends on a mesh.
 
     Examples
     --------
@@ -73,6 +76,7 @@ class Row:
     accounts: tuple[Account, ...] = ()
     otherwise: str = ""
     fitted: bool = False
+    digits: int = 13
 
     @property
     def allowed(self) -> float:
@@ -90,8 +94,17 @@ class Row:
         return next((account for account in self.accounts if account.holds(self.printed)), None) if not self._agrees else None
 
     @property
+    def reason(self) -> str:
+        """Why it is not reproduced; empty if it is, or was fitted."""
+        if self.verdict in (Verdict.REPRODUCED, Verdict.FITTED):
+            return ""
+        return self.account.reason if self.account else self.otherwise
+
+    @property
     def verdict(self) -> Verdict:
         """What the difference means."""
+        if self.fitted:
+            return Verdict.FITTED
         if self._agrees:
             return Verdict.REPRODUCED
         return Verdict.EXPLAINED if self.account else Verdict.NOT_REPRODUCED

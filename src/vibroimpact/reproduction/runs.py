@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import lru_cache
+from dataclasses import replace
+from functools import cached_property, lru_cache
 
 from vibroimpact.calibration.calibration import Calibration
 from vibroimpact.cases.calibration import calibrate_case, load_calibration
 from vibroimpact.cases.reader import load_case
+from vibroimpact.contact.pair import Array
 from vibroimpact.contact.phase.collocation import Floats
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.response import Response
@@ -16,6 +18,12 @@ from vibroimpact.storage.fine_history import fine_history
 
 TREATMENTS = ("consistent", "superposed", "identified")
 """How the local compliance of elastic bodies is treated; the shipped cases of Types 2 and 3 come in each."""
+
+DAMPINGS = ("constant", "variable")
+"""The simulations of Type 1: one damping for all impacts, or one an impact."""
+
+IMPACTS = (1, 2, 3, 4, 5)
+"""The impacts, as the paper counts them."""
 
 
 class Runs:
@@ -36,7 +44,6 @@ class Runs:
         self._tell = tell
         self._problems: dict[str, Problem] = {}
         self._responses: dict[str, Response] = {}
-        self._calibration: Calibration | None = None
 
     def problem(self, name: str) -> Problem:
         """Return the problem of a shipped case, such as "type1-theory"."""
@@ -54,15 +61,23 @@ class Runs:
         """Return the response of Type 2 or 3 under one of the `TREATMENTS`."""
         return self.response(f"type{kind}" if treatment == "consistent" else f"type{kind}-{treatment}")
 
-    @property
+    @cached_property
     def calibration(self) -> Calibration:
         """The damping of Adams' IMPACT with which each impact is as under the theory."""
-        if self._calibration is None:
-            self._calibration = calibrate_case(load_calibration("paper:calibration"))
-        return self._calibration
+        return calibrate_case(load_calibration("paper:calibration"))
+
+    def below_theory(self, damping: str, column: str) -> Floats:
+        """Return by how much a column of the impact table is below the theory's [%], in the simulation with a damping of `DAMPINGS`."""
+        simulation, theory = (self.response(f"type1-{name}").impacts[column] for name in (damping, "theory"))
+        return 100.0 * (1.0 - simulation / theory)
 
 
 @lru_cache(maxsize=16)
 def history_of(response: Response) -> dict[str, Floats]:
     """Return the history of a response, fine enough for every contact and for the peaks of the plate after it."""
     return fine_history(response)
+
+
+def with_law(problem: Problem, **parameters: Array) -> Problem:
+    """Return a problem with other parameters of its laws, each a number or one a drop."""
+    return replace(problem, laws=tuple(replace(law, **parameters) for law in problem.laws))

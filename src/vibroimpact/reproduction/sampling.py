@@ -6,15 +6,16 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from vibroimpact.reproduction.printed import printed
-from vibroimpact.reproduction.runs import Runs
+from vibroimpact.contact.phase.collocation import Floats
+from vibroimpact.quantity import MISSING, digits, fixed
+from vibroimpact.reproduction.printed import Printed, printed
+from vibroimpact.reproduction.row import Account
+from vibroimpact.reproduction.runs import DAMPINGS, IMPACTS, Runs
 from vibroimpact.reproduction.section import Section, Table
-
-Floats = NDArray[np.float64]
 
 QUANTITIES = {
     "compression": ("indentation_m", "max_indentation_m", "time_of_max_indentation_s"),
@@ -22,14 +23,14 @@ QUANTITIES = {
 }
 """What Table 2 compares: its columns in a history and in the impact table."""
 
-DAMPINGS = ("constant", "variable")
-IMPACTS = (1, 2, 3, 4, 5)
+_ERRORS = tuple((quantity, damping, impact) for quantity in QUANTITIES for damping in DAMPINGS for impact in IMPACTS)
+
+CONTACTS = tuple((damping, impact) for damping in DAMPINGS for impact in IMPACTS if (damping, impact) != ("variable", 1))
+"""The contacts that Table 2 is about: the first is the same with either damping."""
 
 _POINTS = 1001
 _LEVELS = 1001
 _TAIL = 0.05
-_TOGETHER, _CLOSE = 2e-6, 5e-6
-"""How far two instants may lie apart and count as one, and from the middle one and count as close to it [s]."""
 
 
 @dataclass(frozen=True)
@@ -63,11 +64,6 @@ class Peak:
         """Return when the level is passed on the way up and down [s]; of a level above the peak, the time of the peak."""
         before, after = _crossings(self.times, self.values, self.top, np.array([level]))
         return float(before[0]), float(after[0])
-
-    def width(self, level: float) -> float:
-        """Return how long the quantity is above a level [s]: with no sample in that time, none is above it."""
-        before, after = self.instants(level)
-        return after - before
 
     def lowest(self, step: float) -> float:
         """Return the least that the largest of samples `step` [s] apart can be, whatever their phase."""
@@ -133,24 +129,36 @@ def grid_samples(runs: Runs, name: str, step: float, quantity: str, impact: int)
     return times, np.interp(times, peak.times, peak.values)
 
 
-def gaps(runs: Runs) -> Floats:
-    """Return how long the nine contacts with a printed compression error were above it [s]: in none of these times was a sample.
+def gaps(runs: Runs, leaving: tuple[str, int] | None = None) -> Floats:
+    """Return how long the contacts with a printed compression error were above it [s]: in none of these times was a sample.
 
     The peak of the theory is taken as exact. The first contact is the same with either damping, and counts once.
+
+    Parameters
+    ----------
+    runs : Runs
+        The cases.
+    leaving : tuple of str and int, optional
+        A contact that is left out: its damping and impact.
     """
-    found = []
-    for damping in DAMPINGS:
-        for impact in IMPACTS if damping == "constant" else IMPACTS[1:]:
-            found.append(peaks(runs)[damping, "compression", impact].width(_level(runs, "compression", damping, impact)))
-    return np.array(found)
+    left_out = ("constant", 1) if leaving == ("variable", 1) else leaving
+    contacts = [contact for contact in CONTACTS if contact != left_out]
+    return np.array([after - before for before, after in (implied_instants(runs, "compression", *contact) for contact in contacts)])
 
 
-def found_spacing(runs: Runs) -> float:
-    """Return the upper bound, at 95 %, of the time between samples in contact [s].
+def found_spacing(runs: Runs, leaving: tuple[str, int] | None = None) -> float:
+    """Return the upper bound, at 95 %, of the time between samples in contact [s], from the printed compressions.
 
     Of samples at a random phase, a gap round the peak is as likely to be of any length up to the time between them.
+
+    Parameters
+    ----------
+    runs : Runs
+        The cases.
+    leaving : tuple of str and int, optional
+        A contact that is left out, so that its error can be tested: its damping and impact.
     """
-    free = gaps(runs)
+    free = gaps(runs, leaving)
     return float(free.max() * _TAIL ** (-1.0 / len(free)))
 
 
@@ -167,85 +175,101 @@ def sampling(runs: Runs) -> Section:
     runs : Runs
         The cases.
     """
-    step, spacing, free = output_step(), found_spacing(runs), gaps(runs)
-    durations = runs.response("type1-theory").impacts["duration_s"]
-    likelihood = float(free.max() / step) ** len(free)
-    theory = peaks(runs)["theory", "force", 1]
-    implied = printed("type1.max_force").value / (1.0 - 0.01 * printed("table2.force.constant.1").value)
-    cells, inside, nearest = [], 0, []
-    for quantity in QUANTITIES:
-        for damping in DAMPINGS:
-            for impact in IMPACTS:
-                value = printed(f"table2.{quantity}.{damping}.{impact}")
-                wide, narrow = (error_range(runs, size, quantity, damping, impact) for size in (step, spacing))
-                inside += narrow[0] - value.half <= value.value <= narrow[1] + value.half
-                cells.append(
-                    (
-                        f"{quantity}, {damping} damping, impact {impact}",
-                        f"{error_range(runs, 0.0, quantity, damping, impact)[0]:.3f}",
-                        f"{grid_error(runs, step, quantity, damping, impact):.1f}",
-                        f"{wide[0]:.0f} to {wide[1]:.0f}",
-                        f"{narrow[0]:.2f} to {narrow[1]:.2f}",
-                        f"{value.value:.3f}",
-                    )
-                )
-    moments, middles = [], []
-    for damping in DAMPINGS:
-        for impact in IMPACTS if damping == "constant" else IMPACTS[1:]:
-            deep, strong = (implied_instants(runs, quantity, damping, impact) for quantity in QUANTITIES)
-            pair = min(((one, other) for one in deep for other in strong), key=lambda pair: abs(pair[0] - pair[1]))
-            nearest.append(abs(pair[0] - pair[1]))
-            middles.append(0.5 * sum(pair))
-            cell = [f"{1e6 * before:.1f} or {1e6 * after:.1f}" for before, after in (deep, strong)]
-            moments.append((f"{damping} damping, impact {impact}", *cell, f"{1e6 * nearest[-1]:.1f}"))
-    middle = float(np.median(middles))
+    instants = _instants(runs)
     return Section(
         title="Where the scatter of Table 2 comes from",
-        words=(
-            f"The simulation had one output every {1e3 * step:.2f} ms, and a contact lasts {1e3 * durations.min():.2f} to "
-            f"{1e3 * durations.max():.2f} ms. A peak read off samples is too low, by as much as the samples miss it. The first table sets "
-            "the errors of exact peaks beside those that can be read off samples of the theory and of the simulation, and beside those "
-            "printed [%].",
-            f"Outputs every {1e3 * step:.2f} ms do not give the printed errors. The printed compressions are those of samples that left no "
-            f"more than {1e6 * free.max():.0f} µs free round the deepest point, in {len(free)} contacts; at a random phase the chance of "
-            f"that is {likelihood:.0e}. With equal steps at a random phase the likeliest step in contact is {1e6 * free.max():.0f} µs, and "
-            f"at 95 % it is at most {1e6 * spacing:.0f} µs.",
-        ),
+        words=_words(runs),
         tables=(
-            Table(
-                (
-                    "error [%]",
-                    "exact",
-                    f"on the grid of {1e3 * step:.2f} ms",
-                    f"any phase, {1e3 * step:.2f} ms",
-                    f"any phase, {1e6 * spacing:.0f} µs",
-                    "printed",
-                ),
-                tuple(cells),
-                "The errors of Table 2",
-            ),
+            _errors_table(runs),
             Table(
                 ("contact", "by the compression [µs]", "by the force [µs]", "apart at least [µs]"),
-                tuple(moments),
+                tuple((f"{damping} damping, impact {impact}", *one.cells) for (damping, impact), one in instants.items()),
                 "When after first touch the printed errors were read, with the exact peaks of the theory",
             ),
         ),
-        conclusion=(
-            f"{inside} of {len(cells)} printed errors lie within the range of samples {1e6 * spacing:.0f} µs apart. The range is wide for "
-            "the forces: it tells that sampling can be the cause, not that nothing else is.",
-            f"The theory was sampled too, but more finely: the largest force printed, {printed('type1.max_force').text} N, and its printed "
-            f"error imply a peak of {implied:.3f} N, {100.0 * (1.0 - implied / theory.value):.3f} % below the exact {theory.value:.3f} N. "
-            "Where a printed force error is less than the exact one, the peak of the theory must have been missed.",
-            f"Compression and force are largest at different times, yet in {sum(apart < _TOGETHER for apart in nearest)} of {len(nearest)} "
-            "contacts both printed errors are those of one and the same instant to "
-            f"{1e6 * _TOGETHER:.0f} µs, and in all of them to "
-            f"{1e6 * max(nearest):.0f} µs. {sum(abs(one - middle) < _CLOSE for one in middles)} of these instants lie within "
-            f"{1e6 * _CLOSE:.0f} µs of {1e6 * middle:.0f} µs after first touch, as with steps that start anew at each touch. Then the "
-            "phase is not random, and the bound on the step a guide.",
-            "Established: the printed errors of Table 2 are not those of exact peaks, as the errors in the text are; most are too large, "
-            f"as missed peaks make them; and a plain output every {1e3 * step:.2f} ms would scatter them far more. A reading: that the "
-            "solver's own steps, or further outputs at the contact, were drawn, so that there was a sample near each peak.",
-        ),
+        conclusion=_conclusion(runs, tuple(instants.values())),
+    )
+
+
+class Instant(NamedTuple):
+    """How far apart the instants lie that the two errors of a contact tell [s], NaN where one is of no instant; and its cells."""
+
+    apart: float
+    cells: tuple[str, ...]
+
+
+def _instants(runs: Runs) -> dict[tuple[str, int], Instant]:
+    """Return when each contact was read; of an error that implies more than the peak there is no instant."""
+    found = {}
+    for contact in CONTACTS:
+        both = [implied_instants(runs, quantity, *contact) for quantity in QUANTITIES]
+        beyond = [_level(runs, quantity, *contact) > peaks(runs)[contact[0], quantity, contact[1]].value for quantity in QUANTITIES]
+        apart = math.nan if any(beyond) else min(abs(one - other) for one in both[0] for other in both[1])
+        told = [MISSING if none else f"{1e6 * early:.1f} or {1e6 * late:.1f}" for none, (early, late) in zip(beyond, both, strict=True)]
+        found[contact] = Instant(apart, (*told, fixed(1e6 * apart, 1)))
+    return found
+
+
+def _words(runs: Runs) -> tuple[str, ...]:
+    step, spacing, free = output_step(), found_spacing(runs), gaps(runs)
+    durations = runs.response("type1-theory").impacts["duration_s"]
+    chance = float(free.max() / step) ** len(free)
+    return (
+        f"The simulation had one output every {1e3 * step:.2f} ms, and a contact lasts {1e3 * durations.min():.2f} to "
+        f"{1e3 * durations.max():.2f} ms. A peak read off samples is too low, by as much as the samples miss it. The first table sets "
+        "the errors of exact peaks beside those that can be read off samples of the theory and of the simulation, and beside those "
+        "printed [%].",
+        f"Outputs every {1e3 * step:.2f} ms do not give the printed errors. The printed compressions are those of samples that left no "
+        f"more than {1e6 * free.max():.0f} µs free round the deepest point, in {len(free)} contacts; at a random phase the chance of "
+        f"that is {digits(chance, 1)}. With equal steps at a random phase the likeliest step in contact is {1e6 * free.max():.0f} µs, and "
+        f"at 95 % it is at most {1e6 * spacing:.0f} µs.",
+    )
+
+
+def _errors_table(runs: Runs) -> Table:
+    step, spacing, cells = output_step(), found_spacing(runs), []
+    for quantity, damping, impact in _ERRORS:
+        which = (quantity, damping, impact)
+        (least, most), (low, high) = (error_range(runs, size, *which) for size in (step, spacing))
+        cells.append(
+            (
+                f"{quantity}, {damping} damping, impact {impact}",
+                fixed(error_range(runs, 0.0, *which)[0], 3),
+                fixed(grid_error(runs, step, *which), 1),
+                f"{fixed(least, 0)} to {fixed(most, 0)}",
+                f"{fixed(low, 2)} to {fixed(high, 2)}",
+                fixed(_table2(*which).value, 3),
+            )
+        )
+    headers = (
+        "error [%]",
+        "exact",
+        f"on the grid of {1e3 * step:.2f} ms",
+        f"any phase, {1e3 * step:.2f} ms",
+        f"any phase, {1e6 * spacing:.0f} µs",
+        "printed",
+    )
+    return Table(headers, tuple(cells), "The errors of Table 2")
+
+
+def _conclusion(runs: Runs, instants: tuple[Instant, ...]) -> tuple[str, ...]:
+    step, spacing, theory = output_step(), found_spacing(runs), peaks(runs)["theory", "force", 1]
+    inside = sum(Account("", *error_range(runs, spacing, *which)).holds(_table2(*which)) for which in _ERRORS)
+    implied = printed("type1.max_force").value / (1.0 - 0.01 * printed("table2.force.constant.1").value)
+    apart = [one.apart for one in instants if not math.isnan(one.apart)]
+    return (
+        f"{inside} of {len(_ERRORS)} printed errors lie within the range of samples {1e6 * spacing:.0f} µs apart, which was found from the "
+        "compressions; in the verdicts of Table 2 each compression is held against the spacing that the other contacts tell. The ranges "
+        "are wide: they tell that sampling can be the cause, not that nothing else is.",
+        f"The theory was sampled too, but more finely: the largest force printed, {printed('type1.max_force').text} N, and its printed "
+        f"error imply a peak of {implied:.3f} N, {100.0 * (1.0 - implied / theory.value):.3f} % below the exact {theory.value:.3f} N. "
+        "Where a printed force error is less than the exact one, the peak of the theory must have been missed.",
+        f"Compression and force are largest at different times. In {len(apart)} of {len(instants)} contacts both printed errors are those "
+        f"of an instant, and the two lie {1e6 * min(apart):.1f} to {1e6 * max(apart):.1f} µs apart; with so few contacts, and two "
+        "instants to choose from for each error, that is no evidence that both were read at one time.",
+        "Established: the printed errors of Table 2 are not those of exact peaks, as the errors in the text are; most are too large, "
+        f"as missed peaks make them; and a plain output every {1e3 * step:.2f} ms would scatter them far more. A reading: that the "
+        "solver's own steps, or further outputs at the contact, were drawn, so that there was a sample near each peak.",
     )
 
 
@@ -254,9 +278,13 @@ def implied_instants(runs: Runs, quantity: str, damping: str, impact: int) -> tu
     return peaks(runs)[damping, quantity, impact].instants(_level(runs, quantity, damping, impact))
 
 
+def _table2(quantity: str, damping: str, impact: int) -> Printed:
+    return printed(f"table2.{quantity}.{damping}.{impact}")
+
+
 def _level(runs: Runs, quantity: str, damping: str, impact: int) -> float:
     """Return what was read off the simulation if the peak of the theory is exact."""
-    error = printed(f"table2.{quantity}.{damping}.{impact}").value
+    error = _table2(quantity, damping, impact).value
     return peaks(runs)["theory", quantity, impact].value * (1.0 - 0.01 * error)
 
 

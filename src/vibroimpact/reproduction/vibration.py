@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from vibroimpact.contact.phase.collocation import Floats
-from vibroimpact.dynamics.response import Response
-from vibroimpact.reproduction.coupled import Measure, treated
 from vibroimpact.reproduction.implicit_euler import PEAKS
+from vibroimpact.reproduction.measures import after_each_impact, column, largest_of, plate_energy_part
 from vibroimpact.reproduction.printed import printed
 from vibroimpact.reproduction.row import Account, Row
-from vibroimpact.reproduction.runs import TREATMENTS, Runs, history_of
+from vibroimpact.reproduction.runs import TREATMENTS, Runs
 from vibroimpact.reproduction.section import Section, Table
+from vibroimpact.reproduction.treatments import rows_by_treatment
 from vibroimpact.reproduction.unresolved import unresolved_range
 
 _PEAKS = {
@@ -28,12 +27,14 @@ _PEAKS = {
 def section_5_3(runs: Runs) -> Section:
     """Return the peaks of the plate's motion and energies."""
     rows: list[Row] = [_impact_speed(runs)]
-    for name, column in _PEAKS.items():
-        unresolved = unresolved_range(runs, 3, column) if column in PEAKS else None
-        rows += treated(runs, 3, printed(f"plate.{name}"), _peak(column), unresolved)
-    rows += treated(runs, 3, printed("plate.acceleration.5"), _fifth_acceleration)
+    for name, told in _PEAKS.items():
+        unresolved = unresolved_range(runs, 3, told) if told in PEAKS else None
+        rows += rows_by_treatment(runs, 3, printed(f"plate.{name}"), largest_of(column(told)), unresolved)
+    rows += rows_by_treatment(
+        runs, 3, printed("plate.acceleration.5"), lambda response: float(after_each_impact(column(_PEAKS["acceleration"]))(response)[4])
+    )
     rows += _parts()
-    rows += treated(runs, 3, printed("plate.energy_part"), _energy_part)
+    rows += rows_by_treatment(runs, 3, printed("plate.energy_part"), plate_energy_part)
     table, words = _decay(runs)
     return Section(
         "Section 5.3: the vibration of the plate",
@@ -42,28 +43,6 @@ def section_5_3(runs: Runs) -> Section:
         (table,),
         (words,),
     )
-
-
-def _peak(column: str) -> Measure:
-    return lambda response: float(np.abs(history_of(response)[column]).max())
-
-
-def _peaks_by_impact(response: Response, column: str) -> Floats:
-    """Return the largest magnitude of a column of the history after each impact, before the next."""
-    history, touches = history_of(response), response.impacts["time_s"]
-    which = np.searchsorted(touches, history["time_s"], side="right")
-    return np.array([np.abs(history[column][which == impact]).max() for impact in range(1, len(touches) + 1)])
-
-
-def _fifth_acceleration(response: Response) -> float:
-    return float(_peaks_by_impact(response, "plate_acceleration_m_s2")[4])
-
-
-def _energy_part(response: Response) -> float:
-    """Return the plate's largest kinetic and strain energy, added, of the energy released [%]: as the paper counts."""
-    history = history_of(response)
-    released = history["potential_J"][0] - history["potential_J"].min()
-    return 100.0 * float((history["plate_kinetic_J"].max() + history["plate_strain_J"].max()) / released)
 
 
 def _impact_speed(runs: Runs) -> Row:
@@ -99,7 +78,7 @@ def _decay(runs: Runs) -> tuple[Table, str]:
     for treatment in TREATMENTS:
         response, left = runs.treated(3, treatment), {}
         for name in ("displacement", "velocity", "acceleration"):
-            peaks = _peaks_by_impact(response, _PEAKS[name])
+            peaks = after_each_impact(column(_PEAKS[name]))(response)
             cells.append((treatment, name, *(f"{100.0 * peak / peaks[0]:.2f}" for peak in peaks)))
             left[name] = float(peaks[-1] / peaks[0])
         slowest += [treatment] if left["acceleration"] == max(left.values()) else []

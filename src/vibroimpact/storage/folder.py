@@ -27,6 +27,15 @@ from vibroimpact.storage.tables import impact_rows, write_csv
 SUMMARY = "summary.json"
 
 
+_OTHER_FOLDERS = {
+    "laws": "this is a comparison of contact laws, not the result of a run; make it anew with compare",
+    "calibration": "this is a calibration, not the result of a run; run its case.toml, or make it anew with calibrate",
+    "reproduction": "this is a reproduction of the paper, not the result of a run; make it anew with reproduce",
+    "modes": "these are modes of elastic bodies, not the result of a run; make them anew with modes",
+}
+"""What a folder is whose summary has one of these keys."""
+
+
 @contextmanager
 def new_folder(directory: str | PathLike[str], *, force: bool = False) -> Iterator[Path]:
     """Give a folder to fill, which becomes `directory` when the block ends without an error.
@@ -109,14 +118,9 @@ def read_result(directory: str | PathLike[str]) -> Result:
     name = SUMMARY
     try:
         summary = json.loads((folder / name).read_text(encoding="utf-8"))
-        if "laws" in summary:
-            raise InputError(f"{folder}: this is a comparison of contact laws, not the result of a run; make it anew with compare")
-        if "calibration" in summary:
-            raise InputError(f"{folder}: this is a calibration, not the result of a run; run its case.toml, or make it anew with calibrate")
-        if "reproduction" in summary:
-            raise InputError(f"{folder}: this is a reproduction of the paper, not the result of a run; make it anew with reproduce")
-        if "modes" in summary:
-            raise InputError(f"{folder}: these are modes of elastic bodies, not the result of a run; make them anew with modes")
+        for key, words in _OTHER_FOLDERS.items():
+            if key in summary:
+                raise InputError(f"{folder}: {words}")
         name = "case.toml"
         has_case = "problem" not in summary["provenance"]
         case = tomllib.loads((folder / name).read_text(encoding="utf-8")) if has_case else {}

@@ -8,8 +8,8 @@ from typing import NamedTuple
 import numpy as np
 
 from vibroimpact.dynamics.response import Response
-from vibroimpact.report.quantity import digits, multiple
-from vibroimpact.report.reproduction.timeline import Timeline
+from vibroimpact.quantity import digits, multiple
+from vibroimpact.reproduction.measures import Timeline
 from vibroimpact.reproduction.printed import printed
 from vibroimpact.reproduction.runs import TREATMENTS, Runs
 

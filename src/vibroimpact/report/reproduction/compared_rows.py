@@ -13,9 +13,9 @@ from matplotlib.patheffects import withStroke
 from matplotlib.ticker import MaxNLocator
 
 from vibroimpact.dynamics.response import Response
+from vibroimpact.quantity import multiple
 from vibroimpact.report.excerpt import Floats, thinned, window
 from vibroimpact.report.layout import heading, label_vertical, new_figure, row_of_axes
-from vibroimpact.report.quantity import multiple
 from vibroimpact.report.reproduction.compared import Compared
 from vibroimpact.report.reproduction.looks import LOOKS
 from vibroimpact.report.style import INK

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import json
 import os
+import re
+import shlex
 from collections.abc import Callable, Iterable
+from contextlib import suppress
 from os import PathLike
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -18,7 +21,7 @@ from vibroimpact.report.reproduction.markdown import FIGURES
 from vibroimpact.report.reproduction.page import report_html, report_text
 from vibroimpact.report.reproduction.parts import PARTS, Part, find_parts
 from vibroimpact.reproduction.runs import Runs
-from vibroimpact.storage.folder import SUMMARY, check_free, new_folder
+from vibroimpact.storage.folder import SUMMARY, new_folder
 from vibroimpact.storage.tables import write_csv
 
 _PARTS = "parts"
@@ -39,11 +42,11 @@ def reproduce_paper(
     Parameters
     ----------
     directory : path
-        The folder to make; with `only` it may be one that was made before, whose other parts stay.
+        The folder to make, or one that was made before: its parts stay, unless they are made anew.
     only : iterable of str, optional
-        Names of parts, such as "table2" and "fig4"; by default all.
+        Names of parts, such as "table2" and "fig4"; by default all that the folder does not have yet.
     force : bool, default False
-        Replace a folder that is there.
+        Replace a folder that is there, with all its parts.
     progress : callable, optional
         Is told the fraction done, in [0, 1].
     tell : callable, optional
@@ -57,33 +60,44 @@ def reproduce_paper(
     Raises
     ------
     InputError
-        If there is no part of a name, or something else is there already.
+        If there is no part of a name, something else is there already, or it can't be written to.
     """
-    parts = list(PARTS.values()) if only is None else find_parts(only)
-    folder = Path(directory)
-    if only is None or not is_reproduction(folder):
-        check_free(folder, force=force)
+    folder, there = Path(directory), is_reproduction(Path(directory)) and not force
+    names = (missing_parts(folder) if there else PARTS) if only is None else [only] if isinstance(only, str) else only
+    if there and not names:
+        raise InputError(f"{folder}: all parts are there already; make some of them anew with --only, or all with --force")
+    parts = find_parts(names)
+    if not there:
         with new_folder(folder, force=force) as working:
             summary = {"name": "the paper, reproduced", "version": __version__, "reproduction": True}
             (working / SUMMARY).write_text(json.dumps(summary) + "\n", encoding="utf-8")
-            for name in (_PARTS, FIGURES):
-                (working / name).mkdir()
     runs = Runs(tell)
     try:
         for done, part in enumerate(parts):
             if progress is not None:
                 progress(done / len(parts))
             _write_part(part, runs, folder)
-    finally:
-        write_reproduction_report(folder)  # of what is there, even if not all is
+    except BaseException:
+        with suppress(OSError, InputError):  # what stopped the run is what is to be told
+            write_reproduction_report(folder)
+        raise
+    write_reproduction_report(folder)
     if progress is not None:
         progress(1.0)
     return folder
 
 
 def missing_parts(directory: str | PathLike[str]) -> list[str]:
-    """Return the names of the parts that a folder does not have yet."""
-    return [name for name in PARTS if not _file(Path(directory), name).is_file()]
+    """Return the names of the parts that a folder does not have yet, or has of another version of this package."""
+    return [name for name in PARTS if _version(_file(Path(directory), name)) != __version__]
+
+
+def _version(part: Path) -> str | None:
+    """Return by which version a part was made; None if there is none, or it is damaged."""
+    try:
+        return str(json.loads(part.read_text(encoding="utf-8"))["version"])
+    except (OSError, ValueError, KeyError, TypeError):
+        return None
 
 
 def write_reproduction_report(folder: Path) -> None:
@@ -95,6 +109,12 @@ def write_reproduction_report(folder: Path) -> None:
         If a part is damaged.
     """
     parts = read_parts(folder)
+    for name, part in parts.items():
+        for picture in re.findall(rf"\]\(({FIGURES}/[^)]+)\.png\)", part["text"]):
+            if not (folder / f"{picture}.svg").is_file():
+                raise InputError(
+                    f"{folder / picture}.svg: the figure is missing; make it anew: vibroimpact reproduce -o {folder} --only {name}"
+                )
     rows = [row for part in parts.values() for row in part["rows"]]
     text = report_text(parts)
     with TemporaryDirectory(prefix=".report.", dir=folder) as working:
@@ -121,11 +141,16 @@ def read_parts(folder: Path) -> dict[str, dict[str, Any]]:
         file = _file(folder, name)
         if file.is_file():
             try:
-                found[name] = dict(json.loads(file.read_text(encoding="utf-8")))
-                _ = found[name]["text"], found[name]["rows"]
+                table = json.loads(file.read_text(encoding="utf-8"))
+                rows = [{**row, "verdict": str(row["verdict"])} for row in table["rows"]]
+                found[name] = {"title": str(table["title"]), "text": str(table["text"]), "rows": rows}
             except (OSError, ValueError, KeyError, TypeError):
-                raise InputError(f"{file}: the file is damaged; make it anew: vibroimpact reproduce -o {folder} --only {name}") from None
+                raise InputError(f"{file}: the file is damaged; {_anew(folder, name)}") from None
     return found
+
+
+def _anew(folder: Path, name: str) -> str:
+    return f"make it anew: vibroimpact reproduce -o {shlex.quote(str(folder))} --only {name}"
 
 
 def is_reproduction(folder: Path) -> bool:
@@ -144,12 +169,14 @@ def _write_part(part: Part, runs: Runs, folder: Path) -> None:
     """Make a part, and put it in place once all of it is there."""
     made = make_part(part, runs)
     try:
+        for name in (_PARTS, FIGURES):
+            (folder / name).mkdir(exist_ok=True)
         with TemporaryDirectory(prefix=".part.", dir=folder) as working:
             files = []
             if made.drawing is not None:
                 save_figures({part.name: made.drawing.figure}, Path(working))
                 files = [(Path(working) / f"{part.name}.{kind}", folder / FIGURES / f"{part.name}.{kind}") for kind in ("png", "svg")]
-            table = {"version": __version__, "text": made.text, "rows": made.rows}
+            table = {"version": __version__, "title": made.title, "text": made.text, "rows": made.rows}
             (Path(working) / "part.json").write_text(json.dumps(table, indent=1) + "\n", encoding="utf-8")
             for here, there in [*files, (Path(working) / "part.json", _file(folder, part.name))]:
                 os.replace(here, there)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from vibroimpact.report.reproduction.drawing import Drawing
-from vibroimpact.report.reproduction.markdown import drawing_text, section_text, verdict_text
+from vibroimpact.report.reproduction.markdown import drawing_text, section_text
 from vibroimpact.report.reproduction.parts import Part
 from vibroimpact.report.style import style
 from vibroimpact.reproduction.row import Row
@@ -17,6 +17,8 @@ class Made(NamedTuple):
 
     Parameters
     ----------
+    title : str
+        Its heading.
     text : str
         Words, tables and the place of the figure, as Markdown.
     rows : list of mappings
@@ -25,6 +27,7 @@ class Made(NamedTuple):
         The figure.
     """
 
+    title: str
     text: str
     rows: list[dict[str, Any]]
     drawing: Drawing | None
@@ -38,12 +41,13 @@ def make_part(part: Part, runs: Runs) -> Made:
     texts = [] if section is None else [section_text(section)]
     if drawing is not None:
         texts.append(drawing_text(part.name, drawing, heading=section is None))
-    return Made("\n".join(texts), [_told(part.name, row) for row in (section.rows if section else ())], drawing)
+    title = section.title if section is not None else drawing.title if drawing is not None else part.name
+    return Made(title, "\n".join(texts), [_told(part.name, row) for row in (section.rows if section else ())], drawing)
 
 
 def _told(part: str, row: Row) -> dict[str, Any]:
     """Return a row as the table of values has it, with every digit."""
-    value, verdict = row.printed, verdict_text(row)
+    value = row.printed
     return {
         "part": part,
         "name": value.name,
@@ -58,5 +62,5 @@ def _told(part: str, row: Row) -> dict[str, Any]:
         "difference": row.difference if value.relation == "=" else None,
         "allowed": row.allowed if value.relation == "=" else None,
         "verdict": row.verdict.value,
-        "why": verdict.partition(": ")[2],
+        "why": row.reason,
     }

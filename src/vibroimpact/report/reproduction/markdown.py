@@ -5,19 +5,16 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Sequence
 
-from vibroimpact.report.quantity import MISSING, digits
+from vibroimpact.quantity import MISSING, digits
 from vibroimpact.report.reproduction.drawing import Drawing
 from vibroimpact.reproduction.printed import Printed
-from vibroimpact.reproduction.row import Row, Verdict
-from vibroimpact.reproduction.runs import TREATMENTS
+from vibroimpact.reproduction.row import Row
 from vibroimpact.reproduction.section import Section
 
 FIGURES = "figures"
 """The folder of the figures, beside the report."""
 
-_ELASTIC, _RIGID = 5, 13
-"""How many digits of a computed value are shown at most: of elastic bodies, whose modes come from a mesh, and of rigid ones."""
-
+_ROUNDING = 1e-7  # per cent: differences that are not the same on all machines
 _APART = "\u00a0"  # a space that does not break
 _UNITS = {"1": "", "m^2": "m²", "m/s^2": "m/s²", "kg/m^3": "kg/m³", "N/m^1.5": "N/m¹·⁵", "SI": ""}
 
@@ -78,8 +75,7 @@ def printed_text(value: Printed) -> str:
 def computed_text(row: Row) -> str:
     """Return the computed value with a digit more than is printed."""
     significant = len(re.sub(r"e.*", "", row.printed.text).replace(".", "").replace("-", "").lstrip("0"))
-    most = _ELASTIC if row.by in TREATMENTS else _RIGID
-    return f"{digits(row.computed, min(max(significant + 1, 4), most))}{_unit(row.printed)}"
+    return f"{digits(row.computed, min(max(significant + 1, 4), row.digits))}{_unit(row.printed)}"
 
 
 def difference_text(row: Row) -> str:
@@ -87,25 +83,19 @@ def difference_text(row: Row) -> str:
     if row.printed.relation != "=":
         return MISSING
     part = 100.0 * row.difference
-    if abs(part) < _NOTHING:
+    if abs(part) < _ROUNDING:
         return "0"
     return f"{'+' if part > 0 else ''}{digits(part, 2)}{_APART}%"
 
 
-_NOTHING = 1e-7  # per cent: what is left is rounding of binary numbers, and not the same on all machines
-
-
 def allowed_text(row: Row) -> str:
-    """Return how far the computed value may be off."""
-    return f"±{_APART}{digits(row.allowed, 1)}" if row.printed.relation == "=" else MISSING
+    """Return by which part the computed value may be off, in per cent; a dash where a bound is printed."""
+    return f"±{_APART}{digits(100.0 * row.allowed / abs(row.printed.value), 1)}{_APART}%" if row.printed.relation == "=" else MISSING
 
 
 def verdict_text(row: Row) -> str:
     """Return the verdict, with its reason."""
-    if row.verdict is Verdict.REPRODUCED:
-        return f"{row.verdict.value}, but fitted to it" if row.fitted else row.verdict.value
-    reason = row.account.reason if row.account is not None else row.otherwise
-    return f"{row.verdict.value}: {reason}" if reason else row.verdict.value
+    return f"{row.verdict.value}: {row.reason}" if row.reason else row.verdict.value
 
 
 def plain(text: str) -> str:

@@ -12,7 +12,7 @@ from matplotlib.collections import LineCollection, PolyCollection
 from vibroimpact.report.layout import WIDTH, new_figure
 from vibroimpact.report.projection import TILT, TURN, project
 from vibroimpact.report.reproduction.drawing import Drawing
-from vibroimpact.report.style import INK, style
+from vibroimpact.report.style import INK
 from vibroimpact.reproduction.printed import printed
 from vibroimpact.reproduction.runs import Runs
 from vibroimpact.structures.mesh import Floats, Mesh
@@ -54,18 +54,17 @@ def draw_meshes(runs: Runs) -> Drawing:
     """
     models = runs.problem("type3").models
     plate_width = WIDTH - 2.0 * _LEFT - _GAP - _SPHERE_WIDTH
-    with style():
-        figure = new_figure(_HEIGHT)
-        high = _HEIGHT - _FOOT - _HEAD
-        for body, left, width in ((_SPHERE, _LEFT, _SPHERE_WIDTH), (_PLATE, _LEFT + _SPHERE_WIDTH + _GAP, plate_width)):
-            mesh = models[body.name].mesh
-            axes = figure.add_axes((left / WIDTH, _FOOT / _HEIGHT, width / WIDTH, high / _HEIGHT))
-            _draw_mesh(axes, mesh)
-            middle = (left + 0.5 * width) / WIDTH
-            above = body.name.capitalize() + (", from above" if mesh.is_flat else "")
-            figure.text(middle, 1.0 - 0.24 / _HEIGHT, above, ha="center", fontsize=9.5)
-            figure.text(middle, 0.34 / _HEIGHT, _size(mesh), ha="center", fontsize=8.5)
-            figure.text(middle, 0.13 / _HEIGHT, f"printed: {_printed_size(body)}", ha="center", fontsize=8.5, color="#555555")
+    figure = new_figure(_HEIGHT)
+    high = _HEIGHT - _FOOT - _HEAD
+    for body, left, width in ((_SPHERE, _LEFT, _SPHERE_WIDTH), (_PLATE, _LEFT + _SPHERE_WIDTH + _GAP, plate_width)):
+        mesh = models[body.name].mesh
+        axes = figure.add_axes((left / WIDTH, _FOOT / _HEIGHT, width / WIDTH, high / _HEIGHT))
+        _draw_mesh(axes, mesh)
+        middle = (left + 0.5 * width) / WIDTH
+        above = body.name.capitalize() + (", from above" if mesh.is_flat else "")
+        figure.text(middle, 1.0 - 0.24 / _HEIGHT, above, ha="center", fontsize=9.5)
+        figure.text(middle, 0.34 / _HEIGHT, _size(mesh), ha="center", fontsize=8.5)
+        figure.text(middle, 0.13 / _HEIGHT, f"printed: {_printed_size(body)}", ha="center", fontsize=8.5, color="#555555")
     sizes = (f"the {body.name} {_size(models[body.name].mesh)} (printed: {_printed_size(body)})" for body in (_SPHERE, _PLATE))
     return Drawing(figure, "Figure 9: the meshes", f"The meshes used here: {'; '.join(sizes)}. Dots are nodes.")
 

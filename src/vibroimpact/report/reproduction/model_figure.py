@@ -9,12 +9,14 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.patches import Circle, Polygon
 
+from vibroimpact.cases.build import resolved
+from vibroimpact.cases.reader import load_case
+from vibroimpact.quantity import text
 from vibroimpact.report.excerpt import Floats
 from vibroimpact.report.layout import WIDTH, new_figure
 from vibroimpact.report.projection import TILT, project
-from vibroimpact.report.quantity import text
 from vibroimpact.report.reproduction.drawing import Drawing
-from vibroimpact.report.style import ACCENT, INK, style
+from vibroimpact.report.style import ACCENT, INK
 from vibroimpact.reproduction.runs import Runs
 
 _HEIGHT = 4.5
@@ -37,29 +39,28 @@ def draw_model(runs: Runs) -> Drawing:
     runs : Runs
         The simulations; the case of Type 3 has the dimensions.
     """
-    case: Mapping[str, Any] = runs.problem("type3").source or {}
+    case = resolved(load_case("paper:type3"))
     length, width, thickness = case["plate"]["size"]
     held = case["plate"]["supports"][0]
     along, across = held["spacing"]
-    with style():
-        figure = new_figure(_HEIGHT)
-        axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
-        axes.set_axis_off()
-        axes.set_xlim(*(_CENTRE[0] + np.array([-0.5, 0.5]) * _UP * WIDTH / _HEIGHT))
-        axes.set_ylim(*(_CENTRE[1] + np.array([-0.5, 0.5]) * _UP))
-        foot = -thickness - _BAR_LENGTH
-        _fill(axes, _corners(1.2 * length, 1.25 * width, foot), _GROUND, "none")
-        for x, y in ((-1, 1), (1, 1), (-1, -1), (1, -1)):  # from the back to the front
-            _draw_bar(axes, (0.5 * x * along, 0.5 * y * across), held["radius"], -thickness, foot)
-        _draw_plate(axes, length, width, thickness)
-        _draw_sphere(axes, case["sphere"]["radius"], case["drop"]["height"])
-        half, deep = 0.5 * length, 0.5 * width
-        _draw_dimension(axes, (-half, deep, 0.0), (half, deep, 0.0), (0.0, _BESIDE), _millimetres(length))
-        _draw_dimension(axes, (-half, -deep, 0.0), (-half, deep, 0.0), (-_BESIDE, 0.0), _millimetres(width))
-        half, deep = 0.5 * along, 0.5 * across
-        _draw_dimension(axes, (-half, -deep, foot), (half, -deep, foot), (0.0, -1.8 * _BESIDE), _millimetres(along))
-        _draw_dimension(axes, (half, -deep, foot), (half, deep, foot), (1.8 * _BESIDE, 0.0), _millimetres(across))
-        _draw_words(axes, case)
+    figure = new_figure(_HEIGHT)
+    axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
+    axes.set_axis_off()
+    axes.set_xlim(*(_CENTRE[0] + np.array([-0.5, 0.5]) * _UP * WIDTH / _HEIGHT))
+    axes.set_ylim(*(_CENTRE[1] + np.array([-0.5, 0.5]) * _UP))
+    foot = -thickness - _BAR_LENGTH
+    _fill(axes, _corners(1.2 * length, 1.25 * width, foot), _GROUND, "none")
+    for x, y in ((-1, 1), (1, 1), (-1, -1), (1, -1)):  # from the back to the front
+        _draw_bar(axes, (0.5 * x * along, 0.5 * y * across), held["radius"], -thickness, foot)
+    _draw_plate(axes, length, width, thickness)
+    _draw_sphere(axes, case["sphere"]["radius"], case["drop"]["height"])
+    half, deep = 0.5 * length, 0.5 * width
+    _draw_dimension(axes, (-half, deep, 0.0), (half, deep, 0.0), (0.0, _BESIDE), _millimetres(length))
+    _draw_dimension(axes, (-half, -deep, 0.0), (-half, deep, 0.0), (-_BESIDE, 0.0), _millimetres(width))
+    half, deep = 0.5 * along, 0.5 * across
+    _draw_dimension(axes, (-half, -deep, foot), (half, -deep, foot), (0.0, -1.8 * _BESIDE), _millimetres(along))
+    _draw_dimension(axes, (half, -deep, foot), (half, deep, foot), (1.8 * _BESIDE, 0.0), _millimetres(across))
+    _draw_words(axes, case)
     radius = _millimetres(held["radius"])
     sentence = (
         f"To scale but for the drop. The paper gives neither radius nor length of the bars: their radius is drawn as the {radius} of the "

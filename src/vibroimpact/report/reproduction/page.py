@@ -13,7 +13,7 @@ from markdown_it import MarkdownIt
 from vibroimpact._version import __version__
 from vibroimpact.report.page import template
 from vibroimpact.report.reproduction.markdown import FIGURES, table
-from vibroimpact.report.reproduction.parts import CHAPTERS
+from vibroimpact.report.reproduction.parts import CHAPTERS, PARTS
 from vibroimpact.reproduction.printed import PAPER
 from vibroimpact.reproduction.row import Verdict
 
@@ -26,38 +26,50 @@ def report_text(parts: Mapping[str, Mapping[str, Any]]) -> str:
     Parameters
     ----------
     parts : mapping of str to mapping
-        The parts that are there: their "text" and "rows", by their names.
+        The parts that are there: their "title", "text" and "rows", by their names.
     """
-    pieces = [f"# {TITLE}\n", f"{_OPENING}\n", f"{_IN_SHORT}\n", *_summary(parts)]
-    for chapter, members in CHAPTERS.items():
-        there = [part.name for part in members if part.name in parts]
-        if there:
-            pieces += [f"## {chapter}\n", *(str(parts[name]["text"]) for name in there)]
-    missing = [part.name for members in CHAPTERS.values() for part in members if part.name not in parts]
+    missing = [name for name in PARTS if name not in parts]
+    chapters = {chapter: [part.name for part in members if part.name in parts] for chapter, members in CHAPTERS.items()}
+    pieces = [f"# {TITLE}\n", *(f"{words}\n" for words in (*_OPENING, *(() if missing else _IN_SHORT)))]
+    pieces += [f"- [{chapter}](#{_anchor(chapter)})" for chapter, there in chapters.items() if there]
+    pieces += ["", *_summary(parts)]
+    for chapter, there in chapters.items():
+        pieces += [f"## {chapter}\n", *(str(parts[name]["text"]) for name in there)] if there else []
     if missing:
-        pieces.append(f"Not made yet: {', '.join(missing)}. `vibroimpact reproduce -o DIR --only {','.join(missing)}` makes them.\n")
+        pieces.append(f"Not made yet: {', '.join(missing)}. `vibroimpact reproduce -o DIR` makes them.\n")
     pieces.append(f"Made by vibroimpact {__version__}: `vibroimpact reproduce`.\n")
     return "\n".join(pieces)
 
 
+def _anchor(heading: str) -> str:
+    """Return what a heading is called in links, as GitHub does."""
+    return re.sub(r"[^\w -]", "", heading.lower()).replace(" ", "-")
+
+
 _OPENING = (
-    f'Each number of "{PAPER}", beside the one computed now, and each of its figures drawn anew. A value counts as reproduced if it '
-    "agrees within half a unit of the last digit printed. It counts as explained if a reason, put so that it could fail, gives a range "
-    "in which the printed value lies; everything else is not reproduced. The verdicts are computed, none is typed in."
+    f'Each number of "{PAPER}", beside the one computed now, and each of its figures that shows a result, drawn anew (figures 1 and 2 '
+    "are sketches of its notation). A rock sphere falls 4 m on a steel plate and bounces: both rigid (Type 1), the sphere elastic (Type "
+    "2), both elastic (Type 3).",
+    "A value counts as reproduced if it agrees within half a unit of the last digit printed. It counts as explained if a reason, put so "
+    "that it could fail, gives a range in which the printed value lies; as fitted if the model was fitted to it, so that it proves "
+    "nothing; everything else is not reproduced. The verdicts are computed. Counted are rows: a value that is computed in three ways "
+    "has three.",
 )
 
-
 _IN_SHORT = (
-    "In short: what the paper computes for rigid bodies (Type 1) is reproduced or explained, once the restitution and the full-damping "
-    "penetration are those that its own numbers imply; Table 2 was read off samples. What it prints for elastic bodies (Types 2 and 3) "
-    "no documented setting gives, neither a consistent model nor the superposed one of multibody programs. That it was an unresolved run "
-    "is a reading: it carries the sphere's numbers, but not the energies of the plate."
+    "In short, as the authors of this package read it: what the paper computes for rigid bodies (Type 1) is reproduced or explained, "
+    "once the restitution and the full-damping penetration are those that its own numbers imply; Table 2 looks as if it were read off "
+    "samples. What it prints for elastic bodies (Types 2 and 3) no setting that was tried gives, neither a consistent model nor the "
+    "superposed one of multibody programs. That it was an unresolved run is a reading: it carries the sphere's numbers, but not the "
+    "energies of the plate.",
 )
 
 
 def counts(parts: Mapping[str, Mapping[str, Any]]) -> dict[str, dict[str, int]]:
-    """Return how many rows of each part have each verdict."""
+    """Return how many rows of each part, and of "all", have each verdict; nothing if no part has rows."""
     found = {name: [row["verdict"] for row in part["rows"]] for name, part in parts.items() if part["rows"]}
+    if found:
+        found["all"] = [verdict for verdicts in list(found.values()) for verdict in verdicts]
     return {name: {verdict.value: verdicts.count(verdict.value) for verdict in Verdict} for name, verdicts in found.items()}
 
 
@@ -65,8 +77,7 @@ def _summary(parts: Mapping[str, Mapping[str, Any]]) -> list[str]:
     found = counts(parts)
     if not found:
         return []
-    cells = [(parts[name]["text"].splitlines()[0].lstrip("# "), *map(str, by.values())) for name, by in found.items()]
-    cells.append(("All", *(str(sum(by[verdict.value] for by in found.values())) for verdict in Verdict)))
+    cells = [(str(parts[name]["title"]) if name in parts else "All", *map(str, by.values())) for name, by in found.items()]
     return [table(("Part", *(verdict.value.capitalize() for verdict in Verdict)), cells) + "\n"]
 
 
@@ -83,6 +94,7 @@ def report_html(text: str, folder: Path) -> str:
     body = MarkdownIt("commonmark", {"html": False}).enable("table").render(text)
     body = re.sub(r'src="(' + FIGURES + r'/[^"]+)\.png"', lambda found: f'src="{_data(folder / f"{found[1]}.svg")}"', body)
     body = re.sub(r"<table>(.*?)</table>", r'<div class="wide"><table class="words">\1</table></div>', body, flags=re.S)
+    body = re.sub(r"<h2>(.*?)</h2>", lambda found: f'<h2 id="{_anchor(found[1])}">{found[1]}</h2>', body)
     for verdict in Verdict:
         body = re.sub(rf"<td>({verdict.value}(?:[:,][^<]*)?)</td>", rf'<td class="{verdict.name.lower()}">\1</td>', body)
     return template("reproduction.html.j2").render(name=TITLE, body=body)

@@ -12,11 +12,11 @@ from vibroimpact.report.reproduction.recovery_figure import draw_recovery
 from vibroimpact.report.reproduction.sampling_figure import draw_sampling
 from vibroimpact.report.reproduction.unresolved_figure import draw_unresolved
 from vibroimpact.reproduction.conclusions import conclusions
-from vibroimpact.reproduction.coupled import section_4, section_5_1
+from vibroimpact.reproduction.coupled import section_5_1
 from vibroimpact.reproduction.energies import section_5_2
-from vibroimpact.reproduction.inputs import section_3_1, table1
+from vibroimpact.reproduction.inputs import section_3_1, section_4, table1
 from vibroimpact.reproduction.misprints import misprints
-from vibroimpact.reproduction.recovery import recovery
+from vibroimpact.reproduction.recovery_section import recovery
 from vibroimpact.reproduction.rigid import damping, section_3_2
 from vibroimpact.reproduction.runs import Runs
 from vibroimpact.reproduction.sampling import sampling
@@ -89,7 +89,7 @@ def find_parts(names: Iterable[str]) -> list[Part]:
     """
     wanted = set(names)
     for name in sorted(wanted - PARTS.keys()):
-        raise InputError(f'--only: there is no part "{name}"; there are {", ".join(PARTS)}.{did_you_mean(name, PARTS)}')
+        raise InputError(f'there is no part "{name}"; there are {", ".join(PARTS)}.{did_you_mean(name, PARTS)}')
     if not wanted:
-        raise InputError(f"--only: name at least one of {', '.join(PARTS)}")
+        raise InputError(f"name at least one of {', '.join(PARTS)}")
     return [part for name, part in PARTS.items() if name in wanted]

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from vibroimpact.report.quantity import largest, text
+from vibroimpact.quantity import largest, text
 from vibroimpact.report.reproduction.compared import Compared, beside_printed
 from vibroimpact.report.reproduction.compared_rows import Line, draw_rows
 from vibroimpact.report.reproduction.drawing import Drawing
-from vibroimpact.report.reproduction.timeline import column
-from vibroimpact.report.style import style
-from vibroimpact.reproduction.energies import largest_of
+from vibroimpact.reproduction.measures import column, largest_of
 from vibroimpact.reproduction.printed import printed
 from vibroimpact.reproduction.runs import TREATMENTS, Runs, history_of
 
@@ -63,8 +61,7 @@ def draw_plate(shown: Compared, runs: Runs) -> Drawing:
     modes = lines[0].response.problem.plate.modes
     assert modes is not None  # Type 3 has an elastic plate
     head = f"{shown.heading}: whole run at the left, after the first impact at the right"
-    with style():
-        marks = {"": printed(shown.printed).value}
-        figure = draw_rows(shown, {"": lines}, marks, _PERIODS / float(modes.frequencies[0]), _HEIGHT, head)
+    marks = {"": printed(shown.printed).value}
+    figure = draw_rows(shown, {"": lines}, marks, _PERIODS / float(modes.frequencies[0]), _HEIGHT, head)
     title = f"Figure {shown.number}: {shown.name}, Type 3"
     return Drawing(figure, title, " ".join(filter(None, (beside_printed(shown, (3,), runs), shown.note(runs)))))

@@ -11,12 +11,11 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from vibroimpact.dynamics.response import Response
+from vibroimpact.quantity import digits, fixed, largest, multiple, text
 from vibroimpact.report.excerpt import MARGIN, Floats, thinned, window
 from vibroimpact.report.layout import heading, label_vertical, new_figure, row_of_axes, wide_axes
-from vibroimpact.report.quantity import digits, fixed, largest, multiple, text
 from vibroimpact.report.reproduction.drawing import Drawing
 from vibroimpact.report.reproduction.looks import LOOKS
-from vibroimpact.report.style import style
 from vibroimpact.reproduction.printed import printed
 from vibroimpact.reproduction.runs import Runs, history_of
 
@@ -68,12 +67,11 @@ def draw_rigid(what: RigidFigure, runs: Runs) -> Drawing:
         The simulations.
     """
     responses = {name: runs.response(_CASES[name]) for name in what.shown}
-    with style():
-        figure = new_figure(_RUN_HEIGHT + _CONTACTS_HEIGHT + _LEGEND)
-        axes = wide_axes(figure, _CONTACTS_HEIGHT + _LEGEND + 0.5, _RUN_HEIGHT - 0.75)
-        _draw_run(axes, responses, what)
-        _draw_contacts(figure, responses, what)
-        figure.legend(*axes.get_legend_handles_labels(), loc="lower center", ncols=len(responses), handlelength=4.5)
+    figure = new_figure(_RUN_HEIGHT + _CONTACTS_HEIGHT + _LEGEND)
+    axes = wide_axes(figure, _CONTACTS_HEIGHT + _LEGEND + 0.5, _RUN_HEIGHT - 0.75)
+    _draw_run(axes, responses, what)
+    _draw_contacts(figure, responses, what)
+    figure.legend(*axes.get_legend_handles_labels(), loc="lower center", ncols=len(responses), handlelength=4.5)
     title = f"Figure {what.number}: {what.quantity}, {', '.join(what.shown[:-1])} and {what.shown[-1]}"
     return Drawing(figure, title, _sentence(responses, what))
 

@@ -8,12 +8,10 @@ from matplotlib.axes import Axes
 
 from vibroimpact.report.layout import heading, label_vertical, new_figure, row_of_axes, wide_axes
 from vibroimpact.report.reproduction.drawing import Drawing
-from vibroimpact.report.style import ACCENT, CONTACT, INK, MARK, style
+from vibroimpact.report.style import ACCENT, CONTACT, INK, MARK
 from vibroimpact.reproduction.printed import printed
-from vibroimpact.reproduction.runs import Runs
+from vibroimpact.reproduction.runs import DAMPINGS, IMPACTS, Runs
 from vibroimpact.reproduction.sampling import (
-    DAMPINGS,
-    IMPACTS,
     QUANTITIES,
     error_range,
     found_spacing,
@@ -42,20 +40,19 @@ def draw_sampling(runs: Runs) -> Drawing:
         The cases.
     """
     step, spacing = output_step(), found_spacing(runs)
-    with style():
-        figure = new_figure(_HEIGHT)
-        for axes, quantity in zip(row_of_axes(figure, 2, 3.72, 2.25), QUANTITIES, strict=True):
-            _draw_errors(axes, runs, quantity, step, spacing)
-            if quantity == "compression":
-                label_vertical(axes, "Below the theory's by [%]")
-                handles = axes.get_legend_handles_labels()
-        figure.legend(*handles, loc="center", bbox_to_anchor=(0.5, 3.04 / _HEIGHT), ncols=3, handlelength=1.8)
-        heading(figure, "The errors of Table 2", 6.25)
-        damping, impact = max(
-            ((damping, impact) for damping in DAMPINGS for impact in IMPACTS),
-            key=lambda which: grid_error(runs, step, "force", *which),
-        )
-        _draw_contact(wide_axes(figure, 0.52, 1.95), runs, damping, impact, step)
+    figure = new_figure(_HEIGHT)
+    for axes, quantity in zip(row_of_axes(figure, 2, 3.72, 2.25), QUANTITIES, strict=True):
+        _draw_errors(axes, runs, quantity, step, spacing)
+        if quantity == "compression":
+            label_vertical(axes, "Below the theory's by [%]")
+            handles = axes.get_legend_handles_labels()
+    figure.legend(*handles, loc="center", bbox_to_anchor=(0.5, 3.04 / _HEIGHT), ncols=3, handlelength=1.8)
+    heading(figure, "The errors of Table 2", 6.25)
+    damping, impact = max(
+        ((damping, impact) for damping in DAMPINGS for impact in IMPACTS),
+        key=lambda which: grid_error(runs, step, "force", *which),
+    )
+    _draw_contact(wide_axes(figure, 0.52, 1.95), runs, damping, impact, step)
     return Drawing(
         figure,
         "Table 2: what can be read off samples",

@@ -6,13 +6,19 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from vibroimpact.report.quantity import digits, text
+from vibroimpact.quantity import digits, text
 from vibroimpact.report.reproduction.compared import Compared, beside_printed
 from vibroimpact.report.reproduction.compared_rows import Line, draw_rows
 from vibroimpact.report.reproduction.drawing import Drawing
-from vibroimpact.report.reproduction.timeline import column, falling_potential, in_first_impact
-from vibroimpact.report.style import style
-from vibroimpact.reproduction.energies import energy_at_separation, largest_of, sphere_rotation, sphere_strain
+from vibroimpact.reproduction.measures import (
+    column,
+    energy_at_separation,
+    falling_potential,
+    in_first_impact,
+    largest_of,
+    sphere_rotation,
+    sphere_strain,
+)
 from vibroimpact.reproduction.printed import printed, printed_values
 from vibroimpact.reproduction.runs import TREATMENTS, Runs, history_of
 
@@ -169,8 +175,7 @@ def draw_types(shown: Compared, runs: Runs) -> Drawing:
     names = {str(kind): shown.printed.format(kind) for kind in (1, 2, 3)}
     marks = {kind: printed(name).value for kind, name in names.items() if name in printed_values()}
     head = f"{shown.heading}: whole run at the left, first impact at the right"
-    with style():
-        figure = draw_rows(shown, rows, marks, _LONGEST * longest, _HEIGHT, head)
+    figure = draw_rows(shown, rows, marks, _LONGEST * longest, _HEIGHT, head)
     title = f"Figure {shown.number}: {shown.name}, Types {'1, 2 and 3' if rigid else '2 and 3'}"
     return Drawing(figure, title, " ".join((beside_printed(shown, (2, 3), runs), *_of_type_1(shown, marks, runs), shown.note(runs))))
 

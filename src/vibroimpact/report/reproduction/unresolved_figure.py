@@ -6,10 +6,10 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator, NullFormatter, NullLocator
 
+from vibroimpact.quantity import digits
 from vibroimpact.report.layout import label_vertical, new_figure, row_of_axes
-from vibroimpact.report.quantity import digits
 from vibroimpact.report.reproduction.drawing import Drawing
-from vibroimpact.report.style import ACCENT, INK, MARK, style
+from vibroimpact.report.style import ACCENT, INK, MARK
 from vibroimpact.reproduction.runs import Runs
 from vibroimpact.reproduction.step_sweep import COMPARED, MESHES, PHASES, STEPS, Mesh, closest, paper_impact, resolved, superposed, sweep
 
@@ -32,24 +32,23 @@ def draw_unresolved(runs: Runs) -> Drawing:
     runs : Runs
         The simulations.
     """
-    best = closest(runs, "coarse")
+    best = closest(superposed(runs, 2, "coarse"), paper_impact(runs, 2))
     step = float(best.steps[0])
-    with style():
-        figure = new_figure(_BOTTOM + len(COMPARED) * _ROW)
-        for number, (name, title) in enumerate(zip(COMPARED, _TITLES, strict=True)):
-            last = number == len(COMPARED) - 1
-            row = row_of_axes(figure, 2, _BOTTOM + (len(COMPARED) - 1 - number) * _ROW, _ROW - 0.45)
-            for kind, axes in zip((2, 3), row, strict=True):
-                _draw(axes, runs, kind, name, step)
-                axes.set_title(f"Type {kind}: {title}")
-                axes.tick_params(labelbottom=last)
-                if last:
-                    axes.set_xlabel("Step [µs]")
-            top = max(axes.get_ylim()[1] for axes in row)
-            for axes in row:
-                axes.set_ylim(0.0, top)
-            label_vertical(row[0], "{} [{}]".format(*_LABELS[name]))
-        figure.legend(*row[0].get_legend_handles_labels(), loc="lower center", ncols=3, handlelength=3.0)
+    figure = new_figure(_BOTTOM + len(COMPARED) * _ROW)
+    for number, (name, title) in enumerate(zip(COMPARED, _TITLES, strict=True)):
+        last = number == len(COMPARED) - 1
+        row = row_of_axes(figure, 2, _BOTTOM + (len(COMPARED) - 1 - number) * _ROW, _ROW - 0.45)
+        for kind, axes in zip((2, 3), row, strict=True):
+            _draw(axes, runs, kind, name, step)
+            axes.set_title(f"Type {kind}: {title}")
+            axes.tick_params(labelbottom=last)
+            if last:
+                axes.set_xlabel("Step [µs]")
+        top = max(axes.get_ylim()[1] for axes in row)
+        for axes in row:
+            axes.set_ylim(0.0, top)
+        label_vertical(row[0], "{} [{}]".format(*_LABELS[name]))
+    figure.legend(*row[0].get_legend_handles_labels(), loc="lower center", ncols=3, handlelength=3.0)
     whole = {kind: resolved(superposed(runs, kind, "coarse")) for kind in (2, 3)}
     sentence = (
         "The longer the step, the more energy the method takes. On the coarse mesh the three numbers of Type 2 come nearest to the printed "

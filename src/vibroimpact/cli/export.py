@@ -1,0 +1,46 @@
+"""The command that writes results for other programs."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from vibroimpact.cli.shared import app, console
+from vibroimpact.errors import InputError
+
+
+@app.command()
+def export(
+    directory: Annotated[Path | None, typer.Argument(metavar="[DIR]", help="A result folder, or a calibration folder.")] = None,
+    to: Annotated[str | None, typer.Option("--to", metavar="FORMAT", help="The format; without it the formats are listed.")] = None,
+    output: Annotated[
+        Path | None,
+        typer.Option("-o", "--output", metavar="PATH", help="The folder, or the file if there is one; by default the folder DIR-FORMAT."),
+    ] = None,
+    force: Annotated[bool, typer.Option("--force", help="Replace files of the same names.")] = False,
+    formats: Annotated[bool, typer.Option("--formats", help="List the formats.")] = False,
+) -> None:
+    """Write a result in a format of another program, or list the formats.
+
+    What the format can't hold is said, and what the writer was tested against.
+    """
+    from vibroimpact.exchange.export_format import find_export_format
+    from vibroimpact.report.format_table import export_summary, format_table
+    from vibroimpact.storage.export_result import default_output, save_export
+    from vibroimpact.storage.exported import drop_of
+
+    if formats and (to is not None or output is not None or force):
+        raise InputError("--formats lists them, and takes no other option")
+    if formats or to is None:
+        if output is not None or force:
+            raise InputError("name the format: vibroimpact export DIR --to FORMAT")
+        console().print(format_table())
+        return
+    found = find_export_format(to)
+    if directory is None:
+        raise InputError(f"name the folder that is to be exported: vibroimpact export DIR --to {to}")
+    drop = drop_of(directory)
+    written = save_export(drop, found, default_output(directory, to) if output is None else output, force=force)
+    console().print(export_summary(drop, found, written))

@@ -1,0 +1,54 @@
+"""A value of Types 2 and 3 under each treatment of the local compliance, beside the printed one."""
+
+from __future__ import annotations
+
+from vibroimpact.reproduction.measures import Measure
+from vibroimpact.reproduction.printed import Printed
+from vibroimpact.reproduction.row import Account, Row
+from vibroimpact.reproduction.runs import TREATMENTS, Runs
+
+MESH_DIGITS = 5
+"""How many digits of a value are shown that depends on a mesh."""
+
+FITTED = ("type2.max_force", "type2.rebound_height")
+"""What the identified treatment was fitted to."""
+
+
+def rows_by_treatment(runs: Runs, kind: int, value: Printed, measure: Measure, unresolved: tuple[float, float] | None = None) -> list[Row]:
+    """Return the rows of a value of Type 2 or 3, one a treatment.
+
+    Parameters
+    ----------
+    runs : Runs
+        The simulations.
+    kind : int
+        2 or 3.
+    value : Printed
+        What is printed.
+    measure : callable
+        Takes a response, and returns the value in the printed unit.
+    unresolved : tuple of two floats, optional
+        Between which an unresolved run of the superposed model gives it.
+    """
+    words = {
+        "consistent": "elastic bodies under this contact law do otherwise, and no setting that was tried gives it",
+        "superposed": "the superposed model, resolved, does otherwise, and no setting that was tried gives it",
+        "identified": "a prediction from Type 2" if kind == 3 else "fitted to force and rebound alone",
+    }
+    if unresolved is not None:
+        inside = Account("", *unresolved).holds(value)
+        words["superposed"] += (
+            f". A reading: unresolved, on a coarse mesh, it gives {unresolved[0]:.4g} to {unresolved[1]:.4g} {value.unit}, "
+            f"and the printed value is {'among' if inside else 'not among'} these"
+        )
+    return [
+        Row(
+            value,
+            measure(runs.treated(kind, treatment)),
+            by=treatment,
+            otherwise=words[treatment],
+            fitted=treatment == "identified" and value.name in FITTED,
+            digits=MESH_DIGITS,
+        )
+        for treatment in TREATMENTS
+    ]

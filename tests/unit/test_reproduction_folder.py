@@ -1,0 +1,373 @@
+"""The folder of a reproduction: part by part, each whole or not at all, and what the commands make of it."""
+
+from __future__ import annotations
+
+import csv
+import json
+import re
+import shlex
+import shutil
+from base64 import b64decode
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import vibroimpact as vi
+from vibroimpact.cli import main
+from vibroimpact.report.reproduction import folder as module
+from vibroimpact.report.reproduction.documented import write_documented
+from vibroimpact.report.reproduction.folder import is_reproduction, missing_parts, read_parts, reproduce_paper
+from vibroimpact.report.reproduction.made import make_part
+from vibroimpact.report.reproduction.page import counts, report_html, report_text
+from vibroimpact.report.reproduction.parts import PARTS, Part, find_parts
+from vibroimpact.reproduction.printed import printed
+from vibroimpact.reproduction.row import Row, Verdict
+from vibroimpact.reproduction.runs import Runs
+from vibroimpact.reproduction.section import Section
+
+QUICK = ["table1", "section3.1", "fig4"]
+COLUMNS = "part,name,what,place,read,unit,relation,printed,by,computed,difference,allowed,verdict,why"
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return reproduce_paper(tmp_path_factory.mktemp("reproduction") / "deep" / "paper", QUICK)
+
+
+@pytest.fixture
+def copy(made: Path, tmp_path: Path) -> Path:
+    return Path(shutil.copytree(made, tmp_path / "paper"))
+
+
+@pytest.fixture
+def few(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let there be no parts but two quick ones."""
+    monkeypatch.setattr(module, "PARTS", {name: PARTS[name] for name in ("table1", "corrections")})
+
+
+def names(folder: Path) -> set[str]:
+    return {str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file()}
+
+
+def contents(folder: Path) -> dict[str, bytes]:
+    return {name: (folder / name).read_bytes() for name in names(folder)}
+
+
+def raises(error: BaseException) -> Callable[..., Any]:
+    def broken(*_: Any, **__: Any) -> Any:
+        raise error
+
+    return broken
+
+
+def command(monkeypatch: pytest.MonkeyPatch, *words: str | Path) -> int:
+    monkeypatch.setattr("sys.argv", ["vibroimpact", *map(str, words)])
+    with pytest.raises(SystemExit) as left:
+        main()
+    return int(left.value.code or 0)
+
+
+# what it holds --------------------------------------------------------------------------------------------------------
+
+
+def test_holds_what_it_should(made: Path) -> None:
+    figures = {"figures/fig4.png", "figures/fig4.svg"}
+    assert names(made) == {"summary.json", "report.md", "report.html", "values.csv", *(f"parts/{name}.json" for name in QUICK), *figures}
+    assert [path.name for path in made.parent.iterdir()] == ["paper"]
+    assert is_reproduction(made)
+    assert json.loads((made / "summary.json").read_text())["version"] == vi.__version__
+    assert missing_parts(made) == [name for name in PARTS if name not in QUICK]
+    assert list(read_parts(made)) == [name for name in PARTS if name in QUICK]
+
+
+def test_values_are_a_table_of_numbers(made: Path) -> None:
+    text = (made / "values.csv").read_text(encoding="utf-8")
+    assert text.startswith(COLUMNS + "\n")
+    rows = list(csv.DictReader(text.splitlines()))
+    kept = [row for part in read_parts(made).values() for row in part["rows"]]
+    assert [row["part"] for row in rows] == ["table1"] * 14 + ["section3.1"] * 3
+    for row, before in zip(rows, kept, strict=True):
+        assert [float(row[name]) for name in ("computed", "difference", "allowed")] == [
+            before[n] for n in ("computed", "difference", "allowed")
+        ]
+        assert float(row["printed"]) > 0.0
+        assert row["verdict"] in [verdict.value for verdict in Verdict]
+        assert row["why"] or row["verdict"] == Verdict.REPRODUCED.value
+
+
+def test_the_report_holds_its_parts_and_names_the_others(made: Path) -> None:
+    text = (made / "report.md").read_text(encoding="utf-8")
+    assert re.findall(r"^##+ (.*)", text, flags=re.M) == [
+        "The inputs",
+        "Table 1: the inputs",
+        "Section 3.1: the contact",
+        "Type 1: repeated impacts of rigid bodies",
+        "Figure 4: position of the sphere's centre, theory and constant damping",
+    ]
+    missing = missing_parts(made)
+    assert f"Not made yet: {', '.join(missing)}. `vibroimpact reproduce -o DIR` makes them." in text
+    assert "| All | 16 | 0 | 0 | 1 |" in text
+
+
+def test_the_page_needs_nothing_else(made: Path) -> None:
+    page = (made / "report.html").read_text(encoding="utf-8")
+    pictures = re.findall(r'<img src="([^"]*)"', page)
+    assert len(pictures) == 1
+    kind, _, data = pictures[0].partition(",")
+    assert kind == "data:image/svg+xml;base64"
+    assert b64decode(data) == (made / "figures" / "fig4.svg").read_bytes()
+    links = re.findall(r'href="#([^"]*)"', page)
+    assert links == re.findall(r'<h2 id="([^"]*)"', page) == ["the-inputs", "type-1-repeated-impacts-of-rigid-bodies"]
+    assert not re.search(r"""(?:src|href)=["'](?!data:|#)|url\(|https?://|<script|<link|@import""", page)
+    assert page.count('<td class="reproduced">reproduced</td>') == 16
+    assert re.search(r'<td class="not_reproduced">not reproduced: with it the first rebound would be [^<]*</td>', page)
+
+
+def test_verdicts_have_classes_and_words_have_none(tmp_path: Path) -> None:
+    cells = ["reproduced", "explained: by |samples|", "fitted", "not reproduced", "not reproduced: x < 1", "explained here", "not fitted"]
+    text = "| Verdict |\n| --- |\n" + "".join(f"| {cell.replace('|', chr(92) + '|')} |\n" for cell in cells)
+    page = report_html(text, tmp_path)
+    assert all(f".{verdict.name.lower()} {{ color" in page for verdict in Verdict)
+    classes = re.findall(r"<td(?: class=\"(\w+)\")?>", page)
+    assert classes == ["reproduced", "explained", "fitted", "not_reproduced", "not_reproduced", "", ""]
+
+
+def test_counts_tell_each_verdict_apart() -> None:
+    def part(*verdicts: Verdict) -> dict[str, Any]:
+        return {"title": "T|1", "text": "A text.\n", "rows": [{"verdict": verdict.value} for verdict in verdicts]}
+
+    parts = {"table1": part(*Verdict), "fig3": part(), "section3.2": part(Verdict.FITTED, Verdict.FITTED)}
+    assert {name: list(by.values()) for name, by in counts(parts).items()} == {
+        "table1": [1, 1, 1, 1],
+        "section3.2": [0, 0, 2, 0],
+        "all": [1, 1, 3, 1],
+    }
+    assert "| T\\|1 | 1 | 1 | 1 | 1 |" in report_text(parts)
+    assert counts({"fig3": part()}) == {}
+    assert "| Part |" not in report_text({"fig3": part()})
+    assert "Not made yet" not in report_text({name: part() for name in PARTS})
+
+
+def test_a_part_is_text_values_and_figure(made: Path) -> None:
+    runs = Runs()
+    table1, fig3 = PARTS["table1"], PARTS["fig3"]
+    both = make_part(Part("both", table1.section, fig3.draw), runs)
+    assert both.title == "Table 1: the inputs"
+    assert re.findall(r"^#.*", both.text, flags=re.M) == ["### Table 1: the inputs"]
+    assert "](figures/both.png)" in both.text
+    assert both.drawing is not None
+    assert {row["part"] for row in both.rows} == {"both"}
+    drawn = make_part(fig3, runs)
+    assert drawn.text.startswith(f"### {drawn.title}\n")
+    assert drawn.title.startswith("Figure 3: ")
+    assert drawn.rows == []
+    assert make_part(table1, runs).drawing is None
+
+
+def test_a_bound_has_neither_difference_nor_allowance() -> None:
+    bound = Row(printed("type2.energy_left"), 88.0, by="a calculation", otherwise="unknown")
+    value = Row(printed("type2.max_force"), 4000.0, by="a calculation", otherwise="unknown")
+    rows = make_part(Part("both", lambda runs: Section("A title", rows=(bound, value))), Runs()).rows
+    assert [row["relation"] for row in rows] == ["<", "="]
+    assert [row["difference"] is None for row in rows] == [row["allowed"] is None for row in rows] == [True, False]
+    assert [(row["printed"], row["computed"], row["why"]) for row in rows] == [("6", 88.0, "unknown"), ("3582.036", 4000.0, "unknown")]
+
+
+# adding to it, and replacing it ---------------------------------------------------------------------------------------
+
+
+def test_parts_are_added_and_the_others_stay(copy: Path) -> None:
+    before = contents(copy)
+    assert reproduce_paper(copy, ["fig3", "table1"]) == copy
+    after = contents(copy)
+    new = {"parts/fig3.json", "figures/fig3.png", "figures/fig3.svg"}
+    assert after.keys() - before.keys() == new
+    assert {name for name in before if before[name] != after[name]} == {"report.md", "report.html"}
+    text = (copy / "report.md").read_text(encoding="utf-8")
+    assert text.index("### Section 3.1") < text.index("### Figure 3") < text.index("### Figure 4")
+
+
+@pytest.mark.usefixtures("few")
+def test_it_goes_on_with_what_is_missing(copy: Path) -> None:
+    before = contents(copy)
+    told: list[float] = []
+    reproduce_paper(copy, progress=told.append)
+    after = contents(copy)
+    assert after.keys() - before.keys() == {"parts/corrections.json"}
+    assert after["parts/table1.json"] == before["parts/table1.json"]
+    assert told == [0.0, 1.0]
+    with pytest.raises(vi.InputError, match=r"all parts are there already; .* --only, or all with --force"):
+        reproduce_paper(copy)
+    assert contents(copy) == after
+
+
+@pytest.mark.usefixtures("few")
+def test_parts_of_another_version_are_missing(copy: Path) -> None:
+    part = copy / "parts" / "table1.json"
+    whole = part.read_text(encoding="utf-8")
+    part.write_text(whole.replace(f'"version": "{vi.__version__}"', '"version": "0"'), encoding="utf-8")
+    assert missing_parts(copy) == ["table1", "corrections"]
+    reproduce_paper(copy)
+    assert part.read_text(encoding="utf-8") == whole
+    assert missing_parts(copy) == []
+
+
+@pytest.mark.usefixtures("few")
+def test_force_makes_all_anew(copy: Path) -> None:
+    told: list[float] = []
+    reproduce_paper(copy, force=True, progress=told.append)
+    assert names(copy) == {"summary.json", "report.md", "report.html", "values.csv", "parts/table1.json", "parts/corrections.json"}
+    assert told == [0.0, 0.5, 1.0]
+    reproduce_paper(copy, "corrections", force=True)  # which has no values
+    assert names(copy) == {"summary.json", "report.md", "report.html", "parts/corrections.json"}
+    assert [path.name for path in copy.parent.iterdir()] == ["paper"]
+
+
+@pytest.mark.parametrize("force", [False, True])
+def test_other_folders_and_files_are_refused(tmp_path: Path, force: bool) -> None:
+    (tmp_path / "thesis").mkdir()
+    (tmp_path / "thesis" / "summary.json.txt").write_text("years")
+    (tmp_path / "file").write_text("x")
+    before = contents(tmp_path)
+    for name, words in (("thesis", "is not a result folder" if force else "is there already"), ("file", "not a folder")):
+        with pytest.raises(vi.InputError, match=words):
+            reproduce_paper(tmp_path / name, ["table1"], force=force)
+    assert contents(tmp_path) == before
+    with pytest.raises(vi.InputError, match="not the folder of a reproduction"):
+        read_parts(tmp_path / "thesis")
+
+
+def test_the_result_of_a_run_is_not_added_to(tmp_path: Path, theory: vi.Response) -> None:
+    with_result = tmp_path / "theory"
+    with_result.mkdir()
+    for text in ('{"name": "theory"}', '{"reproduction": false}', "[1]", "\x00"):
+        (with_result / "summary.json").write_text(text)
+        with pytest.raises(vi.InputError, match="is there already"):
+            reproduce_paper(with_result, ["table1"])
+        assert names(with_result) == {"summary.json"}
+
+
+def test_unknown_parts_are_told_before_anything_is_made(tmp_path: Path) -> None:
+    with pytest.raises(vi.InputError) as refused:
+        reproduce_paper(tmp_path / "paper", ["table1", "tabel2"])
+    assert str(refused.value) == f'there is no part "tabel2"; there are {", ".join(PARTS)}. Did you mean "table2"?'
+    with pytest.raises(vi.InputError, match="name at least one of table1, "):
+        reproduce_paper(tmp_path / "paper", [])
+    assert not list(tmp_path.iterdir())
+    assert [part.name for part in find_parts(["fig4", "fig4", "table1"])] == ["table1", "fig4"]
+
+
+# what goes wrong ------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("error", [vi.ComputationError("the ledger is open"), KeyboardInterrupt(), ValueError("a bug")])
+def test_earlier_parts_stay_when_a_part_fails(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, error: BaseException) -> None:
+    monkeypatch.setitem(PARTS, "fig3", Part("fig3", draw=raises(error)))
+    with pytest.raises(type(error)):
+        reproduce_paper(tmp_path / "paper", ["table1", "section3.1", "fig3", "corrections"])
+    kept = {"summary.json", "report.md", "report.html", "values.csv", "parts/table1.json", "parts/section3.1.json"}
+    assert names(tmp_path / "paper") == kept
+    assert not list((tmp_path / "paper").rglob(".*"))
+    missing = missing_parts(tmp_path / "paper")
+    assert missing[0] == "fig3"
+    assert f"Not made yet: {', '.join(missing)}." in (tmp_path / "paper" / "report.md").read_text(encoding="utf-8")
+    monkeypatch.undo()
+    reproduce_paper(tmp_path / "paper", ["fig3"])  # goes on
+    assert "fig3" in read_parts(tmp_path / "paper")
+
+
+@pytest.mark.parametrize("error", [OSError(28, "No space left on device"), KeyboardInterrupt()])
+@pytest.mark.parametrize("step", ["folder.save_figures", "folder.json.dumps"])
+def test_a_part_is_there_with_its_figure_or_not_at_all(
+    copy: Path, monkeypatch: pytest.MonkeyPatch, step: str, error: BaseException
+) -> None:
+    before = contents(copy)
+    monkeypatch.setattr(f"vibroimpact.report.reproduction.{step}", raises(error))
+    with pytest.raises((vi.InputError, KeyboardInterrupt)) as failed:
+        reproduce_paper(copy, ["fig3"])
+    if isinstance(error, OSError):
+        assert str(failed.value) == f"{copy}: the part fig3 can't be written: No space left on device"
+    assert contents(copy) == before
+    assert not list(copy.rglob(".*"))
+
+
+def test_what_stopped_the_run_is_told_and_not_what_else_is_damaged(copy: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (copy / "parts" / "table1.json").write_text("")
+    monkeypatch.setitem(PARTS, "fig3", Part("fig3", draw=raises(vi.ComputationError("the ledger is open"))))
+    with pytest.raises(vi.ComputationError, match="the ledger is open"):
+        reproduce_paper(copy, ["fig3"])
+
+
+@pytest.mark.parametrize(
+    "damage", ["", "\x00", "[]", "null", '{"text": "", "rows": []}', '{"title": "", "text": ""}', '{"title": "", "text": "", "rows": [{}]}']
+)
+def test_a_damaged_part_is_told_and_mended_by_the_command_it_names(copy: Path, monkeypatch: pytest.MonkeyPatch, damage: str) -> None:
+    (copy / "parts" / "table1.json").write_text(damage)
+    with pytest.raises(vi.InputError, match="the file is damaged; make it anew: vibroimpact reproduce") as told:
+        read_parts(copy)
+    assert str(told.value).startswith(f"{copy / 'parts' / 'table1.json'}: ")
+    assert "table1" in missing_parts(copy)
+    assert command(monkeypatch, *shlex.split(str(told.value).partition("anew: vibroimpact ")[2])) == 0
+    assert list(read_parts(copy)) == ["table1", "section3.1", "fig4"]
+
+
+def test_a_missing_figure_is_told_and_mended_by_the_command_it_names(copy: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (copy / "figures" / "fig4.svg").unlink()
+    with pytest.raises(vi.InputError, match="the figure is missing; make it anew: vibroimpact reproduce") as told:
+        vi.remake_report(copy)
+    assert str(told.value).startswith(f"{copy / 'figures' / 'fig4.svg'}: ")
+    assert command(monkeypatch, *shlex.split(str(told.value).partition("anew: vibroimpact ")[2])) == 0
+    assert (copy / "figures" / "fig4.svg").is_file()
+
+
+# the commands ---------------------------------------------------------------------------------------------------------
+
+
+def test_the_command_prints_the_counts(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    assert command(monkeypatch, "reproduce", "--only", "table1, section3.1", "-o", tmp_path / "paper") == 0
+    head, *rows, last = capsys.readouterr().out.splitlines()
+    assert re.split(r"  +", head.strip()) == ["part", *(verdict.value for verdict in Verdict)]
+    assert [row.split() for row in rows] == [
+        ["table1", "14", "0", "0", "0"],
+        ["section3.1", "2", "0", "0", "1"],
+        ["all", "16", "0", "0", "1"],
+    ]
+    assert last == f"wrote {tmp_path / 'paper' / 'report.html'}"
+
+
+@pytest.mark.parametrize(("only", "words"), [("tabel2", 'Did you mean "table2"?'), (" ,", "name at least one of table1, ")])
+def test_bad_names_end_with_status_2(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], only: str, words: str
+) -> None:
+    assert command(monkeypatch, "reproduce", "--only", only, "-o", tmp_path / "paper") == 2
+    assert words in capsys.readouterr().err
+    assert not list(tmp_path.iterdir())
+
+
+def test_an_interrupt_tells_how_to_go_on(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    monkeypatch.setitem(PARTS, "fig3", Part("fig3", draw=raises(KeyboardInterrupt())))
+    assert command(monkeypatch, "reproduce", "--only", "table1,fig3", "-o", tmp_path / "paper") == 130
+    assert f"go on with: vibroimpact reproduce -o {tmp_path / 'paper'} --only fig3\n" in capsys.readouterr().err
+
+
+def test_the_report_is_remade_and_other_files_stay(copy: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    before = contents(copy)
+    for name in ("report.md", "report.html", "values.csv"):
+        (copy / name).unlink()
+    (copy / "my notes.txt").write_text("mine")
+    assert command(monkeypatch, "report", copy) == 0
+    assert contents(copy) == {**before, "my notes.txt": b"mine"}
+
+
+def test_the_page_of_the_documentation(made: Path, tmp_path: Path) -> None:
+    images = tmp_path / "images" / "reproduction"
+    images.mkdir(parents=True)
+    (images / "old.png").write_bytes(b"old")
+    page = write_documented(made, tmp_path)
+    assert names(tmp_path) == {"reproduction.md", "images/reproduction/fig4.png"}
+    assert (images / "fig4.png").read_bytes() == (made / "figures" / "fig4.png").read_bytes()
+    text = page.read_text(encoding="utf-8")
+    assert re.findall(r"\]\(([^)]*png)\)", text) == ["images/reproduction/fig4.png"]
+    assert text.replace("images/reproduction/", "figures/") == (made / "report.md").read_text(encoding="utf-8")
