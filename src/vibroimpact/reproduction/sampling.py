@@ -61,7 +61,9 @@ class Peak:
         return float(self.values[self.top])
 
     def instants(self, level: float) -> tuple[float, float]:
-        """Return when the level is passed on the way up and down [s]; of a level above the peak, the time of the peak."""
+        """Return when the level is passed on the way up and down [s]; NaN of a level above the peak."""
+        if level > self.value:
+            return math.nan, math.nan
         before, after = _crossings(self.times, self.values, self.top, np.array([level]))
         return float(before[0]), float(after[0])
 
@@ -143,7 +145,8 @@ def gaps(runs: Runs, leaving: tuple[str, int] | None = None) -> Floats:
     """
     left_out = ("constant", 1) if leaving == ("variable", 1) else leaving
     contacts = [contact for contact in CONTACTS if contact != left_out]
-    return np.array([after - before for before, after in (implied_instants(runs, "compression", *contact) for contact in contacts)])
+    instants = np.array([implied_instants(runs, "compression", *contact) for contact in contacts])
+    return np.asarray(np.nan_to_num(instants[:, 1] - instants[:, 0]))  # never above what is more than the peak
 
 
 def found_spacing(runs: Runs, leaving: tuple[str, int] | None = None) -> float:
@@ -203,9 +206,8 @@ def _instants(runs: Runs) -> dict[tuple[str, int], Instant]:
     found = {}
     for contact in CONTACTS:
         both = [implied_instants(runs, quantity, *contact) for quantity in QUANTITIES]
-        beyond = [_level(runs, quantity, *contact) > peaks(runs)[contact[0], quantity, contact[1]].value for quantity in QUANTITIES]
-        apart = math.nan if any(beyond) else min(abs(one - other) for one in both[0] for other in both[1])
-        told = [MISSING if none else f"{1e6 * early:.1f} or {1e6 * late:.1f}" for none, (early, late) in zip(beyond, both, strict=True)]
+        apart = min(abs(one - other) for one in both[0] for other in both[1])
+        told = [MISSING if math.isnan(early) else f"{1e6 * early:.1f} or {1e6 * late:.1f}" for early, late in both]
         found[contact] = Instant(apart, (*told, fixed(1e6 * apart, 1)))
     return found
 
@@ -274,7 +276,10 @@ def _conclusion(runs: Runs, instants: tuple[Instant, ...]) -> tuple[str, ...]:
 
 
 def implied_instants(runs: Runs, quantity: str, damping: str, impact: int) -> tuple[float, float]:
-    """Return when after first touch the simulation passes the value that a printed error implies, on the way up and down [s]."""
+    """Return when after first touch the simulation passes the value that a printed error implies, on the way up and down [s].
+
+    NaN if it implies more than the peak.
+    """
     return peaks(runs)[damping, quantity, impact].instants(_level(runs, quantity, damping, impact))
 
 
