@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from vibroimpact.contact.laws.adams_impact import AdamsImpact
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.reproduction.measures import energy_at_separation, largest_of, sphere_rotation, sphere_strain
 from vibroimpact.reproduction.mesh_mass import fall_beyond_touch, mesh_mass
@@ -32,6 +33,21 @@ def section_5_2(runs: Runs) -> Section:
             "A sphere that falls upright on a plate's middle does not turn: what is printed of rotation is rounding, there as here.",
         ),
         tuple(rows),
+        conclusion=(_force_and_fall(runs),),
+    )
+
+
+def _force_and_fall(runs: Runs) -> str:
+    """Tell that the printed force and the printed energies of Type 2 don't go together."""
+    problem, force = runs.problem("type1-variable"), printed("type2.max_force").value
+    law = problem.laws[0]
+    assert isinstance(law, AdamsImpact)
+    speed = float(runs.response("type1-variable").impacts["approach_speed_m_s"][0])
+    least = 1e3 * ((force - float(law.damping_max) * speed) / float(law.stiffness)) ** (1.0 / float(law.exponent))
+    deep = 1e3 * fall_beyond_touch(2, float(problem.gravity))
+    return (
+        f"The energies printed of Type 2 tell a fall of {deep:.2f} mm beyond first touch. IMPACT gives the printed {force:g} N at no "
+        f"indentation of less than {least:.2f} mm, even at the full approach speed and the full damping: the two can't both be."
     )
 
 

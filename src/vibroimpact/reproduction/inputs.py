@@ -39,7 +39,11 @@ def section_3_1(runs: Runs) -> Section:
     rebound = simulate(with_law(problem, full_damping_penetration=thin.value)).impacts["rebound_height_m"][0]
     return Section(
         "Section 3.1: the contact",
-        ("The stiffness is Hertz's, by the corrected equations (3) and (4). The full-damping penetration is not the one printed.",),
+        (
+            "IMPACT, the contact of Adams, is Hertz's spring and a dashpot that fades in with the indentation and is full from the "
+            "full-damping penetration on. The stiffness follows from the corrected equations (3) and (4); the full-damping penetration is "
+            "not the one printed.",
+        ),
         (
             Row(printed("stiffness"), float(contact_pair(load_case("paper:type1-variable")).hertz_stiffness), by="Hertz"),
             Row(printed("exponent"), float(law.exponent), by="Hertz"),

@@ -12,7 +12,7 @@ from typing import Any, Literal
 
 from vibroimpact.errors import InputError, did_you_mean
 
-PAPER = "Study on the Vibroimpact Response of the Particle Elastic Impact on the Metal Plate, Shock and Vibration"
+PAPER = '"Study on the Vibroimpact Response of the Particle Elastic Impact on the Metal Plate" (Shock and Vibration)'
 """What is reproduced."""
 
 Relation = Literal["=", "<", ">"]

@@ -58,9 +58,6 @@ class Recovery:
         theory, lowest power first [SI].
     round_values : tuple of two floats
         The round values nearest to the joint estimates: the restitution of two digits, the penetration of one [m].
-    worst_rounding : float
-        With the round values: the largest residual of a rounded number, in halves of a unit of its last digit; up to 1 it comes out as
-        printed.
     """
 
     evidence: tuple[Evidence, ...]
@@ -72,7 +69,6 @@ class Recovery:
     as_printed: tuple[float, float, float]
     parabolas: tuple[Floats, Floats]
     round_values: tuple[float, float]
-    worst_rounding: float
 
 
 @lru_cache(maxsize=1)
@@ -91,7 +87,6 @@ def recover(runs: Runs) -> Recovery:
     penetration = _in_metres(logarithm, deviations[1])
     given = np.log10(printed("full_damping_penetration").value)
     round_values = float(f"{restitution:.2g}"), float(f"{penetration.value:.1g}")
-    rounding = [one.standardised(round_values[0], np.log10(round_values[1])) / one.reach for one in evidence if one.freedom is None]
     return Recovery(
         evidence=evidence,
         restitution=Estimate(float(restitution), float(deviations[0])),
@@ -109,7 +104,6 @@ def recover(runs: Runs) -> Recovery:
             parabola(sweeps.theory["approach_speed_m_s"](restitution)),
         ),
         round_values=round_values,
-        worst_rounding=float(np.abs(rounding).max()),
     )
 
 

@@ -89,7 +89,7 @@ def damping(runs: Runs) -> Section:
     fit, reach = _fit_of_printed(runs)
     by = "least squares through the printed dampings, over the simulation's approach speeds"
     for power, (value, low, high) in enumerate(zip(fit, fit - reach, fit + reach, strict=True), start=1):
-        told = f"least squares with approach speeds of five decimals give {fixed(low, 5)} to {fixed(high, 5)}"
+        told = f"a reading: least squares with approach speeds of five decimals give {fixed(low, 5)} to {fixed(high, 5)}"
         account = Account(told, float(low), float(high))
         rows.append(Row(printed(f"damping_function.{power}"), float(value), by=by, accounts=(account,)))
     exact = found.fit.function
@@ -111,8 +111,8 @@ def damping(runs: Runs) -> Section:
     return Section(
         "Section 3.2: the damping, and its function of the approach speed",
         (
-            "Calibration finds the damping with which each impact of IMPACT has the theory's separation speed: "
-            f"y(v) = {low:.4f} + {middle:.5f} v - {-high:.6f} v^2 in N s/m for v in m/s goes through the values found.",
+            f"Calibration finds the damping with which each impact of IMPACT has the theory's separation speed: y(v) = {low:.4f} + "
+            f"{middle:.5f} v - {-high:.6f} v^2 in N s/m for v in m/s is the least-squares parabola through the values found.",
         ),
         tuple(rows),
         (Table(headers, cells, "Damping found and printed"),),

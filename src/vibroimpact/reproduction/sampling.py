@@ -221,8 +221,8 @@ def _words(runs: Runs) -> tuple[str, ...]:
         f"{1e3 * durations.max():.2f} ms. A peak read off samples is too low, by as much as the samples miss it. The first table sets "
         "the errors of exact peaks beside those that can be read off samples of the theory and of the simulation, and beside those "
         "printed [%].",
-        f"Outputs every {1e3 * step:.2f} ms do not give the printed errors. The printed compressions are those of samples that left no "
-        f"more than {1e6 * free.max():.0f} µs free round the deepest point, in {len(free)} contacts; at a random phase the chance of "
+        f"Outputs every {1e3 * step:.2f} ms do not give the printed errors. If they were read off samples, these left no more "
+        f"than {1e6 * free.max():.0f} µs free round the deepest point, in {len(free)} contacts; at a random phase the chance of "
         f"that is {digits(chance, 1)}. With equal steps at a random phase the likeliest step in contact is {1e6 * free.max():.0f} µs, and "
         f"at 95 % it is at most {1e6 * spacing:.0f} µs.",
     )
@@ -263,9 +263,9 @@ def _conclusion(runs: Runs, instants: tuple[Instant, ...]) -> tuple[str, ...]:
         f"{inside} of {len(_ERRORS)} printed errors lie within the range of samples {1e6 * spacing:.0f} µs apart, which was found from the "
         "compressions; in the verdicts of Table 2 each compression is held against the spacing that the other contacts tell. The ranges "
         "are wide: they tell that sampling can be the cause, not that nothing else is.",
-        f"The theory was sampled too, but more finely: the largest force printed, {printed('type1.max_force').text} N, and its printed "
-        f"error imply a peak of {implied:.3f} N, {100.0 * (1.0 - implied / theory.value):.3f} % below the exact {theory.value:.3f} N. "
-        "Where a printed force error is less than the exact one, the peak of the theory must have been missed.",
+        f"If so, the theory was sampled too, but more finely: the largest force printed, {printed('type1.max_force').text} N, and its "
+        f"printed error imply a peak of {implied:.3f} N, {100.0 * (1.0 - implied / theory.value):.3f} % below the exact "
+        f"{theory.value:.3f} N. Where a printed force error is less than the exact one, it is the peak of the theory that was missed.",
         f"Compression and force are largest at different times. In {len(apart)} of {len(instants)} contacts both printed errors are those "
         f"of an instant, and the two lie {1e6 * min(apart):.1f} to {1e6 * max(apart):.1f} µs apart; with so few contacts, and two "
         "instants to choose from for each error, that is no evidence that both were read at one time.",

@@ -30,9 +30,9 @@ def table2(runs: Runs) -> Section:
     return Section(
         "Table 2: errors of the simulations",
         (
-            "Computed are the differences of the exact peaks. The printed ones scatter about them as if they were read off samples. That "
-            "is a weak test, as the ranges show: sampling can be the cause. The forensic section says what speaks for it and what remains "
-            "open.",
+            "Computed are the differences of the exact peaks. The printed ones scatter about them as if they were read off samples. "
+            "That is a weak test, as the ranges show: sampling can be the cause (a compression is held against the spacing that the "
+            "other contacts tell). The forensic section says what speaks for it and what remains open.",
         ),
         tuple(rows),
     )

@@ -36,10 +36,14 @@ def rows_by_treatment(runs: Runs, kind: int, value: Printed, measure: Measure, u
         "identified": "a prediction from Type 2" if kind == 3 else "fitted to force and rebound alone",
     }
     if unresolved is not None:
-        inside = Account("", *unresolved).holds(value)
+        low, high = unresolved
+        inside = "is among these" if low <= value.value <= high else "is not among these"
+        if inside != "is among these" and Account("", low, high).holds(value):
+            inside = "touches these with its few digits"
+        steps = "in steps fitted to Type 2" if kind == 2 else "in steps found from Type 2"
         words["superposed"] += (
-            f". A reading: unresolved, on a coarse mesh, it gives {unresolved[0]:.4g} to {unresolved[1]:.4g} {value.unit}, "
-            f"and the printed value is {'among' if inside else 'not among'} these"
+            f". A reading: unresolved, on a coarse mesh and {steps}, it gives {low:.4g} to {high:.4g} {value.unit}, and the printed value "
+            f"{inside}"
         )
     return [
         Row(

@@ -112,9 +112,7 @@ def write_reproduction_report(folder: Path) -> None:
     for name, part in parts.items():
         for picture in re.findall(rf"\]\(({FIGURES}/[^)]+)\.png\)", part["text"]):
             if not (folder / f"{picture}.svg").is_file():
-                raise InputError(
-                    f"{folder / picture}.svg: the figure is missing; make it anew: vibroimpact reproduce -o {folder} --only {name}"
-                )
+                raise InputError(f"{folder / picture}.svg: the figure is missing; {_anew(folder, name)}")
     rows = [row for part in parts.values() for row in part["rows"]]
     text = report_text(parts)
     with TemporaryDirectory(prefix=".report.", dir=folder) as working:

@@ -141,7 +141,7 @@ def _last_begins(responses: Responses) -> str:
 def _fourth_rebound(responses: Responses) -> str:
     off = _differences(responses, CONSTANT, "rebound_height_m")[3]
     value = printed("constant.height_error.4")
-    return f"After the fourth impact the height differs by {fixed(off, 2)} %; the paper prints {value.text} % as the height lost."
+    return f"After the fourth impact the height differs by {fixed(off, 2)} %; the paper prints {value.text} % as its error."
 
 
 def _largest_acceleration(responses: Responses) -> str:
