@@ -30,7 +30,7 @@ def simulate(problem: StatesProblem, progress: Callable[[float], None] | None = 
     """Let the sphere fall and bounce until a stop rule.
 
     Flight is exact. Touch and release are located as roots; between them the contact is integrated by
-    Radau collocation, of order 31 at the default tolerance, in a time in which the force is smooth. A batch
+    Radau collocation, of order 39 at the default tolerance, in a time in which the force is smooth. A batch
     runs as arrays; one drop is a batch of one. Bodies that have modes vibrate: between contacts exactly, and the
     next touch is the first meeting with the surface as it moves.
 
