@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from vibroimpact.cli.shared import CaseArgument, Force, app, console, stem, whole_or_nothing
+from vibroimpact.cli.shared import CaseArgument, Force, app, console, names_in, stem, whole_or_nothing
 from vibroimpact.errors import InputError
 
 
@@ -49,7 +49,7 @@ def compare(
         with patient_progress("comparing", screen) as progress:
             comparison = compare_laws(
                 found,
-                [name.strip() for name in laws.split(",") if name.strip()],
+                names_in(laws),
                 _settings(given or []),
                 achieving=achieving,
                 progress=progress,

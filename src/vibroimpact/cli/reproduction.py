@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from vibroimpact.cli.shared import app, console, fail, note
+from vibroimpact.cli.shared import app, console, fail, names_in, note
 
 
 @app.command()
@@ -31,7 +31,7 @@ def reproduce(
     from vibroimpact.report.reproduction.folder import missing_parts, reproduce_paper
     from vibroimpact.report.reproduction.summary import summary_table
 
-    names = None if only is None else [name.strip() for name in only.split(",") if name.strip()]
+    names = None if only is None else names_in(only)
     screen = console()
     try:
         with patient_progress("reproducing", screen) as progress:

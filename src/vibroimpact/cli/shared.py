@@ -57,6 +57,11 @@ def console() -> Console:
     return screen
 
 
+def names_in(text: str) -> list[str]:
+    """Return the names in a text that are separated by commas."""
+    return [name.strip() for name in text.split(",") if name.strip()]
+
+
 def note(text: str) -> None:
     """Tell what takes long, apart from what the command prints."""
     typer.echo(f"vibroimpact: {text}", err=True)

@@ -11,6 +11,7 @@ from pathlib import Path
 from vibroimpact.contact.law import CompliantLaw, ContactLaw, contact_laws
 from vibroimpact.errors import InputError
 from vibroimpact.report.law_text import SPEED, ParameterText, asked_and_achieved, law_text
+from vibroimpact.report.markdown_table import markdown_table
 
 BEGIN, END = "<!-- laws: begin (written by make docs) -->", "<!-- laws: end -->"
 """What stands around the table in laws.md."""
@@ -113,8 +114,7 @@ def _row(item: ParameterText) -> tuple[str, ...]:
 
 
 def _table(heading: tuple[str, ...], rows: Iterable[tuple[str, ...]]) -> str:
-    lines = [heading, tuple("---" for _ in heading), *rows]
-    return "\n".join(f"| {' | '.join(line)} |".replace("|  |", "| |") for line in lines)
+    return markdown_table(heading, rows).replace("|  |", "| |")
 
 
 def _cell(text: str) -> str:

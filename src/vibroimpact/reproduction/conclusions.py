@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from vibroimpact.reproduction.measures import plate_energy_part
+from vibroimpact.reproduction.measures import energy_released, plate_energy_part
 from vibroimpact.reproduction.printed import printed
 from vibroimpact.reproduction.runs import DAMPINGS, TREATMENTS, Runs, history_of
 from vibroimpact.reproduction.sampling import QUANTITIES
-from vibroimpact.reproduction.section import Section, Table
+from vibroimpact.reproduction.section import Section, Table, holds_text
 
 
 def conclusions(runs: Runs) -> Section:
@@ -28,16 +28,12 @@ def conclusions(runs: Runs) -> Section:
     )
 
 
-def _verdict(holds: bool) -> str:
-    return "holds" if holds else "does not hold"
-
-
 def _variable_damping(runs: Runs) -> list[tuple[str, ...]]:
     cells: list[tuple[str, ...]] = []
     for quantity, (_, column, _) in QUANTITIES.items():
         constant, variable = (float(np.abs(runs.below_theory(damping, column)).max()) for damping in DAMPINGS)
         words = f"(1) With variable damping the largest error of the {quantity} is smaller than with constant damping"
-        cells.append((words, "IMPACT", _verdict(variable < constant), f"{variable:.3f} % instead of {constant:.3f} %"))
+        cells.append((words, "IMPACT", holds_text(variable < constant), f"{variable:.3f} % instead of {constant:.3f} %"))
     return cells
 
 
@@ -45,7 +41,7 @@ def _damping_function(runs: Runs) -> tuple[str, ...]:
     values, speeds = runs.calibration.values, runs.calibration.observations.speeds
     rises = bool(np.all(np.diff(values) * np.diff(speeds) > 0))
     numbers = f"{values.min():.2f} N s/m at {speeds.min():.2f} m/s to {values.max():.2f} N s/m at {speeds.max():.2f} m/s"
-    return "(2) The damping that reproduces the theory rises with the approach speed", "calibration", _verdict(rises), numbers
+    return "(2) The damping that reproduces the theory rises with the approach speed", "calibration", holds_text(rises), numbers
 
 
 def _elastic_sphere(runs: Runs, treatment: str) -> tuple[str, ...]:
@@ -55,7 +51,7 @@ def _elastic_sphere(runs: Runs, treatment: str) -> tuple[str, ...]:
     )
     words = "(3) An elastic sphere is hit with less force, and rebounds lower, than a rigid one"
     numbers = f"{elastic[0]:.0f} instead of {rigid[0]:.0f} N, {elastic[1]:.3f} instead of {rigid[1]:.3f} m"
-    return words, treatment, _verdict(elastic[0] < rigid[0] and elastic[1] < rigid[1]), numbers
+    return words, treatment, holds_text(elastic[0] < rigid[0] and elastic[1] < rigid[1]), numbers
 
 
 _ELASTIC_PLATE = "(4) On an elastic plate the sphere rebounds lower, and is hit with less force, than on a rigid one"
@@ -74,17 +70,16 @@ def _elastic_plate_as_printed() -> tuple[str, ...]:
 def _lower(by: str, rigid: list[float], elastic: list[float]) -> tuple[str, ...]:
     """Set rebound height [m] and force [N] on an elastic plate beside those on a rigid one."""
     numbers = f"{elastic[0]:.3f} instead of {rigid[0]:.3f} m, {elastic[1]:.0f} instead of {rigid[1]:.0f} N"
-    return _ELASTIC_PLATE, by, _verdict(elastic[0] < rigid[0] and elastic[1] < rigid[1]), numbers
+    return _ELASTIC_PLATE, by, holds_text(elastic[0] < rigid[0] and elastic[1] < rigid[1]), numbers
 
 
 def _energy_of_the_plate(runs: Runs, treatment: str) -> tuple[str, ...]:
     """Return the part of the energy released that goes into the plate, its two largest energies added as the paper does."""
-    history = history_of(runs.treated(3, treatment))
-    released, least = history["potential_J"][0] - history["potential_J"].min(), printed("plate.energy_part")
-    both = plate_energy_part(runs.treated(3, treatment))
-    at_once = 100.0 * float((history["plate_kinetic_J"] + history["plate_strain_J"]).max()) / released
+    response, least = runs.treated(3, treatment), printed("plate.energy_part")
+    history, both = history_of(response), plate_energy_part(response)
+    at_once = 100.0 * float((history["plate_kinetic_J"] + history["plate_strain_J"]).max()) / energy_released(response)
     words = f"(6) The energy of the plate can't be neglected: more than {least.text} % of the energy released"
-    return words, treatment, _verdict(both > least.value), f"{both:.1f} % if the largest of each are added, {at_once:.1f} % at one time"
+    return words, treatment, holds_text(both > least.value), f"{both:.1f} % if the largest of each are added, {at_once:.1f} % at one time"
 
 
 def _consumed(runs: Runs, treatment: str) -> tuple[str, ...]:
@@ -95,4 +90,9 @@ def _consumed(runs: Runs, treatment: str) -> tuple[str, ...]:
     dissipated = sum(history[name] for name in ("contact_dissipated_J", "sphere_damping_J", "plate_damping_J"))
     first, second = (100.0 * np.asarray(dissipated) / put_in).tolist()
     words = "(6) Most of the energy is consumed in the impact of elastic bodies"
-    return words, treatment, _verdict(first > 50.0), f"{first:.0f} % dissipated at the first separation, {second:.0f} % at the second touch"
+    return (
+        words,
+        treatment,
+        holds_text(first > 50.0),
+        f"{first:.0f} % dissipated at the first separation, {second:.0f} % at the second touch",
+    )

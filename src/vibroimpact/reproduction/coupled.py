@@ -2,20 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
-import numpy as np
-
 from vibroimpact.cases.build import resolved
 from vibroimpact.cases.reader import load_case
-from vibroimpact.contact.phase.collocation import Floats
 from vibroimpact.reproduction.measures import in_first_impact
 from vibroimpact.reproduction.mesh_mass import mesh_mass
 from vibroimpact.reproduction.printed import printed
 from vibroimpact.reproduction.row import Account, Row
 from vibroimpact.reproduction.runs import TREATMENTS, Runs
 from vibroimpact.reproduction.sampling import found_spacing, peaks
-from vibroimpact.reproduction.section import Section, Table
+from vibroimpact.reproduction.section import Section, Table, holds_text
 from vibroimpact.reproduction.treatments import rows_by_treatment
 from vibroimpact.reproduction.unresolved import unresolved_range
 
@@ -84,32 +79,27 @@ def _accelerations(runs: Runs) -> list[Row]:
 
 def _statements(runs: Runs) -> Table:
     """Return what section 5.1 says without a number, and whether it holds."""
+    said = (
+        "Five impacts of Types 2 and 3 take less time than the first two of Type 1",
+        "The first force is weaker in Type 2 than in Type 3",
+        "The first rebound is higher in Type 2 than in Type 3",
+        "From the second impact on the force is larger in Type 2 than in Type 3",
+    )
+    found = [_statements_under(runs, treatment) for treatment in TREATMENTS]
+    return Table(("What is said", *TREATMENTS), tuple(zip(said, *found, strict=True)), "What the paper says in words")
+
+
+def _statements_under(runs: Runs, treatment: str) -> list[str]:
+    """Return of each statement whether it holds under a treatment, with the numbers."""
+    two, three = (runs.treated(kind, treatment).impacts for kind in (2, 3))
     second = float(runs.response("type1-variable").impacts["time_s"][1])
-    cells: list[tuple[str, ...]] = []
-    kinds = {treatment: [runs.treated(kind, treatment).impacts for kind in (2, 3)] for treatment in TREATMENTS}
-
-    def told(words: str, holds: Callable[[list[dict[str, Floats]]], tuple[bool, str]]) -> None:
-        found = [holds(kinds[treatment]) for treatment in TREATMENTS]
-        cells.append((words, *(f"{'holds' if is_so else 'does not hold'}: {numbers}" for is_so, numbers in found)))
-
-    def fifth(both: list[dict[str, Floats]]) -> tuple[bool, str]:
-        times = [impacts["time_s"][-1] for impacts in both]
-        return max(times) < second, " and ".join(f"{time:.3f}" for time in times) + f" s, beside {second:.3f} s"
-
-    def forces(part: slice, sign: float) -> Callable[[list[dict[str, Floats]]], tuple[bool, str]]:
-        def compared(both: list[dict[str, Floats]]) -> tuple[bool, str]:
-            two, three = (impacts["max_force_N"][part] for impacts in both)
-            pairs = [f"{a:.0f} and {b:.0f} N" for a, b in zip(two, three, strict=True)]
-            return bool(np.all(sign * (two - three) > 0)), ", ".join(pairs)
-
-        return compared
-
-    def heights(both: list[dict[str, Floats]]) -> tuple[bool, str]:
-        two, three = (impacts["rebound_height_m"][0] for impacts in both)
-        return bool(two > three), f"{two:.3f} and {three:.3f} m"
-
-    told("Five impacts of Types 2 and 3 take less time than the first two of Type 1", fifth)
-    told("The first force is weaker in Type 2 than in Type 3", forces(slice(0, 1), -1.0))
-    told("The first rebound is higher in Type 2 than in Type 3", heights)
-    told("From the second impact on the force is larger in Type 2 than in Type 3", forces(slice(1, None), 1.0))
-    return Table(("What is said", *TREATMENTS), tuple(cells), "What the paper says in words")
+    fifth, other = two["time_s"][-1], three["time_s"][-1]
+    height, lower = two["rebound_height_m"][0], three["rebound_height_m"][0]
+    forces = [f"{one:.0f} and {another:.0f} N" for one, another in zip(two["max_force_N"], three["max_force_N"], strict=True)]
+    more = two["max_force_N"] - three["max_force_N"]
+    return [
+        f"{holds_text(max(fifth, other) < second)}: {fifth:.3f} and {other:.3f} s, beside {second:.3f} s",
+        f"{holds_text(more[0] < 0.0)}: {forces[0]}",
+        f"{holds_text(height > lower)}: {height:.3f} and {lower:.3f} m",
+        f"{holds_text(all(more[1:] > 0.0))}: {', '.join(forces[1:])}",
+    ]

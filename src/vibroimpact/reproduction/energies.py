@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from vibroimpact.contact.laws.adams_impact import AdamsImpact
 from vibroimpact.dynamics.problem import Problem
-from vibroimpact.reproduction.measures import energy_at_separation, largest_of, sphere_rotation, sphere_strain
+from vibroimpact.reproduction.measures import energy_at_separation, energy_released, largest_of, sphere_rotation, sphere_strain
 from vibroimpact.reproduction.mesh_mass import fall_beyond_touch, mesh_mass
 from vibroimpact.reproduction.printed import printed
 from vibroimpact.reproduction.row import Account, Row
-from vibroimpact.reproduction.runs import TREATMENTS, Runs, history_of
+from vibroimpact.reproduction.runs import TREATMENTS, Runs
 from vibroimpact.reproduction.section import Section
 from vibroimpact.reproduction.treatments import rows_by_treatment
 from vibroimpact.reproduction.unresolved import unresolved_range
@@ -61,7 +61,7 @@ def _fall(runs: Runs) -> tuple[float, float, float]:
 def _at_touch(runs: Runs, kind: int) -> Row:
     """Return the energy of the fall to first touch."""
     mass, gravity, fall = _fall(runs)
-    sag = _sag(runs.treated(kind, "superposed").problem)
+    sag = _sag(runs.problem(f"type{kind}-superposed"))
     least, most = (weight * gravity * fall for weight in mesh_mass(kind, gravity))
     most *= 1.0 + sag / fall
     lower = f", and a plate that its weight lets sag by {1e6 * sag:.1f} µm," if sag else ""
@@ -84,8 +84,7 @@ def _released(runs: Runs, kind: int) -> list[Row]:
     value, deep = printed(f"type{kind}.potential_energy"), 1e3 * fall_beyond_touch(kind, gravity)
     rows = []
     for treatment in TREATMENTS:
-        potential = history_of(runs.treated(kind, treatment))["potential_J"]
-        released = float(potential[0] - potential.min())
+        released = energy_released(runs.treated(kind, treatment))
         beyond = 1e3 * (released / (mass * gravity) - fall)
         why = f"printed is a fall of {deep:.2f} mm beyond first touch, and it is {beyond:.2f} mm here"
         rows.append(Row(value, released, by=treatment, otherwise=why))

@@ -16,6 +16,7 @@ from vibroimpact.dynamics.simulate import simulate
 from vibroimpact.reproduction.damping_function import function_at, parabola, printed_dampings, printed_function
 from vibroimpact.reproduction.printed import Printed, printed
 from vibroimpact.reproduction.runs import DAMPINGS, IMPACTS, Runs, with_law
+from vibroimpact.reproduction.sampling import QUANTITIES, table2_error
 
 RESTITUTIONS = (0.3, 0.95)
 """Between what the restitution is looked for [-]."""
@@ -132,11 +133,7 @@ def evidence_of(sweeps: Sweeps) -> tuple[Evidence, ...]:
         _rounded("the fourth rebound, constant damping", fourth_rebound, fourth),
         _rounded("the fifth compression, constant damping", fifth_compression, fifth),
         Evidence("the damping function, at the theory's speeds", function_theory, freedom=2, joint=False),
-        *(
-            _of_table2(sweeps, quantity, column, damping)
-            for quantity, column in (("compression", "max_indentation_m"), ("force", "max_force_N"))
-            for damping in DAMPINGS
-        ),
+        *(_of_table2(sweeps, quantity, column, damping) for quantity, (_, column, _) in QUANTITIES.items() for damping in DAMPINGS),
     )
 
 
@@ -147,7 +144,7 @@ def _rounded(name: str, residuals: Callable[[Any, Any], Floats], value: Printed)
 
 def _of_table2(sweeps: Sweeps, quantity: str, column: str, damping: str) -> Evidence:
     """Return the evidence of a column of Table 2."""
-    values: Floats = np.array([printed(f"table2.{quantity}.{damping}.{impact}").value for impact in IMPACTS])
+    values: Floats = np.array([table2_error(quantity, damping, impact).value for impact in IMPACTS])
 
     def errors(restitution: Any, logarithm: Any) -> Floats:
         return sweeps.below_theory(damping, column, restitution, logarithm) - values

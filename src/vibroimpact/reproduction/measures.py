@@ -93,8 +93,13 @@ def after_each_impact(timeline: Timeline) -> Callable[[Response], Floats]:
     return peaks
 
 
+def energy_released(response: Response) -> float:
+    """Return the potential energy of the sphere that is released down to its deepest point [J]."""
+    potential = history_of(response)["potential_J"]
+    return float(potential[0] - potential.min())
+
+
 def plate_energy_part(response: Response) -> float:
     """Return the plate's largest kinetic and its largest strain energy, added, of the energy released [%]: as the paper counts."""
     history = history_of(response)
-    released = history["potential_J"][0] - history["potential_J"].min()
-    return 100.0 * float((history["plate_kinetic_J"].max() + history["plate_strain_J"].max()) / released)
+    return 100.0 * float(history["plate_kinetic_J"].max() + history["plate_strain_J"].max()) / energy_released(response)

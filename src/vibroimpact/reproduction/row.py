@@ -34,6 +34,10 @@ class Account:
     low: float
     high: float
 
+    def contains(self, printed: Printed) -> bool:
+        """Does the printed value lie in the range, as it stands?"""
+        return self.low <= printed.value <= self.high
+
     def holds(self, printed: Printed) -> bool:
         """Does the printed value, as far as its digits tell, lie in the range?"""
         return self.low - printed.half <= printed.value <= self.high + printed.half

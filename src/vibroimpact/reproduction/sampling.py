@@ -240,7 +240,7 @@ def _errors_table(runs: Runs) -> Table:
                 fixed(grid_error(runs, step, *which), 1),
                 f"{fixed(least, 0)} to {fixed(most, 0)}",
                 f"{fixed(low, 2)} to {fixed(high, 2)}",
-                fixed(_table2(*which).value, 3),
+                fixed(table2_error(*which).value, 3),
             )
         )
     headers = (
@@ -256,7 +256,7 @@ def _errors_table(runs: Runs) -> Table:
 
 def _conclusion(runs: Runs, instants: tuple[Instant, ...]) -> tuple[str, ...]:
     step, spacing, theory = output_step(), found_spacing(runs), peaks(runs)["theory", "force", 1]
-    inside = sum(Account("", *error_range(runs, spacing, *which)).holds(_table2(*which)) for which in _ERRORS)
+    inside = sum(Account("", *error_range(runs, spacing, *which)).holds(table2_error(*which)) for which in _ERRORS)
     implied = printed("type1.max_force").value / (1.0 - 0.01 * printed("table2.force.constant.1").value)
     apart = [one.apart for one in instants if not math.isnan(one.apart)]
     return (
@@ -283,13 +283,14 @@ def implied_instants(runs: Runs, quantity: str, damping: str, impact: int) -> tu
     return peaks(runs)[damping, quantity, impact].instants(_level(runs, quantity, damping, impact))
 
 
-def _table2(quantity: str, damping: str, impact: int) -> Printed:
+def table2_error(quantity: str, damping: str, impact: int) -> Printed:
+    """Return an error that Table 2 prints [%]."""
     return printed(f"table2.{quantity}.{damping}.{impact}")
 
 
 def _level(runs: Runs, quantity: str, damping: str, impact: int) -> float:
     """Return what was read off the simulation if the peak of the theory is exact."""
-    error = _table2(quantity, damping, impact).value
+    error = table2_error(quantity, damping, impact).value
     return peaks(runs)["theory", quantity, impact].value * (1.0 - 0.01 * error)
 
 

@@ -26,6 +26,11 @@ class Table:
     title: str = ""
 
 
+def holds_text(holds: bool) -> str:
+    """Return in words whether a statement of the paper holds."""
+    return "holds" if holds else "does not hold"
+
+
 @dataclass(frozen=True)
 class Section:
     """A section of the reproduction.

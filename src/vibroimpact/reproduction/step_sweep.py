@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import cache, lru_cache
+from functools import cache
 from typing import Literal
 
 import numpy as np
@@ -75,14 +75,14 @@ def coarse(kind: int, modes: int) -> Problem:
     return read_case(table).to_problem()
 
 
-@lru_cache(maxsize=16)
+@cache
 def sweep(problem: Problem, steps: tuple[float, ...] = tuple(STEPS.tolist())) -> Sweep:
     """Return what the first impact of a problem comes to in steps of several lengths [s]."""
     found = [unresolved_impact(problem, step, PHASES) for step in steps]
     return Sweep(np.array(steps), {name: np.array([one[name] for one in found]) for name in found[0]})
 
 
-@lru_cache(maxsize=8)
+@cache
 def resolved(problem: Problem) -> dict[str, float]:
     """Return what `unresolved_impact` gives, of the first impact when it is resolved; and duration_s, that of the contact [s]."""
     response = simulate(replace(problem, impacts=1, duration=None))

@@ -7,7 +7,7 @@ import numpy as np
 from vibroimpact.reproduction.printed import printed
 from vibroimpact.reproduction.row import Account, Row
 from vibroimpact.reproduction.runs import DAMPINGS, IMPACTS, Runs
-from vibroimpact.reproduction.sampling import QUANTITIES, error_range, found_spacing
+from vibroimpact.reproduction.sampling import QUANTITIES, error_range, found_spacing, table2_error
 from vibroimpact.reproduction.section import Section
 
 
@@ -21,9 +21,9 @@ def table2(runs: Runs) -> Section:
                 spacing = found_spacing(runs, (damping, impact) if quantity == "compression" else None)
                 low, high = _magnitudes(*error_range(runs, spacing, quantity, damping, impact))
                 reason = f"peaks read off samples {1e6 * spacing:.0f} µs apart give {low:.2f} to {high:.2f} %"
-                value = printed(f"table2.{quantity}.{damping}.{impact}")
+                value = table2_error(quantity, damping, impact)
                 rows.append(Row(value, float(exact), by=f"IMPACT, {damping} damping", accounts=(Account(reason, low, high),)))
-    worst = max((printed(f"table2.compression.variable.{impact}") for impact in IMPACTS), key=lambda value: value.value)
+    worst = max((table2_error("compression", "variable", impact) for impact in IMPACTS), key=lambda value: value.value)
     rows.append(
         Row(printed("worst_compression.variable"), worst.value, by="Table 2", otherwise=f"Table 2 and conclusion (1) have {worst.text} %")
     )

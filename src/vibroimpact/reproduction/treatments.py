@@ -37,9 +37,9 @@ def rows_by_treatment(runs: Runs, kind: int, value: Printed, measure: Measure, u
     }
     if unresolved is not None:
         low, high = unresolved
-        inside = "is among these" if low <= value.value <= high else "is not among these"
-        if inside != "is among these" and Account("", low, high).holds(value):
-            inside = "touches these with its few digits"
+        account = Account("", low, high)
+        few = "touches these with its few digits" if account.holds(value) else "is not among these"
+        inside = "is among these" if account.contains(value) else few
         steps = "in steps fitted to Type 2" if kind == 2 else "in steps found from Type 2"
         words["superposed"] += (
             f". A reading: unresolved, on a coarse mesh and {steps}, it gives {low:.4g} to {high:.4g} {value.unit}, and the printed value "

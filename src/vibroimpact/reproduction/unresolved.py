@@ -178,8 +178,7 @@ def _of_prediction(runs: Runs, rows: tuple[Row, ...]) -> str:
     met, missed = [row for row in predicted if _met(row)], [row for row in predicted if not _met(row)]
     whole = resolved(superposed(runs, 3, "coarse"))
     vague = [row for row in met if abs(whole[_COLUMNS[row.printed.name]] - row.printed.value) <= row.printed.half]
-    ranges = {row.printed.name: row.accounts[0] for row in met}
-    loose = [row for row in met if not ranges[row.printed.name].low <= row.printed.value <= ranges[row.printed.name].high]
+    loose = [row for row in met if not row.accounts[0].contains(row.printed)]
     return (
         f"The same step gives Type 3, where nothing is fitted. Of the {len(predicted)} numbers compared here, {len(met)} are met, as far "
         f"as their digits tell, by the median or in the range over the places of the touch: {_told(met)}. Not met: {_told(missed)}."

@@ -8,7 +8,7 @@ from vibroimpact.reproduction.implicit_euler import PEAKS
 from vibroimpact.reproduction.measures import after_each_impact, column, largest_of, plate_energy_part
 from vibroimpact.reproduction.printed import printed
 from vibroimpact.reproduction.row import Account, Row
-from vibroimpact.reproduction.runs import TREATMENTS, Runs
+from vibroimpact.reproduction.runs import IMPACTS, TREATMENTS, Runs
 from vibroimpact.reproduction.section import Section, Table
 from vibroimpact.reproduction.treatments import rows_by_treatment
 from vibroimpact.reproduction.unresolved import unresolved_range
@@ -82,7 +82,7 @@ def _decay(runs: Runs) -> tuple[Table, str]:
             cells.append((treatment, name, *(f"{100.0 * peak / peaks[0]:.2f}" for peak in peaks)))
             left[name] = float(peaks[-1] / peaks[0])
         slowest += [treatment] if left["acceleration"] == max(left.values()) else []
-    headers = ("Treatment", "Peak of the plate's centre of mass", *(f"Impact {number} [%]" for number in range(1, 6)))
+    headers = ("Treatment", "Peak of the plate's centre of mass", *(f"Impact {number} [%]" for number in IMPACTS))
     where = f"this holds in these treatments: {', '.join(slowest)}" if slowest else "this holds in none of the three treatments"
     words = (
         "The paper says that from impact to impact the acceleration of the plate's centre of mass decreases more slowly than its "

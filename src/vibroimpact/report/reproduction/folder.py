@@ -63,10 +63,13 @@ def reproduce_paper(
         If there is no part of a name, something else is there already, or it can't be written to.
     """
     folder, there = Path(directory), is_reproduction(Path(directory)) and not force
-    names = (missing_parts(folder) if there else PARTS) if only is None else [only] if isinstance(only, str) else only
-    if there and not names:
-        raise InputError(f"{folder}: all parts are there already; make some of them anew with --only, or all with --force")
-    parts = find_parts(names)
+    if isinstance(only, str):
+        only = [only]
+    elif only is None:
+        only = missing_parts(folder) if there else list(PARTS)
+        if not only:
+            raise InputError(f"{folder}: all parts are there already; make some of them anew with --only, or all with --force")
+    parts = find_parts(only)
     if not there:
         with new_folder(folder, force=force) as working:
             summary = {"name": "the paper, reproduced", "version": __version__, "reproduction": True}

@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterable, Sequence
 
 from vibroimpact.quantity import MISSING, digits
+from vibroimpact.report.markdown_table import markdown_table
 from vibroimpact.report.reproduction.drawing import Drawing
 from vibroimpact.reproduction.printed import Printed
 from vibroimpact.reproduction.row import Row
@@ -117,6 +118,4 @@ def _unit(value: Printed) -> str:
 
 def table(headers: Sequence[str], cells: Iterable[Sequence[str]]) -> str:
     """Return a table as Markdown; its words are taken as they stand."""
-    lines = ["| " + " | ".join(map(plain, headers)) + " |", "|" + " --- |" * len(headers)]
-    lines += ["| " + " | ".join(map(plain, line)) + " |" for line in cells]
-    return "\n".join(lines)
+    return markdown_table([plain(header) for header in headers], ([plain(cell) for cell in line] for line in cells))

@@ -10,7 +10,6 @@ from matplotlib.axes import Axes
 from vibroimpact.report.layout import heading, label_vertical, new_figure, row_of_axes, wide_axes
 from vibroimpact.report.reproduction.drawing import Drawing
 from vibroimpact.report.style import ACCENT, CONTACT, INK, MARK
-from vibroimpact.reproduction.printed import printed
 from vibroimpact.reproduction.runs import DAMPINGS, IMPACTS, Runs
 from vibroimpact.reproduction.sampling import (
     CONTACTS,
@@ -22,6 +21,7 @@ from vibroimpact.reproduction.sampling import (
     implied_instants,
     output_step,
     peaks,
+    table2_error,
 )
 
 _APART = 0.19
@@ -72,7 +72,7 @@ def _draw_errors(axes: Axes, runs: Runs, quantity: str, step: float, spacing: fl
             ends += [low, high]
             least, most = error_range(runs, step, quantity, damping, impact)
             exact = error_range(runs, 0.0, quantity, damping, impact)[0]
-            value = printed(f"table2.{quantity}.{damping}.{impact}").value
+            value = table2_error(quantity, damping, impact).value
             label = f"samples {1e3 * step:.2f} ms apart, beyond the picture" if first and side < 0 else None
             axes.bar(at, most - least, _WIDTHS[0], bottom=least, color="#efefef", linewidth=0.0, zorder=1, label=label)
             label = f"samples {1e6 * spacing:.0f} µs apart, {damping} damping" if first else None
@@ -103,7 +103,7 @@ def _draw_contact(axes: Axes, runs: Runs, damping: str, impact: int, step: float
         simulation, theory = (peaks(runs)[name, quantity, impact] for name in (damping, "theory"))
         part = 100.0 / theory.value
         axes.plot(1e6 * simulation.times, part * simulation.values, color=colour, linestyle=dashes, label=f"{quantity} of the simulation")
-        value = 100.0 - printed(f"table2.{quantity}.{damping}.{impact}").value
+        value = 100.0 - table2_error(quantity, damping, impact).value
         moments = [1e6 * time for time in implied_instants(runs, quantity, damping, impact)]
         axes.plot(
             moments,
