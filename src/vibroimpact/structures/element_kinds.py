@@ -121,11 +121,15 @@ def _tensor_lagrange(order: int, points: NDArray[np.float64]) -> Shape:
 
 
 def _lagrange(order: int, x: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    powers = np.arange(order + 1)
-    coefficients = np.linalg.inv(np.vander(powers / order, increasing=True))
+    powers, coefficients = np.arange(order + 1), _lagrange_coefficients(order)
     values = x[:, None] ** powers
     slopes = powers * x[:, None] ** np.maximum(powers - 1, 0)
     return values @ coefficients, slopes @ coefficients
+
+
+@cache
+def _lagrange_coefficients(order: int) -> NDArray[np.float64]:
+    return np.asarray(np.linalg.inv(np.vander(np.arange(order + 1) / order, increasing=True)))
 
 
 def _kind(name: str, reference: NDArray[np.float64], corners: int, element: str, degree: int) -> ElementKind:

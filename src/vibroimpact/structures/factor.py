@@ -18,7 +18,8 @@ _LEAF = 40  # nodes of the smallest part; smaller ones gain nothing
 _PART_OF_MEMORY = 0.8  # of what is free: the rest of the work needs some too
 _NOTHING = 1e-15  # relative to the diagonal
 _MOST_INDEXED = 71_000_000  # entries; SuperLU reserves thirty times as many, and numbers them with 32 bits
-_BYTES = 12.0  # for each entry of the factors: the number and its row
+BYTES = 12.0
+"""For each entry of a sparse matrix, or of its factors: the number and its row."""
 
 
 class Factors:
@@ -53,6 +54,11 @@ class Factors:
     def entries(self) -> int:
         """How many numbers the factors hold."""
         return int(self._factors.nnz)
+
+    @property
+    def size(self) -> float:
+        """About how many bytes they take."""
+        return BYTES * self.entries
 
     def negative_pivots(self) -> int:
         """Return how many pivots are negative: as many as the matrix has negative eigenvalues (Sylvester's law of inertia)."""
@@ -161,7 +167,7 @@ def check_memory(dofs: int, entries: float) -> None:
     InputError
         With the estimate and what is free.
     """
-    check_room(_BYTES * entries, f"the factors of {dofs} degrees of freedom need", "use larger elements")
+    check_room(BYTES * entries, f"the factors of {dofs} degrees of freedom need", "use larger elements")
 
 
 def check_room(need: float, what: str, remedy: str = "ask for fewer, or use larger elements") -> None:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -58,6 +59,37 @@ class ModalModel:
     def is_held_vertically(self) -> bool:
         """Do the supports stop every rigid motion that has a vertical part?"""
         return not np.abs(self.left[:, 2:5]).max(initial=0.0) > 1e-6 * np.abs(self.left).max(initial=0.0)
+
+    @property
+    def size(self) -> int:
+        """About how many bytes it takes."""
+        connectivity = sum(block.connectivity.nbytes for block in self.mesh.blocks)
+        return int(self.shapes.nbytes + self.mesh.nodes.nbytes + connectivity)
+
+    def scaled(self, length: float, density: float, youngs_modulus: float) -> ModalModel:
+        r"""Return the modes of a similar body, of the same Poisson's ratio and of solid elements.
+
+        Parameters
+        ----------
+        length, density, youngs_modulus : float
+            How many times longer, denser and stiffer it is [-], > 0.
+
+        Notes
+        -----
+        Lengths are the only scale of the geometry, and the speed of waves goes with :math:`\sqrt{E/\rho}`: angular frequencies go
+        with :math:`\sqrt{E/\rho}\,/L`, and shapes of unit modal mass with :math:`(\rho L^3)^{-1/2}`.
+        """
+        mass, turning = density * length**3, np.repeat([1.0, length], 3)
+        properties = self.properties
+        return replace(
+            self,
+            mesh=replace(self.mesh, nodes=length * self.mesh.nodes),
+            properties=MassProperties(mass * properties.mass, length * properties.centre, mass * length**2 * properties.inertia),
+            angular_frequencies=math.sqrt(youngs_modulus / density) / length * self.angular_frequencies,
+            shapes=self.shapes / math.sqrt(mass),
+            participation=math.sqrt(mass) * turning * self.participation,
+            left=self.left / turning,
+        )
 
     def displacements(self, mode: int) -> Floats:
         """Return how the nodes move in a mode (from 0), shape (nodes, 3) [kg^-1/2]."""

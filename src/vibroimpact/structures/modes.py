@@ -10,7 +10,7 @@ from scipy.linalg import qr
 from scipy.sparse import csr_array
 
 from vibroimpact.errors import ComputationError, InputError
-from vibroimpact.structures.factor import Factors, check_room
+from vibroimpact.structures.factor import BYTES, Factors, check_room
 from vibroimpact.structures.lanczos import lowest_modes
 from vibroimpact.structures.mesh import Floats, Integers
 
@@ -91,6 +91,11 @@ class Elastic:
         self._factors = Factors(csr_array(matrix), inner[inner >= 0])
         self._heavy = mass.diagonal() > 0.0  # not so the slopes of a thin plate
         self._refuse_mechanisms()
+
+    @property
+    def size(self) -> float:
+        """About how many bytes it takes."""
+        return self._factors.size + BYTES * float(self.stiffness.nnz + self.mass.nnz)
 
     def static(self, load: Floats) -> Floats:
         """Return the static response to loads, shape (n,) or (n, loads).

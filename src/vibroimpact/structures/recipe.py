@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
 import numpy as np
@@ -15,10 +15,11 @@ from vibroimpact.structures.mesh import Floats, Integers, Mesh
 from vibroimpact.structures.modal_model import ModalModel, modal_model
 from vibroimpact.structures.modes import Eigenmodes, Elastic, Progress
 from vibroimpact.structures.plate_mesh import plate_mesh, solid_plate_mesh
+from vibroimpact.structures.recent import Recent
 from vibroimpact.structures.rectangle import Disc
 from vibroimpact.structures.reduction import attachment_modes, craig_bampton, projected
 from vibroimpact.structures.sphere_mesh import sphere_mesh
-from vibroimpact.structures.store import key_of, load_model, save_model
+from vibroimpact.structures.store import has_model, key_of, load_model, save_model, store_folder
 from vibroimpact.structures.structure import Structure, plate_structure, solid_structure
 from vibroimpact.structures.supports.constraints import HeldStructure
 from vibroimpact.structures.supports.support import Support, held_by
@@ -26,6 +27,8 @@ from vibroimpact.structures.surface import Side, Spot, place_of, surface_motion
 
 Place = tuple[Spot, Side]
 """A spot, and the side of the body that it is on."""
+
+_RECENT = Recent[ModalModel](most=500e6)
 
 
 @dataclass(frozen=True)
@@ -147,6 +150,9 @@ class Recipe:
 def modal_model_of(recipe: Recipe, progress: Progress | None = None, tell: Callable[[str], None] | None = None) -> ModalModel:
     """Return the modal model of a recipe, from the store if it is there.
 
+    What was read is shared by all who ask in one process, so that many problems of one plate hold it once: leave it unchanged.
+    The first so many modes of a free sphere are computed once for a Poisson's ratio, and scaled.
+
     Parameters
     ----------
     recipe : Recipe
@@ -163,15 +169,45 @@ def modal_model_of(recipe: Recipe, progress: Progress | None = None, tell: Calla
     ComputationError
         If the modes can't be computed.
     """
-    key, say = key_of(recipe), tell or (lambda text: None)
+    similar = _similar(recipe)
+    model = _kept_model(similar, progress, tell or (lambda text: None))
+    if similar is recipe:
+        return model
+    assert isinstance(recipe.shape, SphereOfSolids)
+    return model.scaled(recipe.shape.radius, recipe.density, recipe.youngs_modulus)
+
+
+def is_computed(recipe: Recipe) -> bool:
+    """Are the modes of a recipe in the store?"""
+    return has_model(key_of(_similar(recipe)))
+
+
+def _similar(recipe: Recipe) -> Recipe:
+    """Return the recipe of which the modes are kept: of spheres that differ in size, density or modulus it is one of unit values."""
+    if not isinstance(recipe.shape, SphereOfSolids) or recipe.supports or recipe.reduction.modes is None:
+        return recipe
+    if any(spot is not None for spot, _ in (*recipe.reduction.interface, *recipe.reduction.attachment)):
+        return recipe
+    return replace(recipe, shape=replace(recipe.shape, radius=1.0), density=1.0, youngs_modulus=1.0)
+
+
+def _kept_model(recipe: Recipe, progress: Progress | None, say: Callable[[str], None]) -> ModalModel:
+    """Return a model from memory, else from the store, else computed; what the store does not take stays in memory."""
+    key = key_of(recipe)
+    here = f"{store_folder()}/{key}"
+    model = _RECENT.find(here)
+    if model is not None:
+        return model
     model, trouble = load_model(key)
     if trouble:
         say(trouble)
     if model is None:
         model = computed_model(recipe, progress)
         trouble = save_model(key, model)
-        if trouble:
-            say(trouble)
+        if not trouble:
+            return model
+        say(trouble)
+    _RECENT.keep(here, model, model.size)
     return model
 
 

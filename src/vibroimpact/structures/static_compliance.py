@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import csr_array
 
 from vibroimpact.errors import InputError
 from vibroimpact.materials import Material
@@ -22,6 +23,7 @@ from vibroimpact.structures.plate_compliance import (
     through_thickness_term,
 )
 from vibroimpact.structures.plate_element import shear_factor
+from vibroimpact.structures.recent import Recent
 from vibroimpact.structures.recipe import PlateOfPlates, Recipe, Reduction
 from vibroimpact.structures.store import key_of, load_entry, save_entry
 from vibroimpact.structures.supports.constraints import HeldStructure
@@ -32,6 +34,7 @@ _KIND = "compliance"
 _FACES: tuple[Side, Side] = ("upper", "lower")
 _RADIUS = 0.75  # of the disc, thicknesses: elements of that size suffice
 _STILL = 1e-6
+_LAST = Recent[tuple[HeldStructure, Elastic]](most=500e6)
 
 
 def static_compliance(recipe: Recipe, place: tuple[float, float], side: Side = "upper", tell: Callable[[str], None] | None = None) -> float:
@@ -88,25 +91,41 @@ def static_compliance(recipe: Recipe, place: tuple[float, float], side: Side = "
 
 def computed_compliance(recipe: Recipe, place: tuple[float, float], side: Side = "upper") -> float:
     """Compute the structural compliance of a held plate; takes and raises what `static_compliance` does."""
-    material = Material(recipe.density, recipe.youngs_modulus, recipe.poissons_ratio)
-    structure = recipe.shape.structure(recipe.shape.mesh(recipe.supports), material)
+    held, elastic = _factorised(recipe)
+    structure, material = held.structure, _material(recipe)
     top, bottom = (surface_motion(structure.mesh, np.array([place]), face, structure.thickness)[1] for face in _FACES)
     thickness = float(np.linalg.norm(top - bottom))
-    held = held_by(structure, recipe.supports)
-    if np.abs(held.left[:, 2:5]).max(initial=0.0) > _STILL * np.abs(held.left).max(initial=0.0):
-        raise InputError("the supports let the body move vertically; a static compliance needs supports that stop it")
     thin = isinstance(recipe.shape, PlateOfPlates) and recipe.shape.theory == "thin"
     factor = math.inf if thin else shear_factor(material.poissons_ratio)
-    elastic = thickness, material.youngs_modulus, material.poissons_ratio
+    layer = thickness, material.youngs_modulus, material.poissons_ratio
     if structure.mesh.is_flat:
         average = plate_theory_average(_RADIUS * thickness, thickness, material.poissons_ratio, factor)
-        correction = plate_theory_term(*elastic, factor, average)
+        correction = plate_theory_term(*layer, factor, average)
     else:
         average = through_thickness_average(_RADIUS * thickness)
-        correction = through_thickness_term(*elastic, average)
+        correction = through_thickness_term(*layer, average)
     upper, lower = _faces(held, place, average)
     load, seen = (upper, lower) if side == "upper" else (lower, upper)
-    return float(seen @ Elastic(held.stiffness, held.mass, held.rigid, held.order).static(load)) + correction
+    return float(seen @ elastic.static(load)) + correction
+
+
+def _material(recipe: Recipe) -> Material:
+    return Material(recipe.density, recipe.youngs_modulus, recipe.poissons_ratio)
+
+
+def _factorised(recipe: Recipe) -> tuple[HeldStructure, Elastic]:
+    """Return a body as its supports hold it and its statics; the last one is at hand, for drops on other places of one plate."""
+    key = key_of(recipe)
+    found = _LAST.find(key)
+    if found is None:
+        _LAST.clear()  # before the memory is needed
+        structure = recipe.shape.structure(recipe.shape.mesh(recipe.supports), _material(recipe))
+        held = held_by(structure, recipe.supports)
+        if np.abs(held.left[:, 2:5]).max(initial=0.0) > _STILL * np.abs(held.left).max(initial=0.0):
+            raise InputError("the supports let the body move vertically; a static compliance needs supports that stop it")
+        found = held, Elastic(held.stiffness, held.mass, held.rigid, held.order)
+        _LAST.keep(key, found, found[1].size)
+    return found
 
 
 def _faces(held: HeldStructure, place: tuple[float, float], average: Average) -> list[Floats]:
@@ -114,24 +133,31 @@ def _faces(held: HeldStructure, place: tuple[float, float], average: Average) ->
     mesh = held.structure.mesh
     discs, weights = disc_points(UNIFORM)
     places = np.asarray(place) + average.radius * discs
-    inside = _lie_on(mesh, places)
-    weights = np.where(inside, weights * average.weights(discs), 0.0)
+    inside, motions = _on_body(mesh, places)
     if not inside.any():
         raise InputError(f"the body is too narrow at ({place[0]:g}, {place[1]:g}) m to be taken for a plate")
-    places, weights = places[inside], weights[inside] / weights.sum()
-    return [(weights @ surface_motion(mesh, places, face)[0][2::3]) @ held.expansion for face in _FACES]
+    weights = np.where(inside, weights * average.weights(discs), 0.0)
+    weights = weights[inside] / weights.sum()
+    return [(weights @ motion) @ held.expansion for motion in motions]
 
 
-def _lie_on(mesh: Mesh, places: Floats) -> NDArray[np.bool_]:
-    """Return which places lie on the body: first those in the box around it are asked for at once, as it is quick."""
+def _on_body(mesh: Mesh, places: Floats) -> tuple[NDArray[np.bool_], list[csr_array]]:
+    """Return which places lie on the body, and how these move vertically on either face.
 
-    def lie(some: Floats) -> bool:
-        try:
-            for face in _FACES:
-                surface_motion(mesh, some, face)
-        except InputError:
-            return False
-        return True
-
+    First those in the box around the body are asked for at once, as it is quick.
+    """
     in_box = ((places >= mesh.nodes[:, :2].min(axis=0)) & (places <= mesh.nodes[:, :2].max(axis=0))).all(axis=1)
-    return in_box if in_box.any() and lie(places[in_box]) else np.array([lie(place) for place in places])
+    if in_box.any() and (motions := _vertical_motions(mesh, places[in_box])):
+        return in_box, motions
+    inside = np.array([bool(_vertical_motions(mesh, place)) for place in places])
+    return inside, _vertical_motions(mesh, places[inside]) if inside.any() else []
+
+
+def _vertical_motions(mesh: Mesh, places: Floats) -> list[csr_array]:
+    """Return how places move vertically with the degrees of freedom, on either face; nothing if one lies beside the body."""
+    try:
+        if mesh.is_flat:  # a plate element has no thickness to be squeezed
+            return 2 * [surface_motion(mesh, places)[0][2::3]]
+        return [surface_motion(mesh, places, face)[0][2::3] for face in _FACES]
+    except InputError:
+        return []
