@@ -21,9 +21,11 @@ from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.simulate import simulate
 from vibroimpact.errors import InputError
 from vibroimpact.structures.modal_model import ModalBasis, ModalModel
+from vibroimpact.structures.recipe import model_key
 from vibroimpact.structures.sphere_compliance import sphere_term
-from vibroimpact.structures.static_compliance import static_compliance
-from vibroimpact.structures.surface import place_of
+from vibroimpact.structures.static_compliance import compliance_key, static_compliance
+from vibroimpact.structures.store import carry
+from vibroimpact.structures.surface import Side, place_of
 
 if TYPE_CHECKING:
     from vibroimpact.cases.schema import Case
@@ -105,20 +107,43 @@ def coupling_of(case: Case, progress: Callable[[float], None] | None = None, tel
     return Coupling(modes, series, facts, {name: body.model for name, body in bodies.items()})
 
 
+def carried_modes(case: Case) -> dict[str, bytes]:
+    """Return the entries of the store that a case needs, so that a process on another disk computes no modes for it.
+
+    That process hands them to `vibroimpact.structures.store.receive`. What is not in the store yet is computed.
+
+    Raises
+    ------
+    InputError
+        What `coupling_of` raises.
+    """
+    keys: list[str] = []
+    for name, body in (compute_modes(case) if elastic_names(case) else {}).items():
+        keys.append(model_key(body.body.recipe))
+        if name == "plate" and treatment_of(case) != "superposed":
+            _plate_compliance(body, None)
+            keys.append(compliance_key(body.body.recipe, *_met(body)))
+    return carry(keys)
+
+
 def _compliance(basis: ModalBasis) -> float:
     """Return the static compliance of modes at their contact point [m/N]."""
     return float(((basis.contact / basis.angular_frequencies) ** 2).sum())
 
 
 def _plate_compliance(body: BodyModes, tell: Callable[[str], None] | None) -> float:
-    place = place_of(body.model.mesh, body.body.contact, body.body.side)
-    return static_compliance(body.body.recipe, place, body.body.side, tell)
+    return static_compliance(body.body.recipe, *_met(body), tell)
+
+
+def _met(body: BodyModes) -> tuple[tuple[float, float], Side]:
+    """Return where the other body is met, and on which side."""
+    return place_of(body.model.mesh, body.body.contact, body.body.side), body.body.side
 
 
 def _averaged(body: BodyModes, radius: float) -> ModalBasis:
     """Return the modes of a sphere, the contact point averaged over the contact patch: at a point they have no limit."""
-    place = place_of(body.model.mesh, body.body.contact, body.body.side)
-    shapes = body.model.averaged(place, radius, body.body.side, "the contact patch")
+    place, side = _met(body)
+    shapes = body.model.averaged(place, radius, side, "the contact patch")
     return replace(body.basis, contact=shapes[:, 2])
 
 

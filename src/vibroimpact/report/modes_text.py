@@ -14,7 +14,8 @@ from vibroimpact.bodies.elastic import ElasticBody
 from vibroimpact.cases.build_elastic import elastic_bodies
 from vibroimpact.cases.modes import BodyModes
 from vibroimpact.cases.schema import Case
-from vibroimpact.structures.recipe import is_computed
+from vibroimpact.structures.recipe import model_key
+from vibroimpact.structures.store import has_model
 from vibroimpact.structures.surface import place_of, surface_motion
 
 _ROWS = 20
@@ -83,7 +84,7 @@ def elastic_rows(case: Case) -> list[tuple[str, str]]:
         elements = ", ".join(f"{len(block.connectivity)} {block.kind}" for block in mesh.blocks)
         reduction = body.recipe.reduction
         kept = f"{reduction.modes} modes" if reduction.modes else f"modes up to {reduction.max_frequency:g} Hz"
-        stored = "computed already" if is_computed(body.recipe) else "not computed yet"
+        stored = "computed already" if has_model(model_key(body.recipe)) else "not computed yet"
         rows += [
             (
                 f"elastic {name}",

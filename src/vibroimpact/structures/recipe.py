@@ -19,7 +19,7 @@ from vibroimpact.structures.recent import Recent
 from vibroimpact.structures.rectangle import Disc
 from vibroimpact.structures.reduction import attachment_modes, craig_bampton, projected
 from vibroimpact.structures.sphere_mesh import sphere_mesh
-from vibroimpact.structures.store import has_model, key_of, load_model, save_model, store_folder
+from vibroimpact.structures.store import key_of, load_model, save_model, store_folder
 from vibroimpact.structures.structure import Structure, plate_structure, solid_structure
 from vibroimpact.structures.supports.constraints import HeldStructure
 from vibroimpact.structures.supports.support import Support, held_by
@@ -177,9 +177,9 @@ def modal_model_of(recipe: Recipe, progress: Progress | None = None, tell: Calla
     return model.scaled(recipe.shape.radius, recipe.density, recipe.youngs_modulus)
 
 
-def is_computed(recipe: Recipe) -> bool:
-    """Are the modes of a recipe in the store?"""
-    return has_model(key_of(_similar(recipe)))
+def model_key(recipe: Recipe) -> str:
+    """Return the key under which the store has the modes of a recipe."""
+    return key_of(_similar(recipe))
 
 
 def _similar(recipe: Recipe) -> Recipe:

@@ -76,8 +76,7 @@ def static_compliance(recipe: Recipe, place: tuple[float, float], side: Side = "
     >>> round(static_compliance(recipe, (0.0, 0.0)) * stiffness / 0.5**2, 4)  # 0.0116 is Navier's
     0.0116
     """
-    recipe, say = replace(recipe, reduction=Reduction()), tell or (lambda text: None)
-    key = key_of(["static compliance", recipe, place, side])
+    key, say = compliance_key(recipe, place, side), tell or (lambda text: None)
     found, trouble = load_entry(key, _KIND, lambda parts: float(parts[_KIND].item()))
     if trouble:
         say(trouble)
@@ -87,6 +86,11 @@ def static_compliance(recipe: Recipe, place: tuple[float, float], side: Side = "
         if trouble:
             say(trouble)
     return found
+
+
+def compliance_key(recipe: Recipe, place: tuple[float, float], side: Side = "upper") -> str:
+    """Return the key under which the store has the compliance of a plate at a place."""
+    return key_of(["static compliance", replace(recipe, reduction=Reduction()), place, side])
 
 
 def computed_compliance(recipe: Recipe, place: tuple[float, float], side: Side = "upper") -> float:
@@ -115,7 +119,7 @@ def _material(recipe: Recipe) -> Material:
 
 def _factorised(recipe: Recipe) -> tuple[HeldStructure, Elastic]:
     """Return a body as its supports hold it and its statics; the last one is at hand, for drops on other places of one plate."""
-    key = key_of(recipe)
+    key = key_of(replace(recipe, reduction=Reduction()))
     found = _LAST.find(key)
     if found is None:
         _LAST.clear()  # before the memory is needed

@@ -9,13 +9,14 @@ import math
 import os
 import tempfile
 import zlib
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any, TypeVar
 
 import numpy as np
 
 from vibroimpact._version import __version__
+from vibroimpact.errors import InputError
 from vibroimpact.structures.geometry import MassProperties
 from vibroimpact.structures.mesh import ElementBlock, Mesh
 from vibroimpact.structures.modal_model import ModalModel
@@ -116,17 +117,19 @@ def load_entry(key: str, kind: str, read: Callable[[Mapping[str, Any]], Content]
 
 
 def save_entry(key: str, kind: str, parts: Mapping[str, Any]) -> str:
-    """Keep arrays under a key; return what prevented it, or "".
+    """Keep arrays under a key; return what prevented it, or ""."""
+    return _put(key, kind, _packed(parts))
 
-    The entry appears whole or not at all, so that several processes may save and load at once.
-    """
+
+def _put(key: str, kind: str, pieces: Iterable[bytes]) -> str:
+    """Write an entry; it appears whole or not at all, so that several processes may save and load at once."""
     folder = store_folder()
     try:
         folder.mkdir(parents=True, exist_ok=True)
         handle, name = tempfile.mkstemp(prefix=f".{key}.", dir=folder)
         try:
             with os.fdopen(handle, "wb") as file:
-                file.writelines(_packed(parts))
+                file.writelines(pieces)
             os.replace(name, _path(key, kind))
         except BaseException:
             Path(name).unlink(missing_ok=True)
@@ -134,6 +137,46 @@ def save_entry(key: str, kind: str, parts: Mapping[str, Any]) -> str:
         _make_room(folder)
     except OSError as error:
         return f"the {kind} can't be kept in {folder} ({error.strerror}) and will be computed again next time"
+    return ""
+
+
+def carry(keys: Iterable[str]) -> dict[str, bytes]:
+    """Return the entries under some keys as bytes, by the names of their files: for a process that does not see this disk.
+
+    What is not in the store is left out; who receives the others computes it.
+
+    Examples
+    --------
+    >>> carry(["none has this key"])
+    {}
+    """
+    paths = [_path(key, kind) for key in keys for kind in KINDS]
+    return {path.name: path.read_bytes() for path in paths if path.is_file()}
+
+
+def receive(entries: Mapping[str, bytes]) -> str:
+    """Take what `carry` gave into this store; return what prevented it, or "".
+
+    Parameters
+    ----------
+    entries : mapping of str to bytes
+        Those that are here already stay as they are.
+
+    Raises
+    ------
+    InputError
+        If one is no entry, or was damaged on its way.
+    """
+    for name, data in entries.items():
+        key, _, kind = name.partition(".")
+        if not (key.isalnum() and kind in KINDS):
+            raise InputError(f'"{name}" is not the name of an entry of the store')
+        try:
+            _unpacked(data)
+        except ValueError as error:
+            raise InputError(f"the entry {name} was damaged on its way ({error}); send it again") from None
+        if not _path(key, kind).is_file() and (trouble := _put(key, kind, [data])):
+            return trouble
     return ""
 
 
