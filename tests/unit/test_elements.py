@@ -6,6 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+import skfem
 from scipy.optimize import brentq
 
 from vibroimpact.errors import InputError
@@ -55,6 +56,16 @@ def test_shape_functions(kind: str) -> None:
         shift = step * np.eye(element.dimension)[axis]
         difference = (element.basis(points + shift)[0] - element.basis(points - shift)[0]) / (2 * step)
         np.testing.assert_allclose(gradients[:, axis], difference, atol=1e-8)
+
+
+def test_the_brick_of_27_nodes_is_that_of_scikit_fem() -> None:
+    element, other = ELEMENT_KINDS["hex27"], skfem.ElementHex2()
+    points = np.random.default_rng(0).uniform(-0.5, 1.5, (20, 3))
+    values, gradients = element.basis(points)
+    for node, place in enumerate(element.reference):
+        value, gradient = other.lbasis(points.T, int(np.abs(np.asarray(other.doflocs) - place).max(axis=1).argmin()))
+        np.testing.assert_allclose(values[:, node], value, atol=1e-12)
+        np.testing.assert_allclose(gradients[:, :, node], gradient.T, atol=1e-12)
 
 
 @pytest.mark.parametrize("kind", SOLIDS)
