@@ -259,6 +259,18 @@ def test_what_was_not_used_for_longest_goes_first(folder: Path, monkeypatch: pyt
     assert {path.stem for path in entries()} == {"used", "last"}
 
 
+def test_a_store_of_thousands_is_not_looked_through_for_every_entry(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A study saves one small entry a drop; only what adds up to a hundredth of the room is worth a look."""
+    looked: list[int] = []
+    monkeypatch.setattr(store, "entries", lambda: looked.append(1) or [])
+    monkeypatch.setattr(store, "_written", [0.0])
+    size = sum(map(len, store._packed({"value": np.zeros(1)})))
+    monkeypatch.setattr(store, "_LARGEST", 1000 * size)
+    for number in range(25):
+        store.save_entry(f"{number}", "compliance", {"value": np.zeros(1)})
+    assert len(looked) == 2
+
+
 def test_where_it_is(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv("VIBROIMPACT_STORE")
     assert store_folder().parts[-2:] == ("vibroimpact", "modes")

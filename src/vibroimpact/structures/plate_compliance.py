@@ -13,6 +13,7 @@ holds them.
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -21,6 +22,7 @@ import numpy as np
 
 from vibroimpact.structures.mesh import Floats
 
+_PLATES = 64  # whose terms are at hand, for other places on them
 _NODES = 16  # of Gauss's rule on each part of an integral
 _DEEPEST = 40.0  # wave number times thickness: beyond it the faces know nothing of each other
 _FINEST = 100.0  # wave number times radius: what is beyond it is 1e-6 of the term
@@ -58,6 +60,7 @@ def through_thickness_average(radius: float) -> Average:
     return Average(radius, 3.0)
 
 
+@functools.lru_cache(maxsize=_PLATES)
 def through_thickness_term(thickness: float, youngs_modulus: float, poissons_ratio: float, average: Average) -> float:
     r"""Return the structural compliance of a plate less the response of its other face under an average [m/N].
 
@@ -101,6 +104,7 @@ def plate_theory_average(radius: float, thickness: float, poissons_ratio: float,
     return Average(radius, 3.0 - 6.0 * mean_square / radius**2)
 
 
+@functools.lru_cache(maxsize=_PLATES)
 def plate_theory_term(thickness: float, youngs_modulus: float, poissons_ratio: float, shear_factor: float, average: Average) -> float:
     r"""Return the structural compliance of a plate less what plate theory has under an average [m/N].
 

@@ -26,6 +26,7 @@ from vibroimpact.structures.plate_element import shear_factor
 from vibroimpact.structures.recent import Recent
 from vibroimpact.structures.recipe import PlateOfPlates, Recipe, Reduction
 from vibroimpact.structures.store import key_of, load_entry, save_entry
+from vibroimpact.structures.structure import Structure
 from vibroimpact.structures.supports.constraints import HeldStructure
 from vibroimpact.structures.supports.support import held_by
 from vibroimpact.structures.surface import Side, surface_motion
@@ -97,8 +98,7 @@ def computed_compliance(recipe: Recipe, place: tuple[float, float], side: Side =
     """Compute the structural compliance of a held plate; takes and raises what `static_compliance` does."""
     held, elastic = _factorised(recipe)
     structure, material = held.structure, _material(recipe)
-    top, bottom = (surface_motion(structure.mesh, np.array([place]), face, structure.thickness)[1] for face in _FACES)
-    thickness = float(np.linalg.norm(top - bottom))
+    thickness = _thickness(structure, place)
     thin = isinstance(recipe.shape, PlateOfPlates) and recipe.shape.theory == "thin"
     factor = math.inf if thin else shear_factor(material.poissons_ratio)
     layer = thickness, material.youngs_modulus, material.poissons_ratio
@@ -111,6 +111,20 @@ def computed_compliance(recipe: Recipe, place: tuple[float, float], side: Side =
     upper, lower = _faces(held, place, average)
     load, seen = (upper, lower) if side == "upper" else (lower, upper)
     return float(seen @ elastic.static(load)) + correction
+
+
+def _thickness(structure: Structure, place: tuple[float, float]) -> float:
+    """Return the thickness [m] of a body at a place.
+
+    Raises
+    ------
+    InputError
+        If it is not on the body.
+    """
+    top = surface_motion(structure.mesh, np.array([place]))[1]
+    if structure.mesh.is_flat:
+        return structure.thickness
+    return float(np.linalg.norm(top - surface_motion(structure.mesh, np.array([place]), "lower")[1]))
 
 
 def _material(recipe: Recipe) -> Material:

@@ -9,7 +9,7 @@ import math
 import os
 import tempfile
 import zlib
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -28,6 +28,7 @@ PLACE = "VIBROIMPACT_STORE"
 """The environment variable that moves the store."""
 
 _LARGEST = 4_000_000_000  # bytes; the entries that were not used for longest go first
+_SLACK = 0.01  # of that: so much is written before the folder is looked through again, as it may have thousands of entries
 _MODES = "modes"
 KINDS = (_MODES, "compliance")
 """What entries hold, and how their names end."""
@@ -121,7 +122,7 @@ def save_entry(key: str, kind: str, parts: Mapping[str, Any]) -> str:
     return _put(key, kind, _packed(parts))
 
 
-def _put(key: str, kind: str, pieces: Iterable[bytes]) -> str:
+def _put(key: str, kind: str, pieces: Sequence[bytes]) -> str:
     """Write an entry; it appears whole or not at all, so that several processes may save and load at once."""
     folder = store_folder()
     try:
@@ -134,7 +135,7 @@ def _put(key: str, kind: str, pieces: Iterable[bytes]) -> str:
         except BaseException:
             Path(name).unlink(missing_ok=True)
             raise
-        _make_room(folder)
+        _make_room(sum(map(len, pieces)))
     except OSError as error:
         return f"the {kind} can't be kept in {folder} ({error.strerror}) and will be computed again next time"
     return ""
@@ -234,7 +235,15 @@ def clear_store() -> int:
     return len(found)
 
 
-def _make_room(folder: Path) -> None:
+_written = [math.inf]  # bytes, since this process looked
+
+
+def _make_room(size: int) -> None:
+    """Count what was written, and now and then remove what was not used for longest."""
+    _written[0] += size
+    if _written[0] < _SLACK * _LARGEST:
+        return
+    _written[0] = 0.0
     found = entries()
     total = sum(path.stat().st_size for path in found)
     for path in found[:-1]:

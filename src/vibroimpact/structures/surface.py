@@ -41,8 +41,9 @@ class Faces:
     def slopes(self, local: Floats) -> tuple[Floats, Floats]:
         """Return shape functions (points, nodes) and their derivatives along the face (points, 2, nodes)."""
         values, gradients = self.kind.basis(self.places(local))
-        step = 0.5 * np.eye(2)
-        along = np.stack([self.places(local + step[axis]) - self.places(local - step[axis]) for axis in range(2)], axis=1)
+        step = 0.5 * np.stack([np.eye(2), -np.eye(2)])[:, :, None]  # there and back along either axis
+        there, back = self.places((local + step).reshape(-1, 2)).reshape(2, 2, len(local), self.kind.dimension)
+        along = np.ascontiguousarray((there - back).transpose(1, 0, 2))
         return values, np.asarray(along @ gradients)
 
     def beyond(self, local: Floats) -> Floats:
@@ -160,6 +161,8 @@ def surface_motion(mesh: Mesh, places: Floats, side: Side = "upper", thickness: 
         waiting = np.flatnonzero(np.isneginf(best))
         for faces in groups if len(waiting) else []:
             found, face, local = _found(mesh.nodes, faces, places[waiting], start)
+            if not len(found):
+                continue
             values = faces.slopes(local)[0]
             at = np.einsum("pk,pki->pi", values, mesh.nodes[faces.connectivity[face]])
             for index, which in enumerate(waiting[found].tolist()):
