@@ -31,3 +31,16 @@ def close_ledger(energy_in: Floats, sagging: Floats, entries: dict[str, Floats])
     closure = sum(entries.values(), -energy_in)
     relative = np.abs(closure) / (energy_in + sagging)
     return {"input_J": energy_in, **entries, "closure_J": closure, "closure_relative": relative}
+
+
+def why_failed(closure_relative: float) -> str:
+    """Say why a run failed, by its ledger.
+
+    Examples
+    --------
+    >>> why_failed(0.0)
+    'the contact could not be integrated to the tolerance.'
+    """
+    if closure_relative > CLOSURE_LIMIT:
+        return f"the energy ledger does not close: {closure_relative:.2g} of the energy put in is missing (limit {CLOSURE_LIMIT:g})."
+    return "the contact could not be integrated to the tolerance."

@@ -20,7 +20,7 @@ from vibroimpact.contact.phase.glide import Glide
 from vibroimpact.contact.phase.oscillators import FreeMotion
 from vibroimpact.contact.phase.stretch import Stretch
 from vibroimpact.dynamics.columns import HISTORY_COLUMNS, VIBRATION_HISTORY_COLUMNS
-from vibroimpact.dynamics.energy import CLOSURE_LIMIT
+from vibroimpact.dynamics.energy import why_failed
 from vibroimpact.dynamics.flight import Flight
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.recording import Signal, record
@@ -178,7 +178,7 @@ class Response:
         if outcome is Outcome.LEFT:
             return f"The sphere leaves {after} and, without gravity, never comes back."
         if outcome is Outcome.FAILED:
-            return f"Failed {after}: {self._failure()}"
+            return f"Failed {after}: {why_failed(float(self.energy['closure_relative']))}"
         return f"At rest {after}: {self._rest()}"
 
     def _rest(self) -> str:
@@ -191,13 +191,6 @@ class Response:
         speed, last = float(self.rest.speed[0]), float(self.impacts["separation_speed_m_s"][-1])
         limit = f" Bounces with the last restitution would end at {time:.7g} s." if np.isfinite(time) else ""
         return f"it left at {last:.3g} m/s, below the rest speed of {speed:.3g} m/s (rest-speed rule).{limit}"
-
-    def _failure(self) -> str:
-        """Say why the run failed."""
-        closure = float(self.energy["closure_relative"])
-        if closure > CLOSURE_LIMIT:
-            return f"the energy ledger does not close: {closure:.2g} of the energy put in is missing (limit {CLOSURE_LIMIT:g})."
-        return "the contact could not be integrated to the tolerance."
 
     def at(self, times: Any) -> dict[str, Floats]:
         """Return the history of one drop at any times.

@@ -2,27 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
-from dataclasses import replace
 
-import numpy as np
-from numpy.typing import NDArray
-
-from vibroimpact.contact.law import CompliantLaw, ContactLaw, InstantaneousLaw
-from vibroimpact.contact.phase.collocation import Floats
-from vibroimpact.contact.phase.contact import CAPTURED, FAILED, Contact, Drops
-from vibroimpact.contact.phase.contact_phase import contact_phase
-from vibroimpact.contact.phase.encounter import Encounter, encounter_of
-from vibroimpact.contact.phase.oscillators import FreeMotion
-from vibroimpact.contact.phase.peaks import force_peak
-from vibroimpact.contact.phase.warm_starts import WarmStarts
-from vibroimpact.contact.static import static_indentation
-from vibroimpact.dynamics.columns import IMPACT_COLUMNS, VIBRATION_IMPACT_COLUMNS
-from vibroimpact.dynamics.energy import CLOSURE_LIMIT, close_ledger
-from vibroimpact.dynamics.flight import Flight
-from vibroimpact.dynamics.problem import MOST_IMPACTS, Problem, StatesProblem
-from vibroimpact.dynamics.response import Leg, Outcome, Response, Rest
-from vibroimpact.dynamics.vibration import Vibration, contact_of
+from vibroimpact.contact.phase.solve_contact import collocated
+from vibroimpact.dynamics.problem import StatesProblem
+from vibroimpact.dynamics.response import Outcome, Response
+from vibroimpact.dynamics.run import Run
 from vibroimpact.errors import ComputationError, InputError
 
 
@@ -57,6 +43,7 @@ def simulate(problem: StatesProblem, progress: Callable[[float], None] | None = 
     >>> from vibroimpact.bodies.body import Body
     >>> from vibroimpact.bodies.plate import rigid_plate
     >>> from vibroimpact.contact.laws.newton import Newton
+    >>> from vibroimpact.dynamics.problem import Problem
     >>> problem = Problem(sphere=Body(mass=1.0, contact_offset=0.1), plate=rigid_plate(),
     ...                   laws=(Newton(restitution=0.5),), height=1.1, impacts=3)
     >>> simulate(problem).impacts["rebound_height_m"].round(6).tolist()
@@ -64,7 +51,8 @@ def simulate(problem: StatesProblem, progress: Callable[[float], None] | None = 
     """
     if not hasattr(problem, "to_problem"):
         raise InputError(f"simulate takes a Problem, or a case as vi.load_case(...) reads it, not {problem!r}")
-    run = _Run(problem.to_problem())
+    stated = problem.to_problem()
+    run = Run(stated, collocated(stated.tolerance, math.prod(stated.shape)))
     while run.moving.any():
         run.advance()
         if progress is not None:
@@ -73,245 +61,3 @@ def simulate(problem: StatesProblem, progress: Callable[[float], None] | None = 
     if response.problem.shape == () and response.outcomes[0] is Outcome.FAILED:
         raise ComputationError(response.status)
     return response
-
-
-class _Run:
-    """A batch of B drops between impacts; arrays are (B,)."""
-
-    def __init__(self, problem: Problem) -> None:
-        self.problem = problem
-        self.size = int(np.prod(problem.shape))
-        self.mass, self.radius = self.spread(problem.sphere.mass), self.spread(problem.sphere.contact_offset)
-        self.gravity = self.spread(problem.gravity)
-        self.time, self.gap, self.velocity = np.zeros(self.size), np.zeros(self.size), np.zeros(self.size)
-        if problem.height is not None:
-            self.gap = self.spread(problem.height) - self.radius
-        else:
-            self.velocity = -self.spread(problem.speed)
-        self.energy_in = self.mechanical_energy()
-        self.dissipated, self.plastic, self.deepest = np.zeros(self.size), np.zeros(self.size), np.zeros(self.size)
-        self.moving = np.ones(self.size, dtype=bool)
-        self.outcomes = [Outcome.FAILED] * self.size
-        self.end_time, self.rest_time = np.full(self.size, np.nan), np.full(self.size, np.nan)
-        self.sag, self.stored, self.written_off = np.zeros(self.size), np.zeros(self.size), np.zeros(self.size)
-        self.rest_speed = self.default_rest_speed() if problem.rest_speed is None else self.spread(problem.rest_speed)
-        self.warm_starts = WarmStarts(self.size)
-        self.vibration = Vibration(problem, self.size) if problem.vibrates else None
-        self.columns = {**IMPACT_COLUMNS, **(VIBRATION_IMPACT_COLUMNS if self.vibration else {})}
-        self.memories = {name: self.spread(value) for name, value in problem.laws[0].memories().items()}
-        self.legs: list[Leg] = []
-        self.rows: list[dict[str, Floats]] = []
-
-    def spread(self, value: object) -> Floats:
-        return np.array(np.broadcast_to(np.asarray(value, dtype=float), (self.size,)))
-
-    def mechanical_energy(self) -> Floats:
-        return np.asarray(self.mass * (0.5 * self.velocity**2 + self.gravity * self.gap))
-
-    def default_rest_speed(self) -> Floats:
-        law = self.problem.law_of(0)
-        least = 1e-6 * Flight(self.time, self.gap, self.velocity, self.gravity).touch(np.zeros(1))[1]
-        if not isinstance(law, CompliantLaw):
-            return np.asarray(least)
-        sag = static_indentation(law, self.mass * self.gravity) - law.touch_level
-        return np.asarray(np.maximum(np.sqrt(2.0 * self.gravity * sag), least))
-
-    def fraction_done(self) -> float:
-        if not self.moving.any():
-            return 1.0
-        done = len(self.rows) / (self.problem.impacts or MOST_IMPACTS)
-        if self.problem.duration is not None:
-            done = max(done, float(self.time[self.moving].min()) / self.problem.duration)
-        if self.problem.impacts is None and self.rows:  # to rest: the logarithm of the speed falls steadily
-            first = self.rows[0]["approach_speed_m_s"][self.moving]
-            slowed = np.log(first / self.velocity[self.moving]) / np.log(first / self.rest_speed[self.moving])
-            done = max(done, float(np.nanmin(np.clip(slowed, 0.0, 1.0), initial=1.0)))
-        return done
-
-    def law(self) -> ContactLaw:
-        """Return the law of the next impact of all drops, with what they remember of the last."""
-        law = self.problem.law_of(len(self.rows))
-        lasting = self.problem.same_spot and isinstance(law, CompliantLaw) and law.lasting
-        return law.changed(self.memories) if lasting else law
-
-    # one flight and one contact --------------------------------------------------------------------
-
-    def advance(self) -> None:
-        """Fly all moving drops to their next touch and take them through one contact."""
-        drops = np.flatnonzero(self.moving)
-        flight = Flight(self.time[drops], self.gap[drops], self.velocity[drops], self.gravity[drops])
-        law = self.law().take(drops)
-        motions: tuple[FreeMotion, ...] = ()
-        if self.vibration is None:
-            touch, speed = flight.touch(-law.touch_level if isinstance(law, CompliantLaw) else np.zeros(1))
-        else:
-            motions = self.vibration.flights(drops, -self.gap[drops], -self.velocity[drops], self.gravity[drops])
-            assert isinstance(law, CompliantLaw)  # the problem has seen to it
-            touch = flight.start + np.asarray(self.vibration.touches(motions, law))
-        end = np.inf if self.problem.duration is None else self.problem.duration
-        last, outcome = np.full(len(drops), end), Outcome.IMPACTS
-        if len(self.rows) in (self.problem.impacts, MOST_IMPACTS):
-            last = np.minimum(flight.apex()[0], end)
-            outcome = Outcome.IMPACTS if len(self.rows) == self.problem.impacts else Outcome.LIMIT
-        by_time = last == end
-        last = np.maximum(last, flight.start)  # a contact under way at the end was finished first
-        gone = np.isinf(touch) & np.isinf(last)
-        stops = (touch >= last) | gone
-        self.stop(drops[stops], outcome, last[stops])
-        self.stop(drops[stops & by_time], Outcome.DURATION, last[stops & by_time])
-        self.stop(drops[gone], Outcome.LEFT, flight.start[gone])
-        leg = Leg(drops, flight, np.where(gone, flight.start, np.where(stops, last, touch)), drops[~stops], motions=motions)
-        if self.vibration is not None:
-            gap, velocity = flight.at(leg.flight_end)
-            speed = -velocity
-            self.gap[drops[~stops]], self.velocity[drops[~stops]] = gap[~stops], velocity[~stops]
-            self.vibration.pass_freely(drops, motions, leg.flight_end - flight.start)
-        if not stops.all():
-            leg = self.collide(leg, touch[~stops], speed[~stops])
-        self.legs.append(leg)
-
-    def collide(self, leg: Leg, touch: Floats, speed: Floats) -> Leg:
-        """Take drops through a contact: write the row of the impact, return the leg with its contact."""
-        drops, row = leg.contact_drops, {name: np.full(self.size, np.nan) for name in self.columns}
-        law = self.law().take(drops)
-        self.rows.append(row)
-        row["impact"][drops], row["time_s"][drops], row["approach_speed_m_s"][drops] = len(self.rows), touch, speed
-        row["restitution_asked"][drops] = _asked(law)
-        if isinstance(law, InstantaneousLaw):
-            self.time[drops], self.gap[drops], self.velocity[drops] = touch, 0.0, law.separation_speed(speed, self.mass[drops])
-            row["separation_speed_m_s"][drops] = self.velocity[drops]
-            row["duration_s"][drops] = row["max_indentation_m"][drops] = row["plastic_work_J"][drops] = 0.0
-            lost = 0.5 * self.mass[drops] * (speed**2 - self.velocity[drops] ** 2)
-        else:
-            assert isinstance(law, CompliantLaw)
-            closing = speed if self.vibration is None else self.vibration.closing_speed(drops, speed)
-            leg, lost = self.deform(leg, encounter_of(law, self.mass[drops], self.gravity[drops], closing), touch, row)
-            lost += row["plastic_work_J"][drops]
-            law = self.law().take(drops)  # with what it remembers of this impact
-        self.dissipated[drops] += lost - row["plastic_work_J"][drops]
-        self.plastic[drops] += row["plastic_work_J"][drops]
-        separation = row["separation_speed_m_s"][drops]
-        row["restitution_achieved"][drops] = separation / speed
-        row["energy_lost_J"][drops] = lost
-        with np.errstate(divide="ignore", invalid="ignore"):
-            rise = np.where(self.gravity[drops] > 0.0, 0.5 * separation**2 / self.gravity[drops], np.nan)
-        row["rebound_height_m"][drops] = self.radius[drops] + self.gap[drops] + rise
-        moving = self.moving[drops]
-        self.judge(drops[moving], law.take(np.flatnonzero(moving)), row)
-        return leg
-
-    def deform(self, leg: Leg, encounter: Encounter, touch: Floats, row: dict[str, Floats]) -> tuple[Leg, Floats]:
-        """Integrate a contact; return the leg with it, and the energy lost [J]."""
-        drops = leg.contact_drops
-        if self.vibration is None:
-            contact = contact_phase(encounter, self.problem.tolerance, self.warm_starts, drops)
-            force, when = force_peak(contact, encounter)
-        else:
-            visits = self.vibration.visit(drops, -self.gap[drops], -self.velocity[drops], encounter, row)
-            contact = contact_of(visits, encounter.law)
-            force, when = (np.array([getattr(found, name) for found in visits]) for name in ("max_force", "time_of_max_force"))
-        self.deepest[drops] = np.maximum(self.deepest[drops], contact.max_delta)
-        self.time[drops] = touch + contact.duration
-        self.gap[drops], self.velocity[drops] = -contact.final_delta, -contact.final_rate
-        row["duration_s"][drops], row["plastic_work_J"][drops] = contact.duration, contact.plastic
-        row["max_indentation_m"][drops], row["time_of_max_indentation_s"][drops] = contact.max_delta, touch + contact.time_of_max_delta
-        row["max_force_N"][drops], row["time_of_max_force_s"][drops] = force, touch + when
-        row["max_acceleration_m_s2"][drops] = np.maximum(force / encounter.mass - encounter.gravity, encounter.gravity)
-        for name, values in contact.law.memories().items():
-            self.memories[name][drops] = values
-        failed, captured = contact.outcome == FAILED, contact.outcome == CAPTURED
-        if self.vibration is None:
-            captured |= ~failed & (contact.final_rate**2 < 2.0 * self.gravity[drops] * self.overlap(contact, drops))
-        row["separation_speed_m_s"][drops] = np.where(failed, np.nan, np.where(captured, 0.0, -contact.final_rate))
-        stored = contact.stored
-        sticks = captured & (contact.law.elastic_energy(contact.law.release_level + np.zeros(len(drops))) > 0.0)
-        for these, outcome in ((failed, Outcome.FAILED), (captured & ~sticks, Outcome.CAPTURED), (sticks, Outcome.STUCK)):
-            self.stop(drops[these], outcome, self.time[drops[these]])
-        if captured.any():
-            self.lie_down(drops[captured], contact.law.take(np.flatnonzero(captured)), self.time[drops[captured]], stored[captured])
-        return replace(leg, contact=contact, encounter=encounter), contact.dissipated + np.where(captured, 0.0, stored)
-
-    def overlap(self, contact: Contact, drops: Drops) -> Floats:
-        """Return how far drops that have parted must still rise until the next touch is a new one [m]."""
-        law = self.law().take(drops)
-        assert isinstance(law, CompliantLaw)
-        return np.asarray(np.maximum(contact.final_delta - law.touch_level, 0.0))
-
-    def judge(self, drops: Drops, law: ContactLaw, row: dict[str, Floats]) -> None:
-        """Stop the drops that leave more slowly than the rest speed, or not at all."""
-        resting = (self.velocity[drops] < self.rest_speed[drops]) | (self.velocity[drops] == 0.0)
-        slow = drops[resting]
-        if not slow.size:
-            return
-        with np.errstate(divide="ignore", invalid="ignore"):
-            # a geometric series of flights, each shorter than the one before by the last restitution
-            missing = 1.0 - row["restitution_achieved"][slow]
-            limit = self.time[slow] + 2.0 * self.velocity[slow] / self.gravity[slow] / np.where(missing > 1e-6, missing, 0.0)
-        self.lie_down(slow, law.take(np.flatnonzero(resting)), limit, np.zeros(len(slow)))
-        self.stop(slow, Outcome.REST_SPEED, np.where(np.isfinite(limit), limit, self.time[slow]))
-
-    def lie_down(self, drops: Drops, law: ContactLaw, time: Floats, stored: Floats) -> None:
-        """Lay drops that have come to rest, with energy `stored` in the contact [J], into their static indentation."""
-        weight = self.mass[drops] * self.gravity[drops]
-        if isinstance(law, CompliantLaw):
-            self.sag[drops] = static_indentation(law, weight)
-            self.stored[drops] = law.elastic_energy(self.sag[drops])
-        self.rest_time[drops] = time
-        self.written_off[drops] = self.mechanical_energy()[drops] + stored - (self.stored[drops] - weight * self.sag[drops])
-
-    def stop(self, drops: Drops, outcome: Outcome, time: Floats) -> None:
-        self.moving[drops], self.end_time[drops] = False, time
-        for drop in drops:
-            self.outcomes[drop] = outcome
-
-    # the end of the run ----------------------------------------------------------------------------
-
-    def response(self) -> Response:
-        at_rest = np.array([outcome.at_rest for outcome in self.outcomes])
-        if self.problem.duration is not None:
-            self.end_time[at_rest] = np.maximum(self.end_time, self.problem.duration)[at_rest]
-        final_gap, final_velocity = self.final_motion(at_rest)
-        if self.vibration is not None:
-            lying = np.flatnonzero(at_rest)  # what they lie on moves on
-            nothing = np.zeros(len(lying))
-            motions = self.vibration.flights(lying, -self.gap[lying], nothing, nothing)
-            self.vibration.pass_freely(lying, motions, np.maximum(self.end_time[lying] - self.time[lying], 0.0))
-        vibration = {} if self.vibration is None else self.vibration.energies()
-        energy = close_ledger(
-            self.energy_in,
-            self.mass * self.gravity * self.deepest,
-            {
-                "kinetic_J": 0.5 * self.mass * final_velocity**2,
-                "potential_J": self.mass * self.gravity * final_gap,
-                "contact_elastic_J": self.stored + vibration.pop("local_J", 0.0),
-                "contact_dissipated_J": self.dissipated + vibration.pop("local_damping_J", 0.0),
-                "plastic_work_J": self.plastic,
-                "written_off_at_rest_J": self.written_off,
-                **vibration,
-            },
-        )
-        for drop in np.flatnonzero(~(energy["closure_relative"] <= CLOSURE_LIMIT)):
-            self.outcomes[drop] = Outcome.FAILED
-        table = {name: np.array([row[name] for row in self.rows]).reshape(-1, self.size).T for name in self.columns}
-        response = Response(
-            self.problem,
-            table,
-            energy,
-            tuple(self.outcomes),
-            self.end_time,
-            Rest(self.rest_speed, self.rest_time, self.sag, self.stored, self.written_off),
-            tuple(self.legs),
-        )
-        return response.squeezed() if self.problem.shape == () else response
-
-    def final_motion(self, at_rest: NDArray[np.bool_]) -> tuple[Floats, Floats]:
-        """Return gap [m] and upward velocity [m/s] at the end of the run."""
-        elapsed = np.where(at_rest, 0.0, self.end_time - self.time)
-        gap, velocity = Flight(np.zeros(self.size), self.gap, self.velocity, self.gravity).at(elapsed)
-        return np.where(at_rest, -self.sag, gap), np.where(at_rest, 0.0, velocity)
-
-
-def _asked(law: ContactLaw) -> Floats | float:
-    """Return the restitution asked of a law, or NaN."""
-    asked = getattr(law, "restitution", None)
-    return np.nan if asked is None else asked
