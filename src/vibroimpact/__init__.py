@@ -53,6 +53,8 @@ if TYPE_CHECKING:
     from vibroimpact.dynamics.sensor import Accelerometer as Accelerometer
     from vibroimpact.dynamics.sensor import Sensor as Sensor
     from vibroimpact.dynamics.simulate import simulate as simulate
+    from vibroimpact.dynamics.tabulate import ImpactTable as ImpactTable
+    from vibroimpact.dynamics.tabulate import tabulate as tabulate
     from vibroimpact.errors import ComputationError as ComputationError
     from vibroimpact.errors import InputError as InputError
     from vibroimpact.errors import VibroimpactError as VibroimpactError
@@ -89,6 +91,7 @@ _HOME = {
     "Comparison": "report.comparison",
     "ComputationError": "errors",
     "ContactLaw": "contact.law",
+    "ImpactTable": "dynamics.tabulate",
     "InputError": "errors",
     "Material": "materials",
     "Mesh": "structures.mesh",
@@ -140,6 +143,7 @@ _HOME = {
     "save_result": "report.save",
     "shipped_cases": "cases.reader",
     "simulate": "dynamics.simulate",
+    "tabulate": "dynamics.tabulate",
     "to_si": "units",
     "write_abaqus": "exchange.write_abaqus",
     "write_nastran": "exchange.write_nastran",

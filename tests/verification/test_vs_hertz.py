@@ -33,6 +33,20 @@ def test_closed_form(exponent: float, speed: float) -> None:
     assert row["restitution_achieved"][0] == pytest.approx(1.0, rel=1e-8)
 
 
+@pytest.mark.parametrize("exponent", [1.0, 1.2, 1.5, 2.0, 3.0])
+def test_closed_form_of_a_table(exponent: float) -> None:
+    stiffness, mass, speed = np.geomspace(1e6, 1e12, 7), 0.21, np.geomspace(1e-2, 44.0, 7)
+    law, ball = Hertz(stiffness=stiffness, exponent=exponent), vi.Body(mass=mass, contact_offset=0.1)
+    problem = vi.Problem(sphere=ball, plate=vi.rigid_plate(), laws=(law,), speed=speed, gravity=0.0, impacts=1, tolerance=1e-8)
+    row = {name: column[:, 0] for name, column in vi.tabulate(problem).impacts.items()}
+    depth = ((exponent + 1) * mass * speed**2 / (2 * stiffness)) ** (1 / (exponent + 1))
+    duration = 2 / (exponent + 1) * beta(1 / (exponent + 1), 0.5) * depth / speed
+    np.testing.assert_allclose(row["max_indentation_m"], depth, rtol=1e-8)
+    np.testing.assert_allclose(row["duration_s"], duration, rtol=1e-8)
+    np.testing.assert_allclose(row["max_force_N"], stiffness * depth**exponent, rtol=1e-8)
+    np.testing.assert_allclose(row["restitution_achieved"], 1.0, rtol=1e-8)
+
+
 def test_duration_factor_of_a_sphere() -> None:
     row = impact(1e6, 1.5, 1.0, 1.0).impacts
     assert row["duration_s"][0] / row["max_indentation_m"][0] == pytest.approx(2.9432751843, rel=1e-8)

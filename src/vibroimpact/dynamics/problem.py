@@ -167,8 +167,8 @@ class Problem:
         """Return the law of an impact, counted from 0; the last one goes on."""
         return self.laws[min(impact, len(self.laws) - 1)]
 
-    def take(self, drop: int) -> Problem:
-        """Return the problem of one drop of a batch."""
+    def take(self, drop: int | slice) -> Problem:
+        """Return the problem of one drop of a batch, or of some."""
 
         def one(value: Any) -> Any:
             return value if np.ndim(value) == 0 else np.asarray(value)[drop]
