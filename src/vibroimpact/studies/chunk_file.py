@@ -1,0 +1,126 @@
+"""The results of one chunk of drops, and the file that keeps them until the study is whole."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass
+from hashlib import sha256
+from io import BytesIO
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+from numpy.typing import NDArray
+
+from vibroimpact.errors import ComputationError
+
+FOLDER = "chunks"
+
+
+@dataclass(frozen=True)
+class ChunkResult:
+    """What came of the drops of one chunk.
+
+    Parameters
+    ----------
+    arrays : mapping of str to array
+        By names, the drop along the first axis.
+    failures : mapping of int to str
+        Why a drop failed, by its place in the chunk.
+    cpu : float
+        CPU time that it took [s].
+    """
+
+    arrays: Mapping[str, NDArray[Any]]
+    failures: Mapping[int, str]
+    cpu: float = 0.0
+
+
+def chunk_path(folder: Path, number: int) -> Path:
+    """Return where a chunk of a study is kept."""
+    return folder / FOLDER / f"{number:06d}.h5"
+
+
+def write_chunk(folder: Path, number: int, result: ChunkResult, study: str) -> str:
+    """Write a chunk, whole or not at all; return its checksum.
+
+    Parameters
+    ----------
+    folder : Path
+        That of the study.
+    number : int
+        Of the chunk.
+    result : ChunkResult
+        What came of it. The CPU time is not written: it would not be the same again.
+    study : str
+        The fingerprint of the study that it belongs to.
+
+    Raises
+    ------
+    ComputationError
+        If there is no room for it.
+    """
+    memory = BytesIO()
+    with h5py.File(memory, "w") as file:
+        file.attrs["study"] = study
+        file.create_group("arrays")  # there also if nothing came of any drop
+        for name, values in result.arrays.items():
+            checked = {"fletcher32": True} if values.size else {}  # so that damage shows when it is read, also without a ledger
+            file.create_dataset(f"arrays/{name}", data=values, **checked)
+        file.create_dataset("failures/place", data=np.array(list(result.failures), dtype=np.int64))
+        file.create_dataset("failures/reason", data=np.array(list(result.failures.values()), dtype=object), dtype=h5py.string_dtype())
+    data, target = memory.getvalue(), chunk_path(folder, number)
+    working = target.with_suffix(".part")
+    try:
+        target.parent.mkdir(exist_ok=True)
+        with working.open("wb") as out:
+            out.write(data)
+            out.flush()
+            os.fsync(out.fileno())
+        working.replace(target)
+    except OSError as error:
+        working.unlink(missing_ok=True)
+        words = "see to the disk, then go on with --resume; the chunks that are done stay"
+        raise ComputationError(f"{target}: the chunk can't be written: {error.strerror}; {words}") from None
+    return sha256(data).hexdigest()
+
+
+def checksum(folder: Path, number: int) -> str | None:
+    """Return the checksum of a chunk as it is on disk; None if it is not there or can't be read."""
+    try:
+        return sha256(chunk_path(folder, number).read_bytes()).hexdigest()
+    except OSError:
+        return None
+
+
+def chunk_layout(folder: Path, number: int) -> dict[str, tuple[tuple[int, ...], np.dtype[Any]]]:
+    """Return the shape and the type of each array of a chunk, which are not read."""
+    with h5py.File(chunk_path(folder, number), "r") as file:
+        return {name: (values.shape, values.dtype) for name, values in file["arrays"].items()}
+
+
+def read_chunk(folder: Path, number: int, study: str | None = None) -> ChunkResult:
+    """Read a chunk.
+
+    Parameters
+    ----------
+    folder : Path
+        That of the study.
+    number : int
+        Of the chunk.
+    study : str, optional
+        The fingerprint that it must have.
+
+    Raises
+    ------
+    OSError, KeyError, ValueError
+        If it is damaged, or of another study.
+    """
+    with h5py.File(chunk_path(folder, number), "r") as file:
+        if study is not None and file.attrs["study"] != study:
+            raise ValueError("it is of another study")
+        arrays = {name: np.asarray(values) for name, values in file["arrays"].items()}
+        reasons = [reason.decode() for reason in file["failures/reason"][()]]
+        return ChunkResult(arrays, dict(zip(file["failures/place"][()].tolist(), reasons, strict=True)))

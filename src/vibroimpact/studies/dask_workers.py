@@ -1,0 +1,88 @@
+"""Chunks computed by the workers of a Dask scheduler: one that is there, or a cluster of this machine."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Iterator
+from contextlib import contextmanager, nullcontext
+from importlib.util import find_spec
+from typing import Any
+
+from vibroimpact._version import __version__
+from vibroimpact.errors import InputError
+from vibroimpact.studies.workers import Crew, Setup
+
+LOCAL = "local"
+"""Instead of an address: a cluster that is started for the study."""
+
+_PATIENCE = 10  # seconds to wait for a scheduler
+
+
+def check_scheduler(address: str) -> None:
+    """Raise unless chunks can be computed with a scheduler.
+
+    Parameters
+    ----------
+    address : str
+        Such as "tcp://10.0.0.5:8786", or "local".
+
+    Raises
+    ------
+    InputError
+        If Dask is not installed, there is no scheduler at the address, it has no workers, or they have another version of this package.
+    """
+    if find_spec("distributed") is None:
+        raise InputError('a Dask scheduler needs Dask; install it with: pip install "vibroimpact[cluster]"', "--scheduler")
+    if address != LOCAL:
+        _client(address).close()
+
+
+@contextmanager
+def dask_workers(address: str, number: int, setup: Setup) -> Iterator[Crew]:
+    """Compute with the workers of a scheduler, which `check_scheduler` has found.
+
+    Parameters
+    ----------
+    address : str
+        Such as "tcp://10.0.0.5:8786"; "local" starts a scheduler and workers on this machine.
+    number : int
+        How many workers that is; a scheduler that is there has its own.
+    setup : callable
+        What each worker does once, also one that joins later.
+    """
+    from distributed import Client, LocalCluster, WorkerPlugin
+
+    class Setting(WorkerPlugin):  # type: ignore[misc]
+        name = "vibroimpact"
+
+        def setup(self, worker: object) -> None:
+            setup()
+
+    options = {"n_workers": number, "threads_per_worker": 1, "dashboard_address": None, "silence_logs": logging.CRITICAL}
+    with LocalCluster(**options) if address == LOCAL else nullcontext(address) as cluster, Client(cluster) as client:
+        client.register_plugin(Setting())
+        yield Crew(client.get_executor(pure=False), 2 * sum(client.nthreads().values()))
+
+
+def _client(address: str) -> Any:
+    """Return a client of the scheduler at an address."""
+    from distributed import Client
+
+    try:
+        client = Client(address, timeout=_PATIENCE)
+    except (OSError, ValueError, TimeoutError) as error:
+        words = 'the address of a scheduler is such as tcp://10.0.0.5:8786, or "local" for one of this machine'
+        raise InputError(f"{address}: no Dask scheduler answers there ({str(error).splitlines()[0]}); {words}", "--scheduler") from None
+    found = client.run(_version)
+    if not found:
+        client.close()
+        raise InputError(f"{address}: this scheduler has no workers; start some, such as: dask worker {address}", "--scheduler")
+    for worker, version in found.items():
+        if version != __version__:
+            client.close()
+            raise InputError(f"the worker {worker} has vibroimpact {version}, and this is {__version__}; install the same", "--scheduler")
+    return client
+
+
+def _version() -> str:
+    return __version__

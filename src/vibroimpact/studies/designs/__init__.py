@@ -1,0 +1,1 @@
+"""The study designs, one file each."""

@@ -1,0 +1,23 @@
+"""All combinations of the levels."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from math import prod
+
+from vibroimpact.studies.axes import Axis
+from vibroimpact.studies.design import Design
+from vibroimpact.studies.plan import Plan
+
+
+def size(axes: Mapping[str, Axis], samples: int) -> int:
+    """Return how many combinations there are."""
+    return prod(len(axis.levels()) for axis in axes.values())
+
+
+def plan(axes: Mapping[str, Axis], samples: int, seed: int) -> Plan:
+    """Return the grid."""
+    return Plan("grid", {key: axis.levels() for key, axis in axes.items()}, True)
+
+
+DESIGN = Design("grid", "all combinations of the values", False, size, plan)

@@ -1,0 +1,31 @@
+"""Random points, evenly spread along each axis."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from vibroimpact.studies.axes import Axis
+from vibroimpact.studies.design import Design, generator
+from vibroimpact.studies.plan import Plan
+
+
+def size(axes: Mapping[str, Axis], samples: int) -> int:
+    """Return the number of samples."""
+    return samples
+
+
+def plan(axes: Mapping[str, Axis], samples: int, seed: int) -> Plan:
+    """Return the points: of each axis one in each of as many equally likely parts, paired at random.
+
+    Each axis is drawn by itself, from a stream of its own, so that all samples of all axes never lie in memory twice.
+    """
+    from scipy.stats import qmc
+
+    columns = {
+        key: axis.quantiles(qmc.LatinHypercube(1, rng=generator(seed, place)).random(samples)[:, 0])
+        for place, (key, axis) in enumerate(axes.items())
+    }
+    return Plan("latin-hypercube", columns, False)
+
+
+DESIGN = Design("latin-hypercube", "random points, evenly spread along each axis", True, size, plan)

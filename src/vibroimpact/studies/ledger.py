@@ -1,0 +1,151 @@
+"""The ledger of a study: which chunks there are, and which of them are done.
+
+It is an SQLite database, held locked for as long as a study is at work on it, whatever ends that work.
+"""
+
+from __future__ import annotations
+
+import sqlite3
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import NamedTuple
+
+from vibroimpact.errors import ComputationError, InputError
+
+LEDGER = "ledger.sqlite"
+
+_SCHEMA = """
+CREATE TABLE study (key TEXT PRIMARY KEY, value TEXT NOT NULL);
+CREATE TABLE chunk (number INTEGER PRIMARY KEY, first INTEGER NOT NULL, count INTEGER NOT NULL, state TEXT NOT NULL DEFAULT 'waiting',
+                    failed INTEGER, sha256 TEXT, cpu_s REAL, finished TEXT);
+"""
+
+
+class Span(NamedTuple):
+    """A chunk: its number, its first point, and how many it has."""
+
+    number: int
+    first: int
+    size: int
+
+
+@dataclass(frozen=True)
+class Ledger:
+    """An open ledger."""
+
+    connection: sqlite3.Connection
+    path: Path
+
+    @property
+    def facts(self) -> dict[str, str]:
+        """What the study is: its fingerprint, the version that began it, how large it is."""
+        return dict(self.connection.execute("SELECT key, value FROM study"))
+
+    def chunks(self, state: str) -> list[Span]:
+        """Return the chunks that are "waiting" or "done", in order."""
+        rows = self.connection.execute("SELECT number, first, count FROM chunk WHERE state = ? ORDER BY number", (state,))
+        return [Span(*row) for row in rows]
+
+    def checksums(self) -> dict[int, str]:
+        """Return the checksum of each chunk that is done, by its number."""
+        return dict(self.connection.execute("SELECT number, sha256 FROM chunk WHERE state = 'done' ORDER BY number"))
+
+    @property
+    def failed(self) -> int:
+        """How many drops failed so far."""
+        return int(self.connection.execute("SELECT coalesce(sum(failed), 0) FROM chunk").fetchone()[0])
+
+    def done(self, chunk: Span, sha256: str, failed: int, cpu: float) -> None:
+        """Note that a chunk is done and on disk."""
+        with _told(self.path), self.connection:
+            self.connection.execute(
+                "UPDATE chunk SET state = 'done', sha256 = ?, failed = ?, cpu_s = ?, finished = datetime('now') WHERE number = ?",
+                (sha256, failed, cpu, chunk.number),
+            )
+
+    def undone(self, chunk: int) -> None:
+        """Note that a chunk has to be done again: what is on disk is not what was written."""
+        with _told(self.path), self.connection:
+            self.connection.execute("UPDATE chunk SET state = 'waiting', sha256 = NULL, failed = NULL WHERE number = ?", (chunk,))
+
+
+def make_ledger(folder: Path, facts: Mapping[str, str], size: int, chunk: int) -> None:
+    """Make the ledger of a study of `size` points in chunks of `chunk`, none of them done."""
+    with _told(folder / LEDGER):
+        connection = sqlite3.connect(folder / LEDGER)
+        with connection:
+            connection.executescript(_SCHEMA)
+            connection.executemany("INSERT INTO study VALUES (?, ?)", facts.items())
+            spans = ((number, first, min(chunk, size - first)) for number, first in enumerate(range(0, size, chunk)))
+            connection.executemany("INSERT INTO chunk (number, first, count) VALUES (?, ?, ?)", spans)
+        connection.close()
+
+
+def is_held(folder: Path) -> bool:
+    """Is a process at work on the study in a folder?"""
+    if not (folder / LEDGER).is_file():
+        return False
+    connection = sqlite3.connect(folder / LEDGER, timeout=0.2)
+    try:
+        connection.execute("BEGIN EXCLUSIVE")
+    except sqlite3.DatabaseError as error:
+        return "locked" in str(error)
+    finally:
+        connection.close()
+    return False
+
+
+@contextmanager
+def open_ledger(folder: Path) -> Iterator[Ledger]:
+    """Open the ledger of a study, and keep everyone else from it.
+
+    Raises
+    ------
+    InputError
+        If there is none, it is damaged, or another process has it open.
+    ComputationError
+        If it can't be written to.
+    """
+    path = folder / LEDGER
+    if not path.is_file():
+        raise InputError(f"{folder}: this is not the folder of a study; it has no {LEDGER}")
+    with _told(path):
+        connection = sqlite3.connect(path, timeout=0.2)
+    try:
+        with _told(path):
+            # an exclusive lock is held from the first write to the end of the connection, and the system frees it of a process that died
+            connection.execute("PRAGMA locking_mode = EXCLUSIVE")
+            connection.execute("BEGIN EXCLUSIVE")
+            connection.execute("COMMIT")
+            found = connection.execute("PRAGMA quick_check").fetchone()[0]
+            if found != "ok":
+                raise sqlite3.DatabaseError(found)
+            connection.execute("SELECT count(*) FROM study, chunk").fetchone()
+        yield Ledger(connection, path)
+    finally:
+        connection.close()
+
+
+@contextmanager
+def _told(path: Path) -> Iterator[None]:
+    """Say what a fault of the database means."""
+    try:
+        yield
+    except sqlite3.OperationalError as error:
+        if "locked" in str(error):
+            raise InputError(f"{path.parent}: another sweep is at work in this folder; wait for it, or name another folder") from None
+        if "no such table" in str(error):
+            raise InputError(damaged(path, str(error))) from None
+        raise ComputationError(f"{path}: the ledger can't be written: {error}; see to the disk, then go on with --resume") from None
+    except sqlite3.DatabaseError as error:
+        raise InputError(damaged(path, str(error))) from None
+
+
+def damaged(path: Path, why: str) -> str:
+    """Return what to tell of a ledger that is damaged."""
+    return (
+        f"{path}: the ledger is damaged ({why}); delete this file and go on with --resume: it is made anew from the chunks that are there "
+        "and whole"
+    )

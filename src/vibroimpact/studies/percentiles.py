@@ -1,0 +1,56 @@
+"""How the values of a result spread over the drops of a study."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from vibroimpact.studies.axes import Floats
+
+PERCENTILES = (5, 25, 50, 75, 95)
+"""Those that are told."""
+
+
+class Spread(NamedTuple):
+    """How values spread.
+
+    Attributes
+    ----------
+    drops : int
+        How many values are finite; the others are passed over.
+    mean, standard_deviation : float
+        The latter of a sample, by n - 1; NaN of one value alone.
+    percentiles : tuple of float
+        As many as `PERCENTILES`; NaN without values.
+    """
+
+    drops: int
+    mean: float
+    standard_deviation: float
+    percentiles: tuple[float, ...]
+
+    @property
+    def varies(self) -> bool:
+        """Do the values differ by more than rounding?"""
+        return self.drops > 1 and self.standard_deviation > 1e-9 * max(abs(self.mean), abs(self.percentiles[2]))
+
+
+def spread_of(values: Floats) -> Spread:
+    """Return how values of any shape spread; percentiles lie between two values by a straight line.
+
+    Examples
+    --------
+    >>> spread_of(np.array([1.0, 2.0, 3.0, np.nan]))
+    Spread(drops=3, mean=2.0, standard_deviation=1.0, percentiles=(1.1, 1.5, 2.0, 2.5, 2.9))
+    """
+    finite = np.asarray(values, dtype=float)[np.isfinite(values)]  # a copy, which may be sorted and shifted in its place
+    number = len(finite)
+    if not number:
+        return Spread(0, math.nan, math.nan, (math.nan,) * len(PERCENTILES))
+    mean = float(finite.mean())
+    found = tuple(float(one) for one in np.percentile(finite, PERCENTILES, overwrite_input=True))
+    finite -= mean
+    deviation = math.sqrt(float(finite @ finite) / (number - 1)) if number > 1 else math.nan
+    return Spread(number, mean, deviation, found)

@@ -1,0 +1,70 @@
+"""The points of a study: which values its drops have, and how they are arranged."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from hashlib import sha256
+from math import prod
+
+import numpy as np
+
+from vibroimpact.studies.axes import Values
+
+SAMPLE = "sample"
+"""The dimension of a study whose points are no grid."""
+
+
+@dataclass(frozen=True, eq=False)
+class Plan:
+    """The points of a study.
+
+    Parameters
+    ----------
+    design : str
+        The name of the design that made them.
+    columns : mapping of str to array
+        By the swept key its levels, if it is a grid, the last key running fastest; else one value a point.
+    is_grid : bool
+        Are the points all combinations of the levels?
+
+    Examples
+    --------
+    >>> plan = Plan("grid", {"a": np.array([1.0, 2.0]), "b": np.array([5.0, 6.0, 7.0])}, True)
+    >>> plan.dimensions, plan.size
+    ({'a': 2, 'b': 3}, 6)
+    >>> {key: values.tolist() for key, values in plan.points(2, 3).items()}
+    {'a': [1.0, 2.0, 2.0], 'b': [7.0, 5.0, 6.0]}
+    """
+
+    design: str
+    columns: Mapping[str, Values]
+    is_grid: bool
+
+    @property
+    def dimensions(self) -> dict[str, int]:
+        """The dimensions of the results, and how long they are."""
+        if self.is_grid:
+            return {key: len(levels) for key, levels in self.columns.items()}
+        return {SAMPLE: len(next(iter(self.columns.values())))}
+
+    @property
+    def size(self) -> int:
+        """The number of points."""
+        return prod(self.dimensions.values())
+
+    def points(self, first: int, count: int) -> dict[str, Values]:
+        """Return the values of some points by their keys, (count,) each."""
+        if not self.is_grid:
+            return {key: values[first : first + count] for key, values in self.columns.items()}
+        places = np.unravel_index(np.arange(first, first + count), tuple(self.dimensions.values()))
+        return {key: levels[place] for (key, levels), place in zip(self.columns.items(), places, strict=True)}
+
+    def digest(self) -> str:
+        """Return a fingerprint of all points."""
+        found = sha256(f"{self.design} {self.is_grid}".encode())
+        for key, values in self.columns.items():
+            objects = values.dtype == object
+            found.update(key.encode() + (json.dumps(values.tolist()).encode() if objects else np.ascontiguousarray(values).tobytes()))
+        return found.hexdigest()

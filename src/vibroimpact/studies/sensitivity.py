@@ -1,0 +1,201 @@
+"""Which of the keys that were swept moves a result: Sobol's indices, rank correlations, and ranges along the axes of a grid."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vibroimpact.studies.axes import Floats
+from vibroimpact.studies.design import generator
+
+MOST_LEFT_OUT = 0.05
+"""The part of the points that may be without a value; with more of them, indices would tell of another study."""
+
+RESAMPLES = 200
+"""How many times the points are drawn anew to find the standard error of an index."""
+
+_RESAMPLED = 8192  # points of a block that are drawn anew; with more of them the error falls as their root
+_AT_ONCE = 25  # resamples; all of them would fill the memory
+_QUANTILE = 1.959964  # of the normal distribution, for 95 %
+
+
+class Indices(NamedTuple):
+    """Sobol's indices of one result, one value an axis.
+
+    Attributes
+    ----------
+    first, total : array, shape (axes,)
+        The part of the variance that an axis makes by itself, and together with all others.
+    first_error, total_error : array, shape (axes,)
+        Half of the interval of 95 %.
+    points, left_out : int
+        How many points of a block were used, and how many were not since a drop of theirs has no value.
+    """
+
+    first: Floats
+    total: Floats
+    first_error: Floats
+    total_error: Floats
+    points: int
+    left_out: int
+
+
+def sobol_indices(values: Floats, axes: int, seed: int = 0) -> Indices | None:
+    r"""Return Sobol's indices of a result at the points of the design "saltelli".
+
+    .. math:: S_i = \frac{\overline{f_B\,(f_{AB_i} - f_A)}}{V}, \qquad T_i = \frac{\overline{(f_A - f_{AB_i})^2}}{2 V}
+
+    :math:`V` is the variance over the blocks A and B. The interval is 1.96 standard errors to both sides; the error is found
+    by drawing the points anew (bootstrap), from at most the first 8192 of a block: with more, it falls as the root of their number.
+    The points of a Sobol sequence lie more evenly than random ones, so that the interval is rather too wide than too narrow.
+
+    A point of the blocks whose drop has no value is left out of all blocks. The indices are then those of the drops that have one.
+
+    Parameters
+    ----------
+    values : array, shape ((2 + axes) points,)
+        Block A, block B, and for each axis the block A with the values of B on that axis.
+    axes : int
+        How many axes there are.
+    seed : int
+        Of the bootstrap.
+
+    Returns
+    -------
+    Indices or None
+        None if the result does not vary, or more than 5 % of the points would have to be left out.
+
+    References
+    ----------
+    Saltelli, A. et al. (2010). Variance based sensitivity analysis of model output. Comput. Phys. Commun. 181, 259-270,
+    table 2 (b) and (f).
+
+    Examples
+    --------
+    >>> from vibroimpact.studies.axes import Spaced
+    >>> from vibroimpact.studies.designs.saltelli import plan
+    >>> points = plan({"a": Spaced(0.0, 1.0, 2), "b": Spaced(0.0, 1.0, 2)}, 1024, 0).columns
+    >>> found = sobol_indices(points["a"] + 2.0 * points["b"], 2)  # variances 1/12 and 4/12
+    >>> found.first.round(2).tolist(), found.total.round(2).tolist()
+    ([0.2, 0.8], [0.2, 0.8])
+    """
+    blocks = np.asarray(values, dtype=float).reshape(2 + axes, -1)
+    complete = np.isfinite(blocks).all(axis=0)
+    points = int(complete.sum())
+    left_out = len(complete) - points
+    if points < 2 or left_out > MOST_LEFT_OUT * len(complete):
+        return None
+    used = blocks[:2, complete]
+    if not float(np.std(used)) > 1e-9 * float(np.abs(used).max()):
+        return None
+    if left_out:  # the number of points must stay a power of two: at the mean, a point adds nothing to any of the sums
+        blocks = np.where(complete, blocks, used.mean())
+    first, total = _estimates(blocks[:, None, :])
+    drawn = blocks[:, :_RESAMPLED]
+    resampled = [_estimates(drawn[:, places]) for places in _resampled(drawn.shape[1], seed)]
+    shrinks = math.sqrt(drawn.shape[1] / blocks.shape[1])
+    errors = [_QUANTILE * shrinks * np.std(np.concatenate(which), axis=0, ddof=1) for which in zip(*resampled, strict=True)]
+    return Indices(first[0], total[0], errors[0], errors[1], points, left_out)
+
+
+def rank_correlations(inputs: Floats, output: Floats) -> Floats:
+    """Return Spearman's rank correlation of a result with each input: 1 if it always rises with it, -1 if it always falls.
+
+    Parameters
+    ----------
+    inputs : array, shape (axes, drops)
+        The values of the drops.
+    output : array, shape (drops,)
+        The result; drops without a finite value are left out.
+
+    Returns
+    -------
+    array, shape (axes,)
+        NaN of an input or a result that does not vary.
+
+    References
+    ----------
+    Spearman, C. (1904). The proof and measurement of association between two things. Am. J. Psychol. 15, 72-101.
+
+    Examples
+    --------
+    >>> rank_correlations(np.array([[1.0, 2.0, 3.0], [3.0, 2.0, 1.0], [1.0, 1.0, 1.0]]), np.array([1.0, 8.0, 9.0])).tolist()
+    [1.0, -1.0, nan]
+    """
+    from scipy.stats import spearmanr
+
+    finite = np.isfinite(output)
+    here = output[finite]
+    if len(here) < 3 or not np.ptp(here) > 0.0:
+        return np.full(len(inputs), math.nan)
+    varying = [place for place, values in enumerate(inputs) if np.ptp(values[finite]) > 0.0]
+    found = np.full(len(inputs), math.nan)
+    for place in varying:
+        found[place] = float(spearmanr(inputs[place][finite], here).statistic)
+    return found
+
+
+class Reach(NamedTuple):
+    """How far a result moves along each axis of a grid, with all others at their middle level; one value an axis.
+
+    Attributes
+    ----------
+    middle : float
+        The result where all axes are at their middle level.
+    lowest, highest : array, shape (axes,)
+        The result's least and largest value along an axis.
+    """
+
+    middle: float
+    lowest: Floats
+    highest: Floats
+
+    @property
+    def relative(self) -> Floats:
+        """How far apart these are, as a part of the middle."""
+        return (self.highest - self.lowest) / abs(self.middle) if self.middle else np.full(len(self.lowest), math.nan)
+
+
+def reach_on_grid(values: NDArray[Any], orders: list[NDArray[np.intp]]) -> Reach:
+    """Return how far a result moves along each axis of a grid.
+
+    Parameters
+    ----------
+    values : array, of as many dimensions as the grid
+        The result; NaN where a drop failed.
+    orders : list of array
+        For each axis the places of its levels in rising order; the middle one (the upper of two) is its middle level.
+
+    Examples
+    --------
+    >>> reach_on_grid(np.array([[1.0, 2.0], [2.0, 4.0], [9.0, 8.0]]), [np.arange(3), np.arange(2)])
+    Reach(middle=4.0, lowest=array([2., 2.]), highest=array([8., 4.]))
+    """
+    middle = tuple(int(order[len(order) // 2]) for order in orders)
+    lowest, highest = np.full((2, len(orders)), math.nan)
+    for axis in range(len(orders)):
+        line: tuple[Any, ...] = (*middle[:axis], slice(None), *middle[axis + 1 :])
+        along = np.asarray(values[line], dtype=np.float64)
+        if np.isfinite(along).any():
+            lowest[axis], highest[axis] = np.nanmin(along), np.nanmax(along)
+    return Reach(float(values[middle]), lowest, highest)
+
+
+def _estimates(blocks: Floats) -> tuple[Floats, Floats]:
+    """Return first and total indices, (s, axes) each, of blocks (2 + axes, s, points)."""
+    import scipy.stats
+
+    number, axes = blocks.shape[-1], len(blocks) - 2
+    found = scipy.stats.sobol_indices(func={"f_A": blocks[0], "f_B": blocks[1], "f_AB": blocks[2:]}, n=number, rng=0)
+    return found.first_order.reshape(-1, axes), found.total_order.reshape(-1, axes)
+
+
+def _resampled(points: int, seed: int) -> Iterator[NDArray[np.intp]]:
+    """Yield places of points drawn anew, some resamples at once."""
+    random = generator(seed, points)
+    for _ in range(0, RESAMPLES, _AT_ONCE):
+        yield random.integers(points, size=(_AT_ONCE, points))

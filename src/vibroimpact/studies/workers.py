@@ -1,0 +1,73 @@
+"""Where chunks are computed: in this process, in processes of this machine, or (`dask_workers`) by those of a Dask scheduler."""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import signal
+import threading
+from collections.abc import Callable, Iterator
+from concurrent.futures import Executor, Future, ProcessPoolExecutor
+from contextlib import AbstractContextManager, contextmanager
+from typing import Any, NamedTuple
+
+Setup = Callable[[], object]
+"""What a worker does once before its first chunk; it is pickled."""
+
+
+class Crew(NamedTuple):
+    """Workers that are there: what gives them work, and how many chunks may be on the way, so that none waits."""
+
+    executor: Executor
+    ahead: int
+
+
+Workers = Callable[[], AbstractContextManager[Crew]]
+"""Starts workers, and ends them when the context does."""
+
+
+class _AtOnce(Executor):
+    """An executor that does its work when it is given it."""
+
+    def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
+        future: Future[Any] = Future()
+        try:
+            future.set_result(fn(*args, **kwargs))
+        except Exception as error:
+            future.set_exception(error)
+        return future
+
+
+@contextmanager
+def this_process() -> Iterator[Crew]:
+    """Compute in this process, which has what `Setup` would bring."""
+    yield Crew(_AtOnce(), 1)
+
+
+@contextmanager
+def processes(number: int, setup: Setup) -> Iterator[Crew]:
+    """Compute in `number` processes of this machine."""
+    # spawned, not forked: a fork would copy locks that threads of this process hold
+    pool = ProcessPoolExecutor(number, multiprocessing.get_context("spawn"), initializer=_begin, initargs=(setup,))
+    try:
+        yield Crew(pool, 2 * number)
+    except BaseException:
+        for process in list((pool._processes or {}).values()):  # there is no public way before Python 3.14
+            process.terminate()
+        pool.shutdown(wait=False, cancel_futures=True)
+        raise
+    pool.shutdown(cancel_futures=True)
+
+
+def _begin(setup: Setup) -> None:
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the process that leads
+    threading.Thread(target=_end_with_parent, daemon=True).start()
+    setup()
+
+
+def _end_with_parent() -> None:
+    """End this process when the one that leads is gone, even if it was killed: nobody would give it work, or end it."""
+    parent = multiprocessing.parent_process()
+    assert parent is not None
+    parent.join()
+    os._exit(1)
