@@ -152,6 +152,49 @@ def by_scipy(drops: Floats, tolerance: float) -> Floats:
     return found
 
 
+def by_exudyn(drops: Floats, tolerance: float) -> Floats:
+    """The same by EXUDYN's DOPRI5 with adaptive steps, a contact a call; the flight in closed form."""
+    import exudyn as exu
+    from exudyn.itemInterface import CoordinateSpringDamper, LoadCoordinate, MarkerNodeCoordinate, Mass1D, Node1D, NodePointGround
+
+    found = np.empty((len(drops), IMPACTS))
+    for drop, (mass, fall, stiffness, damping) in enumerate(drops.tolist()):
+        now = {"factor": 0.0}
+
+        def spring(
+            _system: object, _t: float, _item: int, gap: float, rate: float, *_: object, k: float = stiffness, of: dict = now
+        ) -> float:
+            return -k * (-gap) ** 1.5 * (1.0 - of["factor"] * rate) if gap < 0.0 else 0.0
+
+        def goes_on(system: object, _t: float) -> bool:
+            data = system.systemData  # type: ignore[attr-defined]
+            return not (data.GetODE2Coordinates()[0] > 0.0 and data.GetODE2Coordinates_t()[0] > 0.0)
+
+        speed, system = (2.0 * GRAVITY * fall) ** 0.5, exu.SystemContainer().AddSystem()
+        ground = system.AddMarker(MarkerNodeCoordinate(nodeNumber=system.AddNode(NodePointGround()), coordinate=0))
+        node = system.AddNode(Node1D())
+        system.AddObject(Mass1D(mass=mass, nodeNumber=node))
+        ball = system.AddMarker(MarkerNodeCoordinate(nodeNumber=node, coordinate=0))
+        system.AddObject(CoordinateSpringDamper(markerNumbers=[ground, ball], springForceUserFunction=spring))
+        system.AddLoad(LoadCoordinate(markerNumber=ball, load=-mass * GRAVITY))
+        system.SetPreStepUserFunction(goes_on)
+        system.Assemble()
+        for impact in range(IMPACTS):
+            depth = (1.25 * mass * speed * speed / stiffness) ** 0.4
+            settings, now["factor"] = exu.SimulationSettings(), damping / speed
+            settings.solution.file.write = False
+            settings.timeIntegration.endTime, settings.timeIntegration.numberOfSteps = 20.0 * depth / speed, 20
+            settings.timeIntegration.minimumStepSize = 1e-9 * depth / speed
+            settings.timeIntegration.relativeTolerance, settings.timeIntegration.absoluteTolerance = tolerance, 1e-2 * tolerance * depth
+            for name, value in (("", 0.0), ("_t", -speed)):
+                getattr(system.systemData, f"SetODE2Coordinates{name}")([value], exu.ConfigurationType.Initial)
+            system.SolveDynamic(settings, solverType=exu.DynamicSolverType.DOPRI5)
+            gap, rate = float(system.systemData.GetODE2Coordinates()[0]), float(system.systemData.GetODE2Coordinates_t()[0])
+            out = (rate * rate + 2.0 * GRAVITY * gap) ** 0.5
+            found[drop, impact], speed = out / speed, out
+    return found
+
+
 def matched(run: Callable[[float], Floats], exact: Floats) -> float:
     """The loosest tolerance, a power of the root of ten, at which a program achieves the error that is asked."""
     for power in np.arange(7.0, 13.5, 0.5):
@@ -184,11 +227,17 @@ def main() -> None:
         seconds, found = cpu_seconds(lambda: loop(drops, tolerance), 2)
         name = f"numba, adaptive Dormand-Prince 5(4), tolerance {tolerance:.0e}"
         row(name, 1e6 * seconds / NUMBER, float(np.abs(found[:CHECKED] - exact).max()), ours)
+    others = [("solve_ivp DOP853", by_scipy)]
+    if importlib.util.find_spec("exudyn") is None:
+        print("  EXUDYN: not installed")
+    else:
+        others.append(("EXUDYN DOPRI5", by_exudyn))
     sample = drops[:SAMPLE]
-    tolerance = matched(lambda value: by_scipy(sample, value), exact[:SAMPLE])
-    seconds, found = cpu_seconds(lambda: by_scipy(sample, tolerance), 1)
-    name = f"solve_ivp DOP853, tolerance {tolerance:.0e}, {SAMPLE} drops"
-    row(name, 1e6 * seconds / SAMPLE, float(np.abs(found - exact[:SAMPLE]).max()), ours)
+    for name, program in others:
+        tolerance = matched(lambda value, program=program: program(sample, value), exact[:SAMPLE])
+        seconds, found = cpu_seconds(lambda program=program, tolerance=tolerance: program(sample, tolerance), 1)
+        error = float(np.abs(found - exact[:SAMPLE]).max())
+        row(f"{name}, tolerance {tolerance:.0e}, {SAMPLE} drops", 1e6 * seconds / SAMPLE, error, ours)
     print(f"  peak memory after the tables: {peak:.0f} MiB")
 
 

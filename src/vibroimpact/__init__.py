@@ -40,6 +40,9 @@ if TYPE_CHECKING:
     from vibroimpact.cases.reader import shipped_cases as shipped_cases
     from vibroimpact.cases.schema import Case as Case
     from vibroimpact.cases.schema import case_schema as case_schema
+    from vibroimpact.cases.sweep import Sweep as Sweep
+    from vibroimpact.cases.sweep import load_sweep as load_sweep
+    from vibroimpact.cases.sweep import read_sweep as read_sweep
     from vibroimpact.contact.law import ContactLaw as ContactLaw
     from vibroimpact.contact.law import contact_laws as contact_laws
     from vibroimpact.contact.law import find_contact_law as find_contact_law
@@ -74,9 +77,12 @@ if TYPE_CHECKING:
     from vibroimpact.report.reproduction.folder import reproduce_paper as reproduce_paper
     from vibroimpact.report.save import remake_report as remake_report
     from vibroimpact.report.save import save_result as save_result
+    from vibroimpact.report.study.folder import run_sweep as run_sweep
     from vibroimpact.storage.export_result import export_result as export_result
     from vibroimpact.storage.folder import read_result as read_result
     from vibroimpact.storage.result import Result as Result
+    from vibroimpact.storage.study import Study as Study
+    from vibroimpact.storage.study import read_study as read_study
     from vibroimpact.structures.mesh import Mesh as Mesh
     from vibroimpact.structures.modal_model import ModalBasis as ModalBasis
     from vibroimpact.units import convert_units as convert_units
@@ -105,6 +111,8 @@ _HOME = {
     "Sensor": "dynamics.sensor",
     "Signal": "dynamics.recording",
     "SpeedFunction": "calibration.speed_function",
+    "Study": "storage.study",
+    "Sweep": "cases.sweep",
     "VibroimpactError": "errors",
     "achieved_restitution": "contact.restitution",
     "calibrate": "calibration.calibrate",
@@ -126,6 +134,7 @@ _HOME = {
     "law_parameter": "calibration.tunables",
     "load_calibration": "cases.calibration",
     "load_case": "cases.reader",
+    "load_sweep": "cases.sweep",
     "material_library": "materials",
     "local_element_deviations": "calibration.local_element",
     "modal_damping": "calibration.tunables",
@@ -133,10 +142,13 @@ _HOME = {
     "read_case": "cases.reader",
     "read_mesh": "exchange.mesh_file",
     "read_result": "storage.folder",
+    "read_study": "storage.study",
+    "read_sweep": "cases.sweep",
     "remake_report": "report.save",
     "reproduce_paper": "report.reproduction.folder",
     "rigid_plate": "bodies.plate",
     "rigid_sphere": "bodies.sphere",
+    "run_sweep": "report.study.folder",
     "save_calibration": "report.calibration_folder",
     "save_comparison": "report.comparison_folder",
     "save_modes": "report.modes_folder",

@@ -9,6 +9,8 @@ from dataclasses import dataclass, field
 from functools import cache
 from importlib.resources import files
 
+import numpy as np
+
 from vibroimpact.errors import InputError, did_you_mean
 from vibroimpact.ranges import Range
 
@@ -67,7 +69,7 @@ class Material:
     def __post_init__(self) -> None:
         for name, allowed in _RANGES.items():
             value = getattr(self, name)
-            absent = value is None or (name == "density" and math.isnan(value)) or (name == "youngs_modulus" and value == math.inf)
+            absent = value is None or np.all(np.isnan(value) if name == "density" else np.isinf(value) & (name == "youngs_modulus"))
             try:
                 if not absent:
                     allowed.check(value)

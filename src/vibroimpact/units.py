@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterable
-from functools import cache
+from functools import cache, lru_cache
 from typing import TYPE_CHECKING
 
 from vibroimpact.errors import InputError
@@ -35,6 +35,7 @@ _KIND = {
     "N s/m": "damping",
     "J/m^2": "work of adhesion",
     "1/m": "reciprocal length",
+    "byte": "memory size",
     "": "plain number",
 }
 _EXAMPLE = {
@@ -52,6 +53,7 @@ _EXAMPLE = {
     "N s/m": "179.75 N s/m",
     "J/m^2": "50 mJ/m^2",
     "1/m": "0.5 1/mm",
+    "byte": "500 MB",
 }
 
 
@@ -259,6 +261,7 @@ def _parse_unit(text: str) -> pint.Unit:
     return _registry().parse_units(text)
 
 
+@lru_cache(maxsize=1000)
 def _factor(given: str, unit: str, text: str) -> float:
     """Return how many `unit` there are in one `given`."""
     import pint

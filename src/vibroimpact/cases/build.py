@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import fields
+from dataclasses import fields, replace
 from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
 
 from vibroimpact.bodies.plate import rigid_plate
 from vibroimpact.bodies.sphere import rigid_sphere
 from vibroimpact.cases.calibrate_section import calibrate_table
 from vibroimpact.cases.material_field import material_table
 from vibroimpact.contact.law import CompliantLaw, ContactLaw, find_contact_law, loses_nothing
-from vibroimpact.contact.pair import ContactPair, effective_modulus
+from vibroimpact.contact.pair import Array, ContactPair, effective_modulus
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.errors import InputError
 
@@ -25,15 +27,15 @@ def contact_pair(case: Case) -> ContactPair:
     """Return the facts of the touching pair of a case: effective modulus, radius and mass."""
     modulus = effective_modulus(case.sphere.material, case.plate.material)
     mass = rigid_sphere(case.sphere.radius, case.sphere.material).mass
-    yielding = [material for material in (case.sphere.material, case.plate.material) if material.yield_strength]
-    weaker = min(yielding, key=lambda material: material.yield_strength or 0.0, default=None)
-    return ContactPair(
-        effective_modulus=modulus,
-        effective_radius=case.sphere.radius,
-        effective_mass=mass,
-        yield_strength=weaker.yield_strength if weaker else None,
-        poissons_ratio=(weaker or case.sphere.material).poissons_ratio,
-    )
+    strength: Array | None = None
+    ratio: Array = case.sphere.material.poissons_ratio
+    for material in (case.sphere.material, case.plate.material):
+        if material.yield_strength is None:
+            continue
+        weaker = np.less(material.yield_strength, np.inf if strength is None else strength)
+        strength = np.where(weaker, material.yield_strength, np.inf if strength is None else strength)[()]
+        ratio = np.where(weaker, material.poissons_ratio, ratio)[()]
+    return ContactPair(modulus, case.sphere.radius, mass, strength, ratio)
 
 
 def contact_laws_of(case: Case) -> tuple[ContactLaw, ...]:
@@ -116,7 +118,7 @@ def problem_of(case: Case, progress: Callable[[float], None] | None = None, tell
         what was measured.
     """
     check_case(case)
-    problem = _rigid_problem(case)
+    problem = replace(rigid_problem(case), source=resolved(case))
     if not deforms(case):
         return problem
     from vibroimpact.cases.coupling import coupled  # which loads finite elements
@@ -124,7 +126,8 @@ def problem_of(case: Case, progress: Callable[[float], None] | None = None, tell
     return coupled(case, problem, progress, tell)
 
 
-def _rigid_problem(case: Case) -> Problem:
+def rigid_problem(case: Case) -> Problem:
+    """Return the problem of a case as if its bodies were rigid; the numbers of the case may be arrays, one value a drop."""
     return Problem(
         sphere=rigid_sphere(case.sphere.radius, case.sphere.material),
         plate=rigid_plate(case.plate.size[2] if case.plate.size else 0.0),
@@ -137,7 +140,6 @@ def _rigid_problem(case: Case) -> Problem:
         rest_speed=case.run.rest_speed,
         same_spot=case.drop.same_spot,
         tolerance=case.run.tolerance,
-        source=resolved(case),
     )
 
 
@@ -167,6 +169,7 @@ def resolved(case: Case) -> dict[str, Any]:
         "run": {**case.run.model_dump(exclude_none=True, exclude={"impacts"}), "impacts": "all" if number is None else number},
         **({"sensors": [sensor.model_dump(exclude_none=True, mode="json") for sensor in case.sensors]} if case.sensors else {}),
         **({"calibrate": calibrate_table(case.calibrate)} if case.calibrate else {}),
+        **({"sweep": case.sweep.model_dump(exclude_none=True, mode="json")} if case.sweep else {}),
     }
 
 

@@ -16,6 +16,7 @@ from vibroimpact.cases.calibrate_section import CalibrateSection, SpeedsTable
 from vibroimpact.cases.explain import explained
 from vibroimpact.cases.material_field import InlineMaterial
 from vibroimpact.cases.schema import AccelerometerTable, Case, DropSection, PlateSection, RunSection, SensorSection, SphereSection
+from vibroimpact.cases.sweep_section import SweepSection
 from vibroimpact.errors import InputError, did_you_mean
 
 Read = TypeVar("Read")
@@ -32,6 +33,7 @@ _SECTIONS: dict[tuple[str, ...], type[BaseModel]] = {
     ("calibrate",): CalibrateSection,
     ("calibrate", "speeds"): SpeedsTable,
     ("sensors",): SensorSection,
+    ("sweep",): SweepSection,
     ("sensors", "accelerometer"): AccelerometerTable,
 }
 
@@ -67,6 +69,8 @@ def _read_to_run(table: dict[str, Any]) -> Case:
     except InputError as error:
         if "calibrate" in table and "contact" in str(error) and "missing" in str(error):
             raise InputError(f"{error}; for `vibroimpact calibrate` what it tunes may be left out") from None
+        if "sweep" in table and "missing" in str(error):
+            raise InputError(f"{error}; for `vibroimpact sweep` what it sweeps may be left out") from None
         raise
 
 
@@ -140,7 +144,16 @@ def _beside(table: dict[str, Any], folder: Path) -> dict[str, Any]:
     file = target.get("file") if isinstance(target, dict) else target
     if isinstance(wanted, dict) and isinstance(file, str) and file.strip():
         wanted["target"] = {"file": str((folder / file).absolute())}
+    _columns_beside(table.get("sweep"), folder)
     return table
+
+
+def _columns_beside(inside: Any, folder: Path) -> None:
+    """Find the files of a [sweep] section, however deep they stand in it, beside the case."""
+    for value in inside.values() if isinstance(inside, dict) else ():
+        if isinstance(value, dict) and isinstance(value.get("file"), str):
+            value["file"] = str((folder / value["file"]).absolute())
+        _columns_beside(value, folder)
 
 
 def _shipped(name: str) -> str:

@@ -26,6 +26,7 @@ from vibroimpact.cases.material_field import MaterialField
 from vibroimpact.cases.quantities import Quantity
 from vibroimpact.cases.section import Section
 from vibroimpact.cases.supports_field import SupportsField
+from vibroimpact.cases.sweep_section import SweepSection
 from vibroimpact.dynamics.problem import MOST_IMPACTS, STANDARD_GRAVITY, Problem
 from vibroimpact.dynamics.sensor import Accelerometer, Sensor
 from vibroimpact.errors import InputError
@@ -120,6 +121,7 @@ class AccelerometerTable(Section):
     range: Annotated[float, Quantity("m/s^2", "largest magnitude that it reads", Range(above=0))] | None = None
     noise: Annotated[float, Quantity("m/s^2", "standard deviation of the noise in its samples", Range(at_least=0))] = 0.0
     resolution: Annotated[float, Quantity("m/s^2", "step of its readings", Range(above=0))] | None = None
+    seed: Annotated[int, Field(ge=0, strict=True)] = Field(0, description="of the noise")
 
 
 _DIRECTIONS = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
@@ -182,6 +184,7 @@ class Case(Section):
     run: RunSection = RunSection()
     sensors: tuple[SensorSection, ...] = Field((), description="the points of the plate that are watched")
     calibrate: CalibrateSection | None = Field(None, description="what `vibroimpact calibrate` does with it")
+    sweep: SweepSection | None = Field(None, description="what `vibroimpact sweep` does with it")
 
     @model_validator(mode="after")
     def _fits_together(self) -> Case:
@@ -229,7 +232,7 @@ def case_schema() -> dict[str, Any]:
     Examples
     --------
     >>> sorted(case_schema()["properties"])
-    ['calibrate', 'contact', 'drop', 'name', 'plate', 'run', 'schema_version', 'sensors', 'sphere']
+    ['calibrate', 'contact', 'drop', 'name', 'plate', 'run', 'schema_version', 'sensors', 'sphere', 'sweep']
     """
     schema = Case.model_json_schema()
     schema["$schema"] = "https://json-schema.org/draft/2020-12/schema"

@@ -28,12 +28,12 @@ def read_table(kind: type[Kind], value: Mapping[str, Any]) -> Kind:
     InputError
         With the first key that is wrong.
     """
-    known = [name for name in kind.model_fields if name != "type"]
+    known = [info.alias or name for name, info in kind.model_fields.items() if name != "type"]
     for key in value:
-        if key not in kind.model_fields:
+        if key not in known and key not in kind.model_fields:
             raise InputError(f'unknown key "{key}"; it takes {", ".join(known)}.{did_you_mean(key, known)}', key)
     try:
         return kind.model_validate(dict(value))
     except ValidationError as error:
         path, message = next(explained(error, lambda where: kind if not where else None))
-        raise InputError(message, path) from None
+        raise InputError(message.replace("this section is missing", "this key is missing"), path) from None

@@ -39,11 +39,18 @@ def run(
 
 @app.command()
 def check(case: CaseArgument) -> None:
-    """Validate a case and explain it; run nothing."""
-    from vibroimpact.cases.reader import load_case
+    """Validate a case or a study and explain it; run nothing."""
+    from vibroimpact.cases.reader import load_case, load_table, named
+    from vibroimpact.cases.sweep import load_sweep
     from vibroimpact.report.console import case_explained
+    from vibroimpact.report.study.explained import sweep_explained
 
-    console().print(case_explained(load_case(case)))
+    if "sweep" not in named(case, lambda: load_table(case)):
+        console().print(case_explained(load_case(case)))
+        return
+    study = load_sweep(case)
+    console().print(sweep_explained(study))
+    console().print(case_explained(study.case))
 
 
 def _run(name: str, output: Path | None, *, force: bool) -> None:

@@ -12,7 +12,7 @@ from vibroimpact.materials import Material
 Array = Any  # a float, or an array of any library that follows NumPy's operators and ufuncs
 
 
-def effective_modulus(first: Material, second: Material) -> float:
+def effective_modulus(first: Material, second: Material) -> Array:
     r"""Return the effective modulus of a contact pair [Pa].
 
     .. math:: 1/E^* = (1 - \nu_1^2)/E_1 + (1 - \nu_2^2)/E_2
@@ -31,7 +31,8 @@ def effective_modulus(first: Material, second: Material) -> float:
     '2.426472e+09'
     """
     compliance = 1.0 / first.plane_strain_modulus + 1.0 / second.plane_strain_modulus
-    return 1.0 / compliance if compliance else np.inf
+    with np.errstate(divide="ignore"):
+        return np.divide(1.0, compliance)
 
 
 def hertz_stiffness(modulus: Array, radius: Array) -> Array:

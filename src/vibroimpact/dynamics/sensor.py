@@ -19,9 +19,11 @@ class Accelerometer:
     range : float, optional
         Largest magnitude that it reads [m/s^2]; beyond it is clipped.
     noise : float, default 0
-        Standard deviation of white noise in its samples [m/s^2]; of the same seed in every run.
+        Standard deviation of white noise in its samples [m/s^2]; the same in every run of one seed.
     resolution : float, optional
         Step of its readings [m/s^2].
+    seed : int, default 0
+        Of the noise; sensors of different names have noise of their own.
     """
 
     resonance: float | None = None
@@ -29,6 +31,7 @@ class Accelerometer:
     range: float | None = None
     noise: float = 0.0
     resolution: float | None = None
+    seed: int = 0
 
 
 @dataclass(frozen=True)

@@ -150,14 +150,21 @@ def _name_and_unit(cell: str) -> tuple[str, str | None]:
     """Return name and unit of a header's cell; None where it has no unit."""
     match = _BRACKETS.fullmatch(cell)
     if match:
-        return _plain(match[1]), match[2].strip()
+        return column_name(match[1]), match[2].strip()
     for ending, unit in sorted(_ENDINGS.items(), key=lambda item: -len(item[0])):
         if cell.endswith(ending):
-            return _plain(cell.removesuffix(ending)), unit
-    return _plain(cell), None
+            return column_name(cell.removesuffix(ending)), unit
+    return column_name(cell), None
 
 
-def _plain(name: str) -> str:
+def column_name(name: str) -> str:
+    """Return a column's name as it is looked for: small letters, with underscores.
+
+    Examples
+    --------
+    >>> column_name("Rebound height")
+    'rebound_height'
+    """
     return re.sub(r"[\s-]+", "_", name.strip().lower())
 
 

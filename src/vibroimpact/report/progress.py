@@ -1,4 +1,4 @@
-"""A progress bar that shows itself only when work takes longer than a second."""
+"""Progress bars: one that shows itself only when work takes longer than a second, and one that counts what is done."""
 
 from __future__ import annotations
 
@@ -7,7 +7,8 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 from rich.console import Console
-from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, ProgressColumn, Task, TextColumn, TimeRemainingColumn
+from rich.text import Text
 
 _PATIENCE = 1.0  # seconds
 
@@ -39,3 +40,33 @@ def patient_progress(what: str, console: Console) -> Iterator[Callable[[float], 
     finally:
         if shown:  # one that was never started would leave an empty line
             bar.stop()
+
+
+@contextmanager
+def counting_progress(what: str, console: Console) -> Iterator[Callable[[int, int], None]]:
+    """Give a function that is told how many are done and of how many; it shows their rate and the time left, on a terminal alone."""
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(),
+        MofNCompleteColumn(),
+        _Rate(),
+        TimeRemainingColumn(elapsed_when_finished=True),
+    )
+    bar = Progress(*columns, console=console, transient=True, disable=not console.is_terminal, speed_estimate_period=60.0)
+    task = None
+
+    def tell(done: int, total: int) -> None:
+        nonlocal task
+        if task is None:  # what was done before does not count for the rate
+            task = bar.add_task(what, total=total, completed=done)
+        bar.update(task, completed=done)
+
+    with bar:
+        yield tell
+
+
+class _Rate(ProgressColumn):
+    """How many a second."""
+
+    def render(self, task: Task) -> Text:
+        return Text("" if task.speed is None else f"{task.speed:,.3g}/s" if task.speed < 100 else f"{task.speed:,.0f}/s")

@@ -48,16 +48,21 @@ def save_result(response: Response, directory: str | PathLike[str], *, force: bo
 def remake_report(directory: str | PathLike[str]) -> Path:
     """Make figures and report of a result folder again, from its data; its other files stay as they are.
 
-    Of a reproduction of the paper, the report is made again from the parts that are there.
+    Of a reproduction of the paper, the report is made again from the parts that are there; of a study, from its dataset.
 
     Raises
     ------
     InputError
         If it is not a result folder, its data are damaged, or it can't be written to.
     """
-    from vibroimpact.report.reproduction.folder import is_reproduction, write_reproduction_report  # which loads what a run does not need
+    # which load what a run does not need
+    from vibroimpact.report.reproduction.folder import is_reproduction, write_reproduction_report
+    from vibroimpact.report.study.folder import is_study
 
     folder = Path(directory)
+    if is_study(folder):
+        _remake_study(folder)
+        return folder
     if is_reproduction(folder):
         write_reproduction_report(folder)
         return folder
@@ -71,3 +76,10 @@ def remake_report(directory: str | PathLike[str]) -> Path:
     except OSError as error:
         raise InputError(f"{folder}: the report can't be written: {error.strerror}") from None
     return folder
+
+
+def _remake_study(folder: Path) -> None:
+    from vibroimpact.report.study.page import write_study_report
+    from vibroimpact.storage.study import read_study
+
+    write_study_report(read_study(folder), folder)

@@ -1,0 +1,186 @@
+"""The work of a study: the drops at some of its points, those with rigid bodies as arrays, the others one by one."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vibroimpact.cases.build import deforms, rigid_problem
+from vibroimpact.cases.reader import read_case
+from vibroimpact.cases.schema import Case
+from vibroimpact.cases.swept_arrays import is_array_key, with_arrays
+from vibroimpact.cases.swept_keys import with_values
+from vibroimpact.dynamics.recording import Signal
+from vibroimpact.dynamics.response import Outcome, Response
+from vibroimpact.dynamics.sensor import Sensor
+from vibroimpact.dynamics.simulate import simulate
+from vibroimpact.dynamics.tabulate import ImpactTable, tabulate
+from vibroimpact.errors import ComputationError, InputError
+from vibroimpact.studies.axes import Values
+from vibroimpact.studies.chunk_file import ChunkResult
+from vibroimpact.studies.columns import FIRST, LARGEST, OUTCOME, SENSOR_PEAK, SIGNAL
+
+_OUTCOMES = {outcome: number for number, outcome in enumerate(Outcome)}
+
+
+class _Study(NamedTuple):
+    """A case, what is kept of it, and the points of a chunk."""
+
+    table: Mapping[str, Any]
+    keep: tuple[str, ...]
+    first: int
+    points: Mapping[str, Values]
+
+    def case(self, place: np.intp) -> Case:
+        """Return the case of the drop at a place in the chunk."""
+        values = ((key, column[place]) for key, column in self.points.items())
+        return read_case(with_values(self.table, {key: value.item() if isinstance(value, np.generic) else value for key, value in values}))
+
+
+class _Part(NamedTuple):
+    """What came of the drops at some places of a chunk."""
+
+    places: NDArray[np.intp]
+    arrays: dict[str, NDArray[Any]]
+    failures: dict[int, str]
+
+
+def compute_points(table: Mapping[str, Any], keep: tuple[str, ...], first: int, points: Mapping[str, Values]) -> ChunkResult:
+    """Compute the drops at some points of a study.
+
+    Parameters
+    ----------
+    table : mapping
+        The case, as a TOML file would hold it.
+    keep : tuple of str
+        What is kept of each drop: "impacts", "signals"; its peaks always are.
+    first : int
+        The number of the first of the drops in the study: the noise of their sensors is drawn from their numbers.
+    points : mapping of str to array
+        The values of each drop at the keys that are swept.
+
+    Returns
+    -------
+    ChunkResult
+        With the columns of the impact table (drops, impacts), the peaks (drops,), and the signals (drops, samples). A drop that
+        failed has its reason, and the others go on.
+
+    Examples
+    --------
+    >>> from vibroimpact.cases.reader import load_table
+    >>> found = compute_points(load_table("paper:type1-theory"), ("impacts",), 0, {"drop.height": np.array([2.0, 4.0])})
+    >>> found.arrays["max_force_N"].shape
+    (2, 5)
+    """
+    from threadpoolctl import threadpool_limits  # which looks at all libraries that are loaded
+
+    begin, study = time.process_time(), _Study(table, keep, first, points)
+    with threadpool_limits(1):  # many small products gain nothing from threads, and their number must not change a digit
+        parts = [part for places in _alike(points) for part in _parts(study, places)]
+    count = len(next(iter(points.values())))
+    failures = {place: part.failures[place] for part in parts for place in part.failures}
+    return ChunkResult(_gathered(parts, count), dict(sorted(failures.items())), time.process_time() - begin)
+
+
+def _alike(points: Mapping[str, Values]) -> Iterator[NDArray[np.intp]]:
+    """Yield the places of drops that differ in nothing but numbers that may run as arrays."""
+    others = [values for key, values in points.items() if not is_array_key(key, values)]
+    count = len(next(iter(points.values())))
+    if not others:
+        yield np.arange(count)
+        return
+    groups: dict[str, list[int]] = {}
+    for place in range(count):
+        groups.setdefault(repr([values[place] for values in others]), []).append(place)
+    yield from (np.array(places) for places in groups.values())
+
+
+def _parts(study: _Study, places: NDArray[np.intp]) -> Iterator[_Part]:
+    """Compute the drops at places that are alike."""
+    while places.size:
+        try:
+            case = study.case(places[0])
+            break
+        except InputError:
+            yield _alone(study, places[0])
+            places = places[1:]
+    else:
+        return
+    arrays = {key: values[places] for key, values in study.points.items() if is_array_key(key, values)}
+    if deforms(case) or not arrays:
+        yield from (_alone(study, place) for place in places)
+        return
+    height: Any = arrays.get("drop.height", case.drop.height)
+    if height is not None:  # those that would begin inside the plate fail by themselves
+        above = np.broadcast_to(height > arrays.get("sphere.radius", case.sphere.radius), places.shape)
+        yield from (_alone(study, place) for place in places[~above])
+        places, arrays = places[above], {key: values[above] for key, values in arrays.items()}
+    try:
+        table = tabulate(rigid_problem(with_arrays(case, arrays)))
+    except InputError:  # of one of them: the others must not suffer
+        yield from (_alone(study, place) for place in places)
+        return
+    yield _Part(places, _columns(table, study.keep), {int(places[drop]): reason for drop, reason in table.failures.items()})
+
+
+def _alone(study: _Study, place: np.intp) -> _Part:
+    """Compute one drop by itself."""
+    try:
+        problem = study.case(place).to_problem()
+        response = simulate(replace(problem, sensors=tuple(_noise(sensor, study.first + int(place)) for sensor in problem.sensors)))
+    except Exception as error:  # whatever it is, it is the reason of this drop, and the others go on
+        name = "" if isinstance(error, (InputError, ComputationError)) else f"{type(error).__name__}: "
+        return _Part(np.array([place]), {}, {int(place): f"{name}{error}"})
+    signals = {}
+    if "signals" in study.keep:
+        for name, signal in response.signals().items():
+            signals[f"{SIGNAL}{name}"] = signal.value[: _samples(response, signal)].astype(np.float32)[None]
+            signals[f"{name}{SENSOR_PEAK}"] = np.array([np.abs(signal.value).max()])
+    return _Part(np.array([place]), {**_columns(response, study.keep), **signals}, {})
+
+
+def _noise(sensor: Sensor, number: int) -> Sensor:
+    """Return a sensor whose noise is that of one drop alone."""
+    meter = sensor.accelerometer
+    return sensor if meter is None else replace(sensor, accelerometer=replace(meter, seed=meter.seed + number))
+
+
+def _samples(response: Response, signal: Signal) -> int:
+    """Return how many samples a signal has up to the duration that was asked for; a contact under way then was finished."""
+    assert response.problem.duration is not None  # the study has seen to it
+    return int(response.problem.duration * signal.sensor.rate * (1 + 1e-15)) + 1
+
+
+def _columns(response: Response | ImpactTable, keep: tuple[str, ...]) -> dict[str, NDArray[Any]]:
+    """Return impact table and peaks of the drops of a response."""
+    impacts = {name: np.atleast_2d(values) for name, values in response.impacts.items()}
+    first = {peak: impacts[name][:, 0] if impacts[name].size else np.full(len(response), np.nan) for peak, name in FIRST.items()}
+    peaks = {
+        "number_of_impacts": np.isfinite(impacts["impact"]).sum(axis=1).astype(np.int32),
+        "end_time_s": response.end_time,
+        "total_energy_lost_J": np.nansum(impacts["energy_lost_J"], axis=1),
+        "closure_relative": np.atleast_1d(response.energy["closure_relative"]),
+        OUTCOME: np.array([_OUTCOMES[outcome] for outcome in response.outcomes], dtype=np.int8),
+        **first,
+        **{peak: np.fmax.reduce(impacts[name], axis=1, initial=np.nan) for peak, name in LARGEST.items()},
+    }
+    kept = {name: values for name, values in impacts.items() if name != "impact"} if "impacts" in keep else {}
+    return {**peaks, **kept}
+
+
+def _gathered(parts: list[_Part], count: int) -> dict[str, NDArray[Any]]:
+    """Return the arrays of all drops of a chunk in order; what a drop does not have is NaN, and a failed drop is one that failed."""
+    found: dict[str, NDArray[Any]] = {OUTCOME: np.full(count, _OUTCOMES[Outcome.FAILED], dtype=np.int8)}
+    for part in parts:
+        for name, values in part.arrays.items():
+            if name not in found:
+                widest = np.max([other.arrays[name].shape[1:] for other in parts if name in other.arrays], axis=0)
+                found[name] = np.full((count, *widest.astype(int)), np.nan if values.dtype.kind == "f" else 0, dtype=values.dtype)
+            place: Any = (part.places, *(slice(length) for length in values.shape[1:]))
+            found[name][place] = values
+    return found

@@ -1,0 +1,207 @@
+"""From a case with a [sweep] section to a study: a case, the axes it runs over, and what is kept."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from hashlib import sha256
+from os import PathLike
+from typing import Any
+
+import numpy as np
+
+from vibroimpact.cases.quantities import Quantity
+from vibroimpact.cases.reader import load_table, named, read_case
+from vibroimpact.cases.schema import Case
+from vibroimpact.cases.section import read_table
+from vibroimpact.cases.sweep_section import MOST_DROPS, SweepSection, read_axis
+from vibroimpact.cases.swept_keys import find_quantity, with_values
+from vibroimpact.dynamics.columns import IMPACT_COLUMNS, VIBRATION_IMPACT_COLUMNS
+from vibroimpact.errors import InputError
+from vibroimpact.studies.axes import Axis
+from vibroimpact.studies.columns import OUTCOME, PEAKS, SENSOR_PEAK, SIGNAL
+from vibroimpact.studies.design import find_design
+from vibroimpact.studies.plan import Plan
+
+_SECTIONS = ("sphere", "plate", "drop", "contact", "run")
+
+
+@dataclass(frozen=True, eq=False)
+class Sweep:
+    """A study, read and checked.
+
+    Attributes
+    ----------
+    table : dict
+        The case without its [sweep] section, as a TOML file would hold it.
+    section : SweepSection
+        The design and what is kept.
+    axes : dict of str to Axis
+        What each key runs over.
+    quantities : dict of str to Quantity or None
+        What each key holds.
+    """
+
+    table: dict[str, Any]
+    section: SweepSection
+    axes: dict[str, Axis]
+    quantities: dict[str, Quantity | None]
+
+    @cached_property
+    def size(self) -> int:
+        """The number of drops."""
+        return find_design(self.section.design).size(self.axes, self.section.samples or 0)
+
+    @cached_property
+    def plan(self) -> Plan:
+        """The points."""
+        return find_design(self.section.design).plan(self.axes, self.section.samples or 0, self.section.seed)
+
+    @cached_property
+    def case(self) -> Case:
+        """The case at the first point."""
+        return self.case_at({key: values[0] for key, values in self.plan.points(0, 1).items()})
+
+    def case_at(self, values: Mapping[str, Any]) -> Case:
+        """Return the case with values at its swept keys.
+
+        Raises
+        ------
+        InputError
+            If there is no such case.
+        """
+        return read_case(with_values(self.table, {key: _plain(value) for key, value in values.items()}))
+
+    @property
+    def whole_table(self) -> dict[str, Any]:
+        """The case with its [sweep] section, as a TOML file would hold it."""
+        return {**self.table, "sweep": self.section.model_dump(exclude_none=True, mode="json")}
+
+    @property
+    def meanings(self) -> dict[str, tuple[str, str]]:
+        """Unit and meaning of every swept key and of everything that may be kept of a drop, in the order in which it is told."""
+        sensors = {sensor.name: sensor.sensor() for sensor in self.case.sensors} if "signals" in self.section.keep else {}
+        keys = {key: (quantity.unit or "1", quantity.meaning) if quantity else ("1", key) for key, quantity in self.quantities.items()}
+        largest = {f"{name}{SENSOR_PEAK}": (one.unit, f"largest magnitude that {name} reads") for name, one in sensors.items()}
+        signals = {f"{SIGNAL}{name}": (one.unit, f"{one.quantity} that {name} reads") for name, one in sensors.items()}
+        impacts = {**IMPACT_COLUMNS, **VIBRATION_IMPACT_COLUMNS}
+        del impacts["impact"]  # the dimension
+        return {**keys, OUTCOME: ("1", "why the run of the drop ended"), **PEAKS, **largest, **impacts, **signals}
+
+    @cached_property
+    def digest(self) -> str:
+        """A fingerprint of the case, the points and what is kept."""
+        rest = json.dumps([self.table, self.section.keep], sort_keys=True, default=str)
+        return sha256(f"{self.plan.digest()} {rest}".encode()).hexdigest()
+
+
+def load_sweep(source: str | PathLike[str]) -> Sweep:
+    """Read a study: a case file with a [sweep] section.
+
+    Parameters
+    ----------
+    source : path or str
+        A TOML file, or a shipped study such as "paper:sweep".
+
+    Raises
+    ------
+    InputError
+        If it can't be read, or is not a valid study; the message says where, what, and what is allowed.
+    """
+    return named(source, lambda: read_sweep(load_table(source)))
+
+
+def read_sweep(table: Mapping[str, Any]) -> Sweep:
+    """Read a study from a mapping, as a TOML file would hold it.
+
+    What it would compute is looked at, and nothing is computed: the case at the first point, and at the ends of every axis.
+
+    Raises
+    ------
+    InputError
+        If it is not a valid study.
+
+    Examples
+    --------
+    >>> from vibroimpact.cases.reader import load_table
+    >>> case = load_table("paper:type1-theory")
+    >>> study = read_sweep({**case, "sweep": {"over": {"sphere.radius": ["10 mm", "25 mm"], "contact.restitution": [0.5, 0.6, 0.7]}}})
+    >>> study.size
+    6
+    """
+    base = {key: value for key, value in table.items() if key != "sweep"}
+    if "sweep" not in table:
+        raise InputError('it is missing; it says what runs over what, such as [sweep.over] "sphere.radius" = ["10 mm", "25 mm"]', "sweep")
+    if not isinstance(table["sweep"], dict):
+        raise InputError(f"{table['sweep']!r} is not a table", "sweep")
+    try:
+        section = read_table(SweepSection, table["sweep"])
+        design = find_design(section.design)
+        if design.is_drawn and section.samples is None:
+            raise InputError(f"it is missing; {design.name} needs to know how many points it draws", "samples")
+        if not design.is_drawn and section.samples is not None:
+            raise InputError(f"{design.name} has the points that its values give; leave this out", "samples")
+        over = dict(_flat(section.over))
+        if not over:
+            raise InputError("it is empty; it takes dotted keys of the case", "over")
+        quantities, axes = {}, {}
+        for key, value in over.items():
+            try:
+                quantities[key] = find_quantity(base, key)
+                axes[key] = read_axis(value, quantities[key])
+            except InputError as error:
+                raise InputError(error.message, f'over."{key}".{error.key}'.rstrip(".")) from None
+        sweep = Sweep(base, section.model_copy(update={"over": over}), axes, quantities)
+        if sweep.size > MOST_DROPS:
+            raise InputError(f"there would be {sweep.size} drops, and {MOST_DROPS} are the most; sweep in parts", "over")
+    except InputError as error:
+        raise InputError(error.message, f"sweep.{error.key}".rstrip(".")) from None
+    _check_points(sweep)
+    if "signals" in section.keep:
+        if not sweep.case.sensors:
+            raise InputError('"signals" needs [[sensors]] on an elastic plate', "sweep.keep")
+        if sweep.case.run.duration is None:
+            raise InputError("it is missing; signals need it, so that those of all drops are of one length", "run.duration")
+    return sweep
+
+
+def _flat(over: Mapping[str, Any], above: str = "") -> Iterator[tuple[str, Any]]:
+    """Yield what is swept by its dotted key, also where TOML made tables of keys that were not in quotes."""
+    for key, value in over.items():
+        dotted = f"{above}{key}"
+        if isinstance(value, dict) and (dotted in _SECTIONS or dotted.endswith((".material", ".position", ".size"))):
+            yield from _flat(value, f"{dotted}.")
+        else:
+            yield dotted, value
+
+
+def _check_points(sweep: Sweep) -> None:
+    """Raise unless all values are in range, and there is a case at the first point and with every axis at its ends there."""
+    columns = sweep.plan.columns
+    for key, values in columns.items():
+        quantity = sweep.quantities[key]
+        if quantity is not None and values.dtype != object:
+            try:
+                quantity.allowed.check(values, quantity.unit)
+            except InputError as error:
+                remedy = "; truncate the distribution with at_least and at_most" if sweep.axes[key].is_random else ""
+                raise InputError(f"{error.message}{remedy}", f'sweep.over."{key}"') from None
+    first = {key: values[0] for key, values in sweep.plan.points(0, 1).items()}
+    sweep.case_at(first)
+    for key, values in columns.items():
+        if values.dtype == object:
+            several = list({repr(value): value for value in values.tolist()}.values())
+        else:
+            several = [values.min(), values.max()]
+        for value in several:
+            try:
+                sweep.case_at({**first, key: value})
+            except InputError as error:
+                raise InputError("\n".join(f"at {key} = {value}: {line}" for line in str(error).splitlines())) from None
+
+
+def _plain(value: Any) -> Any:
+    """Return a value as a TOML file would hold it."""
+    return value.item() if isinstance(value, np.generic) else value

@@ -1,0 +1,47 @@
+"""Which swept numbers of a case run as arrays, and a case whose numbers are arrays."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+from vibroimpact.cases.schema import Case
+from vibroimpact.studies.axes import Values
+
+_OF_THE_RUN = ("run.duration", "run.tolerance")  # one for all drops of a batch
+_WITHOUT_EFFECT = ("drop.position.", "plate.size.")  # on rigid bodies
+
+
+def is_array_key(key: str, values: Values) -> bool:
+    """May the values of a key differ from drop to drop of a batch of rigid bodies?"""
+    return values.dtype != object and key not in _OF_THE_RUN
+
+
+def with_arrays(case: Case, arrays: Mapping[str, Values]) -> Case:
+    """Return a case whose numbers at dotted keys are arrays, one value a drop; they are known to be in range.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from vibroimpact.cases.build import rigid_problem
+    >>> from vibroimpact.cases.reader import load_case
+    >>> case = with_arrays(load_case("paper:type1-theory"), {"drop.height": np.array([1.0, 2.0, 4.0])})
+    >>> rigid_problem(case).shape
+    (3,)
+    """
+    fields: dict[str, dict[str, Any]] = defaultdict(dict)
+    materials: dict[str, dict[str, Any]] = defaultdict(dict)
+    for key, values in arrays.items():
+        section, _, field = key.partition(".")
+        if field.startswith("material."):
+            materials[section][field.removeprefix("material.")] = values
+        elif not key.startswith(_WITHOUT_EFFECT):
+            fields[section][field] = values
+    for section, numbers in materials.items():
+        fields[section]["material"] = replace(getattr(case, section).material, **numbers)
+    changed: dict[str, Any] = {name: getattr(case, name).model_copy(update=given) for name, given in fields.items() if name != "contact"}
+    if "contact" in fields:
+        changed["contact"] = replace(case.contact, parameters={**case.contact.parameters, **fields["contact"]})
+    return case.model_copy(update=changed)

@@ -1,0 +1,132 @@
+"""Dotted keys of a case: what quantity each holds, and how a value is put there."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Iterator, Mapping
+from dataclasses import fields
+from typing import Any, get_args, get_origin
+
+from vibroimpact.cases.local_section import LocalSection
+from vibroimpact.cases.material_field import InlineMaterial, material_table
+from vibroimpact.cases.quantities import Quantity
+from vibroimpact.cases.schema import DropSection, PlateSection, RunSection, SphereSection
+from vibroimpact.cases.section import Section
+from vibroimpact.contact.law import find_contact_law, unit_of
+from vibroimpact.errors import InputError, did_you_mean
+from vibroimpact.materials import find_material
+from vibroimpact.ranges import Range
+
+_SECTIONS: dict[str, type[Section]] = {"sphere": SphereSection, "plate": PlateSection, "drop": DropSection, "run": RunSection}
+_PLACES = {"position": ("x", "y"), "size": ("length", "width", "thickness")}
+"""What the numbers of a list are called, such as in "drop.position.x"."""
+
+_DAMPING = Quantity("", "damping ratio", Range(at_least=0))
+
+_OPEN = ("supports", "mesh", "damping", "reduction")
+"""Tables of a body whose own keys are taken as they are; the reader of the case knows them."""
+
+
+def swept_keys(table: Mapping[str, Any]) -> dict[str, Quantity | None]:
+    """Return the keys of a case that can be swept, and the quantity that each holds; None of one that is no quantity.
+
+    Parameters
+    ----------
+    table : mapping
+        The case, as a TOML file would hold it; its contact law has keys of its own.
+
+    Examples
+    --------
+    >>> keys = swept_keys({"contact": {"law": "hertz"}})
+    >>> keys["sphere.radius"].unit, keys["contact.stiffness"].unit, keys["drop.position.x"].unit, keys["plate.model"]
+    ('m', 'N/m^1.5', 'm', None)
+    """
+    return dict(_keys(table))
+
+
+def find_quantity(table: Mapping[str, Any], key: str) -> Quantity | None:
+    """Return the quantity that a key of a case holds; None if it is no quantity.
+
+    Raises
+    ------
+    InputError
+        If there is no such key, or it can't be swept.
+    """
+    known = swept_keys(table)
+    if key in known:
+        return known[key]
+    body, _, rest = key.partition(".")
+    if body in ("sphere", "plate") and rest.partition(".")[0] in _OPEN:
+        return None
+    words = f'unknown key; it must be a key of [sphere], [plate], [drop], [contact] or [run], such as "{_like(key, known)}"'
+    raise InputError(f"{words}.{did_you_mean(key, known)}")
+
+
+def _like(key: str, known: Mapping[str, object]) -> str:
+    return next((name for name in known if name.startswith(key.partition(".")[0] + ".")), "sphere.radius")
+
+
+def with_values(table: Mapping[str, Any], values: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a case with values at dotted keys; a material that was named is written out where one of its numbers changes.
+
+    Examples
+    --------
+    >>> with_values({"drop": {"position": [0.0, 0.0]}}, {"drop.position.y": 0.1, "sphere.radius": "5 mm"})
+    {'drop': {'position': [0.0, 0.1]}, 'sphere': {'radius': '5 mm'}}
+    """
+    found = copy.deepcopy(dict(table))
+    for key, value in sorted(values.items(), key=lambda item: item[0].count(".")):  # a material before its numbers
+        *way, last = key.split(".")
+        inside: Any = found
+        for number, part in enumerate(way):
+            holder = inside
+            inside = inside.setdefault(part, [0.0, 0.0] if way[number:] == ["position"] else {})
+            if isinstance(inside, str) and part == "material":
+                named = material_table(find_material(inside))
+                if isinstance(named, str):
+                    raise InputError(f'"{inside}" has no numbers that could be swept', ".".join(way))
+                inside = holder[part] = {name: number for name, number in named.items() if name != "name"}  # it is another one now
+        if isinstance(inside, list) and last in _PLACES.get(way[-1], ()):
+            inside[_PLACES[way[-1]].index(last)] = value
+        elif isinstance(inside, dict):
+            inside[last] = value
+        else:
+            raise InputError(f"{inside!r} is not a table, so that it has no {last}", ".".join(way))
+    return found
+
+
+def _keys(table: Mapping[str, Any]) -> Iterator[tuple[str, Quantity | None]]:
+    for name, section in _SECTIONS.items():
+        for field, info in section.model_fields.items():
+            key = f"{name}.{field}"
+            parts = _parts(info.annotation) if field in _PLACES else ()
+            yield key, None if parts else _DAMPING if field == "damping" else _quantity((info.annotation, *info.metadata))
+            yield from ((f"{key}.{place}", _quantity((part,))) for place, part in zip(_PLACES.get(field, ()), parts, strict=True))
+            if field == "material":
+                for number, inner in InlineMaterial.model_fields.items():
+                    if number != "name":
+                        yield f"{key}.{number}", _quantity((inner.annotation, *inner.metadata))
+    yield "contact.law", None
+    contact = table.get("contact")
+    if isinstance(contact, dict) and isinstance(contact.get("law"), str):
+        exponent = contact.get("exponent", 1.5)
+        for item in fields(find_contact_law(contact["law"])):
+            yield f"contact.{item.name}", Quantity(unit_of(item, exponent), item.metadata["meaning"], item.metadata["range"])
+    for field, info in LocalSection.model_fields.items():
+        yield f"contact.{field}", _quantity((info.annotation, *info.metadata))
+
+
+def _quantity(annotations: tuple[Any, ...]) -> Quantity | None:
+    """Return the first quantity among annotations, or inside them."""
+    for annotation in annotations:
+        found = (
+            annotation if isinstance(annotation, Quantity) else _quantity((*get_args(annotation), *getattr(annotation, "__metadata__", ())))
+        )
+        if found is not None:
+            return found
+    return None
+
+
+def _parts(annotation: Any) -> tuple[Any, ...]:
+    """Return the annotations of the numbers of a tuple, which may be optional."""
+    return next(get_args(option) for option in (annotation, *get_args(annotation)) if get_origin(option) is tuple)

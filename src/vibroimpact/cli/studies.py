@@ -1,0 +1,88 @@
+"""The command that runs a study of many drops."""
+
+from __future__ import annotations
+
+import os
+import shlex
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from vibroimpact.cli.shared import app, console, fail, note, stem
+from vibroimpact.errors import InputError
+
+MOST_UNASKED = 100_000
+"""Drops beyond which a study must be confirmed by --yes."""
+
+
+@app.command()
+def sweep(
+    study: Annotated[str, typer.Argument(metavar="STUDY", help="A case with a [sweep] section.")],
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", metavar="DIR", help="The folder to make; by default STUDY-sweep.")
+    ] = None,
+    resume: Annotated[bool, typer.Option("--resume", help="Go on with the study that was begun in the folder.")] = False,
+    force: Annotated[bool, typer.Option("--force", help="Replace the folder of a study that is there.")] = False,
+    yes: Annotated[bool, typer.Option("--yes", help=f"Run also more than {MOST_UNASKED:,} drops.")] = False,
+    processes: Annotated[
+        int | None, typer.Option("--processes", metavar="N", min=1, help="How many processes compute; by default one a core.")
+    ] = None,
+    scheduler: Annotated[
+        str | None,
+        typer.Option("--scheduler", metavar="ADDRESS", help='A Dask scheduler, such as tcp://10.0.0.5:8786; "local" starts one here.'),
+    ] = None,
+    memory: Annotated[
+        str, typer.Option("--memory", metavar="SIZE", help="What each process may use for the drops that it computes at once.")
+    ] = "500 MB",
+) -> None:
+    """Run many drops: all points of a study, on all cores or on the workers of a Dask scheduler.
+
+    The [sweep] section of the case says which keys run over what. What is done is kept, whatever stops the study: --resume goes on.
+    """
+    from vibroimpact.cases.sweep import load_sweep
+    from vibroimpact.report.progress import counting_progress, patient_progress
+    from vibroimpact.report.study.folder import run_sweep
+    from vibroimpact.report.study.text import study_summary
+    from vibroimpact.storage.study import read_study
+    from vibroimpact.units import to_si
+
+    try:
+        size = to_si(memory, "byte")
+    except InputError as error:
+        raise InputError(error.message, "--memory") from None
+    if size < 1e6:
+        raise InputError(f"{memory} is too little; it must be 1 MB or more", "--memory")
+    target = Path(f"{stem(study)}-sweep") if output is None else output
+    found = load_sweep(study)
+    if found.size > MOST_UNASKED and not (yes or resume):
+        raise InputError(
+            f"{study}: there would be {found.size:,} drops, more than {MOST_UNASKED:,}; confirm that they are wanted with --yes"
+        )
+    screen = console()
+    try:
+        with patient_progress("computing modes", screen) as modes_progress:
+            found.case.to_problem(modes_progress, note)
+        with counting_progress("drops", screen) as progress:
+            folder = run_sweep(
+                found,
+                target,
+                resume=resume,
+                force=force,
+                workers=processes or _cores(),
+                scheduler=scheduler,
+                memory=size,
+                progress=progress,
+                tell=note,
+            )
+    except KeyboardInterrupt:
+        options = "" if scheduler is None else f" --scheduler {shlex.quote(scheduler)}"
+        command = f"vibroimpact sweep {shlex.quote(study)} -o {shlex.quote(str(target))} --resume{options}"
+        fail(f"interrupted; the drops that are done stay; go on with: {command}", 130)
+    screen.print(study_summary(read_study(folder), screen.width))
+    typer.echo(f"wrote {folder / 'study.nc'} and {folder / 'report.html'}")
+
+
+def _cores() -> int:
+    """Return how many cores this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1

@@ -1,0 +1,46 @@
+"""A study explained: how many drops, over what, and what is kept."""
+
+from __future__ import annotations
+
+from rich.console import Group, RenderableType
+from rich.markup import escape
+from rich.table import Table
+from rich.text import Text
+
+from vibroimpact.cases.sweep import Sweep
+from vibroimpact.studies.axes import Axis, Listed, Normal, Spaced
+
+
+def sweep_explained(sweep: Sweep) -> RenderableType:
+    """Return what a study would do, for a terminal."""
+    section = sweep.section
+    drawn = f", drawn with seed {section.seed}" if section.samples else ""
+    kept = " and ".join(dict.fromkeys(["peaks", *section.keep]))
+    table = Table(box=None, padding=(0, 1), header_style="bold")
+    table.add_column("swept key")
+    table.add_column("over")
+    for key, axis in sweep.axes.items():
+        quantity = sweep.quantities[key]
+        table.add_row(escape(key), escape(_words(axis, quantity.unit if quantity else "", is_drawn=section.samples is not None)))
+    return Group(
+        Text(f"A study of {sweep.size:,} drops: {section.design}{drawn}; keeps {kept}.", style="bold"),
+        table,
+        Text("The case at its first point:\n"),
+    )
+
+
+def _words(axis: Axis, unit: str, *, is_drawn: bool) -> str:
+    """Return in a few words what an axis runs over."""
+    if isinstance(axis, Listed):
+        shown = [f"{value:g}" if isinstance(value, float) else str(value) for value in axis.values]
+        text = ", ".join(shown) if len(shown) <= 8 else f"{len(shown)} values, {shown[0]} to {shown[-1]}"
+        return f"{text} {unit}".rstrip()
+    number = "" if is_drawn else f"{len(axis.levels())} values "
+    if isinstance(axis, Spaced):
+        return f"{number}from {axis.start:g} to {axis.end:g} {unit}".rstrip() + (", logarithmic" if axis.scale == "log" else "")
+    assert isinstance(axis, Normal)
+    name = "lognormal" if axis.lognormal else "normal"
+    ends = [f"{word} {end:g}" for word, end in (("at least", axis.at_least), ("at most", axis.at_most)) if abs(end) < float("inf")]
+    return f"{number}{name}, mean {axis.mean:g}, standard deviation {axis.standard_deviation:g} {unit}".rstrip() + "".join(
+        f", {one}" for one in ends
+    )

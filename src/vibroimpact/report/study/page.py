@@ -1,0 +1,118 @@
+"""The report of a study: figures, tables of percentiles and of sensitivity, and the page."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import tomli_w
+
+from vibroimpact.errors import InputError
+from vibroimpact.report.figures import save_figures
+from vibroimpact.report.page import Picture, picture, template
+from vibroimpact.report.study.axes import design_of, study_axes
+from vibroimpact.report.study.figures import draw, study_figures
+from vibroimpact.report.study.outputs import Output, drawn_outputs, study_outputs
+from vibroimpact.report.study.restitution import restitution_of, restitution_sentence
+from vibroimpact.report.study.sensitivity import Sensitivity, sensitivity_of
+from vibroimpact.report.study.tables import (
+    PERCENTILE_COLUMNS,
+    axes_table,
+    counts_sentence,
+    failures_table,
+    percentiles_rows,
+    percentiles_table,
+    reasons,
+    sensitivity_rows,
+    sensitivity_table,
+    sensitivity_words,
+    spread_words,
+)
+from vibroimpact.storage.study import Study
+from vibroimpact.storage.tables import write_csv
+from vibroimpact.studies.columns import SENSOR_PEAK
+from vibroimpact.studies.design import find_design
+from vibroimpact.studies.percentiles import PERCENTILES
+
+PAGE, FIGURES, SPREADS, SENSITIVITY = "report.html", "figures", "percentiles.csv", "sensitivity.csv"
+
+
+def write_study_report(study: Study, folder: Path) -> None:
+    """Write figures, `percentiles.csv`, `sensitivity.csv` where there is something to tell, and `report.html`.
+
+    All is written beside and then put in its place file by file; figures that there no longer are go.
+
+    Parameters
+    ----------
+    study : Study
+        What is told.
+    folder : pathlib.Path
+        That of the study.
+
+    Raises
+    ------
+    InputError
+        If the folder can't be written to.
+    """
+    try:
+        with TemporaryDirectory(prefix=".report.", dir=folder) as name:
+            working = Path(name)
+            (working / FIGURES).mkdir()
+            _write(study, working)
+            (folder / FIGURES).mkdir(exist_ok=True)
+            written = {file.relative_to(working) for file in working.rglob("*.*")}
+            for file in sorted(written):
+                os.replace(working / file, folder / file)
+            for old in [folder / SENSITIVITY, *(folder / FIGURES).glob("*.*")]:
+                if old.relative_to(folder) not in written:
+                    old.unlink(missing_ok=True)
+    except OSError as error:
+        raise InputError(f"{folder}: the report can't be written: {error.strerror}") from None
+
+
+def _write(study: Study, folder: Path) -> None:
+    outputs = study_outputs(study)
+    found = sensitivity_of(study, [one for one in outputs if one.tells])
+    write_csv(percentiles_rows(outputs), PERCENTILE_COLUMNS, folder / SPREADS)
+    if found is not None and found.rows:
+        table = sensitivity_rows(found)
+        write_csv(table, list(table[0]), folder / SENSITIVITY)
+    (folder / PAGE).write_text(_page(study, outputs, found, _pictures(study, outputs, found, folder)), encoding="utf-8")
+
+
+def _pictures(study: Study, outputs: list[Output], found: Sensitivity | None, folder: Path) -> list[Picture]:
+    """Draw and save the figures one by one, so that no more than one is held."""
+    pictures = []
+    for name, one in study_figures(study, outputs, found).items():
+        figure = draw(one)
+        if figure is not None:
+            svg = save_figures({name: figure}, folder / FIGURES)[name]
+            pictures.append(picture(name, one.title, one.caption, svg))
+    return pictures
+
+
+def _page(study: Study, outputs: list[Output], found: Sensitivity | None, pictures: list[Picture]) -> str:
+    name, design = str(study.table.get("name") or "a study of drops"), design_of(study)
+    table = sensitivity_table(found, drawn_outputs(outputs)) if found is not None and found.rows else None
+    return template("study.html.j2").render(
+        name=name[:1].upper() + name[1:],
+        counts=counts_sentence(study),
+        failed=len(study.failures) == study.size,
+        restitution=restitution_sentence(restitution_of(study)),
+        design=f"{design}: {find_design(design).meaning}",
+        axes=axes_table(study, study_axes(study)),
+        reasons=reasons(study),
+        failures=failures_table(study) if study.failures else None,
+        spread_words=spread_words(study),
+        parts=PERCENTILES,
+        percentiles=percentiles_table(outputs),
+        without=[one.title for one in outputs if not one.spread.drops and not one.name.endswith(SENSOR_PEAK)],
+        sensitivity=table,
+        sensitivity_words=sensitivity_words(found) if table and found is not None else "",
+        notes=found.notes if found is not None else [],
+        together=design == "zip",
+        pictures=pictures,
+        study=tomli_w.dumps(study.table),
+        version=study.version,
+    )

@@ -1,0 +1,113 @@
+"""A study that is done: one NetCDF-4 dataset, whose dimensions are the swept keys or `sample`."""
+
+from __future__ import annotations
+
+import tomllib
+from dataclasses import dataclass
+from math import prod
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+from numpy.typing import NDArray
+
+from vibroimpact.errors import InputError
+from vibroimpact.studies.plan import SAMPLE
+
+DATASET = "study.nc"
+FAILED_POINT, FAILED_REASON = "failed_point", "failed_reason"
+"""The variables that say which drops failed, and why."""
+
+
+@dataclass(frozen=True, eq=False)
+class Study:
+    """A study that is done; its variables are read when they are asked for.
+
+    Attributes
+    ----------
+    path : Path
+        Of its dataset.
+    table : dict
+        The case with its [sweep] section.
+    version : str
+        Of the package that made it.
+    dimensions : dict of str to int
+        The dimensions of every variable, in order, and their lengths: the swept keys, or `sample`.
+    coordinates : dict of str to array
+        By the swept key its levels, or its values along `sample`.
+    meanings : dict of str to (str, str)
+        Unit and meaning of every variable and every swept key.
+    shapes : dict of str to tuple
+        The shape of every variable: that of `dimensions`, and then impacts or samples in time.
+    failures : dict of int to str
+        Why a drop failed, by its number: its place when all points are counted through, from 0.
+    """
+
+    path: Path
+    table: dict[str, Any]
+    version: str
+    dimensions: dict[str, int]
+    coordinates: dict[str, NDArray[Any]]
+    meanings: dict[str, tuple[str, str]]
+    shapes: dict[str, tuple[int, ...]]
+    failures: dict[int, str]
+
+    @property
+    def size(self) -> int:
+        """The number of drops."""
+        return prod(self.dimensions.values())
+
+    def values(self, name: str, *place: Any) -> NDArray[Any]:
+        """Return a variable, or the part of it at a place as NumPy counts.
+
+        Parameters
+        ----------
+        name : str
+            Such as "max_force_N".
+        *place : int or slice
+            Along the first dimension, the second, ...
+
+        Raises
+        ------
+        InputError
+            If there is no such variable.
+        """
+        if name not in self.shapes:
+            raise InputError(f'there is no variable "{name}"; there are {", ".join(self.shapes)}')
+        with h5py.File(self.path, "r") as file:
+            return np.asarray(file[name][place or ()])
+
+
+def read_study(directory: Path) -> Study:
+    """Read the dataset of a study, but for its variables.
+
+    Raises
+    ------
+    InputError
+        If there is none, or it is damaged.
+    """
+    path = Path(directory) / DATASET
+    try:
+        with h5py.File(path, "r") as file:
+            table = tomllib.loads(str(file.attrs["study"]))
+            over = list(table["sweep"]["over"])  # in the order of the dimensions
+            is_grid = table["sweep"].get("design", "grid") == "grid"
+            coordinates = {key: _of_file(file[key]) for key in over}
+            dimensions = {key: len(coordinates[key]) for key in over} if is_grid else {SAMPLE: len(file[SAMPLE])}
+            names = [one for one in file if not file[one].is_scale and one not in (*over, FAILED_REASON)]
+            meanings = {one: (str(file[one].attrs["units"]), str(file[one].attrs["long_name"])) for one in [*over, *names]}
+            reasons = [reason.decode() for reason in file[FAILED_REASON][()]]
+            failures = dict(zip(file[FAILED_POINT][()].tolist(), reasons, strict=True))
+            shapes = {one: tuple(file[one].shape) for one in names}
+            return Study(path, table, str(file.attrs["version"]), dimensions, coordinates, meanings, shapes, failures)
+    except FileNotFoundError:
+        raise InputError(f"{directory}: there is no {DATASET}; the study is not done, go on with: vibroimpact sweep --resume") from None
+    except (OSError, KeyError, ValueError) as error:
+        raise InputError(f"{path}: the file is damaged: {error}") from None
+
+
+def _of_file(data: h5py.Dataset) -> NDArray[Any]:
+    """Return the values of a coordinate: numbers, or texts."""
+    values = data[()]
+    return np.array([text.decode() for text in values], dtype=object) if values.dtype == object else np.asarray(values)

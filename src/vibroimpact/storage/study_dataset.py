@@ -1,0 +1,166 @@
+"""The dataset of a study, put together from its chunks."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Mapping, Sequence
+from math import prod
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+from numpy.typing import NDArray
+
+from vibroimpact._version import __version__
+from vibroimpact.dynamics.response import Outcome
+from vibroimpact.storage.study import DATASET, FAILED_POINT, FAILED_REASON
+from vibroimpact.storage.study_toml import study_toml
+from vibroimpact.studies.chunk_file import chunk_layout, read_chunk
+from vibroimpact.studies.columns import OUTCOME, SIGNAL
+from vibroimpact.studies.ledger import Span
+from vibroimpact.studies.plan import SAMPLE, Plan
+
+Meanings = Mapping[str, tuple[str, str]]
+"""Unit and meaning of variables by their names."""
+
+_IMPACT, _TIME = "impact", "time"
+_MORE = 2**20  # bytes that a file of HDF5 has beside its data, at most
+
+
+def write_dataset(
+    folder: Path, name: str, chunks: Sequence[Span], plan: Plan, table: Mapping[str, Any], meanings: Meanings, rates: Mapping[str, float]
+) -> None:
+    """Write `study.nc` from the chunks of a study; chunk by chunk, so that never all of it lies in memory.
+
+    Parameters
+    ----------
+    folder : Path
+        That of the study.
+    name : str
+        What the study is called.
+    chunks : sequence of Span
+        All of its chunks.
+    plan : Plan
+        Its points.
+    table : mapping
+        The case with its [sweep] section.
+    meanings : mapping
+        Unit and meaning of swept keys and of what the chunks hold.
+    rates : mapping of str to float
+        The rate of each sensor [Hz].
+    """
+    layout: dict[str, tuple[tuple[int, ...], np.dtype[Any]]] = {}
+    for chunk in chunks:
+        for variable, ((_, *wide), dtype) in chunk_layout(folder, chunk.number).items():
+            before = layout.get(variable, (wide, dtype))[0]
+            layout[variable] = (tuple(map(max, before, wide)), dtype)
+    working = (folder / DATASET).with_suffix(".part")
+    columns = sum(values.nbytes for values in plan.columns.values()) + 8 * plan.size
+    _see_that_there_is_room(working, columns + plan.size * sum(prod(wide) * dtype.itemsize for wide, dtype in layout.values()))
+    with h5py.File(working, "w", track_order=True) as file:
+        file.attrs["title"] = name
+        file.attrs["version"] = __version__
+        file.attrs["study"] = study_toml(table)
+        scales = _write_coordinates(file, plan, meanings)
+        data = {one: _new_variable(file, one, layout[one], scales, meanings, rates) for one in _ordered(layout, meanings)}
+        failures: dict[int, str] = {}
+        for chunk in chunks:
+            result = read_chunk(folder, chunk.number)
+            for variable, values in result.arrays.items():
+                _put(data[variable], (), tuple(plan.dimensions.values()), chunk.first, values)
+            failures |= {chunk.first + place: reason for place, reason in result.failures.items()}
+        _write_failures(file, failures)
+    working.replace(folder / DATASET)  # last: once it is there, all is
+
+
+def _see_that_there_is_room(path: Path, size: int) -> None:
+    """Raise OSError unless so many bytes, and some more, can be written: HDF5 would end the process where a disk is full."""
+    with path.open("wb") as file:
+        if hasattr(os, "posix_fallocate"):
+            os.posix_fallocate(file.fileno(), 0, size + _MORE)
+
+
+def _ordered(layout: Mapping[str, Any], meanings: Meanings) -> list[str]:
+    return [one for one in meanings if one in layout]
+
+
+def _write_coordinates(file: h5py.File, plan: Plan, meanings: Meanings) -> list[h5py.Dataset]:
+    """Write the swept keys; return the scales of the dimensions."""
+    scales = []
+    if not plan.is_grid:
+        scales = [_scale(file, SAMPLE, np.arange(plan.size), ("1", "number of the drop, from 0"))]
+    for key, values in plan.columns.items():
+        texts = values.dtype == object
+        shown = np.array([one if isinstance(one, str) else json.dumps(one) for one in values], dtype=object) if texts else values
+        if plan.is_grid:
+            scales.append(_scale(file, key, shown, meanings[key]))
+        else:
+            _described(file.create_dataset(key, data=shown, dtype=h5py.string_dtype() if texts else None), meanings[key], scales)
+    return scales
+
+
+def _scale(file: h5py.File, name: str, values: NDArray[Any], meaning: tuple[str, str]) -> h5py.Dataset:
+    data = file.create_dataset(name, data=values, dtype=h5py.string_dtype() if values.dtype == object else None)
+    data.make_scale(name)
+    return _described(data, meaning, [])
+
+
+def _described(data: h5py.Dataset, meaning: tuple[str, str], scales: Sequence[h5py.Dataset]) -> h5py.Dataset:
+    data.attrs["units"], data.attrs["long_name"] = meaning
+    for place, scale in enumerate(scales):
+        data.dims[place].attach_scale(scale)
+    return data
+
+
+def _new_variable(
+    file: h5py.File,
+    name: str,
+    layout: tuple[tuple[int, ...], Any],
+    scales: list[h5py.Dataset],
+    meanings: Meanings,
+    rates: Mapping[str, float],
+) -> h5py.Dataset:
+    """Make a variable without values: what is not there is not a number, and a drop that is not there failed."""
+    wide, dtype = layout
+    own = list(scales)
+    if wide and name.startswith(SIGNAL):
+        own.append(_time_scale(file, rates, name.removeprefix(SIGNAL), wide[0]))
+    elif wide:
+        own.append(
+            file[_IMPACT] if _IMPACT in file else _scale(file, _IMPACT, np.arange(1, wide[0] + 1), ("1", "number of the impact, from 1"))
+        )
+    fill = np.nan if dtype.kind == "f" else list(Outcome).index(Outcome.FAILED) if name == OUTCOME else 0
+    data = file.create_dataset(name, shape=tuple(len(scale) for scale in own), dtype=dtype, fillvalue=fill)
+    if name == OUTCOME:
+        data.attrs["flag_values"] = np.arange(len(Outcome), dtype=dtype)
+        data.attrs["flag_meanings"] = " ".join(outcome.value.replace(": ", "_").replace(" ", "_") for outcome in Outcome)
+    return _described(data, meanings[name], own)
+
+
+def _time_scale(file: h5py.File, rates: Mapping[str, float], sensor: str, samples: int) -> h5py.Dataset:
+    """Return the time of a signal: one for all sensors of one rate."""
+    name = _TIME if len(set(rates.values())) == 1 else f"{_TIME}_{sensor}"
+    if name in file:
+        return file[name]
+    return _scale(file, name, np.arange(samples) / rates[sensor], ("s", "time since the start"))
+
+
+def _put(data: h5py.Dataset, above: tuple[int, ...], shape: tuple[int, ...], first: int, rows: NDArray[Any]) -> None:
+    """Write rows into the points from `first` on of an array whose points have a shape of several dimensions."""
+    if len(shape) == 1:
+        data[(*above, slice(first, first + len(rows)), *(slice(length) for length in rows.shape[1:]))] = rows
+        return
+    inner = prod(shape[1:])
+    while len(rows):
+        place, start = divmod(first, inner)
+        count = min(inner - start, len(rows))
+        _put(data, (*above, place), shape[1:], start, rows[:count])
+        first, rows = first + count, rows[count:]
+
+
+def _write_failures(file: h5py.File, failures: Mapping[int, str]) -> None:
+    points = _scale(file, FAILED_POINT, np.array(list(failures), dtype=np.int64), ("1", "number of a drop that failed, from 0"))
+    reasons = file.create_dataset(FAILED_REASON, data=np.array(list(failures.values()), dtype=object), dtype=h5py.string_dtype())
+    _described(reasons, ("1", "why it failed"), [points])

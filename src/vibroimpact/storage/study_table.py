@@ -1,0 +1,49 @@
+"""The scalars of a study as CSV: one row a drop."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vibroimpact.dynamics.response import Outcome
+from vibroimpact.storage.study_dataset import Meanings
+from vibroimpact.studies.chunk_file import ChunkResult, read_chunk
+from vibroimpact.studies.columns import OUTCOME, PEAKS, SENSOR_PEAK
+from vibroimpact.studies.ledger import Span
+from vibroimpact.studies.plan import Plan
+
+TABLE = "drops.csv"
+MOST_ROWS = 1_000_000
+"""Drops beyond which there is no table: no program that reads one would show it."""
+
+
+def write_drops(folder: Path, chunks: Sequence[Span], plan: Plan, meanings: Meanings) -> None:
+    """Write one row a drop: its number, its values at the swept keys, its peaks, why it ended and why it failed."""
+    peaks = [name for name in meanings if name in PEAKS or name.endswith(SENSOR_PEAK)]
+    keys = [key if meanings[key][0] == "1" else f"{key} [{meanings[key][0]}]" for key in plan.columns]
+    working = (folder / TABLE).with_suffix(".part")
+    with working.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow(["drop", *keys, *peaks, OUTCOME, "reason"])
+        for chunk in chunks:
+            writer.writerows(_rows(chunk, plan, read_chunk(folder, chunk.number), peaks))
+    working.replace(folder / TABLE)
+
+
+def _rows(chunk: Span, plan: Plan, result: ChunkResult, peaks: Sequence[str]) -> Iterator[tuple[Any, ...]]:
+    outcomes = [outcome.value for outcome in Outcome]
+    ended = result.arrays.get(OUTCOME, np.full(chunk.size, list(Outcome).index(Outcome.FAILED)))
+    columns = [_cells(result.arrays.get(name, np.full(chunk.size, np.nan))) for name in peaks]
+    points = [values.tolist() for values in plan.points(chunk.first, chunk.size).values()]
+    numbers = range(chunk.first, chunk.first + chunk.size)
+    reasons = [result.failures.get(place, "") for place in range(chunk.size)]
+    yield from zip(numbers, *points, *columns, [outcomes[code] for code in ended], reasons, strict=True)
+
+
+def _cells(values: NDArray[Any]) -> list[Any]:
+    return ["" if value != value else value for value in values.tolist()]

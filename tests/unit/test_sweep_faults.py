@@ -1,0 +1,352 @@
+"""What stops a study loses nothing: kills, dead workers, a full disk, a damaged ledger, two sweeps in one folder, Ctrl-C."""
+
+from __future__ import annotations
+
+import os
+import random
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from concurrent.futures import Future
+from contextlib import contextmanager
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import vibroimpact as vi
+from studies import RANDOM, study_file, study_table
+from vibroimpact.cases.compute_points import compute_points
+from vibroimpact.report.study import folder as study_folder
+from vibroimpact.studies.chunk_file import ChunkResult
+from vibroimpact.studies.ledger import LEDGER, Span, open_ledger
+from vibroimpact.studies.run_chunks import run_chunks
+from vibroimpact.studies.workers import Crew, processes, this_process
+
+SMALL = 8e6
+"""Memory with which a chunk has 200 drops."""
+
+MANY = {**RANDOM, "samples": 20_000}
+
+
+def sweep_command(study: Path, folder: Path, *options: str) -> list[str]:
+    return [sys.executable, "-m", "vibroimpact", "sweep", str(study), "-o", str(folder), "--memory", "8 MB", *options]
+
+
+def results(folder: Path) -> tuple[bytes, bytes]:
+    return (folder / "study.nc").read_bytes(), (folder / "drops.csv").read_bytes()
+
+
+def chunks_done(folder: Path) -> int:
+    return len(list((folder / "chunks").glob("*.h5")))
+
+
+def killed_again_and_again(tmp_path: Path, kills: int, seed: int) -> None:
+    """Run a study that is killed at random moments, and compare it with one that was left in peace."""
+    study, random_moment = study_file(tmp_path, MANY), random.Random(seed)
+    undisturbed = vi.run_sweep(vi.load_sweep(study), tmp_path / "undisturbed", memory=SMALL)
+    folder, done, progressed = tmp_path / "disturbed", 0, 0
+    for number in range(kills):
+        begun = (folder / LEDGER).exists()
+        options = ["--processes", str(1 + number % 2), *(["--resume"] if begun else [])]
+        running = subprocess.Popen(sweep_command(study, folder, *options), stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
+        limit = time.monotonic() + 60.0
+        while not (chunks_done(folder) > done or (begun and number % 3 == 0)) and running.poll() is None and time.monotonic() < limit:
+            time.sleep(0.005)
+        time.sleep(random_moment.uniform(0.0, 0.15))
+        assert running.poll() is None, "the study was done before it could be killed"
+        running.kill()
+        running.wait()
+        progressed += chunks_done(folder) > done
+        done = chunks_done(folder)
+    assert progressed >= kills // 2
+    vi.run_sweep(vi.load_sweep(study), folder, resume=True)
+    assert results(folder) == results(undisturbed)
+
+
+def test_a_study_that_is_killed_goes_on_to_the_same_bits(tmp_path: Path) -> None:
+    killed_again_and_again(tmp_path, 3, seed=1)
+
+
+@pytest.mark.slow
+def test_a_study_that_is_killed_twenty_times_goes_on_to_the_same_bits(tmp_path: Path) -> None:
+    killed_again_and_again(tmp_path, 20, seed=2)
+
+
+def test_no_process_outlives_the_one_that_leads(tmp_path: Path) -> None:
+    study = study_file(tmp_path, MANY)
+    command = sweep_command(study, tmp_path / "out", "--processes", "2")
+    leader = subprocess.Popen(command, stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
+    limit = time.monotonic() + 60.0
+    while not chunks_done(tmp_path / "out") and time.monotonic() < limit:
+        time.sleep(0.01)
+    children = _children(leader.pid)
+    leader.kill()
+    leader.wait()
+    assert children
+    while time.monotonic() < limit and any(_is_alive(child) for child in children):
+        time.sleep(0.05)
+    assert not any(_is_alive(child) for child in children)
+
+
+def _children(parent: int) -> list[int]:
+    return [int(child) for task in Path(f"/proc/{parent}/task").iterdir() for child in (task / "children").read_text().split()]
+
+
+def _is_alive(process: int) -> bool:
+    try:
+        return Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
+    except OSError:
+        return False
+
+
+def test_ctrl_c_says_how_to_go_on(tmp_path: Path) -> None:
+    study, folder = study_file(tmp_path, MANY), tmp_path / "out"
+    running = subprocess.Popen(sweep_command(study, folder, "--processes", "2"), stderr=subprocess.PIPE, text=True, start_new_session=True)
+    limit = time.monotonic() + 60.0
+    while not chunks_done(folder) and time.monotonic() < limit:
+        time.sleep(0.01)
+    os.killpg(running.pid, signal.SIGINT)  # as a terminal does: all processes of the group get it
+    told = running.communicate(timeout=60)[1]
+    assert running.returncode == 130
+    lines = told.strip().splitlines()
+    assert len(lines) == 1, told
+    assert lines[0].startswith("vibroimpact: interrupted; the drops that are done stay; go on with: vibroimpact sweep")
+    assert f"-o {folder} --resume" in lines[0]
+    assert 0 < chunks_done(folder) < 100
+    vi.run_sweep(vi.load_sweep(study), folder, resume=True)
+
+
+# workers that die --------------------------------------------------------------------------------
+
+
+def _nothing() -> None:
+    pass
+
+
+def _dies(mark: str, always: bool, first: int, points: Any) -> ChunkResult:
+    """Compute a chunk; the one that begins at drop 100 ends its process, always or the first time."""
+    if first == 100 and (always or not Path(mark).exists()):
+        Path(mark).touch()
+        os.kill(os.getpid(), signal.SIGKILL)
+    return compute_points(study_table(RANDOM), ("impacts",), first, points)
+
+
+def _with_a_death(tmp_path: Path, *, always: bool) -> dict[int, ChunkResult]:
+    sweep, found = vi.read_sweep(study_table(RANDOM)), {}
+    chunks = [Span(number, 50 * number, 50) for number in range(4)]
+
+    def keep(chunk: Span, result: ChunkResult) -> None:
+        assert chunk.number not in found
+        found[chunk.number] = result
+
+    work = partial(_dies, str(tmp_path / "mark"), always)
+    run_chunks(work, lambda chunk: sweep.plan.points(chunk.first, chunk.size), chunks, partial(processes, 2, _nothing), keep)
+    return found
+
+
+def test_a_worker_that_is_killed_costs_nothing(tmp_path: Path) -> None:
+    found = _with_a_death(tmp_path, always=False)
+    assert (tmp_path / "mark").exists()
+    (tmp_path / "mark").touch()
+    sweep = vi.read_sweep(study_table(RANDOM))
+    for number in range(4):
+        alone = compute_points(sweep.table, ("impacts",), 50 * number, sweep.plan.points(50 * number, 50))
+        assert not found[number].failures
+        for name, values in alone.arrays.items():
+            assert values.tobytes() == found[number].arrays[name].tobytes()
+
+
+def test_a_chunk_that_kills_every_worker_is_given_up_and_the_rest_go_on(tmp_path: Path) -> None:
+    found = _with_a_death(tmp_path, always=True)
+    assert len(found) == 4
+    assert found[2].failures == dict.fromkeys(
+        range(50), "the process that computed it died, again and again; it may have run out of memory"
+    )
+    assert not any(found[number].failures for number in (0, 1, 3))
+
+
+def test_a_chunk_of_which_nothing_came_has_its_place_in_the_results(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    sweep = vi.read_sweep(study_table({**RANDOM, "samples": 500}))
+    whole = vi.read_study(vi.run_sweep(sweep, tmp_path / "whole", memory=SMALL))
+
+    def compute(table: Any, keep: Any, first: int, points: Any) -> ChunkResult:
+        return compute_points(table, keep, first, points) if first != 200 else ChunkResult({}, dict.fromkeys(range(200), "it died"))
+
+    monkeypatch.setattr(study_folder, "compute_points", compute)
+    study = vi.read_study(vi.run_sweep(sweep, tmp_path / "out", memory=SMALL))
+    assert study.failures == dict.fromkeys(range(200, 400), "it died")
+    for name in ("max_force_N", "largest_force_N"):
+        values, expected = study.values(name), whole.values(name)
+        assert np.isnan(values[200:400]).all()
+        np.testing.assert_array_equal(np.delete(values, slice(200, 400), axis=0), np.delete(expected, slice(200, 400), axis=0))
+    assert set(study.values("outcome")[200:400]) == {list(vi.Outcome).index(vi.Outcome.FAILED)}
+
+
+def _cannot_begin() -> None:
+    raise SystemExit
+
+
+def test_processes_that_never_begin_are_told_and_no_chunk_is_blamed() -> None:
+    with pytest.raises(vi.ComputationError, match="die before they have computed anything"):
+        run_chunks(_dies, lambda chunk: {}, [Span(0, 0, 1)], partial(processes, 1, _cannot_begin), lambda *_: None)  # type: ignore[arg-type]
+
+
+def test_a_scheduler_that_goes_away_is_told() -> None:
+    class Gone:
+        def submit(self, *_: Any) -> Future[Any]:
+            future: Future[Any] = Future()
+            future.cancel()
+            future.set_running_or_notify_cancel()
+            return future
+
+    @contextmanager
+    def start() -> Any:
+        yield Crew(Gone(), 2)  # type: ignore[arg-type]
+
+    with pytest.raises(vi.ComputationError, match="the scheduler and its workers are gone"):
+        run_chunks(_dies, lambda chunk: {}, [Span(0, 0, 1)], start, lambda *_: None)  # type: ignore[arg-type]
+
+
+# the disk ----------------------------------------------------------------------------------------
+
+
+def _small_disk() -> bool:
+    """Can a process make a file system of its own?"""
+    command = ["unshare", "--map-root-user", "--mount", "sh", "-c", "mount -t tmpfs -o size=1m tmpfs /mnt"]
+    return shutil.which("unshare") is not None and subprocess.run(command, capture_output=True, check=False).returncode == 0
+
+
+@pytest.mark.skipif(not _small_disk(), reason="no file systems can be mounted here")
+def test_a_full_disk_ends_the_study_and_room_lets_it_go_on(tmp_path: Path) -> None:
+    study = study_file(tmp_path, {**RANDOM, "samples": 4000})
+    undisturbed = vi.run_sweep(vi.load_sweep(study), tmp_path / "undisturbed", memory=SMALL)
+    begin = subprocess.list2cmdline(sweep_command(study, Path("/mnt/out"), "--processes", "1"))
+    script = f"""
+        mount -t tmpfs -o size=1m tmpfs /mnt
+        {begin}; echo "status $?"
+        ls /mnt/out/chunks | wc -l
+        mount -o remount,size=4m /mnt
+        {begin} --resume; echo "status $?"
+        mount -o remount,size=64m /mnt
+        {begin} --resume && cp -r /mnt/out {tmp_path}/resumed; echo "status $?"
+    """
+    command = ["unshare", "--map-root-user", "--mount", "sh", "-c", script]
+    ran = subprocess.run(command, capture_output=True, text=True, check=True)
+    assert "No space left on device" in ran.stderr
+    assert "see to the disk, then go on with --resume" in ran.stderr
+    assert "Traceback" not in ran.stderr
+    lines = [line for line in ran.stdout.splitlines() if line.startswith("status") or line.strip().isdigit()]
+    assert lines[0] == "status 1"
+    assert 0 < int(lines[1]) < 20
+    assert lines[2:] == ["status 1", "status 0"]  # room for the chunks, not for what they are put together to; then for all
+    assert results(tmp_path / "resumed") == results(undisturbed)
+
+
+def test_a_chunk_that_can_not_be_written_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    sweep = vi.read_sweep(study_table(RANDOM))
+
+    def full(descriptor: int) -> None:
+        raise OSError(28, "No space left on device")
+
+    with monkeypatch.context() as patched:
+        patched.setattr(os, "fsync", full)
+        with pytest.raises(vi.ComputationError, match=r"000000.h5: the chunk can't be written: No space left on device; see to the disk"):
+            vi.run_sweep(sweep, tmp_path / "out")
+    assert list((tmp_path / "out" / "chunks").iterdir()) == []
+    vi.run_sweep(sweep, tmp_path / "out", resume=True)
+    assert results(tmp_path / "out") == results(vi.run_sweep(sweep, tmp_path / "undisturbed"))
+
+
+# the folder --------------------------------------------------------------------------------------
+
+
+def stopped(folder: Path, sweep: vi.Sweep, after: int = 1) -> None:
+    """Begin a study and stop it after some of its drops."""
+
+    class Stop(BaseException):
+        pass
+
+    def progress(done: int, total: int) -> None:
+        if done >= after:
+            raise Stop
+
+    with pytest.raises(Stop):
+        vi.run_sweep(sweep, folder, memory=SMALL, progress=progress)
+
+
+def test_a_second_sweep_in_a_folder_is_refused(tmp_path: Path) -> None:
+    sweep = vi.read_sweep(study_table({**RANDOM, "samples": 600}))
+    folder = tmp_path / "out"
+    stopped(folder, sweep)
+    with open_ledger(folder):
+        for options in ({"resume": True}, {"force": True}, {}):
+            with pytest.raises(vi.InputError, match="another sweep is at work in this folder"):
+                vi.run_sweep(sweep, folder, **options)  # type: ignore[arg-type]
+    with pytest.raises(vi.InputError, match=r"a study is there already; go on with it by --resume, replace it by --force"):
+        vi.run_sweep(sweep, folder)
+    vi.run_sweep(sweep, folder, resume=True)
+
+
+def test_a_damaged_ledger_is_refused_and_made_anew_from_the_chunks(tmp_path: Path) -> None:
+    sweep, folder = vi.read_sweep(study_table({**RANDOM, "samples": 1000})), tmp_path / "out"
+    stopped(folder, sweep, after=600)
+    data = (folder / LEDGER).read_bytes()
+    (folder / LEDGER).write_bytes(data[:4096] + os.urandom(len(data) - 4096))
+    with pytest.raises(vi.InputError, match=r"the ledger is damaged .* delete this file and go on with --resume"):
+        vi.run_sweep(sweep, folder, resume=True)
+    (folder / LEDGER).unlink()
+    (folder / "chunks" / "000001.h5").write_bytes(b"torn")
+    computed = []
+    vi.run_sweep(sweep, folder, resume=True, memory=SMALL, progress=lambda done, total: computed.append(done))
+    assert computed == [400, 600, 800, 1000]  # two of the three chunks that were there are taken up
+    assert results(folder) == results(vi.run_sweep(sweep, tmp_path / "undisturbed", memory=SMALL))
+
+
+def test_a_chunk_that_is_not_as_it_was_written_is_computed_again(tmp_path: Path) -> None:
+    sweep, folder, told = vi.read_sweep(study_table({**RANDOM, "samples": 1000})), tmp_path / "out", []
+    stopped(folder, sweep, after=600)
+    file = folder / "chunks" / "000001.h5"
+    file.write_bytes(file.read_bytes()[:-1] + b"x")
+    vi.run_sweep(sweep, folder, resume=True, tell=told.append)
+    assert told == ["chunk 1 is not on disk as it was written; it is computed again"]
+    assert results(folder) == results(vi.run_sweep(sweep, tmp_path / "undisturbed", memory=SMALL))
+
+
+def test_another_study_does_not_go_on_here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    sweep, folder = vi.read_sweep(study_table({**RANDOM, "samples": 600})), tmp_path / "out"
+    stopped(folder, sweep)
+    changed = vi.read_sweep(study_table({**RANDOM, "samples": 600, "seed": 1}))
+    with pytest.raises(vi.InputError, match=r"the study has changed since it was begun here.*study.toml in it is what was begun"):
+        vi.run_sweep(changed, folder, resume=True)
+    with monkeypatch.context() as patched:
+        patched.setattr(study_folder, "__version__", "9.9")
+        with pytest.raises(vi.InputError, match=r"begun by vibroimpact .*, and this is 9.9; go on with that version"):
+            vi.run_sweep(sweep, folder, resume=True)
+    with pytest.raises(vi.InputError, match="no study was begun in this folder; leave out --resume"):
+        vi.run_sweep(sweep, tmp_path / "nothing", resume=True)
+    vi.run_sweep(vi.load_sweep(folder / "study.toml"), folder, resume=True)  # what was begun is there, and is the same
+    vi.run_sweep(vi.load_sweep(folder / "study.toml"), folder, resume=True)  # nothing is left to do
+    with pytest.raises(vi.InputError, match=r"this is a study of many drops, not the result of a run"):
+        vi.read_result(folder)
+
+
+def test_a_study_takes_the_place_of_another_only_if_it_is_told_to(tmp_path: Path) -> None:
+    sweep = vi.read_sweep(study_table({**RANDOM, "samples": 10}))
+    folder = vi.run_sweep(sweep, tmp_path / "out")
+    before = results(folder)
+    with pytest.raises(vi.InputError, match="a study is there already"):
+        vi.run_sweep(sweep, folder)
+    assert results(folder) == before
+    vi.run_sweep(vi.read_sweep(study_table({**RANDOM, "samples": 12})), folder, force=True)
+    assert results(folder) != before
+
+
+def test_this_process_computes_as_well() -> None:
+    with this_process() as crew:
+        assert crew.executor.submit(int, "3").result() == 3
+        assert isinstance(crew.executor.submit(int, "x").exception(), ValueError)
