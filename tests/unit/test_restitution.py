@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 import vibroimpact as vi
@@ -80,7 +82,15 @@ def test_a_parameter_for_each_speed() -> None:
     np.testing.assert_allclose(vi.integrated_restitution(law, 0.09, speeds), 0.7, atol=1e-10)
 
 
+def test_a_pull_between_two_nodes_is_cut() -> None:
+    law = AdamsImpact(stiffness=1129e3, damping_max=np.linspace(0.15, 0.19, 2000))
+    exact = vi.integrated_restitution(law, 5.57e-4, 5.06, tolerance=1e-13)
+    assert np.abs(vi.integrated_restitution(law, 5.57e-4, 5.06) - exact).max() < 1e-9
+
+
 @settings(max_examples=200, deadline=None)
+@example(AdamsImpact, 0.9340729747981871, -3.2543028886997925, 0.7045442911229172, 7.095838841638937)
+@example(vi.find_contact_law("krijt"), 0.5, -5.0, -1.5, 7.0)
 @given(
     st.sampled_from(TUNABLE),
     st.floats(0.4, 0.98),
@@ -94,6 +104,7 @@ def test_round_trip(law: type[vi.ContactLaw], wanted: float, mass: float, speed:
     try:
         tuned = law.example(pair).achieving(wanted, 10**mass, 10**speed)
     except vi.InputError as error:
-        assert "reaches restitutions from" in str(error)  # noqa: PT017 - some can't go so low
+        # some can't go so low, and one that sticks can't come so high
+        assert re.search(r"reaches restitutions (from|up to) ", str(error))  # noqa: PT017
         return
     assert vi.integrated_restitution(tuned, 10**mass, 10**speed) == pytest.approx(wanted, abs=1e-8)

@@ -70,12 +70,6 @@ def test_every_law_gives_the_table_of_simulate(law: type[ContactLaw]) -> None:
     stated = problem(sphere=ball, laws=(law.example(pair),), height=ball.contact_offset + np.geomspace(0.02, 30.0, 8), impacts=2)
     table = vi.tabulate(replace(stated, tolerance=1e-8))
     exact = vi.simulate(replace(stated, tolerance=1e-11))
-    # the slow way's peaks of a contact in many stretches are located to 1e-5 only
-    loose = isinstance(stated.laws[0], CompliantLaw) and not smooth_throughout(stated.laws[0])
-    if loose or law.name == "tsuji":
-        for name in ("max_force_N", "max_acceleration_m_s2"):
-            np.testing.assert_allclose(table.impacts[name], exact.impacts[name], rtol=2e-5, err_msg=name)
-            exact.impacts[name] = table.impacts[name]
     assert_agrees(table, exact, 1e-8)
     assert np.all(table.energy["closure_relative"] < 1e-7)
     for name in exact.energy:

@@ -10,15 +10,15 @@ CLOSURE_LIMIT = 1e-6
 """The part of the energy put in that may be missing; above it a run has failed."""
 
 
-def close_ledger(energy_in: Floats, sagging: Floats, entries: dict[str, Floats]) -> dict[str, Floats]:
+def close_ledger(energy_in: Floats, added: Floats, entries: dict[str, Floats]) -> dict[str, Floats]:
     """Return the ledger [J] with what was put in and its closure.
 
     Parameters
     ----------
     energy_in : array, shape (B,)
         Kinetic and potential energy at the start [J].
-    sagging : array, shape (B,)
-        What gravity adds in the deepest indentation [J]; of a sphere put down softly, more than `energy_in`.
+    added : array, shape (B,)
+        What gravity and adhesion add in the indentation [J]; of a sphere put down softly, more than `energy_in`.
     entries : dict of str to array
         The entries of the ledger at the end [J].
 
@@ -26,10 +26,10 @@ def close_ledger(energy_in: Floats, sagging: Floats, entries: dict[str, Floats])
     -------
     dict of str to array
         `input_J`, the entries, `closure_J` (entries less input) and `closure_relative`, its part of the energy
-        put in by the drop and by gravity.
+        put in by the drop, by gravity and by adhesion.
     """
     closure = sum(entries.values(), -energy_in)
-    relative = np.abs(closure) / (energy_in + sagging)
+    relative = np.abs(closure) / (energy_in + added)
     return {"input_J": energy_in, **entries, "closure_J": closure, "closure_relative": relative}
 
 

@@ -236,7 +236,7 @@ class Run:
         vibration = {} if self.vibration is None else self.vibration.energies()
         energy = close_ledger(
             self.energy_in,
-            self.mass * self.gravity * self.deepest,
+            self.mass * self.gravity * self.deepest + np.maximum(-self.stored, 0.0),  # less than nothing is stored where it sticks
             {
                 "kinetic_J": 0.5 * self.mass * final_velocity**2,
                 "potential_J": self.mass * self.gravity * final_gap,

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from vibroimpact.contact.law import CompliantLaw
-from vibroimpact.contact.phase.collocation import Floats
+from vibroimpact.contact.phase.collocation import Floats, collocation_rule
 from vibroimpact.contact.phase.encounter import Encounter
 from vibroimpact.contact.phase.glide import Glide
 from vibroimpact.contact.phase.stretch import Stretch
@@ -56,18 +56,25 @@ class StretchSegment:
     def at(self, time: Floats) -> Motion:
         """Return the motion at times [s] since the start of the segment."""
         stretch, rule, law = self.stretch, self.stretch.rule, self.encounter.law
-        duration = stretch.duration[0]
-        x = rule.unmap_time(time / duration)
-        floor = self.encounter.floor
-        delta = np.maximum(stretch.delta[0] + duration * rule.integrate(x, stretch.node_velocity[:, 0]), floor)
-        velocity = stretch.velocity[0] + duration * rule.integrate(x, stretch.node_acceleration[:, 0])
+        x = rule.unmap_time(time / stretch.duration[0])
+        delta, velocity = self.motion(x)
         elastic, dissipative = law.forces(delta, velocity, self.encounter.approach_speed)
         force = elastic + dissipative
         if law.tension == "cut":
             force = np.maximum(force, 0.0)
-        _, at_nodes = law.forces(np.maximum(stretch.node_delta, floor), stretch.node_velocity, self.encounter.approach_speed)
-        lost = duration * rule.integrate(x, (at_nodes * stretch.node_velocity)[:, 0])
+        # the power is a product of two that N nodes resolve: it takes 2 N
+        finer = collocation_rule(2 * len(rule.nodes), rule.time_map, rule.root)
+        node_delta, node_velocity = self.motion(finer.nodes)
+        _, at_nodes = law.forces(node_delta, node_velocity, self.encounter.approach_speed)
+        lost = stretch.duration[0] * finer.integrate(x, at_nodes * node_velocity)
         return -delta, -velocity, force, law.elastic_energy(delta), lost, law.plastic_work(delta) - law.plastic_work(stretch.delta)
+
+    def motion(self, x: Floats) -> tuple[Floats, Floats]:
+        """Return the indentation [m] and its rate [m/s] at places x of the rule."""
+        stretch, rule, duration = self.stretch, self.stretch.rule, self.stretch.duration[0]
+        delta = stretch.delta[0] + duration * rule.integrate(x, stretch.node_velocity[:, 0])
+        velocity = stretch.velocity[0] + duration * rule.integrate(x, stretch.node_acceleration[:, 0])
+        return np.maximum(delta, self.encounter.floor), velocity
 
 
 @dataclass(frozen=True)

@@ -20,6 +20,7 @@ from vibroimpact.contact.phase.contact import CAPTURED, COMPRESSION, FAILED, GLI
 from vibroimpact.contact.phase.encounter import Encounter
 from vibroimpact.contact.phase.glide import glide_until_push
 from vibroimpact.contact.phase.guess import first_guess, time_scale
+from vibroimpact.contact.phase.pull import first_pull, pulls_before_end
 from vibroimpact.contact.phase.stretch import Aim, Stretch, WarmStart, acceleration_unit, solve_stretch
 from vibroimpact.contact.phase.warm_starts import WarmStarts
 from vibroimpact.contact.static import static_indentation, static_work
@@ -140,7 +141,7 @@ class _Phase:
         if early.any():  # the last impact stopped pushing at this stage: look for that first
             stretch = self.aimed(drops[early], "release", "force", level[early])
             good = self.good(drops[early], stretch) & (stretch.node_delta[-1] > level[early])
-            good &= ~self.pulling(drops[early], stretch)[:-1].any(axis=0)  # else it is a later zero of the force
+            good &= ~pulls_before_end(self.encounter.take(drops[early]), stretch)  # else it is a later zero of the force
             self.warm_starts.forget(("release", "force"), self.ids[drops[early][~good]])
             if good.any():
                 self.accept(drops[early][good], stretch.take(good), "force", level[early][good])
@@ -214,30 +215,31 @@ class _Phase:
     def resolved(self, drops: Drops, stretch: Stretch) -> NDArray[np.bool_]:
         return stretch.resolved(self.encounter.take(drops), self.tolerance)
 
-    def pulling(self, drops: Drops, stretch: Stretch) -> NDArray[np.bool_]:
-        """At which nodes does the law pull, beyond rounding?"""
-        unit = self.encounter.approach_speed[drops] / stretch.duration
-        rounding = 1e-11 * (np.abs(stretch.node_acceleration).max(axis=0) + unit)
-        return np.asarray(stretch.node_acceleration > self.encounter.gravity[drops] + rounding)
+    def pushes_no_more(self, drops: Drops) -> NDArray[np.bool_]:
+        """Does the law pull already where the drops are, or not push?"""
+        here = self.encounter.take(drops)
+        return np.asarray(here.acceleration(self.delta[drops], self.velocity[drops]) >= here.gravity)
 
-    def pulls_last(self, drops: Drops, stretch: Stretch) -> NDArray[np.bool_]:
-        """Does the law pull between the last two nodes, at next to no indentation, where it should have ended?"""
-        if self.law.contact_end != "zero-force":
-            return np.zeros(len(drops), dtype=bool)
-        encounter = self.encounter.take(drops)
-        delta = encounter.floor + 1e-3 * (stretch.node_delta[-2] - encounter.floor)
-        return np.asarray(encounter.acceleration(delta, stretch.node_velocity[-1]) > encounter.gravity)
+    def stop_pushing(self, drops: Drops) -> None:
+        """Let drops go whose force has become zero: out of the indentation or, where the contact ends with that, out of the contact."""
+        self.outcome[drops] = GLIDE if self.law.contact_end == "zero-indentation" else RELEASED
+        self.march[drops] = self.pace[drops] = 0.0
 
     def accept(self, drops: Drops, stretch: Stretch, aim: Aim, level: Floats) -> None:
         """Take a stretch into the history, unless the force that may not pull has become zero on the way."""
         restoring = self.outcome[drops] == RESTITUTION
         if self.law.tension == "cut" and aim != "force" and restoring.any():
-            pulling = self.pulling(drops, stretch) & restoring
-            pulling[-2] |= self.pulls_last(drops, stretch) & restoring & (aim == "indentation")
-            early = pulling.any(axis=0)
+            first = first_pull(self.encounter.take(drops), stretch, on_the_way_out=aim == "indentation")
+            first[~restoring] = np.inf
+            early = np.isfinite(first)
+            over = early & self.pushes_no_more(drops)
+            if over.any():  # too little to be seen in the stretch before
+                self.stop_pushing(drops[over])
+                drops, stretch, level = drops[~over], stretch.take(~over), level[~over]
+                first, early = first[~over], early[~over]
             if early.any():
                 some = stretch.take(early)
-                self.redo(drops[early], some, some.rule.time[pulling[:, early].argmax(axis=0)], "force", level[early])
+                self.redo(drops[early], some, some.rule.map_time(first[early]), "force", level[early])
                 drops, stretch, level = drops[~early], stretch.take(~early), level[~early]
         if not drops.size:
             return
@@ -250,7 +252,7 @@ class _Phase:
             self.turn(drops[compressing])
             self.outcome[drops[~compressing]] = CAPTURED  # it falls back before it is out
         elif aim == "force":
-            self.outcome[drops] = GLIDE if self.law.contact_end == "zero-indentation" else RELEASED
+            self.stop_pushing(drops)
         elif aim == "indentation":
             self.outcome[drops[~compressing & (level == self.encounter.floor[drops])]] = RELEASED
         else:  # go on marching, unless the end has come near enough to aim at
@@ -323,7 +325,7 @@ class _Phase:
             self.remember(drops, again, aim, scale, start)
         good = self.resolved(drops, again)
         if aim == "force":
-            good &= ~self.pulling(drops, again)[:-1].any(axis=0) & (again.node_delta[-1] > self.encounter.floor[drops])
+            good &= ~pulls_before_end(self.encounter.take(drops), again) & (again.node_delta[-1] > self.encounter.floor[drops])
         self.refuse(drops[~good], 0.5 * duration[~good])
         if good.any():
             self.accept(drops[good], again.take(good), aim, level[good])

@@ -53,7 +53,8 @@ class Stretch:
         gain += law.elastic_energy(end_delta) - law.elastic_energy(self.delta) - mass * encounter.gravity * (end_delta - self.delta)
         gain += law.plastic_work(end_delta) - law.plastic_work(self.delta)
         scale = mass * encounter.speed_scale**2
-        closes = np.abs(gain + self.dissipated) <= 0.1 * tolerance * scale
+        rounding = _rounding(encounter) * mass * np.abs(self.node_acceleration).max(axis=0)
+        closes = np.abs(gain + self.dissipated) <= np.maximum(0.1 * tolerance * scale, rounding)
         # an acceleration that changes no speed need not be resolved: of a creeping sphere it is but rounding
         needed = np.abs(self.node_velocity).max(axis=0) / self.duration
         smooth = self.rule.tail(self.node_acceleration, needed) ** 2 <= tolerance
@@ -157,6 +158,7 @@ class _Newton:
         self.acceleration_unit = acceleration_unit(encounter, velocity, duration)
         self.speed_unit = self.acceleration_unit * duration
         self.length_unit = self.speed_unit * duration
+        self.settled = np.maximum(_STALLED, _rounding(encounter) / self.length_unit)
 
     def motion(self, unknowns: Floats) -> tuple[Floats, Floats]:
         """Return indentation and rate at the nodes."""
@@ -200,7 +202,8 @@ class _Newton:
                 start.inverse = _inverse(self.jacobian(np.array([middle]), unknowns, *motion))[0]
             before, change = change, self.apply(unknowns, start.inverse @ residual) / scale
             worst = change.max()
-            if worst < _CONVERGED or (worst < _STALLED and worst > 0.3 * before.max()) or not worst < 1e12:
+            stalled = worst > 0.3 * before.max() and bool((change < self.settled).all())
+            if worst < _CONVERGED or stalled or not worst < 1e12:
                 break
             stale = stale or change[middle] > 0.03 * before[middle]
             if stale and change[middle] > 1e-7 and refreshes < _REFRESHES:
@@ -209,7 +212,7 @@ class _Newton:
                 break
         if not np.isfinite(change[middle]):
             start.inverse = None
-        return np.asarray(change < _STALLED)
+        return np.asarray(change < self.settled)
 
     def improve_each(self, unknowns: Floats) -> NDArray[np.bool_]:
         """Improve `unknowns` in place with a Jacobian a drop; return which drops got there."""
@@ -221,7 +224,7 @@ class _Newton:
             change = self.apply(unknowns, np.einsum("bij,jb->ib", inverse, residual)) / (1.0 + np.abs(unknowns).max(axis=0))
             if not (change >= _CONVERGED).any():
                 break
-        return np.asarray(change < _STALLED)
+        return np.asarray(change < self.settled)
 
     @staticmethod
     def apply(unknowns: Floats, step: Floats) -> Floats:
@@ -264,6 +267,11 @@ class _Newton:
         else:
             jacobian[:, -1, -1] = 1.0
         return jacobian
+
+
+def _rounding(encounter: Encounter) -> Floats:
+    """Return what rounding takes from indentations in a dent [m], which is much if it is deep and touched softly."""
+    return np.asarray(16.0 * np.finfo(float).eps * np.abs(encounter.floor))
 
 
 def _inverse(matrices: Floats) -> Floats:
