@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from typing import NamedTuple
 
 import numpy as np
@@ -37,9 +38,15 @@ _MULTIPLES: dict[str, tuple[Multiple, ...]] = {
         Multiple("pJ", 1e-12),
         Multiple("fJ", 1e-15),
     ),
+    "Pa": (Multiple("GPa", 1e9), Multiple("MPa", 1e6), Multiple("kPa", 1e3), Multiple("Pa", 1.0)),
+    "Hz": (Multiple("GHz", 1e9), Multiple("MHz", 1e6), Multiple("kHz", 1e3), Multiple("Hz", 1.0)),
+    "N/m": (Multiple("GN/m", 1e9), Multiple("MN/m", 1e6), Multiple("kN/m", 1e3), Multiple("N/m", 1.0)),
+    "N s/m": (Multiple("GN s/m", 1e9), Multiple("MN s/m", 1e6), Multiple("kN s/m", 1e3), Multiple("N s/m", 1.0)),
+    "kg": (Multiple("kg", 1.0), Multiple("g", 1e-3)),
     "1": (Multiple("", 1.0),),
+    "": (Multiple("", 1.0),),
 }
-"""The multiples of each SI unit that are in use, largest first."""
+"""The multiples of each SI unit that are in use, largest first; the other units have none."""
 
 
 def largest(values: ArrayLike) -> float:
@@ -54,7 +61,7 @@ def multiple(unit: str, values: ArrayLike) -> Multiple:
     Parameters
     ----------
     unit : str
-        SI unit as in `dynamics.columns`.
+        SI unit as in `dynamics.columns`, or as a case has it, with "^" before powers. One that has no multiples stays as it is.
     values : array_like
         Values in that unit; NaN is passed over.
 
@@ -64,8 +71,12 @@ def multiple(unit: str, values: ArrayLike) -> Multiple:
     'kN'
     >>> multiple("m", [0.0]).unit
     'm'
+    >>> [multiple(unit, [7850.0]).unit for unit in ("m/s^2", "m/s2", "kg/m^3", "N/m^1.5")]
+    ['km/s²', 'km/s²', 'kg/m³', 'N/m¹·⁵']
     """
-    choices, size = _MULTIPLES[unit], largest(values)
+    choices, size = _MULTIPLES.get(unit.replace("^", "")), largest(values)
+    if choices is None:
+        return Multiple(re.sub(r"\^([\d.]+)", lambda power: _superscript(power[1]), unit), 1.0)
     if size == 0.0:
         return next(choice for choice in choices if choice.size == 1.0)
     # 0.9995 reads as 1.000 in the four digits that are printed
@@ -89,7 +100,7 @@ def digits(value: float, significant: int = 4) -> str:
     mantissa, exponent = f"{value:.{significant - 1}e}".split("e")
     power = int(exponent)
     if not -4 <= power <= 7:
-        return f"{mantissa}·10{_superscript(power)}".replace("-", _MINUS)
+        return f"{mantissa}·10{_superscript(str(power))}".replace("-", _MINUS)
     return fixed(value, max(0, significant - 1 - power))
 
 
@@ -113,5 +124,5 @@ def text(value: float, unit: str, significant: int = 4) -> str:
     return f"{digits(value / best.size, significant)}\u00a0{best.unit}".rstrip("\u00a0")
 
 
-def _superscript(power: int) -> str:
-    return str(power).translate(str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"))
+def _superscript(power: str) -> str:
+    return power.translate(str.maketrans("-.0123456789", "⁻·⁰¹²³⁴⁵⁶⁷⁸⁹"))

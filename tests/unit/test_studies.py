@@ -13,7 +13,7 @@ import vibroimpact as vi
 from vibroimpact.studies.axes import Axis, Listed, Normal, Spaced
 from vibroimpact.studies.chunk_file import ChunkResult, checksum, read_chunk, write_chunk
 from vibroimpact.studies.design import designs, find_design
-from vibroimpact.studies.ledger import LEDGER, is_held, make_ledger, open_ledger
+from vibroimpact.studies.ledger import LEDGER, Span, is_held, make_ledger, open_ledger
 from vibroimpact.studies.plan import Plan
 
 PARTS = (np.arange(400) + 0.5) / 400
@@ -72,6 +72,12 @@ def test_a_plan_has_the_size_that_its_design_said_and_is_the_same_again(name: st
         np.testing.assert_array_equal(values, whole[key][3:8])
 
 
+def test_whole_numbers_stay_what_they_are() -> None:
+    assert Listed((3, 1, 2)).levels().dtype == np.int64
+    assert Listed((3, 1.5)).levels().dtype == object
+    assert Listed((True, False)).levels().dtype == object
+
+
 def test_a_grid_has_every_combination_once() -> None:
     plan = find_design("grid").plan(AXES, 0, 0)
     points = plan.points(0, plan.size)
@@ -120,14 +126,13 @@ def test_a_ledger_keeps_what_was_noted(tmp_path: Path) -> None:
     make_ledger(tmp_path, {"digest": "x"}, 25, 10)
     with open_ledger(tmp_path) as ledger:
         assert [tuple(chunk) for chunk in ledger.chunks("waiting")] == [(0, 0, 10), (1, 10, 10), (2, 20, 5)]
-        ledger.done(ledger.chunks("waiting")[1], "abc", 3, 0.5)
+        ledger.done(ledger.chunks("waiting")[1], "abc", 3)
     with open_ledger(tmp_path) as ledger:
         assert ledger.facts == {"digest": "x"}
         assert ledger.checksums() == {1: "abc"}
-        assert ledger.failed == 3
         ledger.undone(1)
         assert len(ledger.chunks("waiting")) == 3
-        assert ledger.failed == 0
+        assert ledger.checksums() == {}
 
 
 def test_a_ledger_that_is_open_is_held(tmp_path: Path) -> None:
@@ -164,23 +169,25 @@ def test_a_damaged_ledger_is_refused_with_what_to_do(tmp_path: Path, damage: str
 
 def test_a_chunk_comes_back_as_it_was_written(tmp_path: Path) -> None:
     arrays = {"force": np.array([[1.0, np.nan]]), "outcome": np.array([3], dtype=np.int8), "nothing": np.zeros((1, 0))}
-    found = write_chunk(tmp_path, 3, ChunkResult(arrays, {0: "it broke"}, 1.5), "study")
-    assert found == checksum(tmp_path, 3) == write_chunk(tmp_path, 3, ChunkResult(arrays, {0: "it broke"}, 2.5), "study")
-    back = read_chunk(tmp_path, 3, "study")
+    chunk = Span(3, 30, 1)
+    found = write_chunk(tmp_path, chunk, ChunkResult(arrays, {0: "it broke"}), "study")
+    assert found == checksum(tmp_path, 3) == write_chunk(tmp_path, chunk, ChunkResult(arrays, {0: "it broke"}), "study")
+    back = read_chunk(tmp_path, chunk, "study")
     assert back.failures == {0: "it broke"}
     for name, values in arrays.items():
         assert back.arrays[name].dtype == values.dtype
         np.testing.assert_array_equal(back.arrays[name], values)
-    with pytest.raises(ValueError, match="of another study"):
-        read_chunk(tmp_path, 3, "another")
+    for other, study in ((chunk, "another"), (Span(3, 31, 1), "study"), (Span(3, 30, 2), "study")):
+        with pytest.raises(ValueError, match="of another study, or has other drops"):
+            read_chunk(tmp_path, other, study)
     assert checksum(tmp_path, 4) is None
 
 
 def test_a_chunk_that_was_damaged_does_not_come_back(tmp_path: Path) -> None:
-    write_chunk(tmp_path, 0, ChunkResult({"force": np.arange(5000.0)}, {}), "study")
+    write_chunk(tmp_path, Span(0, 0, 5000), ChunkResult({"force": np.arange(5000.0)}, {}), "study")
     file = tmp_path / "chunks" / "000000.h5"
     data = bytearray(file.read_bytes())
     data[len(data) // 2] ^= 1
     file.write_bytes(bytes(data))
     with pytest.raises((OSError, KeyError, ValueError)):
-        read_chunk(tmp_path, 0, "study")
+        read_chunk(tmp_path, Span(0, 0, 5000), "study")

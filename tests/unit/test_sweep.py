@@ -16,7 +16,8 @@ import vibroimpact as vi
 from studies import OVER, RANDOM, study_file, study_table
 from support import plain_case
 from vibroimpact.cases.compute_points import compute_points
-from vibroimpact.cases.swept_keys import with_values
+from vibroimpact.cases.swept_keys import case_at
+from vibroimpact.storage.compute_study import chunk_size, compute_study
 from vibroimpact.studies.dask_workers import dask_workers
 from vibroimpact.studies.ledger import Span
 from vibroimpact.studies.run_chunks import run_chunks
@@ -26,7 +27,7 @@ PEAKS = ("first_restitution_achieved", "largest_force_N", "total_energy_lost_J")
 
 
 def run(folder: Path, sweep: object = None, **changes: object) -> vi.Study:
-    return vi.read_study(vi.run_sweep(vi.read_sweep(study_table(sweep, **changes)), folder / "study"))
+    return vi.read_study(compute_study(vi.read_sweep(study_table(sweep, **changes)), folder / "study"))
 
 
 def single(study: vi.Study, *place: int) -> dict[str, Any]:
@@ -34,14 +35,13 @@ def single(study: vi.Study, *place: int) -> dict[str, Any]:
     at = place if "sample" not in study.dimensions else place * len(study.coordinates)
     values = {key: column[index] for (key, column), index in zip(study.coordinates.items(), at, strict=True)}
     table = {key: value for key, value in study.table.items() if key != "sweep"}
-    plain = {key: _plain(value) for key, value in values.items()}
-    return vi.simulate(vi.read_case(with_values(table, plain))).impacts
+    return vi.simulate(case_at(table, {key: _plain(value) for key, value in values.items()})).impacts
 
 
 def _plain(value: Any) -> Any:
     if isinstance(value, str):
         return json.loads(value) if value.startswith("[") else value
-    return value.item()
+    return value
 
 
 @pytest.mark.parametrize(
@@ -89,7 +89,7 @@ def test_the_drops_of_a_study_are_those_of_single_runs(tmp_path: Path, sweep: di
 def test_batches_do_not_show(tmp_path: Path) -> None:
     over = {key: value for key, value in RANDOM["over"].items() if key != "drop.height"}
     table = study_table({**RANDOM, "over": over, "samples": 4003, "keep": ["peaks"]}, run__impacts=1, drop={"speed": 3.0, "gravity": 0.0})
-    study = vi.read_study(vi.run_sweep(vi.read_sweep(table), tmp_path / "study"))
+    study = vi.read_study(compute_study(vi.read_sweep(table), tmp_path / "study"))
     assert "max_force_N" not in study.shapes
     asked = study.values("first_restitution_asked")
     np.testing.assert_array_equal(asked, study.coordinates["contact.restitution"])
@@ -147,6 +147,37 @@ def test_drops_with_few_impacts_have_no_numbers_beyond_them(tmp_path: Path) -> N
     np.testing.assert_array_equal(np.isfinite(study.values("max_force_N")).sum(axis=1), numbers)
 
 
+def test_whole_numbers_are_numbers(tmp_path: Path) -> None:
+    study = run(tmp_path, {"over": {"run.impacts": [3, 1, 2]}})
+    assert study.coordinates["run.impacts"].tolist() == [3, 1, 2]
+    with xr.open_dataset(study.path, engine="h5netcdf") as data:
+        assert int(data["number_of_impacts"].sel({"run.impacts": 2})) == 2
+
+
+def test_a_chunk_is_small_where_any_level_deforms() -> None:
+    elastic = {"size": [0.5, 0.4, 0.008], "supports": "clamped", "modes": 4, "material": "steel-paper", "model": "elastic"}
+    over = {"plate.supports": ["clamped", "simply-supported"], "drop.height": [1.0, 2.0]}
+    assert chunk_size(vi.read_sweep(study_table({"over": over}, plate=elastic)), 5e8) == 8
+    assert chunk_size(vi.read_sweep(study_table(RANDOM)), 5e8) == 8000
+    assert chunk_size(vi.read_sweep(study_table(RANDOM)), 1_191_000) == 200
+
+
+def test_whole_sections_compare_laws_with_parameters_of_their_own(tmp_path: Path) -> None:
+    laws = [{"law": "hertz"}, {"law": "flores", "restitution": 0.6}]
+    sweep = vi.read_sweep(study_table({"over": {"contact": laws, "drop.height": [1.0, 2.0]}}))
+    study = vi.read_study(compute_study(sweep, tmp_path / "study"))
+    for number, law in enumerate(laws):
+        alone = vi.simulate(vi.read_case(plain_case(contact=law, drop={"height": 2.0})))
+        np.testing.assert_allclose(study.values("max_force_N", number, 1), alone.impacts["max_force_N"], rtol=1e-8)
+        of_number = vi.simulate(sweep.case_of(2 * number + 1))
+        np.testing.assert_array_equal(of_number.impacts["max_force_N"], alone.impacts["max_force_N"])
+    rows = (tmp_path / "study" / "drops.csv").read_text(encoding="utf-8")
+    assert study.coordinates["contact"][1] == json.dumps(laws[1])
+    assert json.dumps(laws[1]).replace('"', '""') in rows
+    with pytest.raises(vi.InputError, match="there is no drop 4; the study has 4"):
+        sweep.case_of(4)
+
+
 def test_keys_without_quotes_are_the_same_keys(tmp_path: Path) -> None:
     nested = {
         "over": {"sphere": {"radius": ["5 mm"], "material": {"density": [1000.0]}}, "drop": {"height": {"from": 1, "to": 2, "number": 2}}}
@@ -163,6 +194,9 @@ def test_a_distribution_can_come_from_a_file(tmp_path: Path) -> None:
     values, counts = np.unique(drawn.plan.columns["sphere.radius"], return_counts=True)
     np.testing.assert_allclose(values, [0.0055, 0.0065, 0.0075])
     assert np.ptp(counts) <= 2
+    over["sphere.radius"] |= {"column": "Radius [mm]", "weights": "count"}
+    weighted = vi.load_sweep(study_file(tmp_path, {"design": "sobol", "samples": 1024, "over": over}))
+    assert np.unique(weighted.plan.columns["sphere.radius"], return_counts=True)[1].tolist() == [256, 256, 512]
 
 
 def test_a_run_takes_no_notice_of_the_section(tmp_path: Path) -> None:

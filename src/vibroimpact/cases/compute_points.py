@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from typing import Any, NamedTuple
@@ -11,10 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vibroimpact.cases.build import deforms, rigid_problem
-from vibroimpact.cases.reader import read_case
 from vibroimpact.cases.schema import Case
 from vibroimpact.cases.swept_arrays import is_array_key, with_arrays
-from vibroimpact.cases.swept_keys import with_values
+from vibroimpact.cases.swept_keys import case_at
 from vibroimpact.dynamics.recording import Signal
 from vibroimpact.dynamics.response import Outcome, Response
 from vibroimpact.dynamics.sensor import Sensor
@@ -38,8 +36,7 @@ class _Study(NamedTuple):
 
     def case(self, place: np.intp) -> Case:
         """Return the case of the drop at a place in the chunk."""
-        values = ((key, column[place]) for key, column in self.points.items())
-        return read_case(with_values(self.table, {key: value.item() if isinstance(value, np.generic) else value for key, value in values}))
+        return case_at(self.table, {key: column[place] for key, column in self.points.items()})
 
 
 class _Part(NamedTuple):
@@ -79,12 +76,12 @@ def compute_points(table: Mapping[str, Any], keep: tuple[str, ...], first: int, 
     """
     from threadpoolctl import threadpool_limits  # which looks at all libraries that are loaded
 
-    begin, study = time.process_time(), _Study(table, keep, first, points)
+    study = _Study(table, keep, first, points)
     with threadpool_limits(1):  # many small products gain nothing from threads, and their number must not change a digit
         parts = [part for places in _alike(points) for part in _parts(study, places)]
     count = len(next(iter(points.values())))
     failures = {place: part.failures[place] for part in parts for place in part.failures}
-    return ChunkResult(_gathered(parts, count), dict(sorted(failures.items())), time.process_time() - begin)
+    return ChunkResult(_gathered(parts, count), dict(sorted(failures.items())))
 
 
 def _alike(points: Mapping[str, Values]) -> Iterator[NDArray[np.intp]]:
@@ -147,7 +144,10 @@ def _alone(study: _Study, place: np.intp) -> _Part:
 def _noise(sensor: Sensor, number: int) -> Sensor:
     """Return a sensor whose noise is that of one drop alone."""
     meter = sensor.accelerometer
-    return sensor if meter is None else replace(sensor, accelerometer=replace(meter, seed=meter.seed + number))
+    if meter is None:
+        return sensor
+    seed = meter.seed if isinstance(meter.seed, tuple) else (meter.seed,)
+    return replace(sensor, accelerometer=replace(meter, seed=(*seed, number)))
 
 
 def _samples(response: Response, signal: Signal) -> int:
@@ -161,7 +161,7 @@ def _columns(response: Response | ImpactTable, keep: tuple[str, ...]) -> dict[st
     impacts = {name: np.atleast_2d(values) for name, values in response.impacts.items()}
     first = {peak: impacts[name][:, 0] if impacts[name].size else np.full(len(response), np.nan) for peak, name in FIRST.items()}
     peaks = {
-        "number_of_impacts": np.isfinite(impacts["impact"]).sum(axis=1).astype(np.int32),
+        "number_of_impacts": np.isfinite(impacts["impact"]).sum(axis=1).astype(float),
         "end_time_s": response.end_time,
         "total_energy_lost_J": np.nansum(impacts["energy_lost_J"], axis=1),
         "closure_relative": np.atleast_1d(response.energy["closure_relative"]),

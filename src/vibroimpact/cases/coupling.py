@@ -107,7 +107,9 @@ def coupling_of(case: Case, progress: Callable[[float], None] | None = None, tel
     return Coupling(modes, series, facts, {name: body.model for name, body in bodies.items()})
 
 
-def carried_modes(case: Case) -> dict[str, bytes]:
+def carried_modes(
+    case: Case, progress: Callable[[float], None] | None = None, tell: Callable[[str], None] | None = None
+) -> dict[str, bytes]:
     """Return the entries of the store that a case needs, so that a process on another disk computes no modes for it.
 
     That process hands them to `vibroimpact.structures.store.receive`. What is not in the store yet is computed.
@@ -118,10 +120,10 @@ def carried_modes(case: Case) -> dict[str, bytes]:
         What `coupling_of` raises.
     """
     keys: list[str] = []
-    for name, body in (compute_modes(case) if elastic_names(case) else {}).items():
+    for name, body in (compute_modes(case, progress, tell) if elastic_names(case) else {}).items():
         keys.append(model_key(body.body.recipe))
         if name == "plate" and treatment_of(case) != "superposed":
-            _plate_compliance(body, None)
+            _plate_compliance(body, tell)
             keys.append(compliance_key(body.body.recipe, *_met(body)))
     return carry(keys)
 

@@ -8,22 +8,24 @@ from dataclasses import dataclass
 from functools import cached_property
 from hashlib import sha256
 from os import PathLike
+from pathlib import Path
 from typing import Any
 
-import numpy as np
-
+from vibroimpact.cases.build import deforms, impacts_of
 from vibroimpact.cases.quantities import Quantity
-from vibroimpact.cases.reader import load_table, named, read_case
+from vibroimpact.cases.reader import load_table, named
 from vibroimpact.cases.schema import Case
 from vibroimpact.cases.section import read_table
 from vibroimpact.cases.sweep_section import MOST_DROPS, SweepSection, read_axis
-from vibroimpact.cases.swept_keys import find_quantity, with_values
+from vibroimpact.cases.swept_keys import case_at, find_quantity
 from vibroimpact.dynamics.columns import IMPACT_COLUMNS, VIBRATION_IMPACT_COLUMNS
 from vibroimpact.errors import InputError
-from vibroimpact.studies.axes import Axis
+from vibroimpact.studies.axes import Axis, Values
 from vibroimpact.studies.columns import OUTCOME, PEAKS, SENSOR_PEAK, SIGNAL
 from vibroimpact.studies.design import find_design
 from vibroimpact.studies.plan import Plan
+
+_LONG = 100  # impacts that are reckoned with where a drop goes on to rest
 
 _SECTIONS = ("sphere", "plate", "drop", "contact", "run")
 
@@ -72,7 +74,40 @@ class Sweep:
         InputError
             If there is no such case.
         """
-        return read_case(with_values(self.table, {key: _plain(value) for key, value in values.items()}))
+        return case_at(self.table, values)
+
+    @cached_property
+    def deforms(self) -> bool:
+        """Does anything but the contact itself deform, at any level of what is swept?"""
+        first = {key: values[0] for key, values in self.plan.points(0, 1).items()}
+        names = {key: values for key, values in self.plan.columns.items() if values.dtype == object}
+        cases = (self.case_at({**first, key: level}) for key, values in names.items() for level in _different(values))
+        return deforms(self.case) or any(map(deforms, cases))
+
+    def case_of(self, drop: int) -> Case:
+        """Return the case of one drop by its number, from 0: to run it by itself.
+
+        Raises
+        ------
+        InputError
+            If there is no such drop, or no such case.
+        """
+        if not 0 <= drop < self.size:
+            raise InputError(f"there is no drop {drop}; the study has {self.size}, counted from 0")
+        return self.case_at({key: values[0] for key, values in self.plan.points(drop, 1).items()})
+
+    @property
+    def bytes(self) -> float:
+        """About how large its results are."""
+        impacts = (impacts_of(self.case) or _LONG) if "impacts" in self.section.keep else 0
+        kept = self.case.sensors if "signals" in self.section.keep else ()
+        samples = sum(sensor.rate * (self.case.run.duration or 0.0) for sensor in kept)
+        return self.size * (8.0 * (len(self.axes) + len(PEAKS) + impacts * len(IMPACT_COLUMNS)) + 4.0 * samples)
+
+    @property
+    def name(self) -> str:
+        """What the study is called."""
+        return self.case.name or "a study of drops"
 
     @property
     def whole_table(self) -> dict[str, Any]:
@@ -92,8 +127,9 @@ class Sweep:
 
     @cached_property
     def digest(self) -> str:
-        """A fingerprint of the case, the points and what is kept."""
-        rest = json.dumps([self.table, self.section.keep], sort_keys=True, default=str)
+        """A fingerprint of the case, its meshes, the points and what is kept."""
+        meshes = [sha256(file.read_bytes()).hexdigest() for file in _meshes(self.table)]
+        rest = json.dumps([self.table, meshes, self.section.keep], sort_keys=True, default=str)
         return sha256(f"{self.plan.digest()} {rest}".encode()).hexdigest()
 
 
@@ -131,6 +167,8 @@ def read_sweep(table: Mapping[str, Any]) -> Sweep:
     >>> study.size
     6
     """
+    if not isinstance(table, Mapping):
+        raise InputError(f"a study is a table, as a TOML file holds it, not {table!r}")
     base = {key: value for key, value in table.items() if key != "sweep"}
     if "sweep" not in table:
         raise InputError('it is missing; it says what runs over what, such as [sweep.over] "sphere.radius" = ["10 mm", "25 mm"]', "sweep")
@@ -143,7 +181,11 @@ def read_sweep(table: Mapping[str, Any]) -> Sweep:
             raise InputError(f"it is missing; {design.name} needs to know how many points it draws", "samples")
         if not design.is_drawn and section.samples is not None:
             raise InputError(f"{design.name} has the points that its values give; leave this out", "samples")
-        over = dict(_flat(section.over))
+        keys = list(_flat(section.over))
+        over = dict(keys)
+        twice = next((key for number, (key, _) in enumerate(keys) if key in dict(keys[:number])), None)
+        if twice is not None:
+            raise InputError("this key stands there twice, in quotes and in a table", f'over."{twice}"')
         if not over:
             raise InputError("it is empty; it takes dotted keys of the case", "over")
         quantities, axes = {}, {}
@@ -153,6 +195,11 @@ def read_sweep(table: Mapping[str, Any]) -> Sweep:
                 axes[key] = read_axis(value, quantities[key])
             except InputError as error:
                 raise InputError(error.message, f'over."{key}".{error.key}'.rstrip(".")) from None
+        for key, axis in axes.items() if section.design == "grid" else ():
+            levels = [repr(level) for level in axis.levels().tolist()]
+            again = next((level for number, level in enumerate(levels) if level in levels[:number]), None)
+            if again is not None:
+                raise InputError(f"{again} stands there twice, and a grid has each value once", f'over."{key}"')
         sweep = Sweep(base, section.model_copy(update={"over": over}), axes, quantities)
         if sweep.size > MOST_DROPS:
             raise InputError(f"there would be {sweep.size} drops, and {MOST_DROPS} are the most; sweep in parts", "over")
@@ -160,6 +207,10 @@ def read_sweep(table: Mapping[str, Any]) -> Sweep:
         raise InputError(error.message, f"sweep.{error.key}".rstrip(".")) from None
     _check_points(sweep)
     if "signals" in section.keep:
+        odd = next((sensor.name for sensor in sweep.case.sensors if "/" in sensor.name), None)
+        if odd is not None:
+            words = f'"{odd}" has a "/", and signals of a study are variables under the names of their sensors; call it otherwise'
+            raise InputError(words, "sensors")
         if not sweep.case.sensors:
             raise InputError('"signals" needs [[sensors]] on an elastic plate', "sweep.keep")
         if sweep.case.run.duration is None:
@@ -191,10 +242,7 @@ def _check_points(sweep: Sweep) -> None:
     first = {key: values[0] for key, values in sweep.plan.points(0, 1).items()}
     sweep.case_at(first)
     for key, values in columns.items():
-        if values.dtype == object:
-            several = list({repr(value): value for value in values.tolist()}.values())
-        else:
-            several = [values.min(), values.max()]
+        several = _different(values) if values.dtype == object else [values.min(), values.max()]
         for value in several:
             try:
                 sweep.case_at({**first, key: value})
@@ -202,6 +250,15 @@ def _check_points(sweep: Sweep) -> None:
                 raise InputError("\n".join(f"at {key} = {value}: {line}" for line in str(error).splitlines())) from None
 
 
-def _plain(value: Any) -> Any:
-    """Return a value as a TOML file would hold it."""
-    return value.item() if isinstance(value, np.generic) else value
+def _different(values: Values) -> list[Any]:
+    """Return the different ones of values that may be tables, in order."""
+    return list({repr(value): value for value in values.tolist()}.values())
+
+
+def _meshes(table: Mapping[str, Any]) -> Iterator[Path]:
+    """Yield the files of meshes that a case brings."""
+    for body in ("sphere", "plate"):
+        mesh = table[body].get("mesh") if isinstance(table.get(body), dict) else None
+        file = mesh.get("file") if isinstance(mesh, dict) else mesh
+        if isinstance(file, str) and Path(file).is_file():
+            yield Path(file)

@@ -11,7 +11,7 @@ from pydantic import BeforeValidator, Field, WithJsonSchema
 from vibroimpact.cases.quantities import Quantity, read_quantity
 from vibroimpact.cases.section import Section, read_table
 from vibroimpact.errors import InputError, did_you_mean
-from vibroimpact.exchange.table_file import column_name, read_table_file
+from vibroimpact.exchange.table_file import TableFile, name_and_unit, read_table_file
 from vibroimpact.ranges import Range
 from vibroimpact.studies.axes import Axis, Listed, Normal, Spaced
 from vibroimpact.studies.design import designs, find_design
@@ -20,7 +20,7 @@ MOST_DROPS = 10_000_000
 """The most that a study may have."""
 
 _LEVELS = 10  # of a range or a distribution in a grid, where nothing else is said
-_Levels = Annotated[int, Field(ge=1, le=MOST_DROPS, strict=True)]
+_Levels = Annotated[int, Field(ge=2, le=MOST_DROPS, strict=True)]
 
 
 def _read_design(value: Any) -> str:
@@ -37,7 +37,7 @@ class SweepSection(Section):
     )
     over: dict[str, Any] = Field(
         description='by dotted keys of the case, such as "sphere.radius": a list, a range { from, to, number, scale }, a distribution '
-        '{ distribution = "normal", "lognormal" or "uniform", ... } or a column of a file { file, column }'
+        '{ distribution = "normal", "lognormal" or "uniform", ... } or a column of a file { file, column, weights }'
     )
     samples: Annotated[int, Field(ge=1, le=MOST_DROPS, strict=True)] | None = Field(None, description="how many points are drawn")
     seed: Annotated[int, Field(ge=0, strict=True)] = Field(0, description="of the drawing")
@@ -74,14 +74,15 @@ class NormalTable(Section):
 
 
 class ColumnTable(Section):
-    """The values in a column of a CSV file."""
+    """The values in a column of a CSV file, and their weights in another."""
 
     file: str
     column: str
+    weights: str | None = None
 
 
 _DISTRIBUTIONS: dict[str, type[Section]] = {"normal": NormalTable, "lognormal": NormalTable, "uniform": UniformTable}
-_ASKED = "a list of values, a range { from, to, number, scale }, a distribution or a column { file, column }"
+_ASKED = "a list of values, a range { from, to, number, scale }, a distribution or a column { file, column, weights }"
 
 
 def read_axis(value: Any, quantity: Quantity | None) -> Axis:
@@ -113,7 +114,7 @@ def read_axis(value: Any, quantity: Quantity | None) -> Axis:
     if quantity is None:
         raise InputError("this key holds no quantity, so that it takes a list of values alone")
     if "file" in value:
-        return Listed(tuple(_column(read_table(ColumnTable, value), quantity)))
+        return _columns(read_table(ColumnTable, value), quantity)
     if "distribution" in value:
         kind = value["distribution"]
         if not isinstance(kind, str) or kind not in _DISTRIBUTIONS:
@@ -161,16 +162,30 @@ def _normal(table: NormalTable, quantity: Quantity) -> Normal:
     return Normal(mean, deviation, table.number, *bounds, lognormal=table.distribution == "lognormal")
 
 
-def _column(table: ColumnTable, quantity: Quantity) -> list[float]:
-    """Return the values in a column of a CSV file, whose header gives its unit."""
-    name = column_name(table.column)
+def _columns(table: ColumnTable, quantity: Quantity) -> Listed:
+    """Return the values in a column of a CSV file, whose header gives its unit, with their weights if there are any."""
+    name, weights = (None if column is None else name_and_unit(column)[0] for column in (table.column, table.weights))
+    assert name is not None
     try:
-        read = read_table_file(table.file, {name: quantity.unit})
+        read = read_table_file(table.file, {name: quantity.unit, **({weights: ""} if weights else {})})
     except InputError as error:
         raise InputError(error.message, "file") from None
+    for key, column in (("column", name), ("weights", weights)):
+        if column is not None and column not in read.columns:
+            raise InputError(f'there is no column "{column}" in {table.file}', key)
+    _check_column(table, read, name, quantity.allowed, quantity.unit)
+    values = tuple(float(value) for value in read.columns[name])
+    if weights is None:
+        return Listed(values)
+    _check_column(table, read, weights, Range(at_least=0), "")
+    if not read.columns[weights].any():
+        raise InputError("all weights are zero", "weights")
+    return Listed(values, tuple(read.columns[weights].tolist()))
+
+
+def _check_column(table: ColumnTable, read: TableFile, name: str, allowed: Range, unit: str) -> None:
     for value, line in zip(read.columns[name].tolist(), read.lines, strict=True):
         try:
-            quantity.allowed.check(value, quantity.unit)
+            allowed.check(value, unit)
         except InputError as error:
             raise InputError(f"{table.file}, line {line}: {error.message}", "file") from None
-    return [float(value) for value in read.columns[name]]

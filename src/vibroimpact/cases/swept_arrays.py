@@ -16,7 +16,7 @@ _WITHOUT_EFFECT = ("drop.position.", "plate.size.")  # on rigid bodies
 
 def is_array_key(key: str, values: Values) -> bool:
     """May the values of a key differ from drop to drop of a batch of rigid bodies?"""
-    return values.dtype != object and key not in _OF_THE_RUN
+    return values.dtype.kind == "f" and key not in _OF_THE_RUN
 
 
 def with_arrays(case: Case, arrays: Mapping[str, Values]) -> Case:

@@ -7,10 +7,13 @@ from collections.abc import Iterator, Mapping
 from dataclasses import fields
 from typing import Any, get_args, get_origin
 
+import numpy as np
+
 from vibroimpact.cases.local_section import LocalSection
 from vibroimpact.cases.material_field import InlineMaterial, material_table
 from vibroimpact.cases.quantities import Quantity
-from vibroimpact.cases.schema import DropSection, PlateSection, RunSection, SphereSection
+from vibroimpact.cases.reader import read_case
+from vibroimpact.cases.schema import Case, DropSection, PlateSection, RunSection, SphereSection
 from vibroimpact.cases.section import Section
 from vibroimpact.contact.law import find_contact_law, unit_of
 from vibroimpact.errors import InputError, did_you_mean
@@ -86,6 +89,8 @@ def with_values(table: Mapping[str, Any], values: Mapping[str, Any]) -> dict[str
                 if isinstance(named, str):
                     raise InputError(f'"{inside}" has no numbers that could be swept', ".".join(way))
                 inside = holder[part] = {name: number for name, number in named.items() if name != "name"}  # it is another one now
+        if not inside and last in _PLACES.get(way[-1], ()):
+            raise InputError(f"it is missing, so that it has no {last} that could be swept; give all of it", ".".join(way))
         if isinstance(inside, list) and last in _PLACES.get(way[-1], ()):
             inside[_PLACES[way[-1]].index(last)] = value
         elif isinstance(inside, dict):
@@ -95,8 +100,21 @@ def with_values(table: Mapping[str, Any], values: Mapping[str, Any]) -> dict[str
     return found
 
 
+def case_at(table: Mapping[str, Any], values: Mapping[str, Any]) -> Case:
+    """Return the case that a table holds once values stand at dotted keys.
+
+    Raises
+    ------
+    InputError
+        If there is no such case.
+    """
+    plain = {key: value.item() if isinstance(value, np.generic) else value for key, value in values.items()}
+    return read_case(with_values(table, plain))
+
+
 def _keys(table: Mapping[str, Any]) -> Iterator[tuple[str, Quantity | None]]:
     for name, section in _SECTIONS.items():
+        yield name, None
         for field, info in section.model_fields.items():
             key = f"{name}.{field}"
             parts = _parts(info.annotation) if field in _PLACES else ()
@@ -106,6 +124,7 @@ def _keys(table: Mapping[str, Any]) -> Iterator[tuple[str, Quantity | None]]:
                 for number, inner in InlineMaterial.model_fields.items():
                     if number != "name":
                         yield f"{key}.{number}", _quantity((inner.annotation, *inner.metadata))
+    yield "contact", None
     yield "contact.law", None
     contact = table.get("contact")
     if isinstance(contact, dict) and isinstance(contact.get("law"), str):

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import os
+import signal
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, NoReturn
@@ -74,6 +76,35 @@ def whole_or_nothing() -> Iterator[None]:
         yield
     except KeyboardInterrupt:
         fail("interrupted; nothing was written", 130)
+
+
+@contextmanager
+def stopping(told: str) -> Iterator[Callable[[], bool]]:
+    """Give a function that says whether Ctrl-C was pressed, so that what is under way can be finished; a second one ends all at once.
+
+    An exception that is raised out of a signal may come up where nobody can pass it on, and be lost.
+
+    Parameters
+    ----------
+    told : str
+        What is said if it ends at once.
+    """
+    pressed = 0
+
+    def press(*_: object) -> None:
+        nonlocal pressed
+        pressed += 1
+        if pressed > 1:
+            note(told)
+            os._exit(130)  # whoever computes for this process ends with it
+        note("stopping after the drops that are under way; Ctrl-C once more stops at once")
+
+    before = {number: signal.signal(number, press) for number in (signal.SIGINT, signal.SIGTERM)}  # the second comes from schedulers
+    try:
+        yield lambda: pressed > 0
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
 
 
 def fail(message: str, status: int) -> NoReturn:

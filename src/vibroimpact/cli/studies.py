@@ -9,11 +9,14 @@ from typing import Annotated
 
 import typer
 
-from vibroimpact.cli.shared import app, console, fail, note, stem
+from vibroimpact.cli.shared import app, console, fail, note, stem, stopping
 from vibroimpact.errors import InputError
 
 MOST_UNASKED = 100_000
 """Drops beyond which a study must be confirmed by --yes."""
+
+MOST_BYTES_UNASKED = 10e9
+"""What results may take on disk before that."""
 
 
 @app.command()
@@ -24,7 +27,7 @@ def sweep(
     ] = None,
     resume: Annotated[bool, typer.Option("--resume", help="Go on with the study that was begun in the folder.")] = False,
     force: Annotated[bool, typer.Option("--force", help="Replace the folder of a study that is there.")] = False,
-    yes: Annotated[bool, typer.Option("--yes", help=f"Run also more than {MOST_UNASKED:,} drops.")] = False,
+    yes: Annotated[bool, typer.Option("--yes", help=f"Run also more than {MOST_UNASKED:,} drops, or 10 GB of results.")] = False,
     processes: Annotated[
         int | None, typer.Option("--processes", metavar="N", min=1, help="How many processes compute; by default one a core.")
     ] = None,
@@ -48,7 +51,7 @@ def sweep(
     from vibroimpact.units import to_si
 
     try:
-        size = to_si(memory, "byte")
+        size = float(memory) if memory.isdecimal() else to_si(memory, "byte")
     except InputError as error:
         raise InputError(error.message, "--memory") from None
     if size < 1e6:
@@ -59,11 +62,21 @@ def sweep(
         raise InputError(
             f"{study}: there would be {found.size:,} drops, more than {MOST_UNASKED:,}; confirm that they are wanted with --yes"
         )
+    if found.bytes > MOST_BYTES_UNASKED and not (yes or resume):
+        words = f"the results would take about {found.bytes / 1e9:.3g} GB, more than {MOST_BYTES_UNASKED / 1e9:g} GB"
+        raise InputError(f"{study}: {words}; confirm that they are wanted with --yes, or keep fewer signals")
     screen = console()
+    options = "" if scheduler is None else f" --scheduler {shlex.quote(scheduler)}"
+    command = f"vibroimpact sweep {shlex.quote(study)} -o {shlex.quote(str(target))} --resume{options}"
+    told = f"interrupted; the drops that are done stay; go on with: {command}"
     try:
-        with patient_progress("computing modes", screen) as modes_progress:
-            found.case.to_problem(modes_progress, note)
-        with counting_progress("drops", screen) as progress:
+        with patient_progress("computing modes", screen) as modes, counting_progress("drops", screen) as count, stopping(told) as stopped:
+
+            def progress(done: int, total: int) -> None:
+                count(done, total)
+                if stopped():
+                    raise KeyboardInterrupt
+
             folder = run_sweep(
                 found,
                 target,
@@ -73,12 +86,11 @@ def sweep(
                 scheduler=scheduler,
                 memory=size,
                 progress=progress,
+                modes_progress=modes,
                 tell=note,
             )
     except KeyboardInterrupt:
-        options = "" if scheduler is None else f" --scheduler {shlex.quote(scheduler)}"
-        command = f"vibroimpact sweep {shlex.quote(study)} -o {shlex.quote(str(target))} --resume{options}"
-        fail(f"interrupted; the drops that are done stay; go on with: {command}", 130)
+        fail(told, 130)
     screen.print(study_summary(read_study(folder), screen.width))
     typer.echo(f"wrote {folder / 'study.nc'} and {folder / 'report.html'}")
 

@@ -206,7 +206,7 @@ def _read(sensor: Sensor, value: Floats, rate: float) -> Floats:
         value = _through_resonance(value, rate, meter.resonance, meter.damping_ratio)
     value = value[:: round(rate / sensor.rate)]
     if meter.noise:
-        seed = [zlib.crc32(sensor.name.encode()), meter.seed]
+        seed = [zlib.crc32(sensor.name.encode()), *np.atleast_1d(meter.seed).tolist()]
         value = value + meter.noise * np.random.default_rng(seed).standard_normal(len(value))
     if meter.resolution is not None:
         value = meter.resolution * np.round(value / meter.resolution)

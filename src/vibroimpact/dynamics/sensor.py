@@ -22,7 +22,7 @@ class Accelerometer:
         Standard deviation of white noise in its samples [m/s^2]; the same in every run of one seed.
     resolution : float, optional
         Step of its readings [m/s^2].
-    seed : int, default 0
+    seed : int or tuple of int, default 0
         Of the noise; sensors of different names have noise of their own.
     """
 
@@ -31,7 +31,7 @@ class Accelerometer:
     range: float | None = None
     noise: float = 0.0
     resolution: float | None = None
-    seed: int = 0
+    seed: int | tuple[int, ...] = 0
 
 
 @dataclass(frozen=True)

@@ -88,14 +88,14 @@ def read_table_file(path: str | PathLike[str], units: Mapping[str, str]) -> Tabl
     header = [cell.strip() for cell in next(csv.reader([first], delimiter=mark))]
     found: dict[str, tuple[int, float]] = {}
     for place, cell in enumerate(header):
-        name, unit = _name_and_unit(cell)
+        name, unit = name_and_unit(cell)
         if name not in units:
             continue
         if name in found:
             raise InputError(f'{file}, line {lines[0][0]}: there are two columns "{name}"')
         found[name] = (place, _factor(file, lines[0][0], cell, unit, units[name]))
     if not found:
-        names = [_name_and_unit(cell)[0] for cell in header]
+        names = [name_and_unit(cell)[0] for cell in header]
         hint = next((words for name in names if (words := did_you_mean(name, units))), "")
         raise InputError(f"{file}, line {lines[0][0]}: no column is known among {', '.join(names)}; {_allowed(units)}.{hint}")
     rows = []
@@ -146,25 +146,24 @@ def _text(file: Path) -> str:
         raise InputError(f"{file}: the file can't be read: {error.strerror}") from None
 
 
-def _name_and_unit(cell: str) -> tuple[str, str | None]:
-    """Return name and unit of a header's cell; None where it has no unit."""
-    match = _BRACKETS.fullmatch(cell)
-    if match:
-        return column_name(match[1]), match[2].strip()
-    for ending, unit in sorted(_ENDINGS.items(), key=lambda item: -len(item[0])):
-        if cell.endswith(ending):
-            return column_name(cell.removesuffix(ending)), unit
-    return column_name(cell), None
-
-
-def column_name(name: str) -> str:
-    """Return a column's name as it is looked for: small letters, with underscores.
+def name_and_unit(cell: str) -> tuple[str, str | None]:
+    """Return name and unit of a header's cell; None where it has no unit.
 
     Examples
     --------
-    >>> column_name("Rebound height")
-    'rebound_height'
+    >>> name_and_unit("Rebound height [mm]"), name_and_unit("time_s"), name_and_unit("count")
+    (('rebound_height', 'mm'), ('time', 's'), ('count', None))
     """
+    match = _BRACKETS.fullmatch(cell)
+    if match:
+        return _plain(match[1]), match[2].strip()
+    for ending, unit in sorted(_ENDINGS.items(), key=lambda item: -len(item[0])):
+        if cell.endswith(ending):
+            return _plain(cell.removesuffix(ending)), unit
+    return _plain(cell), None
+
+
+def _plain(name: str) -> str:
     return re.sub(r"[\s-]+", "_", name.strip().lower())
 
 

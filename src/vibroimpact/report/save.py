@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import os
+from functools import partial
 from os import PathLike
 from pathlib import Path
-from tempfile import TemporaryDirectory
 
 from vibroimpact.dynamics.response import Response
-from vibroimpact.errors import InputError
+from vibroimpact.report.beside import write_beside
 from vibroimpact.report.page import write_report
 from vibroimpact.storage.folder import new_folder, read_result, write_result
 from vibroimpact.storage.paraview import write_paraview
@@ -57,7 +56,7 @@ def remake_report(directory: str | PathLike[str]) -> Path:
     """
     # which load what a run does not need
     from vibroimpact.report.reproduction.folder import is_reproduction, write_reproduction_report
-    from vibroimpact.report.study.folder import is_study
+    from vibroimpact.storage.compute_study import is_study
 
     folder = Path(directory)
     if is_study(folder):
@@ -67,14 +66,7 @@ def remake_report(directory: str | PathLike[str]) -> Path:
         write_reproduction_report(folder)
         return folder
     result = read_result(directory)
-    try:
-        with TemporaryDirectory(prefix=".report.", dir=folder) as working:
-            write_report(result, Path(working))
-            (folder / "figures").mkdir(exist_ok=True)
-            for file in sorted(Path(working).rglob("*.*")):
-                os.replace(file, folder / file.relative_to(working))
-    except OSError as error:
-        raise InputError(f"{folder}: the report can't be written: {error.strerror}") from None
+    write_beside(folder, partial(write_report, result))
     return folder
 
 

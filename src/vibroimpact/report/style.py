@@ -29,6 +29,9 @@ LOOPS: tuple[tuple[str, str | tuple[int, tuple[int, ...]]], ...] = (
 )
 """Colour and dashes of the loops, in order."""
 
+MARKS = ("o", "s", "^", "D", "v")
+"""Marks of the first impacts, in order; as many as are enlarged at most."""
+
 # both luminance and hatch tell the bands apart; from the bottom of the stack to its top
 BANDS: dict[str, tuple[str, str, str]] = {
     "contact_dissipated_J": ("damping and adhesion", "#404040", ""),

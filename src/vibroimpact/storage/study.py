@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vibroimpact.errors import InputError
+from vibroimpact.studies.columns import SIGNAL
 from vibroimpact.studies.plan import SAMPLE
 
 DATASET = "study.nc"
@@ -28,6 +29,8 @@ class Study:
     ----------
     path : Path
         Of its dataset.
+    name : str
+        What it is called.
     table : dict
         The case with its [sweep] section.
     version : str
@@ -45,6 +48,7 @@ class Study:
     """
 
     path: Path
+    name: str
     table: dict[str, Any]
     version: str
     dimensions: dict[str, int]
@@ -52,6 +56,16 @@ class Study:
     meanings: dict[str, tuple[str, str]]
     shapes: dict[str, tuple[int, ...]]
     failures: dict[int, str]
+
+    @property
+    def design(self) -> str:
+        """The name of its design, such as "grid"."""
+        return _design(self.table)
+
+    @property
+    def is_grid(self) -> bool:
+        """Are its points all combinations of the levels of its keys?"""
+        return SAMPLE not in self.dimensions
 
     @property
     def size(self) -> int:
@@ -73,14 +87,41 @@ class Study:
         InputError
             If there is no such variable.
         """
-        if name not in self.shapes:
-            raise InputError(f'there is no variable "{name}"; there are {", ".join(self.shapes)}')
+        self._check(name)
         with h5py.File(self.path, "r") as file:
             return np.asarray(file[name][place or ()])
+
+    def times(self, sensor: str) -> NDArray[np.float64]:
+        """Return the time of each sample in the signal of a sensor [s].
+
+        Parameters
+        ----------
+        sensor : str
+            Its name.
+
+        Raises
+        ------
+        InputError
+            If its signal was not kept.
+        """
+        name = f"{SIGNAL}{sensor}"
+        self._check(name)
+        with h5py.File(self.path, "r") as file:
+            (scale,) = file[name].dims[len(self.dimensions)].values()
+            return np.asarray(scale[()], dtype=np.float64)
+
+    def _check(self, name: str) -> None:
+        if name not in self.shapes:
+            raise InputError(f'there is no variable "{name}"; there are {", ".join(self.shapes)}')
 
 
 def read_study(directory: Path) -> Study:
     """Read the dataset of a study, but for its variables.
+
+    Parameters
+    ----------
+    directory : Path
+        The folder of the study.
 
     Raises
     ------
@@ -92,7 +133,7 @@ def read_study(directory: Path) -> Study:
         with h5py.File(path, "r") as file:
             table = tomllib.loads(str(file.attrs["study"]))
             over = list(table["sweep"]["over"])  # in the order of the dimensions
-            is_grid = table["sweep"].get("design", "grid") == "grid"
+            is_grid = _design(table) == "grid"
             coordinates = {key: _of_file(file[key]) for key in over}
             dimensions = {key: len(coordinates[key]) for key in over} if is_grid else {SAMPLE: len(file[SAMPLE])}
             names = [one for one in file if not file[one].is_scale and one not in (*over, FAILED_REASON)]
@@ -100,11 +141,16 @@ def read_study(directory: Path) -> Study:
             reasons = [reason.decode() for reason in file[FAILED_REASON][()]]
             failures = dict(zip(file[FAILED_POINT][()].tolist(), reasons, strict=True))
             shapes = {one: tuple(file[one].shape) for one in names}
-            return Study(path, table, str(file.attrs["version"]), dimensions, coordinates, meanings, shapes, failures)
+            name, version = str(file.attrs["title"]), str(file.attrs["version"])
+            return Study(path, name, table, version, dimensions, coordinates, meanings, shapes, failures)
     except FileNotFoundError:
         raise InputError(f"{directory}: there is no {DATASET}; the study is not done, go on with: vibroimpact sweep --resume") from None
     except (OSError, KeyError, ValueError) as error:
         raise InputError(f"{path}: the file is damaged: {error}") from None
+
+
+def _design(table: dict[str, Any]) -> str:
+    return str(table["sweep"].get("design", "grid"))
 
 
 def _of_file(data: h5py.Dataset) -> NDArray[Any]:

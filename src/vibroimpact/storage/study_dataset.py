@@ -30,7 +30,14 @@ _MORE = 2**20  # bytes that a file of HDF5 has beside its data, at most
 
 
 def write_dataset(
-    folder: Path, name: str, chunks: Sequence[Span], plan: Plan, table: Mapping[str, Any], meanings: Meanings, rates: Mapping[str, float]
+    folder: Path,
+    name: str,
+    chunks: Sequence[Span],
+    study: str,
+    plan: Plan,
+    table: Mapping[str, Any],
+    meanings: Meanings,
+    rates: Mapping[str, float],
 ) -> None:
     """Write `study.nc` from the chunks of a study; chunk by chunk, so that never all of it lies in memory.
 
@@ -42,6 +49,8 @@ def write_dataset(
         What the study is called.
     chunks : sequence of Span
         All of its chunks.
+    study : str
+        Its fingerprint.
     plan : Plan
         Its points.
     table : mapping
@@ -50,6 +59,11 @@ def write_dataset(
         Unit and meaning of swept keys and of what the chunks hold.
     rates : mapping of str to float
         The rate of each sensor [Hz].
+
+    Raises
+    ------
+    OSError
+        If there is no room for it.
     """
     layout: dict[str, tuple[tuple[int, ...], np.dtype[Any]]] = {}
     for chunk in chunks:
@@ -67,12 +81,17 @@ def write_dataset(
         data = {one: _new_variable(file, one, layout[one], scales, meanings, rates) for one in _ordered(layout, meanings)}
         failures: dict[int, str] = {}
         for chunk in chunks:
-            result = read_chunk(folder, chunk.number)
+            result = read_chunk(folder, chunk, study)
             for variable, values in result.arrays.items():
                 _put(data[variable], (), tuple(plan.dimensions.values()), chunk.first, values)
             failures |= {chunk.first + place: reason for place, reason in result.failures.items()}
         _write_failures(file, failures)
     working.replace(folder / DATASET)  # last: once it is there, all is
+
+
+def as_text(value: Any) -> Any:
+    """Return a value as tables hold it: numbers and names as they are, lists and tables as JSON."""
+    return value if isinstance(value, (str, float, int)) and not isinstance(value, bool) else json.dumps(value)
 
 
 def _see_that_there_is_room(path: Path, size: int) -> None:
@@ -93,7 +112,7 @@ def _write_coordinates(file: h5py.File, plan: Plan, meanings: Meanings) -> list[
         scales = [_scale(file, SAMPLE, np.arange(plan.size), ("1", "number of the drop, from 0"))]
     for key, values in plan.columns.items():
         texts = values.dtype == object
-        shown = np.array([one if isinstance(one, str) else json.dumps(one) for one in values], dtype=object) if texts else values
+        shown = np.array([str(as_text(one)) for one in values], dtype=object) if texts else values
         if plan.is_grid:
             scales.append(_scale(file, key, shown, meanings[key]))
         else:

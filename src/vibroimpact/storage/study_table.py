@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vibroimpact.dynamics.response import Outcome
-from vibroimpact.storage.study_dataset import Meanings
+from vibroimpact.storage.study_dataset import Meanings, as_text
 from vibroimpact.studies.chunk_file import ChunkResult, read_chunk
 from vibroimpact.studies.columns import OUTCOME, PEAKS, SENSOR_PEAK
 from vibroimpact.studies.ledger import Span
@@ -22,8 +22,19 @@ MOST_ROWS = 1_000_000
 """Drops beyond which there is no table: no program that reads one would show it."""
 
 
-def write_drops(folder: Path, chunks: Sequence[Span], plan: Plan, meanings: Meanings) -> None:
-    """Write one row a drop: its number, its values at the swept keys, its peaks, why it ended and why it failed."""
+def write_drops(folder: Path, chunks: Sequence[Span], study: str, plan: Plan, meanings: Meanings) -> None:
+    """Write one row a drop: its number, its values at the swept keys, its peaks, why it ended and why it failed.
+
+    Parameters
+    ----------
+    folder, chunks, study, plan, meanings
+        As `write_dataset` takes them.
+
+    Raises
+    ------
+    OSError
+        If there is no room for it.
+    """
     peaks = [name for name in meanings if name in PEAKS or name.endswith(SENSOR_PEAK)]
     keys = [key if meanings[key][0] == "1" else f"{key} [{meanings[key][0]}]" for key in plan.columns]
     working = (folder / TABLE).with_suffix(".part")
@@ -31,7 +42,7 @@ def write_drops(folder: Path, chunks: Sequence[Span], plan: Plan, meanings: Mean
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(["drop", *keys, *peaks, OUTCOME, "reason"])
         for chunk in chunks:
-            writer.writerows(_rows(chunk, plan, read_chunk(folder, chunk.number), peaks))
+            writer.writerows(_rows(chunk, plan, read_chunk(folder, chunk, study), peaks))
     working.replace(folder / TABLE)
 
 
@@ -39,7 +50,7 @@ def _rows(chunk: Span, plan: Plan, result: ChunkResult, peaks: Sequence[str]) ->
     outcomes = [outcome.value for outcome in Outcome]
     ended = result.arrays.get(OUTCOME, np.full(chunk.size, list(Outcome).index(Outcome.FAILED)))
     columns = [_cells(result.arrays.get(name, np.full(chunk.size, np.nan))) for name in peaks]
-    points = [values.tolist() for values in plan.points(chunk.first, chunk.size).values()]
+    points = [[as_text(value) for value in values.tolist()] for values in plan.points(chunk.first, chunk.size).values()]
     numbers = range(chunk.first, chunk.first + chunk.size)
     reasons = [result.failures.get(place, "") for place in range(chunk.size)]
     yield from zip(numbers, *points, *columns, [outcomes[code] for code in ended], reasons, strict=True)

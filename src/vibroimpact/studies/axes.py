@@ -13,7 +13,7 @@ from vibroimpact.errors import InputError
 
 Floats = NDArray[np.float64]
 Values = NDArray[Any]
-"""Floats, or objects where values are names, whole numbers or tables."""
+"""Floats, whole numbers, or objects where values are names or tables."""
 
 
 class Axis(Protocol):
@@ -32,7 +32,14 @@ class Axis(Protocol):
 
 @dataclass(frozen=True)
 class Listed:
-    """Values one by one; drawn, each is as likely as another.
+    """Values one by one; drawn, each is as likely as another, or as its weight says.
+
+    Parameters
+    ----------
+    values : tuple
+        The values.
+    weights : tuple of float, optional
+        Their weights, >= 0, in any unit; not all of them zero.
 
     Examples
     --------
@@ -41,11 +48,16 @@ class Listed:
     """
 
     values: tuple[Any, ...]
-    is_random: bool = False
+    weights: tuple[float, ...] | None = None
+
+    @property
+    def is_random(self) -> bool:
+        """They were chosen."""
+        return False
 
     def levels(self) -> Values:
-        """Return the values: floats if all are, else as they are."""
-        if all(isinstance(value, float) for value in self.values):
+        """Return the values: floats or whole numbers if all are, else as they are."""
+        if {type(value) for value in self.values} in ({float}, {int}):
             return np.array(self.values)
         objects = np.empty(len(self.values), dtype=object)
         objects[:] = self.values
@@ -53,13 +65,26 @@ class Listed:
 
     def quantiles(self, parts: Floats) -> Values:
         """Return the values by their place in the list."""
-        number = len(self.values)
-        return np.asarray(self.levels()[np.minimum((parts * number).astype(int), number - 1)])
+        below = np.cumsum(np.ones(len(self.values)) if self.weights is None else self.weights)
+        places = np.searchsorted(below / below[-1], parts, side="right")
+        return np.asarray(self.levels()[np.minimum(places, len(self.values) - 1)])
 
 
 @dataclass(frozen=True)
 class Spaced:
-    """Values from `start` to `end`, evenly apart or by even factors; drawn, they are uniform on that scale."""
+    """Values from `start` to `end`, evenly apart or by even factors; drawn, they are uniform on that scale.
+
+    Parameters
+    ----------
+    start, end : float
+        The ends.
+    number : int
+        How many levels it has in a grid, both ends among them.
+    scale : {"linear", "log"}
+        Even steps, or even factors.
+    is_random : bool
+        Is it a distribution?
+    """
 
     start: float
     end: float

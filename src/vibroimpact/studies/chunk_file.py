@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vibroimpact.errors import ComputationError
+from vibroimpact.studies.ledger import Span
 
 FOLDER = "chunks"
 
@@ -29,13 +30,10 @@ class ChunkResult:
         By names, the drop along the first axis.
     failures : mapping of int to str
         Why a drop failed, by its place in the chunk.
-    cpu : float
-        CPU time that it took [s].
     """
 
     arrays: Mapping[str, NDArray[Any]]
     failures: Mapping[int, str]
-    cpu: float = 0.0
 
 
 def chunk_path(folder: Path, number: int) -> Path:
@@ -43,17 +41,17 @@ def chunk_path(folder: Path, number: int) -> Path:
     return folder / FOLDER / f"{number:06d}.h5"
 
 
-def write_chunk(folder: Path, number: int, result: ChunkResult, study: str) -> str:
+def write_chunk(folder: Path, chunk: Span, result: ChunkResult, study: str) -> str:
     """Write a chunk, whole or not at all; return its checksum.
 
     Parameters
     ----------
     folder : Path
         That of the study.
-    number : int
-        Of the chunk.
+    chunk : Span
+        Which it is.
     result : ChunkResult
-        What came of it. The CPU time is not written: it would not be the same again.
+        What came of it.
     study : str
         The fingerprint of the study that it belongs to.
 
@@ -64,14 +62,14 @@ def write_chunk(folder: Path, number: int, result: ChunkResult, study: str) -> s
     """
     memory = BytesIO()
     with h5py.File(memory, "w") as file:
-        file.attrs["study"] = study
+        file.attrs["study"], file.attrs["first"], file.attrs["size"] = study, chunk.first, chunk.size
         file.create_group("arrays")  # there also if nothing came of any drop
         for name, values in result.arrays.items():
             checked = {"fletcher32": True} if values.size else {}  # so that damage shows when it is read, also without a ledger
             file.create_dataset(f"arrays/{name}", data=values, **checked)
         file.create_dataset("failures/place", data=np.array(list(result.failures), dtype=np.int64))
         file.create_dataset("failures/reason", data=np.array(list(result.failures.values()), dtype=object), dtype=h5py.string_dtype())
-    data, target = memory.getvalue(), chunk_path(folder, number)
+    data, target = memory.getvalue(), chunk_path(folder, chunk.number)
     working = target.with_suffix(".part")
     try:
         target.parent.mkdir(exist_ok=True)
@@ -101,26 +99,27 @@ def chunk_layout(folder: Path, number: int) -> dict[str, tuple[tuple[int, ...], 
         return {name: (values.shape, values.dtype) for name, values in file["arrays"].items()}
 
 
-def read_chunk(folder: Path, number: int, study: str | None = None) -> ChunkResult:
+def read_chunk(folder: Path, chunk: Span, study: str) -> ChunkResult:
     """Read a chunk.
 
     Parameters
     ----------
     folder : Path
         That of the study.
-    number : int
-        Of the chunk.
-    study : str, optional
-        The fingerprint that it must have.
+    chunk : Span
+        Which it is.
+    study : str
+        The fingerprint of the study.
 
     Raises
     ------
     OSError, KeyError, ValueError
-        If it is damaged, or of another study.
+        If it is damaged, of another study, or has other drops.
     """
-    with h5py.File(chunk_path(folder, number), "r") as file:
-        if study is not None and file.attrs["study"] != study:
-            raise ValueError("it is of another study")
+    with h5py.File(chunk_path(folder, chunk.number), "r") as file:
+        told = (file.attrs["study"], file.attrs["first"], file.attrs["size"])
+        if told != (study, chunk.first, chunk.size):
+            raise ValueError("it is of another study, or has other drops")
         arrays = {name: np.asarray(values) for name, values in file["arrays"].items()}
         reasons = [reason.decode() for reason in file["failures/reason"][()]]
         return ChunkResult(arrays, dict(zip(file["failures/place"][()].tolist(), reasons, strict=True)))

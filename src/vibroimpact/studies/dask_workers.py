@@ -61,7 +61,7 @@ def dask_workers(address: str, number: int, setup: Setup) -> Iterator[Crew]:
     options = {"n_workers": number, "threads_per_worker": 1, "dashboard_address": None, "silence_logs": logging.CRITICAL}
     with LocalCluster(**options) if address == LOCAL else nullcontext(address) as cluster, Client(cluster) as client:
         client.register_plugin(Setting())
-        yield Crew(client.get_executor(pure=False), 2 * sum(client.nthreads().values()))
+        yield Crew(client.get_executor(pure=False), lambda: 2 * max(1, sum(client.nthreads().values())))
 
 
 def _client(address: str) -> Any:

@@ -19,7 +19,7 @@ LEDGER = "ledger.sqlite"
 _SCHEMA = """
 CREATE TABLE study (key TEXT PRIMARY KEY, value TEXT NOT NULL);
 CREATE TABLE chunk (number INTEGER PRIMARY KEY, first INTEGER NOT NULL, count INTEGER NOT NULL, state TEXT NOT NULL DEFAULT 'waiting',
-                    failed INTEGER, sha256 TEXT, cpu_s REAL, finished TEXT);
+                    failed INTEGER, sha256 TEXT, finished TEXT);
 """
 
 
@@ -52,17 +52,12 @@ class Ledger:
         """Return the checksum of each chunk that is done, by its number."""
         return dict(self.connection.execute("SELECT number, sha256 FROM chunk WHERE state = 'done' ORDER BY number"))
 
-    @property
-    def failed(self) -> int:
-        """How many drops failed so far."""
-        return int(self.connection.execute("SELECT coalesce(sum(failed), 0) FROM chunk").fetchone()[0])
-
-    def done(self, chunk: Span, sha256: str, failed: int, cpu: float) -> None:
+    def done(self, chunk: Span, sha256: str, failed: int) -> None:
         """Note that a chunk is done and on disk."""
         with _told(self.path), self.connection:
             self.connection.execute(
-                "UPDATE chunk SET state = 'done', sha256 = ?, failed = ?, cpu_s = ?, finished = datetime('now') WHERE number = ?",
-                (sha256, failed, cpu, chunk.number),
+                "UPDATE chunk SET state = 'done', sha256 = ?, failed = ?, finished = datetime('now') WHERE number = ?",
+                (sha256, failed, chunk.number),
             )
 
     def undone(self, chunk: int) -> None:
@@ -81,6 +76,11 @@ def make_ledger(folder: Path, facts: Mapping[str, str], size: int, chunk: int) -
             spans = ((number, first, min(chunk, size - first)) for number, first in enumerate(range(0, size, chunk)))
             connection.executemany("INSERT INTO chunk (number, first, count) VALUES (?, ?, ?)", spans)
         connection.close()
+
+
+def busy(folder: Path) -> str:
+    """Return what to tell of a folder in which another process is at work."""
+    return f"{folder}: another sweep is at work in this folder; wait for it, or name another folder"
 
 
 def is_held(folder: Path) -> bool:
@@ -135,15 +135,15 @@ def _told(path: Path) -> Iterator[None]:
         yield
     except sqlite3.OperationalError as error:
         if "locked" in str(error):
-            raise InputError(f"{path.parent}: another sweep is at work in this folder; wait for it, or name another folder") from None
+            raise InputError(busy(path.parent)) from None
         if "no such table" in str(error):
-            raise InputError(damaged(path, str(error))) from None
+            raise InputError(_damaged(path, str(error))) from None
         raise ComputationError(f"{path}: the ledger can't be written: {error}; see to the disk, then go on with --resume") from None
     except sqlite3.DatabaseError as error:
-        raise InputError(damaged(path, str(error))) from None
+        raise InputError(_damaged(path, str(error))) from None
 
 
-def damaged(path: Path, why: str) -> str:
+def _damaged(path: Path, why: str) -> str:
     """Return what to tell of a ledger that is damaged."""
     return (
         f"{path}: the ledger is damaged ({why}); delete this file and go on with --resume: it is made anew from the chunks that are there "

@@ -38,7 +38,17 @@ class Spread(NamedTuple):
 
 
 def spread_of(values: Floats) -> Spread:
-    """Return how values of any shape spread; percentiles lie between two values by a straight line.
+    """Return how values spread; percentiles lie between two values by a straight line.
+
+    Parameters
+    ----------
+    values : array
+        Of any shape and unit; those that are not finite are passed over.
+
+    Returns
+    -------
+    Spread
+        In the unit of the values.
 
     Examples
     --------

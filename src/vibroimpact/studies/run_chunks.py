@@ -52,13 +52,13 @@ def run_chunks(
     while waiting or suspects:
         running: dict[Future[ChunkResult], Span] = {}
         try:
-            with start() as (executor, ahead):
+            with start() as (executor, in_flight):
                 _see_that_it_lives(executor)
                 while waiting or suspects or running:
-                    source = suspects or waiting
-                    while source and len(running) < (1 if suspects else ahead):
-                        chunk = source.popleft()
-                        running[executor.submit(work, chunk.first, points(chunk))] = chunk
+                    source, most = (suspects, 1) if suspects else (waiting, in_flight())
+                    while source and len(running) < most:
+                        running[executor.submit(work, source[0].first, points(source[0]))] = source[0]
+                        source.popleft()  # not before: a worker may have died while the last chunk was kept
                     for future in wait(running, return_when=FIRST_COMPLETED).done:
                         keep(running[future], _result(future, running[future]))
                         del running[future]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -19,7 +18,6 @@ RESAMPLES = 200
 """How many times the points are drawn anew to find the standard error of an index."""
 
 _RESAMPLED = 8192  # points of a block that are drawn anew; with more of them the error falls as their root
-_AT_ONCE = 25  # resamples; all of them would fill the memory
 _QUANTILE = 1.959964  # of the normal distribution, for 95 %
 
 
@@ -85,21 +83,27 @@ def sobol_indices(values: Floats, axes: int, seed: int = 0) -> Indices | None:
     """
     blocks = np.asarray(values, dtype=float).reshape(2 + axes, -1)
     complete = np.isfinite(blocks).all(axis=0)
-    points = int(complete.sum())
-    left_out = len(complete) - points
+    points, left_out = int(complete.sum()), int((~complete).sum())
     if points < 2 or left_out > MOST_LEFT_OUT * len(complete):
         return None
     used = blocks[:2, complete]
     if not float(np.std(used)) > 1e-9 * float(np.abs(used).max()):
         return None
-    if left_out:  # the number of points must stay a power of two: at the mean, a point adds nothing to any of the sums
-        blocks = np.where(complete, blocks, used.mean())
-    first, total = _estimates(blocks[:, None, :])
-    drawn = blocks[:, :_RESAMPLED]
-    resampled = [_estimates(drawn[:, places]) for places in _resampled(drawn.shape[1], seed)]
-    shrinks = math.sqrt(drawn.shape[1] / blocks.shape[1])
-    errors = [_QUANTILE * shrinks * np.std(np.concatenate(which), axis=0, ddof=1) for which in zip(*resampled, strict=True)]
-    return Indices(first[0], total[0], errors[0], errors[1], points, left_out)
+    # SciPy takes a power of two alone: a point whose drops all lie at the mean stays one, and adds nothing to any of the sums
+    blocks = np.where(complete, blocks, used.mean())
+    first, total = _estimates(blocks)
+    drawn, random = min(len(complete), _RESAMPLED), generator(seed, len(complete))
+    resampled = [_estimates(blocks[:, random.integers(drawn, size=drawn)]) for _ in range(RESAMPLES)]
+    first_error, total_error = _QUANTILE * math.sqrt(drawn / len(complete)) * np.std(resampled, axis=0, ddof=1)
+    return Indices(first, total, first_error, total_error, points, left_out)
+
+
+def _estimates(blocks: Floats) -> Floats:
+    """Return first and total indices, (2, axes), of blocks (2 + axes, points)."""
+    from scipy.stats import sobol_indices as estimate
+
+    found = estimate(func={"f_A": blocks[:1], "f_B": blocks[1:2], "f_AB": blocks[2:, None]}, n=blocks.shape[1])
+    return np.array([found.first_order, found.total_order])
 
 
 def rank_correlations(inputs: Floats, output: Floats) -> Floats:
@@ -139,7 +143,7 @@ def rank_correlations(inputs: Floats, output: Floats) -> Floats:
     return found
 
 
-class Reach(NamedTuple):
+class OneAtATime(NamedTuple):
     """How far a result moves along each axis of a grid, with all others at their middle level; one value an axis.
 
     Attributes
@@ -160,7 +164,7 @@ class Reach(NamedTuple):
         return (self.highest - self.lowest) / abs(self.middle) if self.middle else np.full(len(self.lowest), math.nan)
 
 
-def reach_on_grid(values: NDArray[Any], orders: list[NDArray[np.intp]]) -> Reach:
+def one_at_a_time(values: NDArray[Any], orders: list[NDArray[np.intp]]) -> OneAtATime:
     """Return how far a result moves along each axis of a grid.
 
     Parameters
@@ -172,8 +176,8 @@ def reach_on_grid(values: NDArray[Any], orders: list[NDArray[np.intp]]) -> Reach
 
     Examples
     --------
-    >>> reach_on_grid(np.array([[1.0, 2.0], [2.0, 4.0], [9.0, 8.0]]), [np.arange(3), np.arange(2)])
-    Reach(middle=4.0, lowest=array([2., 2.]), highest=array([8., 4.]))
+    >>> one_at_a_time(np.array([[1.0, 2.0], [2.0, 4.0], [9.0, 8.0]]), [np.arange(3), np.arange(2)])
+    OneAtATime(middle=4.0, lowest=array([2., 2.]), highest=array([8., 4.]))
     """
     middle = tuple(int(order[len(order) // 2]) for order in orders)
     lowest, highest = np.full((2, len(orders)), math.nan)
@@ -182,20 +186,4 @@ def reach_on_grid(values: NDArray[Any], orders: list[NDArray[np.intp]]) -> Reach
         along = np.asarray(values[line], dtype=np.float64)
         if np.isfinite(along).any():
             lowest[axis], highest[axis] = np.nanmin(along), np.nanmax(along)
-    return Reach(float(values[middle]), lowest, highest)
-
-
-def _estimates(blocks: Floats) -> tuple[Floats, Floats]:
-    """Return first and total indices, (s, axes) each, of blocks (2 + axes, s, points)."""
-    import scipy.stats
-
-    number, axes = blocks.shape[-1], len(blocks) - 2
-    found = scipy.stats.sobol_indices(func={"f_A": blocks[0], "f_B": blocks[1], "f_AB": blocks[2:]}, n=number, rng=0)
-    return found.first_order.reshape(-1, axes), found.total_order.reshape(-1, axes)
-
-
-def _resampled(points: int, seed: int) -> Iterator[NDArray[np.intp]]:
-    """Yield places of points drawn anew, some resamples at once."""
-    random = generator(seed, points)
-    for _ in range(0, RESAMPLES, _AT_ONCE):
-        yield random.integers(points, size=(_AT_ONCE, points))
+    return OneAtATime(float(values[middle]), lowest, highest)

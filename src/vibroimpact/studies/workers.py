@@ -16,10 +16,10 @@ Setup = Callable[[], object]
 
 
 class Crew(NamedTuple):
-    """Workers that are there: what gives them work, and how many chunks may be on the way, so that none waits."""
+    """Workers that are there: what gives them work, and a function that says how many chunks may be on the way, so that none waits."""
 
     executor: Executor
-    ahead: int
+    in_flight: Callable[[], int]
 
 
 Workers = Callable[[], AbstractContextManager[Crew]]
@@ -41,7 +41,7 @@ class _AtOnce(Executor):
 @contextmanager
 def this_process() -> Iterator[Crew]:
     """Compute in this process, which has what `Setup` would bring."""
-    yield Crew(_AtOnce(), 1)
+    yield Crew(_AtOnce(), lambda: 1)
 
 
 @contextmanager
@@ -50,17 +50,28 @@ def processes(number: int, setup: Setup) -> Iterator[Crew]:
     # spawned, not forked: a fork would copy locks that threads of this process hold
     pool = ProcessPoolExecutor(number, multiprocessing.get_context("spawn"), initializer=_begin, initargs=(setup,))
     try:
-        yield Crew(pool, 2 * number)
-    except BaseException:
-        for process in list((pool._processes or {}).values()):  # there is no public way before Python 3.14
-            process.terminate()
-        pool.shutdown(wait=False, cancel_futures=True)
-        raise
-    pool.shutdown(cancel_futures=True)
+        with _interrupts_ignored():  # by the processes that start now, from their first instruction on
+            pool.submit(int)
+        yield Crew(pool, lambda: 2 * number)
+    finally:
+        pool.shutdown(cancel_futures=True)  # each ends after the chunk that it is at, or with this process
+
+
+@contextmanager
+def _interrupts_ignored() -> Iterator[None]:
+    """Let processes that start now take no notice of Ctrl-C, which is for the one that leads."""
+    if threading.current_thread() is not threading.main_thread():
+        yield  # only the main thread may say so
+        return
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
 
 
 def _begin(setup: Setup) -> None:
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the process that leads
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
     threading.Thread(target=_end_with_parent, daemon=True).start()
     setup()
 

@@ -2,62 +2,64 @@
 
 from __future__ import annotations
 
-import numpy as np
 from matplotlib.figure import Figure
 
-from vibroimpact.report.study.axes import StudyAxis, Ticks, plain
+from vibroimpact.report.study.axes import StudyAxis
 from vibroimpact.report.study.outputs import Output, on_grid
-from vibroimpact.report.study.panels import add_legend, panels, scale_of, scale_vertical, title_of
-from vibroimpact.report.style import ENLARGED, LOOPS
+from vibroimpact.report.study.panels import add_legend, panels, scale_vertical, title_of
+from vibroimpact.report.study.ticks import Ticks, rising
+from vibroimpact.report.study.words import plain
+from vibroimpact.report.style import ENLARGED, LOOPS, MARKS
 from vibroimpact.storage.study import Study
+from vibroimpact.studies.columns import PEAK_TABLE
 
-_BY_IMPACT = {
-    "largest_force_N": ("max_force_N", "Largest force"),
-    "largest_indentation_m": ("max_indentation_m", "Largest indentation"),
-    "first_restitution_achieved": ("restitution_achieved", "Restitution achieved"),
-    "first_duration_s": ("duration_s", "Duration of contact"),
-    "total_energy_lost_J": ("energy_lost_J", "Energy lost"),
-    "first_rebound_height_m": ("rebound_height_m", "Rebound height"),
-}
-"""The column of the impact table behind a result, and what it is called there."""
-
-_MARKS = ("o", "s", "^", "D", "v")
-_MOST_MARKED, _MOST = 40, 3000
+_MOST_MARKED, _MOST = 40, 3000  # levels
 
 
 def draw_curves(study: Study, axis: StudyAxis, outputs: list[Output]) -> Figure:
     """Draw results over one axis, each of the first impacts a line where impacts were kept."""
-    ticks = Ticks(axis)
-    order = np.argsort(ticks.places(axis.values), kind="stable")
-    order = order[:: -(-len(order) // _MOST)]
-    places = ticks.places(axis.values)[order]
-    number = min(max((study.shapes[name][-1] for name, _ in _BY_IMPACT.values() if name in study.shapes), default=1), ENLARGED)
+    ticks, order = Ticks(axis), rising(axis, _MOST)
+    places = ticks.places(axis.values[order])
+    number = min(_impacts_kept(study), ENLARGED)
     figure, some = panels([ticks.turned] * len(outputs), legend=number > 1)
     for axes, output in zip(some, outputs, strict=True):
-        name, title = _BY_IMPACT.get(output.name, ("", ""))
-        size = scale_of(output).size
-        values = on_grid(study, name)[order] if name in study.shapes else on_grid(study, output.name)[order, None]
-        for impact in range(min(values.shape[1], number)):
-            colour, dashes = LOOPS[impact]
-            mark = _MARKS[impact] if len(places) <= _MOST_MARKED else ""
-            line = "" if ticks.names else dashes
-            axes.plot(places, values[:, impact] / size, mark, color=colour, linestyle=line, markersize=3.0, label=f"impact {impact + 1}")
-        shown = output._replace(title=title) if name in study.shapes else output
-        axes.set_title(title_of(shown))
+        column = _column(study, output)
+        values = on_grid(study, column or output.name)[order].reshape(len(order), -1) / output.scale.size
+        for impact, (mark, (colour, dashes)) in enumerate(zip(MARKS[: values.shape[1]], LOOPS, strict=False)):
+            axes.plot(
+                places,
+                values[:, impact],
+                marker=mark if ticks.names or len(places) <= _MOST_MARKED else "",
+                color=colour,
+                linestyle="" if ticks.names else dashes,
+                markersize=3.0,
+                label=f"impact {impact + 1}",
+            )
+        axes.set_title(title_of(output._replace(title=output.short) if column else output))
         scale_vertical(axes, output)
         ticks.set_on(axes)
         axes.set_xlabel(ticks.label)
     if number > 1:
-        longest = max(some, key=lambda axes: len(axes.lines))
-        add_legend(figure, longest)
+        add_legend(figure, max(some, key=lambda axes: len(axes.lines)))
     return figure
 
 
 def curve_words(study: Study, axis: StudyAxis) -> str:
     """Return the caption of the curves."""
-    kept = [study.shapes[name][-1] for name, _ in _BY_IMPACT.values() if name in study.shapes]
+    kept = _impacts_kept(study)
     words = f"Results over {plain(axis.key)}"
     if not kept:
         return f"{words}; impacts were not kept one by one, so that these are the peaks of each drop."
-    of_many = f" (the first {ENLARGED} of {max(kept)})" if max(kept) > ENLARGED else ""
-    return f"{words}, a line an impact{of_many}." if max(kept) > 1 else f"{words}."
+    of_many = f" (the first {ENLARGED} of {kept})" if kept > ENLARGED else ""
+    return f"{words}, a line an impact{of_many}." if kept > 1 else f"{words}."
+
+
+def _column(study: Study, output: Output) -> str:
+    """Return the column of the impact table behind a result; "" if there is none, or it was not kept."""
+    column = PEAK_TABLE[output.name].column if output.name in PEAK_TABLE else ""
+    return column if column in study.shapes else ""
+
+
+def _impacts_kept(study: Study) -> int:
+    """Return how many impacts of a drop were kept; 0 if none were."""
+    return max((study.shapes[peak.column][-1] for peak in PEAK_TABLE.values() if peak.column in study.shapes), default=0)

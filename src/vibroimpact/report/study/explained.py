@@ -15,7 +15,7 @@ def sweep_explained(sweep: Sweep) -> RenderableType:
     """Return what a study would do, for a terminal."""
     section = sweep.section
     drawn = f", drawn with seed {section.seed}" if section.samples else ""
-    kept = " and ".join(dict.fromkeys(["peaks", *section.keep]))
+    kept = " and ".join(dict.fromkeys(["peaks", *section.keep])) + f", about {sweep.bytes / 1e6:.3g} MB"
     table = Table(box=None, padding=(0, 1), header_style="bold")
     table.add_column("swept key")
     table.add_column("over")

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
 from matplotlib.figure import Figure
 
-from vibroimpact.report.study.axes import StudyAxis, design_of, study_axes
+from vibroimpact.report.study.axes import StudyAxis, study_axes
 from vibroimpact.report.study.curves import curve_words, draw_curves
 from vibroimpact.report.study.histograms import FEWEST, draw_inputs, draw_outputs
 from vibroimpact.report.study.maps import draw_maps
@@ -18,6 +19,7 @@ from vibroimpact.report.study.restitution import draw_restitution
 from vibroimpact.report.study.sensitivity import RANKS, SOBOL, Sensitivity
 from vibroimpact.report.study.sensitivity_figure import draw_sensitivity
 from vibroimpact.report.study.signals import draw_signals, signal_figures
+from vibroimpact.report.study.words import BAND
 from vibroimpact.report.style import style
 from vibroimpact.storage.study import Study
 
@@ -43,19 +45,19 @@ def study_figures(study: Study, outputs: list[Output], found: Sensitivity | None
         What each key does to each of them.
     """
     shown = drawn_outputs(outputs)
-    is_grid, figures = design_of(study) == "grid", dict[str, StudyFigure]()
-    axes = [axis for axis in study_axes(study) if (len(axis.values) > 1 if is_grid else axis.varies)]
+    figures: dict[str, StudyFigure] = {}
+    axes = [axis for axis in study_axes(study) if (len(axis.values) > 1 if study.is_grid else axis.varies)]
     if shown and axes:
-        figures |= _of_grid(study, axes, shown, found) if is_grid else _of_samples(study, axes, shown)
+        figures |= _of_grid(study, axes, shown, found) if study.is_grid else _of_samples(study, axes, shown)
     words = "Each impact a mark; dashed is what was asked of the law. What it achieves may depend on the speed of the impact."
-    figures["restitution"] = StudyFigure("Restitution asked and achieved", words, lambda: draw_restitution(study))
+    figures["restitution"] = StudyFigure("Restitution asked and achieved", words, partial(draw_restitution, study))
     if found is not None:
-        figures["sensitivity"] = StudyFigure("What matters", _sensitivity_words(found), lambda: draw_sensitivity(study, found, shown[:6]))
+        figures["sensitivity"] = StudyFigure("What matters", _sensitivity_words(found), partial(draw_sensitivity, study, found, shown[:6]))
     for name, sensor in signal_figures(study).items():
         caption = (
             "Above, the band of all readings in short spans of time. Below, single drops: where theirs begin they are laid over each other."
         )
-        figures[name] = StudyFigure(f"Sensor {sensor}", caption, lambda sensor=sensor: draw_signals(study, sensor))  # type: ignore[misc]
+        figures[name] = StudyFigure(f"Sensor {sensor}", caption, partial(draw_signals, study, sensor))
     return figures
 
 
@@ -67,39 +69,39 @@ def draw(figure: StudyFigure) -> Figure | None:
 
 def _of_grid(study: Study, axes: list[StudyAxis], shown: list[Output], found: Sensitivity | None) -> dict[str, StudyFigure]:
     if len(axes) == 1:
-        return {"curves": StudyFigure(f"Over {axes[0].key}", curve_words(study, axes[0]), lambda: draw_curves(study, axes[0], shown))}
+        return {"curves": StudyFigure(f"Over {axes[0].key}", curve_words(study, axes[0]), partial(draw_curves, study, axes[0], shown))}
     first, second = _two_that_matter(axes, shown, found)
     over = f"{axes[first].key} and {axes[second].key}"
     if len(axes) == 2:
         words = "Levels are at the middle of their cells. Hatched: the drop failed, or has no such value."
-        return {"maps": StudyFigure(f"Over {over}", words, lambda: draw_maps(study, axes, shown, (first, second)))}
+        return {"maps": StudyFigure(f"Over {over}", words, partial(draw_maps, study, axes, shown, (first, second)))}
     figures = {}
     for output in shown:
         caption = (
-            f"Over each key: the median and the 5 to 95 % band of all drops of the grid, whatever their other keys are.{_first_axes(axes)}"
+            f"Over each key: the median and the {BAND} band of all drops of the grid, whatever their other keys are.{_first_axes(axes)}"
         )
-        figures[output.name] = StudyFigure(output.title, caption, lambda output=output: draw_bands(study, axes, output))  # type: ignore[misc]
+        figures[output.name] = StudyFigure(output.title, caption, partial(draw_bands, study, axes, output))
     words = "The two keys that matter most to the first result; drawn is the median over the others. Hatched: there is none."
-    figures["maps"] = StudyFigure(f"Over {over}", words, lambda: draw_maps(study, axes, shown, (first, second)))
+    figures["maps"] = StudyFigure(f"Over {over}", words, partial(draw_maps, study, axes, shown, (first, second)))
     return figures
 
 
 def _of_samples(study: Study, axes: list[StudyAxis], shown: list[Output]) -> dict[str, StudyFigure]:
     figures: dict[str, StudyFigure] = {}
     drops = independent_drops(study)
-    if drops >= FEWEST and design_of(study) != "zip":
-        of_what = " in the blocks A and B, whose drops are independent" if design_of(study) == "saltelli" else ""
+    if drops >= FEWEST and study.design != "zip":
+        of_what = " in the blocks A and B, whose drops are independent" if study.design == "saltelli" else ""
         figures["inputs"] = StudyFigure(
-            "What was drawn", f"How often values were drawn{of_what}.", lambda: draw_inputs(study, axes[:MOST_AXES])
+            "What was drawn", f"How often values were drawn{of_what}.", partial(draw_inputs, study, axes[:MOST_AXES])
         )
-        figures["outputs"] = StudyFigure("What came of it", f"How the results spread{of_what}.", lambda: draw_outputs(study, shown))
+        figures["outputs"] = StudyFigure("What came of it", f"How the results spread{of_what}.", partial(draw_outputs, study, shown))
     for output in shown:
         some = f"{MOST_POINTS} of the drops" if drops > MOST_POINTS else "All drops"
-        if design_of(study) == "saltelli":
+        if study.design == "saltelli":
             some = f"{some} of the blocks A and B"
-        band = "; the line and the band are the median and 5 to 95 % of drops next to each other" if drops > 300 else ""
+        band = f"; the line and the band are the median and {BAND} of drops next to each other" if drops > 300 else ""
         caption = f"{some}, over each key{band}.{_first_axes(axes)}"
-        figures[output.name] = StudyFigure(output.title, caption, lambda output=output: draw_points(study, axes, output))  # type: ignore[misc]
+        figures[output.name] = StudyFigure(output.title, caption, partial(draw_points, study, axes, output))
     return figures
 
 

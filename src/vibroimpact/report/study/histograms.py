@@ -7,9 +7,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from vibroimpact.report.excerpt import Floats
-from vibroimpact.report.study.axes import StudyAxis, Ticks, plain_log_ticks
+from vibroimpact.report.study.axes import StudyAxis
 from vibroimpact.report.study.outputs import Output, independent, independent_drops
-from vibroimpact.report.study.panels import add_legend, is_log, panels, scale_of, title_of
+from vibroimpact.report.study.panels import add_legend, is_log, panels, title_of
+from vibroimpact.report.study.ticks import Ticks, plain_log_ticks
 from vibroimpact.report.style import ACCENT, INK, MARK
 from vibroimpact.storage.study import Study
 
@@ -39,7 +40,7 @@ def draw_outputs(study: Study, outputs: list[Output]) -> Figure:
     """Draw how the results spread, with their percentiles."""
     figure, some = panels([False] * len(outputs), legend=True)
     for output, panel in zip(outputs, some, strict=True):
-        size = scale_of(output).size
+        size = output.scale.size
         values = independent(study, output.name)
         values = values[np.isfinite(values)]
         values /= size

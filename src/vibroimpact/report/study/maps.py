@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import LogNorm, Normalize
 from matplotlib.figure import Figure
+from numpy.typing import NDArray
 
 from vibroimpact.report.excerpt import Floats
 from vibroimpact.report.layout import WIDTH, label_vertical
-from vibroimpact.report.study.axes import StudyAxis, Ticks, plain_log_ticks
+from vibroimpact.report.study.axes import StudyAxis
 from vibroimpact.report.study.outputs import Output, on_grid
-from vibroimpact.report.study.panels import is_log, panels, scale_of, title_of
+from vibroimpact.report.study.panels import is_log, panels, title_of
+from vibroimpact.report.study.ticks import Ticks, plain_log_ticks, rising
 from vibroimpact.storage.study import Study
 
 _MOST = 400  # levels of an axis that are drawn; a figure has few more pixels
@@ -36,28 +40,28 @@ def draw_maps(study: Study, axes: list[StudyAxis], outputs: list[Output], shown:
     across, up = shown
     if not axes[up].numeric and axes[across].numeric:  # names have more room below
         across, up = up, across
-    ticks = [Ticks(axes[place]) for place in (across, up)]
-    orders = [_order(one, axes[place]) for one, place in zip(ticks, (across, up), strict=True)]
-    figure, some = panels([ticks[0].turned] * len(outputs))
+    below, beside = Ticks(axes[across]), Ticks(axes[up])
+    levels = rising(axes[across], _MOST), rising(axes[up], _MOST)
+    edges = _edges(below, axes[across].values[levels[0]]), _edges(beside, axes[up].values[levels[1]])
+    figure, some = panels([below.turned] * len(outputs))
     for number, (panel, output) in enumerate(zip(some, outputs, strict=True)):
-        values = _medians(on_grid(study, output.name), across, up)[np.ix_(*orders)] / scale_of(output).size
-        edges = [_edges(one.places(axes[p].values)[o], one) for one, p, o in zip(ticks, (across, up), orders, strict=True)]
+        values = _medians(on_grid(study, output.name), across, up)[np.ix_(*levels)] / output.scale.size
         _draw(figure, panel, edges, values, is_log(output))
         panel.set_title(title_of(output))
-        ticks[0].set_on(panel, "x")
-        ticks[1].set_on(panel, "y")
+        below.set_on(panel, "x")
+        beside.set_on(panel, "y")
         panel.grid(False)
         if number + 2 >= len(outputs):
-            panel.set_xlabel(ticks[0].label)
+            panel.set_xlabel(below.label)
         if number % 2:
             panel.tick_params(labelleft=False)
         else:
-            label_vertical(panel, ticks[1].label)
-            panel.yaxis.label.set_fontsize(min(9.0, 9.0 * _LETTERS / len(ticks[1].label)))
+            label_vertical(panel, beside.label)
+            panel.yaxis.label.set_fontsize(min(9.0, 9.0 * _LETTERS / len(beside.label)))
     return figure
 
 
-def _draw(figure: Figure, panel: Axes, edges: list[Floats], values: Floats, log: bool) -> None:
+def _draw(figure: Figure, panel: Axes, edges: tuple[Floats, Floats], values: Floats, log: bool) -> None:
     """Draw one map and its colour bar; what failed is hatched."""
     finite = values[np.isfinite(values)]
     low, high = (float(finite.min()), float(finite.max())) if len(finite) else (0.0, 1.0)
@@ -88,16 +92,10 @@ def _medians(values: Floats, across: int, up: int) -> Floats:
     return found
 
 
-def _order(ticks: Ticks, axis: StudyAxis) -> np.ndarray[tuple[int], np.dtype[np.intp]]:
-    order = np.argsort(ticks.places(axis.values), kind="stable")
-    return order[:: -(-len(order) // _MOST)]
-
-
-def _edges(places: Floats, ticks: Ticks) -> Floats:
+def _edges(ticks: Ticks, levels: NDArray[Any]) -> Floats:
     """Return the edges of cells: half way between levels, on a logarithmic scale by factors."""
-    if ticks.is_log:
-        return np.asarray(np.exp(_halves(np.log(places))))
-    return _halves(places)
+    places = ticks.places(levels)
+    return np.exp(_halves(np.log(places))) if ticks.is_log else _halves(places)
 
 
 def _halves(places: Floats) -> Floats:

@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from vibroimpact.report.excerpt import Floats
-from vibroimpact.report.study.axes import StudyAxis, Ticks, design_of
+from vibroimpact.report.study.axes import StudyAxis
 from vibroimpact.report.study.outputs import Output, on_grid, some, some_places
-from vibroimpact.report.study.panels import add_legend, panels, same_heights, scale_of, scale_vertical, title_of
+from vibroimpact.report.study.panels import add_legend, panels, same_heights, scale_vertical, title_of
+from vibroimpact.report.study.ticks import Ticks, rising
+from vibroimpact.report.study.words import BAND
 from vibroimpact.report.style import ACCENT, INK, MARK
 from vibroimpact.storage.study import Study
+from vibroimpact.studies.percentiles import PERCENTILES
 
 MOST_AXES = 8
 """How many axes are drawn."""
@@ -21,8 +26,9 @@ MOST_POINTS = 1500
 
 _BANDED = 100_000  # drops behind the medians
 _BINS, _FULL = 12, 15  # bins of the medians, and how many drops one needs
+_LEVELS = 200  # of a grid's axis
 _MANY = 200  # drops beyond which marks are small
-_PARTS = (0.05, 0.5, 0.95)
+_PARTS = np.array([PERCENTILES[0], 50, PERCENTILES[-1]]) / 100.0
 
 
 def draw_bands(study: Study, axes: list[StudyAxis], output: Output) -> Figure:
@@ -32,10 +38,9 @@ def draw_bands(study: Study, axes: list[StudyAxis], output: Output) -> Figure:
     values = on_grid(study, output.name)
     figure, panel = panels([one.turned for one in ticks], legend=True)
     for number, (one, axis) in enumerate(zip(ticks, axes, strict=True)):
-        order = np.argsort(one.places(axis.values), kind="stable")
-        order = order[:: -(-len(order) // 200)]
+        order = rising(axis, _LEVELS)
         bands = np.array([_parts_of(values[(slice(None),) * number + (level,)]) for level in order])
-        _draw_band(panel[number], one, one.places(axis.values)[order], bands / scale_of(output).size)
+        _draw_band(panel[number], one, one.places(axis.values[order]), bands / output.scale.size)
     _finish(figure, panel, ticks, output)
     return figure
 
@@ -44,14 +49,14 @@ def draw_points(study: Study, axes: list[StudyAxis], output: Output) -> Figure:
     """Draw a result of drawn points over each axis: some drops, and the median and band of more of them."""
     axes = [axis for axis in axes if axis.varies][:MOST_AXES]
     ticks = [Ticks(axis) for axis in axes]
-    values = some(study, output.name, _BANDED) / scale_of(output).size
+    values = some(study, output.name, _BANDED) / output.scale.size
     figure, panel = panels([one.turned for one in ticks], legend=True)
     for one, axis, here in zip(ticks, axes, panel, strict=True):
         places = one.places(axis.values[some_places(study, _BANDED)])
         finite = np.isfinite(values)
         if finite.sum() > 20 * _FULL:
             _draw_band(here, one, *_in_bins(places[finite], values[finite], one))
-        few = slice(None, None, -(-len(values) // MOST_POINTS)) if design_of(study) == "zip" else slice(0, MOST_POINTS)
+        few = slice(None, None, math.ceil(len(values) / MOST_POINTS)) if study.design == "zip" else slice(0, MOST_POINTS)
         spread = _beside(len(places[few])) if one.names else 0.0
         here.plot(
             places[few] + spread,
@@ -72,10 +77,10 @@ def draw_points(study: Study, axes: list[StudyAxis], output: Output) -> Figure:
 def _draw_band(axes: Axes, ticks: Ticks, places: Floats, bands: Floats) -> None:
     low, middle, high = bands.T
     if ticks.names or len(places) == 1:
-        axes.vlines(places, low, high, color=ACCENT, alpha=0.4, linewidth=4.0, label="5 to 95 %")
+        axes.vlines(places, low, high, color=ACCENT, alpha=0.4, linewidth=4.0, label=BAND)
         axes.plot(places, middle, "o", color=INK, markersize=4.0, label="median")
         return
-    axes.fill_between(places, low, high, color=ACCENT, alpha=0.22, linewidth=0.0, label="5 to 95 %")
+    axes.fill_between(places, low, high, color=ACCENT, alpha=0.22, linewidth=0.0, label=BAND)
     axes.plot(places, middle, color=INK, marker="o" if len(places) <= 40 else "", markersize=3.0, label="median", zorder=2.5)
 
 
@@ -92,7 +97,7 @@ def _finish(figure: Figure, panel: list[Axes], ticks: list[Ticks], output: Outpu
 
 def _parts_of(values: Floats) -> Floats:
     finite = values[np.isfinite(values)]
-    return np.array([float(np.quantile(finite, part)) if len(finite) else np.nan for part in _PARTS])
+    return np.quantile(finite, _PARTS) if len(finite) else np.full(len(_PARTS), np.nan)
 
 
 def _in_bins(places: Floats, values: Floats, ticks: Ticks) -> tuple[Floats, Floats]:

@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-import os
+from functools import partial
 from pathlib import Path
-from tempfile import TemporaryDirectory
 
-import tomli_w
-
-from vibroimpact.errors import InputError
+from vibroimpact.report.beside import write_beside
 from vibroimpact.report.figures import save_figures
 from vibroimpact.report.page import Picture, picture, template
-from vibroimpact.report.study.axes import design_of, study_axes
+from vibroimpact.report.study.axes import study_axes
 from vibroimpact.report.study.figures import draw, study_figures
 from vibroimpact.report.study.outputs import Output, drawn_outputs, study_outputs
 from vibroimpact.report.study.restitution import restitution_of, restitution_sentence
@@ -29,11 +26,11 @@ from vibroimpact.report.study.tables import (
     sensitivity_words,
     spread_words,
 )
+from vibroimpact.report.study.words import drops_text
 from vibroimpact.storage.study import Study
+from vibroimpact.storage.study_toml import study_toml
 from vibroimpact.storage.tables import write_csv
-from vibroimpact.studies.columns import SENSOR_PEAK
 from vibroimpact.studies.design import find_design
-from vibroimpact.studies.percentiles import PERCENTILES
 
 PAGE, FIGURES, SPREADS, SENSITIVITY = "report.html", "figures", "percentiles.csv", "sensitivity.csv"
 
@@ -55,23 +52,11 @@ def write_study_report(study: Study, folder: Path) -> None:
     InputError
         If the folder can't be written to.
     """
-    try:
-        with TemporaryDirectory(prefix=".report.", dir=folder) as name:
-            working = Path(name)
-            (working / FIGURES).mkdir()
-            _write(study, working)
-            (folder / FIGURES).mkdir(exist_ok=True)
-            written = {file.relative_to(working) for file in working.rglob("*.*")}
-            for file in sorted(written):
-                os.replace(working / file, folder / file)
-            for old in [folder / SENSITIVITY, *(folder / FIGURES).glob("*.*")]:
-                if old.relative_to(folder) not in written:
-                    old.unlink(missing_ok=True)
-    except OSError as error:
-        raise InputError(f"{folder}: the report can't be written: {error.strerror}") from None
+    write_beside(folder, partial(_write, study), goes=(SENSITIVITY, f"{FIGURES}/*.*"))
 
 
 def _write(study: Study, folder: Path) -> None:
+    (folder / FIGURES).mkdir()
     outputs = study_outputs(study)
     found = sensitivity_of(study, [one for one in outputs if one.tells])
     write_csv(percentiles_rows(outputs), PERCENTILE_COLUMNS, folder / SPREADS)
@@ -93,26 +78,24 @@ def _pictures(study: Study, outputs: list[Output], found: Sensitivity | None, fo
 
 
 def _page(study: Study, outputs: list[Output], found: Sensitivity | None, pictures: list[Picture]) -> str:
-    name, design = str(study.table.get("name") or "a study of drops"), design_of(study)
     table = sensitivity_table(found, drawn_outputs(outputs)) if found is not None and found.rows else None
     return template("study.html.j2").render(
-        name=name[:1].upper() + name[1:],
+        name=study.name[:1].upper() + study.name[1:],
         counts=counts_sentence(study),
         failed=len(study.failures) == study.size,
         restitution=restitution_sentence(restitution_of(study)),
-        design=f"{design}: {find_design(design).meaning}",
+        design=f"{study.design}: {find_design(study.design).meaning}",
         axes=axes_table(study, study_axes(study)),
-        reasons=reasons(study),
+        reasons=[(f"{drops_text(number)}{', such as' if number > 1 else ''}", words) for number, words in reasons(study)],
         failures=failures_table(study) if study.failures else None,
         spread_words=spread_words(study),
-        parts=PERCENTILES,
         percentiles=percentiles_table(outputs),
-        without=[one.title for one in outputs if not one.spread.drops and not one.name.endswith(SENSOR_PEAK)],
+        without=[one.title for one in outputs if not one.spread.drops and not one.of_sensor],
         sensitivity=table,
         sensitivity_words=sensitivity_words(found) if table and found is not None else "",
         notes=found.notes if found is not None else [],
-        together=design == "zip",
+        together=study.design == "zip",
         pictures=pictures,
-        study=tomli_w.dumps(study.table),
+        study=study_toml(study.table),
         version=study.version,
     )

@@ -8,11 +8,10 @@ from typing import Any
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from vibroimpact.quantity import Multiple
 from vibroimpact.report.layout import new_figure, row_of_axes, wide_axes
-from vibroimpact.report.study.axes import plain, plain_log_ticks
 from vibroimpact.report.study.outputs import Output
-from vibroimpact.report.study.units import study_multiple, with_unit
+from vibroimpact.report.study.ticks import plain_log_ticks
+from vibroimpact.report.study.words import plain, with_unit
 
 _HEIGHT, _WIDE_HEIGHT = 1.9, 3.0
 _BETWEEN = 0.85  # rows: a title, tick labels and a label [in]
@@ -49,14 +48,9 @@ def add_legend(figure: Figure, axes: Axes, enlarged: float = 1.0) -> None:
     figure.legend(handles, labels, loc="lower center", ncols=6, handlelength=3.0, columnspacing=1.4, markerscale=enlarged)
 
 
-def scale_of(output: Output) -> Multiple:
-    """Return the multiple of the unit in which a result is drawn and told."""
-    return study_multiple(output.unit, output.spread.percentiles[-1])
-
-
 def title_of(output: Output) -> str:
     """Return the title of a panel: the result and its unit."""
-    return with_unit(plain(output.title), scale_of(output).unit)
+    return with_unit(plain(output.title), output.scale.unit)
 
 
 def is_log(output: Output) -> bool:

@@ -6,20 +6,21 @@ import math
 from typing import Any, NamedTuple
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from vibroimpact.quantity import fixed
 from vibroimpact.report.excerpt import Floats
 from vibroimpact.report.layout import label_vertical, new_figure, row_of_axes, wide_axes
-from vibroimpact.report.study.axes import is_spread_by_factors, plain_log_ticks
 from vibroimpact.report.study.outputs import independent, some
 from vibroimpact.report.study.panels import add_legend
-from vibroimpact.report.style import ENLARGED, LOOPS
+from vibroimpact.report.study.ticks import is_spread_by_factors, plain_log_ticks
+from vibroimpact.report.style import LOOPS, MARKS
 from vibroimpact.storage.study import Study
 
 _MOST = 1200  # drops that are drawn
-_FEW = 100  # drops up to which marks are large
-_MARKS = ("o", "s", "^", "D", "v")
+_FEW, _SOME = 100, 300  # drops up to which marks are large, and are drawn as lines
+_AS_ASKED: dict[str, Any] = {"color": "#888888", "linewidth": 0.9, "linestyle": (0, (4, 2)), "zorder": 1.5, "label": "as asked"}
 
 
 class Restitution(NamedTuple):
@@ -43,18 +44,18 @@ def restitution_of(study: Study) -> Restitution:
     if "first_restitution_achieved" not in study.shapes:
         return Restitution(None, None, math.nan)
     found = independent(study, "first_restitution_achieved")
-    achieved = _reach(found)
+    achieved = _extremes(found)
     if "first_restitution_asked" not in study.shapes:
         return Restitution(None, achieved, math.nan)
     wanted = independent(study, "first_restitution_asked")
-    asked = _reach(wanted)
+    asked = _extremes(wanted)
     found -= wanted
     del wanted  # there may be millions
     found = found[np.isfinite(found)]
     return Restitution(asked, achieved, float(np.median(found, overwrite_input=True)) if len(found) else math.nan)
 
 
-def _reach(values: Floats) -> tuple[float, float] | None:
+def _extremes(values: Floats) -> tuple[float, float] | None:
     """Return the least and the largest of the finite values."""
     low, high = float(np.fmin.reduce(values)), float(np.fmax.reduce(values))
     return (low, high) if math.isfinite(low) else None
@@ -72,48 +73,65 @@ def restitution_sentence(found: Restitution) -> str:
 
 
 def draw_restitution(study: Study) -> Figure | None:
-    """Draw restitution achieved over that asked, and the difference over the approach speed; None where none is asked."""
-    by_impact = all(name in study.shapes for name in ("restitution_asked", "restitution_achieved", "approach_speed_m_s"))
-    before = "" if by_impact else "first_"
-    if f"{before}restitution_asked" not in study.shapes:
+    """Draw restitution achieved over that asked, and the difference over the approach speed; None where none is asked.
+
+    Where one restitution alone was asked, what was achieved is drawn over the approach speed instead.
+    """
+    found = _asked_achieved_speed(study)
+    if found is None:
         return None
-    names = (f"{before}restitution_asked", f"{before}restitution_achieved", f"{before}approach_speed_m_s")
-    asked, achieved, speed = (some(study, name, _MOST).reshape(-1, study.shapes[name][-1] if by_impact else 1) for name in names)
-    if not (np.isfinite(asked) & np.isfinite(achieved)).any():
-        return None
-    figure, one_asked = new_figure(4.3), not np.ptp(asked[np.isfinite(asked)]) > 0.0
-    left, right = [wide_axes(figure, 0.9, 3.0)] * 2 if one_asked else row_of_axes(figure, 2, 0.9, 3.0)
-    for impact in range(min(asked.shape[1], ENLARGED)):
-        look: dict[str, Any] = {
-            "color": LOOPS[impact][0],
-            "marker": _MARKS[impact],
-            "linestyle": "",
-            "markersize": 3.0 if len(asked) < _FEW else 1.8,
-            "markeredgewidth": 0.0,
-            "label": f"impact {impact + 1}",
-            "rasterized": len(asked) > 300,
-        }
-        if not one_asked:
-            left.plot(asked[:, impact], achieved[:, impact], **look)
-        right.plot(speed[:, impact], achieved[:, impact] - (0.0 if one_asked else asked[:, impact]), **look)
-    wanted: dict[str, Any] = {"color": "#888888", "linewidth": 0.9, "linestyle": (0, (4, 2)), "zorder": 1.5, "label": "as asked"}
-    label_vertical(left, "Restitution achieved")
-    right.set_xlabel("Approach speed [m/s]")
-    if one_asked:
-        right.axhline(float(np.nanmax(asked)), **wanted)
-        right.set_title("Achieved over the approach speed")
-    else:
-        ends = np.array([min(np.nanmin(asked), np.nanmin(achieved)), max(np.nanmax(asked), np.nanmax(achieved))])
-        left.plot(ends, ends, **wanted)
-        right.axhline(0.0, **wanted)
+    asked, achieved, speed = found
+    least, most = float(np.nanmin(asked)), float(np.nanmax(asked))
+    figure = new_figure(4.3)
+    if most > least:
+        left, right = row_of_axes(figure, 2, 0.9, 3.0)
+        _plot_impacts(left, asked, achieved)
+        ends = [min(least, float(np.nanmin(achieved))), max(most, float(np.nanmax(achieved)))]
+        left.plot(ends, ends, **_AS_ASKED)
         left.set_title("Achieved over asked")
         left.set_xlabel("Restitution asked")
+        _plot_impacts(right, speed, achieved - asked)
+        right.axhline(0.0, **_AS_ASKED)
         right.set_title("Achieved less asked")
+    else:
+        left = right = wide_axes(figure, 0.9, 3.0)
+        _plot_impacts(right, speed, achieved)
+        right.axhline(most, **_AS_ASKED)
+        right.set_title("Achieved over the approach speed")
+    label_vertical(left, "Restitution achieved")
+    right.set_xlabel("Approach speed [m/s]")
     if is_spread_by_factors(np.unique(speed[np.isfinite(speed)])):
         right.set_xscale("log")
         plain_log_ticks(right.xaxis)
     add_legend(figure, left, 1.0 if len(asked) < _FEW else 2.5)
     return figure
+
+
+def _asked_achieved_speed(study: Study) -> tuple[Floats, Floats, Floats] | None:
+    """Return restitution asked and achieved, and the approach speed, (drops, impacts) each: of all impacts if kept, else the first."""
+    names = ("restitution_asked", "restitution_achieved", "approach_speed_m_s")
+    if not all(name in study.shapes for name in names):
+        names = ("first_restitution_asked", "first_restitution_achieved", "first_approach_speed_m_s")
+    if names[0] not in study.shapes:
+        return None
+    asked, achieved, speed = (np.atleast_2d(some(study, name, _MOST).T).T for name in names)
+    return (asked, achieved, speed) if (np.isfinite(asked) & np.isfinite(achieved)).any() else None
+
+
+def _plot_impacts(axes: Axes, across: Floats, up: Floats) -> None:
+    """Draw a mark an impact, of the first impacts of each drop."""
+    for impact, (mark, (colour, _), x, y) in enumerate(zip(MARKS, LOOPS, across.T, up.T, strict=False)):
+        axes.plot(
+            x,
+            y,
+            color=colour,
+            marker=mark,
+            linestyle="",
+            markersize=3.0 if len(x) < _FEW else 1.8,
+            markeredgewidth=0.0,
+            label=f"impact {impact + 1}",
+            rasterized=len(x) > _SOME,
+        )
 
 
 def _ends(ends: tuple[float, float]) -> str:

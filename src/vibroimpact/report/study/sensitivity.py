@@ -7,10 +7,11 @@ from typing import NamedTuple
 import numpy as np
 
 from vibroimpact.report.excerpt import Floats
-from vibroimpact.report.study.axes import StudyAxis, Ticks, design_of, study_axes
+from vibroimpact.report.study.axes import StudyAxis, study_axes
 from vibroimpact.report.study.outputs import Output, on_grid, read_output, some, some_places
+from vibroimpact.report.study.ticks import rising
 from vibroimpact.storage.study import Study
-from vibroimpact.studies.sensitivity import MOST_LEFT_OUT, rank_correlations, reach_on_grid, sobol_indices
+from vibroimpact.studies.sensitivity import MOST_LEFT_OUT, one_at_a_time, rank_correlations, sobol_indices
 
 SOBOL, RANKS, RANGES = "sobol", "ranks", "ranges"
 """The three ways to tell it."""
@@ -45,14 +46,14 @@ class Sensitivity(NamedTuple):
 
 def sensitivity_of(study: Study, outputs: list[Output]) -> Sensitivity | None:
     """Return what each key does to each of some results that vary; None in a zip, or without a key that varies."""
-    axes, design = study_axes(study), design_of(study)
+    axes = study_axes(study)
     varying = [axis for axis in axes if axis.varies]
     outputs = [one for one in outputs if one.spread.varies]
-    if design == "zip" or not varying or not outputs:
+    if study.design == "zip" or not varying or not outputs:
         return None
-    if design == "saltelli":
+    if study.design == "saltelli":
         return _indices(study, axes, outputs)
-    return _ranges(study, [axis for axis in axes if len(axis.values) > 1], outputs) if design == "grid" else _ranks(study, varying, outputs)
+    return _ranges(study, [axis for axis in axes if len(axis.values) > 1], outputs) if study.is_grid else _ranks(study, varying, outputs)
 
 
 def strongest(found: Sensitivity, output: str) -> str | None:
@@ -89,9 +90,9 @@ def _indices(study: Study, axes: list[StudyAxis], outputs: list[Output]) -> Sens
     notes = [f"Indices are those of the first {points} points of each block."] if points < block else []
     if refused:
         part = f"{100 * MOST_LEFT_OUT:g} % of the points"
-        notes.append(f"No indices of {_listed(refused)}: more than {part} have a drop without a value, since it failed or has none.")
+        notes.append(f"No indices of {', '.join(refused)}: more than {part} have a drop without a value, since it failed or has none.")
     if partly:
-        told = _listed([f"{number} of {title}" for title, number in partly.items()])
+        told = ", ".join(f"{number} of {title}" for title, number in partly.items())
         notes.append(f"Points left out, since a drop of theirs has no value: {told}. The indices are those of the others.")
     return Sensitivity(SOBOL, [axis.key for axis in axes], rows, strength, notes) if rows or notes else None
 
@@ -99,7 +100,7 @@ def _indices(study: Study, axes: list[StudyAxis], outputs: list[Output]) -> Sens
 def _ranks(study: Study, axes: list[StudyAxis], outputs: list[Output]) -> Sensitivity | None:
     named = [axis.key for axis in axes if not axis.numeric]
     numeric = [axis for axis in axes if axis.numeric]
-    notes = [f"{_listed(named)}: names have no order, so that there is no rank correlation with them."] if named else []
+    notes = [f"{', '.join(named)}: names have no order, so that there is no rank correlation with them."] if named else []
     if not numeric:
         return Sensitivity(RANKS, [], {}, {}, notes)
     places = some_places(study, _RANKED)
@@ -116,19 +117,15 @@ def _ranks(study: Study, axes: list[StudyAxis], outputs: list[Output]) -> Sensit
 
 
 def _ranges(study: Study, axes: list[StudyAxis], outputs: list[Output]) -> Sensitivity | None:
-    orders = [np.argsort(Ticks(axis).places(axis.values), kind="stable") for axis in axes]
+    orders = [rising(axis) for axis in axes]
     rows, strength, without = {}, {}, []
     for output in outputs:
-        reach = reach_on_grid(on_grid(study, output.name), orders)
-        if not np.isfinite(reach.middle):
+        moved = one_at_a_time(on_grid(study, output.name), orders)
+        if not np.isfinite(moved.middle):
             without.append(output.title)
             continue
-        middle = np.full(len(axes), reach.middle)
-        rows[output.name] = {"lowest": reach.lowest, "at_the_middle": middle, "highest": reach.highest, "relative_range": reach.relative}
-        strength[output.name] = reach.relative
-    notes = [f"No range of {_listed(without)}: the drop at the middle of the grid has no value."] if without else []
+        middle = np.full(len(axes), moved.middle)
+        rows[output.name] = {"lowest": moved.lowest, "at_the_middle": middle, "highest": moved.highest, "relative_range": moved.relative}
+        strength[output.name] = moved.relative
+    notes = [f"No range of {', '.join(without)}: the drop at the middle of the grid has no value."] if without else []
     return Sensitivity(RANGES, [axis.key for axis in axes], rows, strength, notes) if rows or notes else None
-
-
-def _listed(words: list[str]) -> str:
-    return ", ".join(words)

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from vibroimpact.report.layout import WIDTH, new_figure
-from vibroimpact.report.study.axes import plain, shortened
 from vibroimpact.report.study.outputs import Output
-from vibroimpact.report.study.sensitivity import RANKS, SOBOL, Sensitivity
+from vibroimpact.report.study.sensitivity import RANGES, RANKS, SOBOL, Sensitivity
+from vibroimpact.report.study.words import plain, shortened
 from vibroimpact.report.style import ACCENT, INK, MARK
 from vibroimpact.storage.study import Study
 
@@ -17,7 +19,8 @@ _LEFT, _RIGHT, _BETWEEN = 2.35, 7.8, 0.25  # [in]
 _LINE, _ROW = 0.3, 0.85  # a key, and what a row of panels has around its keys [in]
 _COLUMNS = 3
 _MOST_KEYS = 15
-_LABELS = {SOBOL: "Part of the variance", RANKS: "Rank correlation", "ranges": "From the middle [%]"}
+_LETTERS = 24  # of a title that has room over a narrow panel
+_LABELS = {SOBOL: "Part of the variance", RANKS: "Rank correlation", RANGES: "From the middle [%]"}
 
 
 def draw_sensitivity(study: Study, found: Sensitivity, outputs: list[Output]) -> Figure | None:
@@ -27,7 +30,7 @@ def draw_sensitivity(study: Study, found: Sensitivity, outputs: list[Output]) ->
         return None
     # the strongest key at the top, by all results together
     order = np.argsort(np.nansum([found.strength[one.name] for one in shown], axis=0), kind="stable")[-_MOST_KEYS:]
-    rows, tall = -(-len(shown) // _COLUMNS), _LINE * len(order) + 0.1
+    rows, tall = math.ceil(len(shown) / _COLUMNS), _LINE * len(order) + 0.1
     foot = 0.85 if found.way == SOBOL else 0.5
     figure = new_figure(foot + rows * (tall + _ROW) - 0.4)
     width = (_RIGHT - _LEFT - (_COLUMNS - 1) * _BETWEEN) / _COLUMNS
@@ -42,7 +45,7 @@ def draw_sensitivity(study: Study, found: Sensitivity, outputs: list[Output]) ->
         names = [plain(shortened(found.keys[key], 34)) for key in order]
         axes.set_yticks(range(len(order)), names if column == 0 else [""] * len(order))
         axes.set_ylim(-0.6, len(order) - 0.4)
-        axes.set_title(plain(_short(output.title)))
+        axes.set_title(plain(shortened(output.short, _LETTERS)))
         if number + _COLUMNS >= len(shown):
             axes.set_xlabel(_LABELS[found.way])
         drawn.append(axes)
@@ -86,14 +89,3 @@ def _same_widths(drawn: list[Axes], way: str) -> None:
         least = min(axes.get_xlim()[0] for axes in drawn)
         for axes in drawn:
             axes.set_xlim(least, most)
-
-
-def _short(title: str) -> str:
-    """Return a title that has room over a narrow panel."""
-    return shortened(
-        title.partition(",")[0]
-        .replace("Duration of the first contact", "Duration")
-        .replace(" in all contacts", "")
-        .replace("Height of the first rebound", "Rebound height"),
-        24,
-    )

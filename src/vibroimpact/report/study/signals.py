@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
-import h5py
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from vibroimpact.exchange.plain_names import plain_names
-from vibroimpact.quantity import Multiple
+from vibroimpact.quantity import Multiple, multiple
 from vibroimpact.report.excerpt import Floats
 from vibroimpact.report.layout import label_vertical, new_figure, wide_axes
-from vibroimpact.report.study.axes import plain
 from vibroimpact.report.study.outputs import some
 from vibroimpact.report.study.panels import add_legend
-from vibroimpact.report.study.units import study_multiple, with_unit
+from vibroimpact.report.study.words import BAND, drops_text, plain, with_unit
 from vibroimpact.report.style import ACCENT, INK, LOOPS
 from vibroimpact.storage.study import Study
 from vibroimpact.studies.columns import SIGNAL
@@ -44,8 +42,8 @@ def draw_signals(study: Study, sensor: str) -> Figure | None:
     signals = signals[np.isfinite(signals).all(axis=1)]
     if not len(signals) or not np.abs(signals).max() > 0.0:
         return None
-    time = _times(study, name)
-    scale = study_multiple(unit, signals)
+    time = study.times(sensor)
+    scale = multiple(unit, signals)
     figure = new_figure(5.9)
     whole, close = wide_axes(figure, 3.65, 1.85), wide_axes(figure, 0.95, 1.85)
     begin = min(_begin(one) for one in signals)
@@ -54,8 +52,7 @@ def draw_signals(study: Study, sensor: str) -> Figure | None:
     _draw_few(close, time, signals, scale)
     for axes in (whole, close):
         label_vertical(axes, with_unit(study.meanings[name][1].split(" that ")[0].capitalize(), scale.unit))
-    drops = f"{len(signals)} drop{'' if len(signals) == 1 else 's'}"
-    whole.set_title(f"Readings of {plain(sensor)} in {drops}, from just before the first one begins")
+    whole.set_title(f"Readings of {plain(sensor)} in {drops_text(len(signals))}, from just before the first one begins")
     add_legend(figure, close)
     return figure
 
@@ -64,10 +61,10 @@ def _draw_band(axes: Axes, time: Floats, signals: Floats) -> None:
     """Draw how far readings reach in short spans of time."""
     spans = np.array_split(np.arange(len(time)), min(_COLUMNS, len(time)))
     parts = np.array([np.percentile(signals[:, span], (0, 5, 50, 95, 100)) for span in spans])
-    clock = study_multiple("s", time)
+    clock = multiple("s", time)
     middle = np.array([time[span].mean() for span in spans]) / clock.size
     axes.fill_between(middle, parts[:, 0], parts[:, 4], color=ACCENT, alpha=0.15, linewidth=0.0, label="all")
-    axes.fill_between(middle, parts[:, 1], parts[:, 3], color=ACCENT, alpha=0.55, linewidth=0.0, label="5 to 95 %")
+    axes.fill_between(middle, parts[:, 1], parts[:, 3], color=ACCENT, alpha=0.55, linewidth=0.0, label=BAND)
     axes.plot(middle, parts[:, 2], color=INK, linewidth=0.9, label="median")
     axes.margins(x=0.01)
     axes.legend(loc="upper right", ncols=3)
@@ -80,7 +77,7 @@ def _draw_few(axes: Axes, time: Floats, signals: Floats, scale: Multiple) -> Non
     chosen = dict.fromkeys([int(by_peak[0]), int(by_peak[len(by_peak) // 2]), int(by_peak[-1])])
     titles = ("smallest peak", "middle peak", "largest peak") if len(chosen) == _FEW else ("smallest peak", "largest peak")
     step = time[1] - time[0] if len(time) > 1 else 1.0
-    clock = study_multiple("s", _CLOSE * step)
+    clock = multiple("s", _CLOSE * step)
     for place, (colour, dashes), title in zip(chosen, LOOPS, titles if len(chosen) > 1 else ("the drop",), strict=False):
         one = signals[place]
         begin = max(_begin(one) - _CLOSE // 20, 0)
@@ -96,9 +93,3 @@ def _begin(signal: Floats) -> int:
     """Return the place at which a signal begins to move."""
     moved = np.abs(signal - signal[0])
     return int(np.argmax(moved > _BEGINS * moved.max()))
-
-
-def _times(study: Study, name: str) -> Floats:
-    """Return the time of each sample of a signal [s]: its last dimension."""
-    with h5py.File(study.path, "r") as file:
-        return np.asarray(file[name].dims[len(file[name].shape) - 1][0][()], dtype=float)

@@ -10,10 +10,10 @@ import numpy as np
 
 from vibroimpact.quantity import digits, fixed
 from vibroimpact.report.excerpt import Floats
-from vibroimpact.report.study.axes import StudyAxis, design_of, range_text, study_axes, value_text
-from vibroimpact.report.study.outputs import Output, grid_shape
+from vibroimpact.report.study.axes import StudyAxis, study_axes
+from vibroimpact.report.study.outputs import Output
 from vibroimpact.report.study.sensitivity import RANKS, SOBOL, Sensitivity
-from vibroimpact.report.study.units import study_multiple
+from vibroimpact.report.study.words import drops_text, percent, range_text, value_text
 from vibroimpact.storage.study import Study
 from vibroimpact.studies.percentiles import PERCENTILES
 
@@ -29,12 +29,12 @@ _NUMBER = re.compile(r"[-+]?\d+\.?\d*(?:e[-+]?\d+)?")
 def counts_sentence(study: Study) -> str:
     """Return how many drops there are and how many failed."""
     failed = len(study.failures)
-    drops = f"{study.size} drop{'' if study.size == 1 else 's'}"
+    drops = drops_text(study.size)
     if not failed:
         return f"{drops}; none failed."
     if failed == study.size:
         return f"{drops}; all of them failed." if failed > 1 else f"{drops}; it failed."
-    return f"{drops}; {failed} failed ({digits(100.0 * failed / study.size, 2)} %)."
+    return f"{drops}; {failed} failed ({percent(failed / study.size)})."
 
 
 def reasons(study: Study) -> list[tuple[int, str]]:
@@ -59,8 +59,8 @@ def failures_table(study: Study) -> tuple[list[str], list[list[str]]]:
 
 
 def _point(study: Study, axes: list[StudyAxis], number: int) -> list[Any]:
-    if len(study.dimensions) > 1:
-        places = np.unravel_index(number, grid_shape(study))
+    if study.is_grid:
+        places = np.unravel_index(number, tuple(study.dimensions.values()))
         return [axis.values[place] for axis, place in zip(axes, places, strict=True)]
     return [axis.values[number] for axis in axes]
 
@@ -70,24 +70,22 @@ def axes_table(study: Study, axes: list[StudyAxis]) -> list[tuple[str, str, str]
     rows = []
     for axis in axes:
         meaning = study.meanings[axis.key][1]
-        levels = f"{len(axis.values)} levels, " if len(study.dimensions) > 1 and axis.varies else ""
+        levels = f"{len(axis.values)} levels, " if study.is_grid and axis.varies else ""
         rows.append((axis.key, "" if meaning == axis.key else meaning, levels + range_text(axis)))
     return rows
 
 
-def percentiles_table(outputs: list[Output]) -> list[list[str]]:
-    """Return the spread of the results as text: title, unit, drops, mean, standard deviation and percentiles."""
+def percentiles_table(outputs: list[Output]) -> tuple[list[str], list[list[str]]]:
+    """Return the spread of the results as text: headers, and a row a result that a drop has."""
     rows = []
     for one in outputs:
-        if not one.spread.drops:
+        spread, (unit, size) = one.spread, one.scale
+        if not spread.drops:
             continue
-        scale = study_multiple(one.unit, one.spread.percentiles[-1])
-        deviation = one.spread.standard_deviation if one.spread.varies or one.spread.drops < 2 else 0.0  # else it is rounding
-        parts = [f"{part:g}" if one.name == _COUNT else digits(part / scale.size) for part in one.spread.percentiles]
-        rows.append(
-            [one.title, scale.unit, str(one.spread.drops), digits(one.spread.mean / scale.size), digits(deviation / scale.size), *parts]
-        )
-    return rows
+        deviation = spread.standard_deviation if spread.varies or spread.drops < 2 else 0.0  # else it is rounding
+        parts = [f"{part:g}" if one.name == _COUNT else digits(part / size) for part in spread.percentiles]
+        rows.append([one.title, unit, str(spread.drops), digits(spread.mean / size), digits(deviation / size), *parts])
+    return ["Result", "Unit", "Drops", "Mean", "Standard deviation", *(f"{part} %" for part in PERCENTILES)], rows
 
 
 def percentiles_rows(outputs: list[Output]) -> list[dict[str, Any]]:
@@ -165,4 +163,4 @@ def spread_words(study: Study) -> str:
         "saltelli": "How the results spread when the keys spread as they were drawn. Counted are the blocks A and B, whose drops are "
         "independent.",
     }
-    return words.get(design_of(study), "How the results spread when the keys spread as they were drawn.") + failed
+    return words.get(study.design, "How the results spread when the keys spread as they were drawn.") + failed

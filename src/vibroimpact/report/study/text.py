@@ -13,10 +13,12 @@ from vibroimpact.report.study.outputs import study_outputs
 from vibroimpact.report.study.restitution import restitution_of, restitution_sentence
 from vibroimpact.report.study.sensitivity import RANKS, SOBOL, Sensitivity, sensitivity_of, strongest
 from vibroimpact.report.study.tables import counts_sentence, reasons
-from vibroimpact.report.study.units import study_multiple, with_unit
+from vibroimpact.report.study.words import percent, with_unit
 from vibroimpact.storage.study import Study
+from vibroimpact.studies.percentiles import PERCENTILES
 
 _RESULTS, _REASONS = 5, 3
+_TOLD = (5, 50, 95)  # percentiles
 _NARROW = 70  # columns of a terminal
 
 
@@ -25,22 +27,22 @@ def study_summary(study: Study, width: int) -> RenderableType:
     there = [one for one in study_outputs(study, most=_RESULTS + 3) if one.spread.drops]
     outputs = ([one for one in there if one.spread.varies] or there)[:_RESULTS]
     found = sensitivity_of(study, outputs)
+    told = found if width >= _NARROW else None
     table = Table(box=None, padding=(0, 1), header_style="bold")
     table.add_column("result", overflow="fold")
-    for heading in ("5 %", "50 %", "95 %"):
-        table.add_column(heading, justify="right", no_wrap=True)
-    if width >= _NARROW:
-        named = found is not None and found.way == RANKS and any(not axis.numeric for axis in study_axes(study))
+    for part in _TOLD:
+        table.add_column(f"{part} %", justify="right", no_wrap=True)
+    if told is not None:
+        named = told.way == RANKS and any(not axis.numeric for axis in study_axes(study))
         table.add_column("moved most, of keys that are numbers, by" if named else "moved most by", overflow="fold")
     for one in outputs:
-        scale = study_multiple(one.unit, one.spread.percentiles[-1])
-        cells = [digits(one.spread.percentiles[place] / scale.size) for place in (0, 2, 4)]
-        most = [escape(_strongest(found, one.name))] if width >= _NARROW else []
-        table.add_row(escape(with_unit(one.title, scale.unit)), *cells, *most)
+        cells = [digits(one.spread.percentiles[PERCENTILES.index(part)] / one.scale.size) for part in _TOLD]
+        most = [] if told is None else [escape(_strongest(told, one.name))]
+        table.add_row(escape(with_unit(one.title, one.scale.unit)), *cells, *most)
     why = [Text(f" {number}: {words}", style="yellow") for number, words in reasons(study)[:_REASONS]]
     restitution = restitution_sentence(restitution_of(study))
     return Group(
-        Text(str(study.table.get("name") or "a study of drops"), style="bold"),
+        Text(study.name, style="bold"),
         Text(counts_sentence(study)),
         *why,
         *([table] if outputs else []),
@@ -48,13 +50,12 @@ def study_summary(study: Study, width: int) -> RenderableType:
     )
 
 
-def _strongest(found: Sensitivity | None, output: str) -> str:
-    """Return the key that moves a result most and how strongly."""
-    key = strongest(found, output) if found is not None else None
-    if found is None or key is None:
+def _strongest(found: Sensitivity, output: str) -> str:
+    """Return the key that moves a result most and how strongly; "" where it can't be told."""
+    key = strongest(found, output)
+    if key is None:
         return ""
-    strength, row = found.strength[output][found.keys.index(key)], found.rows[output]
+    place = found.keys.index(key)
     if found.way == RANKS:
-        return f"{key} (rank correlation {digits(float(row['rank_correlation'][found.keys.index(key)]), 2)})"
-    percent = f"{digits(100.0 * float(strength), 2)} %"
-    return f"{key} (index {percent})" if found.way == SOBOL else f"{key} (range {percent})"
+        return f"{key} (rank correlation {digits(float(found.rows[output]['rank_correlation'][place]), 2)})"
+    return f"{key} ({'index' if found.way == SOBOL else 'range'} {percent(float(found.strength[output][place]))})"

@@ -1,0 +1,220 @@
+"""Compute a study in its folder, from the first chunk to the dataset, or on from where it stopped."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from collections.abc import Callable
+from functools import partial
+from os import PathLike
+from pathlib import Path
+
+import numpy as np
+
+from vibroimpact._version import __version__
+from vibroimpact.cases.compute_points import compute_points
+from vibroimpact.cases.coupling import carried_modes
+from vibroimpact.cases.sweep import Sweep
+from vibroimpact.errors import ComputationError, InputError
+from vibroimpact.storage.folder import SUMMARY, new_folder
+from vibroimpact.storage.study import DATASET
+from vibroimpact.storage.study_dataset import write_dataset
+from vibroimpact.storage.study_table import MOST_ROWS, write_drops
+from vibroimpact.storage.study_toml import study_toml
+from vibroimpact.structures.store import receive
+from vibroimpact.studies.chunk_file import FOLDER, ChunkResult, checksum, read_chunk, write_chunk
+from vibroimpact.studies.dask_workers import check_scheduler, dask_workers
+from vibroimpact.studies.ledger import LEDGER, Ledger, Span, busy, is_held, make_ledger, open_ledger
+from vibroimpact.studies.run_chunks import Points, run_chunks
+from vibroimpact.studies.workers import Workers, processes, this_process
+
+STUDY = "study.toml"
+
+MEMORY = 500e6
+"""Bytes that the drops of a chunk may take, where nothing else is said."""
+
+_CHUNK = 8000  # drops of rigid bodies: a tenth of a second
+_ELASTIC_CHUNK = 8  # drops of elastic ones: half a second
+_PER_DROP, _COPIES = 4000.0, 4.0  # bytes that a drop takes while it is computed, and how often its results are there until they are written
+
+_MANY = 50_000  # drops from which on it takes seconds to put them together
+
+Progress = Callable[[int, int], None]
+Tell = Callable[[str], None]
+
+
+def compute_study(
+    sweep: Sweep,
+    directory: str | PathLike[str],
+    *,
+    resume: bool = False,
+    force: bool = False,
+    workers: int = 1,
+    scheduler: str | None = None,
+    memory: float = MEMORY,
+    progress: Progress | None = None,
+    modes_progress: Callable[[float], None] | None = None,
+    tell: Tell | None = None,
+) -> Path:
+    """Compute a study in a folder: `study.nc`, `drops.csv`, and the ledger of its chunks; `run_sweep` draws its report too.
+
+    Parameters
+    ----------
+    sweep, directory, resume, force, workers, scheduler, memory, progress, modes_progress, tell
+        As `run_sweep` takes them.
+
+    Returns
+    -------
+    pathlib.Path
+        The folder.
+
+    Raises
+    ------
+    InputError, ComputationError
+        As `run_sweep` does.
+    """
+    if not isinstance(sweep, Sweep):
+        raise InputError(f"a study is wanted, as vi.load_sweep(...) reads it, not {sweep!r}")
+    if not isinstance(workers, int) or workers < 1:
+        raise InputError(f"{workers!r} is not allowed; it must be a whole number from 1", "workers")
+    if isinstance(memory, str) or not memory >= 1e6:
+        raise InputError(f"{memory!r} is not allowed; it must be a number of bytes, 1e6 or more", "memory")
+    folder = Path(directory)
+    if scheduler is not None:
+        check_scheduler(scheduler)
+    if resume:
+        _check_begun(folder, sweep, memory)
+    else:
+        _begin(folder, sweep, memory, force=force)
+    with open_ledger(folder) as ledger:
+        _check_same(ledger, folder, sweep)
+        if not (folder / DATASET).is_file():
+            _forget_damaged(ledger, folder, tell)
+            number = min(workers, len(ledger.chunks("waiting")))
+            _run(ledger, folder, sweep, _workers(sweep, number, scheduler, modes_progress, tell), progress)
+            if tell is not None and sweep.size >= _MANY:
+                tell("all drops are done; putting the results together")
+            _assemble(folder, ledger, sweep)
+        shutil.rmtree(folder / FOLDER, ignore_errors=True)
+    return folder
+
+
+def is_study(folder: Path) -> bool:
+    """Was a study begun in a folder?"""
+    return (folder / STUDY).is_file() or (folder / LEDGER).is_file()
+
+
+def _begin(folder: Path, sweep: Sweep, memory: float, *, force: bool) -> None:
+    """Make the folder of a study of which nothing is computed."""
+    if is_held(folder):
+        raise InputError(busy(folder))
+    if is_study(folder) and not force:
+        raise InputError(f"{folder}: a study is there already; go on with it by --resume, replace it by --force, or name another folder")
+    with new_folder(folder, force=force) as working:
+        (working / STUDY).write_text(study_toml(sweep.whole_table), encoding="utf-8")
+        (working / FOLDER).mkdir()
+        make_ledger(working, _facts(sweep), sweep.size, chunk_size(sweep, memory))
+        summary = {"name": sweep.name, "version": __version__, "study": {"design": sweep.section.design, "drops": sweep.size}}
+        (working / SUMMARY).write_text(json.dumps(summary, indent=2) + "\n", encoding="utf-8")
+
+
+def _check_begun(folder: Path, sweep: Sweep, memory: float) -> None:
+    """Raise unless a study was begun in a folder; make its ledger anew if that alone is missing."""
+    if not is_study(folder):
+        raise InputError(f"{folder}: no study was begun in this folder; leave out --resume to begin one")
+    if (folder / LEDGER).is_file():
+        return
+    make_ledger(folder, _facts(sweep), sweep.size, chunk_size(sweep, memory))
+    with open_ledger(folder) as ledger:
+        for chunk in ledger.chunks("waiting"):
+            try:
+                found = read_chunk(folder, chunk, sweep.digest)
+            except (OSError, KeyError, ValueError):
+                continue
+            ledger.done(chunk, checksum(folder, chunk.number) or "", len(found.failures))
+
+
+def _check_same(ledger: Ledger, folder: Path, sweep: Sweep) -> None:
+    """Raise unless a ledger is that of a study, begun by these versions."""
+    facts, now = ledger.facts, _facts(sweep)
+    for key, name in (("version", "vibroimpact"), ("numpy", "NumPy")):
+        if facts.get(key) != now[key]:
+            words = f"this study was begun with {name} {facts.get(key)}, and this is {now[key]}"
+            raise InputError(f"{folder}: {words}; go on with that version, or begin anew with --force")
+    if facts.get("digest") != now["digest"]:
+        words = "the study has changed since it was begun here: its case, its points, its files or what is kept"
+        raise InputError(f"{folder}: {words}; {STUDY} in it is what was begun; begin anew with --force, or in another folder")
+
+
+def _forget_damaged(ledger: Ledger, folder: Path, tell: Tell | None) -> None:
+    """Have chunks computed again that are not on disk as they were written."""
+    for number, expected in ledger.checksums().items():
+        if checksum(folder, number) != expected:
+            ledger.undone(number)
+            if tell is not None:
+                tell(f"chunk {number} is not on disk as it was written; it is computed again")
+
+
+def _run(ledger: Ledger, folder: Path, sweep: Sweep, workers: Workers, progress: Progress | None) -> None:
+    """Compute the chunks that wait."""
+    waiting = ledger.chunks("waiting")
+    done = sweep.size - sum(chunk.size for chunk in waiting)
+    if progress is not None:
+        progress(done, sweep.size)
+
+    def keep(chunk: Span, result: ChunkResult) -> None:
+        nonlocal done
+        ledger.done(chunk, write_chunk(folder, chunk, result, sweep.digest), len(result.failures))
+        done += chunk.size
+        if progress is not None:
+            progress(done, sweep.size)
+
+    def points(chunk: Span) -> Points:
+        return sweep.plan.points(chunk.first, chunk.size)
+
+    run_chunks(partial(compute_points, sweep.table, sweep.section.keep), points, waiting, workers, keep)
+
+
+def _assemble(folder: Path, ledger: Ledger, sweep: Sweep) -> None:
+    """Put the chunks together, the dataset last: once it is there, all is."""
+    chunks, left = ledger.chunks("done"), ledger.chunks("waiting")
+    if left:
+        raise ComputationError(f"{folder}: {len(left)} chunks are not done; go on with --resume")
+    rates = {sensor.name: sensor.rate for sensor in sweep.case.sensors}
+    try:
+        if sweep.size <= MOST_ROWS:
+            write_drops(folder, chunks, sweep.digest, sweep.plan, sweep.meanings)
+        write_dataset(folder, sweep.name, chunks, sweep.digest, sweep.plan, sweep.whole_table, sweep.meanings, rates)
+    except OSError as error:
+        for part in folder.glob("*.part"):
+            part.unlink()
+        words = f"the results can't be put together: {error.strerror or error}; see to the disk, then go on with --resume"
+        raise ComputationError(f"{folder}: {words}") from None
+
+
+def _workers(
+    sweep: Sweep, number: int, scheduler: str | None, modes_progress: Callable[[float], None] | None, tell: Tell | None
+) -> Workers:
+    """Return what starts workers; each gets the modes of the first point once, so that it finds them wherever it runs."""
+    entries = carried_modes(sweep.case, modes_progress, tell) if sweep.deforms and number else {}
+    if scheduler is not None:
+        return partial(dask_workers, scheduler, number, partial(receive, entries))
+    return this_process if number <= 1 else partial(processes, number, partial(receive, entries))
+
+
+def _facts(sweep: Sweep) -> dict[str, str]:
+    return {"digest": sweep.digest, "version": __version__, "numpy": np.__version__}
+
+
+def chunk_size(sweep: Sweep, memory: float) -> int:
+    """Return how many drops a chunk has: fewer if memory is short, and the same however many workers there are.
+
+    Parameters
+    ----------
+    sweep : Sweep
+        The study.
+    memory : float
+        Bytes that the drops of a chunk may take.
+    """
+    each = _PER_DROP + _COPIES * sweep.bytes / sweep.size
+    return max(1, min(_ELASTIC_CHUNK if sweep.deforms else _CHUNK, int(memory / each)))
