@@ -92,7 +92,8 @@ def sobol_indices(values: Floats, axes: int, seed: int = 0) -> Indices | None:
     # SciPy takes a power of two alone: a point whose drops all lie at the mean stays one, and adds nothing to any of the sums
     blocks = np.where(complete, blocks, used.mean())
     first, total = _estimates(blocks)
-    drawn, random = min(len(complete), _RESAMPLED), generator(seed, len(complete))
+    drawn = min(len(complete), _RESAMPLED)
+    random = generator(seed, drawn)
     resampled = [_estimates(blocks[:, random.integers(drawn, size=drawn)]) for _ in range(RESAMPLES)]
     first_error, total_error = _QUANTILE * math.sqrt(drawn / len(complete)) * np.std(resampled, axis=0, ddof=1)
     return Indices(first, total, first_error, total_error, points, left_out)
