@@ -118,3 +118,12 @@ def test_all_modes_up_to_a_frequency() -> None:
     np.testing.assert_allclose(model.frequencies, more.frequencies[:-1], rtol=1e-9)
     with pytest.raises(InputError, match="there is no mode below 1 Hz"):
         computed_model(Recipe(PLATE, 7850.0, 210e9, 0.3, EDGE, Reduction(max_frequency=1.0)))
+
+
+@pytest.mark.parametrize(("radius", "density", "modulus"), [(1.0, 1.0, 1.0), (0.025, 1380.0, 2.26e9), (3e-3, 7850.0, 2.1e11)])
+def test_a_rigid_motion_leaves_no_mode_of_rounding(radius: float, density: float, modulus: float) -> None:
+    # the motion with one point of a free body is rigid: what is left of it has no frequency, let alone one below the lowest
+    reduction = Reduction(modes=6, method="craig-bampton", interface=((None, "lower"),))
+    reduced = computed_model(Recipe(SphereOfSolids(radius, 4), density, modulus, 0.3, (), reduction))
+    whole = computed_model(Recipe(SphereOfSolids(radius, 4), density, modulus, 0.3, (), Reduction(modes=6)))
+    np.testing.assert_allclose(reduced.angular_frequencies[:3], whole.angular_frequencies[:3], rtol=1e-3)

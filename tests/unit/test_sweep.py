@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -15,6 +16,7 @@ import xarray as xr
 import vibroimpact as vi
 from studies import OVER, RANDOM, study_file, study_table
 from support import plain_case
+from vibroimpact.cases import compute_points as compute_points_module
 from vibroimpact.cases.compute_points import compute_points
 from vibroimpact.cases.swept_keys import case_at
 from vibroimpact.storage.compute_study import chunk_size, compute_study
@@ -131,6 +133,19 @@ def test_a_drop_that_fails_is_kept_with_its_reason_and_the_rest_go_on(tmp_path: 
     np.testing.assert_allclose(study.values("max_force_N", 0, 1), alone["max_force_N"], rtol=1e-9)
 
 
+def test_nothing_of_a_failed_drop_is_a_result(monkeypatch: pytest.MonkeyPatch) -> None:
+    def some_fail(problem: vi.Problem) -> vi.ImpactTable:
+        table = vi.tabulate(problem)
+        return replace(table, failures={1: "it does not close"})
+
+    monkeypatch.setattr(compute_points_module, "tabulate", some_fail)
+    found = compute_points(plain_case(), ("impacts",), 0, {"drop.height": np.array([1.0, 2.0, 3.0])})
+    assert found.failures == {1: "it does not close"}
+    assert found.arrays["outcome"][1] == list(vi.Outcome).index(vi.Outcome.FAILED)
+    for name, values in found.arrays.items():
+        assert name == "outcome" or (np.isnan(values[1]).all() and not np.isnan(values[::2]).all())
+
+
 def test_drops_that_can_not_begin_do_not_hold_up_the_others(tmp_path: Path) -> None:
     values = np.random.default_rng(0).permutation(np.linspace(0.005, 0.06, 2000))
     points = {"sphere.radius": values, "drop.height": values[::-1]}
@@ -228,9 +243,9 @@ def _nothing() -> None:
     pass
 
 
-def test_processes_and_dask_compute_the_same_bits() -> None:
+def test_processes_and_dask_compute_the_same_bits(tmp_path: Path) -> None:
     from vibroimpact.studies.workers import this_process
 
     here = _chunks(this_process)
-    assert _chunks(partial(processes, 2, _nothing)) == here
+    assert _chunks(partial(processes, 2, _nothing, tmp_path)) == here
     assert _chunks(partial(dask_workers, "local", 2, _nothing)) == here

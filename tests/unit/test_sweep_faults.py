@@ -146,7 +146,7 @@ def _with_a_death(tmp_path: Path, *, always: bool) -> dict[int, ChunkResult]:
         found[chunk.number] = result
 
     work = partial(_dies, str(tmp_path / "mark"), always)
-    run_chunks(work, lambda chunk: sweep.plan.points(chunk.first, chunk.size), chunks, partial(processes, 2, _nothing), keep)
+    run_chunks(work, lambda chunk: sweep.plan.points(chunk.first, chunk.size), chunks, partial(processes, 2, _nothing, tmp_path), keep)
     return found
 
 
@@ -212,9 +212,9 @@ def test_a_worker_that_dies_while_a_chunk_is_kept_costs_nothing() -> None:
     assert sorted(set(kept)) == list(range(6))
 
 
-def test_processes_that_never_begin_are_told_and_no_chunk_is_blamed() -> None:
+def test_processes_that_never_begin_are_told_and_no_chunk_is_blamed(tmp_path: Path) -> None:
     with pytest.raises(vi.ComputationError, match="die before they have computed anything"):
-        run_chunks(_dies, lambda chunk: {}, [Span(0, 0, 1)], partial(processes, 1, _cannot_begin), lambda *_: None)  # type: ignore[arg-type]
+        run_chunks(_dies, lambda chunk: {}, [Span(0, 0, 1)], partial(processes, 1, _cannot_begin, tmp_path), lambda *_: None)  # type: ignore[arg-type]
 
 
 def test_a_scheduler_that_goes_away_is_told() -> None:

@@ -122,7 +122,10 @@ def _parts(study: _Study, places: NDArray[np.intp]) -> Iterator[_Part]:
     except InputError:  # of one of them: the others must not suffer
         yield from (_alone(study, place) for place in places)
         return
-    yield _Part(places, _columns(table, study.keep), {int(places[drop]): reason for drop, reason in table.failures.items()})
+    failed = np.zeros(len(table), dtype=bool)
+    failed[list(table.failures)] = True
+    columns = {name: values[~failed] for name, values in _columns(table, study.keep).items()}  # nothing that failed is a result
+    yield _Part(places[~failed], columns, {int(places[drop]): reason for drop, reason in table.failures.items()})
 
 
 def _alone(study: _Study, place: np.intp) -> _Part:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections import Counter
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -196,9 +197,8 @@ def read_sweep(table: Mapping[str, Any]) -> Sweep:
             except InputError as error:
                 raise InputError(error.message, f'over."{key}".{error.key}'.rstrip(".")) from None
         for key, axis in axes.items() if section.design == "grid" else ():
-            levels = [repr(level) for level in axis.levels().tolist()]
-            again = next((level for number, level in enumerate(levels) if level in levels[:number]), None)
-            if again is not None:
+            again, often = Counter(map(repr, axis.levels().tolist())).most_common(1)[0]
+            if often > 1:
                 raise InputError(f"{again} stands there twice, and a grid has each value once", f'over."{key}"')
         sweep = Sweep(base, section.model_copy(update={"over": over}), axes, quantities)
         if sweep.size > MOST_DROPS:
@@ -207,10 +207,13 @@ def read_sweep(table: Mapping[str, Any]) -> Sweep:
         raise InputError(error.message, f"sweep.{error.key}".rstrip(".")) from None
     _check_points(sweep)
     if "signals" in section.keep:
-        odd = next((sensor.name for sensor in sweep.case.sensors if "/" in sensor.name), None)
-        if odd is not None:
-            words = f'"{odd}" has a "/", and signals of a study are variables under the names of their sensors; call it otherwise'
-            raise InputError(words, "sensors")
+        sensors = [sensor.name for sensor in sweep.case.sensors]
+        variables = [name for sensor in sensors for name in (f"{SIGNAL}{sensor}", f"{sensor}{SENSOR_PEAK}", f"time_{sensor}")]
+        taken = {*sweep.axes, OUTCOME, *PEAKS, *IMPACT_COLUMNS, *VIBRATION_IMPACT_COLUMNS}
+        for name in variables:
+            if not name.isprintable() or "/" in name or variables.count(name) > 1 or name in taken:
+                words = f'"{name}" can\'t be the name of a variable of the dataset, or is that of another; call the sensor otherwise'
+                raise InputError(words, "sensors")
         if not sweep.case.sensors:
             raise InputError('"signals" needs [[sensors]] on an elastic plate', "sweep.keep")
         if sweep.case.run.duration is None:

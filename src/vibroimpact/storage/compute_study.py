@@ -17,7 +17,7 @@ from vibroimpact.cases.coupling import carried_modes
 from vibroimpact.cases.sweep import Sweep
 from vibroimpact.errors import ComputationError, InputError
 from vibroimpact.storage.folder import SUMMARY, new_folder
-from vibroimpact.storage.study import DATASET
+from vibroimpact.storage.study import DATASET, STUDY
 from vibroimpact.storage.study_dataset import write_dataset
 from vibroimpact.storage.study_table import MOST_ROWS, write_drops
 from vibroimpact.storage.study_toml import study_toml
@@ -27,8 +27,6 @@ from vibroimpact.studies.dask_workers import check_scheduler, dask_workers
 from vibroimpact.studies.ledger import LEDGER, Ledger, Span, busy, is_held, make_ledger, open_ledger
 from vibroimpact.studies.run_chunks import Points, run_chunks
 from vibroimpact.studies.workers import Workers, processes, this_process
-
-STUDY = "study.toml"
 
 MEMORY = 500e6
 """Bytes that the drops of a chunk may take, where nothing else is said."""
@@ -91,7 +89,7 @@ def compute_study(
         if not (folder / DATASET).is_file():
             _forget_damaged(ledger, folder, tell)
             number = min(workers, len(ledger.chunks("waiting")))
-            _run(ledger, folder, sweep, _workers(sweep, number, scheduler, modes_progress, tell), progress)
+            _run(ledger, folder, sweep, _workers(folder, sweep, number, scheduler, modes_progress, tell), progress)
             if tell is not None and sweep.size >= _MANY:
                 tell("all drops are done; putting the results together")
             _assemble(folder, ledger, sweep)
@@ -193,13 +191,18 @@ def _assemble(folder: Path, ledger: Ledger, sweep: Sweep) -> None:
 
 
 def _workers(
-    sweep: Sweep, number: int, scheduler: str | None, modes_progress: Callable[[float], None] | None, tell: Tell | None
+    folder: Path, sweep: Sweep, number: int, scheduler: str | None, modes_progress: Callable[[float], None] | None, tell: Tell | None
 ) -> Workers:
     """Return what starts workers; each gets the modes of the first point once, so that it finds them wherever it runs."""
-    entries = carried_modes(sweep.case, modes_progress, tell) if sweep.deforms and number else {}
+    from threadpoolctl import threadpool_limits  # which looks at all libraries that are loaded
+
+    entries = {}
+    if sweep.deforms and number:
+        with threadpool_limits(1):  # as the workers compute them
+            entries = carried_modes(sweep.case, modes_progress, tell)
     if scheduler is not None:
         return partial(dask_workers, scheduler, number, partial(receive, entries))
-    return this_process if number <= 1 else partial(processes, number, partial(receive, entries))
+    return this_process if number <= 1 else partial(processes, number, partial(receive, entries), folder / FOLDER)
 
 
 def _facts(sweep: Sweep) -> dict[str, str]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import tomllib
 from dataclasses import dataclass
 from math import prod
+from os import PathLike
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +17,7 @@ from vibroimpact.errors import InputError
 from vibroimpact.studies.columns import SIGNAL
 from vibroimpact.studies.plan import SAMPLE
 
-DATASET = "study.nc"
+DATASET, STUDY = "study.nc", "study.toml"
 FAILED_POINT, FAILED_REASON = "failed_point", "failed_reason"
 """The variables that say which drops failed, and why."""
 
@@ -91,6 +92,9 @@ class Study:
         with h5py.File(self.path, "r") as file:
             return np.asarray(file[name][place or ()])
 
+    def __repr__(self) -> str:
+        return f"<Study of {self.size} drops: {', '.join(f'{name} {length}' for name, length in self.dimensions.items())}>"
+
     def times(self, sensor: str) -> NDArray[np.float64]:
         """Return the time of each sample in the signal of a sensor [s].
 
@@ -115,12 +119,12 @@ class Study:
             raise InputError(f'there is no variable "{name}"; there are {", ".join(self.shapes)}')
 
 
-def read_study(directory: Path) -> Study:
+def read_study(directory: str | PathLike[str]) -> Study:
     """Read the dataset of a study, but for its variables.
 
     Parameters
     ----------
-    directory : Path
+    directory : path
         The folder of the study.
 
     Raises
@@ -144,7 +148,11 @@ def read_study(directory: Path) -> Study:
             name, version = str(file.attrs["title"]), str(file.attrs["version"])
             return Study(path, name, table, version, dimensions, coordinates, meanings, shapes, failures)
     except FileNotFoundError:
-        raise InputError(f"{directory}: there is no {DATASET}; the study is not done, go on with: vibroimpact sweep --resume") from None
+        folder = Path(directory)
+        if not (folder / STUDY).is_file():
+            raise InputError(f"{folder}: this is not the folder of a study; it has no {DATASET}") from None
+        command = f"vibroimpact sweep {folder / STUDY} -o {folder} --resume"
+        raise InputError(f"{folder}: the study is not done; if nothing is at work on it, go on with: {command}") from None
     except (OSError, KeyError, ValueError) as error:
         raise InputError(f"{path}: the file is damaged: {error}") from None
 

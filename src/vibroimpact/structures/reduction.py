@@ -12,6 +12,7 @@ from vibroimpact.errors import InputError
 from vibroimpact.structures.mesh import Floats, Integers
 from vibroimpact.structures.modes import Eigenmodes, Elastic, Progress
 
+_RIGID = 1e-6  # of the norm of a motion: what is left of one that is rigid is less
 _DEPENDENT = 1e-10  # of the largest: columns of a basis that add less than this to the others are left out
 
 
@@ -124,14 +125,22 @@ def projected(stiffness: csr_array, mass: csr_array, basis: Floats, rigid: Float
     >>> round(float(modes.angular_frequencies[0] ** 2), 6)  # Rayleigh's quotient
     0.214286
     """
+    whole = _norms(basis, mass)
     if rigid is not None and rigid.shape[1]:
         basis = basis - rigid @ (rigid.T @ (mass @ basis))
-    basis = basis / np.sqrt(np.einsum("ij,ij->j", basis, mass @ basis))
+    norms = _norms(basis, mass)
+    elastic = norms > _RIGID * whole  # of a motion that was rigid only rounding is left
+    basis = basis[:, elastic] / norms[elastic]
     gram, turned = eigh(basis.T @ (mass @ basis))
     keep = gram > _DEPENDENT * gram[-1]
     basis = basis @ (turned[:, keep] / np.sqrt(gram[keep]))
     values, shapes = eigh(basis.T @ (stiffness @ basis), basis.T @ (mass @ basis))
     return Eigenmodes(np.sqrt(np.maximum(values, 0.0)), basis @ shapes)
+
+
+def _norms(basis: Floats, mass: csr_array) -> Floats:
+    """Return the roots of the modal masses of the columns of a basis."""
+    return np.asarray(np.sqrt(np.einsum("ij,ij->j", basis, mass @ basis)))
 
 
 def _left(rigid: Floats | None, boundary: Integers) -> Floats | None:

@@ -4,12 +4,18 @@ from __future__ import annotations
 
 import multiprocessing
 import os
+import pickle
 import signal
 import threading
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, Future, ProcessPoolExecutor
 from contextlib import AbstractContextManager, contextmanager
+from functools import partial
+from pathlib import Path
+from tempfile import NamedTemporaryFile
 from typing import Any, NamedTuple
+
+from vibroimpact.errors import ComputationError
 
 Setup = Callable[[], object]
 """What a worker does once before its first chunk; it is pickled."""
@@ -44,15 +50,50 @@ def this_process() -> Iterator[Crew]:
     yield Crew(_AtOnce(), lambda: 1)
 
 
+class _ByFile(Executor):
+    """An executor whose results come by files: a worker that is killed while it sends much would leave its leader waiting for the rest."""
+
+    def __init__(self, pool: Executor, folder: Path) -> None:
+        self.pool, self.folder = pool, folder
+
+    def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
+        result: Future[Any] = Future()
+        self.pool.submit(_to_file, self.folder, fn, args, kwargs).add_done_callback(partial(_from_file, result))
+        return result
+
+
+def _to_file(folder: Path, fn: Callable[..., Any], args: Any, kwargs: Any) -> Path:
+    """Write what comes of a call to a file of its own, in a worker."""
+    result = fn(*args, **kwargs)
+    try:
+        with NamedTemporaryFile(dir=folder, prefix="result-", delete=False) as file:
+            pickle.dump(result, file)
+    except OSError as error:
+        Path(file.name).unlink(missing_ok=True)
+        words = "see to the disk, then go on with --resume; the chunks that are done stay"
+        raise ComputationError(f"{folder}: what was computed can't be written: {error.strerror}; {words}") from None
+    return Path(file.name)
+
+
+def _from_file(result: Future[Any], written: Future[Path]) -> None:
+    """Hand on what a worker wrote, or why it did not."""
+    try:
+        path = written.result()
+        result.set_result(pickle.loads(path.read_bytes()))
+        path.unlink()
+    except BaseException as error:
+        result.set_exception(error)
+
+
 @contextmanager
-def processes(number: int, setup: Setup) -> Iterator[Crew]:
-    """Compute in `number` processes of this machine."""
+def processes(number: int, setup: Setup, folder: Path) -> Iterator[Crew]:
+    """Compute in `number` processes of this machine, which leave their results in a folder until they are taken."""
     # spawned, not forked: a fork would copy locks that threads of this process hold
     pool = ProcessPoolExecutor(number, multiprocessing.get_context("spawn"), initializer=_begin, initargs=(setup,))
     try:
         with _interrupts_ignored():  # by the processes that start now, from their first instruction on
             pool.submit(int)
-        yield Crew(pool, lambda: 2 * number)
+        yield Crew(_ByFile(pool, folder), lambda: 2 * number)
     finally:
         pool.shutdown(cancel_futures=True)  # each ends after the chunk that it is at, or with this process
 

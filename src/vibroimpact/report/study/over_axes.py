@@ -102,8 +102,8 @@ def _parts_of(values: Floats) -> Floats:
 
 def _in_bins(places: Floats, values: Floats, ticks: Ticks) -> tuple[Floats, Floats]:
     """Return the middles of parts of an axis with as many drops each, or its names, and the band in each."""
-    if ticks.names:
-        found = np.unique(places)
+    found = np.unique(places)
+    if ticks.names or len(found) <= _BINS:  # a list: a part would mix its values
         return found, np.array([_parts_of(values[places == place]) for place in found])
     order = np.argsort(places, kind="stable")
     groups = [group for group in np.array_split(order, min(_BINS, len(order) // _FULL)) if len(group)]
