@@ -50,7 +50,7 @@ def counting_progress(what: str, console: Console) -> Iterator[Callable[[int, in
         BarColumn(),
         MofNCompleteColumn(),
         _Rate(),
-        TimeRemainingColumn(elapsed_when_finished=True),
+        TimeRemainingColumn(),
     )
     bar = Progress(*columns, console=console, transient=True, disable=not console.is_terminal, speed_estimate_period=60.0)
     task = None
