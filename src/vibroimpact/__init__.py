@@ -49,9 +49,9 @@ if TYPE_CHECKING:
     from vibroimpact.contact.quasi_static import QuasiStatic as QuasiStatic
     from vibroimpact.contact.restitution import achieved_restitution as achieved_restitution
     from vibroimpact.contact.restitution import integrated_restitution as integrated_restitution
+    from vibroimpact.dynamics.outcome import Outcome as Outcome
     from vibroimpact.dynamics.problem import Problem as Problem
     from vibroimpact.dynamics.recording import Signal as Signal
-    from vibroimpact.dynamics.response import Outcome as Outcome
     from vibroimpact.dynamics.response import Response as Response
     from vibroimpact.dynamics.sensor import Accelerometer as Accelerometer
     from vibroimpact.dynamics.sensor import Sensor as Sensor
@@ -103,7 +103,7 @@ _HOME = {
     "Mesh": "structures.mesh",
     "ModalBasis": "structures.modal_model",
     "Observations": "calibration.observations",
-    "Outcome": "dynamics.response",
+    "Outcome": "dynamics.outcome",
     "Problem": "dynamics.problem",
     "QuasiStatic": "contact.quasi_static",
     "Response": "dynamics.response",

@@ -12,7 +12,7 @@ PACKAGE = Path(vibroimpact.__file__).parent
 # from the ground up; a module may import its own layer's package and what is below
 LAYERS = [
     {"errors", "_version"},
-    {"ranges"},
+    {"ranges", "registry"},
     {"units", "materials", "quantity"},
     {"contact"},
     {"structures"},

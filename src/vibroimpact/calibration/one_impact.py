@@ -10,8 +10,8 @@ import numpy as np
 from vibroimpact.calibration.observations import Floats
 from vibroimpact.calibration.outcomes import OUTCOMES
 from vibroimpact.contact.law import ContactLaw
+from vibroimpact.dynamics.outcome import Outcome
 from vibroimpact.dynamics.problem import Problem
-from vibroimpact.dynamics.response import Outcome
 from vibroimpact.dynamics.simulate import simulate
 
 _TOLERANCE = 1e-12

@@ -13,17 +13,15 @@ from vibroimpact.cases.build import deforms, rigid_problem
 from vibroimpact.cases.schema import Case
 from vibroimpact.cases.swept_arrays import is_array_key, with_arrays
 from vibroimpact.cases.swept_keys import case_at
-from vibroimpact.dynamics.recording import Signal
-from vibroimpact.dynamics.response import Outcome, Response
-from vibroimpact.dynamics.sensor import Sensor
+from vibroimpact.dynamics.outcome import Outcome
+from vibroimpact.dynamics.response import Response
+from vibroimpact.dynamics.sensor import Sensor, sample_count
 from vibroimpact.dynamics.simulate import simulate
 from vibroimpact.dynamics.tabulate import ImpactTable, tabulate
 from vibroimpact.errors import ComputationError, InputError
 from vibroimpact.studies.axes import Values
 from vibroimpact.studies.chunk_file import ChunkResult
 from vibroimpact.studies.columns import FIRST, LARGEST, OUTCOME, SENSOR_PEAK, SIGNAL
-
-_OUTCOMES = {outcome: number for number, outcome in enumerate(Outcome)}
 
 
 class _Study(NamedTuple):
@@ -138,8 +136,9 @@ def _alone(study: _Study, place: np.intp) -> _Part:
         return _Part(np.array([place]), {}, {int(place): f"{name}{error}"})
     signals = {}
     if "signals" in study.keep:
+        duration = problem.duration or 0.0  # the study has seen to it; a contact under way at its end was finished
         for name, signal in response.signals().items():
-            signals[f"{SIGNAL}{name}"] = signal.value[: _samples(response, signal)].astype(np.float32)[None]
+            signals[f"{SIGNAL}{name}"] = signal.value[: sample_count(duration, signal.sensor.rate)].astype(np.float32)[None]
             signals[f"{name}{SENSOR_PEAK}"] = np.array([np.abs(signal.value).max()])
     return _Part(np.array([place]), {**_columns(response, study.keep), **signals}, {})
 
@@ -153,12 +152,6 @@ def _noise(sensor: Sensor, number: int) -> Sensor:
     return replace(sensor, accelerometer=replace(meter, seed=(*seed, number)))
 
 
-def _samples(response: Response, signal: Signal) -> int:
-    """Return how many samples a signal has up to the duration that was asked for; a contact under way then was finished."""
-    assert response.problem.duration is not None  # the study has seen to it
-    return int(response.problem.duration * signal.sensor.rate * (1 + 1e-15)) + 1
-
-
 def _columns(response: Response | ImpactTable, keep: tuple[str, ...]) -> dict[str, NDArray[Any]]:
     """Return impact table and peaks of the drops of a response."""
     impacts = {name: np.atleast_2d(values) for name, values in response.impacts.items()}
@@ -168,7 +161,7 @@ def _columns(response: Response | ImpactTable, keep: tuple[str, ...]) -> dict[st
         "end_time_s": response.end_time,
         "total_energy_lost_J": np.nansum(impacts["energy_lost_J"], axis=1),
         "closure_relative": np.atleast_1d(response.energy["closure_relative"]),
-        OUTCOME: np.array([_OUTCOMES[outcome] for outcome in response.outcomes], dtype=np.int8),
+        OUTCOME: np.array([outcome.code for outcome in response.outcomes], dtype=np.int8),
         **first,
         **{peak: np.fmax.reduce(impacts[name], axis=1, initial=np.nan) for peak, name in LARGEST.items()},
     }
@@ -178,7 +171,7 @@ def _columns(response: Response | ImpactTable, keep: tuple[str, ...]) -> dict[st
 
 def _gathered(parts: list[_Part], count: int) -> dict[str, NDArray[Any]]:
     """Return the arrays of all drops of a chunk in order; what a drop does not have is NaN, and a failed drop is one that failed."""
-    found: dict[str, NDArray[Any]] = {OUTCOME: np.full(count, _OUTCOMES[Outcome.FAILED], dtype=np.int8)}
+    found: dict[str, NDArray[Any]] = {OUTCOME: np.full(count, Outcome.FAILED.code, dtype=np.int8)}
     for part in parts:
         for name, values in part.arrays.items():
             if name not in found:

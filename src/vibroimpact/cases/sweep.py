@@ -18,7 +18,7 @@ from vibroimpact.cases.reader import load_table, named
 from vibroimpact.cases.schema import Case
 from vibroimpact.cases.section import read_table
 from vibroimpact.cases.sweep_section import MOST_DROPS, SweepSection, read_axis
-from vibroimpact.cases.swept_keys import case_at, find_quantity
+from vibroimpact.cases.swept_keys import case_at, find_quantity, holds_keys
 from vibroimpact.dynamics.columns import IMPACT_COLUMNS, VIBRATION_IMPACT_COLUMNS
 from vibroimpact.errors import InputError
 from vibroimpact.studies.axes import Axis, Values
@@ -27,8 +27,6 @@ from vibroimpact.studies.design import find_design
 from vibroimpact.studies.plan import Plan
 
 _LONG = 100  # impacts that are reckoned with where a drop goes on to rest
-
-_SECTIONS = ("sphere", "plate", "drop", "contact", "run")
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,7 +63,11 @@ class Sweep:
     @cached_property
     def case(self) -> Case:
         """The case at the first point."""
-        return self.case_at({key: values[0] for key, values in self.plan.points(0, 1).items()})
+        return self.case_at(self.values_of(0))
+
+    def values_of(self, drop: int) -> dict[str, Any]:
+        """Return the values of one drop at the swept keys, by its number, from 0."""
+        return {key: values[0] for key, values in self.plan.points(drop, 1).items()}
 
     def case_at(self, values: Mapping[str, Any]) -> Case:
         """Return the case with values at its swept keys.
@@ -80,7 +82,7 @@ class Sweep:
     @cached_property
     def deforms(self) -> bool:
         """Does anything but the contact itself deform, at any level of what is swept?"""
-        first = {key: values[0] for key, values in self.plan.points(0, 1).items()}
+        first = self.values_of(0)
         names = {key: values for key, values in self.plan.columns.items() if values.dtype == object}
         cases = (self.case_at({**first, key: level}) for key, values in names.items() for level in _different(values))
         return deforms(self.case) or any(map(deforms, cases))
@@ -95,7 +97,7 @@ class Sweep:
         """
         if not 0 <= drop < self.size:
             raise InputError(f"there is no drop {drop}; the study has {self.size}, counted from 0")
-        return self.case_at({key: values[0] for key, values in self.plan.points(drop, 1).items()})
+        return self.case_at(self.values_of(drop))
 
     @property
     def bytes(self) -> float:
@@ -225,7 +227,7 @@ def _flat(over: Mapping[str, Any], above: str = "") -> Iterator[tuple[str, Any]]
     """Yield what is swept by its dotted key, also where TOML made tables of keys that were not in quotes."""
     for key, value in over.items():
         dotted = f"{above}{key}"
-        if isinstance(value, dict) and (dotted in _SECTIONS or dotted.endswith((".material", ".position", ".size"))):
+        if isinstance(value, dict) and (holds_keys(dotted)):
             yield from _flat(value, f"{dotted}.")
         else:
             yield dotted, value
@@ -242,7 +244,7 @@ def _check_points(sweep: Sweep) -> None:
             except InputError as error:
                 remedy = "; truncate the distribution with at_least and at_most" if sweep.axes[key].is_random else ""
                 raise InputError(f"{error.message}{remedy}", f'sweep.over."{key}"') from None
-    first = {key: values[0] for key, values in sweep.plan.points(0, 1).items()}
+    first = sweep.values_of(0)
     sweep.case_at(first)
     for key, values in columns.items():
         several = _different(values) if values.dtype == object else [values.min(), values.max()]

@@ -69,6 +69,18 @@ def _like(key: str, known: Mapping[str, object]) -> str:
     return next((name for name in known if name.startswith(key.partition(".")[0] + ".")), "sphere.radius")
 
 
+def holds_keys(key: str) -> bool:
+    """Has a dotted key others below it that can be swept? Where it is a table that is no axis, it stands for those.
+
+    Examples
+    --------
+    >>> holds_keys("sphere.material"), holds_keys("sphere.radius")
+    (True, False)
+    """
+    section, _, field = key.partition(".")
+    return section in (*_SECTIONS, "contact") and field in ("", "material", *_PLACES)
+
+
 def with_values(table: Mapping[str, Any], values: Mapping[str, Any]) -> dict[str, Any]:
     """Return a case with values at dotted keys; a material that was named is written out where one of its numbers changes.
 

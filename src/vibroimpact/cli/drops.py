@@ -41,14 +41,15 @@ def run(
 def check(case: CaseArgument) -> None:
     """Validate a case or a study and explain it; run nothing."""
     from vibroimpact.cases.reader import load_case, load_table, named
-    from vibroimpact.cases.sweep import load_sweep
+    from vibroimpact.cases.sweep import read_sweep
     from vibroimpact.report.console import case_explained
     from vibroimpact.report.study.explained import sweep_explained
 
-    if "sweep" not in named(case, lambda: load_table(case)):
+    table = named(case, lambda: load_table(case))
+    if "sweep" not in table:
         console().print(case_explained(load_case(case)))
         return
-    study = load_sweep(case)
+    study = named(case, lambda: read_sweep(table))
     console().print(sweep_explained(study))
     console().print(case_explained(study.case))
 

@@ -12,8 +12,6 @@ all the registration it needs. It declares
 from __future__ import annotations
 
 import dataclasses
-import importlib
-import pkgutil
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from functools import cache
@@ -25,6 +23,7 @@ import numpy as np
 from vibroimpact.contact.pair import Array, ContactPair
 from vibroimpact.errors import InputError, did_you_mean
 from vibroimpact.ranges import Range
+from vibroimpact.registry import find_named, modules_in
 
 
 def parameter(
@@ -324,11 +323,7 @@ def contact_laws() -> Mapping[str, type[ContactLaw]]:
     >>> "hertz" in contact_laws()
     True
     """
-    package = importlib.import_module("vibroimpact.contact.laws")
-    modules = [
-        importlib.import_module(f"{package.__name__}.{info.name}")
-        for info in sorted(pkgutil.iter_modules(package.__path__), key=lambda info: info.name)
-    ]
+    modules = modules_in("vibroimpact.contact.laws")
     laws = [law for module in modules for law in vars(module).values() if _is_law(law) and law.__module__ == module.__name__]
     found: dict[str, type[ContactLaw]] = {}
     for law in laws + [_brought(point) for point in entry_points(group="vibroimpact.contact_laws")]:
@@ -373,9 +368,6 @@ def find_contact_law(name: str) -> type[ContactLaw]:
     InputError
         If there is none; the message names the closest.
     """
-    laws = contact_laws()
     if not isinstance(name, str):
         raise InputError(f"a contact law is found by its name, a text, not {name!r}")
-    if name not in laws:
-        raise InputError(f'there is no contact law "{name}"; there are {", ".join(laws)}.{did_you_mean(name, laws)}')
-    return laws[name]
+    return find_named("contact law", name, contact_laws())

@@ -15,7 +15,7 @@ from vibroimpact.contact.phase.collocation import Floats
 from vibroimpact.contact.phase.oscillators import FreeMotion, Oscillators
 from vibroimpact.contact.phase.vibrating_stretch import VibratingStretch
 from vibroimpact.dynamics.problem import Problem
-from vibroimpact.dynamics.sensor import Sensor
+from vibroimpact.dynamics.sensor import Sensor, sample_count
 from vibroimpact.dynamics.vibration import oscillators_of
 from vibroimpact.errors import InputError
 
@@ -94,7 +94,7 @@ def _sampled(problem: Problem, segments: Sequence[VibratingSegment], sensors: Se
     for sensor in sensors:
         if sensor.name not in modes.points:
             raise InputError(f'the modes of the plate do not know a point "{sensor.name}"', "sensors")
-    count = int(end * rate * (1.0 + 1e-15)) + 1
+    count = sample_count(end, rate)
     if count * len(sensors) > MOST_SAMPLES:
         raise InputError(f"{count:.3g} samples of {len(sensors)} sensors are more than {MOST_SAMPLES:.0e}; ask for a lower rate", "sensors")
     kept = np.stack([modes.frequencies < 0.5 * sensor.rate for sensor in sensors])

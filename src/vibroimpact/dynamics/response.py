@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from enum import Enum
 from functools import cached_property
 from numbers import Integral
 from os import PathLike
@@ -22,33 +21,16 @@ from vibroimpact.contact.phase.stretch import Stretch
 from vibroimpact.dynamics.columns import HISTORY_COLUMNS, VIBRATION_HISTORY_COLUMNS
 from vibroimpact.dynamics.energy import why_failed
 from vibroimpact.dynamics.flight import Flight
+from vibroimpact.dynamics.outcome import Outcome
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.recording import Signal, record
 from vibroimpact.dynamics.segments import FlightSegment, GlideSegment, RestSegment, Segment, StretchSegment
-from vibroimpact.dynamics.sensor import Sensor
+from vibroimpact.dynamics.sensor import Sensor, sample_count
 from vibroimpact.dynamics.truncation import truncation_estimates
 from vibroimpact.dynamics.vibrating_history import vibrating_history
 from vibroimpact.dynamics.vibrating_segment import VibratingSegment, vibrating_timeline
 from vibroimpact.dynamics.vibration import modes_of
 from vibroimpact.errors import InputError
-
-
-class Outcome(Enum):
-    """Why a drop's run ended; the value is the rule's name."""
-
-    IMPACTS = "number of impacts"
-    DURATION = "duration"
-    REST_SPEED = "at rest: rest speed"
-    CAPTURED = "at rest: contact without release"
-    STUCK = "at rest: stuck"
-    LEFT = "left for good"
-    LIMIT = "limit of impacts"
-    FAILED = "failed"
-
-    @property
-    def at_rest(self) -> bool:
-        """Did the sphere come to rest?"""
-        return self in (Outcome.REST_SPEED, Outcome.CAPTURED, Outcome.STUCK)
 
 
 @dataclass(frozen=True)
@@ -246,7 +228,7 @@ class Response:
         count = float(self.end_time[0]) * rate
         if count > 1e8:
             raise InputError(f"{count:.3g} samples are more than 1e8; ask for a lower rate, or for parts by at()")
-        return self.at(np.minimum(np.arange(int(count * (1 + 1e-15)) + 1) / rate, self.end_time[0]))
+        return self.at(np.minimum(np.arange(sample_count(float(self.end_time[0]), rate)) / rate, self.end_time[0]))
 
     def history(self) -> dict[str, Floats]:
         """Return the history of one drop on a grid that resolves every contact, with both sides of each event."""

@@ -17,12 +17,10 @@ from vibroimpact.contact.static import static_indentation
 from vibroimpact.dynamics.columns import IMPACT_COLUMNS, VIBRATION_IMPACT_COLUMNS
 from vibroimpact.dynamics.energy import CLOSURE_LIMIT, close_ledger
 from vibroimpact.dynamics.flight import Flight
+from vibroimpact.dynamics.outcome import OUTCOMES, Outcome
 from vibroimpact.dynamics.problem import MOST_IMPACTS, Problem
-from vibroimpact.dynamics.response import Leg, Outcome, Response, Rest
+from vibroimpact.dynamics.response import Leg, Response, Rest
 from vibroimpact.dynamics.vibration import Vibration, contact_of
-
-_RULES = tuple(Outcome)
-"""What `Run.outcomes` counts in."""
 
 
 class Run:
@@ -41,7 +39,7 @@ class Run:
         self.energy_in = self.mechanical_energy()
         self.dissipated, self.plastic, self.deepest = np.zeros(self.size), np.zeros(self.size), np.zeros(self.size)
         self.moving = np.ones(self.size, dtype=bool)
-        self.outcomes = np.full(self.size, _RULES.index(Outcome.FAILED))
+        self.outcomes = np.full(self.size, Outcome.FAILED.code)
         self.end_time, self.rest_time = np.full(self.size, np.nan), np.full(self.size, np.nan)
         self.sag, self.stored, self.written_off = np.zeros(self.size), np.zeros(self.size), np.zeros(self.size)
         self.rest_speed = self.default_rest_speed() if problem.rest_speed is None else self.spread(problem.rest_speed)
@@ -213,7 +211,7 @@ class Run:
 
     def stop(self, drops: Drops, outcome: Outcome, time: Floats) -> None:
         """End the run of drops."""
-        self.moving[drops], self.end_time[drops], self.outcomes[drops] = False, time, _RULES.index(outcome)
+        self.moving[drops], self.end_time[drops], self.outcomes[drops] = False, time, outcome.code
 
     # the end of the run ----------------------------------------------------------------------------
 
@@ -224,7 +222,7 @@ class Run:
 
     def batch(self) -> Response:
         """Return the response as that of a batch."""
-        at_rest = np.array([outcome.at_rest for outcome in _RULES])[self.outcomes]
+        at_rest = np.array([outcome.at_rest for outcome in OUTCOMES])[self.outcomes]
         if self.problem.duration is not None:
             self.end_time[at_rest] = np.maximum(self.end_time, self.problem.duration)[at_rest]
         final_gap, final_velocity = self.final_motion(at_rest)
@@ -247,13 +245,13 @@ class Run:
                 **vibration,
             },
         )
-        self.outcomes[~(energy["closure_relative"] <= CLOSURE_LIMIT)] = _RULES.index(Outcome.FAILED)
+        self.outcomes[~(energy["closure_relative"] <= CLOSURE_LIMIT)] = Outcome.FAILED.code
         table = {name: np.array([row[name] for row in self.rows]).reshape(-1, self.size).T for name in self.columns}
         return Response(
             self.problem,
             table,
             energy,
-            tuple(_RULES[rule] for rule in self.outcomes.tolist()),
+            tuple(OUTCOMES[code] for code in self.outcomes.tolist()),
             self.end_time,
             Rest(self.rest_speed, self.rest_time, self.sag, self.stored, self.written_off),
             tuple(self.legs),

@@ -62,3 +62,14 @@ class Sensor:
     def unit(self) -> str:
         """The SI unit."""
         return {"displacement": "m", "velocity": "m/s", "acceleration": "m/s2"}[self.quantity]
+
+
+def sample_count(duration: float, rate: float) -> int:
+    """Return how many samples there are from the start to a time [s], both among them, at a rate [Hz].
+
+    Examples
+    --------
+    >>> sample_count(0.05, 50e3)
+    2501
+    """
+    return int(duration * rate * (1.0 + 1e-15)) + 1

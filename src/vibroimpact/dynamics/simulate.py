@@ -6,8 +6,9 @@ import math
 from collections.abc import Callable
 
 from vibroimpact.contact.phase.solve_contact import collocated
+from vibroimpact.dynamics.outcome import Outcome
 from vibroimpact.dynamics.problem import StatesProblem
-from vibroimpact.dynamics.response import Outcome, Response
+from vibroimpact.dynamics.response import Response
 from vibroimpact.dynamics.run import Run
 from vibroimpact.errors import ComputationError, InputError
 

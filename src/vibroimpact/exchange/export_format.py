@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import importlib
-import pkgutil
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cache
 
-from vibroimpact.errors import InputError, did_you_mean
 from vibroimpact.exchange.drop import Drop
+from vibroimpact.registry import find_named, modules_in
 
 
 @dataclass(frozen=True)
@@ -49,11 +47,7 @@ def export_formats() -> Mapping[str, ExportFormat]:
     >>> "adams" in export_formats()
     True
     """
-    package = importlib.import_module("vibroimpact.exchange.formats")
-    modules = [
-        importlib.import_module(f"{package.__name__}.{info.name}")
-        for info in sorted(pkgutil.iter_modules(package.__path__), key=lambda info: info.name)
-    ]
+    modules = modules_in("vibroimpact.exchange.formats")
     found = [value for module in modules for value in vars(module).values() if isinstance(value, ExportFormat)]
     return {one.name: one for one in sorted(found, key=lambda one: one.name)}
 
@@ -66,7 +60,4 @@ def find_export_format(name: str) -> ExportFormat:
     InputError
         If there is none; the message names the closest.
     """
-    formats = export_formats()
-    if name not in formats:
-        raise InputError(f'there is no export format "{name}"; there are {", ".join(formats)}.{did_you_mean(name, formats)}')
-    return formats[name]
+    return find_named("export format", name, export_formats())

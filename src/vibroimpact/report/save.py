@@ -56,11 +56,12 @@ def remake_report(directory: str | PathLike[str]) -> Path:
     """
     # which load what a run does not need
     from vibroimpact.report.reproduction.folder import is_reproduction, write_reproduction_report
-    from vibroimpact.storage.compute_study import is_study
+    from vibroimpact.report.study.page import write_study_report
+    from vibroimpact.storage.study import is_study, read_study
 
     folder = Path(directory)
     if is_study(folder):
-        _remake_study(folder)
+        write_study_report(read_study(folder), folder)
         return folder
     if is_reproduction(folder):
         write_reproduction_report(folder)
@@ -68,10 +69,3 @@ def remake_report(directory: str | PathLike[str]) -> Path:
     result = read_result(directory)
     write_beside(folder, partial(write_report, result))
     return folder
-
-
-def _remake_study(folder: Path) -> None:
-    from vibroimpact.report.study.page import write_study_report
-    from vibroimpact.storage.study import read_study
-
-    write_study_report(read_study(folder), folder)

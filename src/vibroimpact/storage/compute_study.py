@@ -17,7 +17,7 @@ from vibroimpact.cases.coupling import carried_modes
 from vibroimpact.cases.sweep import Sweep
 from vibroimpact.errors import ComputationError, InputError
 from vibroimpact.storage.folder import SUMMARY, new_folder
-from vibroimpact.storage.study import DATASET, STUDY
+from vibroimpact.storage.study import DATASET, STUDY, is_study
 from vibroimpact.storage.study_dataset import write_dataset
 from vibroimpact.storage.study_table import MOST_ROWS, write_drops
 from vibroimpact.storage.study_toml import study_toml
@@ -95,11 +95,6 @@ def compute_study(
             _assemble(folder, ledger, sweep)
         shutil.rmtree(folder / FOLDER, ignore_errors=True)
     return folder
-
-
-def is_study(folder: Path) -> bool:
-    """Was a study begun in a folder?"""
-    return (folder / STUDY).is_file() or (folder / LEDGER).is_file()
 
 
 def _begin(folder: Path, sweep: Sweep, memory: float, *, force: bool) -> None:

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from vibroimpact.errors import InputError
 from vibroimpact.studies.columns import SIGNAL
+from vibroimpact.studies.ledger import LEDGER
 from vibroimpact.studies.plan import SAMPLE
 
 DATASET, STUDY = "study.nc", "study.toml"
@@ -117,6 +118,11 @@ class Study:
     def _check(self, name: str) -> None:
         if name not in self.shapes:
             raise InputError(f'there is no variable "{name}"; there are {", ".join(self.shapes)}')
+
+
+def is_study(folder: Path) -> bool:
+    """Was a study begun in a folder?"""
+    return (folder / STUDY).is_file() or (folder / LEDGER).is_file()
 
 
 def read_study(directory: str | PathLike[str]) -> Study:

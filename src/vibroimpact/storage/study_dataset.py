@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vibroimpact._version import __version__
-from vibroimpact.dynamics.response import Outcome
+from vibroimpact.dynamics.outcome import OUTCOMES, Outcome
 from vibroimpact.storage.study import DATASET, FAILED_POINT, FAILED_REASON
 from vibroimpact.storage.study_toml import study_toml
 from vibroimpact.studies.chunk_file import chunk_layout, read_chunk
@@ -78,7 +78,7 @@ def write_dataset(
         file.attrs["version"] = __version__
         file.attrs["study"] = study_toml(table)
         scales = _write_coordinates(file, plan, meanings)
-        data = {one: _new_variable(file, one, layout[one], scales, meanings, rates) for one in _ordered(layout, meanings)}
+        data = {one: _new_variable(file, one, layout[one], scales, meanings, rates) for one in meanings if one in layout}
         failures: dict[int, str] = {}
         for chunk in chunks:
             result = read_chunk(folder, chunk, study)
@@ -99,10 +99,6 @@ def _see_that_there_is_room(path: Path, size: int) -> None:
     with path.open("wb") as file:
         if hasattr(os, "posix_fallocate"):
             os.posix_fallocate(file.fileno(), 0, size + _MORE)
-
-
-def _ordered(layout: Mapping[str, Any], meanings: Meanings) -> list[str]:
-    return [one for one in meanings if one in layout]
 
 
 def _write_coordinates(file: h5py.File, plan: Plan, meanings: Meanings) -> list[h5py.Dataset]:
@@ -150,11 +146,11 @@ def _new_variable(
         own.append(
             file[_IMPACT] if _IMPACT in file else _scale(file, _IMPACT, np.arange(1, wide[0] + 1), ("1", "number of the impact, from 1"))
         )
-    fill = np.nan if dtype.kind == "f" else list(Outcome).index(Outcome.FAILED) if name == OUTCOME else 0
+    fill = np.nan if dtype.kind == "f" else Outcome.FAILED.code if name == OUTCOME else 0
     data = file.create_dataset(name, shape=tuple(len(scale) for scale in own), dtype=dtype, fillvalue=fill)
     if name == OUTCOME:
-        data.attrs["flag_values"] = np.arange(len(Outcome), dtype=dtype)
-        data.attrs["flag_meanings"] = " ".join(outcome.value.replace(": ", "_").replace(" ", "_") for outcome in Outcome)
+        data.attrs["flag_values"] = np.arange(len(OUTCOMES), dtype=dtype)
+        data.attrs["flag_meanings"] = " ".join(outcome.value.replace(": ", "_").replace(" ", "_") for outcome in OUTCOMES)
     return _described(data, meanings[name], own)
 
 

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from vibroimpact.dynamics.response import Outcome
+from vibroimpact.dynamics.outcome import OUTCOMES, Outcome
 from vibroimpact.storage.study_dataset import Meanings, as_text
 from vibroimpact.studies.chunk_file import ChunkResult, read_chunk
 from vibroimpact.studies.columns import OUTCOME, PEAKS, SENSOR_PEAK
@@ -47,13 +47,12 @@ def write_drops(folder: Path, chunks: Sequence[Span], study: str, plan: Plan, me
 
 
 def _rows(chunk: Span, plan: Plan, result: ChunkResult, peaks: Sequence[str]) -> Iterator[tuple[Any, ...]]:
-    outcomes = [outcome.value for outcome in Outcome]
-    ended = result.arrays.get(OUTCOME, np.full(chunk.size, list(Outcome).index(Outcome.FAILED)))
+    ended = result.arrays.get(OUTCOME, np.full(chunk.size, Outcome.FAILED.code))
     columns = [_cells(result.arrays.get(name, np.full(chunk.size, np.nan))) for name in peaks]
     points = [[as_text(value) for value in values.tolist()] for values in plan.points(chunk.first, chunk.size).values()]
     numbers = range(chunk.first, chunk.first + chunk.size)
     reasons = [result.failures.get(place, "") for place in range(chunk.size)]
-    yield from zip(numbers, *points, *columns, [outcomes[code] for code in ended], reasons, strict=True)
+    yield from zip(numbers, *points, *columns, [OUTCOMES[code].value for code in ended], reasons, strict=True)
 
 
 def _cells(values: NDArray[Any]) -> list[Any]:

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import importlib
-import pkgutil
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
 
-from vibroimpact.errors import InputError, did_you_mean
+from vibroimpact.registry import find_named, modules_in
 from vibroimpact.studies.axes import Axis, Floats
 from vibroimpact.studies.plan import Plan
 
@@ -50,9 +48,7 @@ def designs() -> Mapping[str, Design]:
     >>> list(designs())
     ['grid', 'latin-hypercube', 'saltelli', 'sobol', 'zip']
     """
-    package = importlib.import_module("vibroimpact.studies.designs")
-    modules = [importlib.import_module(f"{package.__name__}.{info.name}") for info in pkgutil.iter_modules(package.__path__)]
-    found = [value for module in modules for value in vars(module).values() if isinstance(value, Design)]
+    found = [value for module in modules_in("vibroimpact.studies.designs") for value in vars(module).values() if isinstance(value, Design)]
     return {one.name: one for one in sorted(found, key=lambda one: one.name)}
 
 
@@ -64,10 +60,7 @@ def find_design(name: str) -> Design:
     InputError
         If there is none; the message names the closest.
     """
-    known = designs()
-    if name not in known:
-        raise InputError(f'there is no design "{name}"; there are {", ".join(known)}.{did_you_mean(name, known)}')
-    return known[name]
+    return find_named("design", name, designs())
 
 
 def drawn_plan(name: str, axes: Mapping[str, Axis], parts: Floats) -> Plan:

@@ -15,6 +15,7 @@ from typing import Any
 
 from vibroimpact._version import __version__
 from vibroimpact.errors import InputError
+from vibroimpact.report.beside import write_beside
 from vibroimpact.report.figures import save_figures
 from vibroimpact.report.reproduction.made import make_part
 from vibroimpact.report.reproduction.markdown import FIGURES
@@ -109,7 +110,7 @@ def write_reproduction_report(folder: Path) -> None:
     Raises
     ------
     InputError
-        If a part is damaged.
+        If a part is damaged, or the folder can't be written to.
     """
     parts = read_parts(folder)
     for name, part in parts.items():
@@ -118,13 +119,14 @@ def write_reproduction_report(folder: Path) -> None:
                 raise InputError(f"{folder / picture}.svg: the figure is missing; {_anew(folder, name)}")
     rows = [row for part in parts.values() for row in part["rows"]]
     text = report_text(parts)
-    with TemporaryDirectory(prefix=".report.", dir=folder) as working:
+
+    def write(working: Path) -> None:
         for name, page in {"report.md": text, "report.html": report_html(text, folder)}.items():
-            (Path(working) / name).write_text(page, encoding="utf-8")
+            (working / name).write_text(page, encoding="utf-8")
         if rows:
-            write_csv(rows, list(rows[0]), Path(working) / "values.csv")
-        for file in Path(working).iterdir():
-            os.replace(file, folder / file.name)
+            write_csv(rows, list(rows[0]), working / "values.csv")
+
+    write_beside(folder, write)
 
 
 def read_parts(folder: Path) -> dict[str, dict[str, Any]]:

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from typing import NamedTuple
 
-from vibroimpact.errors import InputError, did_you_mean
+from vibroimpact.errors import InputError
+from vibroimpact.registry import find_named
 from vibroimpact.report.reproduction.drawing import Drawing
 from vibroimpact.report.reproduction.paper_figures import PAPER_FIGURES
 from vibroimpact.report.reproduction.recovery_figure import draw_recovery
@@ -87,9 +88,7 @@ def find_parts(names: Iterable[str]) -> list[Part]:
     >>> [part.name for part in find_parts(["fig4", "table1"])]
     ['table1', 'fig4']
     """
-    wanted = set(names)
-    for name in sorted(wanted - PARTS.keys()):
-        raise InputError(f'there is no part "{name}"; there are {", ".join(PARTS)}.{did_you_mean(name, PARTS)}')
+    wanted = {find_named("part", name, PARTS).name for name in sorted(set(names))}
     if not wanted:
         raise InputError(f"name at least one of {', '.join(PARTS)}")
     return [part for name, part in PARTS.items() if name in wanted]

@@ -8,14 +8,12 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from vibroimpact.dynamics.response import Outcome
+from vibroimpact.dynamics.outcome import Outcome
 from vibroimpact.quantity import Multiple, multiple
 from vibroimpact.report.excerpt import Floats
 from vibroimpact.storage.study import Study
 from vibroimpact.studies.columns import OUTCOME, PEAK_TABLE, SENSOR_PEAK
 from vibroimpact.studies.percentiles import Spread, spread_of
-
-_FAILED = list(Outcome).index(Outcome.FAILED)
 
 _BODIES, _SENSORS = 6, 3
 """How many results of the bodies, and of sensors, are drawn."""
@@ -128,7 +126,7 @@ def read_output(study: Study, name: str, *places: slice) -> Floats:
     if found.dtype != np.float64:
         found = found.astype(np.float64)
     if study.failures:
-        found[study.values(OUTCOME, *places).reshape(-1) == _FAILED] = np.nan
+        found[study.values(OUTCOME, *places).reshape(-1) == Outcome.FAILED.code] = np.nan
     return found
 
 

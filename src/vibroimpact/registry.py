@@ -1,0 +1,54 @@
+"""What registers itself by being there: one file each in a package, found by name."""
+
+from __future__ import annotations
+
+import importlib
+import pkgutil
+from collections.abc import Mapping
+from types import ModuleType
+from typing import TypeVar
+
+from vibroimpact.errors import InputError, did_you_mean
+
+Found = TypeVar("Found")
+
+
+def modules_in(package: str) -> list[ModuleType]:
+    """Return the modules of a package, by name.
+
+    Examples
+    --------
+    >>> modules_in("vibroimpact.studies.designs")[0].__name__
+    'vibroimpact.studies.designs.grid'
+    """
+    names = sorted(info.name for info in pkgutil.iter_modules(importlib.import_module(package).__path__))
+    return [importlib.import_module(f"{package}.{name}") for name in names]
+
+
+def find_named(kind: str, name: str, known: Mapping[str, Found]) -> Found:
+    """Return what is known by a name.
+
+    Parameters
+    ----------
+    kind : str
+        What it is, for people.
+    name : str
+        As it is called.
+    known : mapping
+        All of its kind, by their names.
+
+    Raises
+    ------
+    InputError
+        If there is none; the message names the closest.
+
+    Examples
+    --------
+    >>> find_named("law", "herz", {"hertz": 1})
+    Traceback (most recent call last):
+        ...
+    vibroimpact.errors.InputError: there is no law "herz"; there are hertz. Did you mean "hertz"?
+    """
+    if name not in known:
+        raise InputError(f'there is no {kind} "{name}"; there are {", ".join(known)}.{did_you_mean(name, known)}')
+    return known[name]
