@@ -104,6 +104,27 @@ def digits(value: float, significant: int = 4) -> str:
     return fixed(value, max(0, significant - 1 - power))
 
 
+def certain(shown: str, value: float, figures: int) -> str:
+    """Return a number as it was shown, or in fewer significant figures where it does not have so many; a question mark for none.
+
+    Examples
+    --------
+    >>> [certain("9708.9", 9708.9456, figures) for figures in (9, 5, 4, 2, 0)]
+    ['9708.9', '9708.9', '9709', '9.7·10³', '?']
+    >>> certain("0.01", 0.0123, 1)
+    '0.01'
+    """
+    significant = len(re.sub(r"[^0-9]", "", shown.split("·")[0]).lstrip("0"))
+    if figures >= significant or not math.isfinite(value):
+        return shown
+    if figures < 1:
+        return "?"
+    mantissa, exponent = f"{value:.{figures - 1}e}".split("e")
+    if -4 <= (power := int(exponent)) < figures:
+        return fixed(value, figures - 1 - power)
+    return f"{mantissa}·10{_superscript(str(power))}".replace("-", _MINUS)
+
+
 def fixed(value: float, decimals: int) -> str:
     """Return a number with so many decimals, with a dash for NaN and a true minus sign."""
     if not math.isfinite(value):

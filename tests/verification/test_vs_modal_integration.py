@@ -111,4 +111,5 @@ def test_a_mode_that_is_not_met() -> None:
     """A node line through the contact point: as if it were not there."""
     with_it, without = (vi.simulate(drop_on(HERTZ, plate)) for plate in (modes_of([300.0, 800.0], [1.5, 0.0]), modes_of([300.0], [1.5])))
     for name, column in without.impacts.items():
-        np.testing.assert_allclose(with_it.impacts[name], column, rtol=1e-12, atol=1e-12, err_msg=name)
+        relative = 1e-7 if name == "sensitivity" else 1e-12  # which is made with differences of the force
+        np.testing.assert_allclose(with_it.impacts[name], column, rtol=relative, atol=1e-12, err_msg=name)

@@ -55,11 +55,14 @@ class LocalContact:
     series: QuasiStatic
     approach_speed: float
 
-    def forces(self, approach: Array, rate: Array) -> tuple[Array, Array]:
-        """Return the static and the dissipative force [N], before any clip, at the approach y [m] and its rate [m/s]."""
+    def forces(self, approach: Array, rate: Array, guess: Array | None = None) -> tuple[Array, Array]:
+        """Return the static and the dissipative force [N], before any clip, at the approach y [m] and its rate [m/s].
+
+        A guess of the law's indentation makes it quicker.
+        """
         if not self.series:
             return self.law.forces(approach, rate, self.approach_speed)
-        return self.law.forces(self.own(approach)[0], rate, self.approach_speed)
+        return self.law.forces(self.own(approach, guess)[0], rate, self.approach_speed)
 
     def linearised(self, approach: Array, rate: Array, guess: Array | None = None) -> Linearised:
         """Return the forces with their derivatives, which are differences, good enough for Newton's method."""

@@ -27,6 +27,7 @@ VIBRATION_IMPACT_COLUMNS: dict[str, tuple[str, str]] = {
     "closing_speed_m_s": ("m/s", "speed at which the surfaces meet at first touch"),
     "contacts": ("1", "number of contacts between first touch and last release"),
     "energy_to_vibration_J": ("J", "energy that went into vibration, what its damping took by the last release included"),
+    "sensitivity": ("1", "relative change of the motion at first touch, for a small relative change of the drop's height or speed"),
 }
 """Further columns of the impact table, where a body vibrates."""
 

@@ -20,6 +20,7 @@ from vibroimpact.dynamics.flight import Flight
 from vibroimpact.dynamics.outcome import OUTCOMES, Outcome
 from vibroimpact.dynamics.problem import MOST_IMPACTS, Problem
 from vibroimpact.dynamics.response import Leg, Response, Rest
+from vibroimpact.dynamics.sensitivity import sensitivities
 from vibroimpact.dynamics.vibration import Vibration, contact_of
 
 
@@ -247,6 +248,8 @@ class Run:
         )
         self.outcomes[~(energy["closure_relative"] <= CLOSURE_LIMIT)] = Outcome.FAILED.code
         table = {name: np.array([row[name] for row in self.rows]).reshape(-1, self.size).T for name in self.columns}
+        if self.vibration is not None:
+            table["sensitivity"] = np.array(sensitivities(self.problem, self.legs, self.size)).reshape(-1, self.size).T
         return Response(
             self.problem,
             table,

@@ -23,7 +23,7 @@ from vibroimpact.errors import InputError
 from vibroimpact.materials import RIGID, Material, find_material, material_library
 from vibroimpact.report.comparison import Comparison, comparison_table, free_parameter_words
 from vibroimpact.report.deformation import deformation_rows, treatment_sentence
-from vibroimpact.report.tables import several_contacts
+from vibroimpact.report.tables import certain_figures, several_contacts, takes_digits
 from vibroimpact.storage.result import Result
 
 # column, heading, factor, digits
@@ -40,23 +40,29 @@ _IMPACT_TABLE = (
     ("rebound_height_m", "rebound\n[m]", 1.0, 5),
     ("energy_lost_J", "lost\n[J]", 1.0, 4),
     ("contacts", "con-\ntacts", 1.0, 3),
+    ("sensitivity", "sensi-\ntivity", 1.0, 2),
 )
 _LEFT_OUT_WHEN_NARROW = {"separation_speed_m_s", "max_acceleration_m_s2", "energy_lost_J"}
 _NARROW = 110  # columns of a terminal
-_ONE_MORE = 8  # for the column of contacts, where a visit has several
+_ONE_MORE = 8  # for a column that is shown where there is something to tell
 _FIRST_ROWS, _LAST_ROWS = 15, 3
 
 
-def impact_table(impacts: Mapping[str, np.ndarray], width: int) -> RenderableType:
-    """Return the table of impacts for a terminal of a width; numbers are never cut, the middle of a long table is."""
+def impact_table(result: Result, width: int) -> RenderableType:
+    """Return the table of impacts for a terminal of a width; numbers are never cut, the middle of a long table is.
+
+    Numbers are shown with the digits that they have where the drop is sensitive.
+    """
+    impacts, change = result.impacts, result.change_by_impact
     number = len(impacts["impact"])
     if not number:
         return Text("No impact within the run.")
-    several = several_contacts(impacts)
-    wide = width >= _NARROW + several * _ONE_MORE
-    left_out = set() if wide else _LEFT_OUT_WHEN_NARROW | ({"restitution_asked"} if several else set())
-    left_out = left_out if several else left_out | {"contacts"}
+    told = {"contacts": several_contacts(impacts), "sensitivity": takes_digits(change)}
+    wide = width >= _NARROW + sum(told.values()) * _ONE_MORE
+    left_out = set() if wide else _LEFT_OUT_WHEN_NARROW | ({"restitution_asked"} if any(told.values()) else set())
+    left_out = left_out | {name for name, shown in told.items() if not shown}
     columns = [column for column in _IMPACT_TABLE if column[0] not in left_out]
+    figures = {name: certain_figures(change, name) for name, *_ in columns}
     table = Table(box=None, padding=(0, 1), header_style="bold")
     table.add_column("\n#", justify="right")
     for _, heading, _, _ in columns:
@@ -66,7 +72,7 @@ def impact_table(impacts: Mapping[str, np.ndarray], width: int) -> RenderableTyp
             if index == _FIRST_ROWS:
                 table.add_row("...")
             continue
-        cells = (_number(float(impacts[name][index]) * factor, digits) for name, _, factor, digits in columns)
+        cells = (_number(float(impacts[name][index]) * factor, digits, int(figures[name][index])) for name, _, factor, digits in columns)
         table.add_row(str(int(impacts["impact"][index])), *cells)
     return table
 
@@ -90,7 +96,7 @@ def result_summary(result: Result, width: int) -> RenderableType:
     """Return what a run prints in a terminal of a width: the tables, the status, and what to doubt."""
     return Group(
         Text(result.name, style="bold"),
-        impact_table(result.impacts, width),
+        impact_table(result, width),
         Text(),
         energy_table(result.energy),
         Text(),
@@ -278,7 +284,10 @@ def _doubt_lines(found: Iterable[str]) -> list[RenderableType]:
     return [Text(f"Doubt: {doubt}.", style="yellow") for doubt in found]
 
 
-def _number(value: float, digits: int) -> str:
+def _number(value: float, digits: int, certain: int = 17) -> str:
+    """Return a number in so many digits, or in the fewer that are certain."""
     if not math.isfinite(value):
         return "-"
+    if certain < digits:
+        return f"{value:#.{certain}g}".replace(".e", "e").rstrip(".") if certain else "?"  # zeros at the end are digits too
     return f"{value:.{digits}g}" if value == 0 or 1e-3 <= abs(value) < 10.0 ** (digits + 1) else f"{value:.{max(digits - 2, 1)}e}"

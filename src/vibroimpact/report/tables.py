@@ -7,8 +7,9 @@ from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
-from vibroimpact.quantity import digits, fixed, multiple
+from vibroimpact.quantity import certain, digits, fixed, multiple
 from vibroimpact.report.excerpt import Floats
 from vibroimpact.storage.result import Result
 
@@ -17,6 +18,15 @@ _MOST_ROWS, _FIRST, _LAST = 50, 45, 3
 
 _CONTACTS = {"contacts": "Contacts in the visit"}
 """Shown where a visit has more than one: the plate comes back to the sphere, or the sphere's own vibration does."""
+
+_SHOWN, _ALL = 6, 17  # significant figures in a table, and of a number
+
+_SENSITIVITY = {"sensitivity": "Sensitivity"}
+"""Shown where it takes digits away."""
+
+_EXACT = ("impact", "contacts", "restitution_asked", "sensitivity")
+_ARRIVAL = ("time_s", "approach_speed_m_s")
+"""Columns of which a change of the drop takes no digits, and those that have the digits of the impact before."""
 
 HEADERS = {
     "impact": "Impact",
@@ -65,8 +75,9 @@ class Table(NamedTuple):
 
 def impact_table(result: Result) -> Table:
     """Return the impact table in multiples of units; a long one without its middle."""
-    shown = {**HEADERS, **(_CONTACTS if several_contacts(result.impacts) else {})}
-    columns = [column(name, result.impacts[name]) for name in shown]
+    change = result.change_by_impact
+    shown = {**HEADERS, **(_CONTACTS if several_contacts(result.impacts) else {}), **(_SENSITIVITY if takes_digits(change) else {})}
+    columns = [column(name, result.impacts[name], change) for name in shown]
     headers = [(header, unit) for header, (unit, _) in zip(shown.values(), columns, strict=True)]
     rows = [list(row) for row in zip(*(cells for _, cells in columns), strict=True)]
     if len(rows) <= _MOST_ROWS:
@@ -97,14 +108,53 @@ def _beside(value: float, whole: float, significant: int) -> str:
     return fixed(value, decimals) if abs(value) >= 100.0 * 10.0**-decimals else digits(value, 3)
 
 
-def column(name: str, values: Floats) -> tuple[str, list[str]]:
-    """Return unit and cells of a column of the impact table."""
+def certain_figures(change: Floats, name: str = "max_force_N") -> NDArray[np.intp]:
+    """Return how many significant figures a column of the impact table has for sure; the last may be off by three.
+
+    Parameters
+    ----------
+    change : array, shape (impacts,)
+        To what part of the motion an unknown change of the drop has grown by each impact.
+    name : str
+        The column.
+
+    Examples
+    --------
+    >>> certain_figures(np.array([0.0, 1e-9, 0.003, 0.12, 0.5])).tolist()
+    [17, 9, 3, 1, 0]
+    """
+    if name in _EXACT:
+        return np.full(len(change), _ALL)
+    if name in _ARRIVAL:
+        change = np.concatenate([change[:1], change[:-1]])
+    with np.errstate(divide="ignore", invalid="ignore"):
+        figures = np.floor(0.5 - np.log10(np.nan_to_num(change, nan=np.inf)))
+    return np.clip(figures, 0, _ALL).astype(np.intp)
+
+
+def takes_digits(change: Floats) -> bool:
+    """Do some impacts have fewer significant figures than tables show, as a change of the drop grows?"""
+    return bool(certain_figures(change).min(initial=_SHOWN) < _SHOWN)
+
+
+def column(name: str, values: Floats, change: Floats | None = None) -> tuple[str, list[str]]:
+    """Return unit and cells of a column of the impact table, with the digits that they have where a change of the drop grows."""
     if name in ("impact", "contacts"):
         return "", [fixed(value, 0) for value in values]
+    if name == "sensitivity":
+        return "", [digits(value, 2) for value in values]
+    unit, values, cells = _cells(name, values)
+    figures = certain_figures(np.zeros(len(values)) if change is None else change, name).tolist()
+    return unit, [certain(cell, value, number) for cell, value, number in zip(cells, values, figures, strict=True)]
+
+
+def _cells(name: str, values: Floats) -> tuple[str, Floats, list[str]]:
+    """Return the unit in which a column is shown, its values in it, and these as texts."""
     if name.startswith("restitution"):
-        return "", [fixed(value, 4) for value in values]
+        return "", values, [fixed(value, 4) for value in values]
     scale = multiple(next(unit for end, unit in _UNITS.items() if name.endswith(end)), values)
+    values = values / scale.size
     if name == "time_s":
         # times are compared with each other: a microsecond counts, however late it is
-        return scale.unit, [fixed(value, 6 if scale.unit == "s" else 3) for value in values / scale.size]
-    return scale.unit, [digits(value) for value in values / scale.size]
+        return scale.unit, values, [fixed(value, 6 if scale.unit == "s" else 3) for value in values]
+    return scale.unit, values, [digits(value) for value in values]

@@ -14,8 +14,10 @@ from numpy.typing import NDArray
 
 from vibroimpact._version import __version__
 from vibroimpact.cases.doubts import doubts, range_doubts, sensor_doubts, truncation_doubts
+from vibroimpact.cases.sensitivity_doubts import sensitivity_doubts
 from vibroimpact.dynamics.recording import Signal
 from vibroimpact.dynamics.response import Response
+from vibroimpact.dynamics.sensitivity import RELATIVE_CHANGE, change_by_impact
 from vibroimpact.storage.deflection import Deflection, deflection_of
 from vibroimpact.storage.fine_history import fine_history
 from vibroimpact.storage.peaks import Peaks, peaks_of
@@ -76,6 +78,11 @@ class Result:
         return found if isinstance(found, list) else []
 
     @property
+    def change_by_impact(self) -> NDArray[np.float64]:
+        """To what part of the motion a change of the drop that nobody can rule out has grown by each impact."""
+        return change_by_impact(self.impacts, float(self.provenance.get("tolerance", RELATIVE_CHANGE)))
+
+    @property
     def doubts(self) -> list[str]:
         """What to doubt of it: where its assumptions are strained."""
         peaks = (self.impacts[name] for name in ("max_indentation_m", "max_force_N"))
@@ -87,6 +94,7 @@ class Result:
         modes = {body: self.frequencies(body) for body in bodies}
         found += truncation_doubts({body: self.truncation[body] for body in bodies}, modes, duration)
         found += range_doubts(self.case.get("sensors", ()), self.signals)
+        found += sensitivity_doubts(self.change_by_impact)
         return found + sensor_doubts(self.signals.values(), self.frequencies("plate"))
 
     @property

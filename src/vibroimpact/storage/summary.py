@@ -41,4 +41,11 @@ def _of_vibration(result: Result) -> dict[str, Any]:
         }
         for name, signal in result.signals.items()
     }
-    return {**result.peaks, "deformation": dict(result.deformation), "truncation": truncation, "sensors": sensors}
+    change = [float(value) if math.isfinite(value) else None for value in result.change_by_impact]
+    return {
+        **result.peaks,
+        "deformation": dict(result.deformation),
+        "truncation": truncation,
+        "change_by_impact": change,
+        "sensors": sensors,
+    }

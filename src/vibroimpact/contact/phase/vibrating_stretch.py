@@ -18,7 +18,7 @@ from functools import cache, cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from vibroimpact.contact.local import LocalContact
+from vibroimpact.contact.local import Linearised, LocalContact
 from vibroimpact.contact.phase.collocation import Floats, Map, Rule, collocation_rule
 from vibroimpact.contact.phase.oscillators import Oscillators, State
 
@@ -108,7 +108,7 @@ class VibratingStretch:
         of, at, sigma = self.around.oscillators, self.spectrum, self.length * self.spectrum.values
         force, static = ((at.inverse @ part)[:, None] for part in (self.force, self.static))
         drive = _own_drive(of, at, self.length, self.start) - of.outer * force - (of.shape - of.outer) * static
-        oscillators = at.vectors @ (drive / _impedance(of, sigma))
+        oscillators = at.vectors @ (drive / impedance_of(of, sigma))
         massless = -of.mobility * force - at.constant[:, None] * (of.rate * self.start.local)
         return np.asarray(oscillators.real), np.asarray((at.vectors @ (massless / (1.0 + of.rate * sigma[:, None]))).real)
 
@@ -239,9 +239,9 @@ def solve_vibrating(
     """Solve the motion through a stretch of contact of given length [s]; a guess of both parts of the force makes it quicker."""
     of, at, floor = around.oscillators, spectrum(time_map, local.law.root), local.release_level
     rule = at.rule
-    impedance = _impedance(of, length * at.values)
-    free_approach, free_rate = _free(of, at, length, start, around.gravity, impedance)
-    by_force, rate_by, by_static = _receptance(around, at, length, impedance)
+    impedance = impedance_of(of, length * at.values)
+    free_approach, free_rate = unforced(of, at, length, start, around.gravity, impedance)
+    by_force, rate_by, by_static = receptance(around, at, length, impedance)
     begun, begun_rate = max(float(of.approach(start)), floor), float(of.outer_rates(start))
     if forces is None:  # that at the start goes on, and what the motion under it gives
         static, dissipative = (np.full(NODES, float(part)) for part in local.forces(np.array(begun), np.array(begun_rate)))
@@ -255,12 +255,8 @@ def solve_vibrating(
         force = static + dissipative
         approach, rate = free_approach - by_force @ force - by_static @ static, free_rate - rate_by @ force
         now = local.linearised(np.maximum(approach, floor), rate, guess)
-        guess, held = now.delta, (approach > floor)[:, None]
-        static_slope, slope = now.static_by_approach[:, None] * held, now.dissipative_by_approach[:, None] * held
-        damped = slope * by_force + now.dissipative_by_rate[:, None] * rate_by
-        jacobian = np.block(
-            [[_UNIT + static_slope * (by_force + by_static), static_slope * by_force], [damped + slope * by_static, _UNIT + damped]]
-        )
+        guess = now.delta
+        jacobian, _ = force_jacobian(now, approach > floor, by_force, rate_by, by_static)
         try:
             change = np.linalg.solve(jacobian, np.concatenate([static - now.static, dissipative - now.dissipative]))
         except np.linalg.LinAlgError:
@@ -280,6 +276,20 @@ def solve_vibrating(
     )
 
 
+def force_jacobian(
+    now: Linearised, held: NDArray[np.bool_], by_force: Floats, rate_by: Floats, by_static: Floats
+) -> tuple[Floats, tuple[Floats, Floats, Floats]]:
+    """Return the Jacobian of the equations of both parts of the force at the nodes, (2 N, 2 N).
+
+    And the derivatives of the static part by the approach, of the dissipative part by it, and by the rate, (N,): the first two are zero
+    where the surfaces are not `held` together.
+    """
+    static_slope, slope, damping = now.static_by_approach * held, now.dissipative_by_approach * held, now.dissipative_by_rate
+    stiff, damped = static_slope[:, None] * by_force, slope[:, None] * by_force + damping[:, None] * rate_by
+    jacobian = np.block([[_UNIT + stiff + static_slope[:, None] * by_static, stiff], [damped + slope[:, None] * by_static, _UNIT + damped]])
+    return jacobian, (static_slope, slope, damping)
+
+
 def _own_drive(of: Oscillators, at: Spectrum, length: float, start: State) -> Complex:
     """Return what drives each oscillator without contact force, in the eigenvectors (N, n): its motion at the start, going on."""
     stiffness = of.angular_frequency**2
@@ -287,7 +297,7 @@ def _own_drive(of: Oscillators, at: Spectrum, length: float, start: State) -> Co
     return np.asarray(-at.constant[:, None] * pull - (length * at.time)[:, None] * (stiffness * start.velocity))
 
 
-def _free(of: Oscillators, at: Spectrum, length: float, start: State, gravity: float, impedance: Complex) -> tuple[Floats, Floats]:
+def unforced(of: Oscillators, at: Spectrum, length: float, start: State, gravity: float, impedance: Complex) -> tuple[Floats, Floats]:
     """Return the approach [m], and the rate outside the contact [m/s], at the nodes as they would be without contact force."""
     sigma, time = length * at.values, length * at.rule.time
     responses = _own_drive(of, at, length, start) / impedance
@@ -298,7 +308,7 @@ def _free(of: Oscillators, at: Spectrum, length: float, start: State, gravity: f
     return np.asarray(approach + (at.vectors @ (sigma * (sigma * (responses @ of.shape) + massless))).real), rate
 
 
-def _receptance(around: Surroundings, at: Spectrum, length: float, impedance: Complex) -> tuple[Floats, Floats, Floats]:
+def receptance(around: Surroundings, at: Spectrum, length: float, impedance: Complex) -> tuple[Floats, Floats, Floats]:
     """Return by how much forces at the nodes take back the approach and the rate there, and static ones the approach, (N, N)."""
     of, sigma, mass = around.oscillators, length * at.values, around.mass
     squares = of.shape**2 / impedance
@@ -309,7 +319,7 @@ def _receptance(around: Surroundings, at: Spectrum, length: float, impedance: Co
     return by_force, rate_by + length / mass * at.rule.integral, by_static
 
 
-def _impedance(of: Oscillators, sigma: Complex) -> Complex:
+def impedance_of(of: Oscillators, sigma: Complex) -> Complex:
     """Return 1 + 2 zeta omega sigma + omega^2 sigma^2 of each oscillator, (N, n)."""
     column = sigma[:, None]
     return np.asarray(1.0 + column * (of.damping + of.angular_frequency**2 * column))

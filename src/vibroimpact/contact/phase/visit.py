@@ -27,6 +27,7 @@ from vibroimpact.contact.roots import find_root
 from vibroimpact.contact.static import static_indentation
 
 _MOST_STRETCHES = 20_000
+_FIRST = 0.125  # of the span of a contact: the first stretch
 _LONGEST = 300.0  # times the span of a contact: a sphere that long in touch lies there
 _MOST_CONTACTS = 1_000
 _GRID = np.linspace(0.0, 1.0, 33)
@@ -142,7 +143,7 @@ class _Visit:
         self, around: Surroundings, law: CompliantLaw, series: QuasiStatic, state: State, tolerance: float, pace: float, forgets: bool
     ) -> None:
         self.around, self.series, self.state, self.tolerance = around, series, state, tolerance
-        self.time, self.left, self.span, self.pace = 0.0, 0.0, pace, 0.125 * pace
+        self.time, self.left, self.span, self.pace = 0.0, 0.0, pace, _FIRST * pace
         self.touching, self.stretches = True, 0
         self.law, self.ends_without_force = law, law.contact_end == "zero-force"
         self.forgets = forgets or not law.lasting
@@ -178,7 +179,7 @@ class _Visit:
 
     def contact(self) -> int:
         """March through one contact; return how it ended."""
-        self.touching, begun = True, self.time
+        self.touching, begun, self.pace = True, self.time, min(self.pace, _FIRST * self.span)
         while True:
             if not self.touching and self.here() <= self.floor and self.around.oscillators.rates(self.state) < 0.0:
                 self.left = self.time  # by less than rounding tells
@@ -188,10 +189,12 @@ class _Visit:
             if self.stretches > _MOST_STRETCHES or self.pace < 1e-12 * self.span:
                 return self.stay(FAILED)
             stretch = self.solve("touch" if self.touching else "inside", self.pace)
-            if not stretch.resolved(self.tolerance, self.speed):
+            event = self.first_event(stretch) if stretch.solved else None
+            # up to where the surfaces part, the force is smooth in another root of time: the end may be resolved where this is not
+            ends = event is not None and event.name == "parted" and not self.touching
+            if not ends and not stretch.resolved(self.tolerance, self.speed):
                 self.pace *= 0.5
                 continue
-            event = self.first_event(stretch)
             if event is None:
                 self.accept(stretch)
                 if stretch.roughness**2 < 1e-4 * self.tolerance:
@@ -319,7 +322,7 @@ class _Visit:
         for name, values in (("indentation", stretch.indentation_at), ("force", stretch.force_at)):
             if float(values(stretch.rule.nodes).max()) < 0.98 * getattr(found, f"max_{name}"):
                 continue
-            x = _highest(values)
+            x = highest(values)
             value = float(values(np.array([x]))[0])
             if value > getattr(found, f"max_{name}"):
                 setattr(found, f"max_{name}", value)
@@ -389,7 +392,7 @@ def _crossing(side: float, level: float, stretch: VibratingStretch) -> Floats:
     return -side * (stretch.approach - level)
 
 
-def _highest(values: Callable[[Floats], Floats]) -> float:
+def highest(values: Callable[[Floats], Floats]) -> float:
     """Return where a smooth function on [0, 1] is largest."""
     low, high = 0.0, 1.0
     for _ in range(4):

@@ -1,0 +1,238 @@
+r"""How a small change of the drop grows from impact to impact, where bodies vibrate.
+
+A second drop, begun from a height or with a speed that differs by a small part, stays beside the first by a difference that obeys the
+linearised equations of motion. It is carried along the history that was computed: in closed form through flights, by one linear solve
+through each stretch of contact. Where the contact force jumps, as a dashpot meets the surface, the two drops meet the jump at different
+times: if the second is later by :math:`\delta t`, the difference gains :math:`(f_- - f_+)\,\delta t`, with the rates f of the state
+before and after (P. C. Mueller, Chaos, Solitons & Fractals 5:1671, 1995).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from vibroimpact.contact.local import LocalContact
+from vibroimpact.contact.phase.collocation import Floats
+from vibroimpact.contact.phase.oscillators import FreeMotion, State
+from vibroimpact.contact.phase.tangent import difference_through
+from vibroimpact.contact.phase.vibrating_stretch import VibratingStretch
+from vibroimpact.contact.phase.visit import Apart, highest
+from vibroimpact.dynamics.problem import Problem
+
+if TYPE_CHECKING:
+    from vibroimpact.dynamics.response import Leg
+
+RELATIVE_CHANGE = 1e-9
+"""A relative change of the drop that nobody can rule out: of 4 m, 4 nm."""
+
+_STEP = 1e-6  # relative, of what a law knows of its contact: for differences
+_JUMP = 1e-6  # of the force: less is no jump
+_SLOW = 0.1  # of the speed at which the surfaces meet: what leaves more slowly counts as that
+
+
+def sensitivities(problem: Problem, legs: Sequence[Leg], size: int) -> list[Floats]:
+    r"""Return how a relative change of the drop has grown by each impact [-]: one array (size,) an impact.
+
+    The drop is changed in its height, or in its speed where that is given. The growth is the largest of the relative changes of the
+    speed at which the surfaces meet, of the largest force, and of the speed of separation (as a part of at least a tenth of the
+    former). Of a rigid drop it would be 0.6 from a height, as Hertz's force goes with its power 0.6.
+
+    Parameters
+    ----------
+    problem : Problem
+        What was simulated; something in it vibrates.
+    legs : sequence of Leg
+        Flights and contacts of all drops.
+    size : int
+        How many drops.
+    """
+    changed = np.broadcast_to(np.asarray(problem.height if problem.speed is None else problem.speed, dtype=float), (size,))
+    neighbours = [_Neighbour(motion, float(value), problem.speed is None) for motion, value in zip(legs[0].motions, changed, strict=True)]
+    found = []
+    with np.errstate(all="ignore"):  # it may grow beyond all numbers
+        for leg in legs:
+            for drop, flight, length in zip(leg.drops, leg.motions, leg.flight_end - leg.flight.start, strict=True):
+                neighbours[drop].fly(flight, float(length))
+            if leg.contact is None:
+                continue
+            for piece in leg.contact.pieces:
+                neighbour, motion = neighbours[leg.contact_drops[piece.drops[0]]], piece.motion
+                if isinstance(motion, Apart):
+                    neighbour.fly(motion.free, motion.length, inside=motion.local is not None)
+                else:
+                    assert isinstance(motion, VibratingStretch)  # of bodies that vibrate
+                    neighbour.pass_through(motion)
+            grown = np.full(size, np.nan)
+            for drop, speed in zip(leg.contact_drops, leg.contact.final_rate, strict=True):
+                grown[drop] = neighbours[drop].leave(-float(speed))
+            found.append(grown)
+    return found
+
+
+def change_by_impact(impacts: Mapping[str, Floats], tolerance: float) -> Floats:
+    """Return to what part of the motion a relative change of 1e-9 in the drop has grown by each impact; 0 where nothing vibrates.
+
+    Each contact is integrated to a tolerance, which grows likewise: where it is larger, it counts.
+
+    Examples
+    --------
+    >>> change_by_impact({"impact": np.ones(1), "sensitivity": np.array([1e6])}, 1e-9).round(6).tolist()
+    [0.001]
+    """
+    return impacts.get("sensitivity", np.zeros(len(impacts["impact"]))) * max(RELATIVE_CHANGE, tolerance)
+
+
+@dataclass
+class _Visit:
+    """A visit so far.
+
+    `speed`, `closing`: speed at which the surfaces met, and its difference [m/s]. `force`: the largest at a node [N]. `strongest`: the
+    stretch where it is, and the difference of the force at the nodes [N].
+    """
+
+    speed: float
+    closing: float
+    force: float = 0.0
+    strongest: tuple[VibratingStretch, Floats] | None = None
+
+
+class _Neighbour:
+    """The difference of a second drop from the first, per unit relative change of the drop.
+
+    The equations of motion do not depend on time itself, so that the two need not be compared at equal times: whenever a contact
+    begins or ends, the second drop is compared when it begins or ends for that one.
+    """
+
+    def __init__(self, motion: FreeMotion, value: float, by_height: bool) -> None:
+        nothing = (np.zeros_like(part) for part in (motion.start.displacement, motion.start.velocity, motion.start.local))
+        centre = (-value, 0.0) if by_height else (0.0, value)  # height is up, approach is down
+        self.difference = State(*map(np.asarray, centre), *nothing)
+        self.apart = True
+        self.last: VibratingStretch | None = None  # which the drops have just left
+        self.pressed = 0.0  # difference of the force at its end
+        self.local: LocalContact | None = None  # the last contact as the first drop felt it
+        self.knowledge: dict[str, float] = {}  # differences of what the law knows: the speed of first touch, and what it remembers
+        self.visit: _Visit | None = None
+
+    def fly(self, motion: FreeMotion, length: float, inside: bool = False) -> None:
+        """Go through free motion, `inside` the indentation or apart."""
+        if not inside:
+            self.part()
+        self.difference = FreeMotion(motion.oscillators, self.difference, 0.0).state(np.array(length))
+        self.apart, self.last = not inside, None
+
+    def pass_through(self, stretch: VibratingStretch) -> None:
+        """Go through a stretch of contact."""
+        if self.apart:
+            self.touch(stretch)
+        elif stretch.local is not self.local:
+            self.turn(stretch)
+        through = difference_through(stretch, self.difference, _asides(stretch.local, self.knowledge))
+        self.difference, self.pressed, self.last = through.end, float(through.force[-1]), stretch
+        assert self.visit is not None  # it has touched
+        if stretch.force.max() > self.visit.force:
+            self.visit.force, self.visit.strongest = float(stretch.force.max()), (stretch, through.force)
+
+    def leave(self, speed: float) -> float:
+        """Leave at a speed upwards; return how the change has grown in the visit."""
+        self.part()
+        visit, self.visit = self.visit, None
+        if visit is None or visit.strongest is None:
+            return float("nan")
+        stretch, pressed = visit.strongest
+        top = np.array([highest(stretch.force_at)])
+        stronger = float(stretch.rule.interpolate(top, pressed)[0]) / float(stretch.force_at(top)[0])
+        slower = float(self.difference.speed) / max(abs(speed), _SLOW * visit.speed)
+        return max(abs(visit.closing) / visit.speed, abs(stronger), abs(slower))
+
+    def touch(self, stretch: VibratingStretch) -> None:
+        """Meet the surface with the stretch that begins there."""
+        of, start, local = stretch.around.oscillators, stretch.start, stretch.local
+        same_surface = self.local is not None and self.local.law.memories() == local.law.memories()
+        self.knowledge = {name: self.knowledge.get(name, 0.0) if same_surface else 0.0 for name in local.law.memories()}
+        level = sum(times * (aside.touch_level - local.touch_level) for aside, times in _asides(local, self.knowledge))
+        rate = float(of.rates(start))
+        later = (level - float(of.approach(self.difference))) / rate
+        self.difference = _later(self.difference, _rates(stretch, start, 0.0, 0.0), later)
+        closing = float((of.outer_rates if of.outer_rates(start) >= rate else of.rates)(self.difference))
+        self.knowledge["approach_speed"] = closing
+        self.local, self.apart = local, False
+        self.visit = self.visit or _Visit(local.approach_speed, closing)
+
+    def part(self) -> None:
+        """Compare the drops when their surfaces part, if they do."""
+        if self.last is not None:
+            excess = float(self.last.around.oscillators.approach(self.difference))
+            self.synchronise(self.last, excess, float(self.last.closing[-1]))
+        self.last = None
+
+    def turn(self, stretch: VibratingStretch) -> None:
+        """Let the law remember how deep the contact has been: the second drop deeper by the difference of the approach."""
+        assert self.local is not None  # it is in contact
+        assert self.last is not None
+        of, local = stretch.around.oscillators, self.local
+        deepest = max(float(of.approach(stretch.start)), local.release_level)
+        if self.force_jumps(stretch):
+            x = np.array([1.0 - _STEP, 1.0])
+            closing, time = self.last.rule.weights(x).T @ self.last.closing, self.last.length * self.last.rule.map_time(x)
+            faster = float(of.rates(self.difference)) - of.mobility.sum() * self.pressed
+            self.synchronise(self.last, faster, float((closing[1] - closing[0]) / (time[1] - time[0])))
+        now = stretch.local.law.memories()
+        step = _STEP * deepest
+        found = dict.fromkeys(now, 0.0)
+        beside = [(local.after_compression(deepest + step), float(of.approach(self.difference)) / step)]
+        beside += [(aside.after_compression(deepest), times) for aside, times in _asides(local, self.knowledge)]
+        for aside, times in beside:
+            for name, value in aside.law.memories().items():
+                found[name] += times * float(value - now[name])
+        self.knowledge.update(found)
+        self.local = stretch.local
+
+    def force_jumps(self, stretch: VibratingStretch) -> bool:
+        """Does the force jump where a stretch follows the last one?"""
+        assert self.last is not None
+        deep, rate = np.maximum(stretch.approach[:1], stretch.local.release_level), stretch.rate[:1]
+        before, after = self.last.force[-1], np.sum(stretch.local.forces(deep, rate), axis=0)
+        return bool(abs(float(after[0] - before)) > _JUMP * abs(before))
+
+    def synchronise(self, stretch: VibratingStretch, excess: float, rate: float) -> None:
+        """Compare the drops at the end of a stretch, where what ends it exceeds by `excess` in the second drop and grows at a rate."""
+        rates = _rates(stretch, stretch.end, stretch.force[-1], stretch.static[-1])
+        self.difference = _later(self.difference, rates, -excess / rate)
+
+
+def _rates(stretch: VibratingStretch, state: State, force: float, static: float) -> State:
+    """Return how a state changes under a force, and its static part [N]."""
+    around, of = stretch.around, stretch.around.oscillators
+    return State(
+        state.speed,
+        np.asarray(around.gravity - force / around.mass),
+        state.velocity,
+        -of.damping * state.velocity - of.angular_frequency**2 * state.displacement - of.outer * force - (of.shape - of.outer) * static,
+        -of.rate * state.local - of.mobility * force,
+    )
+
+
+def _later(difference: State, rates: State, time: float) -> State:
+    """Return the difference if the second drop is looked at later by a time, per unit relative change."""
+    return State(*(one + time * rate for one, rate in zip(vars(difference).values(), vars(rates).values(), strict=True)))
+
+
+def _asides(local: LocalContact, knowledge: dict[str, float]) -> list[tuple[LocalContact, float]]:
+    """Return contacts whose law knows something a little differently, each with how many times its change there is."""
+    found = []
+    for name, change in knowledge.items():
+        if change == 0.0:
+            continue
+        if name == "approach_speed":
+            step = _STEP * local.approach_speed
+            found.append((replace(local, approach_speed=local.approach_speed + step), change / step))
+        else:
+            value = local.law.memories()[name]
+            step = _STEP * (abs(float(value)) or 1e-6)
+            found.append((replace(local, law=local.law.changed({name: value + step})), change / step))
+    return found

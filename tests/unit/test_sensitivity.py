@@ -1,0 +1,85 @@
+"""What a run says of impacts that can't be predicted: digits, doubts, keys."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from io import StringIO
+
+import numpy as np
+import pytest
+from rich.console import Console
+
+import vibroimpact as vi
+from vibrating import STIFFNESS, drop_on, random_modes
+from vibroimpact.cases.sensitivity_doubts import sensitivity_doubts
+from vibroimpact.contact.laws.hertz import Hertz
+from vibroimpact.report.console import result_summary
+from vibroimpact.report.tables import impact_table
+from vibroimpact.storage.result import Result, result_of
+from vibroimpact.storage.summary import summary_of
+
+CHANGES = np.array([1e-9, 2e-3, 0.1, 10.0])
+
+
+@pytest.fixture(scope="module")
+def undamped() -> Result:
+    result = result_of(vi.simulate(drop_on(Hertz(stiffness=STIFFNESS), random_modes(3, 10, 150.0, 15e3, 1.2), speed=3.0, impacts=4)))
+    return replace(result, impacts={**result.impacts, "sensitivity": CHANGES / 1e-9})
+
+
+def printed(result: Result, width: int = 140) -> list[list[str]]:
+    written = StringIO()
+    Console(width=width, file=written).print(result_summary(result, width))
+    return [line.split() for line in written.getvalue().splitlines()]
+
+
+def test_the_terminal_prints_only_digits_that_are_there(undamped: Result) -> None:
+    heads, rows = printed(undamped)[1:3], printed(undamped)[3:7]
+    assert "sensi-" in heads[0]
+    force = heads[0].index("force") + 1  # after the number of the impact
+    digits = [len(row[force].split("e")[0].replace(".", "").lstrip("0")) for row in rows]
+    assert digits[0] == 5
+    assert digits[1] == 3
+    assert digits[2] == 1
+    assert rows[3][force] == "?"
+    # the fourth touch is as certain as what the third impact left: one digit
+    assert len(rows[3][1].replace(".", "").lstrip("0")) == 1
+
+
+def test_the_page_prints_only_digits_that_are_there(undamped: Result) -> None:
+    headers, rows, *_ = impact_table(undamped)
+    force, time = (next(place for place, (name, _) in enumerate(headers) if name == wanted) for wanted in ("Largest force", "First touch"))
+    assert [row[force] for row in rows][3] == "?"
+    assert len(rows[1][force].replace(".", "").lstrip("0")) == 3
+    assert rows[1][time] == f"{1e3 * undamped.impacts['time_s'][1]:.3f}"  # as certain as what the first impact left
+    assert headers[-1] == ("Sensitivity", "")
+
+
+def test_a_drop_that_is_not_sensitive_is_printed_as_before(variable: vi.Response) -> None:
+    result = result_of(variable)
+    assert not result.change_by_impact.any()
+    assert not any("sensi-" in line for line in printed(result))
+    assert "change_by_impact" not in summary_of(result)
+
+
+def test_the_doubt_names_the_impact_and_the_remedy(undamped: Result) -> None:
+    found = [doubt for doubt in undamped.doubts if "sensitive" in doubt]
+    assert found == sensitivity_doubts(CHANGES)
+    assert "from impact 2 on" in found[0]
+    assert "0.2 % of the motion by impact 2" in found[0]
+    assert "all of it by impact 4" in found[0]
+    assert not sensitivity_doubts(np.array([1e-9, 5e-4]))
+    assert "grows to all of it by impact 1," in sensitivity_doubts(np.array([np.inf]))[0]
+
+
+def test_a_loose_tolerance_counts(undamped: Result) -> None:
+    loose = replace(undamped, provenance={"tolerance": "1e-06"})
+    assert loose.change_by_impact == pytest.approx(1e3 * CHANGES)
+
+
+def test_the_summary_has_it(undamped: Result) -> None:
+    summary = summary_of(undamped)
+    assert summary["change_by_impact"] == pytest.approx(CHANGES)
+    assert [row["sensitivity"] for row in summary["impacts"]] == pytest.approx(CHANGES / 1e-9)
+    endless = replace(undamped, impacts={**undamped.impacts, "sensitivity": np.array([1.0, np.inf, np.nan, 1.0])})
+    assert summary_of(endless)["change_by_impact"][1:3] == [None, None]
