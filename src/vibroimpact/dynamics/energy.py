@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import Any
+
 import numpy as np
 
 from vibroimpact.contact.phase.collocation import Floats
 
 CLOSURE_LIMIT = 1e-6
 """The part of the energy put in that may be missing; above it a run has failed."""
+
+WRITE_OFF_LIMIT = 1e-9
+"""The part of the energy put in by which less than nothing may be written off at rest: what rounding may do."""
 
 
 def close_ledger(energy_in: Floats, added: Floats, entries: dict[str, Floats]) -> dict[str, Floats]:
@@ -33,14 +39,17 @@ def close_ledger(energy_in: Floats, added: Floats, entries: dict[str, Floats]) -
     return {"input_J": energy_in, **entries, "closure_J": closure, "closure_relative": relative}
 
 
-def why_failed(closure_relative: float) -> str:
-    """Say why a run failed, by its ledger.
+def why_failed(energy: Mapping[str, Any]) -> str:
+    """Say why the run of one drop failed, by its ledger.
 
     Examples
     --------
-    >>> why_failed(0.0)
+    >>> why_failed({"closure_relative": 0.0, "written_off_at_rest_J": 0.0, "input_J": 1.0})
     'the contact could not be integrated to the tolerance.'
     """
+    closure_relative, written_off = float(energy["closure_relative"]), float(energy["written_off_at_rest_J"])
     if closure_relative > CLOSURE_LIMIT:
         return f"the energy ledger does not close: {closure_relative:.2g} of the energy put in is missing (limit {CLOSURE_LIMIT:g})."
+    if written_off < -WRITE_OFF_LIMIT * float(energy["input_J"]):
+        return f"the sphere was laid to rest with {-written_off:.3g} J more than it and what it lies on had left."
     return "the contact could not be integrated to the tolerance."

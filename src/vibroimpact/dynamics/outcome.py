@@ -16,6 +16,7 @@ class Outcome(Enum):
     LEFT = "left for good"
     LIMIT = "limit of impacts"
     FAILED = "failed"
+    RIDING = "limit of a ride"
 
     @property
     def at_rest(self) -> bool:

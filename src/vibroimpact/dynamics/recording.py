@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from vibroimpact.contact.phase.collocation import Floats
 from vibroimpact.contact.phase.oscillators import FreeMotion, Oscillators
 from vibroimpact.contact.phase.vibrating_stretch import VibratingStretch
+from vibroimpact.dynamics.lying import Lying
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.sensor import Sensor, sample_count
 from vibroimpact.dynamics.vibration import oscillators_of
@@ -110,6 +111,8 @@ def _sampled(problem: Problem, segments: Sequence[VibratingSegment], sensors: Se
         if isinstance(moving, VibratingStretch):
             values[:, first:last] = _in_contact(moving, sensors, shapes, offset + np.arange(last - first) / rate)
             moving.forget()
+        elif isinstance(moving, Lying):
+            values[:, first:last] = _while_lying(moving, sensors, shapes, offset, last - first, rate)
         else:
             values[:, first:last] = _in_free_motion(blocks, moving, sensors, shapes, offset, last - first)
     return values
@@ -166,6 +169,16 @@ def _in_free_motion(blocks: _Blocks, motion: FreeMotion, sensors: Sequence[Senso
         values[:, first : first + part] = _at_points(blocks, np.stack(places), sensors, shapes)[:, :part]
         first, rows = first + part, min(2 * rows, _ROWS)
     return values
+
+
+def _while_lying(lying: Lying, sensors: Sequence[Sensor], shapes: Floats, offset: float, count: int, rate: float) -> Floats:
+    """Return what points do at `count` samples at a rate [Hz] from `offset` [s] on, while the sphere lies on the plate."""
+    free, riding = lying.free, lying.riding
+    of, ground = free.oscillators, riding.around.oscillators.ground
+    blocks = _Blocks(of, *of.propagators(np.arange(_BLOCK + 1) / rate))
+    values = _in_free_motion(blocks, free, sensors, shapes @ riding.modes[1][1:][ground], offset, count)
+    displaced = np.array([sensor.quantity == "displacement" for sensor in sensors])
+    return np.asarray(values + (displaced * (shapes @ riding.equilibrium.displacement[ground]))[:, None])
 
 
 def _swing(of: Oscillators, place: Floats) -> Floats:

@@ -9,13 +9,13 @@ from numpy.typing import NDArray
 
 from vibroimpact.contact.law import CompliantLaw, ContactLaw, InstantaneousLaw
 from vibroimpact.contact.phase.collocation import Floats
-from vibroimpact.contact.phase.contact import CAPTURED, FAILED, Contact, Drops
+from vibroimpact.contact.phase.contact import CAPTURED, FAILED, RIDING, Contact, Drops
 from vibroimpact.contact.phase.encounter import Encounter, encounter_of
 from vibroimpact.contact.phase.oscillators import FreeMotion
 from vibroimpact.contact.phase.solve_contact import SolvesContact
 from vibroimpact.contact.static import static_indentation
 from vibroimpact.dynamics.columns import IMPACT_COLUMNS, VIBRATION_IMPACT_COLUMNS
-from vibroimpact.dynamics.energy import CLOSURE_LIMIT, close_ledger
+from vibroimpact.dynamics.energy import CLOSURE_LIMIT, WRITE_OFF_LIMIT, close_ledger
 from vibroimpact.dynamics.flight import Flight
 from vibroimpact.dynamics.outcome import OUTCOMES, Outcome
 from vibroimpact.dynamics.problem import MOST_IMPACTS, Problem
@@ -158,7 +158,9 @@ class Run:
         if self.vibration is None:
             contact, force, when = self.solve_contact(encounter, drops)
         else:
-            visits = self.vibration.visit(drops, -self.gap[drops], -self.velocity[drops], encounter, row)
+            until = (np.inf if self.problem.duration is None else self.problem.duration) - touch
+            limits = (self.rest_speed[drops], until)
+            visits = self.vibration.visit(drops, -self.gap[drops], -self.velocity[drops], encounter, *limits, row)
             contact = contact_of(visits, encounter.law)
             force, when = (np.array([getattr(found, name) for found in visits]) for name in ("max_force", "time_of_max_force"))
         self.deepest[drops] = np.maximum(self.deepest[drops], contact.max_delta)
@@ -170,17 +172,20 @@ class Run:
         row["max_acceleration_m_s2"][drops] = np.maximum(force / encounter.mass - encounter.gravity, encounter.gravity)
         for name, values in contact.law.memories().items():
             self.memories[name][drops] = values
-        failed, captured = contact.outcome == FAILED, contact.outcome == CAPTURED
+        failed, captured, riding = (contact.outcome == outcome for outcome in (FAILED, CAPTURED, RIDING))
         if self.vibration is None:
             captured |= ~failed & (contact.final_rate**2 < 2.0 * self.gravity[drops] * self.overlap(contact, drops))
-        row["separation_speed_m_s"][drops] = np.where(failed, np.nan, np.where(captured, 0.0, -contact.final_rate))
+        row["separation_speed_m_s"][drops] = np.where(failed | riding, np.nan, np.where(captured, 0.0, -contact.final_rate))
         stored = contact.stored
         sticks = captured & (contact.law.elastic_energy(contact.law.release_level + np.zeros(len(drops))) > 0.0)
-        for these, outcome in ((failed, Outcome.FAILED), (captured & ~sticks, Outcome.CAPTURED), (sticks, Outcome.STUCK)):
+        at_end = riding & (self.time[drops] >= (np.inf if self.problem.duration is None else self.problem.duration))
+        ends = ((failed, Outcome.FAILED), (captured & ~sticks, Outcome.CAPTURED), (sticks, Outcome.STUCK))
+        for these, outcome in (*ends, (riding & ~at_end, Outcome.RIDING), (at_end, Outcome.DURATION)):
             self.stop(drops[these], outcome, self.time[drops[these]])
         if captured.any():
             self.lie_down(drops[captured], contact.law.take(np.flatnonzero(captured)), self.time[drops[captured]], stored[captured])
-        return replace(leg, contact=contact, encounter=encounter), contact.dissipated + np.where(captured, 0.0, stored)
+        self.stored[drops[riding]] = stored[riding]
+        return replace(leg, contact=contact, encounter=encounter), contact.dissipated + np.where(captured | riding, 0.0, stored)
 
     def overlap(self, contact: Contact, drops: Drops) -> Floats:
         """Return how far drops that have parted must still rise until the next touch is a new one [m]."""
@@ -189,8 +194,11 @@ class Run:
         return np.asarray(np.maximum(contact.final_delta - law.touch_level, 0.0))
 
     def judge(self, drops: Drops, law: ContactLaw, row: dict[str, Floats]) -> None:
-        """Stop the drops that leave more slowly than the rest speed, or not at all."""
-        resting = (self.velocity[drops] < self.rest_speed[drops]) | (self.velocity[drops] == 0.0)
+        """Stop the drops that leave more slowly than the rest speed, or not at all, and that nothing can lift again."""
+        if self.vibration is None:
+            resting = (self.velocity[drops] < self.rest_speed[drops]) | (self.velocity[drops] == 0.0)
+        else:
+            resting = self.vibration.lies(drops)
         slow = drops[resting]
         if not slow.size:
             return
@@ -204,10 +212,14 @@ class Run:
     def lie_down(self, drops: Drops, law: ContactLaw, time: Floats, stored: Floats) -> None:
         """Lay drops that have come to rest, with energy `stored` in the contact [J], into their static indentation."""
         weight = self.mass[drops] * self.gravity[drops]
+        self.rest_time[drops] = time
+        if self.vibration is not None:
+            for name, values in self.vibration.laid(drops).items():
+                getattr(self, name)[drops] = values
+            return
         if isinstance(law, CompliantLaw):
             self.sag[drops] = static_indentation(law, weight)
             self.stored[drops] = law.elastic_energy(self.sag[drops])
-        self.rest_time[drops] = time
         self.written_off[drops] = self.mechanical_energy()[drops] + stored - (self.stored[drops] - weight * self.sag[drops])
 
     def stop(self, drops: Drops, outcome: Outcome, time: Floats) -> None:
@@ -228,14 +240,14 @@ class Run:
             self.end_time[at_rest] = np.maximum(self.end_time, self.problem.duration)[at_rest]
         final_gap, final_velocity = self.final_motion(at_rest)
         if self.vibration is not None:
-            lying = np.flatnonzero(at_rest)  # what they lie on moves on
-            nothing = np.zeros(len(lying))
-            motions = self.vibration.flights(lying, -self.gap[lying], nothing, nothing)
-            self.vibration.pass_freely(lying, motions, np.maximum(self.end_time[lying] - self.time[lying], 0.0))
+            for drop in np.flatnonzero(at_rest).tolist():  # what they lie on moves on, and they with it
+                elapsed = max(float(self.end_time[drop] - self.time[drop]), 0.0)
+                final_gap[drop], final_velocity[drop], self.stored[drop] = self.vibration.follow(drop, elapsed)
         vibration = {} if self.vibration is None else self.vibration.energies()
+        added = self.mass * self.gravity * self.deepest + np.maximum(-self.stored, 0.0)  # less than nothing is stored where it sticks
         energy = close_ledger(
             self.energy_in,
-            self.mass * self.gravity * self.deepest + np.maximum(-self.stored, 0.0),  # less than nothing is stored where it sticks
+            added,
             {
                 "kinetic_J": 0.5 * self.mass * final_velocity**2,
                 "potential_J": self.mass * self.gravity * final_gap,
@@ -246,7 +258,10 @@ class Run:
                 **vibration,
             },
         )
-        self.outcomes[~(energy["closure_relative"] <= CLOSURE_LIMIT)] = Outcome.FAILED.code
+        closes = energy["closure_relative"] <= CLOSURE_LIMIT
+        self.outcomes[~(closes & (self.written_off >= -WRITE_OFF_LIMIT * (self.energy_in + added)))] = Outcome.FAILED.code
+        nothing = (np.full(self.size, np.nan), (None,) * self.size)
+        left, lying = nothing if self.vibration is None else (self.vibration.left, tuple(self.vibration.lying))
         table = {name: np.array([row[name] for row in self.rows]).reshape(-1, self.size).T for name in self.columns}
         if self.vibration is not None:
             table["sensitivity"] = np.array(sensitivities(self.problem, self.legs, self.size)).reshape(-1, self.size).T
@@ -256,7 +271,7 @@ class Run:
             energy,
             tuple(OUTCOMES[code] for code in self.outcomes.tolist()),
             self.end_time,
-            Rest(self.rest_speed, self.rest_time, self.sag, self.stored, self.written_off),
+            Rest(self.rest_speed, self.rest_time, self.sag, self.stored, self.written_off, left, lying),
             tuple(self.legs),
         )
 

@@ -115,7 +115,11 @@ def tabulate(problem: StatesProblem, progress: Callable[[float], None] | None = 
         energy,
         ended,
         np.concatenate([part.end_time for part in parts]),
-        {drop: why_failed(float(energy["closure_relative"][drop])) for drop, outcome in enumerate(ended) if outcome is Outcome.FAILED},
+        {
+            drop: why_failed({name: values[drop] for name, values in energy.items()})
+            for drop, outcome in enumerate(ended)
+            if outcome is Outcome.FAILED
+        },
     )
 
 

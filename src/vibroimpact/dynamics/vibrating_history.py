@@ -10,6 +10,7 @@ from vibroimpact.contact.phase.collocation import Floats
 from vibroimpact.contact.phase.oscillators import Oscillators, State
 from vibroimpact.contact.phase.vibrating_stretch import VibratingStretch
 from vibroimpact.contact.phase.visit import Apart
+from vibroimpact.dynamics.lying import Lying
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.vibrating_segment import VibratingSegment
 from vibroimpact.dynamics.vibration import modes_of
@@ -17,7 +18,7 @@ from vibroimpact.dynamics.vibration import modes_of
 
 def vibrating_history(problem: Problem, segment: VibratingSegment, time: Floats) -> dict[str, Floats]:
     """Return all columns at times since the start of a segment [s] (T,)."""
-    of, motion, rest = segment.oscillators, segment.motion, segment.at_rest
+    of, motion = segment.oscillators, segment.motion
     state, same = segment.state(time), np.ones_like(time)
     mass, gravity = float(problem.sphere.mass), float(problem.gravity)
     stored, plastic, force, lost = of.local_energy(state), 0.0 * same, 0.0 * same, segment.spent[:-1]
@@ -25,6 +26,8 @@ def vibrating_history(problem: Problem, segment: VibratingSegment, time: Floats)
         force = motion.force_at(motion.rule.unmap_time(time / motion.length))
         lost = lost + motion.lost_by(time)
         motion.forget()
+    elif isinstance(motion, Lying):
+        force, lost, stored = motion.force(time), lost + motion.lost_by(time), stored + motion.stored(time)
     else:
         lost = lost + motion.lost_at(state)
     local = motion.local if isinstance(motion, (VibratingStretch, Apart)) else None
@@ -37,15 +40,15 @@ def vibrating_history(problem: Problem, segment: VibratingSegment, time: Floats)
         "time_s": segment.start + time,
         "position_m": float(problem.sphere.contact_offset) - state.approach,
         "velocity_m_s": -state.speed * same,
-        "acceleration_m_s2": force / mass - gravity if rest is None else 0.0 * same,
-        "force_N": force if rest is None else mass * gravity * same,
+        "acceleration_m_s2": force / mass - gravity,
+        "force_N": force,
         "indentation_m": np.maximum(of.indentation(state), 0.0) if segment.in_contact else 0.0 * same,
         "kinetic_J": 0.5 * mass * state.speed**2 * same,
         "potential_J": -mass * gravity * state.approach * same,
-        "contact_elastic_J": stored if rest is None else stored + rest.stored[0],
+        "contact_elastic_J": stored,
         "contact_dissipated_J": lost[:, -1].copy(),  # else the history of every mode stays in memory
         "plastic_work_J": segment.spent[-1] + plastic,
-        "written_off_at_rest_J": 0.0 * same if rest is None else rest.written_off[0] * same,
+        "written_off_at_rest_J": (motion.written_off if isinstance(motion, Lying) else 0.0) * same,
         **_of_bodies(problem, of, state, lost, force),
     }
 

@@ -12,9 +12,10 @@ from vibroimpact.contact.phase.collocation import Floats
 from vibroimpact.contact.phase.oscillators import FreeMotion, Oscillators, State
 from vibroimpact.contact.phase.vibrating_stretch import VibratingStretch
 from vibroimpact.contact.phase.visit import Apart
+from vibroimpact.dynamics.lying import Lying
 
 if TYPE_CHECKING:
-    from vibroimpact.dynamics.response import Leg, Rest
+    from vibroimpact.dynamics.response import Leg
 
 _STRETCH_POINTS = 25
 _FREE_POINTS, _LATER_POINTS, _PERIODS = 2001, 1001, 10.0
@@ -26,17 +27,15 @@ class VibratingSegment:
     """A part of the history of one drop: a flight, a stretch of contact, a gap between two, or rest.
 
     `start`, `end` [s]. `spent`: energy lost before [J], (n + 2,): in each oscillator, in the contact, in plastic deformation.
-    `at_rest`: how the sphere lies on the plate, if it does.
     """
 
     start: float
     end: float
-    motion: VibratingStretch | Apart | FreeMotion
+    motion: VibratingStretch | Apart | FreeMotion | Lying
     spent: Floats
-    at_rest: Rest | None = None
 
     @property
-    def moving(self) -> VibratingStretch | FreeMotion:
+    def moving(self) -> VibratingStretch | FreeMotion | Lying:
         """What can be asked for states."""
         return self.motion.free if isinstance(self.motion, Apart) else self.motion
 
@@ -44,12 +43,14 @@ class VibratingSegment:
     def oscillators(self) -> Oscillators:
         """What vibrates."""
         moving = self.moving
-        return moving.oscillators if isinstance(moving, FreeMotion) else moving.around.oscillators
+        if isinstance(moving, FreeMotion):
+            return moving.oscillators
+        return (moving.riding if isinstance(moving, Lying) else moving).around.oscillators
 
     @property
     def in_contact(self) -> bool:
         """Do the surfaces overlap?"""
-        return isinstance(self.motion, VibratingStretch) or (isinstance(self.motion, Apart) and self.motion.local is not None)
+        return isinstance(self.motion, (VibratingStretch, Lying)) or (isinstance(self.motion, Apart) and self.motion.local is not None)
 
     def grid(self) -> Floats:
         """Times since its start that draw the segment well [s]."""
@@ -58,7 +59,7 @@ class VibratingSegment:
             return np.asarray(span * self.motion.rule.map_time(np.linspace(0.0, 1.0, _STRETCH_POINTS)))
         if isinstance(self.motion, Apart):
             return np.linspace(0.0, span, _STRETCH_POINTS)
-        lowest = float(self.motion.oscillators.angular_frequency.min(initial=np.inf))
+        lowest = float(self.oscillators.angular_frequency.min(initial=np.inf))
         early = min(span, _PERIODS * 2.0 * np.pi / lowest) if np.isfinite(lowest) else 0.0
         return np.concatenate([np.linspace(0.0, early, _FREE_POINTS)[:-1], np.linspace(early, span, _LATER_POINTS)])
 
@@ -77,14 +78,14 @@ class VibratingSegment:
         return self.moving.state(time)
 
 
-def vibrating_timeline(legs: Sequence[Leg], at_rest: Rest | None, end: float) -> list[VibratingSegment]:
+def vibrating_timeline(legs: Sequence[Leg], lying: Lying | None, end: float) -> list[VibratingSegment]:
     """Return the history of one drop as segments in order.
 
     Parameters
     ----------
     legs : sequence of Leg
         Its flights and visits.
-    at_rest : Rest or None
+    lying : Lying or None
         How it lies, if it comes to rest.
     end : float
         When the run ends [s].
@@ -100,9 +101,6 @@ def vibrating_timeline(legs: Sequence[Leg], at_rest: Rest | None, end: float) ->
             assert isinstance(piece.motion, (VibratingStretch, Apart))
             segments.append(VibratingSegment(begin, begin + piece.motion.length, piece.motion, spent))
             spent = segments[-1].spent_after
-    if at_rest is not None:
-        last = segments[-1]
-        state = last.state(np.array([last.end - last.start]))
-        lying = State(at_rest.sag[0], np.zeros(()), state.displacement[0], state.velocity[0], state.local[0])
-        segments.append(VibratingSegment(last.end, end, FreeMotion(last.oscillators, lying, 0.0), spent, at_rest))
+    if lying is not None:
+        segments.append(VibratingSegment(segments[-1].end, end, lying, spent))
     return segments

@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from vibroimpact.bodies.body import Body
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.phase.collocation import Floats
-from vibroimpact.contact.phase.contact import Contact, Drops, Piece
+from vibroimpact.contact.phase.contact import CAPTURED, RIDING, SETTLED, Contact, Drops, Piece
 from vibroimpact.contact.phase.encounter import Encounter
 from vibroimpact.contact.phase.next_touch import next_touch
 from vibroimpact.contact.phase.oscillators import FreeMotion, Oscillators, State
+from vibroimpact.contact.phase.riding import Riding
 from vibroimpact.contact.phase.vibrating_stretch import Surroundings
 from vibroimpact.contact.phase.visit import Visit, visit
+from vibroimpact.dynamics.lying import Lying, lay_down
 from vibroimpact.dynamics.problem import Problem
 
 
@@ -42,7 +45,11 @@ def modes_of(body: Body) -> int:
 
 
 class Vibration:
-    """The oscillators of B drops that share their bodies' modes."""
+    """The oscillators of B drops that share their bodies' modes.
+
+    `lying`: how those lie that have come to rest. `left`: what those that rest or ride, and what carries them, hold above their
+    equilibrium [J] (B,), NaN for the others.
+    """
 
     def __init__(self, problem: Problem, size: int) -> None:
         self.problem, self.oscillators = problem, oscillators_of(problem)
@@ -51,6 +58,8 @@ class Vibration:
         self.displacement, self.velocity = np.zeros((size, count)), np.zeros((size, count))
         self.local = np.zeros((size, massless))
         self.lost = np.zeros((size, count + 1))
+        self.lying: list[Lying | None] = [None] * size
+        self.left = np.full(size, np.nan)
 
     def flights(self, drops: Drops, approach: Floats, speed: Floats, gravity: Floats) -> tuple[FreeMotion, ...]:
         """Return the free motions of drops: approach [m] and speed [m/s] are their centres', downwards."""
@@ -84,8 +93,20 @@ class Vibration:
         state = State(np.zeros(len(drops)), speed, self.displacement[drops], self.velocity[drops], self.local[drops])
         return self.oscillators.outer_rates(state)
 
-    def visit(self, drops: Drops, approach: Floats, speed: Floats, encounter: Encounter, row: dict[str, Floats]) -> list[Visit]:
-        """Take drops through their visits; write what only vibrating bodies have into the row of the impact."""
+    def visit(
+        self,
+        drops: Drops,
+        approach: Floats,
+        speed: Floats,
+        encounter: Encounter,
+        rest_speed: Floats,
+        until: Floats,
+        row: dict[str, Floats],
+    ) -> list[Visit]:
+        """Take drops through their visits; write what only vibrating bodies have into the row of the impact.
+
+        Those that ride are followed for a time since first touch, `until` [s].
+        """
         visits = []
         for number, drop in enumerate(drops):
             one = encounter.pick(np.array([number]))
@@ -93,14 +114,41 @@ class Vibration:
             pace = 3.0 * float(one.depth[0] / one.speed_scale[0])
             start = self.state(drop, approach[number], speed[number])
             problem = self.problem
-            found = visit(around, one.law.take(0), problem.quasi_static, start, problem.tolerance, pace, not problem.same_spot)
+            limits = (float(rest_speed[number]), float(until[number]))
+            found = visit(around, one.law.take(0), problem.quasi_static, start, problem.tolerance, pace, not problem.same_spot, *limits)
             before, after = (float(np.sum(self.oscillators.energies(state))) for state in (start, found.state))
             row["closing_speed_m_s"][drop], row["contacts"][drop] = one.approach_speed[0], found.contacts
             row["energy_to_vibration_J"][drop] = after - before + found.lost[:-1].sum()
             self.lost[drop, :-1] += found.lost[:-1]
             self.place(drop, found.state)
+            if found.outcome in (CAPTURED, SETTLED, RIDING):
+                assert found.local is not None  # it is in contact, or nearly so
+                riding = Riding(around, found.local)
+                self.left[drop] = riding.excess(found.state, found.stored)
+                if found.outcome != RIDING:
+                    self.lying[drop] = lying = lay_down(riding, found.state, found.stored)
+                    self.left[drop] -= lying.written_off
             visits.append(found)
         return visits
+
+    def lies(self, drops: Drops) -> NDArray[np.bool_]:
+        """Tell which drops have been laid down."""
+        return np.array([self.lying[drop] is not None for drop in drops], dtype=bool)
+
+    def laid(self, drops: Drops) -> dict[str, Floats]:
+        """Return how drops lie: the indentation [m], what it holds, and what was written off [J]."""
+        lying = [found for drop in drops if (found := self.lying[drop]) is not None]
+        told = [(found.riding.sag, found.riding.stored, found.written_off) for found in lying]
+        return dict(zip(("sag", "stored", "written_off"), np.array(told).reshape(-1, 3).T, strict=True))
+
+    def follow(self, drop: int, elapsed: float) -> tuple[float, float, float]:
+        """Let a drop lie for some time [s]; return its gap [m], its upward velocity [m/s] and what its contact holds then [J]."""
+        lying, time = self.lying[drop], np.array([elapsed])
+        assert lying is not None  # it has been laid down
+        state = lying.state(time)
+        self.lost[drop] += lying.lost_by(time)[0]
+        self.place(drop, State(*(part[0] for part in vars(state).values())))
+        return -float(state.approach[0]), -float(state.speed[0]), float(lying.stored(time)[0])
 
     def energies(self) -> dict[str, Floats]:
         """Return the entries of the ledger [J], (B,); what the local elements hold, and lost in flight, apart."""

@@ -15,8 +15,11 @@ from vibroimpact.contact.phase.stretch import Stretch
 
 Drops = NDArray[np.intp]
 
-COMPRESSION, RESTITUTION, GLIDE, RELEASED, CAPTURED, FAILED = range(6)
-"""Where a drop is in its contact; from RELEASED on it is over."""
+COMPRESSION, RESTITUTION, GLIDE, RELEASED, CAPTURED, FAILED, SETTLED, RIDING = range(8)
+"""Where a drop is in its contact; from RELEASED on it is over.
+
+Only on bodies that vibrate: SETTLED, released more slowly than the rest speed for good; RIDING, in contact still, and not to stay.
+"""
 
 
 class PartOfVisit(Protocol):
@@ -46,7 +49,8 @@ class Piece:
 class Contact:
     """One impact of B drops, first touch to release; arrays are (B,).
 
-    `outcome` is RELEASED, CAPTURED (its energy no longer suffices to get out of the indentation) or FAILED.
+    `outcome` is RELEASED, CAPTURED (its energy no longer suffices to get out of the indentation) or FAILED, or what only
+    bodies that vibrate have.
     `final_delta`, `final_rate`: indentation [m] and its rate [m/s] at the end. `dissipated`, `plastic`: work
     lost in damping and in plastic deformation [J]. `stored`: energy left in the contact [J]. `law`: the law with what
     it remembers of this contact.

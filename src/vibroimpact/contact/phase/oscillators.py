@@ -62,6 +62,16 @@ class Oscillators:
         """The shape of the oscillators outside the contact, zero of those inside (n,)."""
         return np.where(self.inside, 0.0, self.shape)
 
+    @cached_property
+    def local_compliance(self) -> Floats:
+        """Compliance of the springs of the massless elements [m/N] (k,)."""
+        return self.mobility / self.rate
+
+    @cached_property
+    def compliance(self) -> float:
+        """Static compliance of all, seen from the contact [m/N]."""
+        return float(((self.shape / self.angular_frequency) ** 2).sum() + self.local_compliance.sum())
+
     def pick(self, which: NDArray[np.intp]) -> Oscillators:
         """Return some of the oscillators, without the massless elements."""
         nothing = np.zeros(0)

@@ -3,14 +3,15 @@
 The contact is marched through by stretches whose length adapts to what the bodies do. In each the first event is
 sought: the surfaces part, the force of a law that may not pull becomes zero, a breakpoint of the law is crossed, the
 indentation turns; and the stretch is solved again so that it ends there. Once the surfaces have parted, the sphere is
-followed to the top of its flight: if the surface meets it again before, the visit goes on with another contact.
+followed to the top of its flight: if the surface meets it again before, the visit goes on with another contact. So it does
+where the sphere leaves more slowly than the rest speed, though something that still moves could lift it higher: it chatters, and
+then rides, until it is thrown off, or nothing can lift it any more (`riding`), or it has been followed for long enough.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,23 +19,23 @@ from numpy.typing import NDArray
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.local import LocalContact
 from vibroimpact.contact.phase.collocation import Floats, Map
-from vibroimpact.contact.phase.contact import CAPTURED, FAILED, RELEASED
+from vibroimpact.contact.phase.contact import CAPTURED, FAILED, RELEASED, RIDING, SETTLED
 from vibroimpact.contact.phase.next_touch import next_touch, time_to_part
 from vibroimpact.contact.phase.oscillators import FreeMotion, State
+from vibroimpact.contact.phase.riding import Riding, least_energy, stays_below
+from vibroimpact.contact.phase.vibrating_events import GRID, ROUNDING, Event, first_event
 from vibroimpact.contact.phase.vibrating_stretch import Surroundings, VibratingStretch, mechanical_energy, solve_vibrating
 from vibroimpact.contact.quasi_static import QuasiStatic
 from vibroimpact.contact.roots import find_root
 from vibroimpact.contact.static import static_indentation
 
-_MOST_STRETCHES = 20_000
+MOST_STEPS, MOST_STEPS_TO_A_TIME = 5_000, 50_000
+"""How many stretches of contact a visit is followed for: some ten seconds' work; and where the run has an end in time."""
+
 _FIRST = 0.125  # of the span of a contact: the first stretch
-_LONGEST = 300.0  # times the span of a contact: a sphere that long in touch lies there
-_MOST_CONTACTS = 1_000
-_GRID = np.linspace(0.0, 1.0, 33)
+_LONG = 10.0  # times the span of a contact: a sphere that long in touch rides
 _GLIDE_SAMPLES = 65
-_STILL = 1e-9  # of the speed of the motion: what turns more slowly has turned before
 _MOST_SECANTS = 60
-_ROUNDING = 1e-11
 
 
 @dataclass(frozen=True)
@@ -72,15 +73,6 @@ class Apart:
 
 
 @dataclass(frozen=True)
-class Event:
-    """Something that ends a stretch: its name, the x after it, and what becomes positive there, at the nodes of a stretch."""
-
-    name: str
-    x: float
-    rises: Callable[[VibratingStretch], Floats]
-
-
-@dataclass(frozen=True)
 class Part:
     """A part of a visit: when it begins, since first touch [s], and its motion."""
 
@@ -90,11 +82,12 @@ class Part:
 
 @dataclass
 class Visit:
-    """A visit as it came out; `outcome` is RELEASED, CAPTURED or FAILED. One of more than 1000 contacts is taken for capture.
+    """A visit as it came out; `outcome` is RELEASED, SETTLED, CAPTURED, RIDING or FAILED.
 
     `state`: of everything at the end. `duration`: from first touch to last release [s]. `contacts`: how many.
     `max_indentation`, `max_force` and when they are reached since first touch [m, N, s]. `lost` [J], (n + 1,): in each
     oscillator, and in the contact. `plastic` [J]. `law`: with what it remembers. `stored`: energy left in the contact [J].
+    `local`: the contact that the sphere lies in, if it does.
     """
 
     state: State
@@ -110,12 +103,21 @@ class Visit:
     time_of_max_force: float = 0.0
     plastic: float = 0.0
     stored: float = 0.0
+    local: LocalContact | None = None
 
 
 def visit(
-    around: Surroundings, law: CompliantLaw, series: QuasiStatic, state: State, tolerance: float, pace: float, forgets: bool = False
+    around: Surroundings,
+    law: CompliantLaw,
+    series: QuasiStatic,
+    state: State,
+    tolerance: float,
+    pace: float,
+    forgets: bool = False,
+    rest_speed: float = 0.0,
+    until: float = np.inf,
 ) -> Visit:
-    """Follow one drop from first touch to its last release.
+    """Follow one drop from first touch to its last release, or to rest.
 
     Parameters
     ----------
@@ -133,22 +135,36 @@ def visit(
         About how long a contact lasts [s].
     forgets : bool, default False
         Does the next impact find fresh surfaces, even where the law leaves a dent?
+    rest_speed : float, default 0
+        A sphere that leaves more slowly, and can nowhere leave faster any more, is at rest [m/s].
+    until : float, default infinite
+        When to stop a sphere that rides [s since first touch]; a contact of usual length is finished.
     """
     with np.errstate(all="ignore"):  # guesses may be wild; what is not finite is found and tried again
-        return _Visit(around, law, series, state, tolerance, pace, forgets).run()
+        return _Visit(around, law, series, state, tolerance, pace, forgets, rest_speed, until).run()
 
 
 class _Visit:
     def __init__(
-        self, around: Surroundings, law: CompliantLaw, series: QuasiStatic, state: State, tolerance: float, pace: float, forgets: bool
+        self,
+        around: Surroundings,
+        law: CompliantLaw,
+        series: QuasiStatic,
+        state: State,
+        tolerance: float,
+        pace: float,
+        forgets: bool,
+        rest_speed: float,
+        until: float,
     ) -> None:
         self.around, self.series, self.state, self.tolerance = around, series, state, tolerance
         self.time, self.left, self.span, self.pace = 0.0, 0.0, pace, _FIRST * pace
-        self.touching, self.stretches = True, 0
+        self.touching, self.stretches, self.most = True, 0, MOST_STEPS if np.isinf(until) else MOST_STEPS_TO_A_TIME
         self.law, self.ends_without_force = law, law.contact_end == "zero-force"
-        self.forgets = forgets or not law.lasting
+        self.forgets, self.rest_speed, self.until = forgets or not law.lasting, rest_speed, until
         self.found = Visit(state, law, np.zeros(len(around.oscillators.shape) + 1))
         self.local = self.at_touch(law)
+        self.riding: Riding | None = None
         self.speed = max(self.local.approach_speed, float(np.sqrt(around.gravity * _sag(around, law))))
 
     # one contact after another ----------------------------------------------------------------------
@@ -165,14 +181,16 @@ class _Visit:
             found.outcome = self.contact()
             if found.outcome != RELEASED:
                 break
-            meets = self.meets_again()
-            if not meets and self.state.speed <= 0.0:
+            rising = -float(self.state.speed)
+            slow = rising < self.rest_speed and self.around.gravity > 0.0
+            if slow and rising > 0.0 and stays_below(self.around, self.next_law, self.state, self.rest_speed):
+                found.outcome = SETTLED
+                break
+            if not self.meets_again(slow) and rising >= 0.0:
                 break
             found.contacts += 1
-            if not meets or found.contacts > _MOST_CONTACTS:  # still on its way down, it chatters in steps below rounding, or for good
-                found.outcome, self.left = CAPTURED, self.time
-                break
         found.law, found.state, found.duration = self.local.law, self.state, self.left
+        found.local = replace(self.local, law=self.next_law) if found.outcome == SETTLED else self.local
         return found
 
     # one contact -----------------------------------------------------------------------------------
@@ -186,10 +204,13 @@ class _Visit:
                 self.break_off()
                 return RELEASED
             self.stretches += 1
-            if self.stretches > _MOST_STRETCHES or self.pace < 1e-12 * self.span:
+            if self.pace < 1e-12 * self.span:
                 return self.stay(FAILED)
-            stretch = self.solve("touch" if self.touching else "inside", self.pace)
-            event = self.first_event(stretch) if stretch.solved else None
+            rides, left = self.time - begun > _LONG * self.span, self.until - self.time
+            if self.stretches > self.most or (rides and left <= ROUNDING * self.span):
+                return self.stay(RIDING)
+            stretch = self.solve("touch" if self.touching else "inside", min(self.pace, left) if rides else self.pace)
+            event = first_event(stretch, self.speed, self.span) if stretch.solved else None
             # up to where the surfaces part, the force is smooth in another root of time: the end may be resolved where this is not
             ends = event is not None and event.name == "parted" and not self.touching
             if not ends and not stretch.resolved(self.tolerance, self.speed):
@@ -215,7 +236,7 @@ class _Visit:
                     return RELEASED
                 if event.name == "turn":
                     self.turn()
-            if self.held() or self.time - begun > _LONGEST * self.span:
+            if self.held() or self.lies():
                 return self.stay(CAPTURED)
 
     def stay(self, outcome: int) -> int:
@@ -233,37 +254,11 @@ class _Visit:
     def here(self) -> float:
         return max(float(self.around.oscillators.approach(self.state)), self.floor)
 
-    def first_event(self, stretch: VibratingStretch) -> Event | None:
-        """Return the first event in a stretch."""
-        weights, floor = stretch.rule.weights(_GRID).T, self.floor
-        approach, rate = weights @ stretch.approach, weights @ stretch.rate
-        events: list[tuple[str, NDArray[np.bool_], Callable[[VibratingStretch], Floats]]] = []
-        out = approach < floor - _ROUNDING * (approach.max() - floor)
-        out[0] = False
-        events.append(("parted", out, lambda other: floor - other.approach))
-        if self.local.law.tension != "kept":  # what recoils fast enough makes the others pull as well
-            static, dissipative = self.local.forces(np.maximum(approach, floor), rate)
-            pulls = static + dissipative < -1e-11 * (np.abs(stretch.force).max() + self.around.mass * self.speed / self.span)
-            pulls[0] = False
-            events.append(("no push", pulls, lambda other: -other.force))
-        for level in self.local.breakpoints:
-            begun = approach[0] - level
-            side = np.sign(begun if abs(begun) > _ROUNDING * abs(level) else approach[1] - level)
-            crossed = (approach - level) * side < 0.0
-            crossed[0] = False
-            events.append(("breakpoint", crossed, partial(_crossing, side, level)))
-        if self.local.after_compression(float(approach.max())) is not self.local:
-            closing = weights @ stretch.closing
-            turned = (closing < 0.0) & (np.maximum.accumulate(closing) > _STILL * self.speed)
-            events.append(("turn", turned, lambda other: -other.closing))
-        seen = [Event(name, float(_GRID[where.argmax()]), rises) for name, where, rises in events if where.any()]
-        return min(seen, key=lambda event: event.x, default=None)
-
     def end_at(self, stretch: VibratingStretch, event: Event) -> VibratingStretch | None:
         """Solve a stretch again so that it ends at an event: regula falsi from where it was seen; None if it is not found."""
         time_map: Map = "touch" if self.touching else "release" if event.name in ("parted", "no push") else "inside"
         rule = stretch.rule
-        low, high = (stretch.length * float(rule.map_time(np.array([x]))[0]) for x in (max(event.x - _GRID[1], 0.0), event.x))
+        low, high = (stretch.length * float(rule.map_time(np.array([x]))[0]) for x in (max(event.x - GRID[1], 0.0), event.x))
         length, least, most = 0.5 * (low + high), 0.0, stretch.length
         before: tuple[float, float] | None = None
         forces = None
@@ -314,8 +309,18 @@ class _Visit:
         """Is there too little energy left to get out of the indentation?"""
         here, around = self.here(), self.around
         energy = mechanical_energy(around, self.state) + float(self.local.work(here))
-        out = float(self.local.elastic_energy(self.floor)) - around.mass * around.gravity * self.floor
+        out = least_energy(around, self.floor, float(self.local.elastic_energy(self.floor)))
         return energy < out + 0.5 * around.mass * (self.tolerance * self.speed) ** 2
+
+    def lies(self) -> bool:
+        """Does the contact carry the weight, with too little left at the contact to lift the sphere off it?"""
+        around, last = self.around, self.found.parts[-1].motion
+        weight = around.mass * around.gravity
+        if not isinstance(last, VibratingStretch) or abs(float(last.force[-1]) - weight) > 0.5 * weight:
+            return False  # which costs nothing to see
+        if self.riding is None or self.riding.local.law is not self.local.law:
+            self.riding = Riding(around, self.local)
+        return self.riding.linear and self.riding.stays(self.state)
 
     def note_peaks(self, stretch: VibratingStretch) -> None:
         found = self.found
@@ -357,15 +362,20 @@ class _Visit:
         self.pass_freely(free, length, self.local)
         return parted
 
-    def meets_again(self) -> bool:
-        """Follow the free sphere to the top of its flight; return whether the surfaces meet again before.
+    @property
+    def next_law(self) -> CompliantLaw:
+        """The law of the next contact, once the surfaces have parted."""
+        return self.law if self.forgets else self.local.law
+
+    def meets_again(self, however_late: bool) -> bool:
+        """Follow the free sphere to the top of its flight, or farther; return whether the surfaces meet again before.
 
         Where the next contact would begin with fresh surfaces, the visit goes on at least until these have parted.
         """
         free = FreeMotion(self.around.oscillators, self.state, self.around.gravity)
         rising, gravity = -float(self.state.speed), self.around.gravity
-        top = np.inf if rising <= 0.0 or gravity == 0.0 else rising / gravity
-        law, fresh = self.local.law, self.law if self.forgets else self.local.law
+        top = np.inf if rising <= 0.0 or gravity == 0.0 or however_late else rising / gravity
+        law, fresh = self.local.law, self.next_law
         level = float(fresh.touch_level)
         parted = time_to_part(free, level)
         if law.release_level > level and (again := next_touch(free, float(law.release_level), parted)) < parted:
@@ -374,7 +384,11 @@ class _Visit:
             law = law if law.lasting else fresh
             time = next_touch(free, float(law.touch_level), max(top, parted))
         if not np.isfinite(time):
+            if rising < 0.0:  # the next touch is nearer than rounding tells
+                self.local = self.at_touch(law)
             return False
+        if however_late and rising > 0.0 and time > self.until - self.time:
+            return False  # the run ends before
         self.pass_freely(free, time, None)
         self.local = self.at_touch(law)
         return True
@@ -385,11 +399,6 @@ class _Visit:
         self.found.lost += apart.lost_by(np.array([length]))[0]
         self.state = free.state(np.array(length))
         self.time += length
-
-
-def _crossing(side: float, level: float, stretch: VibratingStretch) -> Floats:
-    """Return what becomes positive where the approach, from one side, crosses a level."""
-    return -side * (stretch.approach - level)
 
 
 def highest(values: Callable[[Floats], Floats]) -> float:

@@ -1,0 +1,170 @@
+r"""A sphere that lies on what vibrates: their equilibrium under its weight, and what it takes to leave it.
+
+At equilibrium the contact carries the weight m g, and what is behind it has yielded by :math:`C m g`, with the static
+compliance :math:`C = \sum_i \chi_i^2 / \omega_i^2 + \sum_k 1/k_k` of oscillators and massless elements. Of all states with a
+given approach y of the surfaces, the one with the least energy is at rest and has
+
+.. math:: E(y) = U(y) - m g y - \tfrac12 C (m g)^2
+
+where U is what the contact holds. So surfaces part only where at least E of the approach of release is left: a **barrier of
+energy**, which holds for any law, any damping and any motion. It is strict where much is left that hardly reaches the contact,
+as in springs of 3 Hz; there the **bound of the force** says more. Small motions about the equilibrium are those of one linear
+system, the sphere on the spring of its contact and all oscillators, with modes of its own, and the energy of each bounds what it
+can ever add to the force of the contact.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from vibroimpact.contact.law import CompliantLaw
+from vibroimpact.contact.local import LocalContact
+from vibroimpact.contact.phase.collocation import Floats
+from vibroimpact.contact.phase.oscillators import Oscillators, State
+from vibroimpact.contact.phase.vibrating_stretch import Surroundings, mechanical_energy
+from vibroimpact.contact.static import static_indentation
+
+_MARGIN = 0.5
+"""Part of the weight by which the force may vary where a sphere stays: so near to the weight the spring of a contact is nearly
+linear (that of Hertz's law has 0.79 to 1.14 of its stiffness), and what damping hands from mode to mode finds room."""
+
+_NONE = 1e-300
+"""What stands for no stiffness [N/m], as of Hertz's law where there is no weight."""
+
+
+def least_energy(around: Surroundings, approach: float, stored: float) -> float:
+    """Return the least energy of a state with an approach of the surfaces [m] at which the contact holds `stored` [J]."""
+    weight = around.mass * around.gravity
+    return stored - weight * approach - 0.5 * around.oscillators.compliance * weight * weight
+
+
+def stays_below(around: Surroundings, law: CompliantLaw, state: State, speed: float) -> bool:
+    """Tell whether a sphere that is apart from the surface can nowhere any more leave it at a speed [m/s], whatever still moves.
+
+    Parameters
+    ----------
+    around : Surroundings
+        Mass, gravity and what vibrates.
+    law : CompliantLaw
+        The law of the next contact.
+    state : State
+        Where everything is.
+    speed : float
+        Speed of the sphere beside a surface at rest [m/s].
+    """
+    least = least_energy(around, float(law.touch_level), 0.0)
+    return mechanical_energy(around, state) < least + 0.5 * around.mass * speed**2
+
+
+@dataclass(frozen=True, eq=False)
+class Riding:
+    """Small oscillations of a sphere and what it lies on about their equilibrium, as one linear system.
+
+    Parameters
+    ----------
+    around : Surroundings
+        Mass, gravity, which is greater than 0, and what vibrates.
+    local : LocalContact
+        The contact that carries the weight.
+    """
+
+    around: Surroundings
+    local: LocalContact
+
+    @property
+    def weight(self) -> float:
+        """Weight of the sphere [N]."""
+        return self.around.mass * self.around.gravity
+
+    @cached_property
+    def sag(self) -> float:
+        """Indentation of the law under the weight [m]."""
+        return float(static_indentation(self.local.law, np.array([self.weight]))[0])
+
+    @cached_property
+    def approach(self) -> float:
+        """Approach of the surfaces at equilibrium, with what is in series with the law [m]."""
+        return float(self.local.approach_at(np.array([self.sag]))[0])
+
+    @cached_property
+    def stored(self) -> float:
+        """What the contact holds at equilibrium [J]."""
+        return float(self.local.elastic_energy(np.array([self.approach]))[0])
+
+    @cached_property
+    def contact(self) -> tuple[float, float]:
+        """Stiffness [N/m] and damping [N s/m] of the contact at equilibrium."""
+        level, slow = np.array([self.approach]), np.array([1e-3 * np.sqrt(self.around.gravity * abs(self.sag)) + 1e-12])
+        stiffness = float(self.local.linearised(level, slow).static_by_approach[0])
+        towards, away = (self.local.forces(level, rate)[1] for rate in (slow, -slow))
+        return max(stiffness, _NONE), max(float((towards - away)[0] / (2.0 * slow[0])), 0.0)
+
+    @cached_property
+    def stiffness(self) -> float:
+        """Stiffness of the contact and of the massless elements in series [N/m]."""
+        return 1.0 / (1.0 / self.contact[0] + float(self.around.oscillators.local_compliance.sum()))
+
+    @cached_property
+    def equilibrium(self) -> State:
+        """The state of equilibrium."""
+        of, weight = self.around.oscillators, self.weight
+        displacement, local = -weight * of.shape / of.angular_frequency**2, -weight * of.local_compliance
+        approach = self.approach - displacement @ of.shape - local.sum()
+        return State(np.asarray(approach), np.zeros(()), displacement, np.zeros_like(displacement), local)
+
+    @property
+    def linear(self) -> bool:
+        """Does the contact push, on a spring?"""
+        return bool(self.around.gravity > 0.0 and _NONE < self.contact[0] < np.inf)
+
+    @cached_property
+    def pull(self) -> Floats:
+        """By how much the sphere, its displacement times the root of its mass, and each oscillator add to the approach [kg^-1/2]."""
+        return np.append(1.0 / np.sqrt(self.around.mass), self.around.oscillators.shape)
+
+    @cached_property
+    def modes(self) -> tuple[Floats, Floats]:
+        """Angular frequencies [rad/s] and shapes (n + 1, n + 1), a column a mode, of sphere and oscillators together."""
+        stiffness = np.diag(np.append(0.0, self.around.oscillators.angular_frequency**2)) + self.stiffness * np.outer(self.pull, self.pull)
+        squares, shapes = np.linalg.eigh(stiffness)
+        return np.sqrt(np.maximum(squares, _NONE)), shapes
+
+    def deviation(self, state: State) -> tuple[Floats, Floats]:
+        """Return how far from equilibrium a state is [kg^1/2 m], and its rate: of the sphere, then of the oscillators, (n + 1,)."""
+        root, at = np.sqrt(self.around.mass), self.equilibrium
+        displacement = np.append(root * (state.approach - at.approach), state.displacement - at.displacement)
+        return displacement, np.append(root * state.speed, state.velocity)
+
+    def force_bound(self, state: State) -> float:
+        """Return by how much the force of the contact can ever differ from the weight [N], from a state on, however the modes meet."""
+        (omega, shapes), (place, speed) = self.modes, self.deviation(state)
+        swing = np.hypot(shapes.T @ place, (shapes.T @ speed) / omega)
+        lag = state.local + self.around.oscillators.local_compliance * (self.weight + self.stiffness * float(self.pull @ place))
+        return float(self.stiffness * np.abs(self.pull @ shapes) @ swing + self.contact[0] * np.abs(lag).sum())
+
+    def stays(self, state: State) -> bool:
+        """Tell whether nothing that still moves can lift the sphere off, by the bound of the force."""
+        return self.force_bound(state) < _MARGIN * self.weight
+
+    def excess(self, state: State, stored: float) -> float:
+        """Return what sphere and oscillators hold above their equilibrium [J] in a state in which the contact holds `stored` [J]."""
+        return mechanical_energy(self.around, state) + stored - least_energy(self.around, self.approach, self.stored)
+
+
+def coupled_oscillators(riding: Riding) -> tuple[Oscillators, Floats]:
+    """Return sphere and oscillators as oscillators that go on apart from each other, and the parts that take what each loses.
+
+    Damping is that of each coupled mode: what it hands from one to another is left out. The parts are (n + 1, n + 1): a row a coupled
+    mode; what each oscillator takes, and, last, the contact.
+    """
+    (omega, shapes), of, damping = riding.modes, riding.around.oscillators, riding.contact[1]
+    if of.rate.size:  # the dashpots of the massless elements follow the force that their springs carry
+        damping = (riding.stiffness / riding.contact[0]) ** 2 * damping + riding.stiffness**2 * (of.local_compliance**2 / of.mobility).sum()
+    lost = np.concatenate([shapes[1:] ** 2 * of.damping[:, None], damping * (riding.pull @ shapes)[None] ** 2])
+    whole, nothing = lost.sum(axis=0), np.zeros(0)
+    no = np.zeros(len(omega), dtype=bool)
+    coupled = Oscillators(omega, 0.5 * whole / omega, riding.pull @ shapes, nothing, nothing, no, ~no)
+    return coupled, np.where(whole > 0.0, lost / np.where(whole > 0.0, whole, 1.0), 0.0).T
