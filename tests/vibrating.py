@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 import vibroimpact as vi
-from vibroimpact.contact.law import ContactLaw
+from oracles.modal_integration import Drop
+from vibroimpact.contact.law import CompliantLaw, ContactLaw
 from vibroimpact.structures.modal_model import ModalBasis
 
 STIFFNESS = 5.1154524848e8
@@ -40,3 +41,35 @@ def drop_on(law: ContactLaw, plate: ModalBasis | None = None, sphere: ModalBasis
         "plate": vi.Body(mass=np.inf, contact_offset=0.0, modes=plate),
     }
     return vi.Problem(laws=(law,), **bodies, **given)
+
+
+def oracle(problem: vi.Problem, **settings: float) -> Drop:
+    """The same drop, as the oracle takes it from first touch."""
+    law = problem.laws[0]
+    assert isinstance(law, CompliantLaw)
+    bodies = [(body, sign) for body, sign in ((problem.sphere.modes, -1.0), (problem.plate.modes, 1.0)) if body is not None]
+
+    def of(parts: list[np.ndarray]) -> np.ndarray:
+        return np.concatenate([np.zeros(0), *parts])
+
+    def force(delta: float, speed: float) -> tuple[float, float]:
+        static, dashpot = law.forces(np.array(delta), np.ones(()), np.array(speed))
+        return float(static), float(dashpot)
+
+    fall = 0.0 if problem.height is None else float(problem.height) - float(problem.sphere.contact_offset)
+    speed = float(problem.speed) if problem.speed is not None else float(np.sqrt(2.0 * problem.gravity * fall))
+    inside = of([np.full(len(body.contact), sign < 0.0 and problem.sphere_inside) for body, sign in bodies]).astype(bool)
+    return Drop(
+        float(problem.sphere.mass),
+        float(problem.gravity),
+        of([body.angular_frequencies for body, _ in bodies]),
+        of([body.damping_ratios for body, _ in bodies]),
+        of([sign * body.contact for body, sign in bodies]),
+        force,
+        speed,
+        inside,
+        problem.local_element,
+        problem.quasi_static.linear,
+        True,
+        **settings,
+    )

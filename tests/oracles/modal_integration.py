@@ -50,6 +50,10 @@ class Drop:
     local: tuple[float, float] | None = None
     series: float = 0.0
     clip: bool = False
+    longest: float = 0.1
+    """How long a contact may last [s]."""
+    step: float = 2e-5
+    """The longest step in it [s]."""
 
     def __post_init__(self) -> None:
         count = len(self.omega)
@@ -102,7 +106,7 @@ class Drop:
         forces: list[float] = []
         settings = {"method": "DOP853", "rtol": 1e-12, "atol": 1e-16, "args": (at_touch,), "dense_output": True}
         first = solve_ivp(self.slopes, (self.time, self.time + 1e-8), self.y, **settings)
-        whole = solve_ivp(self.slopes, (first.t[-1], begin + 0.1), first.y[:, -1], events=apart, max_step=2e-5, **settings)
+        whole = solve_ivp(self.slopes, (first.t[-1], begin + self.longest), first.y[:, -1], events=apart, max_step=self.step, **settings)
         times = np.linspace(whole.t[0], whole.t[-1], 2001)
         for _ in range(3):  # closer and closer
             forces = [self.forces(whole.sol(time), at_touch)[0] for time in times]

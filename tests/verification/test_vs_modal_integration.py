@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 import vibroimpact as vi
-from oracles.modal_integration import Drop, Touch
-from vibrating import STIFFNESS, drop_on, modes_of, random_modes
+from oracles.modal_integration import Touch
+from vibrating import STIFFNESS, drop_on, modes_of, oracle, random_modes
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.laws.adams_impact import AdamsImpact
 from vibroimpact.contact.laws.hertz import Hertz
@@ -26,35 +26,6 @@ SOFT = modes_of([260.0, 2100.0], [2.5, 1.5])
 RICH = random_modes(3, 10, 150.0, 15e3, 1.2, 0.01)
 BALL = modes_of([13.4e3, 22e3, 30e3], [2.0, -3.0, 2.5], 0.02)
 CRITICAL = modes_of([300.0, 4e3], [2.0, 2.0], [1.0, 1.4])
-
-
-def oracle(problem: vi.Problem) -> Drop:
-    """The same drop."""
-    law = problem.laws[0]
-    assert isinstance(law, CompliantLaw)
-    bodies = [(body, sign) for body, sign in ((problem.sphere.modes, -1.0), (problem.plate.modes, 1.0)) if body is not None]
-
-    def of(parts: list[np.ndarray]) -> np.ndarray:
-        return np.concatenate([np.zeros(0), *parts])
-
-    def force(delta: float, speed: float) -> tuple[float, float]:
-        static, dashpot = law.forces(np.array(delta), np.ones(()), np.array(speed))
-        return float(static), float(dashpot)
-
-    inside = of([np.full(len(body.contact), sign < 0.0 and problem.sphere_inside) for body, sign in bodies]).astype(bool)
-    return Drop(
-        float(problem.sphere.mass),
-        float(problem.gravity),
-        of([body.angular_frequencies for body, _ in bodies]),
-        of([body.damping_ratios for body, _ in bodies]),
-        of([sign * body.contact for body, sign in bodies]),
-        force,
-        float(problem.speed),  # type: ignore[arg-type]
-        inside,
-        problem.local_element,
-        problem.quasi_static.linear,
-        True,
-    )
 
 
 def grouped(touches: list[Touch], counts: np.ndarray) -> list[list[Touch]]:

@@ -88,7 +88,8 @@ def lay_down(riding: Riding, state: State, stored: float) -> Lying:
     (place, speed), held = riding.deviation(state), riding.excess(state, stored)
     behind = place[1:] @ pull[1:]
     if riding.linear and riding.stays(state):
-        on_spring = held - 0.5 * (speed @ speed) - 0.5 * float(((riding.around.oscillators.angular_frequency * place[1:]) ** 2).sum())
+        of_modes = (riding.around.oscillators.angular_frequency * place[1:]) ** 2
+        on_spring = held - 0.5 * (float(speed @ speed) + float(of_modes.sum()))
         deeper = np.copysign(np.sqrt(2.0 * max(on_spring, 0.0) / riding.stiffness), place @ pull)
         return Lying(riding, replace(state, approach=np.asarray(at.approach + deeper - behind)), 0.0)
     speed -= pull * (speed @ pull) / (pull @ pull)

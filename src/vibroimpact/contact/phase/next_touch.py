@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from vibroimpact.contact.phase.oscillators import FreeMotion
+from vibroimpact.contact.phase.collocation import Floats
+from vibroimpact.contact.phase.oscillators import FreeMotion, Oscillators, State
 
 _MOST_STEPS = 100_000
 _MOST_HORIZONS = 10_000
@@ -39,8 +40,7 @@ def next_touch(motion: FreeMotion, level: float, until: float) -> float:
         gap, opening = level - float(of.approach(state)), -float(of.rates(state))
         if time > 0.0 and opening <= 0.0 and gap <= -4e-16 * opening * time:
             return time
-        swing = np.sqrt(2.0 * sum(of.energies(state)))  # no oscillator is ever faster again
-        reach = float(size @ (swing / omega)) + float(np.abs(state.local).sum())
+        swing, reach = _swing(of, state), _reach(of, state)
         far = _fall_time(float(state.approach), float(state.speed), gravity, level - reach)
         most = float(size @ (swing * omega * (1.0 + 2.0 * of.damping_ratio))) + float(np.abs(state.local) @ of.rate**2) + gravity
         near = (opening + np.sqrt(opening * opening + 2.0 * most * max(gap, 0.0))) / most if most > 0.0 else gap / max(-opening, 1e-300)
@@ -55,12 +55,15 @@ def next_touch(motion: FreeMotion, level: float, until: float) -> float:
 
 def time_to_part(motion: FreeMotion, level: float) -> float:
     """Return when surfaces that overlap beyond a level have come back to it [s]; 0 if they do not, infinite if they never will."""
-    time = 0.0
+    of, time = motion.oscillators, 0.0
     for _ in range(_MOST_HORIZONS):
-        approach, rate = (float(part) for part in motion.motion(np.array(time)))
+        state = motion.state(np.array(time))
+        approach, rate = float(of.approach(state)), float(of.rates(state))
         horizon = 2.0 * (approach - level) / abs(rate) if rate else 1e-6
         if approach <= level:
             return time
+        if motion.gravity >= 0.0 and state.speed >= 0.0 and float(state.approach) - _reach(of, state) > level:
+            return np.inf  # the sphere sinks farther than the surface ever reaches
         times = time + horizon * _SAMPLES
         parted = motion.motion(times)[0] <= level
         later = float(times[parted.argmax() if parted.any() else -1])
@@ -68,6 +71,16 @@ def time_to_part(motion: FreeMotion, level: float) -> float:
             return time
         time = later
     return np.inf
+
+
+def _swing(of: Oscillators, state: State) -> Floats:
+    """Return how fast each oscillator can ever become again."""
+    return np.asarray(np.sqrt(2.0 * sum(of.energies(state))))
+
+
+def _reach(of: Oscillators, state: State) -> float:
+    """Return how far the surfaces' own motion can ever take them towards each other, or apart [m]."""
+    return float(np.abs(of.shape) @ (_swing(of, state) / of.angular_frequency)) + float(np.abs(state.local).sum())
 
 
 def _fall_time(approach: float, speed: float, gravity: float, level: float) -> float:

@@ -190,7 +190,9 @@ class _Visit:
                 break
             found.contacts += 1
         found.law, found.state, found.duration = self.local.law, self.state, self.left
-        found.local = replace(self.local, law=self.next_law) if found.outcome == SETTLED else self.local
+        found.local = self.local
+        if found.outcome == SETTLED and float(self.around.oscillators.approach(self.state)) <= float(self.next_law.touch_level):
+            found.local = replace(self.local, law=self.next_law)  # the dent it has left is forgotten
         return found
 
     # one contact -----------------------------------------------------------------------------------
@@ -225,7 +227,7 @@ class _Visit:
                 if ended is None or not ended.resolved(self.tolerance, self.speed):
                     self.pace = 0.5 * min(self.pace, stretch.length * float(stretch.rule.map_time(np.array([event.x]))[0]))
                     continue
-                released = event.name == "parted" or (event.name == "no push" and self.ends_without_force)
+                released = event.name == "parted" or (event.name == "no push" and self.ends_without_force and self.will_part(ended.end))
                 if released:  # what is still stored is lost, of a sticking contact that breaks or of a surface that lags behind
                     ended = replace(ended, broken=float(self.local.elastic_energy(max(float(ended.approach[-1]), self.floor))))
                 self.accept(ended)
@@ -332,6 +334,10 @@ class _Visit:
             if value > getattr(found, f"max_{name}"):
                 setattr(found, f"max_{name}", value)
                 setattr(found, f"time_of_max_{name}", self.time + stretch.length * float(stretch.rule.map_time(np.array([x]))[0]))
+
+    def will_part(self, state: State) -> bool:
+        """Will the surfaces part if nothing pushes any more? Else the sphere falls back into the indentation."""
+        return bool(np.isfinite(time_to_part(FreeMotion(self.around.oscillators, state, self.around.gravity), self.floor)))
 
     # apart -----------------------------------------------------------------------------------------
 

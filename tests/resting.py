@@ -1,0 +1,76 @@
+"""Balls and plates at random, thin and thick, soft and hard, light and sprung; and those said to rest, as an oracle takes them on."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+import vibroimpact as vi
+from oracles.riding_integration import Ball
+from oracles.simply_supported import simply_supported
+from vibrating import modes_of, random_modes
+from vibroimpact.contact.law import CompliantLaw, contact_laws
+from vibroimpact.contact.pair import ContactPair
+from vibroimpact.contact.phase.vibrating_stretch import VibratingStretch
+from vibroimpact.contact.phase.visit import Apart
+
+LAWS = [law for law in contact_laws().values() if issubclass(law, CompliantLaw)]
+STEEL, ALUMINIUM, ACRYLIC = (7850.0, 210e9, 0.3), (2700.0, 70e9, 0.33), (1190.0, 3.2e9, 0.37)
+ROCK, RUBBER = (2600.0, 40e9, 0.25), (1200.0, 20e6, 0.48)
+ROWS = 4001
+
+
+def random_drop(seed: int) -> vi.Problem:
+    """Any of the laws; a plate of 0.8 to 20 mm, every third on springs of 2 to 20 Hz, of any damping; a ball of 2 to 60 mm radius."""
+    random = np.random.default_rng([17, seed])
+
+    def spread(low: float, high: float) -> float:
+        return float(np.exp(random.uniform(math.log(low), math.log(high))))
+
+    ball, plate = (ROCK, STEEL, RUBBER)[random.integers(3)], (STEEL, ALUMINIUM, ACRYLIC)[random.integers(3)]
+    radius, size = spread(2e-3, 6e-2), (spread(0.15, 1.0), spread(0.15, 1.0), spread(0.8e-3, 2e-2))
+    mass = 4.0 / 3.0 * math.pi * radius**3 * ball[0]
+    place = (size[0] * random.uniform(0.2, 0.8), size[1] * random.uniform(0.2, 0.8))
+    frequencies, contact = simply_supported(size, plate, place, int(random.integers(1, 13)))
+    if seed % 3 == 0:
+        whole = plate[0] * math.prod(size)
+        frequencies, contact = np.append(frequencies, spread(2.0, 20.0)), np.append(contact, whole**-0.5)
+    damping = (0.0, 0.001, 0.01, 0.1)[random.integers(4)]
+    sphere = random_modes(seed, 3, 2e3, 1e4, 0.5 * mass**-0.5, 0.02) if seed % 7 == 3 else None
+    modulus = 1.0 / sum((1.0 - ratio**2) / stiffness for _, stiffness, ratio in (ball, plate))
+    pair = ContactPair(modulus, radius, mass, 1e-3 * modulus, 0.3)
+    return vi.Problem(
+        sphere=vi.Body(mass=mass, contact_offset=radius, modes=sphere),
+        plate=vi.Body(mass=np.inf, contact_offset=0.0, modes=modes_of(frequencies, contact, damping)),
+        laws=(LAWS[seed % len(LAWS)].example(pair),),
+        height=radius + spread(2e-3, 0.5),
+        gravity=9.81,
+        impacts=(4, None, None)[random.integers(3)],
+        duration=2.0,
+        sphere_inside=False,
+    )
+
+
+def at_rest(response: vi.Response) -> Ball:
+    """Where the integration left a ball that was found to be at rest, for the oracle; of the law it takes the static force alone."""
+    lying, problem, contact = response.rest.lying[0], response.problem, response.legs[-1].contact
+    assert lying is not None
+    assert contact is not None
+    motion = contact.pieces[-1].motion
+    assert isinstance(motion, VibratingStretch | Apart)
+    state = motion.end if isinstance(motion, VibratingStretch) else motion.free.state(motion.duration)
+    law, sag = lying.riding.local.law, float(response.rest.sag[0])
+    floor = float(law.release_level)
+    delta = np.linspace(floor, floor + 6.0 * (sag - floor), ROWS)
+    force = np.asarray(law.forces(delta, np.zeros_like(delta), np.ones_like(delta))[0])
+    if problem.quasi_static:  # what is in series with it, at equal steps of the whole approach
+        whole = delta + problem.quasi_static.linear * force
+        delta, force = np.linspace(whole[0], whole[-1], ROWS), np.interp(np.linspace(whole[0], whole[-1], ROWS), whole, force)
+    bodies = [(body.modes, sign) for body, sign in ((problem.sphere, -1.0), (problem.plate, 1.0)) if body.modes is not None]
+    of = [(modes.angular_frequencies, modes.damping_ratios, sign * modes.contact) for modes, sign in bodies]
+    modal = (np.concatenate(parts) for parts in zip(*of, strict=True))
+    centre = (float(np.ravel(part)[0]) for part in (state.approach, state.speed))
+    span = (float(delta[0]), float(delta[-1]))
+    facts = (float(problem.sphere.mass), float(problem.gravity))
+    return Ball(*facts, *modal, span, force, sag, *centre, np.ravel(state.displacement), np.ravel(state.velocity))

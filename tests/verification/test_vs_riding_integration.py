@@ -1,0 +1,91 @@
+"""Spheres that come to rest on what vibrates, or do not, against scipy's DOP853 on the same modal equations: two files of oracles.
+
+oracles/modal_integration.py follows a drop from contact to contact; oracles/riding_integration.py takes spheres on that were said to rest.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import vibroimpact as vi
+from oracles.riding_integration import largest_gaps
+from resting import at_rest, random_drop
+from vibrating import drop_on, modes_of, oracle
+from vibroimpact.contact.laws.lankarani_nikravesh import LankaraniNikravesh
+
+THIN = {
+    "sphere": {"radius": "47.9 mm", "material": "rock-paper"},
+    "plate": {
+        "size": [0.477, 0.765, 0.0025],
+        "material": "steel-paper",
+        "model": "elastic",
+        "modes": 40,
+        "damping": 0.001,
+        "supports": "simply-supported",
+    },
+    "drop": {"height": 0.18, "position": [-0.014, 0.041]},
+    "contact": {"law": "lankarani-nikravesh", "restitution": 0.5},
+    "run": {"impacts": 5},
+}
+
+
+def test_a_thin_plate_throws_its_ball_again() -> None:
+    """It has nine tenths of the energy when the ball leaves it at 5 mm/s for the first time; 11 ms later the ball leaves it at 1 m/s."""
+    problem = replace(vi.read_case(THIN).to_problem(), tolerance=1e-11)
+    response = vi.simulate(problem)
+    assert response.outcomes == (vi.Outcome.IMPACTS,)
+    contacts = int(response.impacts["contacts"][0])
+    visit = oracle(problem).run(contacts)
+    assert len(visit) == contacts == 3
+    assert visit[0].separation_speed < 0.005  # where it was once said to rest
+    found = (response.impacts[name][0] for name in ("duration_s", "separation_speed_m_s", "max_force_N"))
+    expected = (visit[-1].end, visit[-1].separation_speed, max(touch.max_force for touch in visit))
+    np.testing.assert_allclose(list(found), expected, rtol=1e-6)
+    assert response.impacts["separation_speed_m_s"][0] == pytest.approx(0.99935, rel=1e-4)
+
+
+def test_springs_of_3_hz_give_a_heavy_ball_back() -> None:
+    """33 kg on a plate of 2 kg: ten contacts, the last of 0.7 s in which the springs are wound up and let go."""
+    law = LankaraniNikravesh(stiffness=1e10, restitution=0.2)
+    plate, ball = modes_of([3.0], [2.0**-0.5]), vi.Body(mass=33.0, contact_offset=0.15)
+    problem = replace(drop_on(law, plate, height=1.18, impacts=1, tolerance=1e-11), sphere=ball)
+    response = vi.simulate(problem)
+    visit = oracle(problem, longest=2.0, step=1e-2).run(10)
+    assert response.impacts["contacts"].tolist() == [10]
+    np.testing.assert_allclose(response.impacts["duration_s"], [visit[-1].end], rtol=1e-6)  # they part without any speed
+    np.testing.assert_allclose(response.impacts["separation_speed_m_s"], [visit[-1].separation_speed], rtol=1e-7)
+    assert visit[-1].separation_speed == pytest.approx(4.0449, rel=1e-4)
+
+
+def check(seeds: range) -> dict[vi.Outcome, int]:
+    """Nothing is made in laying down, what is left is said, and in a second none that rests leaves by more than its static indentation."""
+    counts: dict[vi.Outcome, int] = {}
+    balls = {}
+    for seed in seeds:
+        response = vi.simulate(random_drop(seed))
+        outcome = response.outcomes[0]
+        counts[outcome] = counts.get(outcome, 0) + 1
+        assert response.energy["written_off_at_rest_J"] >= -1e-12 * response.energy["input_J"], seed
+        if outcome.at_rest:
+            assert "J are left in vibration, too little at the contact to lift it" in response.status, seed
+            assert response.rest.left[0] >= 0.0, seed
+            balls[seed] = at_rest(response)
+    gaps = largest_gaps(list(balls.values()), 1.0)
+    left = [seed for (seed, ball), gap in zip(balls.items(), gaps, strict=True) if gap > ball.sag]
+    assert not left
+    return counts
+
+
+def test_drops_at_random() -> None:
+    counts = check(range(8))
+    assert sum(number for outcome, number in counts.items() if outcome.at_rest) >= 4
+
+
+@pytest.mark.slow
+def test_three_hundred_drops_at_random() -> None:
+    counts = check(range(300))
+    print(counts)
+    assert sum(number for outcome, number in counts.items() if outcome.at_rest) >= 100
