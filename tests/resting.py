@@ -47,7 +47,7 @@ def random_drop(seed: int) -> vi.Problem:
         height=radius + spread(2e-3, 0.5),
         gravity=9.81,
         impacts=(4, None, None)[random.integers(3)],
-        duration=2.0,
+        duration=1.0,
         sphere_inside=False,
     )
 

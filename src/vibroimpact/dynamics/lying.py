@@ -16,11 +16,13 @@ from vibroimpact.contact.phase.riding import Riding, coupled_oscillators
 class Lying:
     """The small oscillations of a sphere and what carries it, from where it was laid down on.
 
-    `riding`: their equilibrium and modes. `start`: the state then. `written_off`: what laying it down took [J].
+    `riding`: their equilibrium and modes. `start`: the state then. `left`: what they hold above their equilibrium then [J].
+    `written_off`: what laying it down took [J].
     """
 
     riding: Riding
     start: State
+    left: float
     written_off: float
 
     @cached_property
@@ -86,12 +88,13 @@ def lay_down(riding: Riding, state: State, stored: float) -> Lying:
     """
     root, pull, at = np.sqrt(riding.around.mass), riding.pull, riding.equilibrium
     (place, speed), held = riding.deviation(state), riding.excess(state, stored)
-    behind = place[1:] @ pull[1:]
+    behind, never = place[1:] @ pull[1:], (1.0 - riding.share) * stored
     if riding.linear and riding.stays(state):
         of_modes = (riding.around.oscillators.angular_frequency * place[1:]) ** 2
         on_spring = held - 0.5 * (float(speed @ speed) + float(of_modes.sum()))
         deeper = np.copysign(np.sqrt(2.0 * max(on_spring, 0.0) / riding.stiffness), place @ pull)
-        return Lying(riding, replace(state, approach=np.asarray(at.approach + deeper - behind)), 0.0)
+        return Lying(riding, replace(state, approach=np.asarray(at.approach + deeper - behind)), held, never)
     speed -= pull * (speed @ pull) / (pull @ pull)
     start = State(np.asarray(at.approach - behind), speed[0] / root, state.displacement, speed[1:], at.local)
-    return Lying(riding, start, held - riding.excess(start, riding.stored))
+    left = riding.excess(start, riding.stored / riding.share)
+    return Lying(riding, start, left, never + held - left)

@@ -127,7 +127,7 @@ class Vibration:
                 self.left[drop] = riding.excess(found.state, found.stored)
                 if found.outcome != RIDING:
                     self.lying[drop] = lying = lay_down(riding, found.state, found.stored)
-                    self.left[drop] -= lying.written_off
+                    self.left[drop] = lying.left
             visits.append(found)
         return visits
 

@@ -80,9 +80,16 @@ class Riding:
         return self.around.mass * self.around.gravity
 
     @cached_property
+    def share(self) -> float:
+        """The part of the static force that is there without motion: less than one where a law pushes less on the way out."""
+        level = np.array([float(self.local.approach_at(static_indentation(self.local.law, np.array([self.weight])))[0])])
+        static, dissipative = (float(part[0]) for part in self.local.forces(level, 0.0 * level))
+        return 1.0 + dissipative / static if dissipative else 1.0
+
+    @cached_property
     def sag(self) -> float:
         """Indentation of the law under the weight [m]."""
-        return float(static_indentation(self.local.law, np.array([self.weight]))[0])
+        return float(static_indentation(self.local.law, np.array([self.weight / self.share]))[0])
 
     @cached_property
     def approach(self) -> float:
@@ -91,14 +98,14 @@ class Riding:
 
     @cached_property
     def stored(self) -> float:
-        """What the contact holds at equilibrium [J]."""
-        return float(self.local.elastic_energy(np.array([self.approach]))[0])
+        """What the contact holds at equilibrium, and gives back [J]."""
+        return self.share * float(self.local.elastic_energy(np.array([self.approach]))[0])
 
     @cached_property
     def contact(self) -> tuple[float, float]:
         """Stiffness [N/m] and damping [N s/m] of the contact at equilibrium."""
         level, slow = np.array([self.approach]), np.array([1e-3 * np.sqrt(self.around.gravity * abs(self.sag)) + 1e-12])
-        stiffness = float(self.local.linearised(level, slow).static_by_approach[0])
+        stiffness = self.share * float(self.local.linearised(level, slow).static_by_approach[0])
         towards, away = (self.local.forces(level, rate)[1] for rate in (slow, -slow))
         return max(stiffness, _NONE), max(float((towards - away)[0] / (2.0 * slow[0])), 0.0)
 
@@ -150,8 +157,8 @@ class Riding:
         return self.force_bound(state) < _MARGIN * self.weight
 
     def excess(self, state: State, stored: float) -> float:
-        """Return what sphere and oscillators hold above their equilibrium [J] in a state in which the contact holds `stored` [J]."""
-        return mechanical_energy(self.around, state) + stored - least_energy(self.around, self.approach, self.stored)
+        """Return what sphere, oscillators and contact, which holds `stored` [J], can give back down to their equilibrium [J]."""
+        return mechanical_energy(self.around, state) + self.share * stored - least_energy(self.around, self.approach, self.stored)
 
 
 def coupled_oscillators(riding: Riding) -> tuple[Oscillators, Floats]:
