@@ -19,6 +19,8 @@ _RANGES = {
     "youngs_modulus": Range(above=0),
     "poissons_ratio": Range(above=-1, below=0.5),
     "yield_strength": Range(above=0),
+    "compressive_strength": Range(above=0),
+    "tensile_strength": Range(above=0),
     "loss_factor": Range(at_least=0),
 }
 
@@ -36,7 +38,9 @@ class Material:
     poissons_ratio : float
         Poisson's ratio [-], in (-1, 0.5).
     yield_strength : float, optional
-        Yield strength in uniaxial compression or tension [Pa], > 0.
+        Yield strength in uniaxial compression or tension [Pa], > 0; of a ductile material.
+    compressive_strength, tensile_strength : float, optional
+        Strength in uniaxial compression and tension [Pa], > 0; of a brittle material.
     loss_factor : float, optional
         Loss factor of vibration [-], >= 0.
     name, description, note : str
@@ -61,6 +65,8 @@ class Material:
     poissons_ratio: float
     yield_strength: float | None = None
     loss_factor: float | None = None
+    compressive_strength: float | None = None
+    tensile_strength: float | None = None
     name: str = ""
     description: str = ""
     note: str = ""

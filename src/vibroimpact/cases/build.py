@@ -82,6 +82,11 @@ def check_case(case: Case) -> None:
     local = case.contact.local
     if local.local_compliance == "identified" and case.sphere.model == "elastic":
         raise InputError('the local element of "identified" stands for the deformation of the sphere; leave it "rigid"', "sphere.model")
+    if local.finite_sphere and case.sphere.model == "elastic":
+        words = 'its modes deform as a whole sphere does, and "consistent" corrects the rest already; leave this out'
+        raise InputError(words, "contact.finite_sphere")
+    if local.finite_sphere and not isinstance(law, CompliantLaw):
+        raise InputError(f"{law.name} gives no force that a finite sphere would change; leave this out", "contact.finite_sphere")
     if elastic_names(case):
         from vibroimpact.cases.build_elastic import elastic_bodies  # which loads sparse matrices
 
@@ -96,7 +101,8 @@ def elastic_names(case: Case) -> list[Literal["sphere", "plate"]]:
 
 def deforms(case: Case) -> bool:
     """Does anything of a case but the contact itself deform?"""
-    return bool(elastic_names(case)) or case.contact.local.local_compliance == "identified"
+    local = case.contact.local
+    return bool(elastic_names(case)) or local.local_compliance == "identified" or local.finite_sphere
 
 
 def problem_of(case: Case, progress: Callable[[float], None] | None = None, tell: Callable[[str], None] | None = None) -> Problem:

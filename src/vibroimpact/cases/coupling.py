@@ -22,7 +22,7 @@ from vibroimpact.dynamics.simulate import simulate
 from vibroimpact.errors import InputError
 from vibroimpact.structures.modal_model import ModalBasis, ModalModel
 from vibroimpact.structures.recipe import model_key
-from vibroimpact.structures.sphere_compliance import sphere_term
+from vibroimpact.structures.sphere_compliance import FITTED, sphere_term
 from vibroimpact.structures.static_compliance import compliance_key, static_compliance
 from vibroimpact.structures.store import carry
 from vibroimpact.structures.surface import Side, place_of
@@ -30,7 +30,6 @@ from vibroimpact.structures.surface import Side, place_of
 if TYPE_CHECKING:
     from vibroimpact.cases.schema import Case
 
-_LARGEST_PATCH = 0.35  # of the sphere's radius: beyond it the finite-size term is not fitted
 _LEAST_SLOPE = 0.25  # of the contact's own compliance that must be left when what the modes carry is taken out
 
 
@@ -72,11 +71,10 @@ def coupling_of(case: Case, progress: Callable[[float], None] | None = None, tel
     treatment = treatment_of(case)
     bodies = compute_modes(case, progress, tell) if elastic_names(case) else {}
     modes = {name: body.basis for name, body in bodies.items()}
-    facts: dict[str, float | str] = {"treatment": treatment}
+    facts: dict[str, float | str] = {"treatment": treatment} if bodies or treatment == "identified" else {}
     if told := [doubt for body in bodies.values() for doubt in body.doubts]:
         facts["doubts"] = "\n".join(told)
-    linear, unit, factors, force = 0.0, 0.0, (0.0, 0.0, 0.0, 0.0), 1.0
-    pair = contact_pair(case)
+    linear, finite = 0.0, QuasiStatic()
     if "plate" in bodies:
         if not bodies["plate"].model.is_held_vertically:
             raise InputError("the supports let the plate fall or tilt; hold it vertically, or leave it rigid", "plate.supports")
@@ -86,23 +84,19 @@ def coupling_of(case: Case, progress: Callable[[float], None] | None = None, tel
             static = _plate_compliance(bodies["plate"], tell)
             facts["plate_static_compliance_m_N"] = static
             linear += static - carried
-    if "sphere" in bodies and treatment == "consistent":
-        patch = min(_contact_radius(case), _LARGEST_PATCH * case.sphere.radius)
-        modes["sphere"] = _averaged(bodies["sphere"], patch)
-        facts["contact_patch_m"] = patch
-        linear -= _compliance(modes["sphere"])
-        unit = 1.0 / (case.sphere.material.youngs_modulus * case.sphere.radius)
-        term = sphere_term(case.sphere.material.poissons_ratio)
-        factors = (term.constant, term.logarithm, term.linear, term.square)
-        force = 4.0 / 3.0 * pair.effective_modulus * case.sphere.radius**2
-        if not math.isfinite(force):
-            raise InputError("the consistent treatment needs the moduli of the bodies", "sphere.material")
-        facts["finite_sphere_factor"] = float(term.factor(patch / case.sphere.radius))
+    if case.contact.local.finite_sphere or ("sphere" in bodies and treatment == "consistent"):
+        patch = min(_contact_radius(case), FITTED[1] * case.sphere.radius)
+        finite, facts["finite_sphere_factor"] = _finite_size(case, patch)
+        if "sphere" in bodies:
+            modes["sphere"] = _averaged(bodies["sphere"], patch)
+            linear -= _compliance(modes["sphere"])
+            facts["contact_patch_m"] = patch
     if "sphere" in bodies:
         facts["sphere_modal_compliance_m_N"] = _compliance(modes["sphere"])
-    series = QuasiStatic(linear, unit, factors, force)
-    if series:
+    series = replace(finite, linear=linear)
+    if linear:
         facts["series_compliance_m_N"] = linear
+    if series:
         _refuse_ill_posed(case, series, facts)
     return Coupling(modes, series, facts, {name: body.model for name, body in bodies.items()})
 
@@ -140,6 +134,17 @@ def _plate_compliance(body: BodyModes, tell: Callable[[str], None] | None) -> fl
 def _met(body: BodyModes) -> tuple[tuple[float, float], Side]:
     """Return where the other body is met, and on which side."""
     return place_of(body.model.mesh, body.body.contact, body.body.side), body.body.side
+
+
+def _finite_size(case: Case, patch: float) -> tuple[QuasiStatic, float]:
+    """Return what a sphere of finite size lacks of the half space, and its factor at a contact radius [m]."""
+    ratio, radius = case.sphere.material.poissons_ratio, case.sphere.radius
+    term, force = sphere_term(ratio), 4.0 / 3.0 * contact_pair(case).effective_modulus * radius**2
+    if not math.isfinite(force):
+        raise InputError("the finite size of a sphere needs its modulus", "sphere.material")
+    factors = (term.constant, term.logarithm, term.linear, term.square)
+    unit = 1.0 / (case.sphere.material.youngs_modulus * radius)
+    return QuasiStatic(0.0, unit, factors, force), float(term.factor(patch / radius))
 
 
 def _averaged(body: BodyModes, radius: float) -> ModalBasis:

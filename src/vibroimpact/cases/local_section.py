@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from pydantic import Field, model_validator
+from pydantic import Field, StrictBool, model_validator
 
 from vibroimpact.cases.quantities import Quantity
 from vibroimpact.cases.section import Section
@@ -38,6 +38,7 @@ class LocalSection(Section):
     )
     local_stiffness: Annotated[float, Quantity("N/m", "spring of the local element of identified", Range(above=0))] | None = None
     local_damping: Annotated[float, Quantity("N s/m", "dashpot of the local element of identified", Range(above=0))] | None = None
+    finite_sphere: StrictBool = Field(False, description="correct Hertz's half space to the finite size of a rigid sphere")
     measured: MeasuredImpact | None = Field(None, description="what stiffness and damping of the local element are identified from")
 
     @model_validator(mode="after")
@@ -51,4 +52,6 @@ class LocalSection(Section):
                 '"identified" needs local_stiffness and local_damping, or measured = { max_force, rebound_height } to find them from',
                 "local_compliance",
             )
+        if self.local_compliance == "identified" and self.finite_sphere:
+            raise InputError('the local element of "identified" stands for all that the sphere does beyond the law; leave this out', "finite_sphere")
         return self

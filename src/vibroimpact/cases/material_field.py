@@ -21,6 +21,8 @@ class InlineMaterial(Section):
     youngs_modulus: Annotated[float, Quantity("Pa", "Young's modulus", Range(above=0))]
     poissons_ratio: Annotated[float, Quantity("", "Poisson's ratio", Range(above=-1, below=0.5))]
     yield_strength: Annotated[float, Quantity("Pa", "yield strength", Range(above=0))] | None = None
+    compressive_strength: Annotated[float, Quantity("Pa", "compressive strength of a brittle material", Range(above=0))] | None = None
+    tensile_strength: Annotated[float, Quantity("Pa", "tensile strength of a brittle material", Range(above=0))] | None = None
     loss_factor: Annotated[float, Quantity("", "loss factor", Range(at_least=0))] | None = None
     name: str = ""
 

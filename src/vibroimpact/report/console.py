@@ -14,9 +14,9 @@ from rich.text import Text
 
 from vibroimpact.cases.build import contact_laws_of, contact_pair, deforms, elastic_names, first_speed, impacts_of, resolved
 from vibroimpact.cases.doubts import doubts
+from vibroimpact.cases.expected import expected_of
 from vibroimpact.cases.schema import Case
 from vibroimpact.contact.law import CompliantLaw, ContactLaw, unit_of
-from vibroimpact.contact.phase.encounter import encounter_of
 from vibroimpact.contact.restitution import achieved_restitution
 from vibroimpact.dynamics.columns import LEDGER, VIBRATION_LEDGER
 from vibroimpact.errors import InputError
@@ -161,6 +161,8 @@ def material_sheet(name: str) -> RenderableType:
         ("youngs_modulus", "Pa"),
         ("poissons_ratio", ""),
         ("yield_strength", "Pa"),
+        ("compressive_strength", "Pa"),
+        ("tensile_strength", "Pa"),
         ("loss_factor", ""),
     ):
         value = getattr(material, key)
@@ -208,14 +210,11 @@ def case_explained(case: Case) -> RenderableType:
     rigid = not deforms(case)
     label = "restitution" if rigid else "between rigid bodies"
     rows += [("" if number else label, line) for number, line in enumerate(_restitution_lines(laws[0], mass, speed))]
-    law, found = laws[0], []
-    if isinstance(law, CompliantLaw):
-        one = np.ones(1)
-        encounter = encounter_of(law, mass * one, gravity * one, speed * one)
-        depth = float(encounter.depth[0])
-        force = float(np.asarray(law.forces(encounter.depth, 0.0 * one, encounter.approach_speed)[0])[0])
-        rows.append(("if nothing were lost" + ("" if rigid else ", rigid"), f"indentation {depth:.4g} m, force {force:.4g} N"))
-        found = doubts(resolved(case), depth, force)
+    expected = expected_of(case)
+    if not math.isnan(expected.force):
+        numbers = f"indentation {expected.depth:.4g} m, force {expected.force:.4g} N"
+        rows.append(("if nothing were lost" + ("" if rigid else ", rigid"), numbers))
+    found = doubts(resolved(case), expected)
     table = Table.grid(padding=(0, 2))
     for row in rows:
         table.add_row(*(escape(cell) for cell in row))
@@ -235,7 +234,11 @@ def _coupling_rows(case: Case) -> list[tuple[str, str]]:
     if not deforms(case):
         return []
     local = case.contact.local
-    words: list[str] = [local.local_compliance or "consistent, by default"]
+    words: list[str] = []
+    if elastic_names(case) or local.local_compliance is not None:
+        words.append(local.local_compliance or "consistent, by default")
+    if local.finite_sphere:
+        words.append("Hertz's half space corrected to a sphere of finite size")
     if local.local_stiffness is not None:
         words.append(f"local element of {local.local_stiffness:.6g} N/m and {local.local_damping:.6g} N s/m")
     if local.measured is not None:

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vibroimpact._version import __version__
+from vibroimpact.cases.conditions import Seen
 from vibroimpact.cases.doubts import doubts, range_doubts, sensor_doubts, truncation_doubts
 from vibroimpact.cases.sensitivity_doubts import sensitivity_doubts
 from vibroimpact.dynamics.recording import Signal
@@ -85,10 +86,9 @@ class Result:
     @property
     def doubts(self) -> list[str]:
         """What to doubt of it: where its assumptions are strained."""
-        peaks = (self.impacts[name] for name in ("max_indentation_m", "max_force_N"))
-        found = doubts(self.case, *(float(peak.max()) if len(peak) else math.nan for peak in peaks))
+        found = doubts(self.case, self._seen)
         found += str(self.deformation.get("doubts", "")).splitlines()  # of the meshes
-        duration = float(self.impacts["duration_s"][0]) if len(self.impacts["impact"]) else math.nan
+        duration = float(self._seen.duration)
         # of a superposed sphere more modes would only make it softer
         bodies = [body for body in self.truncation if body == "plate" or self.deformation.get("treatment") != "superposed"]
         modes = {body: self.frequencies(body) for body in bodies}
@@ -96,6 +96,16 @@ class Result:
         found += range_doubts(self.case.get("sensors", ()), self.signals)
         found += sensitivity_doubts(self.change_by_impact)
         return found + sensor_doubts(self.signals.values(), self.frequencies("plate"))
+
+    @property
+    def _seen(self) -> Seen:
+        """What the limits of the theory are held against."""
+        if not len(self.impacts["impact"]):
+            return Seen()
+        force, depth = (float(self.impacts[name].max()) for name in ("max_force_N", "max_indentation_m"))
+        duration, speed = (float(self.impacts[name][0]) for name in ("duration_s", "approach_speed_m_s"))
+        deflection = float(np.abs(self.history["plate_deflection_m"]).max()) if "plate" in self.peaks else math.nan
+        return Seen(force, depth, duration, speed, deflection)
 
     @property
     def name(self) -> str:

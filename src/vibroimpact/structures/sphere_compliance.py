@@ -14,8 +14,10 @@ from vibroimpact.structures.mesh import Floats
 _REACH, _LEAST = 20.0, 60  # degrees of the series, over a / R, and more; three times as many of both change c by less than 5e-6
 _NODES = 40  # of the integral over the patch, on which the harmonics have no more than fifteen zeros
 _SMALLEST, _LARGEST = 0.005, 0.5  # ratios: below cancellation begins, above Hertz's pressure is meaningless
-_FITTED = (0.01, 0.35)  # ratios
 _PLACES = 9  # of the fit
+
+FITTED = (0.01, 0.35)
+"""Ratios of the radii of contact and sphere for which `sphere_term` holds."""
 
 
 @dataclass(frozen=True)
@@ -61,7 +63,7 @@ def sphere_term(poissons_ratio: float) -> SphereTerm:
     >>> round(float(sphere_term(0.28).factor(0.1)), 3)
     -0.407
     """
-    middle, half = 0.5 * (_FITTED[1] + _FITTED[0]), 0.5 * (_FITTED[1] - _FITTED[0])
+    middle, half = 0.5 * (FITTED[1] + FITTED[0]), 0.5 * (FITTED[1] - FITTED[0])
     places = middle + half * np.cos(np.pi * (np.arange(_PLACES) + 0.5) / _PLACES)  # Chebyshev's: nearly the best fit
     logarithm = -((1.0 - 2.0 * poissons_ratio) ** 2) * (1.0 + poissons_ratio) / (2.0 * math.pi)
     rest = finite_sphere_factor(poissons_ratio, places) - logarithm * np.log(places)

@@ -1,0 +1,126 @@
+"""What the limits of the theory are held against: the bodies of a drop, how it falls, and what came of it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from vibroimpact.contact.elastic_plastic import ElasticPlasticLaw
+from vibroimpact.contact.law import ContactLaw, InstantaneousLaw, find_contact_law
+from vibroimpact.contact.pair import Array, effective_modulus, hertz_stiffness
+from vibroimpact.materials import RIGID, Material
+
+_LIKE_HERTZ = 0.01  # a stiffness that is off by more was measured, or fitted, and holds what Hertz's lacks
+
+
+@dataclass(frozen=True)
+class Seen:
+    """What came of a drop, or is expected of it; arrays have one value a drop, NaN where there is none.
+
+    Parameters
+    ----------
+    force, depth : float or array
+        Largest contact force [N] and largest indentation [m].
+    duration, speed : float or array
+        Duration of the first contact [s], and speed at its first touch [m/s].
+    deflection : float or array
+        Largest deflection of an elastic plate at the contact point [m].
+    """
+
+    force: Array = math.nan
+    depth: Array = math.nan
+    duration: Array = math.nan
+    speed: Array = math.nan
+    deflection: Array = math.nan
+
+
+@dataclass(frozen=True)
+class Conditions:
+    """A drop, or a batch with arrays for numbers, and what came of it.
+
+    Parameters
+    ----------
+    case : mapping
+        A resolved case; any number in it may be an array with one value a drop.
+    seen : Seen
+        What came of it.
+    """
+
+    case: Mapping[str, Any]
+    seen: Seen
+
+    @cached_property
+    def materials(self) -> dict[str, Material]:
+        """The materials of "sphere" and "plate"."""
+        return {body: _material(self.case[body]["material"]) for body in ("sphere", "plate")}
+
+    @property
+    def radius(self) -> Array:
+        """Radius of the sphere [m]."""
+        return self.case["sphere"]["radius"]
+
+    @cached_property
+    def mass(self) -> Array:
+        """Mass of the sphere [kg]."""
+        return 4.0 / 3.0 * math.pi * self.radius**3 * self.materials["sphere"].density
+
+    @cached_property
+    def modulus(self) -> Array:
+        """Effective modulus of the pair [Pa]."""
+        return effective_modulus(self.materials["sphere"], self.materials["plate"])
+
+    @cached_property
+    def contact_radius(self) -> Array:
+        """Hertz's contact radius at the largest force [m]."""
+        return np.cbrt(0.75 * self.seen.force * self.radius / self.modulus)
+
+    @cached_property
+    def peak_pressure(self) -> Array:
+        """Hertz's peak pressure at the largest force [Pa]."""
+        return 1.5 * self.seen.force / (math.pi * self.contact_radius**2)
+
+    @cached_property
+    def law(self) -> type[ContactLaw]:
+        """The contact law."""
+        return find_contact_law(self.case["contact"]["law"])
+
+    def of_law(self, name: str, otherwise: Any = math.nan) -> Array:
+        """Return a parameter of the law at the first impact."""
+        value = self.case["contact"].get(name, otherwise)
+        return value[0] if isinstance(value, (list, tuple)) else value
+
+    @property
+    def yields(self) -> bool:
+        """Does the law know of yield, or of nothing that happens in the contact?"""
+        return issubclass(self.law, (ElasticPlasticLaw, InstantaneousLaw))
+
+    @cached_property
+    def is_hertzian(self) -> Array:
+        """Is the law's elastic force that of Hertz for these bodies?"""
+        if self.yields:
+            return False
+        contact = self.case["contact"]
+        if "effective_modulus" in contact:
+            return np.isfinite(self.modulus)
+        if "stiffness" not in contact or ("exponent" not in contact and "1.5" not in self.law.__dataclass_fields__["stiffness"].metadata["unit"]):
+            return False
+        ratio = self.of_law("stiffness") / hertz_stiffness(self.modulus, self.radius)
+        return (abs(ratio - 1.0) < _LIKE_HERTZ) & (self.of_law("exponent", 1.5) == 1.5)
+
+    def model(self, body: str) -> str:
+        """Return whether "sphere" or "plate" is "rigid" or "elastic"."""
+        return str(self.case[body].get("model", "rigid"))
+
+    @property
+    def size(self) -> list[Array] | None:
+        """Length, width and thickness of the plate [m], where they are known."""
+        return self.case["plate"].get("size")
+
+
+def _material(given: Mapping[str, Any] | str) -> Material:
+    return RIGID if isinstance(given, str) else Material(**given)

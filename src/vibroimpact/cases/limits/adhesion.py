@@ -1,0 +1,68 @@
+r"""Adhesion: small particles stick, and most laws know nothing of it."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from vibroimpact.cases.conditions import Conditions
+from vibroimpact.cases.limit import Limit, percent_less
+from vibroimpact.contact.pair import Array
+
+WORK_OF_ADHESION = 0.1
+"""What is reckoned with [J/m^2]: the upper end of clean and dry bodies, 0.02 to 0.1; rough ones have less."""
+
+_TEAR = 7.09  # of (w^5 R^4 / E*^2)^(1/3): what a contact takes to be torn apart, from zero indentation on
+
+
+def sticking_speed(radius: Array, modulus: Array, mass: Array, work_of_adhesion: Array = WORK_OF_ADHESION) -> Array:
+    r"""Return the speed below which an elastic sphere sticks to a flat [m/s].
+
+    .. math:: v_s = \left(\frac{14.18}{m}\right)^{1/2} \left(\frac{w^5 R^4}{E^{*2}}\right)^{1/6}
+
+    Parameters
+    ----------
+    radius, modulus, mass : float or array
+        Radius [m], effective modulus [Pa] and mass of the sphere [kg].
+    work_of_adhesion : float or array
+        Of the pair [J/m^2].
+
+    References
+    ----------
+    Thornton, C. and Ning, Z. (1998). A theoretical model for the stick/bounce behaviour of adhesive, elastic-plastic spheres.
+    Powder Technology 99, 154-162.
+
+    Examples
+    --------
+    >>> f"{sticking_speed(50e-6, 36e9, 1.3e-9):.2g} m/s"
+    '0.0064 m/s'
+    """
+    return np.sqrt(2.0 * _TEAR / mass * np.cbrt(work_of_adhesion**5 * radius**4 / modulus**2))
+
+
+def _number(drops: Conditions) -> Array:
+    if "work_of_adhesion" in drops.case["contact"]:
+        return np.nan
+    ratio = sticking_speed(drops.radius, drops.modulus, drops.mass) / drops.seen.speed
+    return 1.0 - np.sqrt(1.0 - np.minimum(ratio, 1.0) ** 2)
+
+
+def _sentence(drop: Conditions, lost: float) -> str:
+    speed, pull = float(sticking_speed(drop.radius, drop.modulus, drop.mass)), 1.5 * np.pi * WORK_OF_ADHESION * drop.radius
+    told = "the sphere would stick" if lost >= 1.0 else f"the first restitution would fall by {percent_less(lost).removeprefix('-')}"
+    return (
+        f"with a work of adhesion of {WORK_OF_ADHESION:g} J/m^2, of clean and dry bodies, {told}: they stick below {speed:.2g} m/s, and hold "
+        f'by {pull:.2g} N; law = "jkr" or "krijt" has adhesion'
+    )
+
+
+LIMITS = (
+    Limit(
+        name="adhesion",
+        title="adhesion",
+        meaning=f"part of the first restitution that a work of adhesion of {WORK_OF_ADHESION:g} J/m^2 would take",
+        threshold=0.01,
+        number=_number,
+        sentence=_sentence,
+        shown=percent_less,
+    ),
+)

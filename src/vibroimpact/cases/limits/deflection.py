@@ -1,0 +1,56 @@
+r"""Deflection: plates are computed as if they bent without stretching."""
+
+from __future__ import annotations
+
+import math
+
+from vibroimpact.cases.conditions import Conditions
+from vibroimpact.cases.limit import Limit, percent_more
+from vibroimpact.contact.pair import Array
+
+_STIFFENING = {True: (0.200, 0.443), False: (0.272, 1.430)}
+"""Of clamped plates and of others: by edges that slide in their plane, and by edges that are held.
+
+Timoshenko and Woinowsky-Krieger 1959, Theory of Plates and Shells, section 100, eq. (232) and Table 82 (after Volmir), circular plates
+under a force at the centre: w/h + A (w/h)^3 is proportional to the force.
+"""
+
+
+def _number(drops: Conditions) -> Array:
+    return drops.seen.deflection / drops.size[2] if drops.size is not None and drops.model("plate") == "elastic" else math.nan
+
+
+def stiffening(ratio: float, *, clamped: bool) -> tuple[float, float]:
+    """Return by which part a plate is stiffer than small deflections say, its edges sliding in its plane, and held in it.
+
+    Parameters
+    ----------
+    ratio : float
+        Deflection under a force over the thickness.
+    clamped : bool
+        Are the edges clamped? Else they may turn.
+    """
+    sliding, held = _STIFFENING[clamped]
+    return sliding * ratio**2, held * ratio**2
+
+
+def _sentence(drop: Conditions, ratio: float) -> str:
+    sliding, held = stiffening(ratio, clamped=drop.case["plate"].get("supports") == "clamped")
+    return (
+        f"the plate deflects by {ratio:.2g} of its thickness: it also stretches, which this does not know, and is stiffer by about "
+        f"{percent_more(sliding).removeprefix('+')} if its edges may slide in its plane, {percent_more(held).removeprefix('+')} if they "
+        "are held; take a lower speed, a thicker plate, or a program of large deflections"
+    )
+
+
+LIMITS = (
+    Limit(
+        name="plate_deflection",
+        title="plate deflection over thickness",
+        meaning="largest deflection of the plate at the contact point over its thickness",
+        threshold=0.2,
+        number=_number,
+        sentence=_sentence,
+        shown=lambda ratio: f"{ratio:.2g} thicknesses",
+    ),
+)

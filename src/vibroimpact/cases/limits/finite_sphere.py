@@ -1,0 +1,97 @@
+r"""The finite size of the sphere: Hertz takes it for a half space."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+
+from vibroimpact.cases.conditions import Conditions
+from vibroimpact.cases.limit import Limit, percent_less
+from vibroimpact.contact.pair import Array
+from vibroimpact.contact.quasi_static import QuasiStatic
+from vibroimpact.structures.sphere_compliance import FITTED, sphere_term
+
+_STEPS = 3  # of Newton's method, which leave less than 1e-6
+_RATIOS = np.linspace(0.0, 0.49, 15)  # Poisson's ratios between which the factors of the term are interpolated, to 1e-3 of it
+
+
+def force_lacking(force: Array, radius: Array, modulus: Array, youngs_modulus: Array, poissons_ratio: Array) -> Array:
+    r"""Return which part of the largest force Hertz's half space lacks of that of a sphere of finite size.
+
+    Both take up the same energy, quasi-statically: with Hertz's indentation :math:`\delta` at his force :math:`F`, and
+    :math:`s(F)` of the finite sphere in series (`QuasiStatic`), the force of the finite sphere is :math:`f F`, and
+
+    .. math:: \tfrac25 F \delta\, f^{5/3} + \int_0^{f F} F'\, s'(F')\, dF' = \tfrac25 F \delta
+
+    of which this is :math:`1 - 1/f`. Only the sphere is of finite size: where the plate is the softer one there is little of it.
+
+    Parameters
+    ----------
+    force, radius, modulus : float or array
+        Hertz's largest force [N], the radius of the sphere [m] and the effective modulus of the pair [Pa].
+    youngs_modulus, poissons_ratio : float or array
+        Of the sphere [Pa], [-].
+
+    Examples
+    --------
+    >>> modulus = 2.26e9 / (1 - 0.28**2)  # a soft sphere on a rigid plane
+    >>> float(round(force_lacking(4 / 3 * modulus * 0.025**2 * 0.115**3, 0.025, modulus, 2.26e9, 0.28), 3))
+    0.054
+    """
+    whole = 4.0 / 3.0 * modulus * radius**2
+    ratio = np.minimum(np.cbrt(force / whole), FITTED[1])
+    force = whole * ratio**3  # beyond, what is known of it ends
+    series = QuasiStatic(0.0, 1.0 / (youngs_modulus * radius), _factors(poissons_ratio), whole)
+    hertz = 0.4 * force * radius * ratio**2
+    more = 1.0
+    for _ in range(_STEPS):
+        part = np.cbrt(more)
+        wrong = hertz * (part**5 - 1.0) + series.energy(more * force)
+        more = more - wrong / (hertz * 5.0 / 3.0 * part**2 + more * force**2 * series.compliance(more * force))
+    return 1.0 - 1.0 / more
+
+
+def _factors(poissons_ratio: Array) -> tuple[Array, Array, Array, Array]:
+    """Return the factors of the finite-size term; of an array of many ratios they are interpolated."""
+    if np.ndim(poissons_ratio) == 0:
+        term = sphere_term(min(max(float(poissons_ratio), 0.0), 0.5))  # negative ratios are rare, and the term of zero is near
+        return term.constant, term.logarithm, term.linear, term.square
+    constant, logarithm, linear, square = (np.interp(poissons_ratio, _RATIOS, row) for row in _table())
+    return constant, logarithm, linear, square
+
+
+@cache
+def _table() -> Array:
+    terms = [sphere_term(float(ratio)) for ratio in _RATIOS]
+    return np.array([[term.constant, term.logarithm, term.linear, term.square] for term in terms]).T
+
+
+def _number(drops: Conditions) -> Array:
+    contact = drops.case["contact"]
+    if drops.model("sphere") == "elastic" or contact.get("finite_sphere") or contact.get("local_compliance") == "identified":
+        return np.nan  # they have it, or count what is local twice
+    sphere = drops.materials["sphere"]
+    lacking = force_lacking(drops.seen.force, drops.radius, drops.modulus, sphere.youngs_modulus, sphere.poissons_ratio)
+    return np.where(drops.is_hertzian, lacking, np.nan)
+
+
+def _sentence(drop: Conditions, lacking: float) -> str:
+    return (
+        f"Hertz's half space makes the largest force about {percent_less(lacking).removeprefix('-')} too small: the contact radius is "
+        f"{float(drop.contact_radius / drop.radius):.2g} of the sphere's, which is stiffer than a half space; contact.finite_sphere = true "
+        "corrects it"
+    )
+
+
+LIMITS = (
+    Limit(
+        name="finite_sphere",
+        title="half space for a finite sphere",
+        meaning="part of the largest force that Hertz's half space lacks of that of a sphere of finite size",
+        threshold=0.02,
+        number=_number,
+        sentence=_sentence,
+        shown=percent_less,
+    ),
+)

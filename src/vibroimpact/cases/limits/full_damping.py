@@ -1,0 +1,32 @@
+"""Full damping: Adams' penetration at which the damping acts in full is never reached."""
+
+from __future__ import annotations
+
+from vibroimpact.cases.conditions import Conditions
+from vibroimpact.cases.limit import Limit
+from vibroimpact.contact.pair import Array
+
+
+def _number(drops: Conditions) -> Array:
+    return drops.of_law("full_damping_penetration") / drops.seen.depth
+
+
+def _sentence(drop: Conditions, ratio: float) -> str:
+    fade = float(drop.of_law("full_damping_penetration"))
+    return (
+        f"the indentation, {drop.seen.depth:.2g} m, stays below the full-damping penetration, {fade:.2g} m: the damping never acts in "
+        f"full, and less is lost than damping_max would take; take a penetration of {0.1 * drop.seen.depth:.1g} m or so, or calibrate"
+    )
+
+
+LIMITS = (
+    Limit(
+        name="full_damping",
+        title="damping never in full",
+        meaning="full-damping penetration over the largest indentation",
+        threshold=1.0,
+        number=_number,
+        sentence=_sentence,
+        shown=lambda ratio: f"a penetration of {ratio:.3g} times the indentation",
+    ),
+)

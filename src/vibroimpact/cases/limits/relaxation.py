@@ -1,0 +1,34 @@
+r"""Relaxation: viscoelastic laws are of first order in their time."""
+
+from __future__ import annotations
+
+import math
+
+from vibroimpact.cases.conditions import Conditions
+from vibroimpact.cases.limit import Limit
+from vibroimpact.contact.pair import Array
+
+
+def _number(drops: Conditions) -> Array:
+    return drops.of_law("dissipation_time") / drops.seen.duration
+
+
+def _sentence(drop: Conditions, ratio: float) -> str:
+    return (
+        f"the dissipation time, {float(drop.of_law('dissipation_time')):.2g} s, is {ratio:.2g} of the contact's {drop.seen.duration:.2g} s: "
+        f"{drop.law.name} keeps the first order of it, and the second would be about {50.0 * (math.pi * ratio) ** 2:.2g} % of the force; "
+        "take a shorter time, or a law that is fitted to a restitution"
+    )
+
+
+LIMITS = (
+    Limit(
+        name="relaxation",
+        title="viscoelastic time beside the contact",
+        meaning="dissipation time of the law over the duration of the first contact",
+        threshold=0.1,
+        number=_number,
+        sentence=_sentence,
+        shown=lambda ratio: f"{ratio:.2g} of the contact",
+    ),
+)

@@ -1,0 +1,33 @@
+"""Small contacts: Hertz's theory is one of small strains."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from vibroimpact.cases.conditions import Conditions
+from vibroimpact.cases.limit import Limit
+from vibroimpact.contact.pair import Array
+
+
+def _number(drops: Conditions) -> Array:
+    return np.sqrt(drops.seen.depth / drops.radius)
+
+
+def _sentence(drop: Conditions, part: float) -> str:
+    return (
+        f"the contact radius reaches about {part:.2g} of the sphere's, and strains about {0.2 * part:.2g}: Hertz's theory, and its "
+        "correction for a finite sphere, hold for small ones; take a lower speed or a stiffer material, or measure the force"
+    )
+
+
+LIMITS = (
+    Limit(
+        name="small_contact",
+        title="large contact",
+        meaning="contact radius over the radius of the sphere",
+        threshold=0.3,
+        number=_number,
+        sentence=_sentence,
+        shown=lambda part: f"{part:.2g} of the radius",
+    ),
+)

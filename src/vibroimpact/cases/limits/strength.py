@@ -1,0 +1,106 @@
+r"""Strength: what yields, is crushed or cracks under the pressure of the contact, body by body."""
+
+from __future__ import annotations
+
+import math
+from functools import partial
+
+import numpy as np
+
+from vibroimpact.cases.conditions import Conditions
+from vibroimpact.cases.limit import Limit
+from vibroimpact.contact.pair import Array
+from vibroimpact.materials import RIGID, Material
+
+_YIELD = 1.6  # Johnson 1985, section 6.1: below the surface the shear reaches yield where the peak pressure is 1.6 times the yield strength
+_BODIES = ("sphere", "plate")
+
+
+def demands(material: Material, peak_pressure: Array) -> dict[str, tuple[Array, Array, str]]:
+    r"""Return the stresses that a Hertz contact puts a body under, its strengths, and what happens beyond, by the name of the strength.
+
+    Only of strengths that are known. The shear below the surface is that of a uniaxial test at :math:`p_0 / 1.6`; the tension at the
+    rim of the contact is :math:`(1 - 2 \nu) p_0 / 3`.
+
+    Parameters
+    ----------
+    material : Material
+        Of the body.
+    peak_pressure : float or array
+        Hertz's peak pressure p0 [Pa].
+
+    References
+    ----------
+    Johnson, K. L. (1985). Contact Mechanics. Cambridge University Press, section 3.4 (rim) and eq. (6.9).
+    """
+    uniaxial, rim = peak_pressure / _YIELD, (1.0 - 2.0 * material.poissons_ratio) / 3.0 * peak_pressure
+    found = {
+        "yield_strength": (uniaxial, material.yield_strength, "yields"),
+        "compressive_strength": (uniaxial, material.compressive_strength, "is crushed"),
+        "tensile_strength": (rim, material.tensile_strength, "cracks"),
+    }
+    return {name: (stress, strength, verb) for name, (stress, strength, verb) in found.items() if strength is not None}
+
+
+def _of_body(body: str, drops: Conditions) -> Array:
+    """Return the largest stress over strength of a body; NaN if no strength is known."""
+    if drops.yields:
+        return math.nan
+    ratios = [stress / strength for stress, strength, _ in demands(drops.materials[body], drops.peak_pressure).values()]
+    return math.nan if not ratios else np.maximum.reduce(np.broadcast_arrays(*ratios))
+
+
+def _broken(body: str, drop: Conditions, ratio: float) -> str:
+    material, pressure = drop.materials[body], float(drop.peak_pressure)
+    name, (stress, strength, verb) = max(demands(material, pressure).items(), key=lambda item: item[1][0] / item[1][1])
+    who = f"the {body}{f' ({material.name})' if material.name else ''} {verb}"
+    how = (
+        f"the tension at the rim of the contact, {stress / 1e6:.3g} MPa, is {ratio:.2g} times its tensile strength of {strength / 1e6:.3g} MPa"
+        if name == "tensile_strength"
+        else f"the peak pressure is {ratio:.2g} times that of first damage, {_YIELD} x {strength / 1e6:.3g} MPa, its {name.replace('_', ' ')}"
+    )
+    remedy = "take a law that yields, such as thornton" if name == "yield_strength" else "the force is then an upper bound; measure it"
+    return f"{who} under Hertz's peak pressure of {pressure / 1e6:.3g} MPa: {how}, and {drop.law.name} knows nothing of it; {remedy}"
+
+
+def _unknown(drops: Conditions) -> list[str]:
+    return [body for body in _BODIES if drops.materials[body] is not RIGID and not demands(drops.materials[body], 1.0)]
+
+
+def _without(drops: Conditions) -> Array:
+    """Return the peak pressure over the effective modulus where no strength of a body is known."""
+    return drops.peak_pressure / drops.modulus if _unknown(drops) and not drops.yields else math.nan
+
+
+def _not_known(drop: Conditions, _: float) -> str:
+    bodies = [f"the {body}{f' ({drop.materials[body].name})' if drop.materials[body].name else ''}" for body in _unknown(drop)]
+    return (
+        f"whether {' and '.join(bodies)} {'yield or crack' if len(bodies) > 1 else 'yields or cracks'} under Hertz's peak pressure of "
+        f"{float(drop.peak_pressure) / 1e6:.3g} MPa is not known: no strength is given; give yield_strength, compressive_strength or "
+        "tensile_strength in its material"
+    )
+
+
+LIMITS = (
+    *(
+        Limit(
+            name=f"{body}_strength",
+            title=f"strength of the {body}",
+            meaning=f"largest stress in the {body} over its strength, under Hertz's pressure",
+            threshold=1.0,
+            number=partial(_of_body, body),
+            sentence=partial(_broken, body),
+            shown=lambda ratio: f"{ratio:.3g} times the strength",
+        )
+        for body in _BODIES
+    ),
+    Limit(
+        name="strength_not_known",
+        title="strength not known",
+        meaning="Hertz's peak pressure over the effective modulus, where no strength of a body is known",
+        threshold=0.0,
+        number=_without,
+        sentence=_not_known,
+        shown=lambda ratio: f"a peak pressure of {ratio:.2g} of the modulus",
+    ),
+)
