@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from vibroimpact.cases.build import deforms, rigid_problem
 from vibroimpact.cases.schema import Case
+from vibroimpact.cases.study_limits import batch_conditions, drop_conditions, limit_columns
 from vibroimpact.cases.swept_arrays import is_array_key, with_arrays
 from vibroimpact.cases.swept_keys import case_at
 from vibroimpact.dynamics.outcome import Outcome
@@ -116,13 +117,16 @@ def _parts(study: _Study, places: NDArray[np.intp]) -> Iterator[_Part]:
         yield from (_alone(study, place) for place in places[~above])
         places, arrays = places[above], {key: values[above] for key, values in arrays.items()}
     try:
-        table = tabulate(rigid_problem(with_arrays(case, arrays)))
+        problem = rigid_problem(with_arrays(case, arrays))
+        table = tabulate(problem)
     except InputError:  # of one of them: the others must not suffer
         yield from (_alone(study, place) for place in places)
         return
     failed = np.zeros(len(table), dtype=bool)
     failed[list(table.failures)] = True
-    columns = {name: values[~failed] for name, values in _columns(table, study.keep).items()}  # nothing that failed is a result
+    columns = _columns(table, study.keep)
+    columns |= limit_columns(batch_conditions(case, arrays, problem.laws[0], columns), len(table))
+    columns = {name: values[~failed] for name, values in columns.items()}  # nothing that failed is a result
     yield _Part(places[~failed], columns, {int(places[drop]): reason for drop, reason in table.failures.items()})
 
 
@@ -140,7 +144,9 @@ def _alone(study: _Study, place: np.intp) -> _Part:
         for name, signal in response.signals().items():
             signals[f"{SIGNAL}{name}"] = signal.value[: sample_count(duration, signal.sensor.rate)].astype(np.float32)[None]
             signals[f"{name}{SENSOR_PEAK}"] = np.array([np.abs(signal.value).max()])
-    return _Part(np.array([place]), {**_columns(response, study.keep), **signals}, {})
+    columns = _columns(response, study.keep)
+    columns |= limit_columns(drop_conditions(response, columns), 1)
+    return _Part(np.array([place]), {**columns, **signals}, {})
 
 
 def _noise(sensor: Sensor, number: int) -> Sensor:

@@ -18,6 +18,7 @@ from vibroimpact.cases.reader import load_table, named
 from vibroimpact.cases.schema import Case
 from vibroimpact.cases.section import read_table
 from vibroimpact.cases.sweep_section import MOST_DROPS, SweepSection, read_axis
+from vibroimpact.cases.study_limits import limit_meanings
 from vibroimpact.cases.swept_keys import case_at, find_quantity, holds_keys
 from vibroimpact.dynamics.columns import IMPACT_COLUMNS, VIBRATION_IMPACT_COLUMNS
 from vibroimpact.errors import InputError
@@ -105,7 +106,8 @@ class Sweep:
         impacts = (impacts_of(self.case) or _LONG) if "impacts" in self.section.keep else 0
         kept = self.case.sensors if "signals" in self.section.keep else ()
         samples = sum(sensor.rate * (self.case.run.duration or 0.0) for sensor in kept)
-        return self.size * (8.0 * (len(self.axes) + len(PEAKS) + impacts * len(IMPACT_COLUMNS)) + 4.0 * samples)
+        double, single = len(self.axes) + len(PEAKS) + impacts * len(IMPACT_COLUMNS), len(limit_meanings()) + samples
+        return self.size * (8.0 * double + 4.0 * single)
 
     @property
     def name(self) -> str:
@@ -126,7 +128,8 @@ class Sweep:
         signals = {f"{SIGNAL}{name}": (one.unit, f"{one.quantity} that {name} reads") for name, one in sensors.items()}
         impacts = {**IMPACT_COLUMNS, **VIBRATION_IMPACT_COLUMNS}
         del impacts["impact"]  # the dimension
-        return {**keys, OUTCOME: ("1", "why the run of the drop ended"), **PEAKS, **largest, **impacts, **signals}
+        ended = {OUTCOME: ("1", "why the run of the drop ended")}
+        return {**keys, **ended, **PEAKS, **largest, **limit_meanings(), **impacts, **signals}
 
     @cached_property
     def digest(self) -> str:
@@ -211,7 +214,7 @@ def read_sweep(table: Mapping[str, Any]) -> Sweep:
     if "signals" in section.keep:
         sensors = [sensor.name for sensor in sweep.case.sensors]
         variables = [name for sensor in sensors for name in (f"{SIGNAL}{sensor}", f"{sensor}{SENSOR_PEAK}", f"time_{sensor}")]
-        taken = {*sweep.axes, OUTCOME, *PEAKS, *IMPACT_COLUMNS, *VIBRATION_IMPACT_COLUMNS}
+        taken = {*sweep.axes, OUTCOME, *PEAKS, *limit_meanings(), *IMPACT_COLUMNS, *VIBRATION_IMPACT_COLUMNS}
         for name in variables:
             if not name.isprintable() or "/" in name or variables.count(name) > 1 or name in taken:
                 words = f'"{name}" can\'t be the name of a variable of the dataset, or is that of another; call the sensor otherwise'

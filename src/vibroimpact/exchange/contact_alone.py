@@ -110,6 +110,8 @@ def shared_notes(drop: Drop) -> list[str]:
     if drop.elastic:
         what = f"{' and '.join(drop.elastic)} {'is' if len(drop.elastic) == 1 else 'are'} written as rigid"
         notes.append(f"{what}; the contact law is written alone, without what vibrates.")
+    if drop.finite_sphere:
+        notes.append("the contact law is written alone, with Hertz's half space for the sphere, whose finite size was corrected here.")
     if drop.function is not None and drop.function[1].degree:
         name, function = drop.function
         speeds = function.beyond(np.array(approach_speeds(drop)))

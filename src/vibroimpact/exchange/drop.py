@@ -44,6 +44,8 @@ class Drop:
         A parameter of the law, and its value as a function of the approach speed; then it stands in place of the laws' values.
     elastic : tuple of str
         Which of "sphere" and "plate" deform in the case; a program that takes them as rigid gets the contact alone.
+    finite_sphere : bool
+        Was Hertz's half space corrected to a sphere of finite size?
     end_time : float
         When the run ends [s].
     impacts : mapping of str to array
@@ -71,6 +73,7 @@ class Drop:
     laws: tuple[ContactLaw, ...]
     function: tuple[str, SpeedFunction] | None = None
     elastic: tuple[str, ...] = ()
+    finite_sphere: bool = False
     end_time: float
     impacts: Mapping[str, Floats] = field(repr=False)
     history: Mapping[str, Floats] = field(default_factory=dict, repr=False)

@@ -73,6 +73,7 @@ def drop_of_result(result: Result, case: Case, function: tuple[str, SpeedFunctio
         laws=contact_laws_of(case),
         function=function,
         elastic=tuple(elastic_names(case)),
+        finite_sphere=case.contact.local.finite_sphere,
         end_time=float(result.history["time_s"][-1]),
         impacts=result.impacts,
         history=result.history,

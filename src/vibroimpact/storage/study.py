@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vibroimpact.errors import InputError
+from vibroimpact.storage.study_doubts import StudyDoubt, study_doubts
 from vibroimpact.studies.columns import SIGNAL
 from vibroimpact.studies.ledger import LEDGER
 from vibroimpact.studies.plan import SAMPLE
@@ -73,6 +74,11 @@ class Study:
     def size(self) -> int:
         """The number of drops."""
         return prod(self.dimensions.values())
+
+    @property
+    def doubts(self) -> list[StudyDoubt]:
+        """The limits of the theory that drops are beyond: how many drops, and the worst of them."""
+        return study_doubts(self.path)
 
     def values(self, name: str, *place: Any) -> NDArray[Any]:
         """Return a variable, or the part of it at a place as NumPy counts.

@@ -14,11 +14,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vibroimpact._version import __version__
+from vibroimpact.cases.limit import limits
 from vibroimpact.dynamics.outcome import OUTCOMES, Outcome
 from vibroimpact.storage.study import DATASET, FAILED_POINT, FAILED_REASON
 from vibroimpact.storage.study_toml import study_toml
 from vibroimpact.studies.chunk_file import chunk_layout, read_chunk
-from vibroimpact.studies.columns import OUTCOME, SIGNAL
+from vibroimpact.studies.columns import DOUBTS, LIMIT, OUTCOME, SIGNAL
 from vibroimpact.studies.ledger import Span
 from vibroimpact.studies.plan import SAMPLE, Plan
 
@@ -151,6 +152,11 @@ def _new_variable(
     if name == OUTCOME:
         data.attrs["flag_values"] = np.arange(len(OUTCOMES), dtype=dtype)
         data.attrs["flag_meanings"] = " ".join(outcome.value.replace(": ", "_").replace(" ", "_") for outcome in OUTCOMES)
+    if name == DOUBTS:
+        data.attrs["flag_masks"] = np.left_shift(1, np.arange(len(limits())), dtype=dtype)
+        data.attrs["flag_meanings"] = " ".join(limits())
+    if name.startswith(LIMIT):
+        data.attrs["threshold"] = limits()[name.removeprefix(LIMIT)].threshold
     return _described(data, meanings[name], own)
 
 

@@ -10,10 +10,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from vibroimpact.cases.limit import limits
 from vibroimpact.dynamics.outcome import OUTCOMES, Outcome
 from vibroimpact.storage.study_dataset import Meanings, as_text
 from vibroimpact.studies.chunk_file import ChunkResult, read_chunk
-from vibroimpact.studies.columns import OUTCOME, PEAKS, SENSOR_PEAK
+from vibroimpact.studies.columns import DOUBTS, OUTCOME, PEAKS, SENSOR_PEAK
 from vibroimpact.studies.ledger import Span
 from vibroimpact.studies.plan import Plan
 
@@ -23,7 +24,7 @@ MOST_ROWS = 1_000_000
 
 
 def write_drops(folder: Path, chunks: Sequence[Span], study: str, plan: Plan, meanings: Meanings) -> None:
-    """Write one row a drop: its number, its values at the swept keys, its peaks, why it ended and why it failed.
+    """Write one row a drop: its number, its values at the swept keys, its peaks, why it ended, what to doubt of it and why it failed.
 
     Parameters
     ----------
@@ -40,7 +41,7 @@ def write_drops(folder: Path, chunks: Sequence[Span], study: str, plan: Plan, me
     working = (folder / TABLE).with_suffix(".part")
     with working.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(["drop", *keys, *peaks, OUTCOME, "reason"])
+        writer.writerow(["drop", *keys, *peaks, OUTCOME, DOUBTS, "reason"])
         for chunk in chunks:
             writer.writerows(_rows(chunk, plan, read_chunk(folder, chunk, study), peaks))
     working.replace(folder / TABLE)
@@ -52,7 +53,10 @@ def _rows(chunk: Span, plan: Plan, result: ChunkResult, peaks: Sequence[str]) ->
     points = [[as_text(value) for value in values.tolist()] for values in plan.points(chunk.first, chunk.size).values()]
     numbers = range(chunk.first, chunk.first + chunk.size)
     reasons = [result.failures.get(place, "") for place in range(chunk.size)]
-    yield from zip(numbers, *points, *columns, [OUTCOMES[code].value for code in ended], reasons, strict=True)
+    beyond = result.arrays.get(DOUBTS, np.zeros(chunk.size, dtype=np.int32)).tolist()
+    doubts = {mask: " ".join(name for bit, name in enumerate(limits()) if mask >> bit & 1) for mask in set(beyond)}
+    outcomes = [OUTCOMES[code].value for code in ended]
+    yield from zip(numbers, *points, *columns, outcomes, [doubts[mask] for mask in beyond], reasons, strict=True)
 
 
 def _cells(values: NDArray[Any]) -> list[Any]:

@@ -107,3 +107,9 @@ SENSOR_PEAK = "_max_magnitude"
 
 SIGNAL = "signal_"
 """How the signal of a sensor is called: this, and the name of the sensor."""
+
+DOUBTS = "doubts"
+"""Which limits of the theory a drop is beyond: a bit each."""
+
+LIMIT = "limit_"
+"""How the number of a limit is called: this, and the name of the limit."""

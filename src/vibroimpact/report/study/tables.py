@@ -53,12 +53,13 @@ def failures_table(study: Study) -> tuple[list[str], list[list[str]]]:
     axes, rows = study_axes(study), []
     for number, reason in list(study.failures.items())[:_FAILURES]:
         rows.append(
-            [str(number), *(value_text(axis, value) for axis, value in zip(axes, _point(study, axes, number), strict=True)), reason]
+            [str(number), *(value_text(axis, value) for axis, value in zip(axes, point_of(study, axes, number), strict=True)), reason]
         )
     return ["Drop", *(axis.key for axis in axes), "Why it failed"], rows
 
 
-def _point(study: Study, axes: list[StudyAxis], number: int) -> list[Any]:
+def point_of(study: Study, axes: list[StudyAxis], number: int) -> list[Any]:
+    """Return the values of a drop on the axes, by its number."""
     if study.is_grid:
         places = np.unravel_index(number, tuple(study.dimensions.values()))
         return [axis.values[place] for axis, place in zip(axes, places, strict=True)]

@@ -9,6 +9,7 @@ from rich.text import Text
 
 from vibroimpact.quantity import digits
 from vibroimpact.report.study.axes import study_axes
+from vibroimpact.report.study.doubts import doubt_sentences
 from vibroimpact.report.study.outputs import study_outputs
 from vibroimpact.report.study.restitution import restitution_of, restitution_sentence
 from vibroimpact.report.study.sensitivity import RANKS, SOBOL, Sensitivity, sensitivity_of, strongest
@@ -47,6 +48,7 @@ def study_summary(study: Study, width: int) -> RenderableType:
         *why,
         *([table] if outputs else []),
         *([Text(restitution)] if restitution else []),
+        *(Text(f"Doubt: {doubt}.", style="yellow") for doubt in doubt_sentences(study)),
     )
 
 

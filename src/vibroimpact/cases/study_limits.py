@@ -1,0 +1,87 @@
+"""The limits of the theory over the drops of a study: the number of each drop, and which of them it is beyond."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import fields
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vibroimpact.cases.build import resolved
+from vibroimpact.cases.conditions import Conditions, Seen
+from vibroimpact.cases.limit import limits, numbers_of
+from vibroimpact.cases.schema import Case
+from vibroimpact.cases.swept_keys import with_values
+from vibroimpact.contact.law import ContactLaw
+from vibroimpact.dynamics.response import Response
+from vibroimpact.studies.axes import Values
+from vibroimpact.studies.columns import DOUBTS, LIMIT
+
+_IMPACTS, _POINTS = 3, 16  # where the deflection of a plate is looked at: after so many touches, over a period of its lowest mode
+
+
+def limit_meanings() -> dict[str, tuple[str, str]]:
+    """Return unit and meaning of what a study keeps of limits."""
+    return {DOUBTS: ("1", "limits that the drop is beyond"), **{f"{LIMIT}{name}": ("1", limit.meaning) for name, limit in limits().items()}}
+
+
+def limit_columns(drops: Conditions, count: int) -> dict[str, NDArray[Any]]:
+    """Return the numbers of the limits that have a bearing on drops, and a bit for each that a drop is beyond.
+
+    Parameters
+    ----------
+    drops : Conditions
+        One drop, or a batch of them.
+    count : int
+        How many.
+    """
+    numbers, beyond = numbers_of(drops), np.zeros(count, dtype=np.int32)
+    for bit, (name, limit) in enumerate(limits().items()):
+        if name in numbers:
+            beyond |= np.left_shift(np.greater(numbers[name], limit.threshold), bit, dtype=np.int32)
+    return {DOUBTS: beyond, **{f"{LIMIT}{name}": _one_each(number, count) for name, number in numbers.items()}}
+
+
+def _one_each(number: Any, count: int) -> NDArray[np.float32]:
+    return np.array(np.broadcast_to(number, count), dtype=np.float32)
+
+
+def batch_conditions(case: Case, arrays: Mapping[str, Values], law: ContactLaw, peaks: Mapping[str, NDArray[Any]]) -> Conditions:
+    """Return what a batch of rigid drops is held against.
+
+    Parameters
+    ----------
+    case : Case
+        That of the first of them.
+    arrays : mapping of str to array
+        The values at dotted keys in which they differ.
+    law : ContactLaw
+        Of the first impact, with arrays for parameters.
+    peaks : mapping of str to array
+        What came of them.
+    """
+    table = with_values(resolved(case), {key: values for key, values in arrays.items() if not key.startswith("contact.")})
+    table["contact"] = {**table["contact"], **{item.name: getattr(law, item.name) for item in fields(law)}}
+    return Conditions(table, _seen(peaks))
+
+
+def drop_conditions(response: Response, peaks: Mapping[str, NDArray[Any]]) -> Conditions:
+    """Return what one drop is held against, which may vibrate."""
+    return Conditions(response.problem.source or {}, _seen(peaks, _largest_deflection(response)))
+
+
+def _seen(peaks: Mapping[str, NDArray[Any]], deflection: float = np.nan) -> Seen:
+    names = ("largest_force_N", "largest_indentation_m", "first_duration_s", "first_approach_speed_m_s")
+    return Seen(*(peaks[name] for name in names), deflection)
+
+
+def _largest_deflection(response: Response) -> float:
+    """Return about how far an elastic plate gives way under the contact [m]: a per cent short; NaN of another."""
+    modes, touches = response.problem.plate.modes, response.impacts["time_s"][:_IMPACTS]
+    if modes is None or not len(touches):
+        return np.nan
+    after = (np.arange(_POINTS) + 0.5) / _POINTS / float(modes.frequencies[0])
+    times = (touches[:, None] + after).ravel()
+    return float(np.abs(response.modal(times[times <= response.end_time[0]])["plate"] @ modes.contact).max(initial=0.0))

@@ -1,0 +1,24 @@
+"""What to doubt of a study, in words."""
+
+from __future__ import annotations
+
+from vibroimpact.cases.limit import limits
+from vibroimpact.quantity import digits
+from vibroimpact.report.study.axes import study_axes
+from vibroimpact.report.study.tables import point_of
+from vibroimpact.report.study.words import value_text
+from vibroimpact.storage.study import Study
+
+_KEYS = 4  # of the worst drop that are told; all are in drops.csv
+
+
+def doubt_sentences(study: Study) -> list[str]:
+    """Return a sentence for each limit that drops of a study are beyond: how many drops, and the worst of them."""
+    axes, found = study_axes(study), []
+    for limit, drops, worst, number in study.doubts:
+        known = limits().get(limit)
+        title, shown = (known.title, known.shown(number)) if known else (limit.replace("_", " "), digits(number, 3))
+        point = zip(axes, point_of(study, axes, worst), strict=True)
+        where = ", ".join([f"{axis.key} {value_text(axis, value)}" for axis, value in point if axis.varies][:_KEYS])
+        found.append(f"{title}: {drops:,} of {study.size:,} drops, worst {shown} at drop {worst}{f' ({where})' if where else ''}")
+    return found
