@@ -107,7 +107,9 @@ class Conditions:
         contact = self.case["contact"]
         if "effective_modulus" in contact:
             return np.isfinite(self.modulus)
-        if "stiffness" not in contact or ("exponent" not in contact and "1.5" not in self.law.__dataclass_fields__["stiffness"].metadata["unit"]):
+        if "stiffness" not in contact or (
+            "exponent" not in contact and "1.5" not in self.law.__dataclass_fields__["stiffness"].metadata["unit"]
+        ):
             return False
         ratio = self.of_law("stiffness") / hertz_stiffness(self.modulus, self.radius)
         return (abs(ratio - 1.0) < _LIKE_HERTZ) & (self.of_law("exponent", 1.5) == 1.5)
@@ -117,8 +119,8 @@ class Conditions:
         return str(self.case[body].get("model", "rigid"))
 
     @property
-    def size(self) -> list[Array] | None:
-        """Length, width and thickness of the plate [m], where they are known."""
+    def size(self) -> Array:
+        """Length, width and thickness of the plate [m]; None where they are not known."""
         return self.case["plate"].get("size")
 
 

@@ -53,5 +53,7 @@ class LocalSection(Section):
                 "local_compliance",
             )
         if self.local_compliance == "identified" and self.finite_sphere:
-            raise InputError('the local element of "identified" stands for all that the sphere does beyond the law; leave this out', "finite_sphere")
+            raise InputError(
+                'the local element of "identified" stands for all that the sphere does beyond the law; leave this out', "finite_sphere"
+            )
         return self

@@ -73,8 +73,13 @@ def drop_conditions(response: Response, peaks: Mapping[str, NDArray[Any]]) -> Co
 
 
 def _seen(peaks: Mapping[str, NDArray[Any]], deflection: float = np.nan) -> Seen:
-    names = ("largest_force_N", "largest_indentation_m", "first_duration_s", "first_approach_speed_m_s")
-    return Seen(*(peaks[name] for name in names), deflection)
+    return Seen(
+        force=peaks["largest_force_N"],
+        depth=peaks["largest_indentation_m"],
+        duration=peaks["first_duration_s"],
+        speed=peaks["first_approach_speed_m_s"],
+        deflection=deflection,
+    )
 
 
 def _largest_deflection(response: Response) -> float:

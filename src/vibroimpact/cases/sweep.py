@@ -17,8 +17,8 @@ from vibroimpact.cases.quantities import Quantity
 from vibroimpact.cases.reader import load_table, named
 from vibroimpact.cases.schema import Case
 from vibroimpact.cases.section import read_table
-from vibroimpact.cases.sweep_section import MOST_DROPS, SweepSection, read_axis
 from vibroimpact.cases.study_limits import limit_meanings
+from vibroimpact.cases.sweep_section import MOST_DROPS, SweepSection, read_axis
 from vibroimpact.cases.swept_keys import case_at, find_quantity, holds_keys
 from vibroimpact.dynamics.columns import IMPACT_COLUMNS, VIBRATION_IMPACT_COLUMNS
 from vibroimpact.errors import InputError

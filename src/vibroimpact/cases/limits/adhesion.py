@@ -34,7 +34,7 @@ def sticking_speed(radius: Array, modulus: Array, mass: Array, work_of_adhesion:
     Examples
     --------
     >>> f"{sticking_speed(50e-6, 36e9, 1.3e-9):.2g} m/s"
-    '0.0064 m/s'
+    '0.0063 m/s'
     """
     return np.sqrt(2.0 * _TEAR / mass * np.cbrt(work_of_adhesion**5 * radius**4 / modulus**2))
 
@@ -50,8 +50,8 @@ def _sentence(drop: Conditions, lost: float) -> str:
     speed, pull = float(sticking_speed(drop.radius, drop.modulus, drop.mass)), 1.5 * np.pi * WORK_OF_ADHESION * drop.radius
     told = "the sphere would stick" if lost >= 1.0 else f"the first restitution would fall by {percent_less(lost).removeprefix('-')}"
     return (
-        f"with a work of adhesion of {WORK_OF_ADHESION:g} J/m^2, of clean and dry bodies, {told}: they stick below {speed:.2g} m/s, and hold "
-        f'by {pull:.2g} N; law = "jkr" or "krijt" has adhesion'
+        f"with a work of adhesion of {WORK_OF_ADHESION:g} J/m^2, of clean and dry bodies, {told}: they stick below {speed:.2g} m/s, and "
+        f'hold by {pull:.2g} N; law = "jkr" or "krijt" has adhesion'
     )
 
 

@@ -72,7 +72,7 @@ def _sentence(drop: Conditions, lost: float) -> str:
     speed = math.sqrt(2.0 * drop.case["drop"]["gravity"] * fall)
     return (
         f"in air the first touch would be {percent_less(lost).removeprefix('-')} slower than in the vacuum that this drop falls through, "
-        f"and each rebound loses speed again; drop.speed = {speed * (1.0 - lost):.4g}, instead of the height, states that speed"
+        f"and each rebound loses speed again; give drop.speed = {speed * (1.0 - lost):.4g} in place of the height to begin with that speed"
     )
 
 

@@ -46,14 +46,14 @@ def softening(contact_radius: Array, distance: Array, poissons_ratio: Array, sha
 
 def _distance(drops: Conditions) -> Array:
     """Return how far the contact is from the nearest edge [m]; NaN where the plate's edges are not known."""
-    if drops.size is None or isinstance(drops.case["plate"].get("mesh"), dict) and "file" in drops.case["plate"]["mesh"]:
+    if drops.size is None or (isinstance(drops.case["plate"].get("mesh"), dict) and "file" in drops.case["plate"]["mesh"]):
         return math.nan
     sides = zip(drops.size[:2], drops.case["drop"]["position"], strict=True)
     return np.minimum(*(0.5 * length - abs(place) for length, place in sides))
 
 
 def _kept(drops: Conditions) -> Array:
-    return _THICKNESSES * drops.size[2] if drops.model("plate") == "elastic" and drops.size else _RADII * drops.contact_radius
+    return _THICKNESSES * drops.size[2] if drops.model("plate") == "elastic" else _RADII * drops.contact_radius
 
 
 def _number(drops: Conditions) -> Array:
@@ -64,10 +64,13 @@ def _sentence(drop: Conditions, _: float) -> str:
     distance, plate = float(_distance(drop)), drop.materials["plate"]
     share = float(drop.modulus / plate.plane_strain_modulus)
     soft = float(softening(drop.contact_radius, max(distance, float(drop.contact_radius)), plate.poissons_ratio, share))
-    reach = f"{distance / drop.size[2]:.2g} thicknesses" if drop.size and drop.model("plate") == "elastic" else f"{distance / float(drop.contact_radius):.2g} contact radii"
+    if drop.model("plate") == "elastic":
+        reach = f"{distance / drop.size[2]:.2g} thicknesses"
+    else:
+        reach = f"{distance / float(drop.contact_radius):.2g} contact radii"
     return (
-        f"the contact is {distance:.3g} m from the edge of the plate, {reach}: a half space is too stiff there, by about {100.0 * soft:.2g} "
-        f"% where the edge is free; move drop.position {float(_kept(drop)):.2g} m or more away from the edge"
+        f"the contact is {distance:.3g} m from the edge of the plate, {reach}: a half space is too stiff there, by about "
+        f"{100.0 * soft:.2g} % where the edge is free; move drop.position {float(_kept(drop)):.2g} m or more away from the edge"
     )
 
 

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from vibroimpact.cases.conditions import Conditions
 from vibroimpact.cases.limit import Limit
 from vibroimpact.contact.pair import Array
 
 
 def _number(drops: Conditions) -> Array:
-    return drops.of_law("full_damping_penetration") / drops.seen.depth
+    return np.divide(drops.of_law("full_damping_penetration"), drops.seen.depth)
 
 
 def _sentence(drop: Conditions, ratio: float) -> str:

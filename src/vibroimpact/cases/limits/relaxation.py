@@ -4,18 +4,21 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from vibroimpact.cases.conditions import Conditions
 from vibroimpact.cases.limit import Limit
 from vibroimpact.contact.pair import Array
 
 
 def _number(drops: Conditions) -> Array:
-    return drops.of_law("dissipation_time") / drops.seen.duration
+    return np.divide(drops.of_law("dissipation_time"), drops.seen.duration)
 
 
 def _sentence(drop: Conditions, ratio: float) -> str:
+    time = float(drop.of_law("dissipation_time"))
     return (
-        f"the dissipation time, {float(drop.of_law('dissipation_time')):.2g} s, is {ratio:.2g} of the contact's {drop.seen.duration:.2g} s: "
+        f"the dissipation time, {time:.2g} s, is {ratio:.2g} of the contact's {drop.seen.duration:.2g} s: "
         f"{drop.law.name} keeps the first order of it, and the second would be about {50.0 * (math.pi * ratio) ** 2:.2g} % of the force; "
         "take a shorter time, or a law that is fitted to a restitution"
     )

@@ -53,14 +53,19 @@ def _of_body(body: str, drops: Conditions) -> Array:
 def _broken(body: str, drop: Conditions, ratio: float) -> str:
     material, pressure = drop.materials[body], float(drop.peak_pressure)
     name, (stress, strength, verb) = max(demands(material, pressure).items(), key=lambda item: item[1][0] / item[1][1])
-    who = f"the {body}{f' ({material.name})' if material.name else ''} {verb}"
-    how = (
-        f"the tension at the rim of the contact, {stress / 1e6:.3g} MPa, is {ratio:.2g} times its tensile strength of {strength / 1e6:.3g} MPa"
-        if name == "tensile_strength"
-        else f"the peak pressure is {ratio:.2g} times that of first damage, {_YIELD} x {strength / 1e6:.3g} MPa, its {name.replace('_', ' ')}"
+    known = f"its {name.replace('_', ' ')} of {strength / 1e6:.3g} MPa"
+    how = f"the tension at the rim of the contact is {stress / 1e6:.3g} MPa, {ratio:.2g} times {known}"
+    if name != "tensile_strength":
+        how = f"that is {ratio:.2g} times what begins it, {_YIELD} times {known}"
+    remedy = "take a law that yields, such as thornton" if name == "yield_strength" else "the force is an upper bound; measure it"
+    return (
+        f"{_named(body, material)} {verb} under Hertz's peak pressure of {pressure / 1e6:.3g} MPa: {how}, and {drop.law.name} knows nothing "
+        f"of it; {remedy}"
     )
-    remedy = "take a law that yields, such as thornton" if name == "yield_strength" else "the force is then an upper bound; measure it"
-    return f"{who} under Hertz's peak pressure of {pressure / 1e6:.3g} MPa: {how}, and {drop.law.name} knows nothing of it; {remedy}"
+
+
+def _named(body: str, material: Material) -> str:
+    return f"the {body} ({material.name})" if material.name else f"the {body}"
 
 
 def _unknown(drops: Conditions) -> list[str]:
@@ -73,7 +78,7 @@ def _without(drops: Conditions) -> Array:
 
 
 def _not_known(drop: Conditions, _: float) -> str:
-    bodies = [f"the {body}{f' ({drop.materials[body].name})' if drop.materials[body].name else ''}" for body in _unknown(drop)]
+    bodies = [_named(body, drop.materials[body]) for body in _unknown(drop)]
     return (
         f"whether {' and '.join(bodies)} {'yield or crack' if len(bodies) > 1 else 'yields or cracks'} under Hertz's peak pressure of "
         f"{float(drop.peak_pressure) / 1e6:.3g} MPa is not known: no strength is given; give yield_strength, compressive_strength or "
@@ -101,6 +106,6 @@ LIMITS = (
         threshold=0.0,
         number=_without,
         sentence=_not_known,
-        shown=lambda ratio: f"a peak pressure of {ratio:.2g} of the modulus",
+        shown=lambda ratio: f"a peak pressure of {ratio:.2g} of the effective modulus",
     ),
 )
