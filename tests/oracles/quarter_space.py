@@ -2,9 +2,9 @@
 
 The quarter space x > 0, z < 0 carries a unit force downwards at (1, 0, 0) on its upper side. Its displacement is that of the half space
 (Boussinesq), which does not leave the face x = 0 free, and what frees it: the opposite of Boussinesq's stresses on that face, which is
-smooth, and is done by quadratic bricks on a block that grows in size away from the edge and is held where it ends.
+smooth, and is done by quadratic tetrahedra on a block that grows in size away from the edge and is held where it ends.
 
-Good to about 2 %: with 10, 14 and 18 bricks along an edge the factor for nu = 0.3 moves in the third digit.
+With 4 and 8 cells along an edge the factor for nu = 0 is 1.22 and 1.28: good to about 5 %.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse.linalg import splu
-from skfem import Basis, BilinearForm, ElementHex2, ElementVector, FacetBasis, LinearForm, MeshHex2, MeshHex, condense
+from skfem import Basis, BilinearForm, ElementTetP2, ElementVector, FacetBasis, LinearForm, MeshTet, condense
 from skfem.helpers import ddot, eye, sym_grad, trace
 
 Floats = NDArray[np.float64]
@@ -29,13 +29,13 @@ def boussinesq(nu: float, x: Floats, y: Floats, depth: Floats) -> tuple[Floats, 
     return xx, xy, xz
 
 
-def image_factor(nu: float, bricks: int = 12, reach: float = 60.0) -> float:
+def image_factor(nu: float, cells: int = 8, reach: float = 60.0) -> float:
     """What the edge adds to the displacement under the force, over the half space's displacement at its mirror image."""
-    along = np.concatenate([np.linspace(0.0, 2.0, bricks // 2 + 1), 2.0 * (reach / 2.0) ** (np.arange(1, bricks + 1) / bricks)])
-    across = np.concatenate([np.linspace(0.0, 1.0, bricks // 4 + 1), reach ** (np.arange(1, bricks + 1) / bricks)])
-    mesh = MeshHex.init_tensor(along, across, across)  # x, y and depth; half of it, for y > 0
-    element = ElementVector(ElementHex2())
-    basis = Basis(mesh, element)
+    along = np.concatenate([np.linspace(0.0, 2.0, cells // 2 + 1), 2.0 * (reach / 2.0) ** (np.arange(1, cells + 1) / cells)])
+    across = np.concatenate([np.linspace(0.0, 1.0, cells // 4 + 1), reach ** (np.arange(1, cells + 1) / cells)])
+    mesh = MeshTet.init_tensor(along, across, across)  # x, y and depth; half of it, for y > 0
+    element = ElementVector(ElementTetP2())
+    basis = Basis(mesh, element, intorder=2)
     shear, lame = 0.5 / (1.0 + nu), nu / ((1.0 + nu) * (1.0 - 2.0 * nu))
 
     @BilinearForm

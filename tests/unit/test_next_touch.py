@@ -122,3 +122,10 @@ def test_a_local_element_creeps_back() -> None:
     free = motion(NONE, NONE, NONE, approach=-3e-4, speed=-0.1, local=(3e-4, 2000.0))
     found = next_touch(free, 0.0, np.inf)
     assert found == pytest.approx(first_meeting(free, 0.0, 0.1), abs=1.1e-7)
+
+
+@pytest.mark.parametrize("approach", [0.0, 1e-22, -1e-22])
+def test_what_leaves_and_is_not_turned_back_never_meets_again(approach: float) -> None:
+    """Without gravity and without anything that vibrates, also where rounding leaves the surfaces just together."""
+    assert next_touch(motion(NONE, NONE, NONE, approach=approach, speed=-30.0, gravity=0.0), 0.0, np.inf) == np.inf
+    assert next_touch(motion(NONE, NONE, NONE, approach=-1e-3, speed=2.0, gravity=0.0), 0.0, np.inf) == pytest.approx(5e-4)

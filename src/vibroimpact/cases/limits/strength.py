@@ -57,10 +57,14 @@ def _broken(body: str, drop: Conditions, ratio: float) -> str:
     how = f"the tension at the rim of the contact is {stress / 1e6:.3g} MPa, {ratio:.2g} times {known}"
     if name != "tensile_strength":
         how = f"that is {ratio:.2g} times what begins it, {_YIELD} times {known}"
-    remedy = "take a law that yields, such as thornton" if name == "yield_strength" else "the force is an upper bound; measure it"
+    remedy = (
+        "take a law that yields, such as thornton"
+        if name == "yield_strength"
+        else "take the force for an upper bound, or a measured restitution"
+    )
     return (
-        f"{_named(body, material)} {verb} under Hertz's peak pressure of {pressure / 1e6:.3g} MPa: {how}, and {drop.law.name} knows nothing "
-        f"of it; {remedy}"
+        f"{_named(body, material)} {verb} under Hertz's peak pressure of {pressure / 1e6:.3g} MPa: {how}, and {drop.law.name} knows "
+        f"nothing of it; {remedy}"
     )
 
 

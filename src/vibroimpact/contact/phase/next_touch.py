@@ -43,7 +43,10 @@ def next_touch(motion: FreeMotion, level: float, until: float) -> float:
         swing, reach = _swing(of, state), _reach(of, state)
         far = _fall_time(float(state.approach), float(state.speed), gravity, level - reach)
         most = float(size @ (swing * omega * (1.0 + 2.0 * of.damping_ratio))) + float(np.abs(state.local) @ of.rate**2) + gravity
-        near = (opening + np.sqrt(opening * opening + 2.0 * most * max(gap, 0.0))) / most if most > 0.0 else gap / max(-opening, 1e-300)
+        if most > 0.0:
+            near = (opening + np.sqrt(opening * opening + 2.0 * most * max(gap, 0.0))) / most
+        else:  # nothing turns it back: without gravity, and nothing vibrates
+            near = gap / -opening if opening < 0.0 else np.inf
         step = max(far, near)
         if time + step > until or not np.isfinite(step):
             return np.inf

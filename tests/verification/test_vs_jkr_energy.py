@@ -1,0 +1,47 @@
+"""What adhesion takes, against the energy of a contact of Johnson, Kendall and Roberts, integrated by SciPy."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+from scipy.optimize import brentq
+
+import vibroimpact as vi
+from support import plain_case
+from vibroimpact.cases.limits.adhesion import WORK_OF_ADHESION, sticking_speed
+
+RADIUS, MODULUS = 2e-5, 3e10
+
+
+def torn() -> float:
+    """The work that it takes to draw a contact out, from zero indentation to where it breaks [J]."""
+
+    def force(a: float) -> float:
+        return 4 * MODULUS * a**3 / (3 * RADIUS) - math.sqrt(8 * math.pi * WORK_OF_ADHESION * MODULUS * a**3)
+
+    def slope(a: float) -> float:  # of the indentation a^2 / R - sqrt(2 pi w a / E)
+        return 2 * a / RADIUS - 0.5 * math.sqrt(2 * math.pi * WORK_OF_ADHESION / (MODULUS * a))
+
+    at_zero = (2 * math.pi * WORK_OF_ADHESION * RADIUS**2 / MODULUS) ** (1 / 3)
+    at_break = brentq(slope, 1e-3 * at_zero, at_zero)
+    return quad(lambda a: -force(a) * -slope(a), at_zero, at_break)[0]
+
+
+def test_the_speed_below_which_a_sphere_sticks() -> None:
+    mass = 4 / 3 * math.pi * RADIUS**3 * 2500
+    assert float(sticking_speed(RADIUS, MODULUS, mass)) == pytest.approx(math.sqrt(2 * torn() / mass), rel=1e-3)
+
+
+def test_the_restitution_that_is_lost() -> None:
+    """As the law with adhesion loses it, within 3 %."""
+    material = {"density": 2500, "youngs_modulus": MODULUS * (1 - 0.25**2), "poissons_ratio": 0.25}
+    law = {"law": "jkr", "work_of_adhesion": WORK_OF_ADHESION}
+    bodies = {"sphere": {"radius": RADIUS, "material": material}, "plate": {"material": "rigid"}}
+    case = plain_case(**bodies, drop={"speed": 0.1, "gravity": 0.0}, contact=law, run={"impacts": 1})
+    lost = 1 - float(vi.simulate(vi.read_case(case)).impacts["restitution_achieved"][0])
+    mass = 4 / 3 * math.pi * RADIUS**3 * 2500
+    speed = float(sticking_speed(RADIUS, MODULUS, mass))
+    assert 1 - np.sqrt(1 - (speed / 0.1) ** 2) == pytest.approx(lost, rel=0.03)

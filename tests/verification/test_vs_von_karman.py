@@ -1,0 +1,27 @@
+"""How much stiffer a plate is that deflects far, against von Karman's equations, by SciPy."""
+
+from __future__ import annotations
+
+import pytest
+
+from oracles.von_karman import stiffening as exact
+from vibroimpact.cases.limits.deflection import LIMITS, stiffening
+
+
+@pytest.mark.parametrize("clamped", [True, False])
+@pytest.mark.parametrize("load", [0.1, 0.25, 0.5])
+def test_stiffening_under_a_force_at_the_centre(load: float, *, clamped: bool) -> None:
+    """Circular plates, edges sliding in their plane and held in it, from a tenth of the thickness to three quarters; within 12 %."""
+    for place, held in enumerate((False, True)):
+        ratio, part = exact(load, clamped=clamped, held=held)
+        assert stiffening(ratio, clamped=clamped)[place] == pytest.approx(part, rel=0.12)
+
+
+def test_the_threshold_is_where_it_begins_to_matter() -> None:
+    """At a fifth of the thickness a plate whose edges are held is 2 % (clamped) to 6 % (supported) stiffer."""
+    (limit,) = LIMITS
+    assert limit.threshold == 0.2
+    for clamped, load, part in ((True, 0.2, 0.02), (False, 0.084, 0.055)):
+        ratio, found = exact(load, clamped=clamped, held=True)
+        assert ratio == pytest.approx(0.2, rel=0.02)
+        assert found == pytest.approx(part, rel=0.15)
