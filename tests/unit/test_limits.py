@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -264,3 +265,13 @@ def test_a_finite_sphere_can_be_swept_and_leaves_nothing_to_doubt_of_it(tmp_path
     assert np.all(kept(study, "finite_sphere")[0] > 0.02)
     single = vi.simulate(sweep.case_of(3)).impacts["max_force_N"]
     np.testing.assert_allclose(study.values("max_force_N", 1, 1), single, rtol=1e-12)
+
+
+def test_too_few_modes_are_doubted_in_studies_and_of_problems_made_in_python(tmp_path: Path) -> None:
+    sweep = vi.read_sweep({**quiet(plate=ELASTIC, run={"impacts": 1}), "sweep": {"over": {"plate.modes": [2, 60]}}})
+    study = vi.read_study(compute_study(sweep, tmp_path / "study"))
+    (few,) = (doubt for doubt in study.doubts if doubt.limit == "plate_modes")
+    assert (few.drops, few.worst) == (1, 0)
+    made = replace(sweep.case_of(0).to_problem(), source=None)
+    (doubt,) = result_of(vi.simulate(made)).doubts
+    assert doubt.startswith("the modes of the plate end at ")

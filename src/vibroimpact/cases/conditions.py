@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
@@ -30,6 +30,9 @@ class Seen:
         Duration of the first contact [s], and speed at its first touch [m/s].
     deflection : float or array
         Largest deflection of an elastic plate at the contact point [m].
+    modes : mapping of str to (float, float)
+        By the name of a body that has modes: about which part of the largest force those left out would change, and the highest
+        frequency of those kept [Hz].
     """
 
     force: Array = math.nan
@@ -37,6 +40,7 @@ class Seen:
     duration: Array = math.nan
     speed: Array = math.nan
     deflection: Array = math.nan
+    modes: Mapping[str, tuple[float, float]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)

@@ -37,6 +37,8 @@ class Limit:
         Returns what is said of one drop and its number: what is off and how far, the cause and the remedy.
     shown : callable
         Returns a number as it is read.
+    without_case : bool, default False
+        Is what came of a drop enough to tell the number? Then it is told also of a problem made in Python, which has no case.
     """
 
     name: str
@@ -46,6 +48,7 @@ class Limit:
     number: Callable[[Conditions], Array]
     sentence: Told
     shown: Callable[[float], str]
+    without_case: bool = False
 
 
 @cache
@@ -64,7 +67,7 @@ def limits() -> Mapping[str, Limit]:
 def numbers_of(drops: Conditions) -> dict[str, Array]:
     """Return the number of each limit that has a bearing on a drop, or on any of an array of drops."""
     with np.errstate(all="ignore"):  # what can't be told of a drop is not a number
-        found = {name: limit.number(drops) for name, limit in limits().items()}
+        found = {name: limit.number(drops) for name, limit in limits().items() if drops.case or limit.without_case}
     return {name: number for name, number in found.items() if not np.all(np.isnan(number))}
 
 

@@ -69,16 +69,20 @@ def batch_conditions(case: Case, arrays: Mapping[str, Values], law: ContactLaw, 
 
 def drop_conditions(response: Response, peaks: Mapping[str, NDArray[Any]]) -> Conditions:
     """Return what one drop is held against, which may vibrate."""
-    return Conditions(response.problem.source or {}, _seen(peaks, _largest_deflection(response)))
+    problem, modes = response.problem, {}
+    for body, part in response.truncation.items():
+        modes[body] = part, float(getattr(problem, body).modes.frequencies[-1])
+    return Conditions(problem.source or {}, _seen(peaks, _largest_deflection(response), modes))
 
 
-def _seen(peaks: Mapping[str, NDArray[Any]], deflection: float = np.nan) -> Seen:
+def _seen(peaks: Mapping[str, NDArray[Any]], deflection: float = np.nan, modes: Mapping[str, tuple[float, float]] | None = None) -> Seen:
     return Seen(
         force=peaks["largest_force_N"],
         depth=peaks["largest_indentation_m"],
         duration=peaks["first_duration_s"],
         speed=peaks["first_approach_speed_m_s"],
         deflection=deflection,
+        modes=modes or {},
     )
 
 

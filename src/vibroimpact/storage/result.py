@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from vibroimpact._version import __version__
 from vibroimpact.cases.conditions import Seen
-from vibroimpact.cases.doubts import doubts, range_doubts, sensor_doubts, truncation_doubts
+from vibroimpact.cases.doubts import doubts, range_doubts, sensor_doubts
 from vibroimpact.cases.sensitivity_doubts import sensitivity_doubts
 from vibroimpact.dynamics.recording import Signal
 from vibroimpact.dynamics.response import Response
@@ -88,11 +88,6 @@ class Result:
         """What to doubt of it: where its assumptions are strained."""
         found = doubts(self.case, self._seen)
         found += str(self.deformation.get("doubts", "")).splitlines()  # of the meshes
-        duration = float(self._seen.duration)
-        # of a superposed sphere more modes would only make it softer
-        bodies = [body for body in self.truncation if body == "plate" or self.deformation.get("treatment") != "superposed"]
-        modes = {body: self.frequencies(body) for body in bodies}
-        found += truncation_doubts({body: self.truncation[body] for body in bodies}, modes, duration)
         found += range_doubts(self.case.get("sensors", ()), self.signals)
         found += sensitivity_doubts(self.change_by_impact)
         return found + sensor_doubts(self.signals.values(), self.frequencies("plate"))
@@ -105,7 +100,8 @@ class Result:
         force, depth = (float(self.impacts[name].max()) for name in ("max_force_N", "max_indentation_m"))
         duration, speed = (float(self.impacts[name][0]) for name in ("duration_s", "approach_speed_m_s"))
         deflection = float(np.abs(self.history["plate_deflection_m"]).max()) if "plate" in self.peaks else math.nan
-        return Seen(force, depth, duration, speed, deflection)
+        modes = {body: (part, self.frequencies(body)[-1]) for body, part in self.truncation.items()}
+        return Seen(force, depth, duration, speed, deflection, modes)
 
     @property
     def name(self) -> str:

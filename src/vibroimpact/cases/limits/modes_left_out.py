@@ -1,0 +1,47 @@
+"""Modes: a body that is cut off at too low a frequency has too few for its contact."""
+
+from __future__ import annotations
+
+import math
+from functools import partial
+
+import numpy as np
+
+from vibroimpact.cases.conditions import Conditions
+from vibroimpact.cases.limit import Limit
+from vibroimpact.contact.pair import Array
+
+_TRUNCATED = 0.05  # of the largest force
+_CYCLES, _ENOUGH = 1.5, 3.0  # periods of the highest mode in a contact: too few, and enough
+
+
+def _number(body: str, drops: Conditions) -> Array:
+    if body not in drops.seen.modes or (body == "sphere" and drops.case.get("contact", {}).get("local_compliance") == "superposed"):
+        return math.nan  # of a superposed sphere more modes would only make it softer
+    part, highest = drops.seen.modes[body]
+    return np.fmax(part / _TRUNCATED, np.divide(_CYCLES, highest * drops.seen.duration))
+
+
+def _sentence(body: str, drop: Conditions, _: float) -> str:
+    (part, highest), duration = drop.seen.modes[body], float(drop.seen.duration)
+    return (
+        f"the modes of the {body} end at {highest:.4g} Hz, and the contact lasts {duration:.3g} s: those left out may change the "
+        f"largest force by up to {100.0 * part:.2g} %, and rebound and vibration by more; ask for "
+        f'max_frequency = "{_ENOUGH / duration / 1e3:.3g} kHz" or so'
+    )
+
+
+LIMITS = tuple(
+    Limit(
+        name=f"{body}_modes",
+        title=f"modes of the {body} left out",
+        meaning=f"what the modes of the {body} left out change of the largest force, over 5 %; or 1.5 over the periods of the highest in "
+        "the contact, if that is more",
+        threshold=1.0,
+        number=partial(_number, body),
+        sentence=partial(_sentence, body),
+        shown=lambda ratio: f"{ratio:.2g} times what is allowed",
+        without_case=True,
+    )
+    for body in ("sphere", "plate")
+)
