@@ -33,6 +33,8 @@ class Seen:
     modes : mapping of str to (float, float)
         By the name of a body that has modes: about which part of the largest force those left out would change, and the highest
         frequency of those kept [Hz].
+    changes : array, shape (impacts,)
+        Of one drop on bodies that vibrate: the relative change of each impact that can't be known.
     """
 
     force: Array = math.nan
@@ -41,6 +43,7 @@ class Seen:
     speed: Array = math.nan
     deflection: Array = math.nan
     modes: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    changes: Array = 0.0
 
 
 @dataclass(frozen=True)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import fields
+from dataclasses import fields, replace
 from typing import Any
 
 import numpy as np
@@ -16,6 +16,7 @@ from vibroimpact.cases.schema import Case
 from vibroimpact.cases.swept_keys import with_values
 from vibroimpact.contact.law import ContactLaw
 from vibroimpact.dynamics.response import Response
+from vibroimpact.dynamics.sensitivity import change_by_impact
 from vibroimpact.studies.axes import Values
 from vibroimpact.studies.columns import DOUBTS, LIMIT
 
@@ -72,17 +73,16 @@ def drop_conditions(response: Response, peaks: Mapping[str, NDArray[Any]]) -> Co
     problem, modes = response.problem, {}
     for body, part in response.truncation.items():
         modes[body] = part, float(getattr(problem, body).modes.frequencies[-1])
-    return Conditions(problem.source or {}, _seen(peaks, _largest_deflection(response), modes))
+    changes = change_by_impact(response.impacts, problem.tolerance)
+    return Conditions(problem.source or {}, replace(_seen(peaks), deflection=_largest_deflection(response), modes=modes, changes=changes))
 
 
-def _seen(peaks: Mapping[str, NDArray[Any]], deflection: float = np.nan, modes: Mapping[str, tuple[float, float]] | None = None) -> Seen:
+def _seen(peaks: Mapping[str, NDArray[Any]]) -> Seen:
     return Seen(
         force=peaks["largest_force_N"],
         depth=peaks["largest_indentation_m"],
         duration=peaks["first_duration_s"],
         speed=peaks["first_approach_speed_m_s"],
-        deflection=deflection,
-        modes=modes or {},
     )
 
 

@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 from vibroimpact._version import __version__
 from vibroimpact.cases.conditions import Seen
 from vibroimpact.cases.doubts import doubts, range_doubts, sensor_doubts
-from vibroimpact.cases.sensitivity_doubts import sensitivity_doubts
 from vibroimpact.dynamics.recording import Signal
 from vibroimpact.dynamics.response import Response
 from vibroimpact.dynamics.sensitivity import RELATIVE_CHANGE, change_by_impact
@@ -89,7 +88,6 @@ class Result:
         found = doubts(self.case, self._seen)
         found += str(self.deformation.get("doubts", "")).splitlines()  # of the meshes
         found += range_doubts(self.case.get("sensors", ()), self.signals)
-        found += sensitivity_doubts(self.change_by_impact)
         return found + sensor_doubts(self.signals.values(), self.frequencies("plate"))
 
     @property
@@ -101,7 +99,7 @@ class Result:
         duration, speed = (float(self.impacts[name][0]) for name in ("duration_s", "approach_speed_m_s"))
         deflection = float(np.abs(self.history["plate_deflection_m"]).max()) if "plate" in self.peaks else math.nan
         modes = {body: (part, self.frequencies(body)[-1]) for body, part in self.truncation.items()}
-        return Seen(force, depth, duration, speed, deflection, modes)
+        return Seen(force, depth, duration, speed, deflection, modes, self.change_by_impact)
 
     @property
     def name(self) -> str:

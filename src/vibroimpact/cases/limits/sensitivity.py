@@ -1,0 +1,46 @@
+"""Sensitivity: a drop on a plate that rings can't be predicted for ever."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from vibroimpact.cases.conditions import Conditions
+from vibroimpact.cases.limit import Limit
+from vibroimpact.contact.pair import Array
+from vibroimpact.dynamics.sensitivity import RELATIVE_CHANGE
+
+_PREDICTED = 1e-3  # of an impact: a larger change of it is doubted
+_LOST = 0.3  # a larger one leaves no digit
+
+
+def _number(drops: Conditions) -> Array:
+    changes = np.asarray(drops.seen.changes, dtype=float)
+    return float(np.nan_to_num(changes, nan=np.inf).max()) if changes.any() else math.nan
+
+
+def _sentence(drop: Conditions, _: float) -> str:
+    changes = np.asarray(drop.seen.changes, dtype=float)
+    first, lost = np.flatnonzero(~(changes <= _PREDICTED))[0], np.flatnonzero(~(changes <= _LOST))
+    grown = [] if lost.size and lost[0] == first else [f"to {100.0 * changes[first]:.2g} % of impact {first + 1}"]
+    grown += [f"to all of impact {lost[0] + 1}"] if lost.size else []
+    return (
+        f"the drop is sensitive from impact {first + 1} on: a relative change of {RELATIVE_CHANGE:g} in it grows {' and '.join(grown)}, "
+        "so that these impacts are some of many that are possible; give the plate its damping, or ask a study over drop.height for "
+        "their distribution"
+    )
+
+
+LIMITS = (
+    Limit(
+        name="sensitivity",
+        title="sensitive drop",
+        meaning=f"relative change of an impact for one of {RELATIVE_CHANGE:g}, or of the tolerance if that is larger, in the drop",
+        threshold=_PREDICTED,
+        number=_number,
+        sentence=_sentence,
+        shown=lambda change: f"{100.0 * change:.2g} %" if change < 1.0 else "all of an impact",
+        without_case=True,
+    ),
+)
