@@ -38,8 +38,9 @@ def unbalanced(response: vi.Response) -> float:
 @pytest.mark.parametrize("law", LAWS, ids=lambda law: law.name)
 def test_every_law_comes_to_rest_on_a_sprung_plate(law: type[CompliantLaw]) -> None:
     """It chatters, rides and lies; the ledger closes to the end, nothing is made, and the sphere is not seen to jump."""
-    response = vi.simulate(drop_on(law.example(PAIR), SPRUNG, height=0.027, impacts=None, duration=2.0))
-    assert response.outcomes[0].at_rest or law is Hertz
+    plate = modes_of([8.0, 240.0], [1.2, 1.5], 0.1)
+    response = vi.simulate(drop_on(law.example(PAIR), plate, height=0.026, impacts=None, duration=0.8))
+    assert response.outcomes[0].at_rest
     assert unbalanced(response) < 1e-7
     assert response.energy["written_off_at_rest_J"] >= 0.0
     history = response.history()

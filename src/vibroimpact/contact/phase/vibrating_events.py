@@ -44,7 +44,8 @@ def first_event(stretch: VibratingStretch, speed: float, span: float) -> Event |
         events.append(("no push", pulls, lambda other: -other.force))
     for level in local.breakpoints:
         begun = approach[0] - level
-        side = np.sign(begun if abs(begun) > ROUNDING * abs(level) else approach[1] - level)
+        on_it = abs(begun) <= ROUNDING * max(abs(level), float(np.ptp(approach)))
+        side = np.sign(approach[1] - level if on_it else begun)
         crossed = (approach - level) * side < 0.0
         crossed[0] = False
         events.append(("breakpoint", crossed, partial(_crossing, side, level)))
