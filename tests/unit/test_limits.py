@@ -20,6 +20,7 @@ from vibroimpact.cases.conditions import Conditions, Seen
 from vibroimpact.cases.doubts import doubts
 from vibroimpact.cases.expected import expected_of
 from vibroimpact.cases.limit import limits, numbers_of
+from vibroimpact.report.comparison import comparison_doubts
 from vibroimpact.report.study.text import study_summary
 from vibroimpact.storage.compute_study import compute_study
 from vibroimpact.storage.result import result_of
@@ -275,3 +276,10 @@ def test_too_few_modes_are_doubted_in_studies_and_of_problems_made_in_python(tmp
     made = replace(sweep.case_of(0).to_problem(), source=None)
     (doubt,) = result_of(vi.simulate(made)).doubts
     assert doubt.startswith("the modes of the plate end at ")
+
+
+def test_a_comparison_says_once_what_is_so_under_every_law() -> None:
+    found = comparison_doubts(vi.compare_laws(vi.read_case(plain_case(drop__height=4.0)), ["hertz", "flores"], {"restitution": 0.7}))
+    assert sum("in air" in doubt for doubt in found) == 1
+    assert any(doubt.startswith("every law: in air") for doubt in found)
+    assert any(doubt.startswith("hertz: Hertz's half space") for doubt in found)

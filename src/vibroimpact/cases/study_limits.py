@@ -64,7 +64,8 @@ def batch_conditions(case: Case, arrays: Mapping[str, Values], law: ContactLaw, 
         What came of them.
     """
     table = with_values(resolved(case), {key: values for key, values in arrays.items() if not key.startswith("contact.")})
-    table["contact"] = {**table["contact"], **{item.name: getattr(law, item.name) for item in fields(law)}}
+    given = {item.name: getattr(law, item.name) for item in fields(law)}
+    table["contact"] |= {name: value for name, value in given.items() if value is not None}
     return Conditions(table, _seen(peaks))
 
 

@@ -116,6 +116,16 @@ def comparison_table(comparison: Comparison) -> tuple[list[tuple[str, str]], lis
     return headers, rows
 
 
+def comparison_doubts(comparison: Comparison) -> list[str]:
+    """Return what to doubt of each law's drop, once where it is the same of several."""
+    laws: dict[str, list[str]] = {}
+    for name, one in comparison.results.items():
+        for doubt in one.doubts:
+            laws.setdefault(doubt, []).append(name)
+    every = len(comparison.results)
+    return [f"{'every law' if len(names) == every > 1 else ', '.join(names)}: {doubt}" for doubt, names in laws.items()]
+
+
 def free_parameter_words(law: ContactLaw) -> str:
     """Return the free parameter of a law with its value and unit; "nothing to set" if it has none."""
     name = law.free_parameter

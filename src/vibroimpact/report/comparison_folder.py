@@ -10,7 +10,7 @@ import tomli_w
 
 from vibroimpact._version import __version__
 from vibroimpact.dynamics.columns import impact_columns
-from vibroimpact.report.comparison import Comparison, comparison_table, free_parameter_words
+from vibroimpact.report.comparison import Comparison, comparison_doubts, comparison_table, free_parameter_words
 from vibroimpact.report.comparison_figures import draw_comparison
 from vibroimpact.report.figures import save_figures
 from vibroimpact.report.page import picture, template
@@ -72,6 +72,7 @@ def save_comparison(comparison: Comparison, directory: str | PathLike[str], *, f
             rows=cells,
             free=[(name, free_parameter_words(law)) for name, law in comparison.laws.items()],
             results=comparison.results,
+            doubts=comparison_doubts(comparison),
             pictures=[picture(name, *_TITLES[name], svg) for name, svg in pictures.items()],
             version=__version__,
         )

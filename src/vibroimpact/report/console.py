@@ -20,7 +20,7 @@ from vibroimpact.contact.restitution import achieved_restitution
 from vibroimpact.dynamics.columns import LEDGER, VIBRATION_LEDGER
 from vibroimpact.errors import InputError
 from vibroimpact.materials import RIGID, Material, find_material, material_library
-from vibroimpact.report.comparison import Comparison, comparison_table, free_parameter_words
+from vibroimpact.report.comparison import Comparison, comparison_doubts, comparison_table, free_parameter_words
 from vibroimpact.report.deformation import deformation_rows, treatment_sentence
 from vibroimpact.report.tables import certain_figures, several_contacts, takes_digits
 from vibroimpact.storage.result import Result
@@ -126,10 +126,9 @@ def comparison_summary(comparison: Comparison) -> RenderableType:
     free = Table.grid(padding=(0, 2))
     for name, law in comparison.laws.items():
         free.add_row(f" {name}", escape(free_parameter_words(law)), escape(comparison.results[name].status))
-    found = [f"{name}: {doubt}" for name, one in comparison.results.items() for doubt in one.doubts]
     note = Text(" Indentation, force, duration, height and energy are those of the first impact.", style="dim")
     title = Text("What sets the loss, and how the run ended", style="bold")
-    return Group(Text(comparison.name, style="bold"), table, note, Text(), title, free, *_doubt_lines(found))
+    return Group(Text(comparison.name, style="bold"), table, note, Text(), title, free, *_doubt_lines(comparison_doubts(comparison)))
 
 
 def material_table() -> RenderableType:
