@@ -150,8 +150,8 @@ def test_a_graded_sphere_has_more_elements_or_is_doubted() -> None:
     shape = elastic_bodies(vi.read_case(plain_case(sphere=sphere)))["sphere"].recipe.shape
     assert shape.elements_across == 16
     coarse = {**sphere, "mesh": {"grading": 4, "elements_across": 8}}
-    (doubt,) = vi.compute_modes(vi.read_case(plain_case(sphere=coarse)))["sphere"].doubts
-    assert "its elements are too large" in doubt
+    doubts = vi.compute_modes(vi.read_case(plain_case(sphere=coarse)))["sphere"].doubts
+    assert "its elements are too large" in doubts[0]
 
 
 def test_a_rigid_case_loads_no_finite_elements() -> None:
@@ -227,7 +227,7 @@ def test_named_sets_and_coordinates(tmp_path: Path) -> None:
         brought["sensors"] = [{"name": "here", "position": "TOP"}, {"name": "below", "position": [0.1, 0.05], "face": "lower"}]
         there = vi.compute_modes(vi.read_case(brought))["plate"]
         case = plate_case(
-            supports={"type": "edge", "edge": "x-min", "condition": "clamped"}, element="solid", mesh={"element_size": 0.0421}
+            supports={"type": "edge", "edge": "x-min", "condition": "clamped"}, element="solid", mesh={"element_size": 0.0421, "splits": 0}
         )
         here = vi.compute_modes(vi.read_case(case))["plate"]
         assert here.model.mesh.number_of_elements == there.model.mesh.number_of_elements == 130

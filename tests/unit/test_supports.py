@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.linalg import eigh
 
 from vibroimpact.errors import InputError
 from vibroimpact.materials import Material
+from vibroimpact.structures.bed import bed_stiffness, bed_under
 from vibroimpact.structures.lattice import box_mesh
 from vibroimpact.structures.modes import Elastic
 from vibroimpact.structures.recipe import PlateOfPlates, PlateOfSolids
@@ -29,12 +32,12 @@ PLATE, BRICKS = PlateOfPlates(SIZE, 0.14), PlateOfSolids(SIZE, 0.1)
 SPOTS = [(-0.2, -0.15), (-0.2, 0.15), (0.15, -0.15), (0.15, 0.1)]
 
 
-def made(shape: PlateOfPlates | PlateOfSolids, supports: tuple[Support, ...]) -> Structure:
-    return shape.structure(shape.mesh(supports), STEEL)
+def made(shape: PlateOfPlates | PlateOfSolids, supports: tuple[Support, ...], material: Material = STEEL) -> Structure:
+    return shape.structure(shape.mesh(supports), material)
 
 
-def frequencies(shape: PlateOfPlates | PlateOfSolids, supports: tuple[Support, ...], number: int) -> np.ndarray:
-    held = held_by(made(shape, supports), supports)
+def frequencies(shape: PlateOfPlates | PlateOfSolids, supports: tuple[Support, ...], number: int, material: Material = STEEL) -> np.ndarray:
+    held = held_by(made(shape, supports, material), supports)
     return Elastic(held.stiffness, held.mass, held.rigid, held.order).modes(number).angular_frequencies / (2 * np.pi)
 
 
@@ -143,16 +146,17 @@ def test_a_rigid_plate_on_slender_bars(shape: PlateOfPlates) -> None:
     radius, length = 0.002, 0.3
     supports = tuple(Bar(x, y, radius, length, WEIGHTLESS) for x, y in SPOTS)
     exact = rigid_plate_on([(spot, top_stiffness(radius, length)) for spot in SPOTS])
-    np.testing.assert_allclose(frequencies(shape, supports, 3), exact[:3], rtol=1e-3)
+    rigid = Material(7850.0, 1e4 * 210e9, 0.3)  # one of steel gives way around bars so slender
+    np.testing.assert_allclose(frequencies(shape, supports, 3, rigid), exact[:3], rtol=1e-3)
 
 
 @pytest.mark.slow
 def test_bars_under_plate_elements_and_under_bricks() -> None:
-    """Six modes of a plate of 8 mm on four bars within 1 %."""
+    """Six modes of a plate of 8 mm on four bars within 0.3 %; bricks that are not refined at the rims are 1.5 % stiffer."""
     bars = tuple(Bar(x, y, 0.02, 0.2, STEEL) for x in (-0.18, 0.18) for y in (-0.14, 0.14))
     size = (0.5, 0.4, 0.008)
-    flat, solid = (frequencies(shape, bars, 6) for shape in (PlateOfPlates(size, 0.06), PlateOfSolids(size, 0.02)))
-    np.testing.assert_allclose(solid, flat, rtol=1e-2)
+    flat, solid = (frequencies(shape, bars, 6) for shape in (PlateOfPlates(size, 0.06), PlateOfSolids(size, 0.02, splits=2)))
+    np.testing.assert_allclose(solid, flat, rtol=3e-3)
 
 
 def test_springs_hold_a_plate_at_its_corners() -> None:
@@ -183,15 +187,48 @@ def test_a_mesh_made_for_them_has_their_nodes() -> None:
             assert (inside | np.isclose(x, 0.03)).all()
 
 
-def test_a_patch_holds_the_lower_side_of_plate_elements() -> None:
+def test_a_patch_holds_the_lower_side_of_thin_plates() -> None:
     """There the plate neither moves nor turns: no node of the patch moves at the lower side, in any mode."""
     supports = (Patch(0.1, 0.1, 0.02),)
-    held = held_by(made(PLATE, supports), supports)
+    held = held_by(made(replace(PLATE, theory="thin"), supports), supports)
     mesh = held.structure.mesh
     motion = held.expansion.toarray().reshape(len(mesh.nodes), 5, -1)
     inside = np.hypot(*(mesh.nodes[:, :2] - [0.1, 0.1]).T) < 0.02 + 1e-9
     assert np.abs(motion[inside, 2]).max() == 0
     np.testing.assert_allclose(motion[inside, :2] - SIZE[2] / 2 * motion[inside, 3:], 0.0, atol=1e-15)
+
+
+def test_a_thick_plate_rests_on_a_bed() -> None:
+    """What its lower face does on a patch costs the energy of springs spread over it: of a sink, a shift and a rocking of a disc."""
+    radius = 0.02
+    supports = (Patch(0.1, 0.1, radius),)
+    held = held_by(made(PLATE, supports), supports)
+    along, across = bed_under(bed_stiffness(STEEL, SIZE[2]), SIZE[2] / radius)
+    x, y, _ = held.structure.mesh.nodes.T - np.array([[0.1], [0.1], [0.0]])
+    zero, one, area = np.zeros_like(x), np.ones_like(x), np.pi * radius**2
+    motions = {
+        "sink": ([zero, zero, one, zero, zero], across * area),
+        "shift": ([one, zero, zero, zero, zero], along * area),
+        "rock about the lower face": ([SIZE[2] / 2 * one, zero, -x, one, zero], across * area * radius**2 / 4),
+        "turn": ([-y, x, zero, zero, zero], along * area * radius**2 / 2),
+    }
+    for name, (columns, stiffness) in motions.items():
+        motion = np.stack(columns, axis=1).ravel()
+        assert motion @ (held.bed @ motion) == pytest.approx(stiffness, rel=2e-3), name  # the rim is a polynomial, not a circle
+    assert held.expansion.shape[0] == held.expansion.shape[1]  # nothing is held still
+
+
+def test_overlapping_patches_rest_on_one_bed() -> None:
+    size = (0.1, 0.08)
+    one = (RectangularPatch(0.0, 0.0, *size),)
+    other = (RectangularPatch(-0.02, 0.0, 0.06, 0.08), RectangularPatch(0.02, 0.0, 0.06, 0.08))
+    up = [np.tile([0.0, 0.0, 1.0, 0.0, 0.0], len(made(PLATE, supports).mesh.nodes)) for supports in (one, other)]
+    beds = [held_by(made(PLATE, supports), supports).bed for supports in (one, other)]
+    found = [float(motion @ (bed @ motion)) for motion, bed in zip(up, beds, strict=True)]
+    area = [
+        size[0] * size[1] * bed_under(bed_stiffness(STEEL, SIZE[2]), SIZE[2] / radius)[1] for radius in (0.08 / 1.8, 0.06 * 0.08 / 0.14)
+    ]
+    np.testing.assert_allclose(found, area, rtol=1e-9)
 
 
 @pytest.mark.parametrize(

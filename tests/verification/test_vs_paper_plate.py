@@ -6,9 +6,12 @@ of radius 20 mm at 458.4 x 360 mm on the lower face. The rim of such a patch is 
 
 from __future__ import annotations
 
+from typing import Literal
+
 import numpy as np
 import pytest
 
+from vibroimpact.bodies.elastic import plate_recipe
 from vibroimpact.materials import find_material
 from vibroimpact.structures.modal_model import ModalModel
 from vibroimpact.structures.recipe import PlateOfPlates, PlateOfSolids, Recipe, Reduction, computed_model
@@ -18,10 +21,14 @@ REFERENCE = np.array([171.3, 268.8])
 SIZE = (0.52, 0.42, 0.008)
 
 
+def patches(radius: float = 0.02) -> tuple[Patch, ...]:
+    return tuple(Patch(x, y, radius) for x in (-0.2292, 0.2292) for y in (-0.18, 0.18))
+
+
 def modes_of(shape: PlateOfPlates | PlateOfSolids, radius: float = 0.02) -> ModalModel:
     steel = find_material("steel-paper")
-    patches = tuple(Patch(x, y, radius) for x in (-0.2292, 0.2292) for y in (-0.18, 0.18))
-    return computed_model(Recipe(shape, steel.density, steel.youngs_modulus, steel.poissons_ratio, patches, Reduction(modes=2)))
+    recipe = Recipe(shape, steel.density, steel.youngs_modulus, steel.poissons_ratio, patches(radius), Reduction(modes=2))
+    return computed_model(recipe)
 
 
 @pytest.mark.slow
@@ -38,11 +45,20 @@ def test_refining_the_rims_converges_from_above() -> None:
     np.testing.assert_allclose(fine, REFERENCE, rtol=0.015)
 
 
-def test_plate_elements_are_stiff_at_the_rims() -> None:
-    """By 1.4 % and 1.1 %: a plate does not bend within its thickness, where the rim holds it."""
-    found = modes_of(PlateOfPlates(SIZE, element_size=0.04)).frequencies
-    np.testing.assert_allclose(found, REFERENCE, rtol=0.015)
-    assert np.all(found > REFERENCE)
+def test_plate_elements() -> None:
+    """They rest on a bed; held rigidly they were 1.4 % and 1.1 % too stiff, as a plate does not bend within its thickness."""
+    np.testing.assert_allclose(modes_of(PlateOfPlates(SIZE, element_size=0.04)).frequencies, REFERENCE, rtol=2e-3)
+
+
+@pytest.mark.parametrize("element", ["plate", pytest.param("solid", marks=pytest.mark.slow)])
+def test_default_meshes(element: Literal["plate", "solid"]) -> None:
+    """Within the half per cent that every default mesh is held to, and within what is said of each mode, beside the reference's own 0.2 %."""
+    steel = find_material("steel-paper")
+    found = computed_model(plate_recipe(SIZE, steel, Reduction(modes=20), patches(), element))
+    off = np.abs(found.frequencies[:2] / REFERENCE - 1.0)
+    assert np.all(off < 0.005)
+    assert np.all(off < found.frequency_errors[:2] + 0.002)
+    assert np.nanmax(found.frequency_errors) < 0.005
 
 
 def test_patches_of_half_the_radius() -> None:

@@ -12,12 +12,18 @@ from vibroimpact.materials import Material
 from vibroimpact.structures.damping import ConstantRatio, Damping
 from vibroimpact.structures.modal_model import ModalBasis, ModalModel, modal_basis
 from vibroimpact.structures.recipe import PlateOfPlates, PlateOfSolids, Recipe, Reduction, Shape, SphereOfSolids
+from vibroimpact.structures.supports.edge import Edge
 from vibroimpact.structures.supports.support import Support
 from vibroimpact.structures.surface import Side, Spot
 
 _PER_WAVE = 3.0  # second-order bricks along the shortest shear wave
 _ACROSS = 8  # elements from pole to pole: the lowest modes to 0.03 %
-_SOLID_STEP, _PLATE_STEP = 0.25, 0.6  # of the shortest bending wave: sides of second-order bricks, and of the plate element
+_SOLID_STEP, _PLATE_STEP = 0.1, 0.6  # of the shortest bending wave: sides of second-order bricks, and of the plate element
+_CLAMPED = 1.763  # of the count of modes of a clamped plate
+_MARGIN = 1.5  # thicknesses: the plate elements along edges, where shear changes within half a thickness
+_LAYERS = (0.32, 0.9)  # wave number times thickness from which on a plate has two, and three layers of bricks
+_MOST_BRICKS = 6000  # that are chosen here; more, for higher modes, are to be asked for
+_RIM_SPLITS, _LOWER_SPLITS = 2, 1  # of bricks at rims; beyond, 0.1 to 0.3 % of frequency is left
 _SIDE = 7  # plate elements along the longer side, at least
 _SOLID_SIDE = 30  # bricks along the longer side, at least
 
@@ -107,20 +113,37 @@ def plate_recipe(
     element : str, default "plate"
         "plate" elements, or "solid" ones.
     **mesh : optional
-        What `PlateOfPlates` or `PlateOfSolids` takes; `element_size` is chosen to resolve the modes unless given.
+        What `PlateOfPlates` or `PlateOfSolids` takes; what is not given is chosen so that the modes, and what changes quickly at edges
+        and rims, are resolved.
 
     Examples
     --------
     >>> from vibroimpact.materials import find_material
     >>> plate_recipe((0.52, 0.42, 0.008), find_material("steel-paper"), Reduction(modes=20)).shape
-    PlateOfPlates(size=(0.52, 0.42, 0.008), element_size=0.0743, theory='thick')
+    PlateOfPlates(size=(0.52, 0.42, 0.008), element_size=0.0743, theory='thick', margin=0.012)
     """
+    wave_number = _bending_wave_number(size, material, reduction, supports)
+    if element == "solid":
+        _choose_bricks(mesh, size, wave_number, supports)
+    else:
+        mesh.setdefault("margin", _MARGIN * size[2])
     if not mesh.get("element_size"):
-        wave = 2.0 * math.pi / _bending_wave_number(size, material, reduction)
         step, least = (_PLATE_STEP, _SIDE) if element == "plate" else (_SOLID_STEP, _SOLID_SIDE)
-        mesh["element_size"] = float(f"{min(step * wave, max(size[:2]) / least):.3g}")
+        side = min(step * 2.0 * math.pi / wave_number, max(size[:2]) / least)
+        if element == "solid":
+            side = max(side, math.sqrt(size[0] * size[1] * (mesh["layers"] + mesh["lower_splits"]) / _MOST_BRICKS))
+        mesh["element_size"] = float(f"{side:.3g}")
     kind = PlateOfPlates if element == "plate" else PlateOfSolids
     return recipe_of(kind(size=size, **mesh), material, reduction, supports)
+
+
+def _choose_bricks(mesh: dict[str, Any], size: tuple[float, float, float], wave_number: float, supports: tuple[Support, ...]) -> None:
+    """Choose layers, and how often bricks at edges and rims are split, unless given."""
+    held_below = any(support.discs or any(support.rims) for support in supports)
+    mesh.setdefault("lower_splits", mesh.get("splits", _LOWER_SPLITS) if held_below else 0)
+    mesh.setdefault("splits", _RIM_SPLITS)
+    needed = 1 + sum(wave_number * size[2] > limit for limit in _LAYERS)
+    mesh.setdefault("layers", max(1, needed - mesh["lower_splits"]))
 
 
 def recipe_of(shape: Shape, material: Material, reduction: Reduction, supports: tuple[Support, ...] = ()) -> Recipe:
@@ -151,10 +174,19 @@ def shortest_bending_wave(thickness: float, material: Material, frequency: float
     return float(2.0 * math.pi * (rigidity / (material.density * thickness * (2.0 * math.pi * frequency) ** 2)) ** 0.25)
 
 
-def _bending_wave_number(size: tuple[float, float, float], material: Material, reduction: Reduction) -> float:
-    """Return the wave number [1/m] of bending waves at the highest frequency asked for."""
+def _bending_wave_number(
+    size: tuple[float, float, float], material: Material, reduction: Reduction, supports: tuple[Support, ...]
+) -> float:
+    """Return the wave number [1/m] of bending waves at the highest frequency asked for.
+
+    Edges that are held leave fewer modes below it: Weyl's count has beside A k^2 / (4 pi) a term -c P k / (4 pi) of the perimeter P,
+    c = 1 where it is simply supported and 1.763 where it is clamped (E. Bogomolny and E. Hugues, Phys. Rev. E 57:5404, 1998).
+    """
     length, width, thickness = size
     if reduction.modes is None:
         return 2.0 * math.pi / shortest_bending_wave(thickness, material, reduction.max_frequency or 0.0)
-    of_area = math.sqrt(4.0 * math.pi * (reduction.modes + 4) / (length * width))  # Weyl's count, A k^2 / (4 pi)
+    held = {support.edge: support.condition for support in supports if isinstance(support, Edge)}
+    part = sum((_CLAMPED if how == "clamped" else 1.0) * (width if edge[0] == "x" else length) for edge, how in held.items())
+    area = length * width
+    of_area = (part + math.sqrt(part**2 + 16.0 * math.pi * (reduction.modes + 4) * area)) / (2.0 * area)
     return min(of_area, math.pi * (reduction.modes + 4) / max(length, width))  # a narrow plate has the modes of a beam

@@ -19,6 +19,8 @@ from vibroimpact.structures.surface import Spot
 if TYPE_CHECKING:
     from vibroimpact.cases.schema import Case
 
+_UNSPLIT = {"splits": 0, "lower_splits": 0}  # unless asked for: the number of elements is that of the case
+
 
 def elastic_bodies(case: Case) -> dict[str, ElasticBody]:
     """Return the bodies of a case that deform, by their names.
@@ -88,7 +90,7 @@ def _plate_recipe(case: Case, contact: Spot) -> Recipe:
     element = section.element or "plate"
     options = mesh.model_dump(exclude_none=True, exclude={"elements"}) if isinstance(mesh, PlateMeshTable) else {}
     if isinstance(mesh, PlateMeshTable) and mesh.elements:
-        options |= _about(section.size, mesh.elements, mesh.layers, supports)
+        options = {**_about(section.size, mesh.elements, mesh.layers, supports), **options}
     return plate_recipe(section.size, section.material, reduction, supports, element, **options)
 
 
@@ -102,4 +104,4 @@ def _about(size: tuple[float, float, float], elements: int, layers: int | None, 
         count = layers * sum((block.shape[0] - 1) * (block.shape[1] - 1) for block in blocks)
         tried[side] = abs(count - elements)
         side *= math.sqrt(count / elements)
-    return {"element_size": min(tried, key=lambda one: tried[one]), "layers": layers}
+    return {"element_size": min(tried, key=lambda one: tried[one]), "layers": layers, **_UNSPLIT}

@@ -85,7 +85,13 @@ class PlateMeshTable(Section):
     layers: _Count | None = Field(None, description='elements through the thickness; only of element = "solid"')
     kind: Kind | None = Field(None, description='kind of element; only of element = "solid"')
     splits: Annotated[int, Field(ge=0, le=6, strict=True)] | None = Field(
-        None, description='how often elements at the rims of patches and at the lower side are split; only of element = "solid"'
+        None, description='how often elements along edges and at the rims of patches are split in four; only of element = "solid"'
+    )
+    lower_splits: Annotated[int, Field(ge=0, le=6, strict=True)] | None = Field(
+        None, description='how often the lowest layer is split in four; only of element = "solid"'
+    )
+    margin: Annotated[float, Quantity("m", "width of elements along edges and straight rims", Range(at_least=0))] | None = Field(
+        None, description='only of element = "plate"; 0 for none'
     )
     theory: Literal["thick", "thin"] | None = Field(None, description='of plates; only of element = "plate"')
 
@@ -163,7 +169,7 @@ def check_plate(section: Any) -> None:
         raise InputError("a mesh that is brought is of solid elements; leave out element, or the mesh", "element")
     if isinstance(mesh, PlateMeshTable):
         solid = section.element == "solid"
-        for key in ("theory",) if solid else ("elements", "layers", "kind", "splits"):
+        for key in ("theory", "margin") if solid else ("elements", "layers", "kind", "splits", "lower_splits"):
             if getattr(mesh, key) is not None:
                 raise InputError(f'element = "{section.element or "plate"}" does not take it', f"mesh.{key}")
 

@@ -7,16 +7,20 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from vibroimpact.bodies.elastic import ElasticBody, shortest_bending_wave
 from vibroimpact.cases.build_elastic import elastic_bodies
 from vibroimpact.errors import InputError
 from vibroimpact.structures.damping import ConstantRatio, RatioOfEach, RatioTable
+from vibroimpact.structures.frequency_error import MESH, REDUCTION, SUPPORTS, THEORY
 from vibroimpact.structures.modal_model import ModalBasis, ModalModel
-from vibroimpact.structures.recipe import BroughtMesh, modal_model_of
+from vibroimpact.structures.recipe import MOST_FOR, BroughtMesh, PlateOfSolids, Shape, SphereOfSolids, modal_model_of
 
 if TYPE_CHECKING:
     from vibroimpact.cases.schema import Case
 
+_FREQUENCY_OFF = 0.005  # relative: frequencies that may be off by more are doubted
 _WEIGHT_OFF = 0.05  # relative: a mesh whose volume differs more from that of the case is doubted
 _MESH_OFF = 0.005  # relative: a mesh made here with less of the body's mass is too coarse
 _THICK = 4.0  # thicknesses: plates whose waves are shorter are no longer plates
@@ -100,6 +104,7 @@ def _doubts(case: Case, name: str, body: ElasticBody, model: ModalModel, basis: 
     if name == "plate" and not model.is_held_vertically:
         yield "the plate is not held: its supports let it fall or tilt, and a drop needs a plate that is held"
     yield from _doubts_of_mass(case, name, body, model)
+    yield from _doubts_of_frequencies(name, body, model)
     if any(block.element.order == 1 for block in model.mesh.blocks):
         yield f"the mesh of the {name} has elements of first order, which are far too stiff in bending; take second order"
     if isinstance(body.damping, (ConstantRatio, RatioOfEach, RatioTable)) and basis.damping_ratios.max() >= 1.0:
@@ -111,6 +116,33 @@ def _doubts(case: Case, name: str, body: ElasticBody, model: ModalModel, basis: 
                 f"the bending waves of the highest modes are {wave:.2g} m long, shorter than {_THICK:g} thicknesses, where plate elements "
                 'are no longer to be trusted; take element = "solid"'
             )
+
+
+def _doubts_of_frequencies(name: str, body: ElasticBody, model: ModalModel) -> Iterator[str]:
+    """Say which frequencies may be off by more than half a per cent, for what, and what to do."""
+    errors = np.nan_to_num(model.frequency_errors)
+    off = int((errors > _FREQUENCY_OFF).sum())
+    if not off:
+        return
+    worst, cause = int(errors.argmax()), model.facts.get(MOST_FOR, MESH)
+    which = f"{off} of the {len(errors)} modes" if len(errors) > 1 else "the mode"
+    yield (
+        f"the frequencies of {which} of the {name} may be off by more than {100 * _FREQUENCY_OFF:g} %, most that of mode {worst + 1}, "
+        f"{model.frequencies[worst]:.4g} Hz, by about {100.0 * errors[worst]:.2g} %, for {cause}; {_remedy(body.recipe.shape, cause)}"
+    )
+
+
+def _remedy(shape: Shape, cause: str) -> str:
+    """Return what makes frequencies better that are off for a cause."""
+    if cause == REDUCTION:
+        return 'ask for more modes, or for reduction = "modal"'
+    if cause in (THEORY, SUPPORTS):
+        return 'take element = "solid"'
+    if isinstance(shape, SphereOfSolids):
+        return f"give mesh.elements_across = {2 * math.ceil(0.75 * shape.elements_across)}"
+    size = getattr(shape, "element_size", 0.0)
+    splits = f", or mesh.splits = {shape.splits + 1}" if isinstance(shape, PlateOfSolids) else ""
+    return f'give mesh.element_size = "{1e3 * size / 1.5:.3g} mm"{splits}'
 
 
 def _doubts_of_mass(case: Case, name: str, body: ElasticBody, model: ModalModel) -> Iterator[str]:

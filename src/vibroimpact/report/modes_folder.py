@@ -20,6 +20,7 @@ from vibroimpact.exchange.write_nastran import write_nastran
 from vibroimpact.report.figures import save_figures
 from vibroimpact.report.mode_shapes import draw_modes
 from vibroimpact.storage.folder import SUMMARY, new_folder
+from vibroimpact.storage.peaks import known_errors
 from vibroimpact.storage.tables import write_csv
 
 MODE_COLUMNS = (
@@ -27,6 +28,7 @@ MODE_COLUMNS = (
     "mode",
     "frequency_Hz",
     "damping_ratio",
+    "frequency_error",
     "contact_shape_per_sqrt_kg",
     "effective_mass_x_kg",
     "effective_mass_y_kg",
@@ -88,6 +90,7 @@ def mode_rows(name: str, body: BodyModes) -> list[dict[str, Any]]:
                     mode + 1,
                     float(basis.frequencies[mode]),
                     float(basis.damping_ratios[mode]),
+                    float(body.model.frequency_errors[mode]),
                     float(basis.contact[mode]),
                     *(float(value) ** 2 for value in basis.participation[mode]),
                 ),
@@ -110,6 +113,7 @@ def _facts(body: BodyModes) -> dict[str, Any]:
     properties = body.model.properties
     return {
         "frequencies_Hz": body.model.frequencies.tolist(),
+        "frequency_errors": known_errors(body.model.frequency_errors, len(body.model.frequencies)),
         "mass_kg": properties.mass,
         "centre_of_mass_m": properties.centre.tolist(),
         "inertia_kg_m2": properties.inertia.tolist(),

@@ -46,20 +46,33 @@ def modes_summary(case: Case, modes: Mapping[str, BodyModes]) -> RenderableType:
 
 def _table(found: BodyModes) -> Table:
     table = Table(box=None, padding=(0, 1), header_style="bold")
-    for heading in ("mode", "frequency\n[Hz]", "damping\nratio", "shape at contact\n[1/sqrt kg]", "effective mass, vertical\n[kg]"):
+    for heading in (
+        "mode",
+        "frequency\n[Hz]",
+        "within\n[%]",
+        "damping\nratio",
+        "shape at contact\n[1/sqrt kg]",
+        "effective mass, vertical\n[kg]",
+    ):
         table.add_column(escape(heading), justify="right", no_wrap=True, vertical="bottom")
     basis = found.basis
     for mode in range(min(_ROWS, len(basis.frequencies))):
         table.add_row(
             str(mode + 1),
             f"{basis.frequencies[mode]:.6g}",
+            _within(found.model.frequency_errors[mode]),
             f"{basis.damping_ratios[mode]:.4g}",
             _clean(basis.contact[mode], float(np.abs(basis.contact).max())),
             _clean(basis.participation[mode, 2] ** 2, found.model.properties.mass),
         )
     if len(basis.frequencies) > _ROWS:
-        table.add_row("...", f"{basis.frequencies[-1]:.6g}", "", "", "")
+        table.add_row("...", f"{basis.frequencies[-1]:.6g}", _within(found.model.frequency_errors[-1]), "", "", "")
     return table
+
+
+def _within(error: float) -> str:
+    """Return in per cent by how much a frequency may be off."""
+    return f"{100.0 * error:.2g}" if np.isfinite(error) else "not known"
 
 
 def _clean(value: float, whole: float) -> str:

@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 if TYPE_CHECKING:
     from vibroimpact.dynamics.response import Response
+    from vibroimpact.structures.modal_model import ModalBasis
 
 Floats = NDArray[np.float64]
-Peaks = dict[str, float | list[float]]
+Peaks = dict[str, Any]
 
 
 def peaks_of(response: Response, history: Mapping[str, Floats]) -> dict[str, Peaks]:
@@ -34,12 +35,10 @@ def peaks_of(response: Response, history: Mapping[str, Floats]) -> dict[str, Pea
         impact = float(np.max(response.impacts["max_acceleration_m_s2"], initial=0.0))
         acceleration = max(impact, _largest(history["acceleration_m_s2"]))
         kinetic = history["kinetic_J"] + history["sphere_vibration_J"]
-        found["sphere"] = _peaks(
-            problem.sphere.modes.frequencies, rise, history["velocity_m_s"], acceleration, kinetic, history["sphere_strain_J"]
-        )
+        found["sphere"] = _peaks(problem.sphere.modes, rise, history["velocity_m_s"], acceleration, kinetic, history["sphere_strain_J"])
     if problem.plate.modes is not None:
         found["plate"] = _peaks(
-            problem.plate.modes.frequencies,
+            problem.plate.modes,
             history["plate_displacement_m"],
             history["plate_velocity_m_s"],
             _largest(history["plate_acceleration_m_s2"]),
@@ -49,15 +48,27 @@ def peaks_of(response: Response, history: Mapping[str, Floats]) -> dict[str, Pea
     return found
 
 
-def _peaks(frequencies: Floats, displacement: Floats, velocity: Floats, acceleration: float, kinetic: Floats, strain: Floats) -> Peaks:
+def _peaks(modes: ModalBasis, displacement: Floats, velocity: Floats, acceleration: float, kinetic: Floats, strain: Floats) -> Peaks:
     return {
         "max_displacement_m": _largest(displacement),
         "max_velocity_m_s": _largest(velocity),
         "max_acceleration_m_s2": acceleration,
         "max_kinetic_energy_J": _largest(kinetic),
         "max_strain_energy_J": _largest(strain),
-        "frequencies_Hz": frequencies.tolist(),
+        "frequencies_Hz": modes.frequencies.tolist(),
+        "frequency_errors": known_errors(modes.frequency_errors, len(modes.frequencies)),
     }
+
+
+def known_errors(errors: Floats | None, number: int) -> list[float | None]:
+    """Return by what part frequencies may be off, as JSON holds it: nothing where it is not known.
+
+    Examples
+    --------
+    >>> known_errors(np.array([0.001, np.nan]), 2)
+    [0.001, None]
+    """
+    return [None] * number if errors is None else [float(error) if np.isfinite(error) else None for error in errors]
 
 
 def _largest(values: Floats) -> float:

@@ -35,6 +35,8 @@ class ModalModel:
         Momentum of each mode along x, y and z [kg^1/2], and angular momentum about the centre of mass [kg^1/2 m].
     left : array, shape (r, 6)
         The rigid motions that the supports leave: how much of each translation, and of each rotation about the centre of mass.
+    frequency_errors : array, shape (modes,)
+        By what part each frequency may be off [-]; NaN where it is not known.
     thickness : float, default 0
         Thickness of plate elements [m].
     facts : mapping of str to str
@@ -47,6 +49,7 @@ class ModalModel:
     shapes: Floats
     participation: Floats
     left: Floats
+    frequency_errors: Floats
     thickness: float = 0.0
     facts: Mapping[str, str] = field(default_factory=dict)
 
@@ -132,8 +135,10 @@ class ModalModel:
         return np.asarray(np.einsum("mpi,p->mi", self.at(np.asarray(place) + radius * places, side, what)[0], weights))
 
 
-def modal_model(held: HeldStructure, modes: Eigenmodes, facts: Mapping[str, str] | None = None) -> ModalModel:
-    """Make the modal model of a held structure from the modes of its free degrees of freedom."""
+def modal_model(
+    held: HeldStructure, modes: Eigenmodes, facts: Mapping[str, str] | None = None, frequency_errors: Floats | None = None
+) -> ModalModel:
+    """Make the modal model of a held structure from the modes of its free degrees of freedom; without errors, these are not known."""
     structure, shapes = held.structure, np.asarray(held.expansion @ modes.shapes)
     moved = shapes.reshape(len(structure.mesh.nodes), -1, shapes.shape[1])[:, :3].reshape(-1, shapes.shape[1])
     large = np.abs(moved) > 0.5 * np.abs(moved).max(axis=0)
@@ -145,6 +150,7 @@ def modal_model(held: HeldStructure, modes: Eigenmodes, facts: Mapping[str, str]
         np.ascontiguousarray(shapes.T),
         np.asarray(shapes.T @ (structure.mass @ structure.rigid_motions())),
         held.left,
+        np.full(shapes.shape[1], np.nan) if frequency_errors is None else frequency_errors,
         structure.thickness,
         facts or {},
     )
@@ -170,6 +176,8 @@ class ModalBasis:
         Mass of the whole body [kg].
     rotation : array, shape (modes, 3), optional
         How it turns as a whole [-]: of the modal velocities v, the energy of that is half the square of v times this.
+    frequency_errors : array, shape (modes,), optional
+        By what part each frequency may be off [-]; NaN where it is not known.
     """
 
     frequencies: Floats
@@ -179,6 +187,7 @@ class ModalBasis:
     points: Mapping[str, Floats] = field(default_factory=dict)
     mass: float = np.nan
     rotation: Floats | None = None
+    frequency_errors: Floats | None = None
 
     @property
     def angular_frequencies(self) -> Floats:
@@ -225,6 +234,7 @@ def modal_basis(
         {name: seen(*point, f'sensor "{name}"') for name, point in (points or {}).items()},
         model.properties.mass,
         _rotation(model),
+        model.frequency_errors,
     )
 
 

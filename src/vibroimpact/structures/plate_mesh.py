@@ -21,6 +21,8 @@ def solid_plate_mesh(
     discs: Sequence[Disc] = (),
     lines: tuple[Sequence[float], Sequence[float]] = ((), ()),
     splits: int = 0,
+    lower_splits: int | None = None,
+    rims: tuple[Sequence[float], Sequence[float]] = ((), ()),
 ) -> Mesh:
     """Make a mesh of a plate of solid elements, its middle at the origin.
 
@@ -34,11 +36,14 @@ def solid_plate_mesh(
         Elements through the thickness.
     kind : str, default "hex20"
         Kind of element: "hex8", "hex20", "hex27", "tet4" or "tet10".
-    discs, lines
+    discs, lines, rims
         What must fall on edges of elements: see `rectangle_blocks`.
     splits : int, default 0
-        How often the elements at the rims of discs, and the lowest layer, are split: the strain grows without bound at the
-        rim of a patch that is held still.
+        How often the elements at rims and along the edges of the plate are split: the strain grows
+        without bound at the rim of a patch that is held still, and at the corners of a face that is; along a free edge it
+        changes within about half a thickness.
+    lower_splits : int, optional
+        How often the lowest layer is split; as often as the rims unless given.
 
     Examples
     --------
@@ -47,9 +52,11 @@ def solid_plate_mesh(
     """
     if size[0] * size[1] / element_size**2 * layers > MOST_ELEMENTS:
         raise InputError(f"elements of {element_size:g} m in {layers} layers would be more than {MOST_ELEMENTS}; make them larger")
-    height = with_midpoints(split_at(np.linspace(-0.5 * size[2], 0.5 * size[2], layers + 1), splits), 2)
+    below = splits if lower_splits is None else lower_splits
+    height = with_midpoints(split_at(np.linspace(-0.5 * size[2], 0.5 * size[2], layers + 1), below), 2)
+    margins = [0.5 * size[2] * 0.25**split for split in range(splits)]
     blocks = []
-    for flat in rectangle_blocks(size[:2], element_size, 2, discs, lines, splits):
+    for flat in rectangle_blocks(size[:2], element_size, 2, discs, lines, splits, margins, rims):
         block = np.empty((*flat.shape[:2], len(height), 3))
         block[..., :2], block[..., 2] = flat[:, :, None], height
         blocks.append(block)
@@ -61,6 +68,8 @@ def plate_mesh(
     element_size: float,
     discs: Sequence[Disc] = (),
     lines: tuple[Sequence[float], Sequence[float]] = ((), ()),
+    margins: Sequence[float] = (),
+    rims: tuple[Sequence[float], Sequence[float]] = ((), ()),
 ) -> Mesh:
     """Make a mesh of the plate element, on the plane z = 0, its middle at the origin.
 
@@ -70,7 +79,7 @@ def plate_mesh(
         Length (x) and width (y) [m].
     element_size : float
         Largest side of an element [m].
-    discs, lines
+    discs, lines, margins, rims
         What must fall on edges of elements: see `rectangle_blocks`.
 
     Examples
@@ -80,7 +89,7 @@ def plate_mesh(
     """
     steps = np.arange(PLATE_ORDER + 1)
     points, elements, start = [], [], 0
-    for block in rectangle_blocks(size, element_size, PLATE_ORDER, discs, lines):
+    for block in rectangle_blocks(size, element_size, PLATE_ORDER, discs, lines, margins=margins, rims=rims):
         sides = (block[1, 0] - block[0, 0], block[0, 1] - block[0, 0])
         flat = block if sides[0][0] * sides[1][1] > sides[0][1] * sides[1][0] else block.transpose(1, 0, 2)
         number = start + np.arange(flat[..., 0].size).reshape(flat.shape[:2])

@@ -9,8 +9,20 @@ from typing import Literal
 
 import numpy as np
 
-from vibroimpact.errors import InputError
+from vibroimpact.errors import ComputationError, InputError
 from vibroimpact.materials import Material
+from vibroimpact.structures.element_kinds import ELEMENT_KINDS
+from vibroimpact.structures.frequency_error import (
+    MESH,
+    REDUCTION,
+    SUPPORTS,
+    THEORY,
+    from_coarser,
+    main_cause,
+    of_one_layer,
+    of_plate_theory,
+    of_supports,
+)
 from vibroimpact.structures.mesh import Floats, Integers, Mesh
 from vibroimpact.structures.modal_model import ModalModel, modal_model
 from vibroimpact.structures.modes import Eigenmodes, Elastic, Progress
@@ -28,6 +40,12 @@ from vibroimpact.structures.surface import Side, Spot, place_of, surface_motion
 Place = tuple[Spot, Side]
 """A spot, and the side of the body that it is on."""
 
+_COARSE_ACROSS, _COARSE_SOLID, _COARSE_PLATE, _COARSE_MARGIN = 0.67, 1.5, 1.5, 4.0 / 3.0
+_SOLID_GAIN, _PLATE_GAIN = 4.0, 3.0  # measured: docs/elastic-bodies.md has how far estimates are from true errors
+
+MOST_FOR = "frequencies are off most for"
+"""The name of that fact."""
+
 _RECENT = Recent[ModalModel](most=500e6)
 
 
@@ -43,6 +61,14 @@ class Shape:
         """Make the finite elements of the mesh."""
         return solid_structure(mesh, material)
 
+    def coarser(self) -> tuple[Shape, float] | None:
+        """Return a shape with a coarser mesh, and how many times more its frequencies are off; None if there is none."""
+        return None
+
+    def one_layer(self) -> float:
+        """Return the thickness [m] of a plate that is one layer of bricks, else 0."""
+        return 0.0
+
 
 @dataclass(frozen=True)
 class SphereOfSolids(Shape):
@@ -57,6 +83,14 @@ class SphereOfSolids(Shape):
         """Make the mesh."""
         return sphere_mesh(self.radius, self.elements_across, self.kind, self.grading)
 
+    def coarser(self) -> tuple[Shape, float] | None:
+        """Return the same with about half as many elements across; the error goes with the fourth power of their size."""
+        across = max(4, 4 * int(_COARSE_ACROSS * self.elements_across / 4))
+        if across >= self.elements_across:
+            return None
+        power = 4.0 if ELEMENT_KINDS[self.kind].order == 2 else 2.0
+        return replace(self, elements_across=across), (self.elements_across / across) ** power
+
 
 @dataclass(frozen=True)
 class PlateOfSolids(Shape):
@@ -67,10 +101,26 @@ class PlateOfSolids(Shape):
     layers: int = 1
     kind: str = "hex20"
     splits: int = 0
+    lower_splits: int | None = None
 
     def mesh(self, supports: tuple[Support, ...] = ()) -> Mesh:
         """Make the mesh."""
-        return solid_plate_mesh(self.size, self.element_size, self.layers, self.kind, *to_follow(supports), self.splits)
+        discs, lines = to_follow(supports)
+        return solid_plate_mesh(
+            self.size, self.element_size, self.layers, self.kind, discs, lines, self.splits, self.lower_splits, _rims(supports)
+        )
+
+    def coarser(self) -> tuple[Shape, float] | None:
+        """Return the same with larger elements, and rims split once less: both leave about four times the error."""
+        below = self.splits if self.lower_splits is None else self.lower_splits
+        return replace(
+            self, element_size=_COARSE_SOLID * self.element_size, splits=max(0, self.splits - 1), lower_splits=max(0, below - 1)
+        ), _SOLID_GAIN
+
+    def one_layer(self) -> float:
+        """Return the thickness if no plane of nodes but that in the middle lies between the sides."""
+        below = self.splits if self.lower_splits is None else self.lower_splits
+        return self.size[2] if self.layers == 1 and not below and ELEMENT_KINDS[self.kind].order == 2 else 0.0
 
 
 @dataclass(frozen=True)
@@ -80,14 +130,23 @@ class PlateOfPlates(Shape):
     size: tuple[float, float, float]
     element_size: float
     theory: Literal["thick", "thin"] = "thick"
+    margin: float = 0.0
 
     def mesh(self, supports: tuple[Support, ...] = ()) -> Mesh:
         """Make the mesh."""
-        return plate_mesh(self.size[:2], self.element_size, *to_follow(supports))
+        margins = (self.margin,) if self.margin else ()
+        return plate_mesh(self.size[:2], self.element_size, *to_follow(supports), margins, _rims(supports))
 
     def structure(self, mesh: Mesh, material: Material) -> Structure:
         """Make the finite elements."""
         return plate_structure(mesh, material, self.size[2], self.theory)
+
+    def coarser(self) -> tuple[Shape, float] | None:
+        """Return the same with larger elements; of a thin plate, a thick one, so that what the theory does is seen too."""
+        margin = _COARSE_MARGIN * self.margin
+        if self.theory == "thin":
+            return replace(self, theory="thick", margin=margin), 2.0
+        return replace(self, element_size=_COARSE_PLATE * self.element_size, margin=margin), _PLATE_GAIN
 
 
 @dataclass(frozen=True)
@@ -218,14 +277,48 @@ def computed_model(recipe: Recipe, progress: Progress | None = None) -> ModalMod
     structure = recipe.shape.structure(recipe.shape.mesh(recipe.supports), material)
     held = held_by(structure, recipe.supports)
     modes = _kept(held, recipe.reduction, progress)
+    parts = _errors(recipe, held, modes, material)
     facts = {
         "nodes": f"{len(structure.mesh.nodes)}",
         "elements": ", ".join(f"{len(block.connectivity)} {block.kind}" for block in structure.mesh.blocks),
         "degrees of freedom": f"{held.stiffness.shape[0]}",
         "left out of the file": ", ".join(f"{name} ({count})" for name, count in structure.mesh.skipped.items()),
+        MOST_FOR: main_cause(parts),
         "processor time": f"{time.process_time() - begun:.2f} s",
     }
-    return modal_model(held, modes, {name: text for name, text in facts.items() if text})
+    errors = np.full(len(modes.angular_frequencies), np.nan)
+    for part in [np.sum(list(parts.values()), axis=0)] if parts else []:
+        errors[: len(part)] = part
+    return modal_model(held, modes, {name: text for name, text in facts.items() if text}, errors)
+
+
+def _errors(recipe: Recipe, held: HeldStructure, modes: Eigenmodes, material: Material) -> dict[str, Floats]:
+    """Return by what part frequencies are off, by what for; of no mode if it is not known, and not of modes that stand for statics."""
+    coarser = recipe.shape.coarser()
+    if coarser is None:
+        return {}
+    shape, gain = coarser
+    number = recipe.reduction.modes or len(modes.angular_frequencies)
+    kept = Eigenmodes(modes.angular_frequencies[:number], modes.shapes[:, :number])
+    parts = {}
+    if recipe.reduction.method == "craig-bampton":
+        elastic = Elastic(held.stiffness, held.mass, held.rigid, held.order)
+        closer = projected(held.stiffness, held.mass, elastic.static(held.mass @ modes.shapes), elastic.rigid)
+        least = closer.angular_frequencies[:number]
+        parts[REDUCTION] = np.asarray(kept.angular_frequencies / least - 1.0)
+        kept = Eigenmodes(least, closer.shapes[:, :number])
+    try:
+        other = held_by(shape.structure(shape.mesh(recipe.supports), material), recipe.supports)
+        found = Elastic(other.stiffness, other.mass, other.rigid, other.order).modes(number)
+    except (InputError, ComputationError):
+        return {}  # the coarser mesh has not so many modes, or does not follow the supports
+    parts[MESH] = from_coarser(kept.angular_frequencies, found.angular_frequencies, gain)
+    if held.structure.thickness:
+        parts[SUPPORTS] = of_supports(held, kept)
+        parts[THEORY] = of_plate_theory(held, kept, material)
+    if recipe.shape.one_layer():
+        parts[MESH] = parts[MESH] + of_one_layer(kept.angular_frequencies / (2.0 * np.pi), material, recipe.shape.one_layer())
+    return parts
 
 
 def _kept(held: HeldStructure, reduction: Reduction, progress: Progress | None) -> Eigenmodes:
@@ -270,3 +363,8 @@ def to_follow(supports: tuple[Support, ...]) -> tuple[list[Disc], tuple[list[flo
     """Return the discs and the lines that a mesh made for supports should follow."""
     discs = [disc for support in supports for disc in support.discs]
     return discs, ([x for support in supports for x in support.lines[0]], [y for support in supports for y in support.lines[1]])
+
+
+def _rims(supports: tuple[Support, ...]) -> tuple[list[float], list[float]]:
+    """Return the x and y [m] of straight rims of what holds the lower face."""
+    return [x for support in supports for x in support.rims[0]], [y for support in supports for y in support.rims[1]]

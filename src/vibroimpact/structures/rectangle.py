@@ -18,6 +18,8 @@ _CORE = 0.5  # half the side of the square inside a disc, in radii
 _MARGIN = 1.5  # half the side of the square around a disc, in radii
 _CLOSEST = 1.15  # of the radius: how near to the centre of a disc an edge of the plate, or half way to another disc, may be
 
+_CROWDED = 0.5  # of a margin: nearer than this to another edge of elements there is none
+
 
 @dataclass(frozen=True)
 class Disc:
@@ -35,6 +37,8 @@ def rectangle_blocks(
     discs: Sequence[Disc] = (),
     lines: tuple[Sequence[float], Sequence[float]] = ((), ()),
     splits: int = 0,
+    margins: Sequence[float] = (),
+    rims: tuple[Sequence[float], Sequence[float]] = ((), ()),
 ) -> list[Floats]:
     """Cut a rectangle, centred at the origin, into lattices.
 
@@ -51,7 +55,11 @@ def rectangle_blocks(
     lines : two sequences of floats
         x and y [m] that must fall on edges of elements.
     splits : int, default 0
-        How often the elements on both sides of each rim are split, see `split_at`.
+        How often the elements on both sides of each rim of a disc are split, see `split_at`.
+    margins : sequence of float, optional
+        Distances [m] from the edges of the rectangle, and from rims, at which there are edges of elements too, if elements are larger.
+    rims : two sequences of floats, optional
+        Those of the lines that have margins.
 
     Returns
     -------
@@ -73,19 +81,13 @@ def rectangle_blocks(
     if size[0] * size[1] / element_size**2 > MOST_ELEMENTS:
         raise InputError(f"elements of {element_size:g} m would be more than {MOST_ELEMENTS} on this plate; make them larger")
     boxes = [_box(disc, size, discs) for disc in discs]
-    breaks = [
-        _distinct(
-            [
-                -0.5 * size[axis],
-                0.5 * size[axis],
-                *lines[axis],
-                *(box[axis][side] for box in boxes for side in range(2)),
-                *((disc.x, disc.y)[axis] for disc in discs),
-            ],
-            size[axis],
-        )
-        for axis in range(2)
-    ]
+    breaks = []
+    for axis in range(2):
+        sides = [-0.5 * size[axis], 0.5 * size[axis], *rims[axis]]
+        others = [*lines[axis], *(end for box in boxes for end in box[axis]), *((disc.x, disc.y)[axis] for disc in discs)]
+        found = _distinct([*sides, *others], size[axis])
+        covered = [box[axis] for box in boxes]
+        breaks.append(_with_margins(found, _distinct(sides, size[axis]), [one for one in margins if one < element_size], covered))
     axes = [_points(found, element_size, order) for found in breaks]
     taken, blocks = [], []
     for disc, box in zip(discs, boxes, strict=True):
@@ -129,6 +131,17 @@ def _distinct(values: Sequence[float], length: float) -> Floats:
     found = found[(found >= -0.5 * length) & (found <= 0.5 * length)]
     apart = np.concatenate([[True], np.diff(found) > 1e-6 * length])
     return np.asarray(found[apart])
+
+
+def _with_margins(breaks: Floats, sides: Floats, margins: Sequence[float], covered: Sequence[tuple[float, float]]) -> Floats:
+    """Return breaks with more at some distances from sides, unless there is one about as near already, or a disc's box covers it."""
+    for margin in sorted(margins, reverse=True):
+        for at in np.concatenate([sides - margin, sides + margin]).tolist():
+            if any(low < at < high for low, high in covered):
+                continue
+            if breaks[0] < at < breaks[-1] and np.abs(breaks - at).min() > _CROWDED * margin:
+                breaks = np.sort(np.append(breaks, at))
+    return breaks
 
 
 def _points(breaks: Floats, element_size: float, order: int) -> Floats:

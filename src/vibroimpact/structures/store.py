@@ -21,7 +21,7 @@ from vibroimpact.structures.geometry import MassProperties
 from vibroimpact.structures.mesh import ElementBlock, Mesh
 from vibroimpact.structures.modal_model import ModalModel
 
-FORMAT = 1
+FORMAT = 2
 """Counts up when what is stored, or how it is computed, changes."""
 
 PLACE = "VIBROIMPACT_STORE"
@@ -263,6 +263,7 @@ def _parts(model: ModalModel) -> dict[str, Any]:
         "inertia": model.properties.inertia,
         "numbers": np.array([model.properties.mass, model.thickness]),
         "left": model.left,
+        "frequency_errors": model.frequency_errors,
         "facts": np.frombuffer(json.dumps(dict(model.facts)).encode(), np.uint8),
     }
     for index, block in enumerate(model.mesh.blocks):
@@ -293,6 +294,7 @@ def _model(entry: Mapping[str, Any]) -> ModalModel:
         entry["shapes"],
         entry["participation"],
         entry["left"],
+        entry["frequency_errors"],
         thickness,
         json.loads(entry["facts"].tobytes()),
     )

@@ -10,6 +10,7 @@ from scipy.sparse import csr_array
 
 from vibroimpact.materials import Material
 from vibroimpact.structures.assembly import node_adjacency
+from vibroimpact.structures.bed import bed_stiffness, end_compliance
 from vibroimpact.structures.elasticity import assemble_solid
 from vibroimpact.structures.factor import check_memory, dissection, factor_entries
 from vibroimpact.structures.geometry import MassProperties, check_mesh, mass_properties
@@ -31,6 +32,11 @@ class Structure:
         Mass, centre of mass and inertia.
     thickness : float, default 0
         Thickness of plate elements [m].
+    end_compliance : float, default 0
+        Rotation [rad] under a moment per width [N] that an end of plate elements lacks whose side is held; negative: it is stiffer.
+    bed : tuple of two floats, optional
+        Stiffness per area [N/m^3], along and across the plate, between plate elements and what holds their lower face; without it
+        the whole height of a plate is held.
     """
 
     mesh: Mesh
@@ -38,6 +44,8 @@ class Structure:
     mass: csr_array
     properties: MassProperties
     thickness: float = 0.0
+    end_compliance: float = 0.0
+    bed: tuple[float, float] | None = None
 
     @cached_property
     def order(self) -> Integers:
@@ -98,6 +106,8 @@ def plate_structure(
 ) -> Structure:
     """Make a structure of plate elements; takes what `assemble_plate` does.
 
+    What holds the lower face of a thick plate does so by a bed (`bed_stiffness`); Kirchhoff's thin plate is held over its height.
+
     Raises
     ------
     InputError
@@ -105,4 +115,12 @@ def plate_structure(
     """
     check_mesh(mesh)
     properties = mass_properties(mesh, material.density, thickness)
-    return Structure(mesh, *assemble_plate(mesh, material, thickness, theory, shear_correction), properties, thickness)
+    bed = bed_stiffness(material, thickness) if theory == "thick" else None
+    return Structure(
+        mesh,
+        *assemble_plate(mesh, material, thickness, theory, shear_correction),
+        properties,
+        thickness,
+        end_compliance(material, thickness),
+        bed,
+    )

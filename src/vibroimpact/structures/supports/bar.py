@@ -55,7 +55,7 @@ class Bar(Support):
         top = np.array([self.x, self.y, height])
         stiffness, mass = column_matrices(self.radius, self.length, self.material, _ELEMENTS)
         dofs = constraints.add_body(stiffness, mass, self._rigid(top, structure.properties.centre))
-        constraints.attach(nodes, body=(dofs[-6:], top))
+        constraints.attach(nodes, self.radius, (dofs[-6:], top))
 
     def _rigid(self, top: Floats, centre: Floats) -> Floats:
         motions = np.zeros((_ELEMENTS, 6, 6))

@@ -8,6 +8,8 @@ from typing import Literal
 import numpy as np
 
 from vibroimpact.errors import InputError
+from vibroimpact.structures.element_kinds import PLATE_ORDER
+from vibroimpact.structures.mesh import Floats
 from vibroimpact.structures.supports.constraints import Constraints
 from vibroimpact.structures.supports.support import Support
 
@@ -49,3 +51,16 @@ class Edge(Support):
         turning = [4 - across] if mesh.is_flat else []
         axes = list(range(mesh.dofs_per_node)) if self.condition == "clamped" else [1 - across, 2, *turning]
         constraints.hold(mesh.dofs_per_node * nodes[:, None] + np.array(axes))
+        if mesh.is_flat and self.condition == "clamped" and constraints.structure.end_compliance:
+            order = nodes[np.argsort(mesh.nodes[nodes, 1 - across])]
+            compliance = constraints.structure.end_compliance / _lengths(mesh.nodes[order, 1 - across])
+            constraints.neglect(mesh.dofs_per_node * order + 3 + across, compliance)
+
+
+def _lengths(at: Floats) -> Floats:
+    """Return the length of an edge that belongs to each of its nodes: the weights of Boole's rule."""
+    found = np.zeros(len(at))
+    for start in range(0, len(at) - PLATE_ORDER, PLATE_ORDER):
+        part = slice(start, start + PLATE_ORDER + 1)
+        found[part] += (at[part][-1] - at[part][0]) * np.array([7.0, 32.0, 12.0, 32.0, 7.0]) / 90.0
+    return found

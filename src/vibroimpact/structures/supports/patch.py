@@ -41,7 +41,7 @@ class Patch(Support):
 
     def hold(self, constraints: Constraints) -> None:
         """Hold the nodes of the patch."""
-        constraints.attach(nodes_within(constraints.structure, self.x, self.y, self.radius, "the patch"))
+        constraints.attach(nodes_within(constraints.structure, self.x, self.y, self.radius, "the patch"), self.radius)
 
 
 @dataclass(frozen=True)
@@ -71,6 +71,11 @@ class RectangularPatch(Support):
         """Its sides."""
         return tuple((at - 0.5 * side, at + 0.5 * side) for at, side in ((self.x, self.length), (self.y, self.width)))  # type: ignore[return-value]
 
+    @property
+    def rims(self) -> tuple[Sequence[float], Sequence[float]]:
+        """Its sides."""
+        return self.lines
+
     def hold(self, constraints: Constraints) -> None:
         """Hold the nodes of the patch."""
         middle, half = np.array([self.x, self.y]), 0.5 * np.array([self.length, self.width])
@@ -82,4 +87,6 @@ class RectangularPatch(Support):
                 f"the {self.words} does not lie wholly on the plate, which reaches from {low[0]:g} to {high[0]:g} m along x and "
                 f"from {low[1]:g} to {high[1]:g} m along y"
             )
-        constraints.attach(nodes_within(constraints.structure, self.x, self.y, half, "the patch"))
+        constraints.attach(
+            nodes_within(constraints.structure, self.x, self.y, half, "the patch"), self.length * self.width / (self.length + self.width)
+        )

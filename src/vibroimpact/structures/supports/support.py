@@ -34,6 +34,11 @@ class Support:
         """The x and y [m] that should be edges of elements in a mesh made for it: none unless it says so."""
         return (), ()
 
+    @property
+    def rims(self) -> tuple[Sequence[float], Sequence[float]]:
+        """Those of the lines that are rims of a held part of the lower face, where strain grows without bound: none unless it says so."""
+        return (), ()
+
     def hold(self, constraints: Constraints) -> None:
         """Hold the structure of the constraints.
 
