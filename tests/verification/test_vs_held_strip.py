@@ -1,4 +1,4 @@
-"""What plate elements add where a plate is held, against the elastic half strip in plane strain (scikit-fem, tests/oracles/held_strip.py)."""
+"""What plate elements add where a plate is held, against the elastic half strip of tests/oracles/held_strip.py."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from vibroimpact.structures.plate_element import shear_factor
 
 
 def rim_of_a_plate_on_a_bed(nu: float, along: float, across: float) -> np.ndarray:
-    """The compliance of the rim of Mindlin's plate that rests for x < 0 on springs under its lower face; thickness and E / (1 - nu^2) are 1.
+    """The compliance of the rim of Mindlin's plate on springs under its lower face for x < 0; h and E / (1 - nu^2) are 1.
 
     The states u, w, beta, N, Q, M along x obey linear equations of first order; those that vanish at minus infinity remain.
     """

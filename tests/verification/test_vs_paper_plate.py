@@ -52,7 +52,7 @@ def test_plate_elements() -> None:
 
 @pytest.mark.parametrize("element", ["plate", pytest.param("solid", marks=pytest.mark.slow)])
 def test_default_meshes(element: Literal["plate", "solid"]) -> None:
-    """Within the half per cent that every default mesh is held to, and within what is said of each mode, beside the reference's own 0.2 %."""
+    """Within half a per cent, and within what is said of each mode beside the 0.2 % of the reference."""
     steel = find_material("steel-paper")
     found = computed_model(plate_recipe(SIZE, steel, Reduction(modes=20), patches(), element))
     off = np.abs(found.frequencies[:2] / REFERENCE - 1.0)
