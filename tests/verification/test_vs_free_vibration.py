@@ -41,7 +41,7 @@ def test_one_mode_against_duhamel(ratio: float) -> None:
     problem = drop_on(HERTZ, modes_of([frequency], [shape], ratio), gravity=0.0, duration=0.01)
     response = vi.simulate(problem)
     assert response.impacts["contacts"][0] == 1
-    signals = {quantity: response.signals(Sensor("a", quantity, rate=rate))["a"] for quantity in QUANTITIES}
+    signals = {quantity: response.signals(Sensor("a", quantity, rate=rate, filter="none"))["a"] for quantity in QUANTITIES}
     end = float(response.impacts["duration_s"][0])
     time = signals["velocity"].time
     time = time[time < 0.01][::20]
@@ -65,8 +65,7 @@ def test_signals_are_the_modal_motion() -> None:
     plate = random_modes(4, 25, 100.0, 20e3, 1.2, 0.002)
     response = vi.simulate(drop_on(LankaraniNikravesh(stiffness=STIFFNESS, restitution=0.6), plate, height=0.3, impacts=3))
     assert response.impacts["contacts"].max() > 1
-    signal = response.signals(Sensor("a", "displacement", rate=50e3))["a"]
-    assert signal.left_out == 0
+    signal = response.signals(Sensor("a", "displacement", rate=50e3, filter="none"))["a"]
     assert signal.time[-1] <= response.end_time[0] < signal.time[-1] + 1.0 / 50e3
     busy = np.flatnonzero(np.abs(signal.time[:, None] - response.impacts["time_s"]).min(axis=1) < 1e-3)
     for some in (busy, np.arange(0, len(signal.time), 501)):
@@ -98,25 +97,9 @@ def test_direction() -> None:
     assert np.abs(parts[0]).max() > 0.0 < np.abs(parts[1]).max()
 
 
-def test_modes_at_half_the_rate_are_left_out() -> None:
-    """And only those: at every hundredth sample of a rate that leaves out none, a point that they do not move does the same."""
-    plate = modes_of([400.0, 5e3, 12e3], [1.0, 1.0, 1.0])
-    for name, kept in (("low", [1.0, 1.0, 0.0]), ("lowest", [1.0, 0.0, 0.0])):
-        plate.points[name] = np.outer(kept, [0.0, 0.0, 1.0])  # type: ignore[index]
-    response = vi.simulate(drop_on(HERTZ, plate, duration=0.02))
-    assert response.signals(Sensor("a", rate=24.001e3))["a"].left_out == 0
-    for rate, left_out, same in ((24e3, 1, "low"), (10.001e3, 1, "low"), (10e3, 2, "lowest"), (801.0, 2, "lowest")):
-        signal, whole = response.signals(Sensor("a", rate=rate))["a"], response.signals(Sensor(same, rate=100.0 * rate))[same]
-        assert signal.left_out == left_out
-        np.testing.assert_allclose(signal.value, whole.value[::100], atol=1e-9 * np.abs(whole.value).max())
-    silent = response.signals(Sensor("a", rate=799.0))["a"]
-    assert silent.left_out == 3
-    assert not silent.value.any()
-
-
 @pytest.mark.parametrize("frequency", [1e3, 8e3, 15e3, 20e3, 24e3])
 def test_resonance_of_an_accelerometer(frequency: float) -> None:
-    """Its steady answer to a mode that rings on: gain to 1.5 % and phase to 0.01 rad; the base is taken as straight between samples."""
+    """Its steady answer to a mode that rings on, behind the filter of a converter, whose delay is taken out: gain and phase to 1e-4."""
     resonance, ratio, rate = 20e3, 0.05, 60e3
     response = vi.simulate(drop_on(HERTZ, modes_of([frequency], [0.3]), gravity=0.0, duration=0.04))
     plain = response.signals(Sensor("a", rate=rate))["a"]
@@ -129,16 +112,16 @@ def test_resonance_of_an_accelerometer(frequency: float) -> None:
     r = frequency / resonance
     gain = 1.0 / (1.0 - r**2 + 2j * ratio * r)
     found = np.conj(after) / np.conj(before)
-    assert abs(found) == pytest.approx(abs(gain), rel=0.015)
-    assert abs(np.angle(found / gain)) < 0.01
+    assert abs(found) == pytest.approx(abs(gain), rel=1e-4)
+    assert abs(np.angle(found / gain)) < 1e-4
 
 
 def test_range_noise_and_resolution() -> None:
     response = vi.simulate(drop_on(HERTZ, modes_of([400.0, 900.0], [1.0, 2.0], 0.01), gravity=0.0, duration=0.5))
-    plain = response.signals(Sensor("a"))["a"].value
+    plain = response.signals(Sensor("a", filter="none"))["a"].value
 
     def reads(**meter: float) -> np.ndarray:
-        return response.signals(Sensor("a", accelerometer=Accelerometer(**meter)))["a"].value
+        return response.signals(Sensor("a", accelerometer=Accelerometer(**meter), filter="none"))["a"].value
 
     np.testing.assert_array_equal(reads(), plain)
     np.testing.assert_array_equal(reads(range=50.0), np.clip(plain, -50.0, 50.0))
@@ -150,7 +133,7 @@ def test_range_noise_and_resolution() -> None:
     assert abs(noise.mean()) < 4.0 * 3.0 / np.sqrt(len(noise))
     assert abs(np.corrcoef(noise[1:], noise[:-1])[0, 1]) < 0.03  # white
     np.testing.assert_array_equal(reads(noise=3.0), plain + noise)  # and the same in every run
-    assert np.abs(reads(noise=3.0, range=50.0)).max() <= 50.0
+    np.testing.assert_allclose(reads(noise=3.0, range=50.0), np.clip(plain, -50.0, 50.0) + noise, atol=1e-9)  # after the range
 
 
 def test_what_can_not_be_recorded() -> None:

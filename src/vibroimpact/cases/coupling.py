@@ -13,6 +13,7 @@ from vibroimpact.calibration.local_element import identify_local_element, local_
 from vibroimpact.cases.build import contact_laws_of, contact_pair, elastic_names, first_speed
 from vibroimpact.cases.local_section import MeasuredImpact
 from vibroimpact.cases.modes import BodyModes, compute_modes
+from vibroimpact.cases.residuals import residual_key, with_residuals
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.local import LocalContact
 from vibroimpact.contact.phase.encounter import encounter_of
@@ -84,6 +85,7 @@ def coupling_of(case: Case, progress: Callable[[float], None] | None = None, tel
             static = _plate_compliance(bodies["plate"], tell)
             facts["plate_static_compliance_m_N"] = static
             linear += static - carried
+            modes["plate"] = with_residuals(bodies["plate"], modes["plate"], tell)
     if case.contact.local.finite_sphere or ("sphere" in bodies and treatment == "consistent"):
         patch = min(_contact_radius(case), FITTED[1] * case.sphere.radius)
         finite, facts["finite_sphere_factor"] = _finite_size(case, patch)
@@ -119,6 +121,9 @@ def carried_modes(
         if name == "plate" and treatment_of(case) != "superposed":
             _plate_compliance(body, tell)
             keys.append(compliance_key(body.body.recipe, *_met(body)))
+            if body.body.watched:
+                with_residuals(body, body.basis, tell)
+                keys.append(residual_key(body))
     return carry(keys)
 
 

@@ -28,8 +28,8 @@ from vibroimpact.cases.section import Section
 from vibroimpact.cases.supports_field import SupportsField
 from vibroimpact.cases.sweep_section import SweepSection
 from vibroimpact.dynamics.problem import MOST_IMPACTS, STANDARD_GRAVITY, Problem
-from vibroimpact.dynamics.sensor import Accelerometer, Sensor
-from vibroimpact.errors import InputError
+from vibroimpact.dynamics.sensor import FILTERS, Accelerometer, Sensor
+from vibroimpact.errors import InputError, did_you_mean
 from vibroimpact.materials import RIGID
 from vibroimpact.ranges import Range
 
@@ -114,17 +114,24 @@ def _read_impacts(value: Any) -> Any:
 
 
 class AccelerometerTable(Section):
-    """What an accelerometer adds to the acceleration of its base."""
+    """What an accelerometer adds to the acceleration of its base: its resonance, then its range; its noise and its steps."""
 
     resonance: Annotated[float, Quantity("Hz", "its mounted resonance", Range(above=0))] | None = None
     damping_ratio: Annotated[float, Quantity("", "damping ratio of its resonance", Range(above=0))] = 0.02
-    range: Annotated[float, Quantity("m/s^2", "largest magnitude that it reads", Range(above=0))] | None = None
+    range: Annotated[float, Quantity("m/s^2", "largest magnitude that it puts out", Range(above=0))] | None = None
     noise: Annotated[float, Quantity("m/s^2", "standard deviation of the noise in its samples", Range(at_least=0))] = 0.0
     resolution: Annotated[float, Quantity("m/s^2", "step of its readings", Range(above=0))] | None = None
     seed: Annotated[int, Field(ge=0, strict=True)] = Field(0, description="of the noise")
 
 
 _DIRECTIONS = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
+
+
+def _read_filter(value: Any) -> Any:
+    if not isinstance(value, str) or value in FILTERS:
+        return value
+    known = ", ".join(f'"{name}"' for name in FILTERS)
+    raise InputError(f'"{value}" is not allowed; it must be one of {known}.{did_you_mean(value, FILTERS)}')
 
 
 class SensorSection(Section):
@@ -138,6 +145,10 @@ class SensorSection(Section):
     quantity: Literal["displacement", "velocity", "acceleration"] = Field("acceleration", description="what it takes")
     direction: Literal["x", "y", "z"] | tuple[float, float, float] = Field("z", description="along which it takes it; z is upwards")
     rate: Annotated[float, Quantity("Hz", "samples per second", Range(above=0))] = 50e3
+    filter: Annotated[Literal["sigma-delta", "butterworth", "none"], BeforeValidator(_read_filter)] = Field(
+        "sigma-delta", description="what keeps frequencies above half the rate from its samples"
+    )
+    corner: Annotated[float, Quantity("Hz", "corner of a Butterworth filter; 0.4 of the rate by default", Range(above=0))] | None = None
     accelerometer: AccelerometerTable | None = Field(None, description="the resonance, range, noise and resolution of what reads it")
 
     @model_validator(mode="after")
@@ -146,6 +157,7 @@ class SensorSection(Section):
             raise InputError("an accelerometer reads acceleration; leave out quantity, or the accelerometer", "quantity")
         if not isinstance(self.direction, str) and not any(self.direction):
             raise InputError("it has no length; give x, y and z of the direction, such as [0, 0, 1]", "direction")
+        self.sensor()  # which raises if the filter takes no corner
         return self
 
     def sensor(self) -> Sensor:
@@ -153,7 +165,7 @@ class SensorSection(Section):
         along = _DIRECTIONS[self.direction] if isinstance(self.direction, str) else self.direction
         x, y, z = (part / math.hypot(*along) for part in along)
         meter = Accelerometer(**self.accelerometer.model_dump()) if self.accelerometer else None
-        return Sensor(self.name, self.quantity, (x, y, z), self.rate, meter)
+        return Sensor(self.name, self.quantity, (x, y, z), self.rate, meter, self.filter, self.corner)
 
 
 class RunSection(Section):

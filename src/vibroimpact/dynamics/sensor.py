@@ -1,9 +1,18 @@
-"""A sensor on the plate: where it is, what it takes, and what an accelerometer adds."""
+"""A sensor on the plate: where it is, what it takes, how it is sampled, and what an accelerometer adds."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from typing import Literal
+
+from vibroimpact.errors import InputError, did_you_mean
+
+FILTERS = ("sigma-delta", "butterworth", "none")
+"""The anti-alias filters that a sensor may have."""
+
+Quantity = Literal["displacement", "velocity", "acceleration"]
+ORDERS: dict[Quantity, int] = {"displacement": 0, "velocity": 1, "acceleration": 2}
+"""Which derivative of the displacement each quantity is."""
 
 
 @dataclass(frozen=True)
@@ -17,7 +26,7 @@ class Accelerometer:
     damping_ratio : float, default 0.02
         Of that resonance [-].
     range : float, optional
-        Largest magnitude that it reads [m/s^2]; beyond it is clipped.
+        Largest magnitude that it puts out [m/s^2]; beyond it is clipped, before the anti-alias filter.
     noise : float, default 0
         Standard deviation of white noise in its samples [m/s^2]; the same in every run of one seed.
     resolution : float, optional
@@ -36,7 +45,7 @@ class Accelerometer:
 
 @dataclass(frozen=True)
 class Sensor:
-    """A point that is watched.
+    """A point that is watched, and how it is sampled.
 
     Parameters
     ----------
@@ -50,18 +59,41 @@ class Sensor:
         Samples per second [Hz], > 0.
     accelerometer : Accelerometer, optional
         What reads it; without one it is what the point does.
+    filter : str, default "sigma-delta"
+        What keeps the frequencies above half the rate from its samples: "sigma-delta", "butterworth" or "none"; see `antialias_of`.
+    corner : float, optional
+        Frequency at which a Butterworth filter lets half of the power pass [Hz]; 0.4 of the rate by default.
+
+    Raises
+    ------
+    InputError
+        If there is no such filter, or it has no corner.
     """
 
     name: str
-    quantity: Literal["displacement", "velocity", "acceleration"] = "acceleration"
+    quantity: Quantity = "acceleration"
     direction: tuple[float, float, float] = (0.0, 0.0, 1.0)
     rate: float = 50e3
     accelerometer: Accelerometer | None = None
+    filter: str = "sigma-delta"
+    corner: float | None = None
+
+    def __post_init__(self) -> None:
+        if self.filter not in FILTERS:
+            known = ", ".join(f'"{name}"' for name in FILTERS)
+            raise InputError(f'there is no filter "{self.filter}"; there are {known}.{did_you_mean(self.filter, FILTERS)}', "filter")
+        if self.corner is not None and self.filter != "butterworth":
+            raise InputError(f'the filter "{self.filter}" takes no corner; leave it out, or take "butterworth"', "corner")
 
     @property
     def unit(self) -> str:
         """The SI unit."""
         return {"displacement": "m", "velocity": "m/s", "acceleration": "m/s2"}[self.quantity]
+
+    @property
+    def order(self) -> int:
+        """Which derivative of the displacement it takes."""
+        return ORDERS[self.quantity]
 
 
 def sample_count(duration: float, rate: float) -> int:

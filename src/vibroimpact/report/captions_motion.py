@@ -66,13 +66,20 @@ def animation_caption(result: Result) -> str:
     )
 
 
+_FILTERS = {
+    "sigma-delta": "behind the filter of a sigma-delta converter, whose delay is taken out",
+    "butterworth": "behind a Butterworth filter of order eight, with its delay",
+    "none": "without an anti-alias filter: what is faster than half of that is folded back",
+}
+
+
 def sensor_caption(result: Result, name: str) -> str:
     """Return the caption of the figure of a sensor."""
     signal = result.signals[name]
     sensor, part = signal.sensor, first_response(result, name)
     words = (
         f"Largest magnitude {text(float(np.abs(signal.value).max()), sensor.unit)}, of {len(signal.value)} samples at {digits(sensor.rate)}"
-        f"\u00a0Hz. Modes at or above half of that are left out, as an ideal anti-alias filter would: {signal.left_out or 'none'} here."
+        f"\u00a0Hz, {_FILTERS[sensor.filter]}."
     )
     values = signal.value[part]
     if len(values) < 4 or not np.any(values):

@@ -14,7 +14,7 @@ from rich.text import Text
 from vibroimpact.cases.build import contact_laws_of, contact_pair, deforms, elastic_names, first_speed, impacts_of, resolved
 from vibroimpact.cases.doubts import doubts
 from vibroimpact.cases.expected import expected_of
-from vibroimpact.cases.schema import Case
+from vibroimpact.cases.schema import Case, SensorSection
 from vibroimpact.contact.law import CompliantLaw, ContactLaw, unit_of
 from vibroimpact.contact.restitution import achieved_restitution
 from vibroimpact.dynamics.columns import LEDGER, VIBRATION_LEDGER
@@ -245,8 +245,16 @@ def _coupling_rows(case: Case) -> list[tuple[str, str]]:
     rows = [("local compliance", "; ".join(words))]
     for sensor in case.sensors:
         place = sensor.position if isinstance(sensor.position, str) else f"({sensor.position[0]:g}, {sensor.position[1]:g}) m"
-        rows.append((f"sensor {sensor.name}", f"{sensor.quantity} at {place}, {sensor.face} face, {sensor.rate:g} Hz"))
+        rows.append((f"sensor {sensor.name}", f"{sensor.quantity} at {place}, {sensor.face} face, {sensor.rate:g} Hz, {_filter(sensor)}"))
     return rows
+
+
+def _filter(sensor: SensorSection) -> str:
+    """Say what keeps a sensor's samples from folding."""
+    if sensor.filter == "none":
+        return "no anti-alias filter"
+    corner = f" at {sensor.corner:g} Hz" if sensor.corner else ""
+    return f"{sensor.filter} filter{corner}"
 
 
 def _restitution_lines(law: ContactLaw, mass: float, speed: float) -> list[str]:

@@ -23,7 +23,12 @@ def write_signals(file: h5py.File, signals: Mapping[str, Signal]) -> None:
         signal = signals[name]
         sensor, group = signal.sensor, file.create_group(f"sensors/{plain}", track_order=True)
         group.attrs["name"], group.attrs["quantity"], group.attrs["rate_Hz"] = name, sensor.quantity, sensor.rate
-        group.attrs["direction"], group.attrs["modes_left_out"] = np.array(sensor.direction), signal.left_out
+        group.attrs["direction"], group.attrs["filter"] = np.array(sensor.direction), sensor.filter
+        if sensor.corner is not None:
+            group.attrs["filter_corner_Hz"] = sensor.corner
+        facts = ("relative_uncertainty", "peak_before_range_m_s2", "overload_time_s")
+        for fact, value in zip(facts, (signal.uncertainty, signal.peak, signal.overload_time), strict=True):
+            group.attrs[fact] = value
         time = group.create_dataset("time_s", data=signal.time, **_PACKED)
         time.make_scale("time_s")
         _tell(time, "s", "time since the start")
@@ -38,8 +43,10 @@ def read_signals(file: h5py.File) -> dict[str, Signal]:
     for group in file["sensors"].values() if "sensors" in file else ():
         name, told = str(group.attrs["name"]), group.attrs
         x, y, z = (float(part) for part in told["direction"])
-        sensor = Sensor(name, told["quantity"], (x, y, z), float(told["rate_Hz"]))
-        found[name] = Signal(sensor, np.asarray(group["time_s"]), np.asarray(group["value"]), int(told["modes_left_out"]))
+        corner = float(told["filter_corner_Hz"]) if "filter_corner_Hz" in told else None
+        sensor = Sensor(name, told["quantity"], (x, y, z), float(told["rate_Hz"]), None, str(told.get("filter", "none")), corner)
+        facts = (told.get("relative_uncertainty", np.nan), told.get("peak_before_range_m_s2", np.nan), told.get("overload_time_s", 0.0))
+        found[name] = Signal(sensor, np.asarray(group["time_s"]), np.asarray(group["value"]), *map(float, facts))
     return found
 
 

@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 
 from vibroimpact._version import __version__
 from vibroimpact.cases.conditions import Seen
-from vibroimpact.cases.doubts import doubts, range_doubts, sensor_doubts
+from vibroimpact.cases.doubts import doubts
+from vibroimpact.cases.sensor_doubts import sensor_doubts
 from vibroimpact.dynamics.recording import Signal
 from vibroimpact.dynamics.response import Response
 from vibroimpact.dynamics.sensitivity import RELATIVE_CHANGE, change_by_impact
@@ -87,8 +88,8 @@ class Result:
         """What to doubt of it: where its assumptions are strained."""
         found = doubts(self.case, self._seen)
         found += str(self.deformation.get("doubts", "")).splitlines()  # of the meshes
-        found += range_doubts(self.case.get("sensors", ()), self.signals)
-        return found + sensor_doubts(self.signals.values(), self.frequencies("plate"))
+        highest = max(self.frequencies("plate"), default=math.nan)
+        return found + sensor_doubts(self.case, self.signals, highest, float(self._seen.duration))
 
     @property
     def _seen(self) -> Seen:

@@ -37,7 +37,10 @@ def _of_vibration(result: Result) -> dict[str, Any]:
             "rate_Hz": signal.sensor.rate,
             "samples": len(signal.value),
             "max_magnitude": float(np.abs(signal.value).max()),
-            "modes_left_out": signal.left_out,
+            "filter": signal.sensor.filter,
+            "relative_uncertainty": signal.uncertainty if math.isfinite(signal.uncertainty) else None,
+            "peak_before_range": signal.peak if math.isfinite(signal.peak) else None,
+            "overload_time_s": signal.overload_time,
         }
         for name, signal in result.signals.items()
     }

@@ -178,6 +178,8 @@ class ModalBasis:
         How it turns as a whole [-]: of the modal velocities v, the energy of that is half the square of v times this.
     frequency_errors : array, shape (modes,), optional
         By what part each frequency may be off [-]; NaN where it is not known.
+    residuals : mapping of str to array, shape (3,)
+        How far the points watched move under a unit vertical force at the contact point beyond what these modes carry [m/N].
     """
 
     frequencies: Floats
@@ -188,6 +190,7 @@ class ModalBasis:
     mass: float = np.nan
     rotation: Floats | None = None
     frequency_errors: Floats | None = None
+    residuals: Mapping[str, Floats] = field(default_factory=dict)
 
     @property
     def angular_frequencies(self) -> Floats:

@@ -179,3 +179,35 @@ def _vertical_motions(mesh: Mesh, places: Floats) -> list[csr_array]:
         return [surface_motion(mesh, places, face)[0][2::3] for face in _FACES]
     except InputError:
         return []
+
+
+def response_to_spread_force(
+    recipe: Recipe, place: tuple[float, float], side: Side, average: Callable[[float], Average]
+) -> tuple[Structure, float, Floats]:
+    """Return how a held plate moves under a unit upward force that is spread around a place, after its structure and its thickness there.
+
+    Parameters
+    ----------
+    recipe, place, side : as `static_compliance` takes them
+        The plate, and where the force acts.
+    average : callable
+        From the thickness [m] to how the force is spread.
+
+    Returns
+    -------
+    structure : Structure
+        The finite elements.
+    thickness : float
+        At the place [m].
+    displacements : array, shape (dofs,)
+        Of the degrees of freedom of the mesh [m/N].
+
+    Raises
+    ------
+    InputError, ComputationError
+        As `static_compliance`.
+    """
+    held, elastic = _factorised(recipe)
+    thickness = _thickness(held.structure, place)
+    load = _faces(held, place, average(thickness))[_FACES.index(side)]
+    return held.structure, thickness, np.asarray(held.expansion @ elastic.static(load))

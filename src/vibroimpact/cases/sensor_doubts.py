@@ -1,0 +1,100 @@
+"""What to doubt of the signals of sensors: overload, modes left out, and nearness of the contact, each with a number and a remedy."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+from vibroimpact.dynamics.recording import Signal
+
+_PROMISED = 0.01  # of the rms value: what the modes left out may change in a signal without a word
+_NEAR = 2.0  # thicknesses from the contact
+_CUTS = 1.5  # over the duration of a contact: about where the spectrum of its force ends
+_ENOUGH = 1.2  # times the highest magnitude: the range to take
+
+
+def sensor_doubts(case: Mapping[str, Any], signals: Mapping[str, Signal], highest: float, duration: float) -> list[str]:
+    """Return what to doubt of signals.
+
+    Parameters
+    ----------
+    case : mapping
+        The resolved case; an empty one tells no places.
+    signals : mapping of str to Signal
+        What sensors on the plate recorded.
+    highest : float
+        The frequency of the plate's highest mode [Hz].
+    duration : float
+        Of the first contact [s]; NaN where there is none.
+
+    Examples
+    --------
+    >>> sensor_doubts({}, {}, 1e4, 1e-4)
+    []
+    """
+    places = {one["name"]: one["position"] for one in case.get("sensors", ())}
+    ranges = {one["name"]: one.get("accelerometer", {}).get("range") for one in case.get("sensors", ())}
+    found = []
+    for name, signal in signals.items():
+        found += _of_range(signal, ranges.get(name))
+        apart = _thicknesses(case, places.get(name))
+        if apart < _NEAR:
+            part = _known(signal.uncertainty) + _of_thickness(case, signal, duration)
+            found.append(
+                f'sensor "{name}" lies {apart:.2g} thicknesses from the contact: what the plate does there through its thickness, and in '
+                f"the modes left out, may change its signal by about {_per_cent(part)} of its rms value; "
+                f"{_remedy(signal, highest) if signal.uncertainty > _PROMISED else f'beyond {_NEAR:g} thicknesses plate theory holds'}"
+            )
+        elif signal.uncertainty > _PROMISED:
+            found.append(
+                f'sensor "{name}" takes {signal.sensor.rate:g} samples per second, and the modes of the plate end at {highest:.4g} Hz: '
+                f"those left out may change its signal by about {_per_cent(signal.uncertainty)} of its rms value; "
+                f"{_remedy(signal, highest)}"
+            )
+    return found
+
+
+def _of_range(signal: Signal, end: float | None) -> list[str]:
+    limit = "its range" if end is None else f"its range of {end:g} m/s2"
+    if not signal.overload_time:
+        return []
+    least = float(f"{_ENOUGH * signal.peak:.1g}")
+    least = least if least >= signal.peak else 2.0 * least
+    return [
+        f'the accelerometer of sensor "{signal.sensor.name}" is driven beyond {limit} for {signal.overload_time:.2g} s in all, by up to '
+        f"{signal.peak:.4g} m/s2: what lies beyond is cut off, and the signal around it is wrong; take one with a range of {least:g} m/s2 "
+        "or so"
+    ]
+
+
+def _remedy(signal: Signal, highest: float) -> str:
+    if signal.sensor.filter == "none":
+        return 'take filter = "sigma-delta", or more modes'
+    wanted = max(signal.sensor.rate, 2.0 * highest if signal.sensor.rate <= highest else 0.0)
+    return f'ask for plate.max_frequency = "{wanted / 1e3:.3g} kHz" or so, or for a lower rate'
+
+
+def _thicknesses(case: Mapping[str, Any], place: Any) -> float:
+    """Return how far a sensor lies from the contact along the plate, in its thicknesses; infinite where that is not known."""
+    size = case.get("plate", {}).get("size")
+    mesh = case.get("plate", {}).get("mesh", {})
+    if size is None or place is None or isinstance(place, str) or "file" in mesh:
+        return math.inf
+    return math.dist(place, case["drop"]["position"]) / float(size[2])
+
+
+def _of_thickness(case: Mapping[str, Any], signal: Signal, duration: float) -> float:
+    """Return about which part of a signal is motion through the thickness: the square of its band over the first such resonance."""
+    material, thickness = case["plate"]["material"], case["plate"]["size"][2]
+    shear = math.sqrt(material["youngs_modulus"] / (2.0 * (1.0 + material["poissons_ratio"]) * material["density"]))
+    band = min(0.5 * signal.sensor.rate, _CUTS / duration if duration > 0.0 else math.inf)
+    return float((band * 2.0 * thickness / shear) ** 2)
+
+
+def _known(part: float) -> float:
+    return part if math.isfinite(part) else 0.0
+
+
+def _per_cent(part: float) -> str:
+    return f"{100.0 * part:.2g} %" if part < 1.0 else "all"

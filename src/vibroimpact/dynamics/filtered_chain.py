@@ -1,0 +1,130 @@
+r"""A measuring chain under the linear-phase filter of a converter, exactly: nothing is sampled but the output.
+
+With the kernel h of the filter, of reach T, and the chain's answer k to an impulse of force, an output is
+
+.. math:: y(t) = \int h(\sigma)\, x(t - \sigma)\, d\sigma = y_0(t) - \int_{t - T} K(t - \tau)\, F(\tau)\, d\tau,\qquad K = h * k
+
+where :math:`y_0` is what the oscillators would give of their state at t - T alone. For that each has its own gain. K is as smooth as
+the filter is narrow, however fast the modes and however sharp the contact, so that a table of it serves for every contact.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
+
+from vibroimpact.contact.phase.collocation import Floats
+from vibroimpact.dynamics.antialias import FINENESS, REACH, kernel, kernel_derivatives
+from vibroimpact.dynamics.measuring_chain import MeasuringChain
+
+_ROWS = 64
+"""Points of the table that are made at once."""
+_MOST_NODES = 3000
+_LAGRANGE = np.arange(-2, 4)
+"""Points of the table, beside one, between which it is interpolated."""
+_CARDINAL = np.linalg.inv(np.vander(_LAGRANGE.astype(float)))
+"""Coefficients of the polynomials that are one at one of these points and zero at the others, highest power first."""
+
+
+@dataclass(frozen=True)
+class FilteredChain:
+    """A measuring chain with a converter's filter, at a rate.
+
+    Parameters
+    ----------
+    chain : MeasuringChain
+        What comes before the filter.
+    rate : float
+        Samples per second [Hz].
+    outputs : array, shape (2, S, n)
+        What displacements and velocities of the oscillators are worth in the outputs that are `REACH` samples later.
+    answers : array, shape (S, points)
+        The answer to an impulse of minus the force, `FINENESS` points a sample, from `REACH` samples before it on.
+    """
+
+    chain: MeasuringChain
+    rate: float
+    outputs: Floats
+    answers: Floats
+
+    def add(self, values: Floats, times: Floats, impulses: Floats, last: int) -> None:
+        """Add what impulses [N s] at times [s] give to samples before the `last`; to `values` (S, samples), from the start on."""
+        first, pushed = _on_points(times * (self.rate * FINENESS), impulses)
+        width = len(pushed)
+        begin = max(0, -((REACH * FINENESS - first) // FINENESS))  # the first sample that reaches so far ahead
+        end = min(last, values.shape[1])
+        if end <= begin:
+            return
+        at = begin * FINENESS - (first + width - 1) + REACH * FINENESS  # where in the answers the last point is, of the first sample
+        before, after = max(0, -at), (end - 1 - begin) * FINENESS + at + width - self.answers.shape[1]
+        answers = np.pad(self.answers, ((0, 0), (before, max(0, after))))
+        seen = sliding_window_view(answers, width, axis=1)[:, at + before :: FINENESS][:, : end - begin]
+        values[:, begin:end] -= seen @ pushed[::-1]
+
+
+def filtered_chain(chain: MeasuringChain, rate: float, beyond: float) -> FilteredChain:
+    """Return a chain under the filter of a converter.
+
+    Parameters
+    ----------
+    chain : MeasuringChain
+        What comes before the filter.
+    rate : float
+        Samples per second [Hz].
+    beyond : float
+        How long after the filter's reach the answer to an impulse is asked for [s].
+    """
+    of, pairs, step = chain.of, chain.pairs, 1.0 / (FINENESS * rate)
+    derivatives = kernel_derivatives()
+    points, more = derivatives.shape[1], math.ceil(beyond / step) + len(_LAGRANGE)
+    weights = np.concatenate(list(chain.outputs * of.shape), axis=-1).T  # (2 n, S)
+    states = np.empty((_ROWS, 2 * len(of.shape)))
+    answers = np.zeros((len(chain.direct), points + more))
+    cosine, sine = of.propagators(np.array(step))
+    later = np.array([[cosine, sine], [-pairs.stiffness * sine, cosine - pairs.damping * sine]])
+    state, gains = np.zeros((2, len(of.shape))), np.zeros((2, len(of.shape)))
+    drives = _drives(chain, rate, step, points - 1)
+    for begin in range(0, points + more, _ROWS):
+        rows = min(_ROWS, points + more - begin)
+        for row in range(rows):
+            cell = begin + row - 1
+            if cell >= 0:
+                state = later[:, 0] * state[0] + later[:, 1] * state[1]
+                if cell < points - 1:
+                    state += drives[cell]
+            if cell == points - 2:
+                gains = np.stack([state[1] + pairs.damping * state[0], state[0]])
+            states[row] = state.ravel()
+        answers[:, begin : begin + rows] = (states[:rows] @ weights).T
+    scaled = derivatives * rate ** np.arange(1.0, 4.0)[:, None]
+    answers[:, :points] += chain.direct @ scaled
+    return FilteredChain(chain, rate, pairs.product(chain.outputs, gains), answers)
+
+
+def _drives(chain: MeasuringChain, rate: float, step: float, cells: int) -> Floats:
+    """Return what the kernel adds to displacement and velocity of each oscillator of shape one in each of its cells, (cells, 2, n)."""
+    of = chain.of
+    fastest = float((of.angular_frequency * np.maximum(1.0, 2.0 * of.damping_ratio)).max())
+    x, weights = gauss_rule(min(10 + math.ceil(0.7 * fastest * step), _MOST_NODES))
+    cosine, sine = of.propagators(step * (1.0 - x))
+    places = (np.arange(cells)[:, None] + x) / FINENESS - REACH
+    pushes = kernel(places) * (weights * step * rate)
+    return np.stack([pushes @ sine, pushes @ (cosine - of.damping * sine)], axis=1)
+
+
+def gauss_rule(number: int) -> tuple[Floats, Floats]:
+    """Return nodes and weights of Gauss's rule on [0, 1]."""
+    nodes, weights = np.polynomial.legendre.leggauss(number)
+    return 0.5 * (nodes + 1.0), 0.5 * weights
+
+
+def _on_points(places: Floats, amounts: Floats) -> tuple[int, Floats]:
+    """Return amounts at places shared out between whole numbers, as Lagrange's interpolation of what they meet: the first, and shares."""
+    whole = np.floor(places).astype(int)
+    shares = np.vander(places - whole, len(_LAGRANGE)) @ _CARDINAL
+    first = int(whole.min()) + int(_LAGRANGE[0])
+    shared = np.bincount((whole[:, None] + _LAGRANGE - first).ravel(), weights=(shares * amounts[:, None]).ravel())
+    return first, np.asarray(shared, dtype=np.float64)

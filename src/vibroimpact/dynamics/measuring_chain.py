@@ -1,0 +1,143 @@
+r"""From the contact force to what a sensor puts out: the plate, a mounted resonance and an analogue filter as one linear system.
+
+The plate hangs still until it is hit, so that all that a sensor sees is the answer to the contact force. The displacement of a point is
+
+.. math:: u(t) = \sum_i \varphi_i\,q_i(t) - C\,F(t)
+
+with C the static compliance between the contact and that point which the modes kept do not carry: those left out are quasi-static. Of
+that a derivative is taken, and a resonance or a filter of pairs of poles follows. The whole is a sum over oscillators, those of the plate
+and one for each of these pairs, all driven by the same force (partial fractions), and of what goes with the force itself and its
+derivatives.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from vibroimpact.contact.phase.collocation import Floats
+from vibroimpact.contact.phase.oscillators import Oscillators
+from vibroimpact.dynamics.antialias import Section
+from vibroimpact.dynamics.pole_pairs import PolePairs
+
+_APART = 1e-6
+"""Relative distance that is kept between poles: of equal ones no partial fractions exist."""
+
+
+@dataclass(frozen=True)
+class MeasuringChain:
+    r"""A linear system from the contact force to S outputs.
+
+    Parameters
+    ----------
+    of : Oscillators
+        The modes of the plate, then the pairs of poles of what follows, driven by the force with shape 1.
+    modes : int
+        How many of them are the plate's.
+    outputs : array, shape (2, S, n)
+        What the displacement and the velocity of each are worth in each output.
+    direct : array, shape (S, 3)
+        What minus the force, and its first and second derivative, are worth besides.
+    """
+
+    of: Oscillators
+    modes: int
+    outputs: Floats
+    direct: Floats
+
+    @property
+    def pairs(self) -> PolePairs:
+        """The poles of all oscillators."""
+        return PolePairs(self.of.angular_frequency**2, self.of.damping)
+
+
+def measuring_chain(
+    plate: Oscillators, shapes: Floats, compliance: Floats, orders: Sequence[int], sections: Sequence[Section]
+) -> MeasuringChain:
+    """Return the chain of sensors that have the same resonance and filter.
+
+    Parameters
+    ----------
+    plate : Oscillators
+        The modes of the plate.
+    shapes : array, shape (S, modes)
+        How the points watched move in them [kg^-1/2].
+    compliance : array, shape (S,)
+        Between the contact and these points, of the modes left out [m/N].
+    orders : sequence of int
+        Which derivative of the displacement each sensor takes.
+    sections : sequence of pairs of floats
+        The poles of what follows, each pair with a gain of one at frequency zero.
+    """
+    sections = _apart(sections, plate)
+    gain = math.prod(stiffness for stiffness, _ in sections)
+    at_modes = PolePairs(plate.angular_frequency**2, plate.damping)
+    passed = at_modes.power(0)
+    for section in sections:
+        passed = at_modes.product(passed, at_modes.inverse(at_modes.quadratic(*section)))
+    outputs = np.stack(
+        [gain * shape * at_modes.product(at_modes.power(order), passed) for shape, order in zip(shapes, orders, strict=True)]
+    )
+    direct = np.zeros((len(shapes), 3))
+    if not sections:
+        direct[np.arange(len(shapes)), orders] = compliance
+        direct[:, 0] += np.where(np.asarray(orders) == 2, shapes @ plate.shape, 0.0)
+    elif len(sections) == 1:
+        direct[:, 0] = np.where(np.asarray(orders) == 2, gain * compliance, 0.0)
+    own = [_of_section(number, sections, plate, shapes, compliance, orders) for number in range(len(sections))]
+    return MeasuringChain(
+        _with_sections(plate, sections), len(plate.shape), np.concatenate([outputs, *own], axis=-1).transpose(1, 0, 2), direct
+    )
+
+
+def _of_section(
+    number: int, sections: Sequence[Section], plate: Oscillators, shapes: Floats, compliance: Floats, orders: Sequence[int]
+) -> Floats:
+    """Return what the motion of one pair of poles is worth in each output, (S, 2, 1)."""
+    stiffness, damping = sections[number]
+    at = PolePairs(np.array([stiffness]), np.array([damping]))
+    receptance = np.stack([plate.angular_frequency**2 - stiffness, plate.damping - damping])
+    receptance = PolePairs(np.full_like(plate.shape, stiffness), np.full_like(plate.shape, damping)).inverse(receptance) * plate.shape
+    seen = shapes @ receptance.T  # (S, 2)
+    seen[:, 0] += compliance
+    passed = math.prod(other for other, _ in sections) * at.power(0)
+    for index, other in enumerate(sections):
+        if index != number:
+            passed = at.product(passed, at.inverse(at.quadratic(*other)))
+    return np.stack([at.product(at.product(at.power(order), passed), one[:, None]) for one, order in zip(seen, orders, strict=True)])
+
+
+def _apart(sections: Sequence[Section], plate: Oscillators) -> list[Section]:
+    """Return pairs of poles that lie a little apart from those of the plate and from each other."""
+    found: list[Section] = []
+    for stiffness, damping in sections:
+        while True:
+            others = PolePairs(
+                np.append(plate.angular_frequency**2, [one for one, _ in found]), np.append(plate.damping, [one for _, one in found])
+            )
+            near, slope = np.abs(others.quadratic(stiffness, damping)) < _APART * np.array([[stiffness], [math.sqrt(stiffness)]])
+            if not (near & slope).any():
+                break
+            stiffness *= 1.0 + 3.0 * _APART
+        found.append((stiffness, damping))
+    return found
+
+
+def _with_sections(plate: Oscillators, sections: Sequence[Section]) -> Oscillators:
+    """Return the oscillators of the plate and those of pairs of poles."""
+    if not sections:
+        return plate
+    omega = np.sqrt([stiffness for stiffness, _ in sections])
+    ratio = np.array([damping for _, damping in sections]) / (2.0 * omega)
+    no = np.zeros(len(sections), dtype=bool)
+    return replace(
+        plate,
+        angular_frequency=np.append(plate.angular_frequency, omega),
+        damping_ratio=np.append(plate.damping_ratio, ratio),
+        shape=np.append(plate.shape, np.ones(len(sections))),
+        inside=np.append(plate.inside, no),
+        ground=np.append(plate.ground, ~no),
+    )

@@ -1,0 +1,42 @@
+r"""Transfer functions seen at the poles of linear oscillators, in real numbers whatever their damping.
+
+What an oscillator does without force, :math:`\ddot q = -\omega^2 q - d\,\dot q`, is the exponential of the matrix A of its state
+:math:`(q, \dot q)`. What a linear system makes of that motion is the first row of :math:`f(A)\,(q, \dot q)^T`, with f the system's
+transfer function; and since :math:`A^2 = -\omega^2 - d A`, any :math:`f(A) = a + b A`, so that the output is :math:`a q + b \dot q`.
+Elements (a, b) of n oscillators are arrays of shape (2, ..., n).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from vibroimpact.contact.phase.collocation import Floats
+
+
+@dataclass(frozen=True)
+class PolePairs:
+    """The poles of oscillators, as the coefficients of s^2 + damping s + stiffness, (n,) each."""
+
+    stiffness: Floats
+    damping: Floats
+
+    def power(self, order: int) -> Floats:
+        """Return the derivative of an order, 0 to 2: what A to that power is, (2, n)."""
+        one, none = np.ones_like(self.stiffness), np.zeros_like(self.stiffness)
+        return np.stack([(one, none), (none, one), (-self.stiffness, -self.damping)][order])
+
+    def quadratic(self, stiffness: float, damping: float) -> Floats:
+        """Return the polynomial s^2 + damping s + stiffness of another oscillator at these poles, (2, n)."""
+        return np.stack([stiffness - self.stiffness, damping - self.damping])
+
+    def product(self, one: Floats, other: Floats) -> Floats:
+        """Return the product of two elements."""
+        (a, b), (c, d) = one, other
+        return np.stack([a * c - b * d * self.stiffness, a * d + b * c - b * d * self.damping])
+
+    def inverse(self, element: Floats) -> Floats:
+        """Return one over an element."""
+        a, b = element
+        return np.asarray(np.stack([a - self.damping * b, -b]) / (a * a - self.damping * a * b + self.stiffness * b * b))

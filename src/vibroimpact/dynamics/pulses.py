@@ -1,0 +1,88 @@
+"""The contact force of a stretch of contact as what drives linear systems: impulses that integrate it exactly, and its derivatives."""
+
+from __future__ import annotations
+
+import math
+from functools import lru_cache
+
+import numpy as np
+from numpy.polynomial import legendre
+
+from vibroimpact.contact.phase.collocation import Floats
+from vibroimpact.contact.phase.vibrating_stretch import VibratingStretch
+
+_NODES = 16
+"""Of Gauss's rule, for what does not change over a stretch."""
+_SLOW = 3.0
+"""Radians in a stretch: what is slower is integrated by the nodes of the stretch itself."""
+_DEGREE = 16
+"""Of the polynomial whose derivatives are those of the force."""
+_FEW = 8
+
+
+@lru_cache(maxsize=64)
+def _gauss(number: int) -> tuple[Floats, Floats]:
+    nodes, weights = np.polynomial.legendre.leggauss(number)
+    return 0.5 * (nodes + 1.0), 0.5 * weights
+
+
+def pulses(stretch: VibratingStretch, fastest: float, until: Floats | None = None) -> tuple[Floats, Floats]:
+    """Return times since the start [s] and impulses [N s] that act on a linear system as the force does.
+
+    Parameters
+    ----------
+    stretch : VibratingStretch
+        The stretch of contact.
+    fastest : float
+        The highest angular frequency that the system answers to [rad/s].
+    until : array, shape (T,), optional
+        Times since the start up to which the force acts [s]; then the results are (T, nodes). By default it is the whole stretch.
+    """
+    length, rule = stretch.length, stretch.rule
+    if until is None and fastest * length < _SLOW:
+        return length * rule.time, length * rule.integral[-1] * stretch.force
+    nodes, weights = _gauss(_FEW * math.ceil((_NODES + fastest * length) / _FEW))
+    ends = np.ones(1) if until is None else rule.unmap_time(until / length)
+    x = ends[:, None] * nodes
+    force = rule.interpolate(x.ravel(), stretch.force).reshape(x.shape)
+    times = length * rule.map_time(x)
+    impulses = length * _slope(stretch, x) * force * (ends[:, None] * weights)
+    return (times[0], impulses[0]) if until is None else (times, impulses)
+
+
+def force_derivatives(stretch: VibratingStretch, times: Floats) -> Floats:
+    """Return the force [N] and its first and second derivative [N/s, N/s^2] at times since the start [s], (3, T).
+
+    At the touch itself the derivatives are those before it, zero: just after it that of a Hertzian force has no bound.
+    """
+    grid = 0.5 * (1.0 - np.cos(np.pi * (np.arange(_DEGREE + 1) + 0.5) / (_DEGREE + 1)))
+    coefficients = np.linalg.solve(legendre.legvander(2.0 * grid - 1.0, _DEGREE), stretch.force_at(grid))
+    x = stretch.rule.unmap_time(times / stretch.length)
+    value, first, second = (legendre.legval(2.0 * x - 1.0, legendre.legder(coefficients, order)) * 2.0**order for order in range(3))
+    slope = stretch.length * _slope(stretch, x)
+    still = slope <= 0.0
+    slope = np.where(still, 1.0, slope)
+    bend = stretch.length * _bend(stretch, x)
+    derivatives = np.stack([value, first / slope, (second - first * bend / slope) / slope**2])
+    derivatives[1:, still] = 0.0
+    return np.asarray(derivatives)
+
+
+def _slope(stretch: VibratingStretch, x: Floats) -> Floats:
+    """Return the derivative of the time map."""
+    root = stretch.rule.root
+    if stretch.rule.time_map == "touch":
+        return np.asarray(root * x ** (root - 1))
+    if stretch.rule.time_map == "release":
+        return np.asarray(root * (1.0 - x) ** (root - 1))
+    return np.ones_like(x)
+
+
+def _bend(stretch: VibratingStretch, x: Floats) -> Floats:
+    """Return the second derivative of the time map."""
+    root = stretch.rule.root
+    if root == 1 or stretch.rule.time_map == "inside":
+        return np.zeros_like(x)
+    side = x if stretch.rule.time_map == "touch" else 1.0 - x
+    sign = 1.0 if stretch.rule.time_map == "touch" else -1.0
+    return np.asarray(sign * root * (root - 1) * side ** (root - 2))

@@ -1,0 +1,182 @@
+r"""The static compliance between the point where a plate is met and the points that are watched, from one static solve.
+
+The force is spread over a disc, as finite elements miss what is near a point force; beyond the disc that changes nothing. The face of a
+layer moves less than plate theory says (see `plate_compliance`), by the factor :math:`1 - k^2 \overline{r^2}/4` for long waves of a wave
+number k, once for the point of the force and once for the point that is watched, with
+
+.. math:: \overline{r^2} = 2 h^2 \left(\frac{1}{6 (1 - \nu) \kappa} - \frac15\right).
+
+The modal shapes with which the compliance goes together may know that of neither point, of one or of both: `faces` says so, and the disc
+then has as many times that mean of r^2. What is left between a layer and plate theory fades within two thicknesses, as
+:math:`e^{-4.2\,r/h}`, and is added.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from vibroimpact.structures.mesh import Floats
+from vibroimpact.structures.plate_compliance import Average
+from vibroimpact.structures.plate_element import shear_factor
+from vibroimpact.structures.recipe import PlateOfPlates, Recipe, Reduction
+from vibroimpact.structures.static_compliance import response_to_spread_force
+from vibroimpact.structures.store import key_of, load_entry, save_entry
+from vibroimpact.structures.surface import Side, surface_motion
+
+_KIND = "compliance"
+_RADIUS = 0.75  # of the disc, thicknesses
+_NEAR = 4.0  # thicknesses: beyond them a plate and plate theory are the same
+_LEAST = 0.05  # thicknesses: where the face is loaded, a point closer to the force is taken for one so far from it
+_NODES = 16  # of Gauss's rule on each part of an integral
+_DEEPEST, _FINEST = 40.0, 300.0  # wave numbers times thickness: where the faces know nothing of each other, and where the integral ends
+
+Point = tuple[tuple[float, float], Side]
+"""A point of a plate: x and y [m], and its face."""
+
+
+def transfer_compliances(
+    recipe: Recipe,
+    place: tuple[float, float],
+    side: Side,
+    points: Sequence[Point],
+    faces: int = 0,
+    tell: Callable[[str], None] | None = None,
+) -> Floats:
+    """Return how far points of a held plate move under a unit vertical force where it is met [m/N], (points, 3), from the store if there.
+
+    Parameters
+    ----------
+    recipe : Recipe
+        The plate and its supports; which modes are kept plays no part.
+    place : tuple of two floats
+        x and y of the force [m].
+    side : str
+        The face that it acts on: "upper" or "lower". It acts upwards.
+    points : sequence of ((x, y), side)
+        The points.
+    faces : int, default 0
+        Of how many of the two points, of the force and of those watched, the compliance is that of the face of a plate of plate elements,
+        and not of plate theory: 0, 1 or 2.
+    tell : callable, optional
+        Called with a sentence if something is wrong with the store.
+
+    Raises
+    ------
+    InputError
+        If a place is not on the body, the supports let it move vertically, or the mesh or a support is wrong.
+    ComputationError
+        If the stiffness is singular.
+
+    Examples
+    --------
+    >>> from vibroimpact.structures.supports.edge import EDGES, Edge
+    >>> edges = tuple(Edge(edge, "simply-supported") for edge in EDGES)
+    >>> recipe = Recipe(PlateOfPlates((0.5, 0.5, 0.01), 0.1), 7850.0, 210e9, 0.3, edges)
+    >>> there, back = ((0.1, 0.0), "upper"), ((0.0, 0.0), "upper")
+    >>> one, other = (float(transfer_compliances(recipe, *a, [b], 2)[0, 2]) for a, b in ((there, back), (back, there)))
+    >>> abs(one / other - 1.0) < 1e-4  # Maxwell and Betti
+    True
+    """
+    key, say = transfer_key(recipe, place, side, points, faces), tell or (lambda text: None)
+    found, trouble = load_entry(key, _KIND, lambda parts: np.asarray(parts[_KIND], dtype=float))
+    if trouble:
+        say(trouble)
+    if found is None:
+        found = computed_transfer(recipe, place, side, points, faces)
+        trouble = save_entry(key, _KIND, {_KIND: found})
+        if trouble:
+            say(trouble)
+    return found
+
+
+def transfer_key(recipe: Recipe, place: tuple[float, float], side: Side, points: Sequence[Point], faces: int = 0) -> str:
+    """Return the key under which the store has the compliances between a place and points."""
+    return key_of(["transfer compliance", replace(recipe, reduction=Reduction()), place, side, list(points), faces])
+
+
+def computed_transfer(recipe: Recipe, place: tuple[float, float], side: Side, points: Sequence[Point], faces: int = 0) -> Floats:
+    """Compute the compliances between a place and points; takes and raises what `transfer_compliances` does."""
+    shape, nu = recipe.shape, recipe.poissons_ratio
+    flat = isinstance(shape, PlateOfPlates)
+    thin = isinstance(shape, PlateOfPlates) and shape.theory == "thin"
+    mean_square = faces * _mean_square(nu) if flat else 0.0
+
+    def spread(thickness: float) -> Average:
+        return Average(0.0, 0.0) if thin else Average(_RADIUS * thickness, 3.0 - 6.0 * mean_square / _RADIUS**2)
+
+    structure, thickness, displacements = response_to_spread_force(recipe, place, side, spread)
+    found = np.empty((len(points), 3))
+    for number, (point, face) in enumerate(points):
+        motion, _ = surface_motion(structure.mesh, np.array([point]), face, thickness if flat else 0.0, "a sensor")
+        found[number] = motion @ displacements
+        if flat and not thin:
+            apart = math.dist(point, place)
+            found[number, 2] += near_term(apart, face == side, thickness, recipe.youngs_modulus, nu, faces)
+    return found
+
+
+def near_term(distance: float, same_face: bool, thickness: float, youngs_modulus: float, poissons_ratio: float, faces: int = 0) -> float:
+    r"""Return what a plate moves near a unit force beyond what plate theory gives for the force spread over the disc [m/N].
+
+    Parameters
+    ----------
+    distance : float
+        Along the plate [m].
+    same_face : bool
+        Is it on the face that the force acts on? There a point force moves it by :math:`(1 - \nu^2)/(\pi E r)` besides, without bound;
+        closer than 0.05 thicknesses that of this distance is returned.
+    thickness, youngs_modulus, poissons_ratio : float
+        h [m], E [Pa] and nu [-].
+    faces : int, default 0
+        As `transfer_compliances` takes it.
+
+    Notes
+    -----
+    The inverse Hankel transform of the difference between the kernels of an elastic layer (I. N. Sneddon, Fourier Transforms, 1951,
+    section 46) and of R. D. Mindlin's theory (J. Appl. Mech. 18:31, 1951) times the transform of the disc, without what is long in range.
+
+    Examples
+    --------
+    >>> near_term(0.05, True, 0.01, 210e9, 0.3)  # five thicknesses away
+    0.0
+    """
+    from scipy.special import jv
+
+    if distance > _NEAR * thickness:
+        return 0.0
+    modulus, factor = youngs_modulus / (1.0 - poissons_ratio**2), shear_factor(poissons_ratio)
+    rigidity = modulus * thickness**3 / 12.0
+    shear = factor * 0.5 * (1.0 - poissons_ratio) * modulus * thickness
+    apart = max(distance, _LEAST * thickness) if same_face else distance
+    parts = math.ceil(0.5 * _FINEST * max(1.0, apart / thickness))
+    nodes, weights = np.polynomial.legendre.leggauss(_NODES)
+    y = (np.arange(parts)[:, None] + 0.5 * (nodes + 1.0)).ravel() * (_FINEST / parts)  # k h
+    k = y / thickness
+    deep = np.minimum(y, _DEEPEST)
+    bending = (1.0 + np.cosh(deep)) / (2.0 * _sinh_less(deep))
+    squeezing = (np.cosh(deep) - 1.0) / (2.0 * (np.sinh(deep) + deep))
+    layer = bending + squeezing - 1.0 if same_face else bending - squeezing
+    mean_square = _mean_square(poissons_ratio)
+    average = Average(_RADIUS * thickness, 3.0 - 6.0 * faces * mean_square / _RADIUS**2)
+    longer = 0.25 * (2 - faces) * mean_square * thickness**2 / rigidity  # what modes that know nothing of the face have too much
+    plate = (1.0 / (rigidity * k**4) + (1.0 / shear - longer) / k**2) * average.transform(k)
+    kernel = (2.0 / (modulus * k) * layer - plate) * jv(0, k * apart)
+    near = float(kernel @ (k * np.tile(weights, parts))) * 0.5 * _FINEST / parts / thickness / (2.0 * math.pi)
+    return near + (1.0 / (math.pi * modulus * apart) if same_face else 0.0)
+
+
+def _mean_square(poissons_ratio: float) -> float:
+    """Return the mean of r^2, in thicknesses squared, of an average under which plate theory moves as the face of a layer."""
+    return 2.0 * (1.0 / (6.0 * (1.0 - poissons_ratio) * shear_factor(poissons_ratio)) - 0.2)
+
+
+def _sinh_less(y: Floats) -> Floats:
+    """Return sinh y - y, by its series where little would be left of the difference."""
+    series = np.ones_like(y)
+    for n in range(17, 3, -2):
+        series = 1.0 + y**2 / (n * (n - 1)) * series
+    return np.asarray(np.where(y < 2.0, y**3 / 6.0 * series, np.sinh(y) - y))
