@@ -43,7 +43,8 @@ def write_drops(folder: Path, chunks: Sequence[Span], study: str, plan: Plan, me
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(["drop", *keys, *peaks, OUTCOME, DOUBTS, "reason"])
         for chunk in chunks:
-            writer.writerows(_rows(chunk, plan, read_chunk(folder, chunk, study), peaks))
+            result = read_chunk(folder, chunk, study, {*peaks, OUTCOME, DOUBTS})
+            writer.writerows(_rows(chunk, plan, result, peaks))
     working.replace(folder / TABLE)
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from hashlib import sha256
 from io import BytesIO
@@ -99,7 +99,7 @@ def chunk_layout(folder: Path, number: int) -> dict[str, tuple[tuple[int, ...], 
         return {name: (values.shape, values.dtype) for name, values in file["arrays"].items()}
 
 
-def read_chunk(folder: Path, chunk: Span, study: str) -> ChunkResult:
+def read_chunk(folder: Path, chunk: Span, study: str, names: Collection[str] | None = None) -> ChunkResult:
     """Read a chunk.
 
     Parameters
@@ -110,6 +110,8 @@ def read_chunk(folder: Path, chunk: Span, study: str) -> ChunkResult:
         Which it is.
     study : str
         The fingerprint of the study.
+    names : collection of str, optional
+        The arrays to read, where they are there; by default all.
 
     Raises
     ------
@@ -120,6 +122,6 @@ def read_chunk(folder: Path, chunk: Span, study: str) -> ChunkResult:
         told = (file.attrs["study"], file.attrs["first"], file.attrs["size"])
         if told != (study, chunk.first, chunk.size):
             raise ValueError("it is of another study, or has other drops")
-        arrays = {name: np.asarray(values) for name, values in file["arrays"].items()}
+        arrays = {name: np.asarray(values) for name, values in file["arrays"].items() if names is None or name in names}
         reasons = [reason.decode() for reason in file["failures/reason"][()]]
         return ChunkResult(arrays, dict(zip(file["failures/place"][()].tolist(), reasons, strict=True)))
