@@ -28,7 +28,8 @@ from vibroimpact.studies.ledger import LEDGER, Span, open_ledger
 from vibroimpact.studies.run_chunks import run_chunks
 from vibroimpact.studies.workers import Crew, processes, this_process
 
-SMALL = 1_191_000
+DRAWN = vi.read_sweep(study_table(RANDOM))
+SMALL = int(200 * (4000 + 4 * DRAWN.bytes / DRAWN.size)) + 1
 """Memory with which a chunk of three impacts has 200 drops."""
 
 MANY = {**RANDOM, "samples": 8000}
