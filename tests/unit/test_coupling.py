@@ -125,3 +125,33 @@ def test_an_unknown_key_of_an_accelerometer_is_named_with_the_others() -> None:
         vi.InputError, match=r'unknown key "nois"; .* takes resonance, damping_ratio, range, noise, resolution, seed\. Did you mean "noise"'
     ):
         vi.read_case(case(sensors=[{**SENSOR, "accelerometer": {"nois": 0.5}}]))
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        ({"filter": "butterwort"}, r'sensors\.0\.filter.*one of "sigma-delta", "butterworth", "none"\. Did you mean "butterworth"'),
+        ({"filter": 8}, r"sensors\.0\.filter"),
+        ({"corner": "10 kHz"}, r'sensors\.0\.corner.*"sigma-delta" takes no corner; leave it out, or take "butterworth"'),
+        ({"filter": "butterworth", "corner": -1.0}, r"sensors\.0\.corner"),
+        ({"fliter": "none"}, r'unknown key "fliter".*Did you mean "filter"'),
+    ],
+)
+def test_a_filter_that_does_not_exist_is_explained(given: dict[str, Any], said: str) -> None:
+    with pytest.raises(vi.InputError, match=said):
+        vi.read_case(case(sensors=[{**SENSOR, **given}]))
+
+
+def test_the_resolved_case_has_the_filter() -> None:
+    (sensor,) = vi.read_case(case(sensors=[{**SENSOR, "filter": "butterworth", "corner": "15 kHz"}])).to_problem().source["sensors"]  # type: ignore[index]
+    assert (sensor["filter"], sensor["corner"]) == ("butterworth", 15e3)
+    (sensor,) = vi.read_case(case(sensors=[SENSOR])).to_problem().source["sensors"]  # type: ignore[index]
+    assert sensor["filter"] == "sigma-delta"
+
+
+def test_superposed_points_move_with_their_modes_alone() -> None:
+    given = {"sensors": [SENSOR]}
+    assert set(vi.read_case(case(**given)).to_problem().plate.modes.residuals) == {SENSOR["name"]}  # type: ignore[union-attr]
+    superposed = vi.read_case(case(**given, **contact(local_compliance="superposed"))).to_problem()
+    assert superposed.plate.modes is not None
+    assert not superposed.plate.modes.residuals

@@ -19,10 +19,14 @@ from numpy.lib.stride_tricks import sliding_window_view
 from vibroimpact.contact.phase.collocation import Floats
 from vibroimpact.dynamics.antialias import FINENESS, REACH, kernel, kernel_derivatives
 from vibroimpact.dynamics.measuring_chain import MeasuringChain
+from vibroimpact.dynamics.pulses import gauss_rule
 
 _ROWS = 64
 """Points of the table that are made at once."""
-_MOST_NODES = 3000
+_MOST_RADIANS = 5000.0
+"""Of a mode between two points of the table that is followed: what is faster is far above the band, and hardly moves."""
+_WIDE = 1000
+"""Points of impulses from which on transforms are quicker than sums."""
 _LAGRANGE = np.arange(-2, 4)
 """Points of the table, beside one, between which it is interpolated."""
 _CARDINAL = np.linalg.inv(np.vander(_LAGRANGE.astype(float)))
@@ -61,8 +65,8 @@ class FilteredChain:
         at = begin * FINENESS - (first + width - 1) + REACH * FINENESS  # where in the answers the last point is, of the first sample
         before, after = max(0, -at), (end - 1 - begin) * FINENESS + at + width - self.answers.shape[1]
         answers = np.pad(self.answers, ((0, 0), (before, max(0, after))))
-        seen = sliding_window_view(answers, width, axis=1)[:, at + before :: FINENESS][:, : end - begin]
-        values[:, begin:end] -= seen @ pushed[::-1]
+        answers = answers[:, at + before : at + before + (end - 1 - begin) * FINENESS + width]
+        values[:, begin:end] -= _met(answers, pushed[::-1])
 
 
 def filtered_chain(chain: MeasuringChain, rate: float, beyond: float) -> FilteredChain:
@@ -104,21 +108,25 @@ def filtered_chain(chain: MeasuringChain, rate: float, beyond: float) -> Filtere
     return FilteredChain(chain, rate, pairs.product(chain.outputs, gains), answers)
 
 
+def _met(answers: Floats, weights: Floats) -> Floats:
+    """Return the sums of neighbouring points of answers (S, points) by weights (w,), from every `FINENESS`-th point on: (S, samples)."""
+    width, points = len(weights), answers.shape[1]
+    if width < _WIDE:
+        return np.asarray(sliding_window_view(answers, width, axis=1)[:, ::FINENESS] @ weights)
+    size = 1 << (points + width - 1).bit_length()
+    whole = np.fft.irfft(np.fft.rfft(answers, size) * np.fft.rfft(weights[::-1], size), size)
+    return np.asarray(whole[:, width - 1 : points : FINENESS])
+
+
 def _drives(chain: MeasuringChain, rate: float, step: float, cells: int) -> Floats:
     """Return what the kernel adds to displacement and velocity of each oscillator of shape one in each of its cells, (cells, 2, n)."""
     of = chain.of
     fastest = float((of.angular_frequency * np.maximum(1.0, 2.0 * of.damping_ratio)).max())
-    x, weights = gauss_rule(min(10 + math.ceil(0.7 * fastest * step), _MOST_NODES))
+    x, weights = gauss_rule(min(fastest * step, _MOST_RADIANS))
     cosine, sine = of.propagators(step * (1.0 - x))
     places = (np.arange(cells)[:, None] + x) / FINENESS - REACH
     pushes = kernel(places) * (weights * step * rate)
     return np.stack([pushes @ sine, pushes @ (cosine - of.damping * sine)], axis=1)
-
-
-def gauss_rule(number: int) -> tuple[Floats, Floats]:
-    """Return nodes and weights of Gauss's rule on [0, 1]."""
-    nodes, weights = np.polynomial.legendre.leggauss(number)
-    return 0.5 * (nodes + 1.0), 0.5 * weights
 
 
 def _on_points(places: Floats, amounts: Floats) -> tuple[int, Floats]:

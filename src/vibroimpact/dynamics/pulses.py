@@ -11,19 +11,24 @@ from numpy.polynomial import legendre
 from vibroimpact.contact.phase.collocation import Floats
 from vibroimpact.contact.phase.vibrating_stretch import VibratingStretch
 
-_NODES = 16
-"""Of Gauss's rule, for what does not change over a stretch."""
+_NODES, _TURN = 16, 10.0
+"""Of Gauss's rule on each panel, and radians of the fastest wave in it: to rounding."""
 _SLOW = 3.0
 """Radians in a stretch: what is slower is integrated by the nodes of the stretch itself."""
 _DEGREE = 16
 """Of the polynomial whose derivatives are those of the force."""
-_FEW = 8
+
+
+def gauss_rule(radians: float) -> tuple[Floats, Floats]:
+    """Return nodes on [0, 1] and weights of a rule that integrates waves of up to so many radians there."""
+    return _panels(max(1, math.ceil(radians / _TURN)))
 
 
 @lru_cache(maxsize=64)
-def _gauss(number: int) -> tuple[Floats, Floats]:
-    nodes, weights = np.polynomial.legendre.leggauss(number)
-    return 0.5 * (nodes + 1.0), 0.5 * weights
+def _panels(number: int) -> tuple[Floats, Floats]:
+    nodes, weights = np.polynomial.legendre.leggauss(_NODES)
+    places = (np.arange(number)[:, None] + 0.5 * (nodes + 1.0)).ravel() / number
+    return places, np.tile(0.5 * weights / number, number)
 
 
 def pulses(stretch: VibratingStretch, fastest: float, until: Floats | None = None) -> tuple[Floats, Floats]:
@@ -41,7 +46,7 @@ def pulses(stretch: VibratingStretch, fastest: float, until: Floats | None = Non
     length, rule = stretch.length, stretch.rule
     if until is None and fastest * length < _SLOW:
         return length * rule.time, length * rule.integral[-1] * stretch.force
-    nodes, weights = _gauss(_FEW * math.ceil((_NODES + fastest * length) / _FEW))
+    nodes, weights = gauss_rule(rule.root * fastest * length)  # the map of time is so many times steeper, at most
     ends = np.ones(1) if until is None else rule.unmap_time(until / length)
     x = ends[:, None] * nodes
     force = rule.interpolate(x.ravel(), stretch.force).reshape(x.shape)

@@ -1,0 +1,85 @@
+"""The static compliance between where a plate is met and where it is watched against the elasticity of a layer, in double Fourier series.
+
+A load cos-shaped along both axes moves the faces of a layer by A + S and A - S (I. N. Sneddon, Fourier Transforms, 1951, section 46); a
+simply supported plate is a periodic layer of such loads. The series is summed to waves of a fiftieth of the thickness."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from vibroimpact.structures.recipe import PlateOfPlates, PlateOfSolids, Recipe
+from vibroimpact.structures.supports.edge import EDGES, Edge
+from vibroimpact.structures.surface import Side
+from vibroimpact.structures.transfer_compliance import computed_transfer, transfer_compliances
+
+LENGTH, WIDTH, THICKNESS, MODULUS, POISSON = 0.3, 0.25, 0.006, 210e9, 0.3
+SPOT = (-0.01, -0.015)
+HELD = tuple(Edge(edge, "simply-supported") for edge in EDGES)
+
+
+def place(thicknesses: float) -> tuple[float, float]:
+    return SPOT[0] + 0.8 * thicknesses * THICKNESS, SPOT[1] + 0.6 * thicknesses * THICKNESS
+
+
+def series(point: tuple[float, float], theory: str) -> float:
+    """The displacement of a point under a unit force on the upper face, as a double sine series."""
+    m = np.pi * np.arange(1, 1500)[:, None] / LENGTH
+    n = np.pi * np.arange(1, 1500)[None] / WIDTH
+    k = np.hypot(m, n)
+    y, strain = np.minimum(k * THICKNESS, 60.0), MODULUS / (1.0 - POISSON**2)
+    less = np.where(y < 0.05, y**3 / 6.0 * (1.0 + y**2 / 20.0), np.sinh(y) - y)
+    bending, squeezing = (1.0 + np.cosh(y)) / (2.0 * less), (np.cosh(y) - 1.0) / (2.0 * (np.sinh(y) + y))
+    if theory == "plate":
+        shear = 5.0 / (6.0 - POISSON) * MODULUS / (2.0 * (1.0 + POISSON)) * THICKNESS
+        kernel = 12.0 / (strain * THICKNESS**3 * k**4) + 1.0 / (shear * k**2)
+    else:
+        kernel = 2.0 / (strain * k) * (bending - squeezing if theory == "lower" else bending + squeezing - 1.0)
+    along = np.sin(m * (SPOT[0] + 0.5 * LENGTH)) * np.sin(m * (point[0] + 0.5 * LENGTH))
+    across = np.sin(n * (SPOT[1] + 0.5 * WIDTH)) * np.sin(n * (point[1] + 0.5 * WIDTH))
+    found = 4.0 / (LENGTH * WIDTH) * float((along * kernel * across).sum())
+    apart = float(np.hypot(point[0] - SPOT[0], point[1] - SPOT[1]))
+    return found + ((1.0 - POISSON**2) / (np.pi * MODULUS * apart) if theory == "upper" else 0.0)
+
+
+@pytest.mark.parametrize("face", ["upper", "lower"])
+@pytest.mark.parametrize("apart", [0.0, 0.5, 1.0, 2.0, 5.0])
+def test_the_face_of_a_plate(apart: float, face: Side) -> None:
+    """Plate elements of seven thicknesses, with what a layer has beyond plate theory."""
+    if face == "upper" and not apart:
+        return  # without bound there
+    recipe = Recipe(PlateOfPlates((LENGTH, WIDTH, THICKNESS), 0.0405), 7850.0, MODULUS, POISSON, HELD)
+    found = computed_transfer(recipe, SPOT, "upper", [(place(apart), face)], faces=2)[0, 2]
+    assert found == pytest.approx(series(place(apart), face), rel=0.002)
+
+
+@pytest.mark.parametrize("apart", [2.0, 5.0])
+def test_plate_theory(apart: float) -> None:
+    """What goes together with modes of plate theory, whose points are of its middle plane."""
+    recipe = Recipe(PlateOfPlates((LENGTH, WIDTH, THICKNESS), 0.0405), 7850.0, MODULUS, POISSON, HELD)
+    found = computed_transfer(recipe, SPOT, "upper", [(place(apart), "upper")])[0, 2]
+    assert found == pytest.approx(series(place(apart), "plate"), rel=5e-4)
+
+
+def test_bricks() -> None:
+    """Far from the force, where it does not matter how elements see it; their edges are held at the lower side alone."""
+    size = (0.06, 0.06, 0.006)
+    recipes = [
+        Recipe(shape, 7850.0, MODULUS, POISSON, tuple(Edge(edge, "clamped") for edge in EDGES))
+        for shape in (PlateOfSolids(size, 0.004, 2), PlateOfPlates(size, 0.01))
+    ]
+    point = ((0.012, 0.009), "upper")
+    solid, plate = (computed_transfer(recipe, (0.0, 0.0), "upper", [point], faces=2)[0] for recipe in recipes)
+    assert solid[2] == pytest.approx(plate[2], rel=0.02)
+    np.testing.assert_allclose(solid[:2], plate[:2], rtol=0.03)  # the face slides as it tilts
+
+
+def test_the_store_has_it(tmp_path: object, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("VIBROIMPACT_STORE", str(tmp_path))
+    recipe = Recipe(PlateOfPlates((LENGTH, WIDTH, THICKNESS), 0.0405), 7850.0, MODULUS, POISSON, HELD)
+    points: list[tuple[tuple[float, float], Side]] = [(place(2.0), "upper"), (place(3.0), "lower")]
+    first = transfer_compliances(recipe, SPOT, "upper", points)
+    monkeypatch.setattr("vibroimpact.structures.transfer_compliance.computed_transfer", None)
+    np.testing.assert_array_equal(transfer_compliances(recipe, SPOT, "upper", points), first)
+    with pytest.raises(TypeError):
+        transfer_compliances(recipe, SPOT, "upper", points[:1])

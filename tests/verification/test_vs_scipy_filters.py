@@ -1,0 +1,99 @@
+"""Signals behind anti-alias filters against SciPy's, applied to samples that are taken many times faster without one.
+
+Several impacts with micro-contacts on a plate that rings on, modes without damping, critically damped and overdamped, before and after
+the run's blocks: what the chain computes in closed form must be what is computed by brute force."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy import signal
+
+import vibroimpact as vi
+from vibrating import STIFFNESS, drop_on, random_modes
+from vibroimpact.contact.laws.hertz import Hertz
+from vibroimpact.contact.laws.lankarani_nikravesh import LankaraniNikravesh
+from vibroimpact.dynamics.antialias import REACH, kernel
+from vibroimpact.dynamics.sensor import Accelerometer, Sensor
+
+RATE, FINER = 20e3, 64
+HERTZ = Hertz(stiffness=STIFFNESS)
+
+
+@pytest.fixture(scope="module", params=[0.0, 0.01, 1.0, 1.7])
+def response(request: pytest.FixtureRequest) -> vi.Response:
+    plate = random_modes(4, 25, 100.0, 60e3, 1.2, request.param)
+    law = LankaraniNikravesh(stiffness=STIFFNESS, restitution=0.6)
+    return vi.simulate(drop_on(law, plate, height=0.03, impacts=None, duration=0.12))
+
+
+def decimated(value: np.ndarray, kind: str) -> np.ndarray:
+    if kind == "butterworth":
+        value = signal.sosfilt(signal.butter(8, 0.4 * RATE, fs=FINER * RATE, output="sos"), value)
+    else:
+        taps = signal.firwin(2 * REACH * FINER + 1, 0.5 * RATE, window=("kaiser", 10.4), fs=FINER * RATE)
+        value = signal.fftconvolve(np.pad(value, REACH * FINER), taps, "valid")
+    return np.asarray(value[::FINER])
+
+
+@pytest.mark.parametrize("kind", ["sigma-delta", "butterworth"])
+@pytest.mark.parametrize("quantity", ["displacement", "velocity", "acceleration"])
+def test_signals_of_several_impacts(response: vi.Response, kind: str, quantity: str) -> None:
+    assert len(response.impacts["impact"]) > 1
+    full = response.signals(Sensor("a", quantity, rate=FINER * RATE, filter="none"))["a"].value  # type: ignore[arg-type]
+    found = response.signals(Sensor("a", quantity, rate=RATE, filter=kind))["a"].value  # type: ignore[arg-type]
+    exact = decimated(full, kind)[: len(found)]
+    heard = slice(None) if kind == "butterworth" else slice(0, -REACH)  # a converter hears what comes after the run
+    np.testing.assert_allclose(found[heard], exact[heard], rtol=0.0, atol=2e-3 * np.abs(exact).max())
+
+
+@pytest.mark.parametrize("kind", ["sigma-delta", "butterworth", "none"])
+def test_an_overdriven_accelerometer(response: vi.Response, kind: str) -> None:
+    meter, end = {"resonance": 30e3, "damping_ratio": 0.1}, 200.0
+    full = response.signals(Sensor("a", rate=FINER * RATE, filter="none", accelerometer=Accelerometer(**meter)))["a"].value
+    assert np.abs(full).max() > 2.0 * end
+    clipped = np.clip(full, -end, end)
+    exact = clipped[::FINER] if kind == "none" else decimated(clipped, kind)
+    found = response.signals(Sensor("a", rate=RATE, filter=kind, accelerometer=Accelerometer(**meter, range=end)))["a"]
+    heard = slice(0, -REACH) if kind == "sigma-delta" else slice(None)
+    np.testing.assert_allclose(found.value[heard], exact[: len(found.value)][heard], rtol=0.0, atol=0.01 * end)
+    assert found.peak == pytest.approx(np.abs(full).max(), rel=0.02)
+    assert found.overload_time == pytest.approx((np.abs(full) > end).sum() / (FINER * RATE), rel=0.03)
+
+
+def test_the_filter_of_a_converter_is_what_is_said() -> None:
+    """Flat to 0.45 of the rate within 0.001 dB, and 100 dB down from 0.55 on."""
+    x = np.arange(-REACH * 16, REACH * 16 + 1) / 16.0
+    frequency, gain = signal.freqz(kernel(x) / 16.0, worN=2**16, fs=16.0)
+    decibels = 20.0 * np.log10(np.abs(gain))
+    assert np.abs(decibels[frequency <= 0.45]).max() < 1e-3
+    assert decibels[frequency >= 0.55].max() < -100.0
+
+
+@pytest.mark.parametrize(("frequency", "seen"), [(4e3, 1.0), (8.9e3, 1.0), (11.1e3, 0.0), (19e3, 0.0), (46e3, 0.0)])
+def test_a_tone_passes_or_is_stopped(frequency: float, seen: float) -> None:
+    """One mode that rings on: in band it passes as it is, above it nothing is left, and none is folded into the band."""
+    from vibrating import modes_of
+
+    response = vi.simulate(drop_on(HERTZ, modes_of([frequency], [0.3]), gravity=0.0, duration=0.02))
+    found, bare = (response.signals(Sensor("a", rate=RATE, filter=kind))["a"] for kind in ("sigma-delta", "none"))
+    later = found.time > 2.0 * REACH / RATE
+    np.testing.assert_allclose(found.value[later], seen * bare.value[later], rtol=0.0, atol=2e-4 * np.abs(bare.value).max())
+
+
+def test_a_mode_above_half_the_rate_acts_in_band_as_below_its_resonance() -> None:
+    """Far above it, as a spring: its share in the displacement is that of its compliance under the filtered force."""
+    from vibrating import modes_of
+
+    plate = modes_of([900.0, 80e3], [0.4, 20.0])
+    plate.points["stiff"] = np.outer([0.0, 20.0], [0.0, 0.0, 1.0])  # type: ignore[index]
+    response = vi.simulate(drop_on(HERTZ, plate, gravity=0.0, duration=0.01, speed=0.2))
+    rate = 10e3
+    found = response.signals(Sensor("stiff", "displacement", rate=rate))["stiff"].value
+    fine = np.arange(0, 0.01, 1e-7)
+    force = response.at(fine)["force_N"]
+    times = np.arange(len(found)) / rate
+    filtered = np.array([(force * kernel(rate * (time - fine))).sum() * rate * 1e-7 for time in times])
+    compliance = (20.0 / (2.0 * np.pi * 80e3)) ** 2
+    np.testing.assert_allclose(found, -compliance * filtered, rtol=0.0, atol=0.01 * compliance * filtered.max())
+    assert np.abs(found).max() > 0.1 * compliance * force.max()
