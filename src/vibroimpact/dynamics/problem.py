@@ -45,11 +45,12 @@ class Problem:
     impacts : int, optional
         Stop after so many impacts, at the top of the last rebound. None: go on to rest.
     duration : float, optional
-        Stop at this time [s]; an impact under way is finished first.
+        Stop at this time [s]; an impact under way is finished first, but not a sphere that rides on what vibrates.
     rest_speed : float or array, optional
         A sphere that leaves more slowly is at rest [m/s]. By default the speed from which it would
         rise no higher than the static indentation under its own weight, but at least 1e-6 of
-        the first approach speed. Zero: only a sphere that does not leave at all is at rest.
+        the first approach speed. Zero: only a sphere that does not leave at all is at rest. On what
+        vibrates it must also be true that nothing that still moves can make it leave faster.
     same_spot : bool, default True
         Does each impact fall where the last one did, with the same part of the sphere? Then a law whose
         memory lasts (a permanent dent) goes on with it; else each impact finds fresh surfaces.

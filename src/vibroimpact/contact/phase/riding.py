@@ -59,6 +59,21 @@ def stays_below(around: Surroundings, law: CompliantLaw, state: State, speed: fl
     return mechanical_energy(around, state) < least + 0.5 * around.mass * speed**2
 
 
+def may_stay(around: Surroundings, state: State, force: float, indentation: float) -> bool:
+    """Tell whether it is worth asking if a sphere that rides stays, which takes the modes of sphere and oscillators together.
+
+    It is not where the force is far from the weight, nor where the speed is too high: the force takes it away and gives it back, at
+    no lower an angular frequency than that by the trace of the flexibility, on a contact about as stiff as force over indentation.
+    """
+    of, weight = around.oscillators, around.mass * around.gravity
+    most = _MARGIN * weight
+    if not weight or abs(force - weight) > most:
+        return False
+    on_springs = around.mass * (abs(indentation) / weight / _MARGIN + of.compliance)
+    slowest = float((on_springs + (1.0 / of.angular_frequency**2).sum()) ** -0.5)
+    return around.mass * abs(float(state.speed)) * slowest < most
+
+
 @dataclass(frozen=True, eq=False)
 class Riding:
     """Small oscillations of a sphere and what it lies on about their equilibrium, as one linear system.

@@ -22,14 +22,14 @@ from vibroimpact.contact.phase.collocation import Floats, Map
 from vibroimpact.contact.phase.contact import CAPTURED, FAILED, RELEASED, RIDING, SETTLED
 from vibroimpact.contact.phase.next_touch import next_touch, time_to_part
 from vibroimpact.contact.phase.oscillators import FreeMotion, State
-from vibroimpact.contact.phase.riding import Riding, least_energy, stays_below
+from vibroimpact.contact.phase.riding import Riding, least_energy, may_stay, stays_below
 from vibroimpact.contact.phase.vibrating_events import GRID, ROUNDING, Event, first_event
 from vibroimpact.contact.phase.vibrating_stretch import Surroundings, VibratingStretch, mechanical_energy, solve_vibrating
 from vibroimpact.contact.quasi_static import QuasiStatic
 from vibroimpact.contact.roots import find_root
 from vibroimpact.contact.static import static_indentation
 
-MOST_STEPS, MOST_STEPS_TO_A_TIME = 5_000, 50_000
+MOST_STEPS, MOST_STEPS_TO_A_TIME = 5_000, 20_000
 """How many stretches of contact a visit is followed for: some ten seconds' work; and where the run has an end in time."""
 
 _FIRST = 0.125  # of the span of a contact: the first stretch
@@ -317,9 +317,8 @@ class _Visit:
     def lies(self) -> bool:
         """Does the contact carry the weight, with too little left at the contact to lift the sphere off it?"""
         around, last = self.around, self.found.parts[-1].motion
-        weight = around.mass * around.gravity
-        if not isinstance(last, VibratingStretch) or abs(float(last.force[-1]) - weight) > 0.5 * weight:
-            return False  # which costs nothing to see
+        if not isinstance(last, VibratingStretch) or not may_stay(around, self.state, float(last.force[-1]), self.here() - self.floor):
+            return False
         if self.riding is None or self.riding.local.law is not self.local.law:
             self.riding = Riding(around, self.local)
         return self.riding.linear and self.riding.stays(self.state)
