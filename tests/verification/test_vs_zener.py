@@ -16,6 +16,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import vibroimpact as vi
+from oracles.three_dimensional_plate import PMMA, STEEL, Elastic, Impact, contact_time, hertz, impact
 from vibrating import STIFFNESS, drop_on, modes_of
 from vibroimpact.contact.laws.hertz import Hertz
 from vibroimpact.contact.quasi_static import QuasiStatic
@@ -74,3 +75,67 @@ def test_what_is_not_an_infinite_plate() -> None:
     """Where waves come back during the contact, and where the compliance of the modes left out is forgotten."""
     assert plate_response(0.1768, side=5.0).impacts["restitution_achieved"][0] < 0.95 * 0.74196
     assert plate_response(1.0, residual=False).impacts["restitution_achieved"][0] < 0.99 * 0.184123
+
+
+def kirchhoff(side: float, radius: float, modes: int, theory: str = "thin") -> tuple[vi.Response, Impact, float]:
+    """A steel ball at 1 m/s on 5 mm of PMMA: the package's plate, the Navier series of Kirchhoff's plate, and the inelasticity."""
+    size, place, thickness = (side, 0.9 * side, 0.005), (0.013, 0.007), 0.005
+    mass, stiffness = hertz(PMMA, radius, STEEL)
+    rigidity = PMMA.modulus * thickness**3 / (12.0 * (1.0 - PMMA.ratio**2))
+    area = PMMA.density * thickness
+    waves = [np.arange(1, 1200) * np.pi / length for length in size[:2]]
+    omega = np.sqrt(rigidity / area) * (waves[0][:, None] ** 2 + waves[1] ** 2)
+    sines = [np.sin(k * (at + 0.5 * length)) for k, at, length in zip(waves, place, size[:2], strict=True)]
+    shape = 2.0 / np.sqrt(area * size[0] * size[1]) * np.outer(*sines)
+    time = contact_time(PMMA, radius, STEEL, 1.0)
+    kept = omega < 2.0 * np.pi * 60.0 / time
+    rest = float(((shape / omega)[~kept] ** 2).sum())
+    series = impact(mass, stiffness, 1.0, omega[kept], shape[kept], rest, time / 1500, 4500)
+
+    def material(given: Elastic) -> dict[str, float]:
+        return {"density": given.density, "youngs_modulus": given.modulus, "poissons_ratio": given.ratio}
+
+    plate = {"size": list(size), "material": material(PMMA), "model": "elastic", "supports": "simply-supported", "modes": modes}
+    case = {
+        "sphere": {"radius": radius, "material": material(STEEL)},
+        "plate": {**plate, "mesh": {"theory": theory}},
+        "drop": {"speed": 1.0, "position": list(place), "gravity": 0.0},
+        "contact": {"law": "hertz"},
+        "run": {"impacts": 1},
+    }
+    inelasticity = mass / (8.0 * np.sqrt(rigidity * area) * (mass / stiffness) ** 0.4)
+    return vi.simulate(vi.read_case(case)), series, float(inelasticity)
+
+
+def test_the_thin_theory_is_kirchhoffs() -> None:
+    """With point shapes and the deflection of a point, which is finite, a plate of thin elements meets the Navier series."""
+    response, series, _ = kirchhoff(0.1, 0.003, 80)
+    row = response.impacts
+    assert row["max_force_N"][0] == pytest.approx(series.force, rel=5e-3)
+    assert row["duration_s"][0] == pytest.approx(series.duration, rel=5e-3)
+    assert row["restitution_achieved"][0] == pytest.approx(series.restitution, rel=5e-3)
+
+
+@pytest.mark.slow
+def test_a_large_plate_of_thin_elements() -> None:
+    """Zener's restitution, on a plate from whose edges no wave comes back in time; thick theory, which is nearer the truth, is not that."""
+    response, series, inelasticity = kirchhoff(0.2, 0.003, 300)
+    exact = restitution(inelasticity)
+    assert series.restitution == pytest.approx(exact, rel=1e-3)
+    assert response.impacts["restitution_achieved"][0] == pytest.approx(exact, rel=5e-3)
+    thick, _, _ = kirchhoff(0.2, 0.003, 300, "thick")
+    assert thick.impacts["restitution_achieved"][0] != pytest.approx(exact, rel=2e-2)
+
+
+def restitution(inelasticity: float) -> float:
+    """Of Zener's equation."""
+
+    def slopes(_: float, y: np.ndarray) -> list[float]:
+        root = np.sqrt(max(y[0], 0.0))
+        return [y[1], -root * max(y[0], 0.0) - 1.5 * inelasticity * root * y[1]]
+
+    def apart(_: float, y: np.ndarray) -> float:
+        return float(y[0])
+
+    apart.terminal, apart.direction = True, -1  # type: ignore[attr-defined]
+    return -float(solve_ivp(slopes, (0.0, 20.0), [0.0, 1.0], method="DOP853", rtol=1e-10, atol=1e-12, events=apart).y[1, -1])

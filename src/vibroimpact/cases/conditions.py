@@ -35,6 +35,8 @@ class Seen:
         frequency of those kept [Hz].
     changes : array, shape (impacts,)
         Of one drop on bodies that vibrate: the relative change of each impact that can't be known.
+    plate_theory : float
+        Of one drop on plate elements: about which part of the first largest force they lack.
     """
 
     force: Array = math.nan
@@ -44,6 +46,7 @@ class Seen:
     deflection: Array = math.nan
     modes: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     changes: Array = 0.0
+    plate_theory: Array = math.nan
 
 
 @dataclass(frozen=True)

@@ -21,8 +21,11 @@ from vibroimpact.contact.quasi_static import QuasiStatic
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.simulate import simulate
 from vibroimpact.errors import InputError
+from vibroimpact.materials import Material
 from vibroimpact.structures.modal_model import ModalBasis, ModalModel
-from vibroimpact.structures.recipe import model_key
+from vibroimpact.structures.plate_face import face_shapes
+from vibroimpact.structures.plate_waves import inertia_beyond_bending
+from vibroimpact.structures.recipe import is_thin, model_key
 from vibroimpact.structures.sphere_compliance import FITTED, sphere_term
 from vibroimpact.structures.static_compliance import compliance_key, static_compliance
 from vibroimpact.structures.store import carry
@@ -79,6 +82,10 @@ def coupling_of(case: Case, progress: Callable[[float], None] | None = None, tel
     if "plate" in bodies:
         if not bodies["plate"].model.is_held_vertically:
             raise InputError("the supports let the plate fall or tilt; hold it vertically, or leave it rigid", "plate.supports")
+        if treatment != "superposed":  # which is to be what a multibody program has: the motion of a node
+            modes["plate"], beyond = _at_its_face(bodies["plate"])
+            if beyond:
+                facts["plate_theory_inertia_m_s2_N"] = beyond
         carried = _compliance(modes["plate"])
         facts["plate_modal_compliance_m_N"] = carried
         if treatment != "superposed":
@@ -157,6 +164,19 @@ def _averaged(body: BodyModes, radius: float) -> ModalBasis:
     place, side = _met(body)
     shapes = body.model.averaged(place, radius, side, "the contact patch")
     return replace(body.basis, contact=shapes[:, 2])
+
+
+def _at_its_face(body: BodyModes) -> tuple[ModalBasis, float]:
+    """Return the modes of a plate, the contact point on its face; and what plate theory lacks beyond its modes [m s^2/N].
+
+    Solids have a face. By the thin theory a plate has none, and all points above one another move alike.
+    """
+    recipe = body.body.recipe
+    if not body.model.mesh.is_flat or is_thin(recipe):
+        return body.basis, 0.0
+    material = Material(recipe.density, recipe.youngs_modulus, recipe.poissons_ratio)
+    shapes = face_shapes(body.model, material, _met(body)[0], body.basis.contact)
+    return replace(body.basis, contact=shapes), inertia_beyond_bending(body.model.thickness, material)
 
 
 def _first_contact(case: Case) -> tuple[CompliantLaw, float]:

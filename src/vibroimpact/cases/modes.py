@@ -9,13 +9,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vibroimpact.bodies.elastic import ElasticBody, shortest_bending_wave
+from vibroimpact.bodies.elastic import ElasticBody
 from vibroimpact.cases.build_elastic import elastic_bodies
 from vibroimpact.errors import InputError
+from vibroimpact.materials import Material
 from vibroimpact.structures.damping import ConstantRatio, RatioOfEach, RatioTable
 from vibroimpact.structures.frequency_error import MESH, REDUCTION, SUPPORTS, THEORY
 from vibroimpact.structures.modal_model import ModalBasis, ModalModel
-from vibroimpact.structures.recipe import MOST_FOR, BroughtMesh, PlateOfSolids, Shape, SphereOfSolids, modal_model_of
+from vibroimpact.structures.plate_waves import bending_error, stretching_error, wave_numbers
+from vibroimpact.structures.recipe import MOST_FOR, BroughtMesh, PlateOfSolids, Shape, SphereOfSolids, is_thin, modal_model_of
 
 if TYPE_CHECKING:
     from vibroimpact.cases.schema import Case
@@ -23,7 +25,7 @@ if TYPE_CHECKING:
 _FREQUENCY_OFF = 0.005  # relative: frequencies that may be off by more are doubted
 _WEIGHT_OFF = 0.05  # relative: a mesh whose volume differs more from that of the case is doubted
 _MESH_OFF = 0.005  # relative: a mesh made here with less of the body's mass is too coarse
-_THICK = 4.0  # thicknesses: plates whose waves are shorter are no longer plates
+_THEORY_OFF = 0.005  # relative, of frequencies: plate theory that is farther off is doubted
 _LARGE = 50.0  # m: a body larger than this is probably in millimetres
 
 
@@ -110,12 +112,25 @@ def _doubts(case: Case, name: str, body: ElasticBody, model: ModalModel, basis: 
     if isinstance(body.damping, (ConstantRatio, RatioOfEach, RatioTable)) and basis.damping_ratios.max() >= 1.0:
         yield f"the damping of the {name} is critical or more; a ratio of 0.01 is 1 %"
     if model.thickness:
-        wave = shortest_bending_wave(model.thickness, case.plate.material, float(model.frequencies[-1]))
-        if wave < _THICK * model.thickness:
-            yield (
-                f"the bending waves of the highest modes are {wave:.2g} m long, shorter than {_THICK:g} thicknesses, where plate elements "
-                'are no longer to be trusted; take element = "solid"'
-            )
+        yield from _doubts_of_theory(body, model)
+
+
+def _doubts_of_theory(body: ElasticBody, model: ModalModel) -> Iterator[str]:
+    """Say how far plate theory is off in the highest modes, where that is more than it may be."""
+    recipe, thickness, omega = body.recipe, model.thickness, model.angular_frequencies[-1:]
+    material = Material(recipe.density, recipe.youngs_modulus, recipe.poissons_ratio)
+    thin = is_thin(recipe)
+    wave = thickness * wave_numbers(omega, thickness, material, thin)
+    bending = float(bending_error(wave, material.poissons_ratio, thin)[0])
+    stretching = float(stretching_error(omega, thickness, material)[0])
+    if abs(bending) < _THEORY_OFF > stretching:
+        return
+    remedy = 'take mesh = { theory = "thick" }' if thin else 'take element = "solid"'
+    yield (
+        f"the waves of bending of the highest mode, at {float(model.frequencies[-1]):.4g} Hz, are {2.0 * math.pi / float(wave[0]):.2g} "
+        f"thicknesses long, and there {'thin plate' if thin else 'plate'} theory is off by {100.0 * bending:+.2g} % in the frequencies of "
+        f"bending and by {100.0 * stretching:+.2g} % in those of stretching; {remedy}, or keep fewer modes"
+    )
 
 
 def _doubts_of_frequencies(name: str, body: ElasticBody, model: ModalModel) -> Iterator[str]:

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from vibroimpact.cases.build import resolved
 from vibroimpact.cases.conditions import Conditions, Seen
 from vibroimpact.cases.limit import limits, numbers_of
+from vibroimpact.cases.limits.plate_waves import plate_theory_error
 from vibroimpact.cases.schema import Case
 from vibroimpact.cases.swept_keys import with_values
 from vibroimpact.contact.law import ContactLaw
@@ -74,8 +75,14 @@ def drop_conditions(response: Response, peaks: Mapping[str, NDArray[Any]]) -> Co
     problem, modes = response.problem, {}
     for body, part in response.truncation.items():
         modes[body] = part, float(getattr(problem, body).modes.frequencies[-1])
-    changes = change_by_impact(response.impacts, problem.tolerance)
-    return Conditions(problem.source or {}, replace(_seen(peaks), deflection=_largest_deflection(response), modes=modes, changes=changes))
+    seen = replace(
+        _seen(peaks),
+        deflection=_largest_deflection(response),
+        modes=modes,
+        changes=change_by_impact(response.impacts, problem.tolerance),
+        plate_theory=plate_theory_error(problem.facts, response.impacts),
+    )
+    return Conditions(problem.source or {}, seen)
 
 
 def _seen(peaks: Mapping[str, NDArray[Any]]) -> Seen:

@@ -2,7 +2,8 @@ r"""How much the modes that were left out matter: an estimate from the modes tha
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -11,6 +12,8 @@ from vibroimpact.dynamics.problem import Problem
 
 if TYPE_CHECKING:
     from vibroimpact.structures.modal_model import ModalBasis
+
+_HERTZ = 2.94  # the time of Hertz's contact, in depths over speeds
 
 
 def truncation_estimates(problem: Problem, impacts: dict[str, Floats]) -> dict[str, float]:
@@ -43,10 +46,24 @@ def truncation_estimates(problem: Problem, impacts: dict[str, Floats]) -> dict[s
     return found
 
 
+def time_of_contact(impacts: Mapping[str, Any]) -> float:
+    """Return how long the first impact takes [s]; of a visit of several contacts, what Hertz's contact of its depth would.
+
+    Parameters
+    ----------
+    impacts : mapping of str to array
+        The impact table, with at least one impact.
+    """
+    duration, contacts = float(impacts["duration_s"][0]), impacts.get("contacts")
+    if contacts is None or contacts[0] < 2:
+        return duration
+    return min(duration, _HERTZ * float(impacts["max_indentation_m"][0]) / float(impacts["approach_speed_m_s"][0]))
+
+
 def _estimate(modes: ModalBasis, impacts: dict[str, Floats], carried: bool) -> float:
     if not len(impacts["impact"]):
         return float("nan")
-    force, depth, duration = (float(impacts[key][0]) for key in ("max_force_N", "max_indentation_m", "duration_s"))
+    force, depth, duration = float(impacts["max_force_N"][0]), float(impacts["max_indentation_m"][0]), time_of_contact(impacts)
     omega, shape = modes.angular_frequencies, modes.contact
     octave = omega > 0.5 * omega[-1]
     compliance = (shape[octave] / omega[octave]) ** 2

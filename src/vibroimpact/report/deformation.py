@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from vibroimpact.cases.limits.plate_waves import plate_theory_error
 from vibroimpact.quantity import digits, fixed, text
 from vibroimpact.storage.result import Result
 
@@ -61,6 +62,9 @@ def deformation_rows(result: Result) -> list[tuple[str, str]]:
     for body, part in result.truncation.items():
         if math.isfinite(part):
             rows.append((f"Largest force off for the modes of the {body} left out, estimated", f"{digits(100.0 * part, 2)}\u00a0%"))
+    lacking = plate_theory_error(facts, result.impacts)
+    if math.isfinite(lacking):
+        rows.append(("Largest force off for what plate elements lack, estimated", f"{digits(100.0 * lacking, 2)}\u00a0%"))
     return rows
 
 

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from vibroimpact._version import __version__
 from vibroimpact.cases.conditions import Seen
 from vibroimpact.cases.doubts import doubts
+from vibroimpact.cases.limits.plate_waves import plate_theory_error
 from vibroimpact.cases.sensor_doubts import sensor_doubts
 from vibroimpact.dynamics.recording import Signal
 from vibroimpact.dynamics.response import Response
@@ -100,7 +101,8 @@ class Result:
         duration, speed = (float(self.impacts[name][0]) for name in ("duration_s", "approach_speed_m_s"))
         deflection = float(np.abs(self.history["plate_deflection_m"]).max()) if "plate" in self.peaks else math.nan
         modes = {body: (part, self.frequencies(body)[-1]) for body, part in self.truncation.items()}
-        return Seen(force, depth, duration, speed, deflection, modes, self.change_by_impact)
+        theory = plate_theory_error(self.deformation, self.impacts)
+        return Seen(force, depth, duration, speed, deflection, modes, self.change_by_impact, theory)
 
     @property
     def name(self) -> str:

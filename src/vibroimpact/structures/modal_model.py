@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
+from scipy.sparse import csr_array
 
 from vibroimpact.structures.damping import Damping
 from vibroimpact.structures.disc import HERTZ, disc_points
@@ -109,8 +110,12 @@ class ModalModel:
             If a place lies beside the body.
         """
         motion, positions = surface_motion(self.mesh, places, side, self.thickness, what)
+        return self.seen(motion).reshape(len(self.shapes), -1, 3), positions
+
+    def seen(self, motion: csr_array) -> Floats:
+        """Return what goes with the degrees of freedom, as rows of a sparse array say, in each mode: shape (modes, rows)."""
         dofs = np.unique(motion.indices)  # few of many: the others need not be read
-        return np.asarray(self.shapes[:, dofs] @ motion[:, dofs].T.toarray()).reshape(len(self.shapes), -1, 3), positions
+        return np.asarray(self.shapes[:, dofs] @ motion[:, dofs].T.toarray())
 
     def averaged(self, place: tuple[float, float], radius: float, side: Side = "upper", what: str = "") -> Floats:
         """Return the mode shapes at a place, averaged over a disc with the weight of Hertz's pressure, shape (modes, 3) [kg^-1/2].

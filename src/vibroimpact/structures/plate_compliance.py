@@ -96,12 +96,19 @@ def through_thickness_term(thickness: float, youngs_modulus: float, poissons_rat
 def plate_theory_average(radius: float, thickness: float, poissons_ratio: float, shear_factor: float) -> Average:
     r"""Return the average over a disc [m] that goes with `plate_theory_term`.
 
+    Its mean of r^2 is `mean_square`.
+    """
+    return Average(radius, 3.0 - 6.0 * mean_square(thickness, poissons_ratio, shear_factor) / radius**2)
+
+
+def mean_square(thickness: float, poissons_ratio: float, shear_factor: float) -> float:
+    r"""Return the mean of r^2 of an average under which plate theory meets the face of a layer in long waves [m^2].
+
     Notes
     -----
     :math:`\overline{r^2} = 2 h^2 \left(\frac{1}{6 (1 - \nu) \kappa} - \frac15\right)`.
     """
-    mean_square = 2.0 * thickness**2 * (1.0 / (6.0 * (1.0 - poissons_ratio) * shear_factor) - 0.2)
-    return Average(radius, 3.0 - 6.0 * mean_square / radius**2)
+    return 2.0 * thickness**2 * (1.0 / (6.0 * (1.0 - poissons_ratio) * shear_factor) - 0.2)
 
 
 @functools.lru_cache(maxsize=_PLATES)
@@ -115,7 +122,7 @@ def plate_theory_term(thickness: float, youngs_modulus: float, poissons_ratio: f
     youngs_modulus, poissons_ratio : float
         E [Pa] and nu [-].
     shear_factor : float
-        Factor kappa of the shear stiffness [-]; infinite in the thin theory.
+        Factor kappa of the shear stiffness [-].
     average : Average
         Of the force and of the displacement: `plate_theory_average`, of a radius > 0.
 

@@ -206,6 +206,11 @@ class Recipe:
     reduction: Reduction = Reduction(modes=20)
 
 
+def is_thin(recipe: Recipe) -> bool:
+    """Is it a plate by the thin theory, Kirchhoff's?"""
+    return isinstance(recipe.shape, PlateOfPlates) and recipe.shape.theory == "thin"
+
+
 def modal_model_of(recipe: Recipe, progress: Progress | None = None, tell: Callable[[str], None] | None = None) -> ModalModel:
     """Return the modal model of a recipe, from the store if it is there.
 

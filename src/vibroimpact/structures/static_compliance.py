@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from dataclasses import replace
 
@@ -24,7 +23,7 @@ from vibroimpact.structures.plate_compliance import (
 )
 from vibroimpact.structures.plate_element import shear_factor
 from vibroimpact.structures.recent import Recent
-from vibroimpact.structures.recipe import PlateOfPlates, Recipe, Reduction
+from vibroimpact.structures.recipe import Recipe, Reduction, is_thin
 from vibroimpact.structures.store import key_of, load_entry, save_entry
 from vibroimpact.structures.structure import Structure
 from vibroimpact.structures.supports.constraints import HeldStructure
@@ -63,7 +62,10 @@ def static_compliance(recipe: Recipe, place: tuple[float, float], side: Side = "
 
     Notes
     -----
-    Under a point force the displacement is infinite, and finite elements miss what is near it; so neither is asked for. The force is
+    By Kirchhoff's theory (`theory = "thin"`) a point force has a finite deflection at its own place, and that is what is returned: the
+    thin theory knows no shear, and of no half space.
+
+    Else, under a point force the displacement is infinite, and finite elements miss what is near it; so neither is asked for. The force is
     spread over a disc of 0.75 thicknesses, or over what lies of it on the body near an edge; and the response, averaged in the same
     way, is that of the plate elements, to which `plate_theory_term` is added, or that of the other face of solids, to which
     `through_thickness_term` is added. These terms are exact for a plate that reaches a few thicknesses around the place.
@@ -91,7 +93,7 @@ def static_compliance(recipe: Recipe, place: tuple[float, float], side: Side = "
 
 def compliance_key(recipe: Recipe, place: tuple[float, float], side: Side = "upper") -> str:
     """Return the key under which the store has the compliance of a plate at a place."""
-    return key_of(["static compliance", replace(recipe, reduction=Reduction()), place, side])
+    return key_of(["structural compliance", replace(recipe, reduction=Reduction()), place, side])
 
 
 def computed_compliance(recipe: Recipe, place: tuple[float, float], side: Side = "upper") -> float:
@@ -99,10 +101,12 @@ def computed_compliance(recipe: Recipe, place: tuple[float, float], side: Side =
     held, elastic = _factorised(recipe)
     structure, material = held.structure, _material(recipe)
     thickness = _thickness(structure, place)
-    thin = isinstance(recipe.shape, PlateOfPlates) and recipe.shape.theory == "thin"
-    factor = math.inf if thin else shear_factor(material.poissons_ratio)
+    if is_thin(recipe):
+        load = _faces(held, place, Average(0.0, 0.0))[0]
+        return float(load @ elastic.static(load))
     layer = thickness, material.youngs_modulus, material.poissons_ratio
     if structure.mesh.is_flat:
+        factor = shear_factor(material.poissons_ratio)
         average = plate_theory_average(_RADIUS * thickness, thickness, material.poissons_ratio, factor)
         correction = plate_theory_term(*layer, factor, average)
     else:

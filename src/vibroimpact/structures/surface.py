@@ -183,6 +183,44 @@ def surface_motion(mesh: Mesh, places: Floats, side: Side = "upper", thickness: 
     return _rows(mesh, nodes, weights, height), positions
 
 
+def slopes_apart(mesh: Mesh, place: tuple[float, float]) -> csr_array:
+    r"""Return the divergence of the slopes of a plate of plate elements at a place, a row of its degrees of freedom [1/m].
+
+    It is :math:`\partial_x \beta_x + \partial_y \beta_y`; where elements meet, the mean of what they say.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        Of plate elements.
+    place : tuple of two floats
+        x and y [m].
+
+    Raises
+    ------
+    InputError
+        If the place lies beside the body.
+
+    Examples
+    --------
+    >>> from vibroimpact.structures.plate_mesh import plate_mesh
+    >>> mesh = plate_mesh((0.5, 0.4), 0.1)
+    >>> x, y = mesh.nodes[:, :2].T
+    >>> motion = np.stack([0 * x, 0 * x, 0 * x, x**2 * y, y**2], axis=1)
+    >>> (slopes_apart(mesh, (0.1, 0.05)) @ motion.ravel()).round(9).tolist()  # 2 x y + 2 y
+    [0.11]
+    """
+    places = np.array([place])
+    for faces in _looking(_above_or_below(mesh, places), "upper"):
+        _, face, local = _found(mesh.nodes, faces, places, _STARTS[0])
+        if len(face):
+            along, node = faces.slopes(local)[1], faces.connectivity[face]
+            slopes = np.linalg.solve(along @ mesh.nodes[node][:, :, :2], along) / len(face)
+            columns = mesh.dofs_per_node * node[:, None] + np.array([[3], [4]])
+            shape = (1, mesh.dofs_per_node * len(mesh.nodes))
+            return csr_array(coo_array((slopes.ravel(), (np.zeros(slopes.size, dtype=np.int64), columns.ravel())), shape=shape))
+    raise InputError(f"({place[0]:g}, {place[1]:g}) m is not on the body")
+
+
 def _above_or_below(mesh: Mesh, places: Floats) -> Mesh:
     """Return the elements that may lie above or below places: among their faces the outermost are the same."""
     low, high = places.min(axis=0), places.max(axis=0)

@@ -1,0 +1,63 @@
+r"""Waves through the thickness: plate elements only bend."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+from vibroimpact.cases.conditions import Conditions
+from vibroimpact.cases.limit import Limit, percent_less
+from vibroimpact.dynamics.truncation import time_of_contact
+
+
+def plate_theory_error(facts: Mapping[str, Any], impacts: Mapping[str, Any]) -> float:
+    r"""Return about how much too large the largest force of the first impact is for what plate elements lack, as a part of it.
+
+    A force so short that it sends waves through the thickness of a plate meets more than its bending. To first order these add
+    :math:`c \ddot F` to how far the face yields, of which the inertia c is among the facts; the largest force is then off by that over the
+    tangent compliance of the contact, two thirds of indentation over force. A Hertzian force is about :math:`\sin^{3/2}(\pi t / T)`.
+
+    Parameters
+    ----------
+    facts : mapping
+        Of the bodies that deform; `plate_theory_inertia_m_s2_N` is c.
+    impacts : mapping of str to array
+        The impact table.
+
+    Returns
+    -------
+    float
+        NaN without plate elements or without an impact.
+
+    Examples
+    --------
+    >>> plate_theory_error({}, {"impact": [1]})
+    nan
+    """
+    inertia = facts.get("plate_theory_inertia_m_s2_N")
+    if inertia is None or not len(impacts["impact"]):
+        return math.nan
+    force, depth = (float(impacts[name][0]) for name in ("max_force_N", "max_indentation_m"))
+    return float(inertia) * 1.5 * (math.pi / time_of_contact(impacts)) ** 2 * force / (2.0 / 3.0 * depth)
+
+
+def _sentence(drop: Conditions, error: float) -> str:
+    return (
+        f"the contact lasts {float(drop.seen.duration):.3g} s, and waves through the thickness of the plate, which plate elements do not "
+        f'have, change the largest force by about {percent_less(error)}; take element = "solid"'
+    )
+
+
+LIMITS = (
+    Limit(
+        name="plate_waves",
+        title="waves through the thickness of the plate",
+        meaning="part of the first largest force that plate elements lack, as they only bend",
+        threshold=0.005,
+        number=lambda drops: drops.seen.plate_theory,
+        sentence=_sentence,
+        shown=percent_less,
+        without_case=True,
+    ),
+)

@@ -1,0 +1,46 @@
+"""How far the face of a plate moves in the modes of plate theory."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from vibroimpact.materials import Material
+from vibroimpact.structures.mesh import Floats
+from vibroimpact.structures.modal_model import ModalModel
+from vibroimpact.structures.plate_waves import bending_factor, mindlin_squares, shear_wave_factor
+from vibroimpact.structures.surface import slopes_apart
+
+
+def face_shapes(model: ModalModel, material: Material, place: tuple[float, float], deflection: Floats) -> Floats:
+    r"""Return how far the face of a plate moves up at a place in its modes, shape (modes,) [kg^-1/2].
+
+    Parameters
+    ----------
+    model : ModalModel
+        Of plate elements, by the thick theory.
+    material : Material
+        Of the plate.
+    place : tuple of two floats
+        x and y [m].
+    deflection : array, shape (modes,)
+        How far the plate moves up there by plate theory [kg^-1/2].
+
+    Raises
+    ------
+    InputError
+        If the place lies beside the body.
+
+    Notes
+    -----
+    At one angular frequency the deflection is :math:`w = w_1 + w_2` with :math:`\nabla^2 w_j = -k_j^2 w_j` (Mindlin 1951): a wave of
+    bending and one of shear, which below :math:`\sqrt{12 \kappa G / (\rho h^2)}` only clings to edges and supports. As the slopes
+    :math:`\beta` have the divergence :math:`\sum_j (k_j^2 - \rho \omega^2 / \kappa G)\,w_j`, both follow from w and that divergence. Then
+    w_1 is multiplied by `bending_factor` of its wave number, and w_2 by `shear_wave_factor`.
+    """
+    thickness = model.thickness
+    divergence = model.seen(slopes_apart(model.mesh, place))[:, 0]
+    bending, shearing, lag = mindlin_squares(model.angular_frequencies, thickness, material)
+    of_bending = (divergence - (shearing - lag) * deflection) / (bending - shearing)
+    first = bending_factor(np.sqrt(bending) * thickness, material.poissons_ratio)
+    second = shear_wave_factor(shearing * thickness**2, material.poissons_ratio)
+    return np.asarray(second * deflection + (first - second) * of_bending)
