@@ -12,12 +12,10 @@ import numpy as np
 from vibroimpact.bodies.elastic import ElasticBody
 from vibroimpact.cases.build_elastic import elastic_bodies
 from vibroimpact.errors import InputError
-from vibroimpact.materials import Material
 from vibroimpact.structures.damping import ConstantRatio, RatioOfEach, RatioTable
 from vibroimpact.structures.frequency_error import MESH, REDUCTION, SUPPORTS, THEORY
 from vibroimpact.structures.modal_model import ModalBasis, ModalModel
-from vibroimpact.structures.plate_waves import bending_error, stretching_error, wave_numbers
-from vibroimpact.structures.recipe import MOST_FOR, BroughtMesh, PlateOfSolids, Shape, SphereOfSolids, is_thin, modal_model_of
+from vibroimpact.structures.recipe import MOST_FOR, BroughtMesh, PlateOfSolids, Recipe, SphereOfSolids, is_thin, modal_model_of
 
 if TYPE_CHECKING:
     from vibroimpact.cases.schema import Case
@@ -25,7 +23,6 @@ if TYPE_CHECKING:
 _FREQUENCY_OFF = 0.005  # relative: frequencies that may be off by more are doubted
 _WEIGHT_OFF = 0.05  # relative: a mesh whose volume differs more from that of the case is doubted
 _MESH_OFF = 0.005  # relative: a mesh made here with less of the body's mass is too coarse
-_THEORY_OFF = 0.005  # relative, of frequencies: plate theory that is farther off is doubted
 _LARGE = 50.0  # m: a body larger than this is probably in millimetres
 
 
@@ -111,26 +108,6 @@ def _doubts(case: Case, name: str, body: ElasticBody, model: ModalModel, basis: 
         yield f"the mesh of the {name} has elements of first order, which are far too stiff in bending; take second order"
     if isinstance(body.damping, (ConstantRatio, RatioOfEach, RatioTable)) and basis.damping_ratios.max() >= 1.0:
         yield f"the damping of the {name} is critical or more; a ratio of 0.01 is 1 %"
-    if model.thickness:
-        yield from _doubts_of_theory(body, model)
-
-
-def _doubts_of_theory(body: ElasticBody, model: ModalModel) -> Iterator[str]:
-    """Say how far plate theory is off in the highest modes, where that is more than it may be."""
-    recipe, thickness, omega = body.recipe, model.thickness, model.angular_frequencies[-1:]
-    material = Material(recipe.density, recipe.youngs_modulus, recipe.poissons_ratio)
-    thin = is_thin(recipe)
-    wave = thickness * wave_numbers(omega, thickness, material, thin)
-    bending = float(bending_error(wave, material.poissons_ratio, thin)[0])
-    stretching = float(stretching_error(omega, thickness, material)[0])
-    if abs(bending) < _THEORY_OFF > stretching:
-        return
-    remedy = 'take mesh = { theory = "thick" }' if thin else 'take element = "solid"'
-    yield (
-        f"the waves of bending of the highest mode, at {float(model.frequencies[-1]):.4g} Hz, are {2.0 * math.pi / float(wave[0]):.2g} "
-        f"thicknesses long, and there {'thin plate' if thin else 'plate'} theory is off by {100.0 * bending:+.2g} % in the frequencies of "
-        f"bending and by {100.0 * stretching:+.2g} % in those of stretching; {remedy}, or keep fewer modes"
-    )
 
 
 def _doubts_of_frequencies(name: str, body: ElasticBody, model: ModalModel) -> Iterator[str]:
@@ -143,12 +120,15 @@ def _doubts_of_frequencies(name: str, body: ElasticBody, model: ModalModel) -> I
     which = f"{off} of the {len(errors)} modes" if len(errors) > 1 else "the mode"
     yield (
         f"the frequencies of {which} of the {name} may be off by more than {100 * _FREQUENCY_OFF:g} %, most that of mode {worst + 1}, "
-        f"{model.frequencies[worst]:.4g} Hz, by about {100.0 * errors[worst]:.2g} %, for {cause}; {_remedy(body.recipe.shape, cause)}"
+        f"{model.frequencies[worst]:.4g} Hz, by about {100.0 * errors[worst]:.2g} %, for {cause}; {_remedy(body.recipe, cause)}"
     )
 
 
-def _remedy(shape: Shape, cause: str) -> str:
+def _remedy(recipe: Recipe, cause: str) -> str:
     """Return what makes frequencies better that are off for a cause."""
+    shape = recipe.shape
+    if cause == THEORY and is_thin(recipe):
+        return 'take mesh.theory = "thick", or keep fewer modes'
     if cause == REDUCTION:
         return 'ask for more modes, or for reduction = "modal"'
     if cause in (THEORY, SUPPORTS):

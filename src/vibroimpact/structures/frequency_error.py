@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-import functools
-import math
 from collections.abc import Mapping
 
 import numpy as np
-from scipy.optimize import brentq
 
 from vibroimpact.materials import Material
 from vibroimpact.structures.mesh import Floats
 from vibroimpact.structures.modes import Eigenmodes
-from vibroimpact.structures.plate_element import shear_factor
+from vibroimpact.structures.plate_waves import bending_error, stiff_shear_error, stretching_error, wave_numbers
 from vibroimpact.structures.supports.constraints import HeldStructure
 
 MESH, THEORY, SUPPORTS, REDUCTION = "the mesh", "the theory of plates", "the supports", "the reduction"
@@ -21,7 +18,6 @@ MESH, THEORY, SUPPORTS, REDUCTION = "the mesh", "the theory of plates", "the sup
 _BED = 0.1  # of the stiffness of a bed: how far it is off, by plates on round patches of 1.25 to 2.5 thicknesses in radius
 _BED_IN_PLANE = 0.5  # the same for motions in the plane, which were 0.9 to 1.8 % too stiff
 _EDGES = 2e-4  # beside what Lamb's waves say: plates with edges differ from refined bricks by so much
-_LAYERS = (0.05, 6.0, 60)  # wave number times thickness, from and to, and how many of the table of plate theory
 
 
 def from_coarser(fine: Floats, coarse: Floats, gain: float) -> Floats:
@@ -68,8 +64,8 @@ def of_supports(held: HeldStructure, modes: Eigenmodes) -> Floats:
     return np.asarray(0.5 * (in_beds + np.abs(compliances @ reactions**2) / squared))
 
 
-def of_plate_theory(held: HeldStructure, modes: Eigenmodes, material: Material) -> Floats:
-    """Return by what part frequencies of a thick plate are off for its theory.
+def of_plate_theory(held: HeldStructure, modes: Eigenmodes, material: Material, thin: bool = False) -> Floats:
+    """Return by what part frequencies of a plate are off for its theory.
 
     Parameters
     ----------
@@ -79,20 +75,18 @@ def of_plate_theory(held: HeldStructure, modes: Eigenmodes, material: Material) 
         Its modes.
     material : Material
         Of the plate.
+    thin : bool, default False
+        Kirchhoff's theory instead of Mindlin's.
 
     Notes
     -----
-    Bending waves of the frequency of a mode, as long as Mindlin's theory makes them, have another frequency in three dimensions:
-    that of H. Lamb's lowest antisymmetric wave (Proc. R. Soc. A 93:114, 1917). Waves in the plane are as much slower than plane stress
-    makes them as Lamb's lowest symmetric wave, nu^2 (k h)^2 / (24 (1 - nu)^2). Modes have the mean of both, weighted by kinetic energy,
-    and 0.02 % more for what the edges of a plate do that waves in the middle of it do not.
+    What `bending_error` says of waves of bending as long as plate theory makes them at the frequency of a mode, and `stretching_error`
+    of waves in the plane. Modes have the mean of both, weighted by kinetic energy, and 0.02 % more for what the edges of a plate do
+    that waves in the middle of it do not.
     """
-    nu, in_plane = material.poissons_ratio, _in_plane(held, modes)
-    speed = math.sqrt(material.youngs_modulus / (2.0 * (1.0 + nu) * material.density))
-    scaled = modes.angular_frequencies * held.structure.thickness / speed  # frequencies over shear speed and thickness
-    places, errors = _bending_errors(nu)
-    stretch = nu**2 / (24.0 * (1.0 - nu) ** 2) * 0.5 * (1.0 - nu) * scaled**2  # of the wave number of plane stress
-    return np.asarray(_EDGES + (1.0 - in_plane) * np.interp(scaled, places, errors) + in_plane * stretch)
+    thickness, ratio, omega, in_plane = held.structure.thickness, material.poissons_ratio, modes.angular_frequencies, _in_plane(held, modes)
+    bending = np.abs(bending_error(thickness * wave_numbers(omega, thickness, material, thin), ratio, thin))
+    return np.asarray(_EDGES + (1.0 - in_plane) * bending + in_plane * stretching_error(omega, thickness, material))
 
 
 def _in_plane(held: HeldStructure, modes: Eigenmodes) -> Floats:
@@ -104,7 +98,7 @@ def _in_plane(held: HeldStructure, modes: Eigenmodes) -> Floats:
     return np.asarray(energy[:2].sum(axis=0) / np.maximum(energy.sum(axis=0), 1e-300))
 
 
-def of_one_layer(frequencies: Floats, material: Material, thickness: float) -> Floats:
+def of_one_layer(angular_frequencies: Floats, material: Material, thickness: float) -> Floats:
     """Return by what part bending frequencies of one layer of bricks of second order are too high.
 
     Notes
@@ -112,46 +106,11 @@ def of_one_layer(frequencies: Floats, material: Material, thickness: float) -> F
     Their shear strain does not vary over the height as that of a plate does, so that shear is as stiff as without the
     factor 5 / (6 - nu) of Mindlin's theory.
     """
-    nu = material.poissons_ratio
-    speed = math.sqrt(material.youngs_modulus / (2.0 * (1.0 + nu) * material.density))
-    scaled = 2.0 * np.pi * np.asarray(frequencies) * thickness / speed
-    waves = np.geomspace(*_LAYERS)
-    soft = np.array([_mindlin(wave, nu, shear_factor(nu)) for wave in waves])
-    stiff = np.array([_mindlin(wave, nu, 1.0) for wave in waves])
-    return np.asarray(np.interp(scaled, soft, stiff / soft - 1.0))
+    waves = thickness * wave_numbers(angular_frequencies, thickness, material)
+    return stiff_shear_error(waves, material.poissons_ratio)
 
 
 def main_cause(parts: Mapping[str, Floats]) -> str:
     """Return the part that is largest where the sum of all parts is."""
     worst = int(np.nanargmax(sum(parts.values()))) if parts else 0
     return max(parts, key=lambda name: float(parts[name][worst]), default="")
-
-
-def _mindlin(wave: float, nu: float, factor: float) -> float:
-    """Return the frequency of Mindlin's bending wave, over shear speed and thickness, of a wave number times thickness."""
-    rigidity, shear = 1.0 / (6.0 * (1.0 - nu)), factor  # over G h^3, and over G h
-    squared = wave**2
-    linear = -(rigidity * squared + shear + shear * squared / 12.0)
-    root = math.sqrt(linear**2 - rigidity * shear * squared**2 / 3.0)
-    return math.sqrt(2.0 * rigidity * shear * squared**2 / (-linear + root))
-
-
-@functools.cache
-def _bending_errors(nu: float) -> tuple[Floats, Floats]:
-    """Return frequencies of Mindlin's bending waves, over shear speed and thickness, and by what part each is off."""
-    waves = np.geomspace(*_LAYERS)
-    found = np.array([_mindlin(wave, nu, shear_factor(nu)) for wave in waves])
-    errors = np.abs(found / np.array([_lamb(wave, nu, near) for wave, near in zip(waves, found, strict=True)]) - 1.0)
-    return found, np.maximum.accumulate(errors)  # where it changes its sign it is not right
-
-
-def _lamb(wave: float, nu: float, near: float) -> float:
-    """Return the frequency of Lamb's lowest antisymmetric wave near one, in the units of `_mindlin`."""
-    ratio = 0.5 * (1.0 - 2.0 * nu) / (1.0 - nu)  # of the squares of the speeds of shear and of pressure
-
-    def left(frequency: float) -> float:
-        fast, slow = math.sqrt(wave**2 - ratio * frequency**2), math.sqrt(wave**2 - frequency**2)
-        return 4.0 * wave**2 * fast * slow * math.tanh(0.5 * slow) - (wave**2 + slow**2) ** 2 * math.tanh(0.5 * fast)
-
-    high = min(1.05 * near, wave * (1.0 - 1e-12))
-    return float(brentq(left, 0.9 * near, high, xtol=1e-14 * near, rtol=1e-14))

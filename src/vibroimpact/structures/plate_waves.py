@@ -72,6 +72,19 @@ def bending_error(wave: Floats, poissons_ratio: float, thin: bool = False) -> Fl
     return np.asarray(_mindlin(wave, poissons_ratio)[0] / exact - 1.0)
 
 
+def stiff_shear_error(wave: Floats, poissons_ratio: float) -> Floats:
+    """Return by what part waves of bending are faster without the factor of the shear stiffness in Mindlin's theory [-].
+
+    Parameters
+    ----------
+    wave : array
+        Wave number times thickness [-], > 0.
+    poissons_ratio : float
+        nu [-].
+    """
+    return np.asarray(_mindlin(wave, poissons_ratio, 1.0)[0] / _mindlin(wave, poissons_ratio)[0] - 1.0)
+
+
 def stretching_error(angular_frequencies: Floats, thickness: float, material: Material) -> Floats:
     r"""Return how far plate theory is off in the frequencies of waves of stretching, as a part of them [-].
 
@@ -166,9 +179,9 @@ def _factor(poissons_ratio: float) -> Chebyshev:
     return Chebyshev.interpolate(ratio, _DEGREE, domain=[0.0, _LARGEST])
 
 
-def _mindlin(y: Floats, ratio: float) -> tuple[Floats, Floats]:
+def _mindlin(y: Floats, ratio: float, factor: float | None = None) -> tuple[Floats, Floats]:
     """Return angular frequency and deflection of unit modal mass a unit area of bending, for h = rho = G = 1 and y = k h."""
-    shear = shear_factor(ratio)
+    shear = shear_factor(ratio) if factor is None else factor
     bend = y**2 / (6.0 * (1.0 - ratio))  # rigidity times k^2
     trace, product = shear * y**2 + 12.0 * (bend + shear), 12.0 * shear * y**2 * bend
     square = 2.0 * product / (trace + np.sqrt(trace**2 - 4.0 * product))

@@ -320,9 +320,9 @@ def _errors(recipe: Recipe, held: HeldStructure, modes: Eigenmodes, material: Ma
     parts[MESH] = from_coarser(kept.angular_frequencies, found.angular_frequencies, gain)
     if held.structure.thickness:
         parts[SUPPORTS] = of_supports(held, kept)
-        parts[THEORY] = of_plate_theory(held, kept, material)
+        parts[THEORY] = of_plate_theory(held, kept, material, is_thin(recipe))
     if recipe.shape.one_layer():
-        parts[MESH] = parts[MESH] + of_one_layer(kept.angular_frequencies / (2.0 * np.pi), material, recipe.shape.one_layer())
+        parts[MESH] = parts[MESH] + of_one_layer(kept.angular_frequencies, material, recipe.shape.one_layer())
     return parts
 
 
