@@ -40,7 +40,7 @@ def bed_stiffness(material: Material, thickness: float) -> tuple[float, float]:
     >>> steel = Material(density=7850.0, youngs_modulus=210e9, poissons_ratio=0.3)
     >>> along, across = bed_stiffness(steel, 0.01)
     >>> round(along * 0.01 * (1 - 0.3**2) / 210e9, 2), round(across * 0.01 * (1 - 0.3**2) / 210e9, 2)
-    (11.56, 4.56)
+    (11.63, 4.55)
     """
     ratio = material.poissons_ratio
     unit = material.youngs_modulus / (thickness * (1.0 - ratio**2))

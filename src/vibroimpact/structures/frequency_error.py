@@ -36,7 +36,7 @@ def from_coarser(fine: Floats, coarse: Floats, gain: float) -> Floats:
 
     Examples
     --------
-    >>> from_coarser(np.array([100.0]), np.array([103.0]), 4.0).tolist()
+    >>> from_coarser(np.array([100.0]), np.array([103.0]), 4.0).round(12).tolist()
     [0.01]
     """
     return np.asarray(np.abs(coarse / fine - 1.0) / (gain - 1.0))
