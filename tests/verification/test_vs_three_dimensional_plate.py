@@ -28,7 +28,7 @@ from oracles.three_dimensional_plate import (
     layer,
     thickness_modes,
 )
-from vibroimpact.cases.doubts import plate_theory_error
+from vibroimpact.cases.limits.plate_waves import plate_theory_error
 from vibroimpact.structures.plate_waves import bending_error, bending_factor, inertia_beyond_bending, mindlin_squares, stretching_error
 
 THICKNESS, PLACE, SPEED = 0.01, (0.013, 0.007), 1.0

@@ -18,6 +18,7 @@ from vibroimpact.cases.swept_keys import with_values
 from vibroimpact.contact.law import ContactLaw
 from vibroimpact.dynamics.response import Response
 from vibroimpact.dynamics.sensitivity import change_by_impact
+from vibroimpact.dynamics.truncation import time_of_contact
 from vibroimpact.studies.axes import Values
 from vibroimpact.studies.columns import DOUBTS, LIMIT
 
@@ -77,6 +78,7 @@ def drop_conditions(response: Response, peaks: Mapping[str, NDArray[Any]]) -> Co
         modes[body] = part, float(getattr(problem, body).modes.frequencies[-1])
     seen = replace(
         _seen(peaks),
+        duration=time_of_contact(response.impacts) if len(response.impacts["impact"]) else np.nan,
         deflection=_largest_deflection(response),
         modes=modes,
         changes=change_by_impact(response.impacts, problem.tolerance),

@@ -141,3 +141,19 @@ def solve_monotonic(
     place = find_root(lambda value: function(value) - wanted, low, high, close=_EXACT)
     jumps = ~(np.abs(function(place) - wanted) <= _JUMP)
     return Sought(np.where(missed | jumps, np.nan, place), least, most)
+
+
+def highest(values: Callable[[Array], Array]) -> float:
+    """Return where a smooth function on [0, 1] is largest, to 1e-6.
+
+    Examples
+    --------
+    >>> round(highest(lambda x: x * (0.8 - x)), 5)
+    0.4
+    """
+    low, high = 0.0, 1.0
+    for _ in range(4):
+        x = np.linspace(low, high, 33)
+        best = int(values(x).argmax())
+        low, high = x[max(best - 1, 0)], x[min(best + 1, 32)]
+    return float(x[best])

@@ -20,7 +20,7 @@ from vibroimpact.dynamics.flight import Flight
 from vibroimpact.dynamics.outcome import OUTCOMES, Outcome
 from vibroimpact.dynamics.problem import MOST_IMPACTS, Problem
 from vibroimpact.dynamics.response import Leg, Response, Rest
-from vibroimpact.dynamics.sensitivity import sensitivities
+from vibroimpact.dynamics.sensitivity import Neighbours
 from vibroimpact.dynamics.vibration import Vibration, contact_of
 
 
@@ -45,6 +45,7 @@ class Run:
         self.sag, self.stored, self.written_off = np.zeros(self.size), np.zeros(self.size), np.zeros(self.size)
         self.rest_speed = self.default_rest_speed() if problem.rest_speed is None else self.spread(problem.rest_speed)
         self.vibration = Vibration(problem, self.size) if problem.vibrates else None
+        self.neighbours = None if self.vibration is None else Neighbours(problem, self.vibration.oscillators, self.size)
         self.columns = {**IMPACT_COLUMNS, **(VIBRATION_IMPACT_COLUMNS if self.vibration else {})}
         self.memories = {name: self.spread(value) for name, value in problem.laws[0].memories().items()}
         self.legs: list[Leg] = []
@@ -120,6 +121,8 @@ class Run:
             self.vibration.pass_freely(drops, motions, leg.flight_end - flight.start)
         if not stops.all():
             leg = self.collide(leg, touch[~stops], speed[~stops])
+        if self.neighbours is not None and (grown := self.neighbours.follow(leg)).size:
+            self.rows[-1]["sensitivity"][leg.contact_drops] = grown
         self.legs.append(leg)
 
     def collide(self, leg: Leg, touch: Floats, speed: Floats) -> Leg:
@@ -263,8 +266,6 @@ class Run:
         nothing = (np.full(self.size, np.nan), (None,) * self.size)
         left, lying = nothing if self.vibration is None else (self.vibration.left, tuple(self.vibration.lying))
         table = {name: np.array([row[name] for row in self.rows]).reshape(-1, self.size).T for name in self.columns}
-        if self.vibration is not None:
-            table["sensitivity"] = np.array(sensitivities(self.problem, self.legs, self.size)).reshape(-1, self.size).T
         return Response(
             self.problem,
             table,

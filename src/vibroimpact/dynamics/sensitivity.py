@@ -9,7 +9,7 @@ before and after (P. C. Mueller, Chaos, Solitons & Fractals 5:1671, 1995).
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -17,10 +17,11 @@ import numpy as np
 
 from vibroimpact.contact.local import LocalContact
 from vibroimpact.contact.phase.collocation import Floats
-from vibroimpact.contact.phase.oscillators import FreeMotion, State
+from vibroimpact.contact.phase.oscillators import FreeMotion, Oscillators, State
 from vibroimpact.contact.phase.tangent import difference_through
 from vibroimpact.contact.phase.vibrating_stretch import VibratingStretch
-from vibroimpact.contact.phase.visit import Apart, highest
+from vibroimpact.contact.phase.visit import Apart
+from vibroimpact.contact.roots import highest
 from vibroimpact.dynamics.problem import Problem
 
 if TYPE_CHECKING:
@@ -34,43 +35,40 @@ _JUMP = 1e-6  # of the force: less is no jump
 _SLOW = 0.1  # of the speed at which the surfaces meet: what leaves more slowly counts as that
 
 
-def sensitivities(problem: Problem, legs: Sequence[Leg], size: int) -> list[Floats]:
-    r"""Return how a relative change of the drop has grown by each impact [-]: one array (size,) an impact.
+class Neighbours:
+    """Second drops beside those of a run, carried along as it goes."""
 
-    The drop is changed in its height, or in its speed where that is given. The growth is the largest of the relative changes of the
-    speed at which the surfaces meet, of the largest force, and of the speed of separation (as a part of at least a tenth of the
-    former). Of a rigid drop it would be 0.6 from a height, as Hertz's force goes with its power 0.6.
+    def __init__(self, problem: Problem, oscillators: Oscillators, size: int) -> None:
+        by_height = problem.speed is None
+        changed = np.broadcast_to(np.asarray(problem.height if by_height else problem.speed, dtype=float), (size,))
+        self._drops = [_Neighbour(oscillators, float(value), by_height) for value in changed]
 
-    Parameters
-    ----------
-    problem : Problem
-        What was simulated; something in it vibrates.
-    legs : sequence of Leg
-        Flights and contacts of all drops.
-    size : int
-        How many drops.
-    """
-    changed = np.broadcast_to(np.asarray(problem.height if problem.speed is None else problem.speed, dtype=float), (size,))
-    neighbours = [_Neighbour(motion, float(value), problem.speed is None) for motion, value in zip(legs[0].motions, changed, strict=True)]
-    found = []
-    with np.errstate(all="ignore"):  # it may grow beyond all numbers
-        for leg in legs:
+    def follow(self, leg: Leg) -> Floats:
+        r"""Return how a relative change of the drop has grown by the impact of a leg [-], one value a drop of its contact.
+
+        The drop is changed in its height, or in its speed where that is given. The growth is the largest of the relative changes of the
+        speed at which the surfaces meet, of the largest force, and of the speed of separation (as a part of at least a tenth of the
+        former). Of a rigid drop it would be 0.6 from a height, as Hertz's force goes with its power 0.6.
+
+        Parameters
+        ----------
+        leg : Leg
+            The next flight and contact of the drops; something in them vibrates.
+        """
+        with np.errstate(all="ignore"):  # it may grow beyond all numbers
             for drop, flight, length in zip(leg.drops, leg.motions, leg.flight_end - leg.flight.start, strict=True):
-                neighbours[drop].fly(flight, float(length))
+                self._drops[drop].fly(flight, float(length))
             if leg.contact is None:
-                continue
+                return np.zeros(0)
             for piece in leg.contact.pieces:
-                neighbour, motion = neighbours[leg.contact_drops[piece.drops[0]]], piece.motion
+                neighbour, motion = self._drops[leg.contact_drops[piece.drops[0]]], piece.motion
                 if isinstance(motion, Apart):
                     neighbour.fly(motion.free, motion.length, inside=motion.local is not None)
                 else:
                     assert isinstance(motion, VibratingStretch)  # of bodies that vibrate
                     neighbour.pass_through(motion)
-            grown = np.full(size, np.nan)
-            for drop, speed in zip(leg.contact_drops, leg.contact.final_rate, strict=True):
-                grown[drop] = neighbours[drop].leave(-float(speed))
-            found.append(grown)
-    return found
+            ends = zip(leg.contact_drops, leg.contact.final_rate, strict=True)
+            return np.array([self._drops[drop].leave(-float(speed)) for drop, speed in ends])
 
 
 def change_by_impact(impacts: Mapping[str, Floats], tolerance: float) -> Floats:
@@ -107,8 +105,8 @@ class _Neighbour:
     begins or ends, the second drop is compared when it begins or ends for that one.
     """
 
-    def __init__(self, motion: FreeMotion, value: float, by_height: bool) -> None:
-        nothing = (np.zeros_like(part) for part in (motion.start.displacement, motion.start.velocity, motion.start.local))
+    def __init__(self, of: Oscillators, value: float, by_height: bool) -> None:
+        nothing = (np.zeros(len(part)) for part in (of.shape, of.shape, of.rate))
         centre = (-value, 0.0) if by_height else (0.0, value)  # height is up, approach is down
         self.difference = State(*map(np.asarray, centre), *nothing)
         self.apart = True

@@ -20,6 +20,7 @@ from vibroimpact.cases.sensor_doubts import sensor_doubts
 from vibroimpact.dynamics.recording import Signal
 from vibroimpact.dynamics.response import Response
 from vibroimpact.dynamics.sensitivity import RELATIVE_CHANGE, change_by_impact
+from vibroimpact.dynamics.truncation import time_of_contact
 from vibroimpact.storage.deflection import Deflection, deflection_of
 from vibroimpact.storage.fine_history import fine_history
 from vibroimpact.storage.peaks import Peaks, peaks_of
@@ -98,7 +99,7 @@ class Result:
         if not len(self.impacts["impact"]):
             return Seen()
         force, depth = (float(self.impacts[name].max()) for name in ("max_force_N", "max_indentation_m"))
-        duration, speed = (float(self.impacts[name][0]) for name in ("duration_s", "approach_speed_m_s"))
+        duration, speed = time_of_contact(self.impacts), float(self.impacts["approach_speed_m_s"][0])
         deflection = float(np.abs(self.history["plate_deflection_m"]).max()) if "plate" in self.peaks else math.nan
         modes = {body: (part, self.frequencies(body)[-1]) for body, part in self.truncation.items()}
         theory = plate_theory_error(self.deformation, self.impacts)

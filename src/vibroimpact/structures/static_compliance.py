@@ -74,6 +74,7 @@ def static_compliance(recipe: Recipe, place: tuple[float, float], side: Side = "
     --------
     >>> from vibroimpact.structures.supports.edge import EDGES, Edge
     >>> edges = tuple(Edge(edge, "simply-supported") for edge in EDGES)
+    >>> from vibroimpact.structures.recipe import PlateOfPlates
     >>> recipe = Recipe(PlateOfPlates((0.5, 0.5, 0.01), 0.125), 7850.0, 210e9, 0.3, edges)
     >>> stiffness = 210e9 * 0.01**3 / (12 * 0.91)
     >>> round(static_compliance(recipe, (0.0, 0.0)) * stiffness / 0.5**2, 4)  # 0.0116 is Navier's

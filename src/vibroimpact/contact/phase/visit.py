@@ -10,7 +10,6 @@ then rides, until it is thrown off, or nothing can lift it any more (`riding`), 
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -26,7 +25,7 @@ from vibroimpact.contact.phase.riding import Riding, least_energy, may_stay, sta
 from vibroimpact.contact.phase.vibrating_events import GRID, ROUNDING, Event, first_event
 from vibroimpact.contact.phase.vibrating_stretch import Surroundings, VibratingStretch, mechanical_energy, solve_vibrating
 from vibroimpact.contact.quasi_static import QuasiStatic
-from vibroimpact.contact.roots import find_root
+from vibroimpact.contact.roots import find_root, highest
 from vibroimpact.contact.static import static_indentation
 
 MOST_STEPS, MOST_STEPS_TO_A_TIME = 5_000, 20_000
@@ -404,16 +403,6 @@ class _Visit:
         self.found.lost += apart.lost_by(np.array([length]))[0]
         self.state = free.state(np.array(length))
         self.time += length
-
-
-def highest(values: Callable[[Floats], Floats]) -> float:
-    """Return where a smooth function on [0, 1] is largest."""
-    low, high = 0.0, 1.0
-    for _ in range(4):
-        x = np.linspace(low, high, 33)
-        best = int(values(x).argmax())
-        low, high = x[max(best - 1, 0)], x[min(best + 1, 32)]
-    return float(x[best])
 
 
 def _sag(around: Surroundings, law: CompliantLaw) -> float:
