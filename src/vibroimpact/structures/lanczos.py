@@ -16,7 +16,9 @@ from vibroimpact.errors import ComputationError
 from vibroimpact.structures.mesh import Floats
 
 _BLOCK = 10
-_TOLERANCE = 1e-9  # of a mode's own response: the residual that is left of it
+TOLERANCE = 1e-9
+"""Of a mode's own response: the residual that is left of it. The eigenvalue is off by the square of that."""
+
 _EQUAL = 1e-6  # relative: eigenvalues so near are those of one multiple mode
 _PATIENCE = 1.05  # how much longer it is made before it is asked again
 _LONGEST = 60  # how many times as long as the number of modes the iteration may become
@@ -25,7 +27,7 @@ _LOOK = 4  # blocks of the search for what was missed
 
 
 def lowest_modes(
-    respond: Callable[[Floats], Floats], mass: csr_array, number: int, progress: Callable[[float], None]
+    respond: Callable[[Floats], Floats], mass: csr_array, number: int, progress: Callable[[float], None], tolerance: float = TOLERANCE
 ) -> tuple[Floats, Floats]:
     r"""Return the lowest eigenvalues of K x = lambda M x, and their vectors.
 
@@ -39,6 +41,8 @@ def lowest_modes(
         How many, much fewer than n.
     progress : callable
         Called with a number from 0 to 1.
+    tolerance : float
+        Residual that is left of each mode's response, as a part of it.
 
     Returns
     -------
@@ -66,7 +70,7 @@ def lowest_modes(
         enough = wanted
         while not krylov.whole:
             if krylov.size >= enough:
-                if krylov.converged() >= wanted:
+                if krylov.converged(tolerance) >= wanted:
                     break
                 enough = int(_PATIENCE * krylov.size)
             if krylov.size > _LONGEST * (wanted + _BLOCK):
@@ -128,14 +132,14 @@ class _Krylov:
         responses, turned = eigh(self._projected, subset_by_index=[max(0, size - number), size - 1])
         return 1.0 / responses[::-1], self._vectors[:, :size] @ turned[:, ::-1]
 
-    def converged(self) -> int:
+    def converged(self, tolerance: float) -> int:
         """Return how many of the lowest modes have converged."""
         size = len(self._projected)
         if not size:
             return 0
         responses, turned = eigh(self._projected)
         left = np.linalg.norm(self._last @ turned[size - self._last.shape[1] :], axis=0)
-        unsettled = (left > _TOLERANCE * np.abs(responses))[::-1]
+        unsettled = (left > tolerance * np.abs(responses))[::-1]
         return int(unsettled.argmax()) if unsettled.any() else int(size)
 
     def _cleaned(self, block: Floats) -> tuple[Floats, Floats]:

@@ -11,7 +11,7 @@ from scipy.sparse import csr_array
 
 from vibroimpact.errors import ComputationError, InputError
 from vibroimpact.structures.factor import BYTES, Factors, check_room
-from vibroimpact.structures.lanczos import lowest_modes
+from vibroimpact.structures.lanczos import TOLERANCE, lowest_modes
 from vibroimpact.structures.mesh import Floats, Integers
 
 _DENSE = 400  # degrees of freedom up to which a dense solver is quicker
@@ -108,7 +108,7 @@ class Elastic:
         response[self._free] = self._factors.solve(balanced[self._free])
         return np.asarray(response - self.rigid @ (self._momentum.T @ response))
 
-    def modes(self, number: int, progress: Progress | None = None) -> Eigenmodes:
+    def modes(self, number: int, progress: Progress | None = None, tolerance: float = TOLERANCE) -> Eigenmodes:
         """Return the lowest modes, rigid motions left out.
 
         Parameters
@@ -117,6 +117,8 @@ class Elastic:
             How many, >= 1.
         progress : callable, optional
             Called with a number from 0 to 1 that estimates how much is done.
+        tolerance : float, optional
+            Residual that is left of the shapes; the frequencies are off by its square.
 
         Raises
         ------
@@ -137,7 +139,7 @@ class Elastic:
         if size <= _DENSE:
             return self._dense(number)
         check_room(16.0 * size * _SPACE * number, f"{number} modes of {size} degrees of freedom need")
-        values, shapes = lowest_modes(self.static, self.mass, number, progress or (lambda part: None))
+        values, shapes = lowest_modes(self.static, self.mass, number, progress or (lambda part: None), tolerance)
         return Eigenmodes(np.sqrt(values), shapes)
 
     def count_below(self, angular_frequency: float) -> int:
