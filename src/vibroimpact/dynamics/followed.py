@@ -13,8 +13,10 @@ from numpy.typing import NDArray
 from vibroimpact.contact.phase.collocation import Floats
 from vibroimpact.contact.phase.oscillators import Oscillators
 from vibroimpact.contact.phase.vibrating_stretch import VibratingStretch
-from vibroimpact.dynamics.antialias import REACH
+from vibroimpact.dynamics.antialias import FINENESS, REACH, kernel
 from vibroimpact.dynamics.filtered_chain import FilteredChain, filtered_chain
+from vibroimpact.dynamics.lying import Lying
+from vibroimpact.dynamics.lying_chain import lying_chain, lying_pulses
 from vibroimpact.dynamics.measuring_chain import MeasuringChain
 from vibroimpact.dynamics.pulses import force_derivatives, pulses
 
@@ -31,13 +33,17 @@ _BAND = 0.6
 
 @dataclass
 class _Span:
-    """A part of the history that is followed at once: where its oscillators are at its start, (2, n), and the impulses within it."""
+    """A part of the history that is followed at once: where its oscillators are at its start, (2, n), and the impulses within it.
+
+    Over the part in which a sphere lies on the plate the oscillators go on with it, as `lying` says.
+    """
 
     start: float
     end: float
     place: Floats
     times: list[Floats] = field(default_factory=list)
     impulses: list[Floats] = field(default_factory=list)
+    lying: Lying | None = None
 
 
 def follow_filtered(filtered: FilteredChain, segments: Sequence[VibratingSegment], count: int, levels: Floats | None = None) -> Floats:
@@ -57,6 +63,9 @@ def follow_filtered(filtered: FilteredChain, segments: Sequence[VibratingSegment
     rate, values = filtered.rate, np.zeros((len(filtered.outputs[0]), count))
     blocks = _blocks(filtered.chain.of, filtered.outputs, rate)
     for span in _spans(filtered.chain, segments, rate):
+        if span.lying is not None:
+            _lie(filtered, span.lying, span, values, levels)
+            break
         first, last = _samples(span.start, rate), _samples(span.end, rate)
         if span.end >= segments[-1].end:
             last = max(last, count)
@@ -100,6 +109,10 @@ def follow_at_instants(chain: MeasuringChain, rate: float, segments: Sequence[Vi
             if isinstance(segment.moving, VibratingStretch):
                 values[:, first:last] = _in_contact(chain, segment.moving, own, offset + np.arange(last - first) / rate)
                 segment.moving.forget()
+            elif isinstance(segment.moving, Lying):
+                together = lying_chain(chain, segment.moving, own + _laid_down(segments)[:, None])
+                _blocks(together.chain.of, together.chain.outputs, rate).follow(values[:, first:last], together.place, offset)
+                values[:, first:last] += together.constant[:, None]
             else:
                 blocks.follow(values[:, first:last], place, offset)
         own = _own_later(chain, segment, own)
@@ -110,6 +123,40 @@ def longest_span(segments: Sequence[VibratingSegment], rate: float) -> float:
     """Return how long a part of the history with contact lasts at most [s] that is followed at once."""
     stretches = (segment.end - segment.start for segment in segments if isinstance(segment.moving, VibratingStretch))
     return max(REACH / rate, *stretches, 0.0)
+
+
+def _lie(filtered: FilteredChain, lying: Lying, span: _Span, values: Floats, levels: Floats | None) -> None:
+    """Add the outputs from where a sphere lies on the plate on, to the end of `values` (S, samples).
+
+    What the filter looks back on is of the same motion once it has reached beyond its beginning. Until then the force of that motion
+    adds to what the chain gives of all before.
+    """
+    rate, chain = filtered.rate, filtered.chain
+    first = _samples(span.start, rate)
+    times, impulses = lying_pulses(lying, 2.0 * np.pi * _BAND * rate, (first + 2 * REACH) / rate - span.start)
+    filtered.add(values, span.start + times, impulses, first + REACH)
+    later = values[:, first + REACH :]
+    if not later.shape[1]:
+        return
+    together = lying_chain(chain, lying, span.place[:, chain.modes :])
+    outputs = filtered_chain(together.chain, rate, 0.0).outputs
+    _blocks(together.chain.of, outputs, rate).follow(later, together.place, first / rate - span.start, levels)
+    passed = float(kernel(np.arange(-REACH * FINENESS, REACH * FINENESS + 1) / FINENESS).sum()) / FINENESS
+    later += passed * together.constant[:, None]
+
+
+def _laid_down(segments: Sequence[VibratingSegment]) -> Floats:
+    """Return what laying a sphere down, as the last segment begins, does to displacement and velocity of an oscillator of shape one.
+
+    It is an impulse of the contact, which makes surface and sphere move as one.
+    """
+    before, lying = segments[-2] if len(segments) > 1 else None, segments[-1].moving
+    if before is None:
+        return np.zeros(2)
+    of = segments[-1].oscillators
+    shape, velocity = of.shape[of.ground], before.state(np.array([before.end - before.start])).velocity[0, of.ground]
+    change = lying.start.velocity[of.ground] - velocity
+    return np.array([0.0, float(shape @ change) / float(shape @ shape) if shape.any() else 0.0])
 
 
 def _samples(time: float, rate: float) -> int:
@@ -130,6 +177,15 @@ def _spans(chain: MeasuringChain, segments: Sequence[VibratingSegment], rate: fl
     fastest = max(2.0 * np.pi * _BAND * rate, float(chain.of.angular_frequency[chain.modes :].max(initial=0.0)))
     span: _Span | None = None
     for segment in segments:
+        if isinstance(segment.moving, Lying):
+            laid = _laid_down(segments)
+            if span is not None:
+                span.times.append(np.array([segment.start]))
+                span.impulses.append(-laid[1:])
+                yield span
+            place = np.concatenate([_place(segment), own + laid[:, None]], axis=1)
+            yield _Span(segment.start, segment.end, place, lying=segment.moving)
+            return
         if span is not None and not (span.times and segment.end - span.start <= reach and segment is not segments[-1]):
             yield span
             span = None
