@@ -8,6 +8,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+import vibroimpact as vi
+from oracles.three_dimensional_plate import Elastic, thickness_modes
+from vibroimpact.cases.coupling import coupling_of
 from vibroimpact.structures.recipe import PlateOfPlates, PlateOfSolids, Recipe
 from vibroimpact.structures.supports.edge import EDGES, Edge
 from vibroimpact.structures.surface import Side
@@ -51,6 +54,36 @@ def test_the_face_of_a_plate(apart: float, face: Side) -> None:
     recipe = Recipe(PlateOfPlates((LENGTH, WIDTH, THICKNESS), 0.0405), 7850.0, MODULUS, POISSON, HELD)
     found = computed_transfer(recipe, SPOT, "upper", [(place(apart), face)], faces=2)[0, 2]
     assert found == pytest.approx(series(place(apart), face), rel=0.002)
+
+
+@pytest.mark.parametrize("modes", [20, 80])
+def test_modes_and_what_they_lack(modes: int) -> None:
+    """As a case has them: what the modes left out give is of the face too, and is what modes of the exact layer above those kept have."""
+    case = {
+        "sphere": {"radius": 5e-3, "material": "steel"},
+        "plate": {"size": [LENGTH, WIDTH, THICKNESS], "material": "steel", "model": "elastic", "supports": "simply-supported"},
+        "drop": {"speed": 1.0, "position": list(SPOT)},
+        "contact": {"law": "hertz"},
+        "sensors": [{"name": str(apart), "position": list(place(apart)), "face": "lower"} for apart in (0.0, 2.0, 5.0)],
+    }
+    case["plate"] |= {"modes": modes}  # type: ignore[operator]
+    basis = coupling_of(vi.read_case(case)).modes["plate"]
+    for apart in (0.0, 2.0, 5.0) if modes > 20 else (2.0, 5.0):
+        carried = float((basis.contact * basis.points[str(apart)][:, 2] / basis.angular_frequencies**2).sum())
+        assert carried + basis.residuals[str(apart)][2] == pytest.approx(series(place(apart), "lower"), rel=0.002)
+        waves = np.hypot(np.pi * np.arange(1, 40)[:, None] / LENGTH, np.pi * np.arange(1, 40)[None] / WIDTH)
+        omega, face = thickness_modes(waves.ravel(), THICKNESS, Elastic(7850.0, MODULUS, POISSON), even=False)
+        kept = np.argsort(omega[:, 0])[:modes]
+        sines = [
+            np.sin(waves_of(LENGTH) * (x + 0.5 * LENGTH))[:, None] * np.sin(waves_of(WIDTH) * (y + 0.5 * WIDTH))
+            for x, y in (SPOT, place(apart))
+        ]
+        shapes = 4.0 / (LENGTH * WIDTH) * (sines[0] * sines[1]).ravel() * face[:, 0] ** 2
+        assert carried == pytest.approx((shapes / omega[:, 0] ** 2)[kept].sum(), rel=0.002)
+
+
+def waves_of(side: float) -> np.ndarray:
+    return np.pi * np.arange(1, 40) / side
 
 
 @pytest.mark.parametrize("apart", [2.0, 5.0])

@@ -10,7 +10,7 @@ import pytest
 from scipy import signal
 
 import vibroimpact as vi
-from vibrating import STIFFNESS, drop_on, random_modes
+from vibrating import STIFFNESS, drop_on, modes_of, random_modes
 from vibroimpact.contact.laws.hertz import Hertz
 from vibroimpact.contact.laws.lankarani_nikravesh import LankaraniNikravesh
 from vibroimpact.dynamics.antialias import REACH, kernel
@@ -40,11 +40,60 @@ def decimated(value: np.ndarray, kind: str) -> np.ndarray:
 @pytest.mark.parametrize("quantity", ["displacement", "velocity", "acceleration"])
 def test_signals_of_several_impacts(response: vi.Response, kind: str, quantity: str) -> None:
     assert len(response.impacts["impact"]) > 1
-    full = response.signals(Sensor("a", quantity, rate=FINER * RATE, filter="none"))["a"].value  # type: ignore[arg-type]
+    seen = "displacement" if quantity == "displacement" else "velocity"
+    full = response.signals(Sensor("a", seen, rate=FINER * RATE, filter="none"))["a"].value  # type: ignore[arg-type]
+    if quantity == "acceleration":  # what lays a sphere down is an impulse, which samples of the velocity show
+        full = np.gradient(full) * FINER * RATE
     found = response.signals(Sensor("a", quantity, rate=RATE, filter=kind))["a"].value  # type: ignore[arg-type]
     exact = decimated(full, kind)[: len(found)]
     heard = slice(None) if kind == "butterworth" else slice(0, -REACH)  # a converter hears what comes after the run
     np.testing.assert_allclose(found[heard], exact[heard], rtol=0.0, atol=2e-3 * np.abs(exact).max())
+
+
+@pytest.fixture(scope="module", params=[0.03, 0.001])
+def at_rest(request: pytest.FixtureRequest) -> tuple[vi.Response, np.ndarray, np.ndarray]:
+    """A sphere that lies on a plate which still moves: instants, 32 a sample, and the deflection under it as the history has it."""
+    plate = modes_of([6.0, 240.0, 900.0], [1.2, 1.5, -1.0], request.param)
+    law = LankaraniNikravesh(stiffness=STIFFNESS, restitution=0.5)
+    response = vi.simulate(drop_on(law, plate, height=0.2, impacts=None, duration=1.1))
+    begun = float(response.rest.time[0])
+    first = round((begun - 0.02) * RATE)
+    times = first / RATE + np.arange(round(0.1 * RATE) * 32) / (32 * RATE)
+    assert np.abs(response.rest.lying[0].force(np.zeros(1)) - 0.0903 * 9.8).max() > 1e-3  # type: ignore[union-attr]
+    return response, times, response.at(times)["plate_deflection_m"]
+
+
+@pytest.mark.parametrize("kind", ["sigma-delta", "butterworth", "none"])
+@pytest.mark.parametrize("resonance", [None, 5e3])
+@pytest.mark.parametrize("order", [0, 1, 2])
+def test_a_plate_that_carries_the_sphere(
+    at_rest: tuple[vi.Response, np.ndarray, np.ndarray], order: int, resonance: float | None, kind: str
+) -> None:
+    """It moves with the sphere, about where its weight has put both, from before it is laid down on."""
+    response, times, value = at_rest
+    if resonance and order < 2:
+        return  # of an accelerometer
+    meter, fine = None if resonance is None else Accelerometer(resonance, 0.1), 32 * RATE
+    for _ in range(order):
+        value = np.gradient(value) * fine
+    if resonance:
+        omega = 2.0 * np.pi * resonance
+        ratio = signal.cont2discrete(([omega**2], [1.0, 0.2 * omega, omega**2]), 1.0 / fine, method="foh")
+        value = signal.lfilter(np.ravel(ratio[0]), ratio[1], value)
+    if kind == "butterworth":
+        sos = signal.butter(8, 0.4 * RATE, fs=fine, output="sos")
+        value = signal.sosfilt(sos, value, zi=signal.sosfilt_zi(sos) * value[0])[0]
+    if kind == "sigma-delta":
+        taps = signal.firwin(64 * REACH + 1, 0.5 * RATE, window=("kaiser", 10.4), fs=fine)
+        value = signal.fftconvolve(value, taps, "same")
+    quantity = ("displacement", "velocity", "acceleration")[order]
+    sensor = Sensor("a", quantity, rate=RATE, filter=kind, accelerometer=meter)  # type: ignore[arg-type]
+    found = response.signals(sensor)["a"].value[round(times[0] * RATE) :]
+    begun = float(response.rest.time[0])
+    for heard, most in ((np.abs(times - begun - 0.02) < 0.03, 2e-3), (np.abs(times - begun - 0.04) < 0.03, 1e-4)):
+        heard = heard[::32]
+        exact, part = value[::32][heard], found[: len(heard)][heard]
+        assert np.sqrt(((part - exact) ** 2).mean()) < most * np.sqrt((exact**2).mean())
 
 
 @pytest.mark.parametrize("kind", ["sigma-delta", "butterworth", "none"])
@@ -73,8 +122,6 @@ def test_the_filter_of_a_converter_is_what_is_said() -> None:
 @pytest.mark.parametrize(("frequency", "seen"), [(4e3, 1.0), (8.9e3, 1.0), (11.1e3, 0.0), (19e3, 0.0), (46e3, 0.0)])
 def test_a_tone_passes_or_is_stopped(frequency: float, seen: float) -> None:
     """One mode that rings on: in band it passes as it is, above it nothing is left, and none is folded into the band."""
-    from vibrating import modes_of
-
     response = vi.simulate(drop_on(HERTZ, modes_of([frequency], [0.3]), gravity=0.0, duration=0.02))
     found, bare = (response.signals(Sensor("a", rate=RATE, filter=kind))["a"] for kind in ("sigma-delta", "none"))
     later = found.time > 2.0 * REACH / RATE
@@ -83,8 +130,6 @@ def test_a_tone_passes_or_is_stopped(frequency: float, seen: float) -> None:
 
 def test_a_mode_above_half_the_rate_acts_in_band_as_below_its_resonance() -> None:
     """Far above it, as a spring: its share in the displacement is that of its compliance under the filtered force."""
-    from vibrating import modes_of
-
     plate = modes_of([900.0, 80e3], [0.4, 20.0])
     plate.points["stiff"] = np.outer([0.0, 20.0], [0.0, 0.0, 1.0])  # type: ignore[index]
     response = vi.simulate(drop_on(HERTZ, plate, gravity=0.0, duration=0.01, speed=0.2))

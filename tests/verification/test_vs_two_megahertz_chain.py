@@ -13,6 +13,7 @@ import pytest
 
 import vibroimpact as vi
 from oracles.measuring_chain import RATE, Floats, SimplySupported, driven, rms, sampled, seismic
+from oracles.three_dimensional_plate import Elastic, thickness_modes
 from vibroimpact.dynamics.sensor import Accelerometer, Sensor
 
 SIZE, DENSITY, MODULUS, POISSON, RATIO = (0.18, 0.15, 0.006), 7850.0, 210e9, 0.3, 0.002
@@ -115,3 +116,44 @@ def test_under_the_contact_the_doubt_holds(response: vi.Response, motion: dict[s
     assert "0 thicknesses from the contact" in doubt
     assert off < float(doubt.split("by about ")[1].split(" %")[0]) / 100.0
     assert not any(f'"{name}"' in doubt for name in AWAY for doubt in found)
+
+
+@pytest.fixture(scope="module")
+def thick() -> tuple[vi.Response, dict[str, dict[str, Floats]]]:
+    """Plate elements of the thick theory, and all waves of an elastic layer above the modes kept, through the thickness too."""
+    sensors = [{"name": name, "position": list(place(apart))} for name, apart in AWAY.items()]
+    case = {
+        "sphere": {"radius": 5e-3, "material": "steel"},
+        "plate": {"size": list(SIZE), "material": "steel", "model": "elastic", "supports": "simply-supported", "damping": RATIO},
+        "drop": {"speed": 1.0, "position": list(SPOT)},
+        "contact": {"law": "hertz"},
+        "run": {"duration": DURATION},
+        "sensors": sensors,
+    }
+    case["plate"] |= {"max_frequency": 50e3}  # type: ignore[operator]
+    response = vi.simulate(vi.read_case(case))
+    kept = response.problem.plate.modes
+    assert kept is not None
+    (length, width, thickness), layer = SIZE, Elastic(DENSITY, MODULUS, POISSON)
+    m, n = (np.pi * np.arange(1, 81) / side for side in (length, width))
+
+    def sines(x: float, y: float) -> Floats:
+        return np.asarray(2.0 / np.sqrt(length * width) * np.outer(np.sin(m * (x + 0.5 * length)), np.sin(n * (y + 0.5 * width))).ravel())
+
+    omegas, faces = zip(*(thickness_modes(np.hypot(m[:, None], n).ravel(), thickness, layer, even) for even in (False, True)), strict=True)
+    omega, face = (np.concatenate(part, axis=1) for part in (omegas, faces))
+    above = (omega > kept.angular_frequencies[-1]) & (omega < 2.0 * np.pi * 500e3)
+    assert not above[-1].any()
+    shapes = {name: (sines(*at)[:, None] * face)[above] for name, at in {"": SPOT, **{far: place(AWAY[far]) for far in AWAY}}.items()}
+    points = np.stack([np.append(kept.points[name][:, 2], shapes[name]) for name in AWAY])
+    times = np.arange(round((DURATION + AFTER) * RATE) + 1) / RATE
+    force = response.at(np.minimum(times, response.end_time[0]))["force_N"]
+    found = driven(np.append(kept.angular_frequencies, omega[above]), RATIO, np.append(kept.contact, shapes[""]), points, force)
+    return response, {name: {quantity: values[number] for quantity, values in found.items()} for number, name in enumerate(AWAY)}
+
+
+@pytest.mark.parametrize("name", AWAY)
+@pytest.mark.parametrize("quantity", ["acceleration", "velocity", "displacement"])
+def test_the_face_of_a_thick_plate(thick: tuple[vi.Response, dict[str, dict[str, Floats]]], name: str, quantity: Any) -> None:
+    response, motion = thick
+    assert compared(response, Sensor(name, quantity), sampled(motion[name][quantity], SAMPLES, "sigma-delta")) < PROMISED

@@ -22,6 +22,7 @@ from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.simulate import simulate
 from vibroimpact.errors import InputError
 from vibroimpact.materials import Material
+from vibroimpact.structures.mesh import Floats
 from vibroimpact.structures.modal_model import ModalBasis, ModalModel
 from vibroimpact.structures.plate_face import face_shapes
 from vibroimpact.structures.plate_waves import inertia_beyond_bending
@@ -167,7 +168,7 @@ def _averaged(body: BodyModes, radius: float) -> ModalBasis:
 
 
 def _at_its_face(body: BodyModes) -> tuple[ModalBasis, float]:
-    """Return the modes of a plate, the contact point on its face; and what plate theory lacks beyond its modes [m s^2/N].
+    """Return the modes of a plate, contact point and points watched on its face; and what plate theory lacks beyond its modes [m s^2/N].
 
     Solids have a face. By the thin theory a plate has none, and all points above one another move alike.
     """
@@ -175,8 +176,16 @@ def _at_its_face(body: BodyModes) -> tuple[ModalBasis, float]:
     if not body.model.mesh.is_flat or is_thin(recipe):
         return body.basis, 0.0
     material = Material(recipe.density, recipe.youngs_modulus, recipe.poissons_ratio)
-    shapes = face_shapes(body.model, material, _met(body)[0], body.basis.contact)
-    return replace(body.basis, contact=shapes), inertia_beyond_bending(body.model.thickness, material)
+
+    def seen(place: tuple[float, float], deflection: Floats) -> Floats:
+        return face_shapes(body.model, material, place, deflection)
+
+    points = {
+        name: np.column_stack([shapes[:, :2], seen(place_of(body.model.mesh, *body.body.watched[name]), shapes[:, 2])])
+        for name, shapes in body.basis.points.items()
+    }
+    contact = seen(_met(body)[0], body.basis.contact)
+    return replace(body.basis, contact=contact, points=points), inertia_beyond_bending(body.model.thickness, material)
 
 
 def _first_contact(case: Case) -> tuple[CompliantLaw, float]:

@@ -10,8 +10,8 @@ from vibroimpact.structures.modal_model import ModalBasis
 from vibroimpact.structures.surface import Side, place_of
 from vibroimpact.structures.transfer_compliance import Point, transfer_compliances, transfer_key
 
-_FACES = 0
-"""At how many of both points the modal shapes know that the face of a plate moves less than plate theory says."""
+_FACES = 2
+"""At how many of both points, of the contact and of those watched, the modal shapes are those of the face of a plate."""
 
 
 def with_residuals(body: BodyModes, basis: ModalBasis, tell: Callable[[str], None] | None = None) -> ModalBasis:

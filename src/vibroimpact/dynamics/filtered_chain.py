@@ -17,8 +17,10 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
 from vibroimpact.contact.phase.collocation import Floats
+from vibroimpact.contact.phase.oscillators import Oscillators
 from vibroimpact.dynamics.antialias import FINENESS, REACH, kernel, kernel_derivatives
 from vibroimpact.dynamics.measuring_chain import MeasuringChain
+from vibroimpact.dynamics.pole_pairs import PolePairs
 from vibroimpact.dynamics.pulses import gauss_rule
 
 _ROWS = 64
@@ -90,7 +92,7 @@ def filtered_chain(chain: MeasuringChain, rate: float, beyond: float) -> Filtere
     cosine, sine = of.propagators(np.array(step))
     later = np.array([[cosine, sine], [-pairs.stiffness * sine, cosine - pairs.damping * sine]])
     state, gains = np.zeros((2, len(of.shape))), np.zeros((2, len(of.shape)))
-    drives = _drives(chain, rate, step, points - 1)
+    drives = _drives(of, rate, step, points - 1)
     for begin in range(0, points + more, _ROWS):
         rows = min(_ROWS, points + more - begin)
         for row in range(rows):
@@ -108,6 +110,17 @@ def filtered_chain(chain: MeasuringChain, rate: float, beyond: float) -> Filtere
     return FilteredChain(chain, rate, pairs.product(chain.outputs, gains), answers)
 
 
+def filter_gains(of: Oscillators, rate: float) -> Floats:
+    """Return what a converter's filter makes of the free motion of oscillators `REACH` samples later, (2, n) as in `pole_pairs`."""
+    step, pairs = 1.0 / (FINENESS * rate), PolePairs(of.angular_frequency**2, of.damping)
+    cosine, sine = of.propagators(np.array(step))
+    later = np.array([[cosine, sine], [-pairs.stiffness * sine, cosine - pairs.damping * sine]])
+    state = np.zeros((2, len(of.shape)))
+    for drive in _drives(of, rate, step, 2 * REACH * FINENESS):
+        state = later[:, 0] * state[0] + later[:, 1] * state[1] + drive
+    return np.stack([state[1] + pairs.damping * state[0], state[0]])
+
+
 def _met(answers: Floats, weights: Floats) -> Floats:
     """Return the sums of neighbouring points of answers (S, points) by weights (w,), from every `FINENESS`-th point on: (S, samples)."""
     width, points = len(weights), answers.shape[1]
@@ -118,9 +131,8 @@ def _met(answers: Floats, weights: Floats) -> Floats:
     return np.asarray(whole[:, width - 1 : points : FINENESS])
 
 
-def _drives(chain: MeasuringChain, rate: float, step: float, cells: int) -> Floats:
+def _drives(of: Oscillators, rate: float, step: float, cells: int) -> Floats:
     """Return what the kernel adds to displacement and velocity of each oscillator of shape one in each of its cells, (cells, 2, n)."""
-    of = chain.of
     fastest = float((of.angular_frequency * np.maximum(1.0, 2.0 * of.damping_ratio)).max())
     x, weights = gauss_rule(min(fastest * step, _MOST_RADIANS))
     cosine, sine = of.propagators(step * (1.0 - x))

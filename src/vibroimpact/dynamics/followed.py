@@ -14,10 +14,11 @@ from vibroimpact.contact.phase.collocation import Floats
 from vibroimpact.contact.phase.oscillators import Oscillators
 from vibroimpact.contact.phase.vibrating_stretch import VibratingStretch
 from vibroimpact.dynamics.antialias import FINENESS, REACH, kernel
-from vibroimpact.dynamics.filtered_chain import FilteredChain, filtered_chain
+from vibroimpact.dynamics.filtered_chain import FilteredChain, filter_gains, filtered_chain
 from vibroimpact.dynamics.lying import Lying
 from vibroimpact.dynamics.lying_chain import lying_chain, lying_pulses
 from vibroimpact.dynamics.measuring_chain import MeasuringChain
+from vibroimpact.dynamics.pole_pairs import PolePairs
 from vibroimpact.dynamics.pulses import force_derivatives, pulses
 
 if TYPE_CHECKING:
@@ -111,7 +112,7 @@ def follow_at_instants(chain: MeasuringChain, rate: float, segments: Sequence[Vi
                 segment.moving.forget()
             elif isinstance(segment.moving, Lying):
                 together = lying_chain(chain, segment.moving, own + _laid_down(segments)[:, None])
-                _blocks(together.chain.of, together.chain.outputs, rate).follow(values[:, first:last], together.place, offset)
+                _blocks(together.of, together.outputs, rate).follow(values[:, first:last], together.place, offset)
                 values[:, first:last] += together.constant[:, None]
             else:
                 blocks.follow(values[:, first:last], place, offset)
@@ -139,8 +140,9 @@ def _lie(filtered: FilteredChain, lying: Lying, span: _Span, values: Floats, lev
     if not later.shape[1]:
         return
     together = lying_chain(chain, lying, span.place[:, chain.modes :])
-    outputs = filtered_chain(together.chain, rate, 0.0).outputs
-    _blocks(together.chain.of, outputs, rate).follow(later, together.place, first / rate - span.start, levels)
+    pairs = PolePairs(together.of.angular_frequency**2, together.of.damping)
+    outputs = pairs.product(together.outputs, filter_gains(together.of, rate))
+    _blocks(together.of, outputs, rate).follow(later, together.place, first / rate - span.start, levels)
     passed = float(kernel(np.arange(-REACH * FINENESS, REACH * FINENESS + 1) / FINENESS).sum()) / FINENESS
     later += passed * together.constant[:, None]
 
@@ -206,7 +208,7 @@ def _own_later(chain: MeasuringChain, segment: VibratingSegment, own: Floats, pu
     """Return where the oscillators of the chain itself are at the end of a segment, from where they are at its start."""
     if not own.shape[1]:
         return own
-    of = chain.of.pick(np.arange(chain.modes, len(chain.of.shape)))
+    of = chain.own
     length = segment.end - segment.start
     later = _free(of, own, np.array(length))
     if isinstance(segment.moving, VibratingStretch):
@@ -234,11 +236,14 @@ def _in_contact(chain: MeasuringChain, stretch: VibratingStretch, own: Floats, t
     state, ground = stretch.state(times), stretch.around.oscillators.ground
     places = np.stack([state.displacement[:, ground], state.velocity[:, ground]])
     if own.shape[1]:
-        of = chain.of.pick(np.arange(chain.modes, len(chain.of.shape)))
+        of = chain.own
         since, impulses = pulses(stretch, float(of.angular_frequency.max()), times)
-        cosine, sine = of.propagators(times[:, None] - since)
-        gained = np.stack([np.einsum("tjn,tj->tn", part, impulses) for part in (sine, cosine - of.damping * sine)])
-        places = np.concatenate([places, _free(of, own[:, None], times) - gained], axis=-1)
+        gained = np.einsum("ktjn,tj->ktn", _impulse_answers(of, times[:, None] - since), impulses)
+        there, reached = np.empty((2, len(times), own.shape[1])), own
+        for number, passed in enumerate(np.diff(times, prepend=0.0)):
+            reached = _free(of, reached, np.array(passed)) - gained[:, number]
+            there[:, number] = reached
+        places = np.concatenate([places, there], axis=-1)
     moved = np.einsum("ksn,ktn->st", chain.outputs, places)
     return np.asarray(moved - chain.direct @ force_derivatives(stretch, times))
 

@@ -5,21 +5,24 @@ the plate's modes move by :math:`q = q_0 + S c`, and the contact force is what t
 
 .. math:: F = m g - m \ddot s = m g - \sqrt m \sum_j S_{0j}\,\ddot c_j .
 
-So all that a chain adds up, the modes, the force with its derivatives, and its own pairs of poles that the force drives, is a transfer
-function seen at the poles of the coupled oscillators (`pole_pairs`), a constant, and the free motion of the chain's own pairs of poles.
+So the motion of a point, and all that a chain makes of it, is a transfer function seen at the poles of the coupled oscillators
+(`pole_pairs`), and a constant. What the pairs of poles of the chain still do of all before is a free motion of their own: as of each point
+another, they are taken once for each output.
 """
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import reduce
 
 import numpy as np
 
 from vibroimpact.contact.phase.collocation import Floats
 from vibroimpact.contact.phase.oscillators import Oscillators
+from vibroimpact.dynamics.antialias import Section
 from vibroimpact.dynamics.lying import Lying
-from vibroimpact.dynamics.measuring_chain import MeasuringChain
+from vibroimpact.dynamics.measuring_chain import MeasuringChain, of_section, point_at
 from vibroimpact.dynamics.pole_pairs import PolePairs
 from vibroimpact.dynamics.pulses import gauss_rule
 
@@ -31,9 +34,14 @@ _TURN = 10.0
 
 @dataclass(frozen=True)
 class LyingChain:
-    """A chain without force: coupled oscillators, then the chain's own, that move freely from `place` (2, n) on, and a `constant` (S,)."""
+    """Oscillators that move freely from a place on, and what they are worth in the outputs.
 
-    chain: MeasuringChain
+    `of`: the coupled oscillators, then the pairs of poles of the chain for each output. `outputs`: (2, S, n). `place`: displacements and
+    velocities as the sphere is laid down, (2, n). `constant`: what the weight adds to each output (S,).
+    """
+
+    of: Oscillators
+    outputs: Floats
     place: Floats
     constant: Floats
 
@@ -51,29 +59,54 @@ def lying_chain(chain: MeasuringChain, lying: Lying, own: Floats) -> LyingChain:
         Where the pairs of poles of the chain itself are as that begins.
     """
     riding, coupled = lying.riding, lying.free.oscillators
-    at, shapes, weight = PolePairs(coupled.angular_frequency**2, coupled.damping), riding.modes[1], riding.weight
-    ground = riding.around.oscillators.ground
+    at, shapes, ground = PolePairs(coupled.angular_frequency**2, coupled.damping), riding.modes[1], riding.around.oscillators.ground
     force = -math.sqrt(riding.around.mass) * shapes[0] * at.power(2)
-    outputs = chain.outputs[..., : chain.modes] @ shapes[1:][ground]
-    constant = chain.outputs[0, :, : chain.modes] @ riding.equilibrium.displacement[ground] - chain.direct[:, 0] * weight
-    for order in range(chain.direct.shape[1]):
-        outputs -= chain.direct[:, order, None] * at.product(force, at.power(order))[:, None]
+    moved = chain.shapes @ shapes[1:][ground] * at.power(0)[:, None] - chain.compliance[:, None] * force[:, None]  # (2, S, coupled)
+    static = chain.shapes @ riding.equilibrium.displacement[ground] - chain.compliance * riding.weight
     start = np.stack([lying.free.start.displacement, lying.free.start.velocity])
-    poles, left = chain.of.pick(np.arange(chain.modes, len(chain.of.shape))), own.copy()
-    for number, (stiffness, damping) in enumerate(zip(poles.angular_frequency**2, poles.damping, strict=True)):
-        driven = -at.product(force, at.inverse(at.quadratic(stiffness, damping)))
-        seen = chain.outputs[..., chain.modes + number]  # (2, S)
-        outputs += at.product(seen[0][:, None] * at.power(0)[:, None] + seen[1][:, None] * at.power(1)[:, None], driven)
-        constant -= seen[0] * weight / stiffness
-        left[0, number] -= float((driven * start).sum()) - weight / stiffness
-        left[1, number] -= float((at.product(driven, at.power(1)) * start).sum())
-    free = MeasuringChain(
-        _beside(coupled, poles),
-        len(coupled.shape),
-        np.concatenate([outputs, chain.outputs[..., chain.modes :]], axis=-1),
-        np.zeros_like(chain.direct),
-    )
-    return LyingChain(free, np.concatenate([start, left], axis=1), constant)
+    poles = chain.own
+    sections = list(zip((poles.angular_frequency**2).tolist(), poles.damping.tolist(), strict=True))
+    passed = math.prod(stiffness for stiffness, _ in sections) * at.power(0)
+    for section in sections:
+        passed = at.product(passed, at.inverse(at.quadratic(*section)))
+    outputs = [
+        np.stack(
+            [at.product(one, at.product(at.power(order), passed)) for one, order in zip(moved.swapaxes(0, 1), chain.orders, strict=True)], 1
+        )
+    ]
+    places = [start]
+    for number, section in enumerate(sections):
+        driven = at.product(moved, at.inverse(at.quadratic(*section))[:, None])
+        now = np.stack([_value(driven, start), _value(at.product(driven, at.power(1)[:, None]), start)])
+        now[0] += static / section[0]
+        places.append(_of_points(chain, section, lying, own[:, [number]]) - now)
+        outputs.append(of_section(number, sections, chain.orders) * np.eye(len(static)))
+    constant = np.where(np.asarray(chain.orders) == 0, static, 0.0)
+    of = reduce(_beside, [coupled, *(poles.pick(np.full(len(static), number)) for number in range(len(sections)))])
+    return LyingChain(of, np.concatenate(outputs, axis=-1), np.concatenate(places, axis=1), constant)
+
+
+def _of_points(chain: MeasuringChain, section: Section, lying: Lying, own: Floats) -> Floats:
+    """Return where a pair of poles driven by the motion of each point is, (2, S), from where it is under minus the force, (2, 1)."""
+    plate, ground = chain.plate, lying.riding.around.oscillators.ground
+    modes = np.stack([lying.start.displacement[ground], lying.start.velocity[ground]])
+    found = []
+    at_modes, at = PolePairs(plate.angular_frequency**2, plate.damping), PolePairs(np.array([section[0]]), np.array([section[1]]))
+    by_modes, by_own = at_modes.inverse(at_modes.quadratic(*section)), point_at(section, plate, chain.shapes, chain.compliance)
+    for order in (0, 1):
+        of_modes = chain.shapes @ _terms(at_modes.product(by_modes, at_modes.power(order)), modes)
+        found.append(of_modes + _value(at.product(by_own, at.power(order)[:, None]), own))
+    return np.stack(found)
+
+
+def _terms(element: Floats, place: Floats) -> Floats:
+    """Return a q + b q' of each oscillator, (..., n)."""
+    return np.asarray(element[0] * place[0] + element[1] * place[1])
+
+
+def _value(element: Floats, place: Floats) -> Floats:
+    """Return their sum, (...)."""
+    return np.asarray(_terms(element, place).sum(axis=-1))
 
 
 def lying_pulses(lying: Lying, fastest: float, length: float) -> tuple[Floats, Floats]:

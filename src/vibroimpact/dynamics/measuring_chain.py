@@ -41,17 +41,32 @@ class MeasuringChain:
         What the displacement and the velocity of each are worth in each output.
     direct : array, shape (S, 3)
         What minus the force, and its first and second derivative, are worth besides.
+    shapes, compliance, orders
+        Of what it was made, as `measuring_chain` takes them.
     """
 
     of: Oscillators
     modes: int
     outputs: Floats
     direct: Floats
+    shapes: Floats
+    compliance: Floats
+    orders: tuple[int, ...]
 
     @property
     def pairs(self) -> PolePairs:
         """The poles of all oscillators."""
         return PolePairs(self.of.angular_frequency**2, self.of.damping)
+
+    @property
+    def plate(self) -> Oscillators:
+        """The modes of the plate."""
+        return self.of.pick(np.arange(self.modes))
+
+    @property
+    def own(self) -> Oscillators:
+        """The pairs of poles of what follows."""
+        return self.of.pick(np.arange(self.modes, len(self.of.shape)))
 
 
 def measuring_chain(
@@ -89,8 +104,35 @@ def measuring_chain(
         direct[:, 0] = np.where(np.asarray(orders) == 2, gain * compliance, 0.0)
     own = [_of_section(number, sections, plate, shapes, compliance, orders) for number in range(len(sections))]
     return MeasuringChain(
-        _with_sections(plate, sections), len(plate.shape), np.concatenate([outputs, *own], axis=-1).transpose(1, 0, 2), direct
+        _with_sections(plate, sections),
+        len(plate.shape),
+        np.concatenate([outputs, *own], axis=-1).transpose(1, 0, 2),
+        direct,
+        shapes,
+        compliance,
+        tuple(orders),
     )
+
+
+def of_section(number: int, sections: Sequence[Section], orders: Sequence[int]) -> Floats:
+    """Return what one pair of poles, driven by the motion of a point, is worth in the outputs, at these poles, (2, S, 1)."""
+    stiffness, damping = sections[number]
+    at = PolePairs(np.array([stiffness]), np.array([damping]))
+    passed = math.prod(other for other, _ in sections) * at.power(0)
+    for index, other in enumerate(sections):
+        if index != number:
+            passed = at.product(passed, at.inverse(at.quadratic(*other)))
+    return np.stack([at.product(at.power(order), passed) for order in orders], axis=1)
+
+
+def point_at(section: Section, plate: Oscillators, shapes: Floats, compliance: Floats) -> Floats:
+    """Return how points move under minus a force, beside what the modes do, at the poles of a section, (2, S, 1)."""
+    stiffness, damping = section
+    receptance = np.stack([plate.angular_frequency**2 - stiffness, plate.damping - damping])
+    receptance = PolePairs(np.full_like(plate.shape, stiffness), np.full_like(plate.shape, damping)).inverse(receptance) * plate.shape
+    seen = receptance @ shapes.T  # (2, S)
+    seen[0] += compliance
+    return np.asarray(seen[..., None])
 
 
 def _of_section(
@@ -99,15 +141,8 @@ def _of_section(
     """Return what the motion of one pair of poles is worth in each output, (S, 2, 1)."""
     stiffness, damping = sections[number]
     at = PolePairs(np.array([stiffness]), np.array([damping]))
-    receptance = np.stack([plate.angular_frequency**2 - stiffness, plate.damping - damping])
-    receptance = PolePairs(np.full_like(plate.shape, stiffness), np.full_like(plate.shape, damping)).inverse(receptance) * plate.shape
-    seen = shapes @ receptance.T  # (S, 2)
-    seen[:, 0] += compliance
-    passed = math.prod(other for other, _ in sections) * at.power(0)
-    for index, other in enumerate(sections):
-        if index != number:
-            passed = at.product(passed, at.inverse(at.quadratic(*other)))
-    return np.stack([at.product(at.product(at.power(order), passed), one[:, None]) for one, order in zip(seen, orders, strict=True)])
+    seen = at.product(of_section(number, sections, orders), point_at(sections[number], plate, shapes, compliance))
+    return seen.transpose(1, 0, 2)
 
 
 def _apart(sections: Sequence[Section], plate: Oscillators) -> list[Section]:

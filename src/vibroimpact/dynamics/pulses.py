@@ -41,17 +41,21 @@ def pulses(stretch: VibratingStretch, fastest: float, until: Floats | None = Non
     fastest : float
         The highest angular frequency that the system answers to [rad/s].
     until : array, shape (T,), optional
-        Times since the start up to which the force acts [s]; then the results are (T, nodes). By default it is the whole stretch.
+        Times since the start [s], in order: then the results are (T, nodes), of the force between each and the one before, or the start.
+        By default it is the whole stretch.
     """
     length, rule = stretch.length, stretch.rule
     if until is None and fastest * length < _SLOW:
         return length * rule.time, length * rule.integral[-1] * stretch.force
-    nodes, weights = gauss_rule(rule.root * fastest * length)  # the map of time is so many times steeper, at most
-    ends = np.ones(1) if until is None else rule.unmap_time(until / length)
-    x = ends[:, None] * nodes
+    ends = np.array([length]) if until is None else until
+    begins = np.append(0.0, ends[:-1])
+    longest = float((ends - begins).max(initial=0.0))
+    nodes, weights = gauss_rule(rule.root * fastest * longest)  # the map of time is so many times steeper, at most
+    begins, ends = rule.unmap_time(begins / length), rule.unmap_time(ends / length)
+    x = begins[:, None] + (ends - begins)[:, None] * nodes
     force = rule.interpolate(x.ravel(), stretch.force).reshape(x.shape)
     times = length * rule.map_time(x)
-    impulses = length * _slope(stretch, x) * force * (ends[:, None] * weights)
+    impulses = length * _slope(stretch, x) * force * ((ends - begins)[:, None] * weights)
     return (times[0], impulses[0]) if until is None else (times, impulses)
 
 
