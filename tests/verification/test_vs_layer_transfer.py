@@ -56,8 +56,7 @@ def test_the_face_of_a_plate(apart: float, face: Side) -> None:
     assert found == pytest.approx(series(place(apart), face), rel=0.002)
 
 
-@pytest.mark.parametrize("modes", [20, 80])
-def test_modes_and_what_they_lack(modes: int) -> None:
+def test_modes_and_what_they_lack() -> None:
     """As a case has them: what the modes left out give is of the face too, and is what modes of the exact layer above those kept have."""
     case = {
         "sphere": {"radius": 5e-3, "material": "steel"},
@@ -66,14 +65,14 @@ def test_modes_and_what_they_lack(modes: int) -> None:
         "contact": {"law": "hertz"},
         "sensors": [{"name": str(apart), "position": list(place(apart)), "face": "lower"} for apart in (0.0, 2.0, 5.0)],
     }
-    case["plate"] |= {"modes": modes}  # type: ignore[operator]
+    case["plate"] |= {"modes": 80}  # type: ignore[operator]
     basis = coupling_of(vi.read_case(case)).modes["plate"]
-    for apart in (0.0, 2.0, 5.0) if modes > 20 else (2.0, 5.0):
+    for apart in (0.0, 2.0, 5.0):
         carried = float((basis.contact * basis.points[str(apart)][:, 2] / basis.angular_frequencies**2).sum())
         assert carried + basis.residuals[str(apart)][2] == pytest.approx(series(place(apart), "lower"), rel=0.002)
         waves = np.hypot(np.pi * np.arange(1, 40)[:, None] / LENGTH, np.pi * np.arange(1, 40)[None] / WIDTH)
         omega, face = thickness_modes(waves.ravel(), THICKNESS, Elastic(7850.0, MODULUS, POISSON), even=False)
-        kept = np.argsort(omega[:, 0])[:modes]
+        kept = np.argsort(omega[:, 0])[:80]
         sines = [
             np.sin(waves_of(LENGTH) * (x + 0.5 * LENGTH))[:, None] * np.sin(waves_of(WIDTH) * (y + 0.5 * WIDTH))
             for x, y in (SPOT, place(apart))

@@ -8,7 +8,8 @@ number k, once for the point of the force and once for the point that is watched
 
 The modal shapes with which the compliance goes together may know that of neither point, of one or of both: `faces` says so, and the disc
 then has as many times that mean of r^2. What is left between a layer and plate theory fades within two thicknesses, as
-:math:`e^{-4.2\,r/h}`, and is added.
+:math:`e^{-4.2\,r/h}`, and is added. By the thin theory the disc is one that elements resolve, and what a point force moves within it more
+is added in closed form (`thin_near_term`).
 """
 
 from __future__ import annotations
@@ -104,9 +105,10 @@ def computed_transfer(recipe: Recipe, place: tuple[float, float], side: Side, po
     flat = isinstance(shape, PlateOfPlates)
     thin = isinstance(shape, PlateOfPlates) and shape.theory == "thin"
     mean_square = faces * _mean_square(nu) if flat else 0.0
+    within = _disc_of_an_element(shape, place) if isinstance(shape, PlateOfPlates) else 0.0
 
     def spread(thickness: float) -> Average:
-        return Average(0.0, 0.0) if thin else Average(_RADIUS * thickness, 3.0 - 6.0 * mean_square / _RADIUS**2)
+        return Average(within, 3.0) if thin else Average(_RADIUS * thickness, 3.0 - 6.0 * mean_square / _RADIUS**2)
 
     structure, thickness, displacements = response_to_spread_force(recipe, place, side, spread)
     found = np.empty((len(points), 3))
@@ -116,7 +118,47 @@ def computed_transfer(recipe: Recipe, place: tuple[float, float], side: Side, po
         if flat and not thin:
             apart = math.dist(point, place)
             found[number, 2] += near_term(apart, face == side, thickness, recipe.youngs_modulus, nu, faces)
+        elif thin and within:
+            rigidity = recipe.youngs_modulus * thickness**3 / (12.0 * (1.0 - nu**2))
+            found[number, 2] += thin_near_term(math.dist(point, place), within, rigidity)
     return found
+
+
+def _disc_of_an_element(shape: PlateOfPlates, place: tuple[float, float]) -> float:
+    """Return the radius [m] of a disc around a place that elements resolve, or zero where it would reach beyond the plate."""
+    room = min(0.5 * side - abs(at) for side, at in zip(shape.size[:2], place, strict=True))
+    return shape.element_size if room > shape.element_size else 0.0
+
+
+def thin_near_term(distance: float, radius: float, rigidity: float) -> float:
+    r"""Return what Kirchhoff's plate moves under a unit point force beyond what it does under one spread over a disc [m/N].
+
+    It is the inverse Hankel transform of :math:`(1 - A(k)) / (D k^4)`, with A that of the weighted disc, whose mean of r^2 is zero: so
+    there is nothing beyond the disc.
+
+    Parameters
+    ----------
+    distance, radius : float
+        From the centre, and of the disc [m].
+    rigidity : float
+        D [N m].
+
+    Examples
+    --------
+    >>> thin_near_term(0.02, 0.01, 1.0)
+    0.0
+    >>> round(thin_near_term(0.0, 0.01, 1.0) / 0.01**2, 5)  # 1 / (48 pi)
+    0.00663
+    """
+    from scipy.special import jv
+
+    if distance >= radius:
+        return 0.0
+    parts = math.ceil(0.5 * _FINEST)
+    nodes, weights = np.polynomial.legendre.leggauss(_NODES)
+    y = (np.arange(parts)[:, None] + 0.5 * (nodes + 1.0)).ravel() * (_FINEST / parts)  # k times the radius
+    less = (1.0 - Average(1.0, 3.0).transform(y)) / y**3 * jv(0, y * distance / radius)
+    return float(less @ np.tile(weights, parts)) * 0.5 * _FINEST / parts * radius**2 / (2.0 * math.pi * rigidity)
 
 
 def near_term(distance: float, same_face: bool, thickness: float, youngs_modulus: float, poissons_ratio: float, faces: int = 0) -> float:
