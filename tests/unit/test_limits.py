@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -15,11 +16,13 @@ from rich.console import Console
 import vibroimpact as vi
 from studies import study_table
 from support import plain_case
+from vibrating import STIFFNESS, drop_on, modes_of
 from vibroimpact.cases.build import resolved
 from vibroimpact.cases.conditions import Conditions, Seen
 from vibroimpact.cases.doubts import doubts
 from vibroimpact.cases.expected import expected_of
 from vibroimpact.cases.limit import limits, numbers_of
+from vibroimpact.contact.laws.lankarani_nikravesh import LankaraniNikravesh
 from vibroimpact.report.comparison import comparison_doubts
 from vibroimpact.report.study.text import study_summary
 from vibroimpact.storage.compute_study import compute_study
@@ -276,6 +279,17 @@ def test_too_few_modes_are_doubted_in_studies_and_of_problems_made_in_python(tmp
     made = replace(sweep.case_of(0).to_problem(), source=None)
     (doubt,) = result_of(vi.simulate(made)).doubts
     assert doubt.startswith("the modes of the plate end at ")
+
+
+def test_a_visit_of_several_contacts_asks_for_the_modes_of_one() -> None:
+    """It is far longer than any of its contacts, and more modes are asked for than there are."""
+    law = LankaraniNikravesh(stiffness=STIFFNESS, restitution=0.5)
+    response = vi.simulate(drop_on(law, modes_of([200.0, 900.0], [5.0, -4.0], 0.03), height=0.2, impacts=1))
+    assert response.impacts["contacts"][0] > 1
+    (doubt,) = (doubt for doubt in result_of(response).doubts if doubt.startswith("the modes of the plate end at "))
+    lasts, asked = re.search(r"contact lasts (\S+) s.* max_frequency = \"(\S+) kHz", doubt).groups()  # type: ignore[union-attr]
+    assert float(lasts) < 0.2 * response.impacts["duration_s"][0]
+    assert float(asked) > 0.9
 
 
 def test_a_comparison_says_once_what_is_so_under_every_law() -> None:

@@ -93,6 +93,26 @@ def test_signals_have_a_time_and_units(study: vi.Study) -> None:
         assert data["v2_max_magnitude"].dims == ("drop.position.x", "drop.speed")
 
 
+def test_what_is_left_in_vibration_is_kept(own_store: Path, tmp_path: Path) -> None:
+    """Of a drop that comes to rest, as a single run has it; there is nothing to say of one that flies."""
+    given = {
+        "plate": PLATE,
+        "contact": {"law": "lankarani-nikravesh", "restitution": 0.2},
+        "drop": {"speed": 2.0},
+        "run": {"duration": "0.1 s"},
+    }
+    sweep = vi.read_sweep(study_table({"over": {"drop.speed": [0.02, 2.0]}}, **given))
+    folder = compute_study(sweep, tmp_path / "out")
+    left = vi.read_study(folder).values("left_in_vibration_J")
+    resting = vi.simulate(sweep.case_of(0))
+    assert resting.outcomes[0].at_rest
+    np.testing.assert_array_equal(left, [resting.rest.left[0], np.nan])
+    header, first, second = (folder / "drops.csv").read_text(encoding="utf-8").splitlines()
+    at = header.split(",").index("left_in_vibration_J")
+    assert float(first.split(",")[at]) == left[0] > 0.0
+    assert not second.split(",")[at]
+
+
 def test_a_drop_outside_the_plate_fails_by_itself(own_store: Path, tmp_path: Path) -> None:
     over = {"plate.size.length": [0.52, 0.3], "drop.position.x": [0.0, 0.2]}
     study = vi.read_study(compute_study(vi.read_sweep(elastic_table(over=over)), tmp_path / "out"))

@@ -12,7 +12,7 @@ import pytest
 
 import vibroimpact as vi
 from oracles.riding_integration import largest_gaps
-from resting import at_rest, random_drop
+from resting import at_rest, random_drop, random_held_drop
 from vibrating import drop_on, modes_of, oracle
 from vibroimpact.contact.laws.lankarani_nikravesh import LankaraniNikravesh
 
@@ -44,7 +44,7 @@ def test_a_thin_plate_throws_its_ball_again() -> None:
     found = (response.impacts[name][0] for name in ("duration_s", "separation_speed_m_s", "max_force_N"))
     expected = (visit[-1].end, visit[-1].separation_speed, max(touch.max_force for touch in visit))
     np.testing.assert_allclose(list(found), expected, rtol=1e-6)
-    assert response.impacts["separation_speed_m_s"][0] == pytest.approx(0.99935, rel=1e-4)
+    assert response.impacts["separation_speed_m_s"][0] == pytest.approx(0.98468, rel=1e-4)
 
 
 def test_springs_of_3_hz_give_a_heavy_ball_back() -> None:
@@ -62,31 +62,35 @@ def test_springs_of_3_hz_give_a_heavy_ball_back() -> None:
     assert visit[-1].separation_speed == pytest.approx(4.0449, rel=1e-4)
 
 
-def check(seeds: range) -> dict[vi.Outcome, int]:
-    """Nothing is made in laying down, what is left is said, and in a second none that rests leaves by more than its static indentation."""
-    counts: dict[vi.Outcome, int] = {}
+def at_rest_of(drops: dict[str, vi.Problem]) -> int:
+    """Nothing is made, what is left is said, and in a second none that rests leaves by more than its static indentation; how many rest."""
     balls = {}
-    for seed in seeds:
-        response = vi.simulate(random_drop(seed))
+    for seed, problem in drops.items():
+        response = vi.simulate(problem)
         outcome = response.outcomes[0]
-        counts[outcome] = counts.get(outcome, 0) + 1
         assert response.energy["written_off_at_rest_J"] >= -1e-12 * response.energy["input_J"], seed
+        assert response.energy["closure_relative"] < 1e-7, seed
         if outcome.at_rest:
             assert "J are left in vibration, too little at the contact to lift it" in response.status, seed
             assert response.rest.left[0] >= 0.0, seed
             balls[seed] = at_rest(response)
-    gaps = largest_gaps(list(balls.values()), 1.0)
-    left = [seed for (seed, ball), gap in zip(balls.items(), gaps, strict=True) if gap > ball.sag]
-    assert not left
-    return counts
+    slowest_first = sorted(balls, key=lambda seed: float(balls[seed].omega.max()))
+    for first in range(0, len(balls), 10):  # the fastest mode sets the steps of all that are integrated together
+        some = slowest_first[first : first + 10]
+        gaps = largest_gaps([balls[seed] for seed in some], 1.0)
+        assert not [seed for seed, gap in zip(some, gaps, strict=True) if gap > balls[seed].sag]
+    return len(balls)
 
 
 def test_drops_at_random() -> None:
-    counts = check(range(8))
-    assert sum(number for outcome, number in counts.items() if outcome.at_rest) >= 4
+    assert at_rest_of({f"any {seed}": random_drop(seed) for seed in range(9)}) >= 4
+
+
+def test_drops_at_random_on_plates_that_are_held() -> None:
+    assert at_rest_of({f"held {seed}": random_held_drop(seed) for seed in (283, 295)}) == 2
 
 
 @pytest.mark.slow
 def test_three_hundred_drops_at_random() -> None:
-    counts = check(range(300))
-    assert sum(number for outcome, number in counts.items() if outcome.at_rest) >= 60
+    drops = {f"any {seed}": random_drop(seed) for seed in range(276)}
+    assert at_rest_of(drops | {f"held {seed}": random_held_drop(seed) for seed in range(276, 300)}) >= 80

@@ -145,6 +145,8 @@ def _alone(study: _Study, place: np.intp) -> _Part:
             signals[f"{SIGNAL}{name}"] = signal.value[: sample_count(duration, signal.sensor.rate)].astype(np.float32)[None]
             signals[f"{name}{SENSOR_PEAK}"] = np.array([np.abs(signal.value).max()])
     columns = _columns(response, study.keep)
+    if problem.vibrates:
+        columns["left_in_vibration_J"] = response.rest.left
     columns |= limit_columns(drop_conditions(response, columns), 1)
     return _Part(np.array([place]), {**columns, **signals}, {})
 

@@ -27,7 +27,7 @@ class Seen:
     force, depth : float or array
         Largest contact force [N] and largest indentation [m].
     duration, speed : float or array
-        Duration of the first contact [s], and speed at its first touch [m/s].
+        Duration of the first contact [s], of a visit of several that of one of its depth; and speed at its first touch [m/s].
     deflection : float or array
         Largest deflection of an elastic plate at the contact point [m].
     modes : mapping of str to (float, float)

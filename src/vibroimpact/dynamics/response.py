@@ -89,6 +89,8 @@ class Response:
         Which rule ended each drop.
     end_time : array, shape (B,)
         When each run ended [s].
+    rest : Rest
+        How the drops that came to rest do so. `rest.left` is what they, and those that ride, have left in vibration [J], (B,).
 
     See Also
     --------
@@ -147,11 +149,10 @@ class Response:
     def status(self) -> str:
         """One sentence: why the run ended, and when.
 
-        For a batch, how many drops ended by each rule.
+        For a batch, how many drops ended by each rule, and the most that is left in vibration where they rest or ride.
         """
         if len(self) > 1 or self.problem.shape != ():
-            counts = {outcome: self.outcomes.count(outcome) for outcome in Outcome}
-            return "; ".join(f"{count} of {len(self)} drops: {outcome.value}" for outcome, count in counts.items() if count)
+            return "; ".join(self._ended_by(outcome) for outcome in Outcome if outcome in self.outcomes)
         number, end, outcome = len(self.impacts["impact"]), float(self.end_time[0]), self.outcomes[0]
         after = f"after {number} impact{'' if number == 1 else 's'}"
         if outcome is Outcome.IMPACTS:
@@ -173,6 +174,16 @@ class Response:
         if outcome is Outcome.FAILED:
             return f"Failed {after}: {why_failed(self.energy)}"
         return f"At rest {after}: {self._rest()}"
+
+    def _ended_by(self, outcome: Outcome) -> str:
+        """Say how many drops of a batch a rule ended, and what is left in vibration."""
+        ended = np.array([one is outcome for one in self.outcomes])
+        left = self.rest.left[ended & np.isfinite(self.rest.left)]
+        counted = f"{np.count_nonzero(ended)} of {len(self)} drops: {outcome.value}"
+        if not left.size:
+            return counted
+        riding = "" if outcome.at_rest else f"{left.size} of them riding, "
+        return f"{counted} ({riding}at most {left.max():.3g} J left in vibration)"
 
     def _riding(self) -> str:
         """Say that the sphere is in contact still, and not at rest."""

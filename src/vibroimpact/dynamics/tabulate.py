@@ -36,6 +36,8 @@ class ImpactTable:
         Which rule ended each drop.
     end_time : array, shape (B,)
         When each run ended [s].
+    left : array, shape (B,)
+        What is left in vibration where a drop came to rest, or rides, on what vibrates [J]; NaN for the others.
     failures : dict of int to str
         Why a drop failed, in a sentence, by its number from 0; empty if none did.
 
@@ -49,6 +51,7 @@ class ImpactTable:
     energy: dict[str, Floats]
     outcomes: tuple[Outcome, ...]
     end_time: Floats
+    left: Floats
     failures: dict[int, str]
 
     def __len__(self) -> int:
@@ -115,6 +118,7 @@ def tabulate(problem: StatesProblem, progress: Callable[[float], None] | None = 
         energy,
         ended,
         np.concatenate([part.end_time for part in parts]),
+        np.concatenate([part.rest.left for part in parts]),
         {
             drop: why_failed({name: values[drop] for name, values in energy.items()})
             for drop, outcome in enumerate(ended)

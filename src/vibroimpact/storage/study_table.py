@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from vibroimpact.cases.limit import limits
 from vibroimpact.dynamics.outcome import OUTCOMES, Outcome
 from vibroimpact.storage.study_dataset import Meanings, as_text
-from vibroimpact.studies.chunk_file import ChunkResult, read_chunk
+from vibroimpact.studies.chunk_file import ChunkResult, chunk_layout, read_chunk
 from vibroimpact.studies.columns import DOUBTS, OUTCOME, PEAKS, SENSOR_PEAK
 from vibroimpact.studies.ledger import Span
 from vibroimpact.studies.plan import Plan
@@ -36,7 +36,8 @@ def write_drops(folder: Path, chunks: Sequence[Span], study: str, plan: Plan, me
     OSError
         If there is no room for it.
     """
-    peaks = [name for name in meanings if name in PEAKS or name.endswith(SENSOR_PEAK)]
+    kept = {name for chunk in chunks for name in chunk_layout(folder, chunk.number)}
+    peaks = [name for name in meanings if name in kept and (name in PEAKS or name.endswith(SENSOR_PEAK))]
     keys = [key if meanings[key][0] == "1" else f"{key} [{meanings[key][0]}]" for key in plan.columns]
     working = (folder / TABLE).with_suffix(".part")
     with working.open("w", newline="", encoding="utf-8") as file:

@@ -80,6 +80,13 @@ PEAK_TABLE: dict[str, Peak] = {
     ),
     "number_of_impacts": Peak("1", "number of impacts", "Number of impacts", "Impacts", is_drawn=False),
     "end_time_s": Peak("s", "time at which the run ended", "Time at the end of the run", "Time at the end", is_drawn=False),
+    "left_in_vibration_J": Peak(
+        "J",
+        "energy left in vibration where the sphere came to rest, or rides, on what vibrates",
+        "Energy left in vibration",
+        "Left in vibration",
+        is_drawn=False,
+    ),
     "closure_relative": Peak(
         "1",
         "what is missing in the energy ledger, as a part of the energy put in",

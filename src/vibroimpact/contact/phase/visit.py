@@ -35,6 +35,7 @@ _FIRST = 0.125  # of the span of a contact: the first stretch
 _LONG = 10.0  # times the span of a contact: a sphere that long in touch rides
 _GLIDE_SAMPLES = 65
 _MOST_SECANTS = 60
+_AT_END = 1e-12  # of a stretch: nearer to its end is at its end
 
 
 @dataclass(frozen=True)
@@ -256,7 +257,10 @@ class _Visit:
         return max(float(self.around.oscillators.approach(self.state)), self.floor)
 
     def end_at(self, stretch: VibratingStretch, event: Event) -> VibratingStretch | None:
-        """Solve a stretch again so that it ends at an event: regula falsi from where it was seen; None if it is not found."""
+        """Solve a stretch again so that it ends at an event: regula falsi from where it was seen; None if it is not found.
+
+        One that was seen in a solution which is not resolved may not be there: then the search runs against the end of the stretch.
+        """
         time_map: Map = "touch" if self.touching else "release" if event.name in ("parted", "no push") else "inside"
         rule = stretch.rule
         low, high = (stretch.length * float(rule.map_time(np.array([x]))[0]) for x in (max(event.x - GRID[1], 0.0), event.x))
@@ -275,7 +279,7 @@ class _Visit:
             else:
                 step = value * (length - before[0]) / (value - before[1]) if value != before[1] else 0.0
             if abs(step) <= 1e-13 * length:
-                return ended
+                return ended if value >= 0.0 or length < (1.0 - _AT_END) * stretch.length else None
             before, following = (length, value), length - step
             if not least < following < most:
                 following = 0.5 * (least + most)
