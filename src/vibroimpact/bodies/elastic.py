@@ -7,10 +7,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
+import numpy as np
+
 from vibroimpact.errors import InputError
 from vibroimpact.materials import Material
 from vibroimpact.structures.damping import ConstantRatio, Damping
 from vibroimpact.structures.modal_model import ModalBasis, ModalModel, modal_basis
+from vibroimpact.structures.plate_waves import wave_numbers
 from vibroimpact.structures.recipe import PlateOfPlates, PlateOfSolids, Recipe, Reduction, Shape, SphereOfSolids
 from vibroimpact.structures.supports.edge import Edge
 from vibroimpact.structures.supports.support import Support
@@ -168,12 +171,6 @@ def _shear_wave_number(radius: float, material: Material, reduction: Reduction) 
     return float(1.9 * (reduction.modes + 1) ** (1.0 / 3.0) / radius)
 
 
-def shortest_bending_wave(thickness: float, material: Material, frequency: float) -> float:
-    """Return the length [m] of bending waves in a thin plate at a frequency [Hz], by Kirchhoff's theory."""
-    rigidity = material.youngs_modulus * thickness**3 / (12.0 * (1.0 - material.poissons_ratio**2))
-    return float(2.0 * math.pi * (rigidity / (material.density * thickness * (2.0 * math.pi * frequency) ** 2)) ** 0.25)
-
-
 def _bending_wave_number(
     size: tuple[float, float, float], material: Material, reduction: Reduction, supports: tuple[Support, ...]
 ) -> float:
@@ -184,7 +181,7 @@ def _bending_wave_number(
     """
     length, width, thickness = size
     if reduction.modes is None:
-        return 2.0 * math.pi / shortest_bending_wave(thickness, material, reduction.max_frequency or 0.0)
+        return float(wave_numbers(np.array(2.0 * math.pi * (reduction.max_frequency or 0.0)), thickness, material, thin=True))
     held = {support.edge: support.condition for support in supports if isinstance(support, Edge)}
     part = sum((_CLAMPED if how == "clamped" else 1.0) * (width if edge[0] == "x" else length) for edge, how in held.items())
     area = length * width

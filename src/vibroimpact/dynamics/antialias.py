@@ -86,13 +86,9 @@ def kernel_derivatives() -> Floats:
 
 def parallel(sections: tuple[Section, ...]) -> list[tuple[Floats, Section]]:
     """Return a low-pass of pairs of poles as a sum: of each pair the numerator a + b s, (2,), and the pair."""
-    gain = math.prod(stiffness for stiffness, _ in sections)
     parts = []
-    for section in sections:
-        at = PolePairs(np.array([section[0]]), np.array([section[1]]))
-        value = gain * at.power(0)
-        for other in sections:
-            if other is not section:
-                value = at.product(value, at.inverse(at.quadratic(*other)))
-        parts.append((value[:, 0], section))
+    for number, (stiffness, damping) in enumerate(sections):
+        at = PolePairs(np.array([stiffness]), np.array([damping]))
+        value = stiffness * at.low_pass([*sections[:number], *sections[number + 1 :]])
+        parts.append((value[:, 0], sections[number]))
     return parts

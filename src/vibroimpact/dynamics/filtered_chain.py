@@ -20,7 +20,6 @@ from vibroimpact.contact.phase.collocation import Floats
 from vibroimpact.contact.phase.oscillators import Oscillators
 from vibroimpact.dynamics.antialias import FINENESS, REACH, kernel, kernel_derivatives
 from vibroimpact.dynamics.measuring_chain import MeasuringChain
-from vibroimpact.dynamics.pole_pairs import PolePairs
 from vibroimpact.dynamics.pulses import gauss_rule
 
 _ROWS = 64
@@ -89,8 +88,7 @@ def filtered_chain(chain: MeasuringChain, rate: float, beyond: float) -> Filtere
     weights = np.concatenate(list(chain.outputs * of.shape), axis=-1).T  # (2 n, S)
     states = np.empty((_ROWS, 2 * len(of.shape)))
     answers = np.zeros((len(chain.direct), points + more))
-    cosine, sine = of.propagators(np.array(step))
-    later = np.array([[cosine, sine], [-pairs.stiffness * sine, cosine - pairs.damping * sine]])
+    later = of.transition(np.array(step))
     state, gains = np.zeros((2, len(of.shape))), np.zeros((2, len(of.shape)))
     drives = _drives(of, rate, step, points - 1)
     for begin in range(0, points + more, _ROWS):
@@ -112,13 +110,12 @@ def filtered_chain(chain: MeasuringChain, rate: float, beyond: float) -> Filtere
 
 def filter_gains(of: Oscillators, rate: float) -> Floats:
     """Return what a converter's filter makes of the free motion of oscillators `REACH` samples later, (2, n) as in `pole_pairs`."""
-    step, pairs = 1.0 / (FINENESS * rate), PolePairs(of.angular_frequency**2, of.damping)
-    cosine, sine = of.propagators(np.array(step))
-    later = np.array([[cosine, sine], [-pairs.stiffness * sine, cosine - pairs.damping * sine]])
+    step = 1.0 / (FINENESS * rate)
+    later = of.transition(np.array(step))
     state = np.zeros((2, len(of.shape)))
     for drive in _drives(of, rate, step, 2 * REACH * FINENESS):
         state = later[:, 0] * state[0] + later[:, 1] * state[1] + drive
-    return np.stack([state[1] + pairs.damping * state[0], state[0]])
+    return np.stack([state[1] + of.damping * state[0], state[0]])
 
 
 def _met(answers: Floats, weights: Floats) -> Floats:

@@ -219,9 +219,8 @@ def _own_later(chain: MeasuringChain, segment: VibratingSegment, own: Floats, pu
 
 def _free(of: Oscillators, place: Floats, time: Floats) -> Floats:
     """Return displacements and velocities after a free motion of some time [s], (2, ..., n)."""
-    cosine, sine = of.propagators(time)
-    later = -(of.angular_frequency**2) * sine * place[0] + (cosine - of.damping * sine) * place[1]
-    return np.stack([cosine * place[0] + sine * place[1], later])
+    later = of.transition(time)
+    return np.asarray(later[:, 0] * place[0] + later[:, 1] * place[1])
 
 
 def _impulse_answers(of: Oscillators, time: Floats) -> Floats:
@@ -306,8 +305,7 @@ class _Blocks:
 
 def _blocks(of: Oscillators, outputs: Floats, rate: float) -> _Blocks:
     cosine, sine = of.propagators(np.arange(_BLOCK + 1) / rate)
-    later = np.array([[cosine[-1], sine[-1]], [-(of.angular_frequency**2) * sine[-1], cosine[-1] - of.damping * sine[-1]]])
-    return _Blocks(of, outputs, cosine, sine, later)
+    return _Blocks(of, outputs, cosine, sine, of.transition(np.array(_BLOCK / rate)))
 
 
 def _swing(of: Oscillators, place: Floats) -> Floats:

@@ -66,9 +66,7 @@ def lying_chain(chain: MeasuringChain, lying: Lying, own: Floats) -> LyingChain:
     start = np.stack([lying.free.start.displacement, lying.free.start.velocity])
     poles = chain.own
     sections = list(zip((poles.angular_frequency**2).tolist(), poles.damping.tolist(), strict=True))
-    passed = math.prod(stiffness for stiffness, _ in sections) * at.power(0)
-    for section in sections:
-        passed = at.product(passed, at.inverse(at.quadratic(*section)))
+    passed = at.low_pass(sections)
     outputs = [
         np.stack(
             [at.product(one, at.product(at.power(order), passed)) for one, order in zip(moved.swapaxes(0, 1), chain.orders, strict=True)], 1

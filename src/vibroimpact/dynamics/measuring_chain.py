@@ -88,20 +88,15 @@ def measuring_chain(
         The poles of what follows, each pair with a gain of one at frequency zero.
     """
     sections = _apart(sections, plate)
-    gain = math.prod(stiffness for stiffness, _ in sections)
     at_modes = PolePairs(plate.angular_frequency**2, plate.damping)
-    passed = at_modes.power(0)
-    for section in sections:
-        passed = at_modes.product(passed, at_modes.inverse(at_modes.quadratic(*section)))
-    outputs = np.stack(
-        [gain * shape * at_modes.product(at_modes.power(order), passed) for shape, order in zip(shapes, orders, strict=True)]
-    )
+    passed = at_modes.low_pass(sections)
+    outputs = np.stack([shape * at_modes.product(at_modes.power(order), passed) for shape, order in zip(shapes, orders, strict=True)])
     direct = np.zeros((len(shapes), 3))
     if not sections:
         direct[np.arange(len(shapes)), orders] = compliance
         direct[:, 0] += np.where(np.asarray(orders) == 2, shapes @ plate.shape, 0.0)
     elif len(sections) == 1:
-        direct[:, 0] = np.where(np.asarray(orders) == 2, gain * compliance, 0.0)
+        direct[:, 0] = np.where(np.asarray(orders) == 2, sections[0][0] * compliance, 0.0)
     own = [_of_section(number, sections, plate, shapes, compliance, orders) for number in range(len(sections))]
     return MeasuringChain(
         _with_sections(plate, sections),
@@ -118,10 +113,7 @@ def of_section(number: int, sections: Sequence[Section], orders: Sequence[int]) 
     """Return what one pair of poles, driven by the motion of a point, is worth in the outputs, at these poles, (2, S, 1)."""
     stiffness, damping = sections[number]
     at = PolePairs(np.array([stiffness]), np.array([damping]))
-    passed = math.prod(other for other, _ in sections) * at.power(0)
-    for index, other in enumerate(sections):
-        if index != number:
-            passed = at.product(passed, at.inverse(at.quadratic(*other)))
+    passed = stiffness * at.low_pass([*sections[:number], *sections[number + 1 :]])
     return np.stack([at.product(at.power(order), passed) for order in orders], axis=1)
 
 

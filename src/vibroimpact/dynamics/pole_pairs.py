@@ -8,6 +8,8 @@ Elements (a, b) of n oscillators are arrays of shape (2, ..., n).
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -40,3 +42,10 @@ class PolePairs:
         """Return one over an element."""
         a, b = element
         return np.asarray(np.stack([a - self.damping * b, -b]) / (a * a - self.damping * a * b + self.stiffness * b * b))
+
+    def low_pass(self, sections: Sequence[tuple[float, float]]) -> Floats:
+        """Return the low-pass of other pairs of poles (stiffness, damping) in a row, whose gain at frequency zero is one, (2, n)."""
+        passed = math.prod(stiffness for stiffness, _ in sections) * self.power(0)
+        for section in sections:
+            passed = self.product(passed, self.inverse(self.quadratic(*section)))
+        return np.asarray(passed)

@@ -87,7 +87,7 @@ def through_thickness_term(thickness: float, youngs_modulus: float, poissons_rat
     modulus = youngs_modulus / (1.0 - poissons_ratio**2)  # of plane strain
 
     def kernel(k: Floats) -> Floats:
-        bending, squeezing = _layer(k * thickness)
+        bending, squeezing = layer_kernels(k * thickness)
         return np.asarray(2.0 / (modulus * k) * (bending + squeezing - 1.0 - (bending - squeezing) * average.transform(k) ** 2))
 
     return _integral(kernel, thickness, average)
@@ -141,13 +141,13 @@ def plate_theory_term(thickness: float, youngs_modulus: float, poissons_ratio: f
     shear = shear_factor * 0.5 * (1.0 - poissons_ratio) * modulus * thickness
 
     def kernel(k: Floats) -> Floats:
-        structural = 2.0 / (modulus * k) * (np.sum(_layer(k * thickness), axis=0) - 1.0)
+        structural = 2.0 / (modulus * k) * (np.sum(layer_kernels(k * thickness), axis=0) - 1.0)
         return np.asarray(structural - (1.0 / (rigidity * k**4) + 1.0 / (shear * k**2)) * average.transform(k) ** 2)
 
     return _integral(kernel, thickness, average)
 
 
-def _layer(y: Floats) -> tuple[Floats, Floats]:
+def layer_kernels(y: Floats) -> tuple[Floats, Floats]:
     """Return A and S over the kernel of the half space, at y = k h; where the layer is deep each is a half."""
     y = np.minimum(y, _DEEPEST)
     return (1.0 + np.cosh(y)) / (2.0 * _sinh_less(y)), (np.cosh(y) - 1.0) / (2.0 * (np.sinh(y) + y))

@@ -6,8 +6,8 @@ number k, once for the point of the force and once for the point that is watched
 
 .. math:: \overline{r^2} = 2 h^2 \left(\frac{1}{6 (1 - \nu) \kappa} - \frac15\right).
 
-The modal shapes with which the compliance goes together may know that of neither point, of one or of both: `faces` says so, and the disc
-then has as many times that mean of r^2. What is left between a layer and plate theory fades within two thicknesses, as
+The modal shapes with which the compliance goes together may have that factor at neither point, at one or at both: `faces` says so, and the
+disc then has as many times that mean of r^2. What is left between a layer and plate theory fades within two thicknesses, as
 :math:`e^{-4.2\,r/h}`, and is added. By the thin theory the disc is one that elements resolve, and what a point force moves within it more
 is added in closed form (`thin_near_term`).
 """
@@ -21,9 +21,9 @@ from dataclasses import replace
 import numpy as np
 
 from vibroimpact.structures.mesh import Floats
-from vibroimpact.structures.plate_compliance import Average
+from vibroimpact.structures.plate_compliance import Average, layer_kernels, mean_square
 from vibroimpact.structures.plate_element import shear_factor
-from vibroimpact.structures.recipe import PlateOfPlates, Recipe, Reduction
+from vibroimpact.structures.recipe import PlateOfPlates, Recipe, Reduction, is_thin
 from vibroimpact.structures.static_compliance import response_to_spread_force
 from vibroimpact.structures.store import key_of, load_entry, save_entry
 from vibroimpact.structures.surface import Side, surface_motion
@@ -33,7 +33,7 @@ _RADIUS = 0.75  # of the disc, thicknesses
 _NEAR = 4.0  # thicknesses: beyond them a plate and plate theory are the same
 _LEAST = 0.05  # thicknesses: where the face is loaded, a point closer to the force is taken for one so far from it
 _NODES = 16  # of Gauss's rule on each part of an integral
-_DEEPEST, _FINEST = 40.0, 300.0  # wave numbers times thickness: where the faces know nothing of each other, and where the integral ends
+_FINEST = 300.0  # wave number times thickness, or radius, at which the integral ends
 
 Point = tuple[tuple[float, float], Side]
 """A point of a plate: x and y [m], and its face."""
@@ -103,12 +103,12 @@ def computed_transfer(recipe: Recipe, place: tuple[float, float], side: Side, po
     """Compute the compliances between a place and points; takes and raises what `transfer_compliances` does."""
     shape, nu = recipe.shape, recipe.poissons_ratio
     flat = isinstance(shape, PlateOfPlates)
-    thin = isinstance(shape, PlateOfPlates) and shape.theory == "thin"
-    mean_square = faces * _mean_square(nu) if flat else 0.0
+    thin = is_thin(recipe)
+    square = faces * _square(nu) if flat else 0.0
     within = _disc_of_an_element(shape, place) if isinstance(shape, PlateOfPlates) else 0.0
 
     def spread(thickness: float) -> Average:
-        return Average(within, 3.0) if thin else Average(_RADIUS * thickness, 3.0 - 6.0 * mean_square / _RADIUS**2)
+        return Average(within, 3.0) if thin else Average(_RADIUS * thickness, 3.0 - 6.0 * square / _RADIUS**2)
 
     structure, thickness, displacements = response_to_spread_force(recipe, place, side, spread)
     found = np.empty((len(points), 3))
@@ -154,11 +154,9 @@ def thin_near_term(distance: float, radius: float, rigidity: float) -> float:
 
     if distance >= radius:
         return 0.0
-    parts = math.ceil(0.5 * _FINEST)
-    nodes, weights = np.polynomial.legendre.leggauss(_NODES)
-    y = (np.arange(parts)[:, None] + 0.5 * (nodes + 1.0)).ravel() * (_FINEST / parts)  # k times the radius
+    y, weights = _gauss_rule(math.ceil(0.5 * _FINEST))  # k times the radius
     less = (1.0 - Average(1.0, 3.0).transform(y)) / y**3 * jv(0, y * distance / radius)
-    return float(less @ np.tile(weights, parts)) * 0.5 * _FINEST / parts * radius**2 / (2.0 * math.pi * rigidity)
+    return float(less @ weights) * radius**2 / (2.0 * math.pi * rigidity)
 
 
 def near_term(distance: float, same_face: bool, thickness: float, youngs_modulus: float, poissons_ratio: float, faces: int = 0) -> float:
@@ -194,31 +192,26 @@ def near_term(distance: float, same_face: bool, thickness: float, youngs_modulus
     rigidity = modulus * thickness**3 / 12.0
     shear = factor * 0.5 * (1.0 - poissons_ratio) * modulus * thickness
     apart = max(distance, _LEAST * thickness) if same_face else distance
-    parts = math.ceil(0.5 * _FINEST * max(1.0, apart / thickness))
-    nodes, weights = np.polynomial.legendre.leggauss(_NODES)
-    y = (np.arange(parts)[:, None] + 0.5 * (nodes + 1.0)).ravel() * (_FINEST / parts)  # k h
+    y, weights = _gauss_rule(math.ceil(0.5 * _FINEST * max(1.0, apart / thickness)))  # k h
     k = y / thickness
-    deep = np.minimum(y, _DEEPEST)
-    bending = (1.0 + np.cosh(deep)) / (2.0 * _sinh_less(deep))
-    squeezing = (np.cosh(deep) - 1.0) / (2.0 * (np.sinh(deep) + deep))
+    bending, squeezing = layer_kernels(y)
     layer = bending + squeezing - 1.0 if same_face else bending - squeezing
-    mean_square = _mean_square(poissons_ratio)
-    average = Average(_RADIUS * thickness, 3.0 - 6.0 * faces * mean_square / _RADIUS**2)
-    longer = 0.25 * (2 - faces) * mean_square * thickness**2 / rigidity  # what modes that know nothing of the face have too much
+    square = _square(poissons_ratio)
+    average = Average(_RADIUS * thickness, 3.0 - 6.0 * faces * square / _RADIUS**2)
+    longer = 0.25 * (2 - faces) * square * thickness**2 / rigidity  # what the modes of plate theory have too much
     plate = (1.0 / (rigidity * k**4) + (1.0 / shear - longer) / k**2) * average.transform(k)
     kernel = (2.0 / (modulus * k) * layer - plate) * jv(0, k * apart)
-    near = float(kernel @ (k * np.tile(weights, parts))) * 0.5 * _FINEST / parts / thickness / (2.0 * math.pi)
+    near = float(kernel @ (k * weights)) / thickness / (2.0 * math.pi)
     return near + (1.0 / (math.pi * modulus * apart) if same_face else 0.0)
 
 
-def _mean_square(poissons_ratio: float) -> float:
-    """Return the mean of r^2, in thicknesses squared, of an average under which plate theory moves as the face of a layer."""
-    return 2.0 * (1.0 / (6.0 * (1.0 - poissons_ratio) * shear_factor(poissons_ratio)) - 0.2)
+def _square(poissons_ratio: float) -> float:
+    """Return `mean_square` in thicknesses squared."""
+    return mean_square(1.0, poissons_ratio, shear_factor(poissons_ratio))
 
 
-def _sinh_less(y: Floats) -> Floats:
-    """Return sinh y - y, by its series where little would be left of the difference."""
-    series = np.ones_like(y)
-    for n in range(17, 3, -2):
-        series = 1.0 + y**2 / (n * (n - 1)) * series
-    return np.asarray(np.where(y < 2.0, y**3 / 6.0 * series, np.sinh(y) - y))
+def _gauss_rule(parts: int) -> tuple[Floats, Floats]:
+    """Return nodes and weights of Gauss's rule on equal parts of the integral."""
+    nodes, weights = np.polynomial.legendre.leggauss(_NODES)
+    places = (np.arange(parts)[:, None] + 0.5 * (nodes + 1.0)).ravel() * (_FINEST / parts)
+    return places, np.tile(weights, parts) * (0.5 * _FINEST / parts)

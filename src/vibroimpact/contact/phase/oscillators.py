@@ -78,6 +78,11 @@ class Oscillators:
         frequency, ratio, shape = self.angular_frequency[which], self.damping_ratio[which], self.shape[which]
         return Oscillators(frequency, ratio, shape, nothing, nothing, self.inside[which], self.ground[which])
 
+    def transition(self, time: Floats) -> Floats:
+        """Return the matrices that take displacement and velocity of each to those of its free motion later, (2, 2, ..., n)."""
+        cosine, sine = self.propagators(time)
+        return np.array([[cosine, sine], [-(self.angular_frequency**2) * sine, cosine - self.damping * sine]])
+
     def propagators(self, time: Floats) -> tuple[Floats, Floats]:
         """Return what displacement C and velocity S of one at the start are worth in its displacement later, (..., n).
 
