@@ -105,7 +105,7 @@ def digits(value: float, significant: int = 4) -> str:
 
 
 def certain(shown: str, value: float, figures: int) -> str:
-    """Return a number as it was shown, or in fewer significant figures where it does not have so many; a question mark for none.
+    """Return a number in at most so many significant figures: as it was shown, or in fewer; a question mark for none.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""What registers itself by being there: one file each in a package, found by name."""
+"""Registries: the modules of a package, each of which registers something by being there, and what is found by its name."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def modules_in(package: str) -> list[ModuleType]:
 
 
 def find_named(kind: str, name: str, known: Mapping[str, Found]) -> Found:
-    """Return what is known by a name.
+    """Return the entry of a registry that has a name.
 
     Parameters
     ----------
@@ -35,7 +35,7 @@ def find_named(kind: str, name: str, known: Mapping[str, Found]) -> Found:
     name : str
         As it is called.
     known : mapping
-        All of its kind, by their names.
+        The registry: all of its kind, by their names.
 
     Raises
     ------

@@ -23,7 +23,7 @@ from vibroimpact.structures.plate_face import face_shapes
 from vibroimpact.structures.plate_waves import bending_factor, wave_numbers
 from vibroimpact.structures.recipe import PlateOfPlates, Recipe, Reduction, modal_model_of
 from vibroimpact.structures.supports.edge import EDGES, Edge
-from vibroimpact.structures.surface import slopes_apart
+from vibroimpact.structures.surface import slope_divergence
 
 STEEL = Material(7850.0, 210e9, 0.3)
 PMMA = {"density": 1190.0, "youngs_modulus": 3.3e9, "poissons_ratio": 0.37}
@@ -84,7 +84,7 @@ def test_near_a_clamped_edge_it_is_the_average_over_a_disc() -> None:
 
 def test_beside_the_plate() -> None:
     with pytest.raises(InputError, match=r"\(0.3, 0\) m is not on the body"):
-        slopes_apart(model((0.12, 0.1, 0.01), 0.03, "clamped", 2).mesh, (0.3, 0.0))
+        slope_divergence(model((0.12, 0.1, 0.01), 0.03, "clamped", 2).mesh, (0.3, 0.0))
 
 
 def test_which_treatment_has_a_face() -> None:
@@ -127,7 +127,7 @@ def test_bricks_lack_nothing_of_that() -> None:
 
 def test_how_far_plate_theory_is_off_in_frequency_is_said() -> None:
     (thick,) = vi.compute_modes(case({"modes": 90}))["plate"].doubts
-    assert "for the theory of plates" in thick
+    assert "due to the theory of plates" in thick
     assert 'take element = "solid"' in thick
     (thin,) = vi.compute_modes(case({"modes": 20, "mesh": {"theory": "thin"}}))["plate"].doubts
     assert 'take mesh.theory = "thick"' in thin

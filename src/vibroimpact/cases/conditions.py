@@ -1,4 +1,4 @@
-"""What the limits of the theory are held against: the bodies of a drop, how it falls, and what came of it."""
+"""The conditions of a drop, to which the limits of the theory are applied: its bodies, how it falls, and what came of it."""
 
 from __future__ import annotations
 
@@ -34,9 +34,9 @@ class Seen:
         By the name of a body that has modes: about which part of the largest force those left out would change, and the highest
         frequency of those kept [Hz].
     changes : array, shape (impacts,)
-        Of one drop on bodies that vibrate: the relative change of each impact that can't be known.
+        Of one drop on bodies that vibrate: the relative change of each impact for one of the drop that can't be ruled out.
     plate_theory : float
-        Of one drop on plate elements: about which part of the first largest force they lack.
+        Of one drop on plate elements: about by which part its first largest force is too large, as they only bend.
     """
 
     force: Array = math.nan
@@ -106,7 +106,7 @@ class Conditions:
 
     @property
     def yields(self) -> bool:
-        """Does the law know of yield, or of nothing that happens in the contact?"""
+        """Does the law compute yield itself, or no contact force at all?"""
         return issubclass(self.law, (ElasticPlasticLaw, InstantaneousLaw))
 
     @cached_property

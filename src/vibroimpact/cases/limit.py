@@ -12,8 +12,6 @@ from vibroimpact.cases.conditions import Conditions
 from vibroimpact.contact.pair import Array
 from vibroimpact.registry import modules_in
 
-Told = Callable[[Conditions, float], str]
-
 
 @dataclass(frozen=True, kw_only=True)
 class Limit:
@@ -38,7 +36,7 @@ class Limit:
     shown : callable
         Returns a number as it is read.
     without_case : bool, default False
-        Is what came of a drop enough to tell the number? Then it is told also of a problem made in Python, which has no case.
+        Does the number follow from what came of a drop alone? Then a problem made in Python, which has no case, is held to it too.
     """
 
     name: str
@@ -46,7 +44,7 @@ class Limit:
     meaning: str
     threshold: float
     number: Callable[[Conditions], Array]
-    sentence: Told
+    sentence: Callable[[Conditions, float], str]
     shown: Callable[[float], str]
     without_case: bool = False
 

@@ -15,7 +15,7 @@ from vibroimpact.errors import InputError
 from vibroimpact.structures.damping import ConstantRatio, RatioOfEach, RatioTable
 from vibroimpact.structures.frequency_error import MESH, REDUCTION, SUPPORTS, THEORY
 from vibroimpact.structures.modal_model import ModalBasis, ModalModel
-from vibroimpact.structures.recipe import MOST_FOR, BroughtMesh, PlateOfSolids, Recipe, SphereOfSolids, is_thin, modal_model_of
+from vibroimpact.structures.recipe import MAIN_CAUSE, BroughtMesh, PlateOfSolids, Recipe, SphereOfSolids, is_thin, modal_model_of
 
 if TYPE_CHECKING:
     from vibroimpact.cases.schema import Case
@@ -111,21 +111,21 @@ def _doubts(case: Case, name: str, body: ElasticBody, model: ModalModel, basis: 
 
 
 def _doubts_of_frequencies(name: str, body: ElasticBody, model: ModalModel) -> Iterator[str]:
-    """Say which frequencies may be off by more than half a per cent, for what, and what to do."""
+    """Say which frequencies may be off by more than half a per cent, the main cause, and what to do."""
     errors = np.nan_to_num(model.frequency_errors)
     off = int((errors > _FREQUENCY_OFF).sum())
     if not off:
         return
-    worst, cause = int(errors.argmax()), model.facts.get(MOST_FOR, MESH)
+    worst, cause = int(errors.argmax()), model.facts.get(MAIN_CAUSE, MESH)
     which = f"{off} of the {len(errors)} modes" if len(errors) > 1 else "the mode"
     yield (
         f"the frequencies of {which} of the {name} may be off by more than {100 * _FREQUENCY_OFF:g} %, most that of mode {worst + 1}, "
-        f"{model.frequencies[worst]:.4g} Hz, by about {100.0 * errors[worst]:.2g} %, for {cause}; {_remedy(body.recipe, cause)}"
+        f"{model.frequencies[worst]:.4g} Hz, by about {100.0 * errors[worst]:.2g} %, due to {cause}; {_remedy(body.recipe, cause)}"
     )
 
 
 def _remedy(recipe: Recipe, cause: str) -> str:
-    """Return what makes frequencies better that are off for a cause."""
+    """Return the remedy for errors of frequencies due to a cause."""
     shape = recipe.shape
     if cause == THEORY and is_thin(recipe):
         return 'take mesh.theory = "thick", or keep fewer modes'

@@ -52,7 +52,7 @@ def _one_each(number: Any, count: int) -> NDArray[np.float32]:
 
 
 def batch_conditions(case: Case, arrays: Mapping[str, Values], law: ContactLaw, peaks: Mapping[str, NDArray[Any]]) -> Conditions:
-    """Return what a batch of rigid drops is held against.
+    """Return the conditions of a batch of rigid drops, to which the limits are applied.
 
     Parameters
     ----------
@@ -72,7 +72,7 @@ def batch_conditions(case: Case, arrays: Mapping[str, Values], law: ContactLaw, 
 
 
 def drop_conditions(response: Response, peaks: Mapping[str, NDArray[Any]]) -> Conditions:
-    """Return what one drop is held against, which may vibrate."""
+    """Return the conditions of one drop, whose bodies may vibrate."""
     problem, modes = response.problem, {}
     for body, part in response.truncation.items():
         modes[body] = part, float(getattr(problem, body).modes.frequencies[-1])

@@ -230,7 +230,7 @@ def _flat(over: Mapping[str, Any], above: str = "") -> Iterator[tuple[str, Any]]
     """Yield what is swept by its dotted key, also where TOML made tables of keys that were not in quotes."""
     for key, value in over.items():
         dotted = f"{above}{key}"
-        if isinstance(value, dict) and (holds_keys(dotted)):
+        if isinstance(value, dict) and holds_keys(dotted):
             yield from _flat(value, f"{dotted}.")
         else:
             yield dotted, value

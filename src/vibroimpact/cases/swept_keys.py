@@ -70,7 +70,7 @@ def _like(key: str, known: Mapping[str, object]) -> str:
 
 
 def holds_keys(key: str) -> bool:
-    """Has a dotted key others below it that can be swept? Where it is a table that is no axis, it stands for those.
+    """Is a dotted key that of a section or a table, below which there are keys that can be swept?
 
     Examples
     --------

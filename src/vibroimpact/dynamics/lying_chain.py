@@ -47,7 +47,7 @@ class LyingChain:
 
 
 def lying_chain(chain: MeasuringChain, lying: Lying, own: Floats) -> LyingChain:
-    """Return what a chain becomes while a sphere lies on the plate.
+    """Return a measuring chain as free oscillators, as it is while a sphere lies on the plate.
 
     Parameters
     ----------

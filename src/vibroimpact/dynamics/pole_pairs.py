@@ -25,7 +25,7 @@ class PolePairs:
     damping: Floats
 
     def power(self, order: int) -> Floats:
-        """Return the derivative of an order, 0 to 2: what A to that power is, (2, n)."""
+        """Return the element of the derivative of an order, 0 to 2: that power of A, (2, n)."""
         one, none = np.ones_like(self.stiffness), np.zeros_like(self.stiffness)
         return np.stack([(one, none), (none, one), (-self.stiffness, -self.damping)][order])
 

@@ -41,7 +41,7 @@ class Signal:
     sensor : Sensor
         What recorded it.
     time, value : array, shape (samples,)
-        When [s], and what.
+        Times since the start [s], and what was read then, in the unit of the sensor.
     uncertainty : float, default NaN
         About how far it may be off for the modes left out, as a part of its rms value around the first contact.
     peak : float, default NaN

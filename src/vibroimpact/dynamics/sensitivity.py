@@ -72,9 +72,9 @@ class Neighbours:
 
 
 def change_by_impact(impacts: Mapping[str, Floats], tolerance: float) -> Floats:
-    """Return to what part of the motion a relative change of 1e-9 in the drop has grown by each impact; 0 where nothing vibrates.
+    """Return the relative change of each impact for one of 1e-9 in the drop [-]; 0 where nothing vibrates.
 
-    Each contact is integrated to a tolerance, which grows likewise: where it is larger, it counts.
+    Each contact is integrated to a tolerance, which grows likewise: where it is larger, it counts instead.
 
     Examples
     --------

@@ -11,7 +11,7 @@ FILTERS = ("sigma-delta", "butterworth", "none")
 """The anti-alias filters that a sensor may have."""
 
 Quantity = Literal["displacement", "velocity", "acceleration"]
-ORDERS: dict[Quantity, int] = {"displacement": 0, "velocity": 1, "acceleration": 2}
+_ORDERS: dict[Quantity, int] = {"displacement": 0, "velocity": 1, "acceleration": 2}
 """Which derivative of the displacement each quantity is."""
 
 
@@ -93,7 +93,7 @@ class Sensor:
     @property
     def order(self) -> int:
         """Which derivative of the displacement it takes."""
-        return ORDERS[self.quantity]
+        return _ORDERS[self.quantity]
 
 
 def sample_count(duration: float, rate: float) -> int:

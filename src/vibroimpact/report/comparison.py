@@ -117,7 +117,7 @@ def comparison_table(comparison: Comparison) -> tuple[list[tuple[str, str]], lis
 
 
 def comparison_doubts(comparison: Comparison) -> list[str]:
-    """Return what to doubt of each law's drop, once where it is the same of several."""
+    """Return the doubts of the drops under all laws, each once, with the laws that it is of."""
     laws: dict[str, list[str]] = {}
     for name, one in comparison.results.items():
         for doubt in one.doubts:

@@ -109,12 +109,12 @@ def _beside(value: float, whole: float, significant: int) -> str:
 
 
 def certain_figures(change: Floats, name: str = "max_force_N") -> NDArray[np.intp]:
-    """Return how many significant figures a column of the impact table has for sure; the last may be off by three.
+    """Return how many significant figures of a column of the impact table are certain; the last may be off by three.
 
     Parameters
     ----------
     change : array, shape (impacts,)
-        To what part of the motion an unknown change of the drop has grown by each impact.
+        Relative change of each impact [-] for one in the drop that nobody can rule out.
     name : str
         The column.
 

@@ -61,7 +61,7 @@ def _peaks(modes: ModalBasis, displacement: Floats, velocity: Floats, accelerati
 
 
 def known_errors(errors: Floats | None, number: int) -> list[float | None]:
-    """Return by what part frequencies may be off, as JSON holds it: nothing where it is not known.
+    """Return the relative errors of frequencies as JSON holds them: None where one is not known.
 
     Examples
     --------

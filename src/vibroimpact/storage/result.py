@@ -82,7 +82,7 @@ class Result:
 
     @property
     def change_by_impact(self) -> NDArray[np.float64]:
-        """To what part of the motion a change of the drop that nobody can rule out has grown by each impact."""
+        """Relative change of each impact [-] for one in the drop that nobody can rule out: of 1e-9, or of the tolerance if larger."""
         return change_by_impact(self.impacts, float(self.provenance.get("tolerance", RELATIVE_CHANGE)))
 
     @property
@@ -95,7 +95,7 @@ class Result:
 
     @property
     def _seen(self) -> Seen:
-        """What the limits of the theory are held against."""
+        """What came of the drop, to which the limits of the theory are applied."""
         if not len(self.impacts["impact"]):
             return Seen()
         force, depth = (float(self.impacts[name].max()) for name in ("max_force_N", "max_indentation_m"))

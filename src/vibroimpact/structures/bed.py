@@ -63,7 +63,7 @@ def end_compliance(material: Material, thickness: float) -> float:
 
 
 def bed_under(bed: tuple[float, float], slenderness: float) -> tuple[float, float]:
-    """Return the stiffness of a bed, along and across, under a plate as many times as thick as the radius of what holds it.
+    """Return the stiffness of a bed, along and across, over a round patch; the slenderness is thickness over radius.
 
     Notes
     -----
@@ -77,7 +77,7 @@ def bed_under(bed: tuple[float, float], slenderness: float) -> tuple[float, floa
 
 
 def elements_within(mesh: Mesh, nodes: Integers) -> Integers:
-    """Return which plate elements have all their nodes among some."""
+    """Return the plate elements all of whose nodes are among some."""
     inside = np.zeros(len(mesh.nodes), dtype=bool)
     inside[nodes] = True
     return np.flatnonzero(inside[mesh.blocks[0].connectivity].all(axis=1))

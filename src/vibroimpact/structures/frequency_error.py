@@ -1,4 +1,4 @@
-"""How far computed frequencies may be off: for the mesh, for the theory of plates, for how supports hold, and for a reduction."""
+"""Errors of computed frequencies due to the mesh, the theory of plates, the model of supports and a reduction."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from vibroimpact.structures.plate_waves import bending_error, stiff_shear_error,
 from vibroimpact.structures.supports.constraints import HeldStructure
 
 MESH, THEORY, SUPPORTS, REDUCTION = "the mesh", "the theory of plates", "the supports", "the reduction"
-"""What frequencies are off for."""
+"""Causes of errors of frequencies."""
 
 _BED = 0.1  # of the stiffness of a bed: how far it is off, by plates on round patches of 1.25 to 2.5 thicknesses in radius
 _BED_IN_PLANE = 0.5  # the same for motions in the plane, which were 0.9 to 1.8 % too stiff
@@ -21,7 +21,7 @@ _EDGES = 2e-4  # beside what Lamb's waves say: plates with edges differ from ref
 
 
 def from_coarser(fine: Floats, coarse: Floats, gain: float) -> Floats:
-    """Return by what part frequencies are off for the mesh, from those of a coarser one.
+    """Return the relative errors of frequencies due to the mesh, estimated from those of a coarser one.
 
     Parameters
     ----------
@@ -43,7 +43,7 @@ def from_coarser(fine: Floats, coarse: Floats, gain: float) -> Floats:
 
 
 def of_supports(held: HeldStructure, modes: Eigenmodes) -> Floats:
-    """Return by what part frequencies are off for how the supports of plate elements are modelled.
+    """Return the relative errors of frequencies due to how the supports of plate elements are modelled.
 
     Notes
     -----
@@ -65,7 +65,7 @@ def of_supports(held: HeldStructure, modes: Eigenmodes) -> Floats:
 
 
 def of_plate_theory(held: HeldStructure, modes: Eigenmodes, material: Material, thin: bool = False) -> Floats:
-    """Return by what part frequencies of a plate are off for its theory.
+    """Return the relative errors of frequencies of a plate due to its theory.
 
     Parameters
     ----------
@@ -99,7 +99,7 @@ def _in_plane(held: HeldStructure, modes: Eigenmodes) -> Floats:
 
 
 def of_one_layer(angular_frequencies: Floats, material: Material, thickness: float) -> Floats:
-    """Return by what part bending frequencies of one layer of bricks of second order are too high.
+    """Return the relative errors of bending frequencies of one layer of bricks of second order, which are too high.
 
     Notes
     -----
@@ -111,6 +111,6 @@ def of_one_layer(angular_frequencies: Floats, material: Material, thickness: flo
 
 
 def main_cause(parts: Mapping[str, Floats]) -> str:
-    """Return the part that is largest where the sum of all parts is."""
+    """Return the name of the largest error of the mode whose sum of errors is largest."""
     worst = int(np.nanargmax(sum(parts.values()))) if parts else 0
     return max(parts, key=lambda name: float(parts[name][worst]), default="")

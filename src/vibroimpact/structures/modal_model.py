@@ -110,10 +110,10 @@ class ModalModel:
             If a place lies beside the body.
         """
         motion, positions = surface_motion(self.mesh, places, side, self.thickness, what)
-        return self.seen(motion).reshape(len(self.shapes), -1, 3), positions
+        return self.in_modes(motion).reshape(len(self.shapes), -1, 3), positions
 
-    def seen(self, motion: csr_array) -> Floats:
-        """Return what goes with the degrees of freedom, as rows of a sparse array say, in each mode: shape (modes, rows)."""
+    def in_modes(self, motion: csr_array) -> Floats:
+        """Return the values of linear functions of the degrees of freedom, the rows of a sparse array, in each mode, (modes, rows)."""
         dofs = np.unique(motion.indices)  # few of many: the others need not be read
         return np.asarray(self.shapes[:, dofs] @ motion[:, dofs].T.toarray())
 

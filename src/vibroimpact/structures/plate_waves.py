@@ -105,7 +105,7 @@ def stretching_error(angular_frequencies: Floats, thickness: float, material: Ma
 
 
 def shear_wave_factor(square: Floats, poissons_ratio: float) -> Floats:
-    r"""Return what `bending_factor` is for waves of shear, to the second order: :math:`1 / (1 + k^2 \overline{r^2} / 4)` [-].
+    r"""Return the counterpart of `bending_factor` for waves of shear, to the second order: :math:`1 / (1 + k^2 \overline{r^2} / 4)` [-].
 
     Parameters
     ----------

@@ -43,7 +43,7 @@ Place = tuple[Spot, Side]
 _COARSE_ACROSS, _COARSE_SOLID, _COARSE_PLATE, _COARSE_MARGIN = 0.67, 1.5, 1.5, 4.0 / 3.0
 _SOLID_GAIN, _PLATE_GAIN = 4.0, 3.0  # measured: docs/elastic-bodies.md has how far estimates are from true errors
 
-MOST_FOR = "frequencies are off most for"
+MAIN_CAUSE = "frequencies are off most for"
 """The name of that fact."""
 
 _RECENT = Recent[ModalModel](most=500e6)
@@ -86,7 +86,7 @@ class SphereOfSolids(Shape):
         return sphere_mesh(self.radius, self.elements_across, self.kind, self.grading)
 
     def coarser(self) -> tuple[Shape, float] | None:
-        """Return the same with about half as many elements across; the error goes with the fourth power of their size."""
+        """Return the same with two thirds or half as many elements across; the error goes with a power of their size."""
         across = max(4, 4 * int(_COARSE_ACROSS * self.elements_across / 4))
         if across >= self.elements_across:
             return None
@@ -290,17 +290,18 @@ def computed_model(recipe: Recipe, progress: Progress | None = None) -> ModalMod
         "elements": ", ".join(f"{len(block.connectivity)} {block.kind}" for block in structure.mesh.blocks),
         "degrees of freedom": f"{held.stiffness.shape[0]}",
         "left out of the file": ", ".join(f"{name} ({count})" for name, count in structure.mesh.skipped.items()),
-        MOST_FOR: main_cause(parts),
+        MAIN_CAUSE: main_cause(parts),
         "processor time": f"{time.process_time() - begun:.2f} s",
     }
     errors = np.full(len(modes.angular_frequencies), np.nan)
-    for part in [np.sum(list(parts.values()), axis=0)] if parts else []:
-        errors[: len(part)] = part
+    if parts:
+        whole = np.sum(list(parts.values()), axis=0)
+        errors[: len(whole)] = whole
     return modal_model(held, modes, {name: text for name, text in facts.items() if text}, errors)
 
 
 def _errors(recipe: Recipe, held: HeldStructure, modes: Eigenmodes, material: Material) -> dict[str, Floats]:
-    """Return by what part frequencies are off, by what for; of no mode if it is not known, and not of modes that stand for statics."""
+    """Return the relative errors of frequencies by their causes; none if not known, and none of modes that stand for statics."""
     coarser = recipe.shape.coarser()
     if coarser is None:
         return {}

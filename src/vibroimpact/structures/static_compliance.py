@@ -63,7 +63,7 @@ def static_compliance(recipe: Recipe, place: tuple[float, float], side: Side = "
     Notes
     -----
     By Kirchhoff's theory (`theory = "thin"`) a point force has a finite deflection at its own place, and that is what is returned: the
-    thin theory knows no shear, and of no half space.
+    thin theory has neither shear nor a half space.
 
     Else, under a point force the displacement is infinite, and finite elements miss what is near it; so neither is asked for. The force is
     spread over a disc of 0.75 thicknesses, or over what lies of it on the body near an edge; and the response, averaged in the same
@@ -189,7 +189,7 @@ def _vertical_motions(mesh: Mesh, places: Floats) -> list[csr_array]:
 def response_to_spread_force(
     recipe: Recipe, place: tuple[float, float], side: Side, average: Callable[[float], Average]
 ) -> tuple[Structure, float, Floats]:
-    """Return how a held plate moves under a unit upward force that is spread around a place, after its structure and its thickness there.
+    """Return structure and thickness of a held plate, and its displacements under a unit upward force that is spread around a place.
 
     Parameters
     ----------

@@ -183,7 +183,7 @@ def surface_motion(mesh: Mesh, places: Floats, side: Side = "upper", thickness: 
     return _rows(mesh, nodes, weights, height), positions
 
 
-def slopes_apart(mesh: Mesh, place: tuple[float, float]) -> csr_array:
+def slope_divergence(mesh: Mesh, place: tuple[float, float]) -> csr_array:
     r"""Return the divergence of the slopes of a plate of plate elements at a place, a row of its degrees of freedom [1/m].
 
     It is :math:`\partial_x \beta_x + \partial_y \beta_y`; where elements meet, the mean of what they say.
@@ -206,7 +206,7 @@ def slopes_apart(mesh: Mesh, place: tuple[float, float]) -> csr_array:
     >>> mesh = plate_mesh((0.5, 0.4), 0.1)
     >>> x, y = mesh.nodes[:, :2].T
     >>> motion = np.stack([0 * x, 0 * x, 0 * x, x**2 * y, y**2], axis=1)
-    >>> (slopes_apart(mesh, (0.1, 0.05)) @ motion.ravel()).round(9).tolist()  # 2 x y + 2 y
+    >>> (slope_divergence(mesh, (0.1, 0.05)) @ motion.ravel()).round(9).tolist()  # 2 x y + 2 y
     [0.11]
     """
     places = np.array([place])

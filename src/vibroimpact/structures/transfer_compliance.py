@@ -47,7 +47,7 @@ def transfer_compliances(
     faces: int = 0,
     tell: Callable[[str], None] | None = None,
 ) -> Floats:
-    """Return how far points of a held plate move under a unit vertical force where it is met [m/N], (points, 3), from the store if there.
+    """Return the static compliances between the point where a held plate is met and others [m/N], (points, 3), from the store if there.
 
     Parameters
     ----------
@@ -131,7 +131,7 @@ def _disc_of_an_element(shape: PlateOfPlates, place: tuple[float, float]) -> flo
 
 
 def thin_near_term(distance: float, radius: float, rigidity: float) -> float:
-    r"""Return what Kirchhoff's plate moves under a unit point force beyond what it does under one spread over a disc [m/N].
+    r"""Return by how much more Kirchhoff's plate moves under a unit point force than under one spread over a disc [m/N].
 
     It is the inverse Hankel transform of :math:`(1 - A(k)) / (D k^4)`, with A that of the weighted disc, whose mean of r^2 is zero: so
     there is nothing beyond the disc.
@@ -160,7 +160,7 @@ def thin_near_term(distance: float, radius: float, rigidity: float) -> float:
 
 
 def near_term(distance: float, same_face: bool, thickness: float, youngs_modulus: float, poissons_ratio: float, faces: int = 0) -> float:
-    r"""Return what a plate moves near a unit force beyond what plate theory gives for the force spread over the disc [m/N].
+    r"""Return by how much more a plate moves near a unit force than plate theory gives for the force spread over the disc [m/N].
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-r"""Adhesion: small particles stick, and most laws know nothing of it."""
+r"""Adhesion: small particles stick, and most laws leave it out."""
 
 from __future__ import annotations
 

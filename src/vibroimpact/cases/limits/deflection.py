@@ -37,7 +37,7 @@ def stiffening(ratio: float, *, clamped: bool) -> tuple[float, float]:
 def _sentence(drop: Conditions, ratio: float) -> str:
     sliding, held = stiffening(ratio, clamped=drop.case["plate"].get("supports") == "clamped")
     return (
-        f"the plate deflects by {ratio:.2g} of its thickness: it also stretches, which this does not know, and is stiffer by about "
+        f"the plate deflects by {ratio:.2g} of its thickness: it also stretches, which is not computed, and is stiffer by about "
         f"{percent_more(sliding).removeprefix('+')} if its edges may slide in its plane, {percent_more(held).removeprefix('+')} if they "
         "are held; take a lower speed, a thicker plate, or a program of large deflections"
     )

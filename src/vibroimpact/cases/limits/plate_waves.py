@@ -14,9 +14,9 @@ from vibroimpact.dynamics.truncation import time_of_contact
 def plate_theory_error(facts: Mapping[str, Any], impacts: Mapping[str, Any]) -> float:
     r"""Return about how much too large the largest force of the first impact is for what plate elements lack, as a part of it.
 
-    A force so short that it sends waves through the thickness of a plate meets more than its bending. To first order these add
-    :math:`c \ddot F` to how far the face yields, of which the inertia c is among the facts; the largest force is then off by that over the
-    tangent compliance of the contact, two thirds of indentation over force. A Hertzian force is about :math:`\sin^{3/2}(\pi t / T)`.
+    A force so short that it sends waves through the thickness of a plate meets more than its bending. To first order these take
+    :math:`c \ddot F` from how far the face yields, of which the inertia c is among the facts; the largest force is then off by that over
+    the tangent compliance of the contact, two thirds of indentation over force. A Hertzian force is about :math:`\sin^{3/2}(\pi t / T)`.
 
     Parameters
     ----------
@@ -53,7 +53,7 @@ LIMITS = (
     Limit(
         name="plate_waves",
         title="waves through the thickness of the plate",
-        meaning="part of the first largest force that plate elements lack, as they only bend",
+        meaning="part by which the first largest force is too large, as plate elements only bend",
         threshold=0.005,
         number=lambda drops: drops.seen.plate_theory,
         sentence=_sentence,

@@ -63,8 +63,8 @@ def _broken(body: str, drop: Conditions, ratio: float) -> str:
         else "take the force for an upper bound, or a measured restitution"
     )
     return (
-        f"{_named(body, material)} {verb} under Hertz's peak pressure of {pressure / 1e6:.3g} MPa: {how}, and {drop.law.name} knows "
-        f"nothing of it; {remedy}"
+        f"{_named(body, material)} {verb} under Hertz's peak pressure of {pressure / 1e6:.3g} MPa: {how}, and {drop.law.name} "
+        f"computes nothing of it; {remedy}"
     )
 
 

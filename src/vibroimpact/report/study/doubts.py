@@ -9,7 +9,7 @@ from vibroimpact.report.study.tables import point_of
 from vibroimpact.report.study.words import value_text
 from vibroimpact.storage.study import Study
 
-_KEYS = 4  # of the worst drop that are told; all are in drops.csv
+_KEYS = 4  # of the worst drop that are shown; all are in drops.csv
 
 
 def doubt_sentences(study: Study) -> list[str]:
