@@ -134,6 +134,10 @@ def test_an_unknown_key_of_an_accelerometer_is_named_with_the_others() -> None:
         ({"filter": 8}, r"sensors\.0\.filter"),
         ({"corner": "10 kHz"}, r'sensors\.0\.corner.*"sigma-delta" takes no corner; leave it out, or take "butterworth"'),
         ({"filter": "butterworth", "corner": -1.0}, r"sensors\.0\.corner"),
+        (
+            {"filter": "butterworth", "rate": "50 kHz", "corner": "25 kHz"},
+            r"sensors\.0\.corner: 25000 Hz is not allowed.*below half of the 50000 samples.*20000 Hz or less",
+        ),
         ({"fliter": "none"}, r'unknown key "fliter".*Did you mean "filter"'),
     ],
 )

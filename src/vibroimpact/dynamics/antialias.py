@@ -17,7 +17,7 @@ import numpy as np
 
 from vibroimpact.contact.phase.collocation import Floats
 from vibroimpact.dynamics.pole_pairs import PolePairs
-from vibroimpact.dynamics.sensor import Sensor
+from vibroimpact.dynamics.sensor import CORNER, Sensor
 
 REACH = 33
 """Sampling periods over which the filter of a converter looks back, and ahead."""
@@ -25,7 +25,6 @@ FINENESS = 8
 """Points a sampling period at which its kernel, and what answers to it, are known."""
 _KAISER = 10.4  # the window's parameter: 102 dB, and with the reach a transition of a tenth of the rate
 _ORDER = 8
-_CORNER = 0.4  # of the rate: that of a Butterworth filter unless it is given
 
 Section = tuple[float, float]
 """A pair of poles, by the coefficients (stiffness, damping) of s^2 + damping s + stiffness."""
@@ -50,7 +49,7 @@ def antialias_of(sensor: Sensor) -> AntiAlias:
     if sensor.filter == "sigma-delta":
         return AntiAlias(reach=REACH)
     if sensor.filter == "butterworth":
-        return AntiAlias(sections=butterworth(sensor.corner or _CORNER * sensor.rate))
+        return AntiAlias(sections=butterworth(sensor.corner or CORNER * sensor.rate))
     return AntiAlias()
 
 

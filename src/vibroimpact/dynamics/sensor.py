@@ -8,6 +8,7 @@ from typing import Literal
 from vibroimpact.errors import InputError, did_you_mean
 
 FILTERS = ("sigma-delta", "butterworth", "none")
+CORNER = 0.4  # of the rate: that of a Butterworth filter unless it is given
 """The anti-alias filters that a sensor may have."""
 
 Quantity = Literal["displacement", "velocity", "acceleration"]
@@ -67,7 +68,7 @@ class Sensor:
     Raises
     ------
     InputError
-        If there is no such filter, or it has no corner.
+        If there is no such filter, it has no corner, or the corner is not below half the rate.
     """
 
     name: str
@@ -84,6 +85,11 @@ class Sensor:
             raise InputError(f'there is no filter "{self.filter}"; there are {known}.{did_you_mean(self.filter, FILTERS)}', "filter")
         if self.corner is not None and self.filter != "butterworth":
             raise InputError(f'the filter "{self.filter}" takes no corner; leave it out, or take "butterworth"', "corner")
+        if self.corner is not None and self.corner >= 0.5 * self.rate:
+            words = (
+                f"{self.corner:g} Hz is not allowed; it must be below half of the {self.rate:g} samples per second, since what is faster"
+            )
+            raise InputError(f"{words} folds into the band; take {CORNER * self.rate:g} Hz or less, or a higher rate", "corner")
 
     @property
     def unit(self) -> str:
