@@ -83,7 +83,7 @@ def check_case(case: Case) -> None:
     if local.local_compliance == "identified" and case.sphere.model == "elastic":
         raise InputError('the local element of "identified" stands for the deformation of the sphere; leave it "rigid"', "sphere.model")
     if local.finite_sphere and case.sphere.model == "elastic":
-        words = 'its modes deform as a whole sphere does, and "consistent" corrects the rest already; leave this out'
+        words = 'an elastic sphere deforms in its modes, and "consistent" corrects the rest already; leave this out'
         raise InputError(words, "contact.finite_sphere")
     if local.finite_sphere and not isinstance(law, CompliantLaw):
         raise InputError(f"{law.name} gives no force that a finite sphere would change; leave this out", "contact.finite_sphere")

@@ -26,8 +26,8 @@ def _sentence(body: str, drop: Conditions, _: float) -> str:
     (part, highest), duration = drop.seen.modes[body], float(drop.seen.duration)
     return (
         f"the modes of the {body} end at {highest:.4g} Hz, and the contact lasts {duration:.3g} s: those left out may change the "
-        f"largest force by up to {100.0 * part:.2g} %, and rebound and vibration by more; ask for "
-        f'max_frequency = "{_ENOUGH / duration / 1e3:.3g} kHz" or so'
+        f"largest force by up to {float(f'{100.0 * part:.2g}'):g} %, and rebound and vibration by more; ask for "
+        f'{body}.max_frequency = "{_ENOUGH / duration / 1e3:.3g} kHz" or so'
     )
 
 

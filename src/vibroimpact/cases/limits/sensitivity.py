@@ -25,11 +25,20 @@ def _sentence(drop: Conditions, _: float) -> str:
     first, lost = np.flatnonzero(~(changes <= _PREDICTED))[0], np.flatnonzero(~(changes <= _LOST))
     grown = [] if lost.size and lost[0] == first else [f"to {100.0 * changes[first]:.2g} % of impact {first + 1}"]
     grown += [f"to all of impact {lost[0] + 1}"] if lost.size else []
+    undamped = _undamped(drop)
+    remedy = f"give {undamped} damping, or judge" if undamped else "judge"
     return (
         f"the drop is sensitive from impact {first + 1} on: a relative change of {RELATIVE_CHANGE:g} in it grows {' and '.join(grown)}, "
-        "so that these impacts are some of many that are possible; give the plate its damping, or ask a study over drop.height for "
-        "their distribution"
+        f"so that these impacts are some of many that are possible; {remedy} them by their distribution in a study over drop.height"
     )
+
+
+def _undamped(drop: Conditions) -> str:
+    """Return what vibrates without damping, in words; nothing if all of it is damped."""
+    if not drop.case:  # nothing is known of the bodies
+        return "what vibrates its"
+    bodies = [f"the {body}" for body in ("plate", "sphere") if drop.model(body) == "elastic" and not drop.case[body].get("damping")]
+    return f"{' and '.join(bodies)} {'its' if len(bodies) == 1 else 'their'}" if bodies else ""
 
 
 LIMITS = (

@@ -53,19 +53,23 @@ def _of_body(body: str, drops: Conditions) -> Array:
 def _broken(body: str, drop: Conditions, ratio: float) -> str:
     material, pressure = drop.materials[body], float(drop.peak_pressure)
     name, (stress, strength, verb) = max(demands(material, pressure).items(), key=lambda item: item[1][0] / item[1][1])
-    known = f"its {name.replace('_', ' ')} of {strength / 1e6:.3g} MPa"
-    how = f"the tension at the rim of the contact is {stress / 1e6:.3g} MPa, {ratio:.2g} times {known}"
+    known = f"its {name.replace('_', ' ')} of {_stress(strength)}"
+    how = f": the tension at the rim of the contact is {_stress(stress)}, {ratio:.2g} times {known}"
     if name != "tensile_strength":
-        how = f"that is {ratio:.2g} times what begins it, {_YIELD} times {known}"
+        begins = "yield" if name == "yield_strength" else "be crushed"
+        how = f", {ratio:.2g} times that at which it begins to {begins} ({_YIELD} times {known})"
     remedy = (
         "take a law that yields, such as thornton"
         if name == "yield_strength"
         else "take the force for an upper bound, or a measured restitution"
     )
-    return (
-        f"{_named(body, material)} {verb} under Hertz's peak pressure of {pressure / 1e6:.3g} MPa: {how}, and {drop.law.name} "
-        f"computes nothing of it; {remedy}"
-    )
+    beginning = f"{_named(body, material)} {verb} under Hertz's peak pressure of {_stress(pressure)}{how}"
+    return f"{beginning}; {drop.law.name} leaves this out: {remedy}"
+
+
+def _stress(value: float) -> str:
+    """Return a stress in MPa or GPa."""
+    return f"{value / 1e9:.3g} GPa" if value >= 0.9995e9 else f"{value / 1e6:.3g} MPa"
 
 
 def _named(body: str, material: Material) -> str:
@@ -85,7 +89,7 @@ def _not_known(drop: Conditions, _: float) -> str:
     bodies = [_named(body, drop.materials[body]) for body in _unknown(drop)]
     return (
         f"whether {' and '.join(bodies)} {'yield or crack' if len(bodies) > 1 else 'yields or cracks'} under Hertz's peak pressure of "
-        f"{float(drop.peak_pressure) / 1e6:.3g} MPa is not known: no strength is given; give yield_strength, compressive_strength or "
+        f"{_stress(float(drop.peak_pressure))} is not known: no strength is given; give yield_strength, compressive_strength or "
         "tensile_strength in its material"
     )
 
