@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from io import StringIO
 
@@ -10,11 +11,14 @@ import pytest
 from rich.console import Console
 
 import vibroimpact as vi
+from support import plain_case
 from vibrating import STIFFNESS, drop_on, random_modes
+from vibroimpact.cases.build import resolved
 from vibroimpact.cases.conditions import Seen
 from vibroimpact.cases.doubts import doubts
 from vibroimpact.contact.laws.hertz import Hertz
 from vibroimpact.report.console import result_summary
+from vibroimpact.report.quantities import ACCELERATION, FORCE, POSITION, VELOCITY
 from vibroimpact.report.tables import impact_table
 from vibroimpact.storage.result import Result, result_of
 from vibroimpact.storage.summary import summary_of
@@ -54,6 +58,41 @@ def test_the_page_prints_only_digits_that_are_there(undamped: Result) -> None:
     assert len(rows[1][force].replace(".", "").lstrip("0")) == 3
     assert rows[1][time] == f"{1e3 * undamped.impacts['time_s'][1]:.3f}"  # as certain as what the first impact left
     assert headers[-1] == ("Sensitivity", "")
+
+
+def test_the_figures_print_only_digits_that_are_there(undamped: Result) -> None:
+    assert undamped.change_by_impact[3] > 0.3
+    for quantity in (POSITION, FORCE, VELOCITY, ACCELERATION):
+        headlines = [quantity.headline(undamped, impact) for impact in range(4)]
+        assert "?" not in headlines[0]
+        assert "?" in headlines[3]
+    assert len(re.sub(r"\D", "", FORCE.headline(undamped, 1)).lstrip("0")) == 3
+
+
+@pytest.mark.parametrize("width", [60, 80, 100, 130, 160])
+def test_a_narrow_terminal_has_fewer_columns_and_whole_numbers(undamped: Result, width: int) -> None:
+    lines = printed(undamped, width)
+    assert all("\u2026" not in word for line in lines for word in line)
+    assert [line[0] for line in lines[2:7]] == ["#", "1", "2", "3", "4"]
+    assert {"time", "force", "sensi-"} < set(lines[1])
+    assert ("indentation" in lines[1]) == (width > 80)
+
+
+@pytest.mark.parametrize(
+    ("sphere", "damping", "asked"),
+    [
+        ("rigid", None, "give the plate its damping, or judge"),
+        ("elastic", None, "give the plate and the sphere their damping, or judge"),
+        ("elastic", 0.02, "give the sphere its damping, or judge"),
+        ("rigid", 0.02, "possible; judge"),
+    ],
+)
+def test_only_what_has_no_damping_is_asked_for_it(sphere: str, damping: float | None, asked: str) -> None:
+    plate = {"model": "elastic", "material": "steel", "size": [0.3, 0.2, 0.01], "supports": "clamped", "damping": damping}
+    case = resolved(vi.read_case(plain_case(sphere__model=sphere, plate={key: value for key, value in plate.items() if value})))
+    (found,) = (doubt for doubt in doubts(case, Seen(changes=np.array([1e-9, 0.5]))) if "sensitive" in doubt)
+    assert asked in found
+    assert found.endswith("them by their distribution in a study over drop.height")
 
 
 def test_a_drop_that_is_not_sensitive_is_printed_as_before(variable: vi.Response) -> None:

@@ -41,38 +41,49 @@ _IMPACT_TABLE = (
     ("contacts", "con-\ntacts", 1.0, 3),
     ("sensitivity", "sensi-\ntivity", 1.0, 2),
 )
-_LEFT_OUT_WHEN_NARROW = {"separation_speed_m_s", "max_acceleration_m_s2", "energy_lost_J"}
-_NARROW = 110  # columns of a terminal
-_ONE_MORE = 8  # for a column that is shown where there is something to tell
+_FIRST_LEFT_OUT = (
+    "max_acceleration_m_s2",
+    "energy_lost_J",
+    "separation_speed_m_s",
+    "restitution_asked",
+    "max_indentation_m",
+    "contacts",
+    "rebound_height_m",
+    "duration_s",
+    "approach_speed_m_s",
+)
+"""Columns that a narrow terminal does without, in this order, until the others fit."""
+_BETWEEN = 2  # columns of a terminal between two columns of a table
 _FIRST_ROWS, _LAST_ROWS = 15, 3
 
 
 def impact_table(result: Result, width: int) -> RenderableType:
-    """Return the table of impacts for a terminal of a width; numbers are never cut, the middle of a long table is.
+    """Return the table of impacts for a terminal of a width: columns that do not fit are left out, numbers are not cut.
 
-    Numbers are shown with the digits that they have where the drop is sensitive.
+    The middle of a long table is left out. Numbers are shown with the digits that they have where the drop is sensitive.
     """
     impacts, change = result.impacts, result.change_by_impact
     number = len(impacts["impact"])
     if not number:
         return Text("No impact within the run.")
+    rows = [index for index in range(number) if not _FIRST_ROWS <= index < number - _LAST_ROWS]
     told = {"contacts": several_contacts(impacts), "sensitivity": takes_digits(change)}
-    wide = width >= _NARROW + sum(told.values()) * _ONE_MORE
-    left_out = set() if wide else _LEFT_OUT_WHEN_NARROW | ({"restitution_asked"} if any(told.values()) else set())
-    left_out = left_out | {name for name, shown in told.items() if not shown}
-    columns = [column for column in _IMPACT_TABLE if column[0] not in left_out]
-    figures = {name: certain_figures(change, name) for name, *_ in columns}
+    columns = {"impact": ["", "#", *(str(int(impacts["impact"][index])) for index in rows)]}
+    for name, heading, factor, digits in _IMPACT_TABLE:
+        if told.get(name, True):
+            figures, values = certain_figures(change, name), impacts[name]
+            cells = (_number(float(values[index]) * factor, digits, int(figures[index])) for index in rows)
+            columns[name] = [*heading.split("\n"), *cells]
+    for name in _FIRST_LEFT_OUT:
+        if sum(max(map(len, column)) + _BETWEEN for column in columns.values()) > width:
+            columns.pop(name, None)
     table = Table(box=None, padding=(0, 1), header_style="bold")
-    table.add_column("\n#", justify="right")
-    for _, heading, _, _ in columns:
-        table.add_column(escape(heading), justify="right", no_wrap=True)
-    for index in range(number):
-        if _FIRST_ROWS <= index < number - _LAST_ROWS:
-            if index == _FIRST_ROWS:
-                table.add_row("...")
-            continue
-        cells = (_number(float(impacts[name][index]) * factor, digits, int(figures[name][index])) for name, _, factor, digits in columns)
-        table.add_row(str(int(impacts["impact"][index])), *cells)
+    for above, below, *_ in columns.values():
+        table.add_column(escape(f"{above}\n{below}"), justify="right", no_wrap=True)
+    for place, row in enumerate(zip(*(column[2:] for column in columns.values()), strict=True)):
+        if place == _FIRST_ROWS and len(rows) < number:
+            table.add_row("...")
+        table.add_row(*row)
     return table
 
 
@@ -206,7 +217,7 @@ def case_explained(case: Case) -> RenderableType:
         where = "on the same spot: the dent of the last one lasts" if case.drop.same_spot else "on fresh surfaces"
         rows.append(("each impact", f"{where} (drop.same_spot = {str(case.drop.same_spot).lower()})"))
     rigid = not deforms(case)
-    label = "restitution" if rigid else "between rigid bodies"
+    label = "restitution" if rigid else "restitution if rigid"
     rows += [("" if number else label, line) for number, line in enumerate(_restitution_lines(laws[0], mass, speed))]
     expected = expected_of(case)
     if not math.isnan(expected.force):
@@ -245,8 +256,24 @@ def _coupling_rows(case: Case) -> list[tuple[str, str]]:
     rows = [("local compliance", "; ".join(words))]
     for sensor in case.sensors:
         place = sensor.position if isinstance(sensor.position, str) else f"({sensor.position[0]:g}, {sensor.position[1]:g}) m"
-        rows.append((f"sensor {sensor.name}", f"{sensor.quantity} at {place}, {sensor.face} face, {sensor.rate:g} Hz, {_filter(sensor)}"))
+        words = [f"{sensor.quantity} at {place}, {sensor.face} face", *_accelerometer(sensor), f"{sensor.rate:g} Hz", _filter(sensor)]
+        rows.append((f"sensor {sensor.name}", ", ".join(words)))
     return rows
+
+
+def _accelerometer(sensor: SensorSection) -> list[str]:
+    """Say what reads a sensor's acceleration, where something does."""
+    meter = sensor.accelerometer
+    if meter is None:
+        return []
+    given = [
+        ("resonance", meter.resonance, f"Hz with a damping ratio of {meter.damping_ratio:g}"),
+        ("range", meter.range, "m/s2"),
+        ("noise", meter.noise or None, "m/s2"),
+        ("resolution", meter.resolution, "m/s2"),
+    ]
+    words = [f"{name} {value:g} {unit}" for name, value, unit in given if value is not None]
+    return [f"by an accelerometer ({'; '.join(words) or 'ideal'})"]
 
 
 def _filter(sensor: SensorSection) -> str:

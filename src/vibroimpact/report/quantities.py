@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from vibroimpact.quantity import digits, text
+from vibroimpact.quantity import certain, digits, multiple
 from vibroimpact.report.excerpt import Floats, gravity, touch_height
 from vibroimpact.report.histories import Quantity
+from vibroimpact.report.tables import certain_figures
 from vibroimpact.storage.result import Result
 
 Points = tuple[Floats, Floats]
@@ -53,20 +54,27 @@ def _touch_and_release(result: Result) -> Points:
     return times, np.concatenate([-impacts["approach_speed_m_s"], impacts["separation_speed_m_s"]])
 
 
+def _shown(result: Result, impact: int, name: str, unit: str) -> str:
+    """Return an entry of the impact table with its unit, in the digits that it has where the drop is sensitive."""
+    value, figures = float(result.impacts[name][impact]), int(certain_figures(result.change_by_impact, name)[impact])
+    best = multiple(unit, value)
+    return f"{certain(digits(value / best.size), value / best.size, figures)}\u00a0{best.unit}".rstrip("\u00a0")
+
+
 def _indentation(result: Result, impact: int) -> str:
-    return text(result.impacts["max_indentation_m"][impact], "m")
+    return _shown(result, impact, "max_indentation_m", "m")
 
 
 def _force(result: Result, impact: int) -> str:
-    return text(result.impacts["max_force_N"][impact], "N")
+    return _shown(result, impact, "max_force_N", "N")
 
 
 def _restitution(result: Result, impact: int) -> str:
-    return f"e = {digits(result.impacts['restitution_achieved'][impact])}"
+    return f"e = {_shown(result, impact, 'restitution_achieved', '')}"
 
 
 def _acceleration(result: Result, impact: int) -> str:
-    return text(result.impacts["max_acceleration_m_s2"][impact], "m/s2")
+    return _shown(result, impact, "max_acceleration_m_s2", "m/s2")
 
 
 POSITION = Quantity(
