@@ -289,7 +289,7 @@ def test_a_visit_of_several_contacts_asks_for_the_modes_of_one() -> None:
     response = vi.simulate(drop_on(law, modes_of([200.0, 900.0], [5.0, -4.0], 0.03), height=0.2, impacts=1))
     assert response.impacts["contacts"][0] > 1
     (doubt,) = (doubt for doubt in result_of(response).doubts if doubt.startswith("the modes of the plate end at "))
-    lasts, asked = re.search(r"contact lasts (\S+) s.* max_frequency = \"(\S+) kHz", doubt).groups()  # type: ignore[union-attr]
+    lasts, asked = re.search(r"contact lasts (\S+) s.*max_frequency = \"(\S+) kHz", doubt).groups()  # type: ignore[union-attr]
     assert float(lasts) < 0.2 * response.impacts["duration_s"][0]
     assert float(asked) > 0.9
 
@@ -299,3 +299,18 @@ def test_a_comparison_says_once_what_is_so_under_every_law() -> None:
     assert sum("in air" in doubt for doubt in found) == 1
     assert any(doubt.startswith("every law: in air") for doubt in found)
     assert any(doubt.startswith("hertz: Hertz's half space") for doubt in found)
+
+
+def test_a_plate_that_moves_on_its_springs_does_not_bend() -> None:
+    """A thick plate on soft springs gives way by more than its thickness, as a whole: nothing stretches."""
+    springs = [
+        {"type": "spring", "position": [x, y], "stiffness": 200.0, "horizontal_stiffness": 1e3}
+        for x in ("-0.15 m", "0.15 m")
+        for y in ("-0.1 m", "0.1 m")
+    ]
+    plate = {"size": [0.4, 0.3, 0.02], "material": STEEL, "model": "elastic", "supports": springs, "modes": 12}
+    ball = {"radius": "40 mm", "material": STEEL}
+    result = result_of(vi.simulate(vi.read_case(quiet(sphere=ball, plate=plate, drop={"speed": 6.0}, run={"impacts": 1, "duration": 0.3}))))
+    assert np.abs(result.history["plate_deflection_m"]).max() > 0.2 * 0.02
+    assert result.peaks["plate"]["max_bending_m"] < 0.02 * 0.02
+    assert not any("it also stretches" in doubt for doubt in result.doubts)

@@ -16,13 +16,12 @@ from vibroimpact.cases.limits.plate_waves import plate_theory_error
 from vibroimpact.cases.schema import Case
 from vibroimpact.cases.swept_keys import with_values
 from vibroimpact.contact.law import ContactLaw
+from vibroimpact.dynamics.bending import largest_bending
 from vibroimpact.dynamics.response import Response
 from vibroimpact.dynamics.sensitivity import change_by_impact
 from vibroimpact.dynamics.truncation import time_of_contact
 from vibroimpact.studies.axes import Values
 from vibroimpact.studies.columns import DOUBTS, LIMIT
-
-_IMPACTS, _POINTS = 3, 16  # where the deflection of a plate is looked at: after so many touches, over a period of its lowest mode
 
 
 def limit_meanings() -> dict[str, tuple[str, str]]:
@@ -79,7 +78,7 @@ def drop_conditions(response: Response, peaks: Mapping[str, NDArray[Any]]) -> Co
     seen = replace(
         _seen(peaks),
         duration=time_of_contact(response.impacts) if len(response.impacts["impact"]) else np.nan,
-        deflection=_largest_deflection(response),
+        deflection=largest_bending(response),
         modes=modes,
         changes=change_by_impact(response.impacts, problem.tolerance),
         plate_theory=plate_theory_error(problem.facts, response.impacts),
@@ -94,13 +93,3 @@ def _seen(peaks: Mapping[str, NDArray[Any]]) -> Seen:
         duration=peaks["first_duration_s"],
         speed=peaks["first_approach_speed_m_s"],
     )
-
-
-def _largest_deflection(response: Response) -> float:
-    """Return about how far an elastic plate gives way under the contact [m]: a per cent short; NaN of another."""
-    modes, touches = response.problem.plate.modes, response.impacts["time_s"][:_IMPACTS]
-    if modes is None or not len(touches):
-        return np.nan
-    after = (np.arange(_POINTS) + 0.5) / _POINTS / float(modes.frequencies[0])
-    times = (touches[:, None] + after).ravel()
-    return float(np.abs(response.modal(times[times <= response.end_time[0]])["plate"] @ modes.contact).max(initial=0.0))

@@ -18,9 +18,7 @@ from vibroimpact.contact.phase.encounter import Encounter
 from vibroimpact.contact.phase.glide import Glide
 from vibroimpact.contact.phase.oscillators import FreeMotion
 from vibroimpact.contact.phase.stretch import Stretch
-from vibroimpact.contact.phase.visit import MOST_STEPS, MOST_STEPS_TO_A_TIME
 from vibroimpact.dynamics.columns import HISTORY_COLUMNS, VIBRATION_HISTORY_COLUMNS
-from vibroimpact.dynamics.energy import why_failed
 from vibroimpact.dynamics.flight import Flight
 from vibroimpact.dynamics.lying import Lying
 from vibroimpact.dynamics.outcome import Outcome
@@ -28,6 +26,7 @@ from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.recording import Signal, record
 from vibroimpact.dynamics.segments import FlightSegment, GlideSegment, RestSegment, Segment, StretchSegment
 from vibroimpact.dynamics.sensor import Sensor, sample_count
+from vibroimpact.dynamics.status import status_of
 from vibroimpact.dynamics.truncation import truncation_estimates
 from vibroimpact.dynamics.vibrating_history import vibrating_history
 from vibroimpact.dynamics.vibrating_segment import VibratingSegment, vibrating_timeline
@@ -151,57 +150,7 @@ class Response:
 
         For a batch, how many drops ended by each rule, and the most that is left in vibration where they rest or ride.
         """
-        if len(self) > 1 or self.problem.shape != ():
-            return "; ".join(self._ended_by(outcome) for outcome in Outcome if outcome in self.outcomes)
-        number, end, outcome = len(self.impacts["impact"]), float(self.end_time[0]), self.outcomes[0]
-        after = f"after {number} impact{'' if number == 1 else 's'}"
-        if outcome is Outcome.IMPACTS:
-            return f"Stopped {after}, at the top of the last rebound, at {end:.6g} s."
-        if outcome is Outcome.RIDING:
-            steps = f"{MOST_STEPS} steps of the integration; give a duration to follow it for longer"
-            if self.problem.duration is not None:
-                steps = f"{MOST_STEPS_TO_A_TIME} steps of the integration"
-            return f"Stopped {after}, at {end:.6g} s: {self._riding()}. A ride is followed for at most {steps}."
-        if outcome is Outcome.DURATION:
-            asked = float(self.problem.duration or end)
-            finished = f", and the contact under way was finished, at {end:.9g} s" if end > asked else ""
-            riding = f"; {self._riding()}" if np.isfinite(self.rest.left[0]) else ""
-            return f"Stopped {after} at {asked:.6g} s, the duration asked for{finished}{riding}."
-        if outcome is Outcome.LIMIT:
-            return f"Stopped {after}, the most that are followed, at {end:.6g} s; the sphere is not at rest."
-        if outcome is Outcome.LEFT:
-            return f"The sphere leaves {after} and, without gravity, never comes back."
-        if outcome is Outcome.FAILED:
-            return f"Failed {after}: {why_failed(self.energy)}"
-        return f"At rest {after}: {self._rest()}"
-
-    def _ended_by(self, outcome: Outcome) -> str:
-        """Say how many drops of a batch a rule ended, and what is left in vibration."""
-        ended = np.array([one is outcome for one in self.outcomes])
-        left = self.rest.left[ended & np.isfinite(self.rest.left)]
-        counted = f"{np.count_nonzero(ended)} of {len(self)} drops: {outcome.value}"
-        if not left.size:
-            return counted
-        riding = "" if outcome.at_rest else f"{left.size} of them riding, "
-        return f"{counted} ({riding}at most {left.max():.3g} J left in vibration)"
-
-    def _riding(self) -> str:
-        """Say that the sphere is in contact still, and not at rest."""
-        return f"the sphere rides on the plate and is not at rest, with {float(self.rest.left[0]):.3g} J left in vibration"
-
-    def _rest(self) -> str:
-        """Say by which rule the sphere is at rest, and what is left in what carries it."""
-        time, left = float(self.rest.time[0]), float(self.rest.left[0])
-        vibration = "" if np.isnan(left) else f" {left:.3g} J are left in vibration, too little at the contact to lift it."
-        if self.outcomes[0] is Outcome.CAPTURED:
-            if vibration:
-                return f"at {time:.7g} s it lies in its indentation for good (capture rule).{vibration}"
-            return f"at {time:.7g} s it has too little energy left to get out of its indentation (capture rule)."
-        if self.outcomes[0] is Outcome.STUCK:
-            return f"at {time:.7g} s it has too little energy left to break the adhesion, and sticks (capture rule).{vibration}"
-        speed, last = float(self.rest.speed[0]), float(self.impacts["separation_speed_m_s"][-1])
-        limit = f" Bounces with the last restitution would end at {time:.7g} s." if np.isfinite(time) else ""
-        return f"it left at {last:.3g} m/s, below the rest speed of {speed:.3g} m/s (rest-speed rule).{limit}{vibration}"
+        return status_of(self)
 
     def at(self, times: Any) -> dict[str, Floats]:
         """Return the history of one drop at any times.

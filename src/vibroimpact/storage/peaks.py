@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from vibroimpact.dynamics.bending import largest_bending
+
 if TYPE_CHECKING:
     from vibroimpact.dynamics.response import Response
     from vibroimpact.structures.modal_model import ModalBasis
@@ -45,6 +47,8 @@ def peaks_of(response: Response, history: Mapping[str, Floats]) -> dict[str, Pea
             history["plate_kinetic_J"],
             history["plate_strain_J"],
         )
+        if np.isfinite(bending := largest_bending(response)):
+            found["plate"]["max_bending_m"] = bending
     return found
 
 

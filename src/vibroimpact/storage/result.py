@@ -100,7 +100,7 @@ class Result:
             return Seen()
         force, depth = (float(self.impacts[name].max()) for name in ("max_force_N", "max_indentation_m"))
         duration, speed = time_of_contact(self.impacts), float(self.impacts["approach_speed_m_s"][0])
-        deflection = float(np.abs(self.history["plate_deflection_m"]).max()) if "plate" in self.peaks else math.nan
+        deflection = float(self.peaks.get("plate", {}).get("max_bending_m") or math.nan)
         modes = {body: (part, self.frequencies(body)[-1]) for body, part in self.truncation.items()}
         theory = plate_theory_error(self.deformation, self.impacts)
         return Seen(force, depth, duration, speed, deflection, modes, self.change_by_impact, theory)

@@ -229,7 +229,7 @@ class _Visit:
                     continue
                 released = event.name == "parted" or (event.name == "no push" and self.ends_without_force and self.will_part(ended.end))
                 if released:  # what is still stored is lost, of a sticking contact that breaks or of a surface that lags behind
-                    ended = replace(ended, broken=float(self.local.elastic_energy(max(float(ended.approach[-1]), self.floor))))
+                    ended = replace(ended, broken=self.held_at(max(float(ended.approach[-1]), self.floor)))
                 self.accept(ended)
                 if not released and event.name == "no push":
                     released = self.glide()
@@ -297,9 +297,14 @@ class _Visit:
         self.touching = False
         stretch.forget()  # thousands of stretches would not fit into memory
 
+    def held_at(self, approach: float) -> float:
+        """Return the energy stored in the contact at an approach of the surfaces [J], without what is rounding."""
+        held = float(self.local.elastic_energy(approach))
+        return held if abs(held) > 1e-15 * self.around.mass * self.speed**2 else 0.0
+
     def break_off(self) -> None:
         """Lose what a contact still holds as it ends with a stretch that was taken already."""
-        last, held = self.found.parts[-1], float(self.local.elastic_energy(self.floor))
+        last, held = self.found.parts[-1], self.held_at(self.floor)
         if held and isinstance(last.motion, VibratingStretch):
             self.found.parts[-1] = replace(last, motion=replace(last.motion, broken=held))
             self.found.lost[-1] += held

@@ -1,0 +1,36 @@
+"""How far a plate bends under the contact."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from vibroimpact.dynamics.response import Response
+
+_IMPACTS, _POINTS = 3, 64  # it is looked at after so many touches, at so many instants of a period of the lowest mode that bends
+_RIGID = 0.95  # of a mode's kinetic energy: a mode that moves as a whole by more does not bend
+
+
+def largest_bending(response: Response) -> float:
+    """Return about how far an elastic plate bends under the contact at most [m], a per cent short; NaN of another plate.
+
+    Modes in which the plate moves on its springs as a whole are left out.
+
+    Parameters
+    ----------
+    response : Response
+        A run of one drop.
+    """
+    modes, touches = response.problem.plate.modes, response.impacts["time_s"][:_IMPACTS]
+    if modes is None or not len(touches):
+        return np.nan
+    turning = 0.0 if modes.rotation is None else (modes.rotation**2).sum(axis=1)
+    bends = (modes.participation**2).sum(axis=1) / modes.mass + turning < _RIGID
+    if not bends.any():
+        return 0.0
+    after = (np.arange(_POINTS) + 0.5) / _POINTS / float(modes.frequencies[bends][0])
+    times = (touches[:, None] + after).ravel()
+    moved = response.modal(times[times <= response.end_time[0]])["plate"]
+    return float(np.abs(moved @ np.where(bends, modes.contact, 0.0)).max(initial=0.0))
