@@ -89,7 +89,7 @@ def scatter_over_stated(found: list[Calibration]) -> Floats:
     return np.std([one.fit.function.coefficients for one in found], axis=0) / stated
 
 
-@pytest.mark.parametrize("confidence", [0.95, 0.8])
+@pytest.mark.parametrize("confidence", [0.95, pytest.param(0.8, marks=pytest.mark.slow)])
 @pytest.mark.parametrize(("measure", "exact"), [(heights, truth(SPEEDS)), (restitutions, truth(RANGE))], ids=["heights", "restitutions"])
 def test_known_deviations(measure: Callable[..., Observations], exact: Floats, confidence: float) -> None:
     found = repeated(lambda random: measure(random, known=True), confidence=confidence, bootstrap=0)

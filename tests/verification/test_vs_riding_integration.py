@@ -86,6 +86,7 @@ def test_drops_at_random() -> None:
     assert at_rest_of({f"any {seed}": random_drop(seed) for seed in range(9)}) >= 4
 
 
+@pytest.mark.slow
 def test_a_drop_at_random_on_a_plate_on_one_patch() -> None:
     assert at_rest_of({"held 291": random_held_drop(291)}) == 1
 

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import Any, TypeVar
 
 import numpy as np
 from scipy.sparse import csr_array
@@ -14,8 +16,13 @@ from vibroimpact.structures.disc import HERTZ, disc_points
 from vibroimpact.structures.geometry import MassProperties
 from vibroimpact.structures.mesh import Floats, Mesh
 from vibroimpact.structures.modes import Eigenmodes
+from vibroimpact.structures.recent import Recent
 from vibroimpact.structures.supports.constraints import HeldStructure
 from vibroimpact.structures.surface import Side, Spot, place_of, surface_motion
+
+_REMEMBERED = 2e6  # bytes of modes at places
+
+Found = TypeVar("Found")
 
 
 @dataclass(frozen=True)
@@ -109,8 +116,24 @@ class ModalModel:
         InputError
             If a place lies beside the body.
         """
-        motion, positions = surface_motion(self.mesh, places, side, self.thickness, what)
-        return self.in_modes(motion).reshape(len(self.shapes), -1, 3), positions
+
+        def found() -> tuple[Floats, Floats]:
+            motion, positions = surface_motion(self.mesh, places, side, self.thickness, what)
+            return self.in_modes(motion).reshape(len(self.shapes), -1, 3), positions
+
+        return self.recalled(f"{side} {places.tolist()}", found) if len(places) == 1 else found()
+
+    def recalled(self, key: str, compute: Callable[[], Found]) -> Found:
+        """Return what is computed of the modes, or was lately: many drops on one plate ask for the same sensors. Leave it unchanged."""
+        found = self._recent.find(key)
+        if found is None:
+            found = compute()
+            self._recent.keep(key, found, 24.0 * len(self.shapes))
+        return found
+
+    @cached_property
+    def _recent(self) -> Recent[Any]:
+        return Recent(most=_REMEMBERED)
 
     def in_modes(self, motion: csr_array) -> Floats:
         """Return the values of linear functions of the degrees of freedom, the rows of a sparse array, in each mode, (modes, rows)."""

@@ -38,7 +38,7 @@ def face_shapes(model: ModalModel, material: Material, place: tuple[float, float
     w_1 is multiplied by `bending_factor` of its wave number, and w_2 by `shear_wave_factor`.
     """
     thickness = model.thickness
-    divergence = model.in_modes(slope_divergence(model.mesh, place))[:, 0]
+    divergence = model.recalled(f"divergence {place}", lambda: model.in_modes(slope_divergence(model.mesh, place))[:, 0])
     bending, shearing, lag = mindlin_squares(model.angular_frequencies, thickness, material)
     of_bending = (divergence - (shearing - lag) * deflection) / (bending - shearing)
     first = bending_factor(np.sqrt(bending) * thickness, material.poissons_ratio)
