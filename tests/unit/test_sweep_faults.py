@@ -27,6 +27,7 @@ from vibroimpact.studies.chunk_file import ChunkResult
 from vibroimpact.studies.ledger import LEDGER, Span, open_ledger
 from vibroimpact.studies.run_chunks import run_chunks
 from vibroimpact.studies.workers import Crew, processes, this_process
+from waiting import wait_until
 
 DRAWN = vi.read_sweep(study_table(RANDOM))
 SMALL = int(200 * (4000 + 4 * DRAWN.bytes / DRAWN.size)) + 1
@@ -56,9 +57,8 @@ def killed_again_and_again(tmp_path: Path, kills: int, seed: int) -> None:
         begun = (folder / LEDGER).exists()
         options = ["--processes", str(1 + number % 2), *(["--resume"] if begun else [])]
         running = subprocess.Popen(sweep_command(study, folder, *options), stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
-        limit = time.monotonic() + 60.0
-        while not (chunks_done(folder) > done or (begun and number % 3 == 0)) and running.poll() is None and time.monotonic() < limit:
-            time.sleep(0.005)
+        if not begun or number % 3:  # else at once, before anything is done
+            wait_until(lambda before=done: chunks_done(folder) > before, running)
         time.sleep(random_moment.uniform(0.0, 0.15))
         assert running.poll() is None, "the study was done before it could be killed"
         running.kill()
@@ -83,16 +83,12 @@ def test_no_process_outlives_the_one_that_leads(tmp_path: Path) -> None:
     study = study_file(tmp_path, MANY)
     command = sweep_command(study, tmp_path / "out", "--processes", "2")
     leader = subprocess.Popen(command, stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
-    limit = time.monotonic() + 60.0
-    while not chunks_done(tmp_path / "out") and time.monotonic() < limit:
-        time.sleep(0.01)
+    wait_until(lambda: chunks_done(tmp_path / "out") > 0, leader)
     children = _children(leader.pid)
     leader.kill()
     leader.wait()
     assert children
-    while time.monotonic() < limit and any(_is_alive(child) for child in children):
-        time.sleep(0.05)
-    assert not any(_is_alive(child) for child in children)
+    wait_until(lambda: not any(_is_alive(child) for child in children))
 
 
 def _children(parent: int) -> list[int]:
@@ -109,11 +105,9 @@ def _is_alive(process: int) -> bool:
 def test_ctrl_c_says_how_to_go_on(tmp_path: Path) -> None:
     study, folder = study_file(tmp_path, MANY), tmp_path / "out"
     running = subprocess.Popen(sweep_command(study, folder, "--processes", "2"), stderr=subprocess.PIPE, text=True, start_new_session=True)
-    limit = time.monotonic() + 60.0
-    while not chunks_done(folder) and time.monotonic() < limit:
-        time.sleep(0.01)
+    wait_until(lambda: chunks_done(folder) > 0, running)
     os.killpg(running.pid, signal.SIGINT)  # as a terminal does: all processes of the group get it
-    told = running.communicate(timeout=60)[1]
+    told = running.communicate()[1]
     assert running.returncode == 130
     first, last = told.strip().splitlines()
     assert first == "vibroimpact: stopping after the drops that are under way; Ctrl-C once more stops at once"
