@@ -74,7 +74,9 @@ def _case_under(case: Case, law: type[ContactLaw], given: Mapping[str, Any], ach
         elif key not in contact and achieving is not None and item.default is MISSING and item.metadata["example"] is not None:
             contact[key] = item.metadata["example"]  # something to start from, if it is what is tuned
             guessed.append(key)
-    table = {**resolved(case), "name": f"{case.name or 'a drop'}, {law.name}", "contact": contact}
+    own_name = case.name or "a drop"  # which may name the case's own law
+    named = own_name if law.name == case.contact.law else f"{law.name} on the drop of: {own_name}"
+    table = {**resolved(case), "name": named, "contact": contact}
     try:
         found = read_case(table)
         tuned = contact_laws_of(found)[0].free_parameter

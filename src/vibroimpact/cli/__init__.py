@@ -12,7 +12,7 @@ from vibroimpact.cli import studies as studies  # isort: skip
 from vibroimpact.cli import export as export  # isort: skip
 from vibroimpact.cli import reproduction as reproduction  # isort: skip
 from vibroimpact.cli import reference as reference  # isort: skip
-from vibroimpact.cli.shared import app, fail
+from vibroimpact.cli.shared import app, fail, never_fail_to_print
 from vibroimpact.errors import ComputationError, InputError
 
 __all__ = ["app", "main"]
@@ -20,6 +20,7 @@ __all__ = ["app", "main"]
 
 def main() -> None:
     """Run the command line; errors of the package end in one message and an exit status."""
+    never_fail_to_print()
     try:
         app()
     except InputError as error:

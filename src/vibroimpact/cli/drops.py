@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from vibroimpact.cli.shared import CaseArgument, Force, app, console, note, stem, whole_or_nothing
+from vibroimpact.cli.shared import CaseArgument, Force, app, console, note, say, stem, whole_or_nothing
 
 
 @app.command()
@@ -73,7 +73,7 @@ def _run(name: str, output: Path | None, *, force: bool) -> None:
             response = simulate(problem, progress)
         folder = save_result(response, target, force=force)
     screen.print(result_summary(read_result(folder), screen.width))
-    typer.echo(f"wrote {folder / 'report.html'}")
+    say(f"wrote {folder / 'report.html'}")
 
 
 @app.command()
@@ -102,7 +102,7 @@ def modes(
             bodies = compute_modes(found, progress, note)
         folder = save_modes(found, bodies, target, force=force)
     screen.print(modes_summary(found, bodies))
-    typer.echo(f"wrote {folder / 'modes.csv'}, and pictures and meshes beside it")
+    say(f"wrote {folder / 'modes.csv'}, and pictures and meshes beside it")
 
 
 @app.command()
@@ -110,4 +110,4 @@ def report(directory: Annotated[Path, typer.Argument(metavar="DIR", help="A resu
     """Remake the report of a result folder."""
     from vibroimpact.report.save import remake_report
 
-    typer.echo(f"wrote {remake_report(directory) / 'report.html'}")
+    say(f"wrote {remake_report(directory) / 'report.html'}")

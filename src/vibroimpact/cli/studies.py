@@ -9,7 +9,7 @@ from typing import Annotated
 
 import typer
 
-from vibroimpact.cli.shared import app, console, fail, note, stem, stopping
+from vibroimpact.cli.shared import app, console, fail, note, say, stem, stopping
 from vibroimpact.errors import InputError
 
 MOST_UNASKED = 100_000
@@ -92,7 +92,7 @@ def sweep(
     except KeyboardInterrupt:
         fail(told, 130)
     screen.print(study_summary(read_study(folder), screen.width))
-    typer.echo(f"wrote {folder / 'study.nc'} and {folder / 'report.html'}")
+    say(f"wrote {folder / 'study.nc'} and {folder / 'report.html'}")
 
 
 def _cores() -> int:

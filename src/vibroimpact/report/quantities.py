@@ -7,7 +7,7 @@ import numpy as np
 from vibroimpact.quantity import certain, digits, multiple
 from vibroimpact.report.excerpt import Floats, gravity, touch_height
 from vibroimpact.report.histories import Quantity
-from vibroimpact.report.tables import certain_figures
+from vibroimpact.report.tables import figures_of
 from vibroimpact.storage.result import Result
 
 Points = tuple[Floats, Floats]
@@ -56,7 +56,7 @@ def _touch_and_release(result: Result) -> Points:
 
 def _shown(result: Result, impact: int, name: str, unit: str) -> str:
     """Return an entry of the impact table with its unit, in the digits that it has where the drop is sensitive."""
-    value, figures = float(result.impacts[name][impact]), int(certain_figures(result.change_by_impact, name)[impact])
+    value, figures = float(result.impacts[name][impact]), int(figures_of(name, result.change_by_impact)[impact])
     best = multiple(unit, value)
     return f"{certain(digits(value / best.size), value / best.size, figures)}\u00a0{best.unit}".rstrip("\u00a0")
 

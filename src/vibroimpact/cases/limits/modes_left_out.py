@@ -40,7 +40,7 @@ LIMITS = tuple(
         threshold=1.0,
         number=partial(_number, body),
         sentence=partial(_sentence, body),
-        shown=lambda ratio: f"{ratio:.2g} times what is allowed",
+        shown=lambda ratio: f"{ratio:.2g} times the limit (5 % of the largest force, or 1.5 periods of the highest mode in a contact)",
         without_case=True,
     )
     for body in ("sphere", "plate")

@@ -9,11 +9,13 @@ from vibroimpact.report.study.tables import point_of
 from vibroimpact.report.study.words import value_text
 from vibroimpact.storage.study import Study
 
+COUNTED_FROM = "Drops are counted from 0, as in study.nc and drops.csv."
+
 _KEYS = 4  # of the worst drop that are shown; all are in drops.csv
 
 
 def doubt_sentences(study: Study) -> list[str]:
-    """Return a sentence for each limit that drops of a study are beyond: how many drops, and the worst of them."""
+    """Return a sentence for each limit that drops of a study are beyond: how many drops, and the worst of them, counted from 0."""
     axes, found = study_axes(study), []
     for limit, drops, worst, number in study.doubts:
         known = limits().get(limit)

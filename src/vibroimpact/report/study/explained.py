@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from rich.console import Group, RenderableType
-from rich.markup import escape
-from rich.table import Table
 from rich.text import Text
 
 from vibroimpact.cases.sweep import Sweep
+from vibroimpact.report.terminal_table import Column, TerminalTable
 from vibroimpact.studies.axes import Axis, Listed, Normal, Spaced
 
 
@@ -16,12 +15,9 @@ def sweep_explained(sweep: Sweep) -> RenderableType:
     section = sweep.section
     drawn = f", drawn with seed {section.seed}" if section.samples else ""
     kept = " and ".join(dict.fromkeys(["peaks", *section.keep])) + f", about {sweep.bytes / 1e6:.3g} MB"
-    table = Table(box=None, padding=(0, 1), header_style="bold")
-    table.add_column("swept key")
-    table.add_column("over")
-    for key, axis in sweep.axes.items():
-        quantity = sweep.quantities[key]
-        table.add_row(escape(key), escape(_words(axis, quantity.unit if quantity else "", is_drawn=section.samples is not None)))
+    units = {key: quantity.unit if quantity else "" for key, quantity in sweep.quantities.items()}
+    over = [_words(axis, units[key], is_drawn=section.samples is not None) for key, axis in sweep.axes.items()]
+    table = TerminalTable([Column("swept key", list(sweep.axes), words=True), Column("over", over, words=True)])
     return Group(
         Text(f"A study of {sweep.size:,} drops: {section.design}{drawn}; keeps {kept}.", style="bold"),
         table,
