@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 
 # each module adds its commands; the order is that of --help
@@ -30,8 +31,8 @@ def main() -> None:
     except MemoryError:
         fail("there is not enough memory for this; use larger elements, or ask for less", 1)
     except BrokenPipeError:
-        # the reader of our output has gone; leave quietly, as other tools do
-        sys.stderr.close()
+        # the reader of our output has gone; leave quietly, as other tools do, with what is still to be written
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         sys.exit(1)
     except OSError as error:
         where = f"{error.filename}: " if error.filename else ""

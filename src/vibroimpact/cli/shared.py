@@ -65,7 +65,7 @@ def say(text: str, *, err: bool = False) -> None:
     from vibroimpact.report.encodable import encodable
 
     stream = sys.stderr if err else sys.stdout
-    print(encodable(text, getattr(stream, "encoding", None) or "ascii"), file=stream)
+    print(encodable(text, getattr(stream, "encoding", None) or "ascii"), file=stream, flush=True)  # a closed pipe is told here, not at exit
 
 
 def never_fail_to_print() -> None:

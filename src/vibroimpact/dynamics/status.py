@@ -23,19 +23,19 @@ def status_of(response: Response) -> str:
     number, end, outcome = len(response.impacts["impact"]), float(response.end_time[0]), response.outcomes[0]
     after = f"after {number} impact{'' if number == 1 else 's'}"
     if outcome is Outcome.IMPACTS:
-        return f"Stopped {after}, at the top of the last rebound, at {_shown(response, end, 6)} s."
+        return f"Stopped {after}, at the top of the last rebound, at {_time(response, end, 6)} s."
     if outcome is Outcome.RIDING:
         steps = f"{MOST_STEPS} steps of the integration; give a duration to follow it for longer"
         if response.problem.duration is not None:
             steps = f"{MOST_STEPS_TO_A_TIME} steps of the integration"
-        return f"Stopped {after}, at {_shown(response, end, 6)} s: {_riding(response)}. A ride is followed for at most {steps}."
+        return f"Stopped {after}, at {_time(response, end, 6)} s: {_riding(response)}. A ride is followed for at most {steps}."
     if outcome is Outcome.DURATION:
         asked = float(response.problem.duration or end)
-        finished = f", and the contact under way was finished, at {_shown(response, end, 9)} s" if end > asked else ""
+        finished = f", and the contact under way was finished, at {_time(response, end, 9)} s" if end > asked else ""
         riding = f"; {_riding(response)}" if np.isfinite(response.rest.left[0]) else ""
         return f"Stopped {after} at {asked:.6g} s, the duration asked for{finished}{riding}."
     if outcome is Outcome.LIMIT:
-        return f"Stopped {after}, the most that are followed, at {_shown(response, end, 6)} s; the sphere is not at rest."
+        return f"Stopped {after}, the most that are followed, at {_time(response, end, 6)} s; the sphere is not at rest."
     if outcome is Outcome.LEFT:
         return f"The sphere leaves {after} and, without gravity, never comes back."
     if outcome is Outcome.FAILED:
@@ -63,7 +63,7 @@ def _at_rest(response: Response) -> str:
     """Say by which rule the sphere is at rest, and what is left in what carries it."""
     time, left = float(response.rest.time[0]), float(response.rest.left[0])
     vibration = "" if np.isnan(left) else f" {_shown(response, left, 3)} J are left in vibration, too little at the contact to lift it."
-    when = _shown(response, time, 7)
+    when = _time(response, time, 7)
     if response.outcomes[0] is Outcome.CAPTURED:
         if vibration:
             return f"at {when} s it lies in its indentation for good.{vibration}"
@@ -75,7 +75,21 @@ def _at_rest(response: Response) -> str:
     return f"it left at {_shown(response, last, 3)} m/s, below the rest speed of {speed:.3g} m/s (rest-speed rule).{limit}{vibration}"
 
 
+def _time(response: Response, time: float, significant: int) -> str:
+    """Return a time of the end in so many digits, or in the fewer that are certain: each flight is as certain as the impact before it."""
+    change, begin = change_by_impact(response.impacts, response.problem.tolerance), response.impacts["time_s"]
+    if not len(begin) or not np.isfinite(time):
+        return f"{time:.{significant}g}"
+    flights = np.diff(begin, append=max(time, float(begin[-1])))
+    return _digits(time, float(np.minimum(np.nan_to_num(change, nan=1.0), 1.0) @ flights) / time, significant)
+
+
 def _shown(response: Response, value: float, significant: int) -> str:
-    """Return a number that depends on all impacts in so many digits, or in the fewer that are certain."""
+    """Return what the last impact left in so many digits, or in the fewer that are certain."""
     change = change_by_impact(response.impacts, response.problem.tolerance)
-    return certain(f"{value:.{significant}g}", value, int(certain_figures(change[-1])) if len(change) else significant)
+    return _digits(value, float(change[-1]) if len(change) else 0.0, significant)
+
+
+def _digits(value: float, change: float, significant: int) -> str:
+    figures = int(certain_figures(change))
+    return certain(f"{value:.{significant}g}", value, figures) if figures else f"about {value:.1g}"

@@ -62,6 +62,7 @@ _OF_VIBRATION = {
     "plate_damping_J": "Lost in the damping of the plate's modes",
 }
 _LOSSES = ("contact_dissipated_J", "plastic_work_J", "sphere_damping_J", "plate_damping_J")
+_SLOW = 0.1  # of the approach speed: what leaves more slowly counts as that
 SUM, PUT_IN = "Sum", "Put in at the start"
 _UNITS = {"_m_s2": "m/s2", "_m_s": "m/s", "_s": "s", "_m": "m", "_N": "N", "_J": "J"}
 """Units by the ends of column names, the longest first."""
@@ -123,15 +124,23 @@ def ledger_table(result: Result) -> tuple[str, list[LedgerRow]]:
 def _certain_of(entry: str, result: Result) -> int:
     """Return how many significant figures of an entry of the ledger are certain.
 
-    What is left in motion or stored is as certain as the last impact. What was lost is as certain as the impacts that lost it, each
-    by its part; the ledger closes, so that what one impact loses less another may lose more.
+    Energy goes with the square of the speed, and changes twice as much. What is left in motion or stored is as certain as the speed
+    after the last impact, and no more than the energy that the sphere left with; what was lost is as certain as the impacts that lost
+    it, each by its part.
     """
-    change, lost = result.change_by_impact, np.abs(result.impacts["energy_lost_J"])
-    if not len(change):
+    impacts, change = result.impacts, np.minimum(np.nan_to_num(result.change_by_impact, nan=1.0), 1.0)
+    if not len(change) or not change[-1] > 0.0:
         return ALL_FIGURES
-    if entry not in _LOSSES or not lost.sum() > 0.0:
-        return int(certain_figures(change[-1]))
-    return int(certain_figures(np.minimum(np.nan_to_num(change, nan=1.0), 1.0) @ lost / lost.sum()))
+    lost = np.abs(impacts["energy_lost_J"])
+    if entry in _LOSSES and lost.sum() > 0.0:
+        return int(certain_figures(2.0 * change @ lost / lost.sum()))
+    first, closing, separation = (
+        float(impacts[name][place]) for name, place in (("approach_speed_m_s", 0), ("approach_speed_m_s", -1), ("separation_speed_m_s", -1))
+    )
+    # the change of a slow speed is told as a part of a tenth of that of approach
+    energy = result.energy["input_J"] * separation * max(separation, _SLOW * closing) / first**2
+    value = abs(result.energy[entry])
+    return int(certain_figures(2.0 * change[-1] * max(1.0, energy / value if value > 0.0 else 1.0)))
 
 
 def _beside(value: float, whole: float, significant: int) -> str:
