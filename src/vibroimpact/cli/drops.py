@@ -51,7 +51,7 @@ def check(case: CaseArgument) -> None:
         return
     study = named(case, lambda: read_sweep(table))
     console().print(sweep_explained(study))
-    console().print(case_explained(study.case))
+    console().print(case_explained(study.case, study.axes))
 
 
 def _run(name: str, output: Path | None, *, force: bool) -> None:

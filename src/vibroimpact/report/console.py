@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Container, Iterable
 from dataclasses import fields
 
 import numpy as np
@@ -112,8 +112,8 @@ def _deformation(result: Result) -> list[RenderableType]:
     return [Text(), *([Text(sentence)] if sentence else []), *([facts(rows, indent=1)] if rows else [])] if rows or sentence else []
 
 
-def case_explained(case: Case) -> RenderableType:
-    """Return what a case means: the resolved numbers, what to expect, and what to doubt."""
+def case_explained(case: Case, aside: Container[str] = ()) -> RenderableType:
+    """Return what a case means: the resolved numbers, what to expect, and what to doubt; but slips of units at keys told elsewhere."""
     laws, pair, speed = contact_laws_of(case), contact_pair(case), first_speed(case)
     mass, radius, gravity = float(pair.effective_mass), case.sphere.radius, case.drop.gravity
     rows: list[tuple[str, str]] = [
@@ -154,7 +154,7 @@ def case_explained(case: Case) -> RenderableType:
     if not math.isnan(expected.force):
         numbers = f"indentation {expected.depth:.4g} m, force {expected.force:.4g} N"
         rows.append(("if nothing were lost" + ("" if rigid else ", rigid"), numbers))
-    found = doubts(resolved(case), expected)
+    found = doubts(resolved(case), expected, aside)
     return Group(Text(case.name or "a drop", style="bold"), facts(rows), *doubt_lines(found))
 
 

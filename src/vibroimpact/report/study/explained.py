@@ -5,6 +5,7 @@ from __future__ import annotations
 from rich.console import Group, RenderableType
 from rich.text import Text
 
+from vibroimpact.cases.study_slips import slips_of_axes
 from vibroimpact.cases.sweep import Sweep
 from vibroimpact.report.terminal_table import Column, TerminalTable
 from vibroimpact.studies.axes import Axis, Listed, Normal, Spaced
@@ -21,6 +22,7 @@ def sweep_explained(sweep: Sweep) -> RenderableType:
     return Group(
         Text(f"A study of {sweep.size:,} drops: {section.design}{drawn}; keeps {kept}.", style="bold"),
         table,
+        *(Text(f"Doubt: {doubt}.", style="yellow") for doubt in slips_of_axes(sweep)),
         Text("The case at its first point:\n"),
     )
 
