@@ -17,13 +17,16 @@ def explained(error: ValidationError, section_at: SectionAt) -> Iterator[tuple[s
     """Yield the dotted place of each fault, and a sentence about it."""
     for fault in error.errors():
         where = tuple(str(part) for part in fault["loc"] if not _is_branch(str(part)))
+        if where[-1:] == ("str",) and fault["type"] == "string_type" and isinstance(fault["input"], (list, tuple)):
+            continue  # it need not be a text: what is wrong with it as a list is told too
         path = ".".join(where)
         kind, context = fault["type"], fault.get("ctx", {})
         cause, shown = context.get("error"), _show(fault["input"])
         if kind == "extra_forbidden":
             section = section_at(where[:-1])
             known = list(section.model_fields) if section else []
-            place = f"[{'.'.join(where[:-1])}]" if where[:-1] else "a case"
+            above = ".".join(part for part in where[:-1] if not part.isdigit())
+            place = "a case" if not above else f"[[{above}]]" if where[-2].isdigit() else f"[{above}]"
             yield path, f'unknown key "{where[-1]}"; {place} takes {", ".join(known)}.{did_you_mean(where[-1], known)}'
         elif kind == "missing" and where[-1].isdigit():
             yield ".".join(where[:-1]), f"there are too few values; it takes {_about(where[:-1], section_at).removeprefix(': ')}"

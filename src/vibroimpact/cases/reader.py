@@ -15,6 +15,7 @@ from vibroimpact.cases.build import check_case
 from vibroimpact.cases.calibrate_section import CalibrateSection, SpeedsTable
 from vibroimpact.cases.explain import explained
 from vibroimpact.cases.material_field import InlineMaterial
+from vibroimpact.cases.place_words import place_in_words
 from vibroimpact.cases.schema import AccelerometerTable, Case, DropSection, PlateSection, RunSection, SensorSection, SphereSection
 from vibroimpact.cases.sweep_section import SweepSection
 from vibroimpact.errors import InputError, did_you_mean
@@ -112,7 +113,7 @@ def read_case(table: Mapping[str, Any]) -> Case:
         case = Case.model_validate(dict(table))
         check_case(case)
     except ValidationError as error:
-        lines = (f"{path}: {message}" if path else message for path, message in explained(error, _section))
+        lines = (f"{place_in_words(path, table)}: {message}" if path else message for path, message in explained(error, _section))
         raise InputError("\n".join(dict.fromkeys(lines))) from None
     return case
 

@@ -25,6 +25,7 @@ from vibroimpact.cases.elastic_fields import (
 from vibroimpact.cases.material_field import MaterialField
 from vibroimpact.cases.quantities import Quantity
 from vibroimpact.cases.section import Section
+from vibroimpact.cases.slips.lengths import likely_lengths
 from vibroimpact.cases.supports_field import SupportsField
 from vibroimpact.cases.sweep_section import SweepSection
 from vibroimpact.dynamics.problem import MOST_IMPACTS, STANDARD_GRAVITY, Problem
@@ -202,9 +203,10 @@ class Case(Section):
     def _fits_together(self) -> Case:
         radius, height, size = self.sphere.radius, self.drop.height, self.plate.size
         if height is not None and height <= radius:
+            hint = likely_lengths([radius], [height]).replace("Write", "Write sphere.radius =")
             raise InputError(
                 f"{height:g} m is not above the surface; it is the height of the sphere's centre, so it must be "
-                f"greater than the radius, {radius:g} m",
+                f"greater than the radius, {radius:g} m{hint}",
                 "drop.height",
             )
         if height is not None and self.drop.gravity == 0:
@@ -213,7 +215,8 @@ class Case(Section):
         reach = [0.5 * length for length in size[:2]] if size and not in_own_coordinates else [math.inf, math.inf]
         if any(abs(at) > end for at, end in zip(self.drop.position, reach, strict=True)):
             x, y = self.drop.position
-            raise InputError(f"({x:g}, {y:g}) m lies outside the plate, which reaches to ({reach[0]:g}, {reach[1]:g}) m", "drop.position")
+            words = f"({x:g}, {y:g}) m lies outside the plate, which reaches to ({reach[0]:g}, {reach[1]:g}) m"
+            raise InputError(f"{words}{likely_lengths(self.drop.position, reach)}", "drop.position")
         names = [sensor.name for sensor in self.sensors]
         twice = next((name for name in names if names.count(name) > 1), None)
         if twice is not None:

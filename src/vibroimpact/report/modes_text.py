@@ -11,13 +11,13 @@ from rich.text import Text
 
 from vibroimpact.bodies.elastic import ElasticBody
 from vibroimpact.cases.build_elastic import elastic_bodies
+from vibroimpact.cases.meshes import meshes_of
 from vibroimpact.cases.modes import BodyModes
 from vibroimpact.cases.schema import Case
 from vibroimpact.quantity import MISSING, column_texts, fixed
 from vibroimpact.report.terminal_table import Column, TerminalTable, facts, numbers, with_gap
 from vibroimpact.structures.recipe import model_key
 from vibroimpact.structures.store import has_model
-from vibroimpact.structures.surface import place_of, surface_motion
 
 _ROWS = 20
 
@@ -74,14 +74,12 @@ def elastic_rows(case: Case) -> list[tuple[str, str]]:
     Raises
     ------
     InputError
-        If a mesh can't be made.
+        If a mesh can't be made, or what must lie on it does not.
     """
     rows: list[tuple[str, str]] = []
+    meshes = meshes_of(case)
     for name, body in elastic_bodies(case).items():
-        mesh = body.recipe.shape.mesh(body.recipe.supports)
-        points = {"the contact point": (body.contact, body.side), **{f'sensor "{key}"': place for key, place in body.watched.items()}}
-        for what, (spot, side) in points.items():  # are they on the body?
-            surface_motion(mesh, np.array([place_of(mesh, spot, side)]), side, what=f"{name}: {what}")
+        mesh = meshes[name]
         elements = ", ".join(f"{len(block.connectivity)} {block.kind}" for block in mesh.blocks)
         reduction = body.recipe.reduction
         kept = f"{reduction.modes} modes" if reduction.modes else f"modes up to {reduction.max_frequency:g} Hz"

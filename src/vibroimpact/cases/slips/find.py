@@ -95,21 +95,6 @@ def swept_slips(case: Mapping[str, Any], swept: Mapping[str, Any]) -> list[str]:
     return found
 
 
-def likely_length(value: float, most: float) -> str:
-    """Return '; was 25 mm meant? Write "25 mm"' of a length that is too large, if a unit explains it; else "".
-
-    Parameters
-    ----------
-    value, most : float
-        The length, and what it may be at most [m].
-    """
-    meant = _meant(abs(value), Plausible(low=1e-4 * most, high=most), "m", ("mm", "cm", "um"))
-    if meant is None:
-        return ""
-    text = meant.text if value > 0.0 else f"-{meant.text}"
-    return f'; was {text} meant? Write "{text}"'
-
-
 def _numbers(case: Mapping[str, Any], swept: Container[str] = ()) -> Iterator[tuple[Place, _Number, Facts]]:
     """Yield the numbers of a case that are there, each with the facts of the case, in which those before may have been put right."""
     table, told = copy.deepcopy(dict(case)), Facts(case).told_by_the_bodies

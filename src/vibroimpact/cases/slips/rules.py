@@ -48,7 +48,7 @@ def modulus(facts: Facts, table: Mapping[str, Any]) -> Plausible:
 
 
 def strength(facts: Facts, table: Mapping[str, Any]) -> Plausible:
-    """Return how weak a material of its stiffness may be; one that is never to yield is given any strength, so that there is no upper end."""
+    """Return how weak a material of its stiffness may be; there is no upper end, as one that is never to yield is given any strength."""
     stiff = _sound(table.get("youngs_modulus", table.get("effective_modulus", math.nan)), _MODULUS)
     return Plausible(
         low=float(np.fmax(1e3, 5e-6 * stiff)),
