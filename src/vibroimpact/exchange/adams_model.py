@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from vibroimpact.exchange.adams_contact import AdamsContact, adams_contact
-from vibroimpact.exchange.contact_alone import first_contact, laws_of_impacts
+from vibroimpact.exchange.contact_alone import first_contact, laws_of_impacts, shared_notes
 from vibroimpact.exchange.drop import Drop
 from vibroimpact.materials import Material
 
@@ -25,8 +25,8 @@ SENSOR_ERROR = 1e-4
 """How far from first touch the sensor may still fire [mm]: 1/1000 of Adams' penetration of full damping."""
 
 TESTED = (
-    "a strict parser of the documented syntax, which integrates the contact of what it reads; vibroimpact's own restitution, peak force "
-    "and rebound heights within 1e-7. No Adams was run"
+    "a strict parser of the documented syntax, which integrates the contact of what it reads; restitution, peak force and rebound "
+    "heights of vibroimpact's drops between rigid bodies within 1e-7. No Adams was run"
 )
 
 
@@ -51,6 +51,7 @@ class AdamsModel:
     velocity: float
     plate: tuple[float, float, float] | None
     materials: tuple[MaterialData, ...]
+    notes: tuple[str, ...]
     end: float
     longest_step: float
     output_step: float
@@ -94,6 +95,7 @@ def adams_model(drop: Drop) -> AdamsModel:
         velocity=-1e3 * drop.speed,
         plate=None if drop.plate_size is None else (1e3 * drop.plate_size[0], 1e3 * drop.plate_size[1], 1e3 * drop.plate_size[2]),
         materials=_material_data([material for material in both if _is_elastic(material)]),
+        notes=tuple(shared_notes(drop)),
         end=drop.end_time,
         longest_step=_round_down(duration / _STEPS),
         output_step=_round_down(duration / _OUTPUTS),
@@ -116,7 +118,7 @@ def remarks(model: AdamsModel) -> list[str]:
             "the sensor is true while the sphere is free; it then stores the speed of the next touch, from the energy, which is "
             "the same at any moment of a flight; in contact it is false, and the value is held"
         )
-    return lines
+    return [*lines, *model.notes]
 
 
 def legal_name(text: str) -> str:

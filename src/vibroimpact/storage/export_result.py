@@ -53,7 +53,8 @@ def export_result(
     ...     [file.name for file in export_result(Path(place, "drop"), "csv")]
     ['impacts.csv', 'history.csv']
     """
-    found, drop = find_export_format(format), drop_of(directory)
+    found = find_export_format(format)
+    drop = found.told(drop_of(directory))
     return save_export(drop, found, default_output(directory, format) if output is None else Path(output), force=force)
 
 
@@ -71,7 +72,7 @@ def default_output(directory: str | PathLike[str], format: str) -> Path:
 
 
 def save_export(drop: Drop, format: ExportFormat, output: Path, *, force: bool = False) -> list[Path]:
-    """Write a drop; as `export_result`.
+    """Write a drop that the format's program can be told of; as `export_result`.
 
     Raises
     ------

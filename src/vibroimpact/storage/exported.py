@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from vibroimpact.calibration.speed_function import SpeedFunction
-from vibroimpact.cases.build import contact_laws_of, contact_pair, elastic_names
+from vibroimpact.cases.build import contact_laws_of, contact_pair, deforms, elastic_names, rigid_problem
 from vibroimpact.cases.reader import load_case, read_case
 from vibroimpact.cases.schema import Case
 from vibroimpact.errors import InputError
@@ -44,7 +44,7 @@ def drop_of(directory: str | PathLike[str]) -> Drop:
 
 
 def drop_of_result(result: Result, case: Case, function: tuple[str, SpeedFunction] | None = None) -> Drop:
-    """Return a run as a drop.
+    """Return a run as a drop, with the same between rigid bodies where the run is not one of them, or not one under the function.
 
     Parameters
     ----------
@@ -73,7 +73,9 @@ def drop_of_result(result: Result, case: Case, function: tuple[str, SpeedFunctio
         laws=contact_laws_of(case),
         function=function,
         elastic=tuple(elastic_names(case)),
+        local_element=case.contact.local.local_compliance == "identified",
         finite_sphere=case.contact.local.finite_sphere,
+        rigid=rigid_problem(case) if deforms(case) or function is not None else None,
         end_time=float(result.history["time_s"][-1]),
         impacts=result.impacts,
         history=result.history,

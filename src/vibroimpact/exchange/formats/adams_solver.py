@@ -9,6 +9,7 @@ from vibroimpact.exchange.adams_model import ACCURACY, LINE, SENSOR_ERROR, TESTE
 from vibroimpact.exchange.contact_alone import shared_notes
 from vibroimpact.exchange.drop import Drop
 from vibroimpact.exchange.export_format import ExportFormat
+from vibroimpact.exchange.rigid_drop import as_rigid
 
 _NAMES = Names(centre="11", spot="1", sensor="1", speed="1", damping="2")
 _GROUND, _SPHERE, _CORNER = 1, 2, 2  # parts, and the marker at the plate's corner
@@ -130,4 +131,5 @@ FORMAT = ExportFormat(
     tested=TESTED,
     write=write,
     notes=shared_notes,
+    told=as_rigid,
 )

@@ -9,6 +9,7 @@ from vibroimpact.exchange.adams_model import ACCURACY, LINE, SENSOR_ERROR, TESTE
 from vibroimpact.exchange.contact_alone import shared_notes
 from vibroimpact.exchange.drop import Drop
 from vibroimpact.exchange.export_format import ExportFormat
+from vibroimpact.exchange.rigid_drop import as_rigid
 
 _UPRIGHT = "0.0d, 0.0d, 0.0d"
 
@@ -154,4 +155,5 @@ FORMAT = ExportFormat(
     tested=TESTED,
     write=write,
     notes=shared_notes,
+    told=as_rigid,
 )

@@ -12,6 +12,7 @@ from vibroimpact.errors import InputError
 from vibroimpact.exchange.contact_alone import approach_speeds, first_contact, shared_notes
 from vibroimpact.exchange.drop import Drop
 from vibroimpact.exchange.export_format import ExportFormat
+from vibroimpact.exchange.rigid_drop import as_rigid
 from vibroimpact.exchange.script_text import comment_lines, file_name, one_line
 from vibroimpact.ranges import Range
 
@@ -220,7 +221,8 @@ FORMAT = ExportFormat(
     name="exudyn",
     program="EXUDYN",
     files="a Python script (.py)",
-    tested="run with EXUDYN 1.13.6",
+    tested="run with EXUDYN 1.13.6, beside vibroimpact's drops between rigid bodies",
     write=_write,
     notes=shared_notes,
+    told=as_rigid,
 )

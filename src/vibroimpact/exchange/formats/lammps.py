@@ -23,6 +23,7 @@ from vibroimpact.exchange.contact_alone import (
 )
 from vibroimpact.exchange.drop import Drop
 from vibroimpact.exchange.export_format import ExportFormat
+from vibroimpact.exchange.rigid_drop import as_rigid
 from vibroimpact.exchange.script_text import comment_lines, file_name, one_line
 
 _STEPS = 20_000
@@ -150,7 +151,8 @@ FORMAT = ExportFormat(
     name="lammps",
     program="LAMMPS, package GRANULAR",
     files="an input file (.in)",
-    tested="run with LAMMPS 22 Jul 2025, update 4",
+    tested="run with LAMMPS 22 Jul 2025, update 4, beside vibroimpact's drops between rigid bodies",
     write=_write,
     notes=_notes,
+    told=as_rigid,
 )

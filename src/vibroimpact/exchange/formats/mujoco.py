@@ -11,6 +11,7 @@ from vibroimpact.contact.restitution import achieved_restitution
 from vibroimpact.exchange.contact_alone import approach_speeds, clipped_dashpot, first_contact, laws_of_impacts, shared_notes, spring
 from vibroimpact.exchange.drop import Drop
 from vibroimpact.exchange.export_format import ExportFormat
+from vibroimpact.exchange.rigid_drop import as_rigid
 from vibroimpact.exchange.script_text import comment_lines, file_name, one_line
 
 _STEPS = 1000
@@ -96,7 +97,8 @@ FORMAT = ExportFormat(
     name="mujoco",
     program="MuJoCo",
     files="a model (.xml, MJCF)",
-    tested="run with MuJoCo 3.2.7 and 3.17.0",
+    tested="run with MuJoCo 3.2.7 and 3.17.0, the first impact beside vibroimpact's between rigid bodies",
     write=_write,
     notes=_notes,
+    told=as_rigid,
 )

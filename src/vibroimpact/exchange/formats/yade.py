@@ -22,6 +22,7 @@ from vibroimpact.exchange.contact_alone import (
 )
 from vibroimpact.exchange.drop import Drop
 from vibroimpact.exchange.export_format import ExportFormat
+from vibroimpact.exchange.rigid_drop import as_rigid
 from vibroimpact.exchange.script_text import comment_lines, file_name, one_line
 
 _STEPS = 10_000
@@ -151,7 +152,8 @@ FORMAT = ExportFormat(
     name="yade",
     program="YADE",
     files="a Python script (.py)",
-    tested="run with YADE 2023.02a",
+    tested="run with YADE 2023.02a, beside vibroimpact's drops between rigid bodies",
     write=_write,
     notes=_notes,
+    told=as_rigid,
 )
