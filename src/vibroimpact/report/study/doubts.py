@@ -16,7 +16,7 @@ _KEYS = 4  # of the worst drop that are shown; all are in drops.csv
 
 
 def doubt_sentences(study: Study) -> list[str]:
-    """Return what to doubt of a study: slips of units, then each limit that drops are beyond, how many drops, and the worst, counted from 0."""
+    """Return what to doubt of a study: slips of units, then each limit that drops are beyond, how many drops, the worst, counted from 0."""
     axes, found = study_axes(study), study_slips(study.table, study.coordinates)
     for limit, drops, worst, number in study.doubts:
         known = limits().get(limit)
