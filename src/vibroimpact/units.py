@@ -93,6 +93,8 @@ def to_si(value: float | str, unit: str = "") -> float:
     2260000000.0
     >>> to_si(0.025, "m")
     0.025
+    >>> to_si("500 g", "m/s^2")  # as data sheets have it: standard gravity; of a mass "g" is the gram
+    4903.325
     >>> to_si("25 kg", "m")
     Traceback (most recent call last):
         ...
@@ -218,7 +220,7 @@ def _dimension_words(unit: pint.Unit) -> str:
     dimension = unit_text(_dimension(unit).items())
     if kind is None:
         return f"of the dimension {dimension}"
-    named = f"{'an' if kind[0] in 'aeiou' else 'a'} {kind}"
+    named = f"{_article(kind)} {kind}"
     return named if kind == dimension else f"{named} ({dimension})"
 
 
@@ -261,6 +263,10 @@ def _parse_unit(text: str) -> pint.Unit:
     return _registry().parse_units(text)
 
 
+_GRAVITIES = {"g": "g0", "mg": "mg0", "ug": "ug0", "µg": "ug0", "μg": "ug0"}
+"""What accelerometers' data sheets write for standard gravity, 9.80665 m/s^2, and its multiples, by what pint calls it."""
+
+
 @lru_cache(maxsize=1000)
 def _factor(given: str, unit: str, text: str) -> float:
     """Return how many `unit` there are in one `given`."""
@@ -268,21 +274,27 @@ def _factor(given: str, unit: str, text: str) -> float:
 
     registry = _registry()
     try:
-        have, want = registry.Quantity(1.0, _parse_unit(given)), registry.parse_units(unit)
+        spelled = _GRAVITIES.get(given, given) if unit == "m/s^2" else given  # no mass can be meant by 500 g of acceleration
+        have, want = registry.Quantity(1.0, _parse_unit(spelled)), registry.parse_units(unit)
         return float(have.to(want).magnitude)
     except pint.DimensionalityError:
         kind = next((k for u, k in _KIND.items() if u and have.check(registry.parse_units(u).dimensionality)), None)
-        is_a = f"is a {kind}" if kind else "is another kind of quantity"
+        is_a = f"is {_article(kind)} {kind}" if kind else "is another kind of quantity"
         raise InputError(f'"{text}" {is_a}; what is wanted is {_wanted(unit)}') from None
     except Exception as error:  # pint raises many kinds for a unit that it can't read
         raise InputError(f'"{given}" in "{text}" is not a unit that is known; what is wanted is {_wanted(unit)}') from error
+
+
+def _article(noun: str) -> str:
+    return "an" if noun[0] in "aeiou" else "a"
 
 
 def _wanted(unit: str) -> str:
     if not unit:
         return "a plain number"
     example = _EXAMPLE.get(unit, f"1 {unit}")
-    return f'a {_KIND.get(unit, "quantity")} (a number in {unit}, or a string such as "{example}")'
+    kind = _KIND.get(unit, "quantity")
+    return f'{_article(kind)} {kind} (a number in {unit}, or a string such as "{example}")'
 
 
 def _finite(number: float, value: float | str) -> float:

@@ -169,6 +169,9 @@ def test_a_slip_at_the_first_point_is_not_said_twice(tmp_path: Path) -> None:
     )
     printed = CliRunner().invoke(app, ["check", str(file)]).output
     assert printed.count("was 25 mm meant?") == 1
+    swept = CliRunner().invoke(app, ["sweep", str(file), "-o", str(tmp_path / "out"), "--processes", "1"])
+    assert swept.stderr.count("was 25 mm meant?") == 1  # before all is computed
+    assert swept.stdout.count("was 25 mm meant?") == 1  # and with what came of it
 
 
 def test_results_and_calibrations_tell_it_too() -> None:

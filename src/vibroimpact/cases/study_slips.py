@@ -20,8 +20,13 @@ def slips_of_axes(sweep: Sweep) -> list[str]:
     return swept_slips(resolved(sweep.case), sweep.plan.columns)
 
 
+def whole_slips(sweep: Sweep) -> list[str]:
+    """Return a sentence for each number of a study that looks like a slip of a unit, swept or not; each is said once."""
+    return _once(resolved(sweep.case), sweep.plan.columns)
+
+
 def study_slips(table: Mapping[str, Any], values: Mapping[str, NDArray[Any]]) -> list[str]:
-    """Return a sentence for each number of a study that looks like a slip of a unit, swept or not; each is said once.
+    """Return what `whole_slips` does, of a study whose results are there.
 
     Parameters
     ----------
@@ -34,5 +39,8 @@ def study_slips(table: Mapping[str, Any], values: Mapping[str, NDArray[Any]]) ->
         case: Case = case_at({key: one for key, one in table.items() if key != "sweep"}, {key: one[0] for key, one in values.items()})
     except InputError:  # the meshes of a study may be gone when its results are read
         return []
-    whole = resolved(case)
-    return [*slips(whole, values), *swept_slips(whole, values)]
+    return _once(resolved(case), values)
+
+
+def _once(case: Mapping[str, Any], values: Mapping[str, NDArray[Any]]) -> list[str]:
+    return [*slips(case, values), *swept_slips(case, values)]

@@ -43,6 +43,7 @@ def sweep(
 
     The [sweep] section of the case says which keys run over what. What is done is kept, whatever stops the study: --resume goes on.
     """
+    from vibroimpact.cases.study_slips import whole_slips
     from vibroimpact.cases.sweep import load_sweep
     from vibroimpact.report.progress import counting_progress, patient_progress
     from vibroimpact.report.study.folder import run_sweep
@@ -65,6 +66,8 @@ def sweep(
     if found.bytes > MOST_BYTES_UNASKED and not (yes or resume):
         words = f"the results would take about {found.bytes / 1e9:.3g} GB, more than {MOST_BYTES_UNASKED / 1e9:g} GB"
         raise InputError(f"{study}: {words}; confirm that they are wanted with --yes, or keep fewer signals")
+    for doubt in whole_slips(found):
+        note(f"doubt: {doubt}")  # now, and not only when all is computed
     screen = console()
     options = "" if scheduler is None else f" --scheduler {shlex.quote(scheduler)}"
     command = f"vibroimpact sweep {shlex.quote(study)} -o {shlex.quote(str(target))} --resume{options}"

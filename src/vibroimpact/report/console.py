@@ -16,6 +16,7 @@ from vibroimpact.cases.expected import expected_of
 from vibroimpact.cases.schema import Case, SensorSection
 from vibroimpact.contact.law import CompliantLaw, ContactLaw, unit_of
 from vibroimpact.contact.restitution import achieved_restitution
+from vibroimpact.dynamics.problem import STANDARD_GRAVITY
 from vibroimpact.errors import InputError
 from vibroimpact.materials import RIGID, Material
 from vibroimpact.report.deformation import deformation_rows, treatment_sentence
@@ -196,7 +197,7 @@ def _accelerometer(sensor: SensorSection) -> list[str]:
         return []
     given = [
         ("resonance", meter.resonance, f"Hz with a damping ratio of {meter.damping_ratio:g}"),
-        ("range", meter.range, "m/s2"),
+        ("range", meter.range, f"m/s2, {(meter.range or 0.0) / STANDARD_GRAVITY:.4g} times standard gravity"),
         ("noise", meter.noise or None, "m/s2"),
         ("resolution", meter.resolution, "m/s2"),
     ]
