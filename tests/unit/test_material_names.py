@@ -36,7 +36,7 @@ def test_another_name_leads_to_that_of_the_library(name: str) -> None:
 
 @pytest.mark.parametrize("name", ["PVC", "PTFE", "rubber", "kryptonite"])
 def test_what_the_library_does_not_have_can_be_given_by_numbers(name: str) -> None:
-    with pytest.raises(vi.InputError, match="or give its numbers: { density =") as raised:
+    with pytest.raises(vi.InputError, match="or give its numbers") as raised:
         vi.find_material(name)
     assert "Did you mean" not in str(raised.value)
 

@@ -152,6 +152,38 @@ def test_nothing_is_said_of_zero(key: str) -> None:
     assert swept_slips(resolved(vi.read_case(plain_case(contact=ADAMS))), {key: np.array([0.0])}) == []
 
 
+def numbers_in(table: Any) -> list[tuple[Any, Any]]:
+    """Every number of a case: the table or list that it stands in, and its name there."""
+    items = list(table.items()) if isinstance(table, dict) else list(enumerate(table)) if isinstance(table, list) else []
+    here = [(table, name) for name, value in items if isinstance(value, float) and name != "poissons_ratio"]
+    return here + [one for _, value in items for one in numbers_in(value)]
+
+
+@pytest.mark.parametrize("value", [5e-324, 1e-200, 1e-30, 1e30, 1e200, 1.7e308])
+def test_any_number_can_be_looked_at(value: float) -> None:
+    """One number after the other, and all after it, far beyond anything."""
+    meter = {"resonance": 3e4, "range": 5000.0, "noise": 1.0, "resolution": 0.1}
+    spring = {"type": "spring", "position": [0.1, 0.1], "stiffness": 1e6, "radius": 0.01}
+    table = plain_case(
+        plate={**ELASTIC, "size": [0.5, 0.4, 0.008], "supports": spring, "mesh": {"element_size": 0.05}},
+        contact={**ADAMS, "damping_max": [180.0, 170.0], "full_damping_penetration": 1e-4},
+        sensors=[{"name": "a1", "position": [0.0, 0.0], "rate": 5e4, "filter": "butterworth", "corner": 1e4, "accelerometer": meter}],
+        run={"duration": 1.0, "rest_speed": 1e-3},
+        calibrate={"target": {"max_force": 100.0, "duration": 1e-3, "max_indentation": 1e-4, "rebound_height": 0.3}},
+    )
+    case = resolved(vi.read_case(table))
+    places = numbers_in(case)
+    assert len(places) > 30
+    for inside, name in places:
+        before = inside[name]
+        inside[name] = value
+        assert all(one.isprintable() and len(one) < 400 for one in slips(case))
+        inside[name] = before
+    for inside, name in places:
+        inside[name] = value
+        assert all(one.isprintable() and len(one) < 400 for one in slips(case))
+
+
 def test_swept_values_are_said_once_with_how_many(tmp_path: Path) -> None:
     table = study_table({"over": {"sphere.radius": [0.005, 10.0, 25.0]}}, drop={"speed": 3.0}, contact__stiffness=16176)
     study = read_sweep(table)

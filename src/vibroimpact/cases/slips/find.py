@@ -97,7 +97,9 @@ def swept_slips(case: Mapping[str, Any], swept: Mapping[str, Any]) -> list[str]:
 
 def _numbers(case: Mapping[str, Any], swept: Container[str] = ()) -> Iterator[tuple[Place, _Number, Facts]]:
     """Yield the numbers of a case that are there, each with the facts of the case, in which those before may have been put right."""
-    table, told = copy.deepcopy(dict(case)), Facts(case).told_by_the_bodies
+    table = copy.deepcopy(dict(case))
+    with np.errstate(all="ignore"):
+        told = Facts(case).told_by_the_bodies
     table["contact"] = {key: value for key, value in table["contact"].items() if f"contact.{key}" in swept or key not in told}
     with np.errstate(all="ignore"):
         for place in PLACES:
@@ -127,6 +129,13 @@ def _at(table: Any, way: Sequence[str], above: str) -> Iterator[_Number]:
 
 def _said(place: Place, facts: Facts, key: str, table: Mapping[Any, Any], given: Any) -> tuple[str, Any]:
     """Return what is said of a value, or of several, "" if nothing; and the same with what was likely meant."""
+    try:
+        return _judged(place, facts, key, table, given)
+    except ArithmeticError:  # numbers beyond all bounds, to which nothing can be held
+        return "", given
+
+
+def _judged(place: Place, facts: Facts, key: str, table: Mapping[Any, Any], given: Any) -> tuple[str, Any]:
     values = [float(one) for one in given] if isinstance(given, list) else [float(given)]
     bounds = place.rule(facts, table if isinstance(table, Mapping) else {})
     strange = [value for value in values if value != 0.0 and (abs(value) < bounds.low or abs(value) > bounds.high)]

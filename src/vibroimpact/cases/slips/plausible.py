@@ -96,7 +96,18 @@ def times(ratio: float) -> str:
     >>> times(64.3), times(1 / 31622.8)
     ('64 times more', '31,623 times less')
     """
-    return f"{ratio:,.0f} times more" if ratio > 1.0 else f"{1.0 / ratio:,.0f} times less"
+    return f"{count(ratio)} times more" if ratio > 1.0 else f"{count(1.0 / ratio)} times less"
+
+
+def count(value: float) -> str:
+    """Return a whole number with commas; a very large one with an exponent.
+
+    Examples
+    --------
+    >>> count(31622.8), count(6.4e12)
+    ('31,623', '6.4e12')
+    """
+    return f"{value:,.0f}" if value < 1e9 else number(value, 2)
 
 
 def number(value: float, digits: int = 6) -> str:

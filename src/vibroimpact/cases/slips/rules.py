@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from vibroimpact.cases.slips.facts import Facts
-from vibroimpact.cases.slips.plausible import Plausible, Rule, number, times
+from vibroimpact.cases.slips.plausible import Plausible, Rule, count, number, times
 
 _GRAVITY = 9.8  # that weighs on springs, whatever the drop has
 
@@ -119,8 +119,8 @@ def damping(facts: Facts, table: Mapping[str, Any]) -> Plausible:
     return Plausible(
         low=2e-4 * critical,
         high=10.0 * critical,
-        below=lambda value: f"is {critical / value:,.0f} times less than {said}, and takes next to nothing",
-        above=lambda value: f"is {value / critical:,.0f} times {said}",
+        below=lambda value: f"is {count(critical / value)} times less than {said}, and takes next to nothing",
+        above=lambda value: f"is {count(value / critical)} times {said}",
         reference=0.05 * critical,
         within=60.0,
     )
@@ -130,7 +130,7 @@ def full_damping(facts: Facts, table: Mapping[str, Any]) -> Plausible:
     """Return how deep a contact may get before its damping acts in full."""
     return Plausible(
         high=float(np.fmax(0.3 * facts.radius, 10.0 * facts.depth)),
-        above=lambda value: f"is {value / facts.depth:,.0f} times the largest indentation, {number(facts.depth, 2)} m",
+        above=lambda value: f"is {count(value / facts.depth)} times the largest indentation, {number(facts.depth, 2)} m",
         reference=0.1 * facts.depth,
     )
 
@@ -140,7 +140,7 @@ def dissipation_time(facts: Facts, table: Mapping[str, Any]) -> Plausible:
     lasts = facts.contact_time
     return Plausible(
         high=10.0 * lasts,
-        above=lambda value: f"is {value / lasts:,.0f} times as long as the contact, {number(lasts, 2)} s",
+        above=lambda value: f"is {count(value / lasts)} times as long as the contact, {number(lasts, 2)} s",
         reference=0.03 * lasts,
     )
 
