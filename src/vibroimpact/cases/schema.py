@@ -203,7 +203,7 @@ class Case(Section):
     def _fits_together(self) -> Case:
         radius, height, size = self.sphere.radius, self.drop.height, self.plate.size
         if height is not None and height <= radius:
-            hint = likely_lengths([radius], [height]).replace("Write", "Write sphere.radius =")
+            hint = likely_lengths([radius], [min(height, 3.0)]).replace("Write", "Write sphere.radius =")
             raise InputError(
                 f"{height:g} m is not above the surface; it is the height of the sphere's centre, so it must be "
                 f"greater than the radius, {radius:g} m{hint}",

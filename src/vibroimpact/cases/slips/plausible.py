@@ -115,7 +115,8 @@ def number(value: float, digits: int = 6) -> str:
 
     Examples
     --------
-    >>> number(16176.0), number(5.115e8), number(7.85e-9)
-    ('16176', '5.115e8', '7.85e-9')
+    >>> number(16176.0), number(5.115e8), number(7.85e-9), number(2786.0, 2)
+    ('16176', '5.115e8', '7.85e-9', '2800')
     """
-    return re.sub(r"e([+-])0*", lambda power: "e" + power[1].strip("+"), f"{value:.{digits}g}")
+    rounded = float(f"{value:.{digits}g}")
+    return re.sub(r"e([+-])0*", lambda power: "e" + power[1].strip("+"), f"{rounded:.{max(digits, 6)}g}")
