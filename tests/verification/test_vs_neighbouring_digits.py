@@ -12,6 +12,7 @@ from vibrating import STIFFNESS, drop_on, random_modes
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.laws.hertz import Hertz
 from vibroimpact.contact.laws.lankarani_nikravesh import LankaraniNikravesh
+from vibroimpact.report.captions import caption
 from vibroimpact.report.comparison import Comparison, comparison_table
 from vibroimpact.report.tables import impact_table, ledger_table
 from vibroimpact.storage.result import Result, result_of
@@ -70,3 +71,4 @@ def test_a_chaotic_drop_prints_no_digits_that_it_lacks() -> None:
     assert table[4] == "?"  # of the last
     headers, rows, *_ = impact_table(first)
     assert rows[-1][headers.index(("Largest force", "kN"))] == "?"
+    assert "? mJ (? %) are still in their vibration" in caption("energy", first).replace("\u00a0", " ")

@@ -121,6 +121,15 @@ def ledger_table(result: Result) -> tuple[str, list[LedgerRow]]:
     return scale.unit, rows
 
 
+def energy_text(result: Result, *entries: str) -> str:
+    """Return the sum of entries of the ledger, with its unit and its part of the energy put in, in the digits that are certain."""
+    value, put_in = sum(result.energy[entry] for entry in entries), result.energy["input_J"]
+    figures = min(_certain_of(entry, result) for entry in entries)
+    scale, part = multiple("J", value), 100.0 * value / put_in
+    percent = certain(fixed(part, 1), part, figures)
+    return f"{certain(digits(value / scale.size), value / scale.size, figures)}\u00a0{scale.unit} ({percent} %)"
+
+
 def _certain_of(entry: str, result: Result) -> int:
     """Return how many significant figures of an entry of the ledger are certain.
 
@@ -171,6 +180,13 @@ def figures_of(name: str, change: Floats) -> NDArray[np.intp]:
     if name in _EXACT:
         return np.full(len(change), ALL_FIGURES)
     return certain_figures(np.concatenate([change[:1], change[:-1]]) if name in _ARRIVAL else change)
+
+
+def entry_text(result: Result, impact: int, name: str, unit: str) -> str:
+    """Return an entry of the impact table with its unit, in the digits that it has where the drop is sensitive."""
+    value, figures = float(result.impacts[name][impact]), int(figures_of(name, result.change_by_impact)[impact])
+    best = multiple(unit, value)
+    return f"{certain(digits(value / best.size), value / best.size, figures)}\u00a0{best.unit}".rstrip("\u00a0")
 
 
 def takes_digits(change: Floats) -> bool:
