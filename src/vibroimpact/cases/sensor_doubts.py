@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from vibroimpact.dynamics.recording import Signal
+from vibroimpact.quantity import text
 
 _PROMISED = 0.01  # of the rms value: what the modes left out may change in a signal without a word
 _NEAR = 2.0  # thicknesses from the contact
@@ -45,7 +46,7 @@ def sensor_doubts(case: Mapping[str, Any], signals: Mapping[str, Signal], highes
             remedy = _remedy(signal, highest) if signal.uncertainty > _PROMISED else f"beyond {_NEAR:g} thicknesses plate theory holds"
             alike.setdefault((cause, remedy), {})[name] = part
         elif signal.uncertainty > _PROMISED:
-            cause = f"the modes of the plate left out, those above {highest:.4g} Hz, at {signal.sensor.rate:g} samples per second"
+            cause = f"the modes of the plate left out (above {text(highest, 'Hz')}, at {signal.sensor.rate:g} samples per second)"
             alike.setdefault((cause, _remedy(signal, highest)), {})[name] = signal.uncertainty
     return found + [_said(cause, remedy, parts) for (cause, remedy), parts in alike.items()]
 
@@ -62,10 +63,10 @@ def _of_range(signal: Signal, end: float | None) -> list[str]:
     limit = "its range" if end is None else f"its range of {end:g} m/s2"
     if not signal.overload_time:
         return []
-    least = float(f"{_ENOUGH * signal.peak:.1g}")
+    least, long = float(f"{_ENOUGH * signal.peak:.1g}"), text(signal.overload_time, "s", 2)
     least = least if least >= signal.peak else 2.0 * least
     return [
-        f'the accelerometer of sensor "{signal.sensor.name}" is driven beyond {limit} for {signal.overload_time:.2g} s in all, by up to '
+        f'the accelerometer of sensor "{signal.sensor.name}" is driven beyond {limit} for {long} in all, by up to '
         f"{signal.peak:.4g} m/s2: what lies beyond is cut off, and the signal around it is wrong; take one with a range of {least:g} m/s2 "
         "or so"
     ]
@@ -100,4 +101,4 @@ def _known(part: float) -> float:
 
 
 def _per_cent(part: float) -> str:
-    return f"{100.0 * part:.2g} %" if part < 1.0 else "all"
+    return f"{100.0 * part:.2g} %" if part < 1.0 else "100 % or more"
