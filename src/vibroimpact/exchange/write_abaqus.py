@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from os import PathLike
 
 from vibroimpact.exchange.export import check_elastic, check_thickness, exported, write_text
+from vibroimpact.exchange.plain_names import one_line
 from vibroimpact.materials import Material
 from vibroimpact.structures.mesh import Mesh
 
@@ -88,4 +89,4 @@ def _rows(numbers: Sequence[int]) -> Iterator[str]:
 def _quoted(name: str) -> str:
     """Return a name as a label: in quotes if it is not a plain word."""
     plain = name.replace("_", "").replace("-", "").isalnum() and name[0].isalpha()
-    return name if plain else '"' + " ".join(name.replace('"', "'").split()) + '"'
+    return name if plain else '"' + one_line(name.replace('"', "'")) + '"'
