@@ -57,7 +57,7 @@ def test_random_names_do_nothing(format: str) -> None:
     if format == "uff58":
         pytest.importorskip("pyuff")
     chance = random.Random(f"names for {format}")
-    names = [[some_name(chance) for _ in range(6)] for _ in range(number(20))]
+    names = [[some_name(chance) for _ in range(6)] for _ in range(number(10))]
     inputs = [(format, one[0], [*one[1:3], one[3] + "3"], (one[4], one[5])) for one in names if len({one[1], one[2], one[3] + "3"}) == 3]
     plainly(format)  # for all
     found = failures(write_and_read, inputs)
