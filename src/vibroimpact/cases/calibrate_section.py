@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Annotated, Any, Literal
 
 import numpy as np
-from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
+from pydantic import BeforeValidator, Field, StrictBool, WithJsonSchema, model_validator
 
 from vibroimpact.calibration.outcomes import OUTCOMES, check_weights
 from vibroimpact.cases.contact_section import ContactSection, law_schema, read_contact
@@ -17,6 +17,7 @@ from vibroimpact.ranges import Range
 MOST_SPEEDS = 10_000
 
 _POSITIVE = Range(above=0)
+_Measured = Annotated[float, Quantity("", "restitution; noise may lift it a little above 1", _POSITIVE)]
 _Speed = Annotated[float, Quantity("m/s", "approach speed", _POSITIVE)]
 _Restitution = Annotated[float, Quantity("", "restitution", Range(above=0, at_most=1))]
 _Height = Annotated[float, Quantity("m", "height of the sphere's centre at the top of a rebound", _POSITIVE)]
@@ -25,7 +26,7 @@ _Height = Annotated[float, Quantity("m", "height of the sphere's centre at the t
 class RestitutionTarget(Section):
     """A restitution: one for every impact, or one at each of several approach speeds."""
 
-    restitution: _Restitution | tuple[_Restitution, ...] = Field(description="separation speed over approach speed")
+    restitution: _Restitution | tuple[_Measured, ...] = Field(description="separation speed over approach speed")
     approach_speed: tuple[_Speed, ...] | None = Field(
         None, description="a list of speeds [m/s] at which each of several restitutions was measured"
     )
@@ -60,7 +61,7 @@ class ImpactTarget(Section):
     duration: Annotated[float, Quantity("s", "duration of the contact", _POSITIVE)] | None = None
     separation_speed: Annotated[float, Quantity("m/s", "speed after the impact", _POSITIVE)] | None = None
     rebound_height: _Height | None = None
-    restitution: _Restitution | None = None
+    restitution: _Measured | None = None
     relative_deviation: Annotated[float, Quantity("", "standard deviation of each, as a part of it", Range(above=0, below=1))] | None = None
 
     @model_validator(mode="after")
@@ -72,9 +73,10 @@ class ImpactTarget(Section):
 
 
 class FileTarget(Section):
-    """A CSV file: impacts, rebound heights, or a record of position or force."""
+    """A file: impacts, rebound heights, or a record of position, force or the sphere's acceleration."""
 
-    file: str = Field(description="a CSV file whose header names its columns with their units")
+    file: str = Field(description="a CSV file whose header names its columns with their units, or a universal file (UFF 58) with a record")
+    function: str | None = Field(None, description="which function of a universal file, by its first line of identification or its number")
 
 
 Target = ContactSection | RestitutionTarget | HeightsTarget | ImpactTarget | FileTarget
@@ -92,7 +94,7 @@ def _read_target(value: Any) -> Any:
     if isinstance(value, str):
         return FileTarget(file=value)
     if not isinstance(value, dict):
-        raise InputError(f"{value!r} is not allowed; it must be a table with law, {', '.join(_KEYS)}, or the name of a CSV file")
+        raise InputError(f"{value!r} is not allowed; it must be a table with law, {', '.join(_KEYS)}, or the name of a file")
     if "law" in value:
         return read_contact(value)
     kind = next((key for key in _KEYS if key in value), None)
@@ -145,7 +147,7 @@ class SpeedsTable(Section):
 _TARGET_SCHEMA = {
     "description": "what impacts are to be like",
     "anyOf": [
-        {"type": "string", "description": "a CSV file"},
+        {"type": "string", "description": "a CSV or universal file"},
         law_schema(),
         *(kind.model_json_schema() for kind in dict.fromkeys(_KEYS.values())),
     ],
@@ -170,6 +172,11 @@ class CalibrateSection(Section):
     )
     parameter: str | None = Field(
         None, description='what is tuned: a parameter of the law, "sphere.damping" or "plate.damping"; by default what sets the law\'s loss'
+    )
+    air: StrictBool | None = Field(
+        None,
+        description="whether the sphere was measured in air, whose drag its flights then have; without this key they are those of a "
+        "vacuum, and a doubt says where drag matters",
     )
     match: Annotated[Any, BeforeValidator(_read_match), WithJsonSchema(_MATCH_SCHEMA)] = Field(
         None, description="what of an impact is matched: one, or a table of several with weights; by default the rebound, if it is there"

@@ -31,6 +31,10 @@ from vibroimpact.storage.tables import write_csv
 
 _TITLES = {
     "parameter": ("The value over the approach speed", "Each impact by itself, and the polynomial through them."),
+    "record": (
+        "Measured and simulated",
+        "The record, and what is simulated with the values found: each impact at the speed with which it came.",
+    ),
     "differences": ("What is still wrong", "Each impact of the drop beside what was wanted, with the value given in three ways."),
 }
 

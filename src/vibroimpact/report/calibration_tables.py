@@ -91,7 +91,7 @@ def function_words(found: Calibration) -> str:
 def fit_sentences(found: Calibration) -> list[str]:
     """Return how good the polynomial is: how well it is known, and how far it is off."""
     fit, seen = found.fit, found.observations
-    told = []
+    told = list(seen.notes)
     if seen.measured:
         half = fit.half_widths(found.confidence)
         if np.isfinite(half).all():

@@ -31,7 +31,7 @@ _LINE = 80
 """Letters of a line of text."""
 _MOST_NAMED = 10
 """Sensors that are told by name."""
-_MOTION = {
+MOTION = {
     "position_m": ("height of the sphere's centre", 8, "m"),
     "velocity_m_s": ("velocity of the sphere", 11, "m/s"),
     "acceleration_m_s2": ("acceleration of the sphere", 12, "m/s2"),
@@ -107,7 +107,7 @@ def _of_history(drop: Drop) -> Iterator[_Function]:
     if rate is None:
         return
     motion = motion_at(drop.history, np.arange(int(drop.history["time_s"][-1] * rate * (1.0 + 1e-12)) + 1) / rate)
-    for name, (words, kind, unit) in _MOTION.items():
+    for name, (words, kind, unit) in MOTION.items():
         yield _Function(words, _SPHERE, _UP, kind, unit, rate, motion[name])
 
 
