@@ -14,6 +14,7 @@ import numpy as np
 
 from vibroimpact.errors import InputError, did_you_mean
 from vibroimpact.ranges import Range
+from vibroimpact.shown import shown
 
 _RANGES = {
     "density": Range(above=0),
@@ -148,5 +149,5 @@ def find_material(name: str) -> Material:
     library = material_library()
     if name not in library:
         remedy = "or give its numbers: { density = ..., youngs_modulus = ..., poissons_ratio = ... }"
-        raise InputError(f'there is no material "{name}" in the library; "vibroimpact materials" lists them, {remedy}.{_meant(name)}')
+        raise InputError(f'there is no material {shown(name)} in the library; "vibroimpact materials" lists them, {remedy}.{_meant(name)}')
     return library[name]

@@ -13,6 +13,7 @@ from functools import cache, lru_cache
 from typing import TYPE_CHECKING
 
 from vibroimpact.errors import InputError
+from vibroimpact.shown import shown
 
 if TYPE_CHECKING:
     import pint
@@ -101,7 +102,7 @@ def to_si(value: float | str, unit: str = "") -> float:
     vibroimpact.errors.InputError: "25 kg" is a mass; what is wanted is a length (a number in m, or a string such as "25 mm")
     """
     if isinstance(value, bool) or not isinstance(value, (int, float, str)):
-        raise InputError(f"{value!r} is not {_wanted(unit)}")
+        raise InputError(f"{shown(value)} is not {_wanted(unit)}")
     if isinstance(value, str):
         return _finite(_parse(value, unit), value)
     try:

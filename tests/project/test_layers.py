@@ -11,7 +11,8 @@ PACKAGE = Path(vibroimpact.__file__).parent
 
 # from the ground up; a module may import its own layer's package and what is below
 LAYERS = [
-    {"errors", "_version"},
+    {"shown", "_version"},
+    {"errors"},
     {"ranges", "registry"},
     {"units", "materials", "quantity"},
     {"contact"},

@@ -8,11 +8,13 @@ import numpy as np
 from pydantic import BeforeValidator, Field, StrictBool, WithJsonSchema, model_validator
 
 from vibroimpact.calibration.outcomes import OUTCOMES, check_weights
+from vibroimpact.cases.bounds import Name, at_most
 from vibroimpact.cases.contact_section import ContactSection, law_schema, read_contact
 from vibroimpact.cases.quantities import Quantity
 from vibroimpact.cases.section import Section, read_table
 from vibroimpact.errors import InputError, did_you_mean
 from vibroimpact.ranges import Range
+from vibroimpact.shown import shown
 
 MOST_SPEEDS = 10_000
 
@@ -26,8 +28,10 @@ _Height = Annotated[float, Quantity("m", "height of the sphere's centre at the t
 class RestitutionTarget(Section):
     """A restitution: one for every impact, or one at each of several approach speeds."""
 
-    restitution: _Restitution | tuple[_Measured, ...] = Field(description="separation speed over approach speed")
-    approach_speed: tuple[_Speed, ...] | None = Field(
+    restitution: Annotated[_Restitution | tuple[_Measured, ...], at_most(MOST_SPEEDS, "restitutions")] = Field(
+        description="separation speed over approach speed"
+    )
+    approach_speed: Annotated[tuple[_Speed, ...], at_most(MOST_SPEEDS, "speeds")] | None = Field(
         None, description="a list of speeds [m/s] at which each of several restitutions was measured"
     )
     standard_deviation: Annotated[float, Quantity("", "standard deviation of each", _POSITIVE)] | None = None
@@ -47,7 +51,7 @@ class RestitutionTarget(Section):
 class HeightsTarget(Section):
     """Measured rebound heights, from the first impact on."""
 
-    rebound_heights: tuple[_Height, ...] = Field(
+    rebound_heights: Annotated[tuple[_Height, ...], at_most(MOST_SPEEDS, "heights")] = Field(
         min_length=1, description="a list of heights of the sphere's centre above the plate, one an impact [m]"
     )
     standard_deviation: Annotated[float, Quantity("m", "standard deviation of each", _POSITIVE)] | None = None
@@ -94,7 +98,7 @@ def _read_target(value: Any) -> Any:
     if isinstance(value, str):
         return FileTarget(file=value)
     if not isinstance(value, dict):
-        raise InputError(f"{value!r} is not allowed; it must be a table with law, {', '.join(_KEYS)}, or the name of a file")
+        raise InputError(f"{shown(value)} is not allowed; it must be a table with law, {', '.join(_KEYS)}, or the name of a file")
     if "law" in value:
         return read_contact(value)
     kind = next((key for key in _KEYS if key in value), None)
@@ -113,7 +117,7 @@ def _read_match(value: Any) -> Any:
     if isinstance(value, str):
         value = {value: 1.0}
     if not isinstance(value, dict):
-        raise InputError(f"{value!r} is not allowed; it must be one of {', '.join(OUTCOMES)}, or a table of them with weights")
+        raise InputError(f"{shown(value)} is not allowed; it must be one of {', '.join(OUTCOMES)}, or a table of them with weights")
     try:
         weights = {str(name): float(weight) for name, weight in value.items()}
     except (TypeError, ValueError):
@@ -170,7 +174,7 @@ class CalibrateSection(Section):
     model: Annotated[Any, BeforeValidator(_read_model), WithJsonSchema(law_schema())] = Field(
         None, description="the contact law that is tuned; by default that of the case"
     )
-    parameter: str | None = Field(
+    parameter: Name | None = Field(
         None, description='what is tuned: a parameter of the law, "sphere.damping" or "plate.damping"; by default what sets the law\'s loss'
     )
     air: StrictBool | None = Field(

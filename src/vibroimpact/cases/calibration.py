@@ -82,7 +82,7 @@ def read_calibration(table: Mapping[str, Any]) -> ToCalibrate:
         try:
             return ToCalibrate(read_case(whole), started is contact)
         except InputError as error:
-            raise InputError("\n".join(_where(line, own, model is not None) for line in str(error).splitlines())) from None
+            raise InputError.of_several(_where(line, own, model is not None) for line in error.lines) from None
     return ToCalibrate(read_case(whole), True)
 
 

@@ -9,6 +9,7 @@ from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
 from pydantic_core import CoreSchema, core_schema
 
 from vibroimpact.ranges import Range
+from vibroimpact.shown import shown
 from vibroimpact.units import to_si
 
 
@@ -26,7 +27,7 @@ def read_quantity(value: Any, unit: str, allowed: Range) -> float:
     0.025
     """
     number = to_si(value, unit)
-    allowed.check(number, unit, f'"{value}"' if isinstance(value, str) else str(value))
+    allowed.check(number, unit, shown(value))
     return number
 
 

@@ -11,6 +11,7 @@ from typing import Any, TypeVar
 
 from pydantic import BaseModel, ValidationError
 
+from vibroimpact.cases.bounds import MOST_BYTES, check_bounds, check_text
 from vibroimpact.cases.build import check_case
 from vibroimpact.cases.calibrate_section import CalibrateSection, SpeedsTable
 from vibroimpact.cases.explain import explained
@@ -19,11 +20,9 @@ from vibroimpact.cases.place_words import place_in_words
 from vibroimpact.cases.schema import AccelerometerTable, Case, DropSection, PlateSection, RunSection, SensorSection, SphereSection
 from vibroimpact.cases.sweep_section import SweepSection
 from vibroimpact.errors import InputError, did_you_mean
+from vibroimpact.shown import shortened, shown
 
 Read = TypeVar("Read")
-
-LARGEST_FILE = 1_000_000
-"""Bytes; a case is a page of text, and more is a mistake."""
 
 _SECTIONS: dict[tuple[str, ...], type[BaseModel]] = {
     (): Case,
@@ -69,10 +68,14 @@ def _read_to_run(table: dict[str, Any]) -> Case:
         return read_case(table)
     except InputError as error:
         if "calibrate" in table and "contact" in str(error) and "missing" in str(error):
-            raise InputError(f"{error}; for `vibroimpact calibrate` what it tunes may be left out") from None
+            raise _with_hint(error, "for `vibroimpact calibrate` what it tunes may be left out") from None
         if "sweep" in table and "missing" in str(error):
-            raise InputError(f"{error}; for `vibroimpact sweep` what it sweeps may be left out") from None
+            raise _with_hint(error, "for `vibroimpact sweep` what it sweeps may be left out") from None
         raise
+
+
+def _with_hint(error: InputError, hint: str) -> InputError:
+    return InputError.of_several([*error.lines[:-1], f"{error.lines[-1]}; {hint}"])
 
 
 def load_table(source: str | PathLike[str]) -> dict[str, Any]:
@@ -84,12 +87,14 @@ def load_table(source: str | PathLike[str]) -> dict[str, Any]:
         If it can't be read or is not TOML; the message does not name the source.
     """
     text = _shipped(str(source)) if str(source).startswith("paper:") else _file(Path(source))
+    check_text(text)
     try:
         table = tomllib.loads(text)
     except ValueError as error:  # tomllib's own, or a number of thousands of digits
         raise InputError(f"this is not valid TOML: {error}") from None
     except RecursionError:
         raise InputError("this is not a case: its tables are nested too deeply") from None
+    check_bounds(table)
     return _beside(table, Path(source).parent)
 
 
@@ -98,7 +103,8 @@ def named(source: str | PathLike[str], read: Callable[[], Read]) -> Read:
     try:
         return read()
     except InputError as error:
-        raise InputError("\n".join(f"{source}: {line}" for line in str(error).splitlines())) from None
+        place = shortened(str(source), 160)
+        raise InputError.of_several(f"{place}: {line}" for line in error.lines) from None
 
 
 def read_case(table: Mapping[str, Any]) -> Case:
@@ -109,12 +115,15 @@ def read_case(table: Mapping[str, Any]) -> Case:
     InputError
         If it is not a valid case; one line a fault.
     """
+    check_bounds(table)
     try:
         case = Case.model_validate(dict(table))
         check_case(case)
     except ValidationError as error:
-        lines = (f"{place_in_words(path, table)}: {message}" if path else message for path, message in explained(error, _section))
-        raise InputError("\n".join(dict.fromkeys(lines))) from None
+        faults = explained(error, _section)
+        raise InputError.of_several(
+            f"{shortened(place_in_words(path, table), 160)}: {message}" if path else message for path, message in faults
+        ) from None
     return case
 
 
@@ -126,9 +135,7 @@ def shipped_cases() -> dict[str, str]:
     >>> "paper:type1-theory" in shipped_cases()
     True
     """
-    folder = files("vibroimpact").joinpath("cases/library")
-    names = sorted(entry.name.removesuffix(".toml") for entry in folder.iterdir() if entry.name.endswith(".toml"))
-    return {f"paper:{name}": tomllib.loads(_shipped(f"paper:{name}"))["name"] for name in names}
+    return {name: tomllib.loads(_shipped(name))["name"] for name in _names()}
 
 
 def _beside(table: dict[str, Any], folder: Path) -> dict[str, Any]:
@@ -157,11 +164,16 @@ def _columns_beside(inside: Any, folder: Path) -> None:
         _columns_beside(value, folder)
 
 
+def _names() -> list[str]:
+    """Return the names of the shipped cases."""
+    folder = files("vibroimpact").joinpath("cases/library")
+    return sorted(f"paper:{entry.name.removesuffix('.toml')}" for entry in folder.iterdir() if entry.name.endswith(".toml"))
+
+
 def _shipped(name: str) -> str:
     entry = files("vibroimpact").joinpath("cases/library", name.removeprefix("paper:") + ".toml")
-    if "/" in name or "\\" in name or not entry.is_file():
-        known = list(shipped_cases())
-        raise InputError(f'there is no shipped case "{name}"; there are {", ".join(known)}.{did_you_mean(name, known)}')
+    if name not in (known := _names()):
+        raise InputError(f"there is no shipped case {shown(name)}; there are {', '.join(known)}.{did_you_mean(name, known)}")
     return entry.read_text(encoding="utf-8")
 
 
@@ -170,9 +182,9 @@ def _file(path: Path) -> str:
         if path.is_dir():
             raise InputError("this is a directory; a case is a TOML file")
         with path.open("rb") as file:
-            data = file.read(LARGEST_FILE + 1)
-        if len(data) > LARGEST_FILE:
-            raise InputError(f"the file is larger than {LARGEST_FILE // 1_000_000} MB; a case is a page of text")
+            data = file.read(MOST_BYTES + 1)
+        if len(data) > MOST_BYTES:
+            raise InputError(f"the file is larger than {MOST_BYTES // 1_000_000} MB; a case is a page of text")
         return data.decode("utf-8-sig")  # some editors put a byte-order mark first
     except FileNotFoundError:
         raise InputError('there is no such file; a case is a TOML file, or a shipped one such as "paper:type1-theory"') from None

@@ -13,6 +13,9 @@ from typing import TYPE_CHECKING, Annotated, NoReturn
 
 import typer
 
+from vibroimpact.errors import lines_of
+from vibroimpact.shown import visible
+
 if TYPE_CHECKING:
     from rich.console import Console
 
@@ -45,9 +48,13 @@ def common(
     """What happens when a particle hits a plate: contact, energy and vibration, in a second."""
 
 
+_LONGEST_STEM = 60  # what is added to it, here and while it is written, fits into the 255 bytes of a name on disk
+
+
 def stem(case: str) -> str:
     """Return what a folder made from a case is called."""
-    return Path(case.removeprefix("paper:")).stem
+    name = Path(case.removeprefix("paper:")).stem[:_LONGEST_STEM]
+    return "".join(character if character.isprintable() else "_" for character in name)
 
 
 def console() -> Console:
@@ -61,10 +68,10 @@ def console() -> Console:
 
 
 def say(text: str, *, err: bool = False) -> None:
-    """Print a text, on standard error if so wanted, in letters that the stream has."""
+    """Print lines, on standard error if so wanted, in letters that the stream has; what they name can't steer the terminal."""
     from vibroimpact.report.encodable import encodable
 
-    stream = sys.stderr if err else sys.stdout
+    stream, text = sys.stderr if err else sys.stdout, "\n".join(map(visible, text.split("\n")))
     print(encodable(text, getattr(stream, "encoding", None) or "ascii"), file=stream, flush=True)  # a closed pipe is told here, not at exit
 
 
@@ -125,5 +132,5 @@ def stopping(told: str) -> Iterator[Callable[[], bool]]:
 
 def fail(message: str, status: int) -> NoReturn:
     """Say what went wrong, and leave with an exit status."""
-    say("\n".join(f"vibroimpact: {line}" for line in message.splitlines()), err=True)
+    say("\n".join(f"vibroimpact: {line}" for line in lines_of(message.split("\n"))), err=True)
     sys.exit(status)

@@ -26,6 +26,9 @@ from vibroimpact.storage.tables import impact_rows, write_csv
 
 SUMMARY = "summary.json"
 
+LONGEST_FOLDER_NAME = 200
+"""Bytes; most disks take 255, and while it is written a folder has a longer name."""
+
 
 _OTHER_FOLDERS = {
     "laws": "this is a comparison of contact laws, not the result of a run; make it anew with compare",
@@ -79,6 +82,12 @@ def check_free(directory: str | PathLike[str], *, force: bool = False) -> None:
         If something is there that may not be replaced.
     """
     target = Path(directory)
+    if "\0" in str(target):
+        raise InputError(f"{target}: a path can't have the character NUL")
+    if len(os.fsencode(target.name)) > LONGEST_FOLDER_NAME:
+        raise InputError(f"{target}: the name of a folder may have {LONGEST_FOLDER_NAME} letters at most")
+    if target.absolute() == Path(target.absolute().anchor):
+        raise InputError(f"{target}: this is where all files are; name a folder inside it")
     if target.resolve() == Path.cwd():
         raise InputError(f"{target}: this is the folder you stand in; name one inside it")
     above = next(folder for folder in target.absolute().parents if folder.exists())

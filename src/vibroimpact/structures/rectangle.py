@@ -15,6 +15,7 @@ MOST_ELEMENTS = 2_000_000
 """More than this are refused before they are made; no machine would find their modes."""
 
 _CORE = 0.5  # half the side of the square inside a disc, in radii
+_SMALLEST = 1e-5  # radius of a disc over the longer side; lines of a mesh that are nearer to one another are one
 _MARGIN = 1.5  # half the side of the square around a disc, in radii
 CLOSEST = 1.15  # of the radius: how near to the centre of a disc an edge of the plate, or half way to another disc, may be
 
@@ -78,7 +79,7 @@ def rectangle_blocks(
     >>> len(rectangle_blocks((1.0, 1.0), 0.1, 2, [Disc(0.0, 0.0, 0.1)]))
     17
     """
-    if size[0] * size[1] / element_size**2 > MOST_ELEMENTS:
+    if (size[0] / element_size) * (size[1] / element_size) > MOST_ELEMENTS:
         words = f"elements of {element_size:g} m would be more than {MOST_ELEMENTS} on this plate; make them larger"
         raise InputError(words, "mesh.element_size")
     boxes = [_box(disc, size, discs) for disc in discs]
@@ -101,6 +102,9 @@ def rectangle_blocks(
 def _box(disc: Disc, size: Sequence[float], discs: Sequence[Disc]) -> tuple[tuple[float, float], tuple[float, float]]:
     """Return the box around a disc, as x and y from and to: clear of other discs, and no sliver along the edge."""
     said = f"the round support at ({disc.x:g}, {disc.y:g}) m, radius {disc.radius:g} m,"
+    if disc.radius < _SMALLEST * max(size[:2]):
+        least = f"{_SMALLEST * max(size[:2]):g} m"
+        raise InputError(f"{said} is too small for a plate of {size[0]:g} m x {size[1]:g} m; take a point, or a radius of at least {least}")
     sides = []
     for at, length, axis in ((disc.x, size[0], "x"), (disc.y, size[1], "y")):
         ends = []

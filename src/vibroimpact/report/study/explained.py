@@ -33,7 +33,7 @@ def _words(axis: Axis, unit: str, *, is_drawn: bool) -> str:
         shown = [f"{value:g}" if isinstance(value, float) else str(value) for value in axis.values]
         text = ", ".join(shown) if len(shown) <= 8 else f"{len(shown)} values, {shown[0]} to {shown[-1]}"
         return f"{text} {unit}".rstrip()
-    number = "" if is_drawn else f"{len(axis.levels())} values "
+    number = "" if is_drawn else f"{len(axis)} values "
     if isinstance(axis, Spaced):
         return f"{number}from {axis.start:g} to {axis.end:g} {unit}".rstrip() + (", logarithmic" if axis.scale == "log" else "")
     assert isinstance(axis, Normal)
