@@ -13,7 +13,7 @@ PACKAGE = Path(vibroimpact.__file__).parent
 LAYERS = [
     {"shown", "_version"},
     {"errors"},
-    {"ranges", "registry"},
+    {"ranges", "registry", "writing"},
     {"units", "materials", "quantity"},
     {"contact"},
     {"structures"},

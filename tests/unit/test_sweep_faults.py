@@ -351,12 +351,21 @@ def test_another_study_does_not_go_on_here(tmp_path: Path, monkeypatch: pytest.M
         patched.setattr(computing, "__version__", "9.9")
         with pytest.raises(vi.InputError, match=r"begun with vibroimpact .*, and this is 9.9; go on with that version"):
             compute_study(sweep, folder, resume=True)
-    with pytest.raises(vi.InputError, match="no study was begun in this folder; leave out --resume"):
-        compute_study(sweep, tmp_path / "nothing", resume=True)
     compute_study(vi.load_sweep(folder / "study.toml"), folder, resume=True)  # what was begun is there, and is the same
     compute_study(vi.load_sweep(folder / "study.toml"), folder, resume=True)  # nothing is left to do
     with pytest.raises(vi.InputError, match=r"this is a study of many drops, not the result of a run"):
         vi.read_result(folder)
+
+
+def test_resume_begins_where_nothing_was_begun_and_replaces_nothing(tmp_path: Path) -> None:
+    sweep = vi.read_sweep(study_table({**RANDOM, "samples": 10}))
+    begun, again = (compute_study(sweep, tmp_path / name, resume=name == "begun") for name in ("begun", "again"))
+    assert results(begun) == results(again)
+    (tmp_path / "other").mkdir()
+    (tmp_path / "other" / "thesis.tex").write_text("years")
+    for force in (False, True):
+        with pytest.raises(vi.InputError, match="the folder is there"):
+            compute_study(sweep, tmp_path / "other", resume=True, force=force)
 
 
 def test_a_study_takes_the_place_of_another_only_if_it_is_told_to(tmp_path: Path) -> None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass, fields
 from pathlib import Path
-from tempfile import TemporaryDirectory
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -27,6 +26,8 @@ from vibroimpact.report.figures import render_png
 from vibroimpact.report.law_text import paper_pair
 from vibroimpact.report.layout import label_vertical, new_figure, row_of_axes
 from vibroimpact.report.style import ACCENT, INK, LOOPS, style
+from vibroimpact.writing.file import write_file
+from vibroimpact.writing.settle import settle
 
 _SPEEDS = np.geomspace(1e-3, 30.0, 60)
 _POINTS = 600
@@ -108,10 +109,8 @@ def save_law_picture(name: str, target: Path) -> Path:
     """
     picture = render_png(draw_law(find_contact_law(name)))
     try:
-        with TemporaryDirectory(prefix=f".{target.name}.", dir=target.parent) as working:
-            file = Path(working) / target.name
-            file.write_bytes(picture)
-            file.replace(target)
+        settle(target)
+        write_file(target, picture)
     except OSError as error:
         raise InputError(f"{target}: the picture can't be written: {error.strerror}") from None
     return target

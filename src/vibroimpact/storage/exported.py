@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from os import PathLike
 from pathlib import Path
 from typing import Any
@@ -14,8 +13,11 @@ from vibroimpact.cases.schema import Case
 from vibroimpact.errors import InputError
 from vibroimpact.exchange.drop import Drop
 from vibroimpact.storage.calibration_file import CALIBRATION
+from vibroimpact.storage.check_sums import CHECK_SUMS, read_sealed, read_toml
 from vibroimpact.storage.folder import read_result
+from vibroimpact.storage.hdf5 import why
 from vibroimpact.storage.result import Result, result_of
+from vibroimpact.writing.settle import settle
 
 
 def drop_of(directory: str | PathLike[str]) -> Drop:
@@ -32,6 +34,7 @@ def drop_of(directory: str | PathLike[str]) -> Drop:
         If it is neither, a file of it is missing or damaged, or it is the result of a problem made in Python, which has no case.
     """
     folder = Path(directory)
+    settle(folder)
     if (folder / CALIBRATION).is_file():
         return _of_calibration(folder)
     result = read_result(folder)
@@ -88,14 +91,17 @@ def _of_calibration(folder: Path) -> Drop:
     """Return the drop of a calibration: its case, simulated, and the function that was fitted."""
     from vibroimpact.dynamics.simulate import simulate
 
-    file = folder / CALIBRATION
+    name = CALIBRATION
     try:
-        function = _fitted(json.loads(file.read_text(encoding="utf-8")))
+        table = read_sealed(folder / name)
+        function = _fitted(table)
+        name = "case.toml"
+        read_toml(folder / name, table.get(CHECK_SUMS, {}).get(name))
     except KeyError as error:
-        raise InputError(f"{file}: the file is damaged: it has no {error}") from None
-    except (OSError, ValueError, TypeError) as error:
-        raise InputError(f"{file}: the file is missing or damaged: {error}") from None
-    case = load_case(folder / "case.toml")
+        raise InputError(f"{folder / name}: the file is damaged: it has no {error}; make the calibration anew") from None
+    except (OSError, ValueError, TypeError, AttributeError) as error:
+        raise InputError(f"{folder / name}: the file is missing or damaged: {why(error)}; make the calibration anew") from None
+    case = load_case(folder / name)
     return drop_of_result(result_of(simulate(case.to_problem())), case, function)
 
 

@@ -7,12 +7,13 @@ from __future__ import annotations
 
 import sqlite3
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
 
 from vibroimpact.errors import ComputationError, InputError
+from vibroimpact.writing.file import new_file
 
 LEDGER = "ledger.sqlite"
 
@@ -67,15 +68,14 @@ class Ledger:
 
 
 def make_ledger(folder: Path, facts: Mapping[str, str], size: int, chunk: int) -> None:
-    """Make the ledger of a study of `size` points in chunks of `chunk`, none of them done."""
-    with _told(folder / LEDGER):
-        connection = sqlite3.connect(folder / LEDGER)
+    """Make, whole or not at all, the ledger of a study of `size` points in chunks of `chunk`, none of them done."""
+    with _told(folder / LEDGER), new_file(folder / LEDGER) as working, closing(sqlite3.connect(working)) as connection:
+        connection.execute("PRAGMA journal_mode = MEMORY")  # it is whole or not at all, and nothing is beside it
         with connection:
             connection.executescript(_SCHEMA)
             connection.executemany("INSERT INTO study VALUES (?, ?)", facts.items())
             spans = ((number, first, min(chunk, size - first)) for number, first in enumerate(range(0, size, chunk)))
             connection.executemany("INSERT INTO chunk (number, first, count) VALUES (?, ?, ?)", spans)
-        connection.close()
 
 
 def busy(folder: Path) -> str:
@@ -138,9 +138,16 @@ def _told(path: Path) -> Iterator[None]:
             raise InputError(busy(path.parent)) from None
         if "no such table" in str(error):
             raise InputError(_damaged(path, str(error))) from None
-        raise ComputationError(f"{path}: the ledger can't be written: {error}; see to the disk, then go on with --resume") from None
+        raise ComputationError(_unwritten(path, str(error))) from None
     except sqlite3.DatabaseError as error:
         raise InputError(_damaged(path, str(error))) from None
+    except OSError as error:
+        raise ComputationError(_unwritten(path, error.strerror or str(error))) from None
+
+
+def _unwritten(path: Path, why: str) -> str:
+    """Return what to tell of a ledger that can't be written."""
+    return f"{path}: the ledger can't be written: {why}; see to the disk, then go on with --resume"
 
 
 def _damaged(path: Path, why: str) -> str:
