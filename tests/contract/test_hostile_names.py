@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
+import numpy as np
 import pytest
 
 import vibroimpact as vi
 from decks import check_file_names, named, said
+from told import STEEL
 from vibroimpact.exchange.export_format import ExportFormat, export_formats, find_export_format
 from vibroimpact.exchange.plain_names import one_line, plain_names, plain_words
+from vibroimpact.structures.lattice import box_mesh
 
 NAMES = [
     *("", " ", ".", "..", "../../etc/passwd", "/", "\\", "a\\", "C:\\nul"),
@@ -86,6 +90,23 @@ def test_a_message_shows_a_name_on_one_line(name: str) -> None:
             find_export_format(format).write(drop)
         assert str(refused.value).isprintable()
         assert len(str(refused.value)) < 500
+
+
+@pytest.mark.parametrize("ending", ["inp", "bdf"])
+def test_a_name_does_nothing_in_a_mesh(ending: str, tmp_path: Path) -> None:
+    """Nor do those of sets and materials, which are read back but for what is no letter."""
+    mesh = box_mesh((0.5, 0.4, 0.01), (1, 1, 1))
+    for place, name in enumerate(name for name in NAMES if one_line(name)):
+        file = tmp_path / f"{place}.{ending}"
+        sets = replace(mesh, node_sets={name: np.arange(4)}, element_sets={})
+        (vi.write_abaqus if ending == "inp" else vi.write_nastran)(sets, file, replace(STEEL, name=name))
+        text = file.read_bytes().decode()
+        assert all(line.isprintable() for line in text.split("\n")), repr(name)
+        assert max(map(len, text.split("\n"))) <= 200
+        found = vi.read_mesh(file)
+        np.testing.assert_allclose(found.nodes, mesh.nodes, rtol=0.0, atol=1e-15)
+        assert [block.connectivity.tolist() for block in found.blocks] == [block.connectivity.tolist() for block in mesh.blocks]
+        assert [nodes.tolist() for nodes in found.node_sets.values()] == [[0, 1, 2, 3]], repr(name)
 
 
 def test_plain_words_keep_what_is_plain() -> None:

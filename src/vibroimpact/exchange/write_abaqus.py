@@ -88,5 +88,6 @@ def _rows(numbers: Sequence[int]) -> Iterator[str]:
 
 def _quoted(name: str) -> str:
     """Return a name as a label: in quotes if it is not a plain word."""
-    plain = name.replace("_", "").replace("-", "").isalnum() and name[0].isalpha()
-    return name if plain else '"' + one_line(name.replace('"', "'")) + '"'
+    label = one_line(name.replace('"', "'"))  # as long as Abaqus takes it
+    plain = label.isascii() and label.replace("_", "").replace("-", "").isalnum() and label[0].isalpha()
+    return label if plain else f'"{label}"'
