@@ -383,3 +383,55 @@ def test_this_process_computes_as_well() -> None:
     with this_process() as crew:
         assert crew.executor.submit(int, "3").result() == 3
         assert isinstance(crew.executor.submit(int, "x").exception(), ValueError)
+
+
+# Ctrl-C at any moment ----------------------------------------------------------------------------
+
+
+def interrupted_after(seconds: float, study: Path, folder: Path) -> tuple[int, str]:
+    """Run a study of two processes, and send an interrupt to all of them, as a terminal does; return its status and what it told."""
+    command = sweep_command(study, folder, "--processes", "2")
+    running = subprocess.Popen(command, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True, start_new_session=True)
+    time.sleep(seconds)
+    os.killpg(running.pid, signal.SIGINT)
+    told = running.communicate(timeout=300)[1]
+    return running.returncode, told
+
+
+@pytest.mark.slow
+def test_ctrl_c_is_never_lost(tmp_path: Path) -> None:
+    study = study_file(tmp_path, {**RANDOM, "samples": 40_000})
+    for number in range(24):
+        status, told = interrupted_after(0.4 + 0.2 * number, study, tmp_path / f"out{number}")
+        assert status in (1, 130), (number, told)  # 1: before the command has begun
+        assert told.count("Traceback") <= (number < 3), (number, told)  # of the interpreter, which was starting
+
+
+def test_an_interrupt_waits_while_a_process_is_started_and_is_not_lost(monkeypatch: pytest.MonkeyPatch) -> None:
+    from multiprocessing.context import SpawnProcess
+
+    from vibroimpact.studies import workers
+
+    seen: list[str] = []
+
+    def starts(self: object) -> None:
+        os.kill(os.getpid(), signal.SIGINT)
+        seen.append("started")
+
+    monkeypatch.setattr(SpawnProcess, "start", starts)
+    before = signal.signal(signal.SIGINT, lambda *_: seen.append("told"))
+    try:
+        workers._Deaf(target=_nothing).start()
+    finally:
+        signal.signal(signal.SIGINT, before)
+    assert seen == ["started", "told"]
+
+
+def test_all_processes_are_deaf_to_interrupts(tmp_path: Path) -> None:
+    with processes(2, _nothing, tmp_path) as crew:
+        masks = [crew.executor.submit(_hears_interrupts).result() for _ in range(2)]
+    assert masks == [False, False]
+
+
+def _hears_interrupts() -> bool:
+    return signal.SIGINT not in signal.pthread_sigmask(signal.SIG_BLOCK, ())

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import json
+import os
 import shutil
 from collections.abc import Callable
 from functools import partial
@@ -16,6 +16,7 @@ from vibroimpact.cases.compute_points import compute_points
 from vibroimpact.cases.coupling import carried_modes
 from vibroimpact.cases.sweep import Sweep
 from vibroimpact.errors import ComputationError, InputError
+from vibroimpact.storage.check_sums import sealed
 from vibroimpact.storage.folder import SUMMARY, new_folder
 from vibroimpact.storage.study import DATASET, STUDY, clear_study, is_study, settle_study
 from vibroimpact.storage.study_dataset import write_dataset
@@ -110,7 +111,7 @@ def _begin(folder: Path, sweep: Sweep, memory: float, *, force: bool) -> None:
         (working / FOLDER).mkdir()
         make_ledger(working, _facts(sweep), sweep.size, chunk_size(sweep, memory))
         summary = {"name": sweep.name, "version": __version__, "study": {"design": sweep.section.design, "drops": sweep.size}}
-        (working / SUMMARY).write_text(json.dumps(summary, indent=2) + "\n", encoding="utf-8")
+        (working / SUMMARY).write_text(sealed(summary), encoding="utf-8")
 
 
 def _see_that_there_is_a_ledger(folder: Path, sweep: Sweep, memory: float) -> None:
@@ -179,7 +180,8 @@ def _assemble(folder: Path, ledger: Ledger, sweep: Sweep) -> None:
             write_drops(folder, chunks, sweep.digest, sweep.plan, sweep.meanings)
         write_dataset(folder, sweep.name, chunks, sweep.digest, sweep.plan, sweep.whole_table, sweep.meanings, rates)
     except OSError as error:
-        words = f"the results can't be put together: {error.strerror or error}; see to the disk, then go on with --resume"
+        why = os.strerror(error.errno) if error.errno else str(error)
+        words = f"the results can't be put together: {why}; see to the disk, then go on with --resume"
         raise ComputationError(f"{folder}: {words}") from None
 
 

@@ -13,7 +13,7 @@ from vibroimpact.cases.schema import Case
 from vibroimpact.errors import InputError
 from vibroimpact.exchange.drop import Drop
 from vibroimpact.storage.calibration_file import CALIBRATION
-from vibroimpact.storage.check_sums import CHECK_SUMS, read_sealed, read_toml
+from vibroimpact.storage.check_sums import CHECK_SUMS, check_file, read_sealed
 from vibroimpact.storage.folder import read_result
 from vibroimpact.storage.hdf5 import why
 from vibroimpact.storage.result import Result, result_of
@@ -96,7 +96,7 @@ def _of_calibration(folder: Path) -> Drop:
         table = read_sealed(folder / name)
         function = _fitted(table)
         name = "case.toml"
-        read_toml(folder / name, table.get(CHECK_SUMS, {}).get(name))
+        check_file(folder / name, table.get(CHECK_SUMS, {}).get(name))
     except KeyError as error:
         raise InputError(f"{folder / name}: the file is damaged: it has no {error}; make the calibration anew") from None
     except (OSError, ValueError, TypeError, AttributeError) as error:

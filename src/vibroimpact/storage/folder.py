@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import os
 import shlex
+import tomllib
 from collections.abc import Iterator, Mapping
 from contextlib import ExitStack, contextmanager
 from functools import partial
@@ -17,13 +18,14 @@ import tomli_w
 
 from vibroimpact.dynamics.columns import IMPACT_COLUMNS, history_columns, impact_columns
 from vibroimpact.errors import InputError
-from vibroimpact.storage.check_sums import CHECK_SUMS, digest, read_sealed, read_toml, sealed
+from vibroimpact.storage.check_sums import CHECK_SUMS, check_file, file_digest, read_sealed, sealed
+from vibroimpact.storage.damaged_part import check_hdf5
 from vibroimpact.storage.hdf5 import why
 from vibroimpact.storage.netcdf import read_groups, write_groups
 from vibroimpact.storage.result import Result
-from vibroimpact.storage.result_check import check_digests, check_types, data_digests
 from vibroimpact.storage.signal_csv import write_signal_files
 from vibroimpact.storage.summary import summary_of
+from vibroimpact.storage.summary_types import check_types
 from vibroimpact.storage.tables import impact_rows, write_csv
 from vibroimpact.writing.folder import whole_folder
 from vibroimpact.writing.settle import settle
@@ -108,9 +110,9 @@ def write_result(result: Result, directory: Path) -> None:
     if result.case:  # a problem made in Python has no case; its provenance says what it was
         (directory / CASE).write_text(tomli_w.dumps(result.case), encoding="utf-8")
     write_csv(impact_rows(result.impacts), list(impact_columns(result.impacts)), directory / "impacts.csv")
-    summary = {**summary_of(result), CHECK_SUMS: {CASE: digest(result.case), DATA: data_digests(result)}}
-    (directory / SUMMARY).write_text(sealed(summary), encoding="utf-8")
     write_groups(result, directory / DATA)
+    check_sums = {name: file_digest(directory / name) for name in (CASE, DATA) if (directory / name).is_file()}
+    (directory / SUMMARY).write_text(sealed({**summary_of(result), CHECK_SUMS: check_sums}), encoding="utf-8")
     write_signal_files(result.signals, directory / "sensors")
 
 
@@ -135,11 +137,13 @@ def read_result(directory: str | PathLike[str]) -> Result:
         check_types(summary)
         expected = summary.get(CHECK_SUMS, {})
         name = CASE
-        case = {} if "problem" in summary["provenance"] else read_toml(folder / name, expected.get(CASE))
+        case = {}
+        if "problem" not in summary["provenance"]:
+            check_file(folder / name, expected.get(name))
+            case = tomllib.loads((folder / name).read_text(encoding="utf-8"))
         name = DATA
-        result = _result(case, summary, read_groups(folder / name))
-        check_digests(result, expected.get(DATA))
-        return result
+        check_hdf5(folder / name, expected.get(name))
+        return _result(case, summary, read_groups(folder / name))
     except InputError:
         raise
     except Exception as error:  # of many kinds, as files are damaged in many ways

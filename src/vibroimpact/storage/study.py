@@ -17,7 +17,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vibroimpact.errors import InputError
-from vibroimpact.storage.check_sums import SHA256, DamageError, digest
+from vibroimpact.storage.check_sums import CHECK_SUMS, read_sealed
+from vibroimpact.storage.damaged_part import check_hdf5
+from vibroimpact.storage.folder import SUMMARY
 from vibroimpact.storage.hdf5 import read_array, why
 from vibroimpact.storage.study_doubts import StudyDoubt, study_doubts
 from vibroimpact.studies.chunk_file import CHUNK
@@ -29,7 +31,6 @@ from vibroimpact.writing.leftovers import remove
 from vibroimpact.writing.settle import clear, settle
 
 DATASET, STUDY = "study.nc", "study.toml"
-_OF_HDF5 = ("DIMENSION_LIST", "REFERENCE_LIST", "CLASS", "NAME")
 FAILED_POINT, FAILED_REASON = "failed_point", "failed_reason"
 """The variables that say which drops failed, and why."""
 
@@ -186,10 +187,9 @@ def read_study(directory: str | PathLike[str]) -> Study:
             raise InputError(f"{folder}: this is not the folder of a study; it has no {DATASET}")
         command = f"vibroimpact sweep {shlex.quote(str(folder / STUDY))} -o {shlex.quote(str(folder))} --resume"
         raise InputError(f"{folder}: the study is not done; if nothing is at work on it, go on with: {command}")
+    with _damage_told(path):
+        check_hdf5(path, _check_sum(path.parent))
     with _damage_told(path), h5py.File(path, "r") as file:
-        expected = file.attrs.get(SHA256)  # there is none of earlier versions
-        if expected is not None and expected != digest_of_study(file):
-            raise DamageError("its names, units, texts or the study itself are damaged (their check sum does not match)")
         table = tomllib.loads(str(file.attrs["study"]))
         over = list(table["sweep"]["over"])  # in the order of the dimensions
         is_grid = _design(table) == "grid"
@@ -204,17 +204,21 @@ def read_study(directory: str | PathLike[str]) -> Study:
         return Study(path, name, table, version, dimensions, coordinates, meanings, shapes, failures)
 
 
-def digest_of_study(file: h5py.File) -> str:
-    """Return the check sum of what HDF5 has none of: texts, and which scales belong to which variable."""
-    found: dict[str, Any] = {}
-    for name in sorted(file):
-        data = file[name]
-        found[name] = [
-            {key: value for key, value in data.attrs.items() if data.attrs.get_id(key).dtype.kind != "V" and key not in _OF_HDF5},
-            [[scale.name for scale in dimension.values()] for dimension in data.dims],
-            [text.decode() for text in data[()]] if data.dtype == object else None,
-        ]
-    return digest([found, {key: value for key, value in file.attrs.items() if key != SHA256}])
+def _check_sum(folder: Path) -> str | None:
+    """Return the check sum of the dataset; None of an earlier version, which wrote none.
+
+    Raises
+    ------
+    InputError
+        If the summary that holds it is damaged.
+    """
+    try:
+        return dict(read_sealed(folder / SUMMARY)[CHECK_SUMS])[DATASET] if (folder / SUMMARY).is_file() else None
+    except KeyError:
+        return None
+    except (OSError, ValueError, TypeError) as error:
+        words = "delete it, and the dataset is read without being checked"
+        raise InputError(f"{folder / SUMMARY}: the file is damaged: {why(error)}; {words}") from None
 
 
 @contextmanager

@@ -16,15 +16,16 @@ from numpy.typing import NDArray
 from vibroimpact._version import __version__
 from vibroimpact.cases.limit import limits
 from vibroimpact.dynamics.outcome import OUTCOMES, Outcome
-from vibroimpact.storage.check_sums import SHA256
+from vibroimpact.storage.check_sums import CHECK_SUMS, file_digest, read_sealed, sealed
+from vibroimpact.storage.folder import SUMMARY
 from vibroimpact.storage.hdf5 import CHECKED, FORMAT, chunk_shape, new_array
-from vibroimpact.storage.study import DATASET, FAILED_POINT, FAILED_REASON, digest_of_study
+from vibroimpact.storage.study import DATASET, FAILED_POINT, FAILED_REASON
 from vibroimpact.storage.study_toml import study_toml
 from vibroimpact.studies.chunk_file import chunk_layout, read_chunk
 from vibroimpact.studies.columns import DOUBTS, LIMIT, OUTCOME, SIGNAL
 from vibroimpact.studies.ledger import Span
 from vibroimpact.studies.plan import SAMPLE, Plan
-from vibroimpact.writing.file import new_file
+from vibroimpact.writing.file import new_file, write_file
 
 Meanings = Mapping[str, tuple[str, str]]
 """Unit and meaning of variables by their names."""
@@ -78,6 +79,8 @@ def write_dataset(
         columns = sum(values.nbytes for values in plan.columns.values()) + 8 * plan.size
         _see_that_there_is_room(working, columns + plan.size * sum(prod(wide) * dtype.itemsize for wide, dtype in layout.values()))
         _write(working, folder, name, chunks, study, plan, table, meanings, rates, layout)
+        summary = {**read_sealed(folder / SUMMARY), CHECK_SUMS: {DATASET: file_digest(working)}}
+        write_file(folder / SUMMARY, sealed(summary).encode())  # before the dataset is there: it is never without
 
 
 def _write(
@@ -106,7 +109,6 @@ def _write(
                 _put(data[variable], (), tuple(plan.dimensions.values()), chunk.first, values)
             failures |= {chunk.first + place: reason for place, reason in result.failures.items()}
         _write_failures(file, failures)
-        file.attrs[SHA256] = digest_of_study(file)
 
 
 def as_text(value: Any) -> Any:
@@ -143,10 +145,10 @@ def _scale(file: h5py.File, name: str, values: NDArray[Any], meaning: tuple[str,
 
 
 def _values(file: h5py.File, name: str, values: NDArray[Any]) -> h5py.Dataset:
-    """Write numbers, or texts, whose check sum is that of where they lie: `digest_of_study` has that of the texts."""
+    """Write numbers; or texts, for which HDF5 has no check sum, while that of the file holds them too."""
     if values.dtype != object:
         return new_array(file, name, values)
-    return file.create_dataset(name, data=values, dtype=h5py.string_dtype(), **(CHECKED if values.size else {}))
+    return file.create_dataset(name, data=values, dtype=h5py.string_dtype())
 
 
 def _described(data: h5py.Dataset, meaning: tuple[str, str], scales: Sequence[h5py.Dataset]) -> h5py.Dataset:
