@@ -48,7 +48,7 @@ TOO_LARGE = [
     ({"name": "x" * 5000}, "name: the text has 5000 characters; 4096 are the most"),
     ({"name": f"a{ESCAPE}b"}, 'name: "a\\x1b[31mb" has characters that can\'t be shown; a name is one line of text'),
     ({"name": "a\nb"}, 'name: "a\\nb" has characters'),
-    ({"plate": PLATE, "sensors": [{**SENSOR, "name": "a\u202eb"}]}, "sensors.0.name"),
+    ({"plate": PLATE, "sensors": [{**SENSOR, "name": "a\u202eb"}]}, "sensors.name"),
     ({"k" * 300: 1}, "a key has 300 characters; 200 are the most"),
     ({"drop__gravity": 10**30}, "drop.gravity: the number is too large for a whole number"),
     ({"sphere__radius": [1] * 300_000}, "it holds more than 200000 values"),
