@@ -13,5 +13,5 @@ from vibroimpact.reproduction.row import Verdict
 def summary_table(folder: Path) -> TerminalTable:
     """Return how many values have each verdict, part by part."""
     parts = counts(read_parts(folder))
-    verdicts = [Column(verdict.value, [str(by[verdict.value]) for by in parts.values()]) for verdict in Verdict]
+    verdicts = [Column(verdict.value.replace(" ", "\u00a0"), [str(by[verdict.value]) for by in parts.values()]) for verdict in Verdict]
     return TerminalTable([Column("part", list(parts), words=True), *verdicts], bold=[len(parts) - 1])
