@@ -17,8 +17,8 @@ from vibroimpact.report.encodable import encodable
 _BETWEEN = 2
 """Blanks between two columns."""
 
-_COMFORT = 24
-"""Letters to a line that a sentence needs beside other columns; with less it is put below the row."""
+_PHRASE, _COMFORT = 30, 24
+"""Letters of what may be wrapped word by word, and letters to a line that more than that needs; with less it is put below the row."""
 
 _NUMBER = re.compile(r"[-\u2212+]?\d+(\.\d*)?")
 _KEPT = "\u00a0"  # no break there
@@ -140,7 +140,7 @@ def _fitted(columns: list[Column], width: int) -> list[int] | None:
         if one.words:
             least[number] = min(least[number], width // 2)  # a longer name is broken
         if number and one.words:
-            least[number] = least[number] if widths[number] <= _COMFORT else max(least[number], _COMFORT)
+            least[number] = least[number] if widths[number] <= _PHRASE else max(least[number], _COMFORT)
     room = width - _BETWEEN * (len(columns) - 1)
     while sum(widths) > room:
         widest = max((number for number in range(len(columns)) if widths[number] > least[number]), key=lambda at: widths[at], default=None)
