@@ -44,8 +44,7 @@ _KINDS = (
 )
 _WHOSE = (
     "an acceleration tells a rebound only if it is the sphere's: call the column sphere_acceleration (upwards, measured in the sphere), "
-    "and mass times it is the contact force. That of the plate tells when impacts are, not how the sphere leaves; give rebound heights "
-    "or restitutions instead"
+    "mass times which is the force. That of the plate tells none; give rebound heights or restitutions instead"
 )
 
 
@@ -167,7 +166,8 @@ def _table(file: str) -> TableFile:
         return read_table_file(file, _COLUMNS)
     except InputError as error:
         if "acceleration; what is wanted is a " in error.message:  # of a force, a position
-            raise InputError(f"{error.message}. In a record {_WHOSE}", "target") from None
+            what = error.message.partition(" (a number in ")[0]  # and not how else to write a force
+            raise InputError(f"{what}. In a record {_WHOSE}", "target") from None
         raise InputError(error.message, "target") from None
 
 

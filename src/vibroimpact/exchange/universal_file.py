@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,10 +16,12 @@ from vibroimpact.errors import InputError
 
 Floats = NDArray[np.float64]
 
-LARGEST = 200_000_000
+LARGEST = 100_000_000
 """Bytes of a file that is read."""
 
 _MARK = b"-1"
+_HERE = re.compile(rb"[ \t]*-1[ \t\r]*(?:\n|\Z)")  # behind binary data, which no line ends
+_MARKED = re.compile(rb"^" + _HERE.pattern, re.MULTILINE)
 _HEADER_LINES = 11
 _REAL, _TIME = (2, 4), 17
 _WIDTHS = {2: 13, 4: 20}  # of a number in text, single and double
@@ -114,13 +117,8 @@ def read_universal_file(path: str | Path) -> UniversalFile:
 def _datasets(raw: bytes) -> Iterator[tuple[bytes, int]]:
     """Yield the first line of each dataset, and the place behind it."""
     place, inside = 0, False
-    while place < len(raw):
-        line, after = _line(raw, place)
-        if line.strip() != _MARK:
-            place = after
-            continue
-        inside = not inside
-        place = after
+    while (mark := _HERE.match(raw, place) or _MARKED.search(raw, place)) is not None:
+        inside, place = not inside, mark.end()
         if inside:
             header, place = _line(raw, place)
             yield header, place

@@ -119,9 +119,11 @@ def given_sentences(found: Calibration) -> list[str]:
         given, meets = (f"{digits(value, 6)} {found.unit}".rstrip() for value in (found.given[worst], found.values[worst]))
         words = f"With {found.parameter} = {given}, as the case gives it, the {OUTCOMES[name].words} of {found.observations.labels[worst]}"
         instead, asked = (text(float(value), OUTCOMES[name].unit, 5) for value in (comes[worst], wanted[worst]))
-        verdict = ": the target can't be met so" if abs(off[worst]) > _MET else ""
-        told.append(f"{words} is {instead} instead of {asked}, off by {_off(off[worst])[0]} %{verdict}. {meets} meets it.")
-        missed |= bool(verdict)
+        misses = abs(off[worst]) > _MET
+        within = found.intervals is not None and bool(np.prod(found.intervals[worst] - found.given[worst]) <= 0.0)
+        verdict = ", no more than the measurement leaves open" if within else ": the target can't be met so" if misses else ""
+        told.append(f"{words} is {instead} instead of {asked}, off by {_off(off[worst])[0]} %{verdict}. With {meets} it is met.")
+        missed |= misses and not within
     if missed and found.others:
         each = [f"{name} = {digits(value, 6)} {law_parameter(found.problem, name).unit}".rstrip() for name, value in found.others.items()]
         told.append(f"So would, at the first impact and with the rest as given: {'; '.join(each)}.")
