@@ -44,7 +44,7 @@ def drag(speed: Array, radius: Array, density: Array) -> Array:
     Examples
     --------
     >>> round(float(drag(8.8, 0.025, 1380.0)), 3)
-    0.427
+    0.478
     """
     fast = np.maximum(speed, _STILL)
     reynolds = AIR_DENSITY * fast * 2.0 * radius / AIR_VISCOSITY
