@@ -103,7 +103,7 @@ def test_a_problem_made_in_python_keeps_its_inputs(tmp_path: Path) -> None:
 
 def test_doubts_are_printed_and_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     case = {"sphere": {"radius": "5 mm", "material": "steel"}, "plate": {"material": "steel"}, "drop": {"height": "50 m"}}
-    case["contact"] = {"law": "adams-impact", "damping_max": 10.0, "full_damping_penetration": "9 mm"}
+    case["contact"] = {"law": "adams-impact", "damping_max": 10.0, "full_damping_penetration": "0.9 mm"}
     (tmp_path / "hard.toml").write_text(tomli_w.dumps(case))
     monkeypatch.setattr("sys.argv", ["vibroimpact", "run", str(tmp_path / "hard.toml"), "-o", str(tmp_path / "out")])
     with pytest.raises(SystemExit) as left:
