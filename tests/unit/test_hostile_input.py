@@ -51,6 +51,8 @@ TOO_LARGE = [
     ({"plate": PLATE, "sensors": [{**SENSOR, "name": "a\u202eb"}]}, "sensors.name"),
     ({"k" * 300: 1}, "a key has 300 characters; 200 are the most"),
     ({"drop__gravity": 10**30}, "drop.gravity: the number is too large for a whole number"),
+    ({"drop__gravity": 1e60}, "drop.gravity: 1e+60 is beyond what can be computed; a magnitude"),
+    ({"sphere__radius": "1e-70 km"}, 'sphere.radius: "1e-70 km" is beyond what can be computed'),
     ({"sphere__radius": [1] * 300_000}, "it holds more than 200000 values"),
     ({"sphere__radius": ["a"] * 5000}, "sphere.radius: ['a', 'a', 'a'"),
     ({"sphere__material": ESCAPE}, 'there is no material "\\x1b[31m" in the library'),

@@ -54,10 +54,16 @@ def check_text(text: str) -> None:
     --------
     >>> check_text("plate.size = [1, 2, 3]")
     """
+    if max(map(_points, text.split("\n"))) < DEEPEST:
+        return
     found = _DOTTED.search(text)
     if found is not None and not text[text.rfind("\n", 0, found.start()) + 1 : found.start()].lstrip().startswith("#"):
         line = text.count("\n", 0, found.start()) + 1
         raise InputError(f"line {line}: {shown(found[0])} has too many parts; tables lie at most {DEEPEST} deep in one another")
+
+
+def _points(line: str) -> int:
+    return line.count(".")
 
 
 def check_bounds(table: Mapping[str, Any]) -> None:
@@ -75,28 +81,33 @@ def check_bounds(table: Mapping[str, Any]) -> None:
         ...
     vibroimpact.errors.InputError: name: the text has 5000 characters; 4096 are the most
     """
-    number = 0
-    inside: list[tuple[tuple[Any, ...], Any]] = [((), table)]  # no recursion: it must not matter how deep it is
-    while inside:
-        where, value = inside.pop()
-        if isinstance(value, str):
+    _look(table, (), 0)
+
+
+def _look(table: Any, where: tuple[Any, ...], number: int) -> int:
+    """Look into a table or a list; return how many values there are up to its end."""
+    number += len(table)
+    if number > MOST_VALUES:
+        words = "a case is a page of text, and many points of a study go into a CSV file"
+        raise InputError(f"it holds more than {MOST_VALUES} values; {words}")
+    if len(where) > DEEPEST:
+        raise _too_large(where[:4], f"tables and lists lie more than {DEEPEST} deep in one another")
+    for key, value in table.items() if isinstance(table, Mapping) else enumerate(table):
+        if type(key) is str and len(key) > LONGEST_KEY:
+            raise _too_large(where, f"a key has {len(key)} characters; {LONGEST_KEY} are the most")
+        kind = type(value)
+        if kind is float:
+            continue
+        if kind is str:
             if len(value) > LONGEST_TEXT:
-                raise _too_large(where, f"the text has {len(value)} characters; {LONGEST_TEXT} are the most")
-        elif isinstance(value, (Mapping, list, tuple)):
-            number += len(value)
-            if number > MOST_VALUES:
-                words = "a case is a page of text, and many points of a study go into a CSV file"
-                raise InputError(f"it holds more than {MOST_VALUES} values; {words}")
-            if isinstance(value, Mapping):
-                longest = max((len(str(key)) for key in value), default=0)
-                if longest > LONGEST_KEY:
-                    raise _too_large(where, f"a key has {longest} characters; {LONGEST_KEY} are the most")
-            pairs = value.items() if isinstance(value, Mapping) else enumerate(value)
-            inside += [((*where, key), one) for key, one in pairs]
-        elif isinstance(value, int) and abs(value) > LARGEST_WHOLE:
-            raise _too_large(where, f"the number is too large for a whole number; beyond {LARGEST_WHOLE} write it as 1e20")
-        if len(where) > DEEPEST:
-            raise _too_large(where[:4], f"tables and lists lie more than {DEEPEST} deep in one another")
+                raise _too_large((*where, key), f"the text has {len(value)} characters; {LONGEST_TEXT} are the most")
+        elif kind is int:
+            if not -LARGEST_WHOLE <= value <= LARGEST_WHOLE:
+                words = f"the number is too large for a whole number; beyond {LARGEST_WHOLE} write it as 1e20"
+                raise _too_large((*where, key), words)
+        elif isinstance(value, (dict, list, tuple)):
+            number = _look(value, (*where, key), number)
+    return number
 
 
 def check_name(name: str) -> str:

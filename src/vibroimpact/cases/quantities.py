@@ -8,9 +8,13 @@ from typing import Any
 from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
 from pydantic_core import CoreSchema, core_schema
 
+from vibroimpact.errors import InputError
 from vibroimpact.ranges import Range
 from vibroimpact.shown import shown
 from vibroimpact.units import to_si
+
+SMALLEST, LARGEST = 1e-50, 1e50
+"""Magnitudes of a quantity in SI; squares and products of what lies between them are numbers that a computer has."""
 
 
 def read_quantity(value: Any, unit: str, allowed: Range) -> float:
@@ -27,7 +31,10 @@ def read_quantity(value: Any, unit: str, allowed: Range) -> float:
     0.025
     """
     number = to_si(value, unit)
-    allowed.check(number, unit, shown(value))
+    if number and not SMALLEST <= abs(number) <= LARGEST:
+        limits = f"from {SMALLEST:g} to {LARGEST:g} {unit}".rstrip()
+        raise InputError(f"{shown(value)} is beyond what can be computed; a magnitude that is not 0 lies {limits}")
+    allowed.check(number, unit, f'"{value}"' if isinstance(value, str) else str(value))
     return number
 
 

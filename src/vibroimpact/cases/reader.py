@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Callable, Mapping
+from functools import cache
 from importlib.resources import files
 from os import PathLike
 from pathlib import Path
@@ -164,6 +165,7 @@ def _columns_beside(inside: Any, folder: Path) -> None:
         _columns_beside(value, folder)
 
 
+@cache
 def _names() -> list[str]:
     """Return the names of the shipped cases."""
     folder = files("vibroimpact").joinpath("cases/library")
