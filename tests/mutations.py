@@ -218,7 +218,9 @@ def _repeat(table: Table, choose: random.Random) -> None:
     lists = [(holder, key) for holder, key in _places(table) if isinstance(holder[key], list) and holder[key]]
     if lists:
         holder, key = choose.choice(lists)
-        holder[key] = holder[key] * choose.choice((2, 50, 3000))
+        times = choose.choice((2, 50, 3000))
+        if len(repr(holder[key])) * times < 1_000_000:  # beyond, and that is refused by the bytes of the file
+            holder[key] = holder[key] * times
 
 
 _CHANGES = (_replace, _replace, _replace, _scale, _remove, _add, _swap, _repeat)
