@@ -198,3 +198,35 @@ def test_damaged_results_are_named(name: str, damage: bytes | None, folder: Path
         return  # an empty case is what a problem made in Python has
     with pytest.raises(vi.InputError, match=r"damaged|not a result folder"):
         vi.read_result(copy)
+
+
+def test_damage_is_named_with_its_part_and_the_remedy(folder: Path, tmp_path: Path) -> None:
+    import shutil
+
+    copy = Path(shutil.copytree(folder, tmp_path / "a copy"))
+    with h5py.File(copy / "result.nc") as file:
+        data = file["history/force_N"]
+        assert all(one.fletcher32 for group in ("impacts", "history") for one in file[group].values())
+        place = data.id.get_chunk_info(0).byte_offset
+    content = bytearray((copy / "result.nc").read_bytes())
+    content[place + 5] ^= 1
+    (copy / "result.nc").write_bytes(bytes(content))
+    with pytest.raises(vi.InputError) as refused:
+        vi.read_result(copy)
+    words = "history/force_N is damaged (its check sum does not match)"
+    remedy = f"make it anew with: vibroimpact run '{copy / 'case.toml'}' -o '{copy}' --force"
+    assert str(refused.value) == f"{copy / 'result.nc'}: {words}; {remedy}"
+
+
+def test_results_of_earlier_versions_open(folder: Path, tmp_path: Path, theory: vi.Response) -> None:
+    import shutil
+
+    copy = Path(shutil.copytree(folder, tmp_path / "copy"))
+    summary = json.loads((copy / "summary.json").read_text())
+    del summary["sha256"], summary["check_sums"]
+    (copy / "summary.json").write_text(json.dumps(summary))
+    assert vi.read_result(copy).status == theory.status
+    summary["energy"], summary["truncation"] = 1.0, {"plate": [1.0]}
+    (copy / "summary.json").write_text(json.dumps(summary))
+    with pytest.raises(vi.InputError, match=r"summary.json: the file is missing or damaged: truncation is not of the kind"):
+        vi.read_result(copy)

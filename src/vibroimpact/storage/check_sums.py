@@ -47,10 +47,10 @@ def read_sealed(path: Path) -> dict[str, Any]:
     """
     table = json.loads(path.read_text(encoding="utf-8"))
     if not isinstance(table, dict):
-        raise DamageError("it holds no table")
+        raise DamageError("the file is damaged (it holds no table)")
     expected = table.pop(SHA256, None)
     if expected is not None and digest(table) != expected:
-        raise DamageError(MISMATCH)
+        raise DamageError(CHANGED)
     return table
 
 
@@ -71,10 +71,10 @@ def check_file(path: Path, expected: str | None) -> None:
         If it is another.
     """
     if expected is not None and file_digest(path) != expected:
-        raise DamageError(MISMATCH)
+        raise DamageError(CHANGED)
 
 
-MISMATCH = "its check sum does not match"
+CHANGED = "the file is damaged, or was changed after it was written (its check sum does not match)"
 """What is told of a file that is not as it was written."""
 
 

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import h5py
 
-from vibroimpact.storage.check_sums import MISMATCH, DamageError, check_file
-from vibroimpact.storage.hdf5 import read_array
+from vibroimpact.storage.check_sums import CHANGED, DamageError, check_file
+from vibroimpact.storage.hdf5 import read_array, why
 
 _PATIENCE = 20.0  # seconds
 
@@ -27,7 +27,7 @@ def check_hdf5(path: Path, expected: str | None) -> None:
     try:
         check_file(path, expected)
     except DamageError:
-        raise DamageError(damaged_part(path) or f"{MISMATCH}: it was damaged, or changed after it was written") from None
+        raise DamageError(damaged_part(path) or CHANGED) from None
 
 
 def damaged_part(path: Path) -> str:
@@ -43,13 +43,23 @@ def damaged_part(path: Path) -> str:
 def first_damaged(path: Path) -> str:
     """Return the same, in this process."""
     with h5py.File(path, "r") as file:
-        names: list[str] = []
-        file.visititems(lambda name, found: names.append(name) if isinstance(found, h5py.Dataset) else None)
-        for name in names:
-            try:
-                read_array(file[name])
-            except DamageError as error:
-                return str(error)
+        return _in_group(file)
+
+
+def _in_group(group: h5py.Group) -> str:
+    for name in group:
+        try:
+            found = group[name]
+        except Exception as error:  # of many kinds, as the file is damaged in many ways
+            return f"{group.name.strip('/')}/{name}".lstrip("/") + f" is damaged ({why(error)})"
+        try:
+            told = _in_group(found) if isinstance(found, h5py.Group) else ""
+            if isinstance(found, h5py.Dataset):
+                read_array(found)
+        except DamageError as error:
+            return str(error)
+        if told:
+            return told
     return ""
 
 

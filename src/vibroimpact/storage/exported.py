@@ -13,7 +13,7 @@ from vibroimpact.cases.schema import Case
 from vibroimpact.errors import InputError
 from vibroimpact.exchange.drop import Drop
 from vibroimpact.storage.calibration_file import CALIBRATION
-from vibroimpact.storage.check_sums import CHECK_SUMS, check_file, read_sealed
+from vibroimpact.storage.check_sums import CHECK_SUMS, DamageError, check_file, read_sealed
 from vibroimpact.storage.folder import read_result
 from vibroimpact.storage.hdf5 import why
 from vibroimpact.storage.result import Result, result_of
@@ -97,6 +97,8 @@ def _of_calibration(folder: Path) -> Drop:
         function = _fitted(table)
         name = "case.toml"
         check_file(folder / name, table.get(CHECK_SUMS, {}).get(name))
+    except DamageError as error:
+        raise InputError(f"{folder / name}: {error}; make the calibration anew") from None
     except KeyError as error:
         raise InputError(f"{folder / name}: the file is damaged: it has no {error}; make the calibration anew") from None
     except (OSError, ValueError, TypeError, AttributeError) as error:

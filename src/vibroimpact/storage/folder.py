@@ -18,7 +18,7 @@ import tomli_w
 
 from vibroimpact.dynamics.columns import IMPACT_COLUMNS, history_columns, impact_columns
 from vibroimpact.errors import InputError
-from vibroimpact.storage.check_sums import CHECK_SUMS, check_file, file_digest, read_sealed, sealed
+from vibroimpact.storage.check_sums import CHECK_SUMS, DamageError, check_file, file_digest, read_sealed, sealed
 from vibroimpact.storage.damaged_part import check_hdf5
 from vibroimpact.storage.hdf5 import why
 from vibroimpact.storage.netcdf import read_groups, write_groups
@@ -146,6 +146,8 @@ def read_result(directory: str | PathLike[str]) -> Result:
         return _result(case, summary, read_groups(folder / name))
     except InputError:
         raise
+    except DamageError as error:
+        raise InputError(f"{folder / name}: {error}; {_anew(folder, name)}") from None
     except Exception as error:  # of many kinds, as files are damaged in many ways
         raise InputError(f"{folder / name}: the file is missing or damaged: {_why(error)}; {_anew(folder, name)}") from None
 

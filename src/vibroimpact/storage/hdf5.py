@@ -85,6 +85,6 @@ def read_array(data: h5py.Dataset, place: Any = ()) -> NDArray[Any]:
 def why(error: Exception) -> str:
     """Return in few words why HDF5 could not read."""
     text = " ".join(str(error).split())
-    if "checksum" in text or "fletcher32" in text or "inflate" in text:
+    if any(word in text for word in ("checksum", "fletcher32", "inflate", "filter")):
         return "its check sum does not match"
     return text if len(text) < 120 else f"{text[:117]}..."

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vibroimpact.errors import InputError
-from vibroimpact.storage.check_sums import CHECK_SUMS, read_sealed
+from vibroimpact.storage.check_sums import CHECK_SUMS, DamageError, read_sealed
 from vibroimpact.storage.damaged_part import check_hdf5
 from vibroimpact.storage.folder import SUMMARY
 from vibroimpact.storage.hdf5 import read_array, why
@@ -229,9 +229,10 @@ def _damage_told(path: Path) -> Iterator[None]:
     except InputError:
         raise
     except Exception as error:  # of many kinds, as files are damaged in many ways
+        words = str(error) if isinstance(error, DamageError) else f"the file is damaged: {why(error)}"
         folder = shlex.quote(str(path.parent))
         command = f"vibroimpact sweep {shlex.quote(str(path.parent / STUDY))} -o {folder} --force"
-        raise InputError(f"{path}: the file is damaged: {why(error)}; make it anew with: {command}") from None
+        raise InputError(f"{path}: {words}; make it anew with: {command}") from None
 
 
 def _design(table: dict[str, Any]) -> str:

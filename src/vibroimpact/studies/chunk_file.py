@@ -118,7 +118,8 @@ def read_chunk(folder: Path, chunk: Span, study: str, names: Collection[str] | N
         told = (file.attrs["study"], file.attrs["first"], file.attrs["size"])
         if told != (study, chunk.first, chunk.size):
             raise ValueError("it is of another study, or has other drops")
-        # [()], for np.asarray makes an object of a dataset that can't be read
-        arrays = {name: np.asarray(values[()]) for name, values in file["arrays"].items() if names is None or name in names}
+        wanted = [name for name in file["arrays"] if names is None or name in names]
+        # by name and with [()]: items() gives None for what can't be opened, and np.asarray makes an object of what can't be read
+        arrays = {name: np.asarray(file["arrays"][name][()]) for name in wanted}
         reasons = [reason.decode() for reason in file["failures/reason"][()]]
         return ChunkResult(arrays, dict(zip(file["failures/place"][()].tolist(), reasons, strict=True)))
