@@ -18,11 +18,12 @@ from vibroimpact.cases.material_field import InlineMaterial
 from vibroimpact.cases.schema import AccelerometerTable, Case, DropSection, PlateSection, RunSection, SensorSection, SphereSection
 from vibroimpact.cases.sweep_section import SweepSection
 from vibroimpact.errors import InputError, did_you_mean
+from vibroimpact.files import FileKind, read_text
+from vibroimpact.shown import visible
 
 Read = TypeVar("Read")
 
-LARGEST_FILE = 1_000_000
-"""Bytes; a case is a page of text, and more is a mistake."""
+_CASE = FileKind('a case is a TOML file, or a shipped one such as "paper:type1-theory"', 1_000_000, "a case is a page of text")
 
 _SECTIONS: dict[tuple[str, ...], type[BaseModel]] = {
     (): Case,
@@ -82,7 +83,7 @@ def load_table(source: str | PathLike[str]) -> dict[str, Any]:
     InputError
         If it can't be read or is not TOML; the message does not name the source.
     """
-    text = _shipped(str(source)) if str(source).startswith("paper:") else _file(Path(source))
+    text = _shipped(str(source)) if str(source).startswith("paper:") else read_text(Path(source), _CASE)
     try:
         table = tomllib.loads(text)
     except ValueError as error:  # tomllib's own, or a number of thousands of digits
@@ -97,7 +98,8 @@ def named(source: str | PathLike[str], read: Callable[[], Read]) -> Read:
     try:
         return read()
     except InputError as error:
-        raise InputError("\n".join(f"{source}: {line}" for line in str(error).splitlines())) from None
+        name = visible(str(source), 300)
+        raise InputError("\n".join(f"{name}: {line}" for line in str(error).splitlines())) from None
 
 
 def read_case(table: Mapping[str, Any]) -> Case:
@@ -162,21 +164,3 @@ def _shipped(name: str) -> str:
         known = list(shipped_cases())
         raise InputError(f'there is no shipped case "{name}"; there are {", ".join(known)}.{did_you_mean(name, known)}')
     return entry.read_text(encoding="utf-8")
-
-
-def _file(path: Path) -> str:
-    try:
-        if path.is_dir():
-            raise InputError("this is a directory; a case is a TOML file")
-        with path.open("rb") as file:
-            data = file.read(LARGEST_FILE + 1)
-        if len(data) > LARGEST_FILE:
-            raise InputError(f"the file is larger than {LARGEST_FILE // 1_000_000} MB; a case is a page of text")
-        return data.decode("utf-8-sig")  # some editors put a byte-order mark first
-    except FileNotFoundError:
-        raise InputError('there is no such file; a case is a TOML file, or a shipped one such as "paper:type1-theory"') from None
-    except (OSError, ValueError) as error:
-        reason = "it is not UTF-8 text" if isinstance(error, UnicodeDecodeError) else getattr(error, "strerror", None) or str(error)
-        if isinstance(error, InputError):
-            raise
-        raise InputError(f"the file can't be read: {reason}") from None
