@@ -15,12 +15,12 @@ from os import PathLike
 from typing import NamedTuple
 
 from vibroimpact.errors import InputError
-from vibroimpact.shown import visible
+from vibroimpact.shown import shortened
 
 _BLOCK = 4_000_000
 """Bytes that are read at once."""
 
-_LONG_NAME = 300
+_LONG_NAME = 200
 """Letters of a path that messages show."""
 
 _OPENING = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_CLOEXEC", 0) | getattr(os, "O_BINARY", 0)
@@ -140,14 +140,14 @@ def file_digest(path: str | PathLike[str], kind: FileKind) -> str:
 
 
 def about(path: str | PathLike[str], error: InputError, key: str = "") -> InputError:
-    """Return an error with the name of the file before it, as it can be shown.
+    """Return an error with the name of the file before it.
 
     Examples
     --------
     >>> about("drop.csv", InputError("there is no such file")).message
     'drop.csv: there is no such file'
     """
-    return InputError(f"{visible(str(path), _LONG_NAME)}: {error}", key)
+    return InputError(f"{shortened(str(path), _LONG_NAME)}: {error}", key)
 
 
 def _blocks(path: str | PathLike[str], kind: FileKind) -> Iterator[bytes]:

@@ -8,11 +8,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cache
 from importlib.resources import files
+from typing import Any
 
 import numpy as np
 
 from vibroimpact.errors import InputError, did_you_mean
 from vibroimpact.ranges import Range
+from vibroimpact.shown import shown
 
 _RANGES = {
     "density": Range(above=0),
@@ -88,6 +90,9 @@ class Material:
         return self.youngs_modulus / (1.0 - self.poissons_ratio**2)
 
 
+_OTHER = "other_names"
+"""The key of the library's file with what people call a material elsewhere."""
+
 RIGID = Material(density=math.nan, youngs_modulus=math.inf, poissons_ratio=0.0, name="rigid", description="a material of infinite modulus")
 
 
@@ -100,8 +105,30 @@ def material_library() -> Mapping[str, Material]:
     >>> material_library()["rock-paper"].youngs_modulus
     2260000000.0
     """
-    text = files("vibroimpact").joinpath("materials.toml").read_text(encoding="utf-8")
-    return {name: Material(name=name, **entry) for name, entry in tomllib.loads(text).items()}
+    entries = _library_file().items()
+    return {name: Material(name=name, **{key: value for key, value in entry.items() if key != _OTHER}) for name, entry in entries}
+
+
+@cache
+def _library_file() -> Mapping[str, Mapping[str, Any]]:
+    return tomllib.loads(files("vibroimpact").joinpath("materials.toml").read_text(encoding="utf-8"))
+
+
+@cache
+def _known_by() -> Mapping[str, str]:
+    """Return the names of the materials by all that people call them, in lower case letters and digits alone."""
+    names = {name: (name, *entry.get(_OTHER, ())) for name, entry in _library_file().items()}
+    return {_plain(one): name for name, several in names.items() for one in (*several, name)}
+
+
+def _plain(name: str) -> str:
+    return "".join(letter for letter in name.lower() if letter.isalnum())
+
+
+def _meant(name: str) -> str:
+    """Return " Did you mean ...?" for the material that is called so elsewhere, or whose name is closest."""
+    found = _known_by().get(_plain(name))
+    return f' Did you mean "{found}"?' if found else did_you_mean(name.lower(), material_library())
 
 
 def find_material(name: str) -> Material:
@@ -110,7 +137,7 @@ def find_material(name: str) -> Material:
     Raises
     ------
     InputError
-        If there is none; the message names the closest.
+        If there is none; the message names the one that is called so elsewhere ("PMMA", "alu"), or the closest.
 
     Examples
     --------
@@ -121,5 +148,6 @@ def find_material(name: str) -> Material:
         return RIGID
     library = material_library()
     if name not in library:
-        raise InputError(f'there is no material "{name}" in the library; "vibroimpact materials" lists them.{did_you_mean(name, library)}')
+        remedy = "or give its numbers: { density = ..., youngs_modulus = ..., poissons_ratio = ... }"
+        raise InputError(f'there is no material {shown(name)} in the library; "vibroimpact materials" lists them, {remedy}.{_meant(name)}')
     return library[name]

@@ -7,7 +7,7 @@ import re
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 
 class Multiple(NamedTuple):
@@ -123,6 +123,63 @@ def certain(shown: str, value: float, figures: int) -> str:
     if -4 <= (power := int(exponent)) < figures:
         return fixed(value, figures - 1 - power)
     return f"{mantissa}·10{_superscript(str(power))}".replace("-", _MINUS)
+
+
+ALL_FIGURES = 17
+"""Significant figures of a number that nothing takes digits from."""
+
+
+def certain_figures(change: ArrayLike) -> NDArray[np.intp]:
+    """Return how many significant figures of numbers are certain, given their relative changes; the last may be off by three.
+
+    Parameters
+    ----------
+    change : array_like
+        Relative change of each number [-] for one in the drop that nobody can rule out; NaN where it has grown beyond all numbers.
+
+    Examples
+    --------
+    >>> certain_figures([0.0, 1e-9, 0.003, 0.12, 0.5]).tolist()
+    [17, 9, 3, 1, 0]
+    """
+    with np.errstate(divide="ignore", invalid="ignore"):
+        figures = np.floor(0.5 - np.log10(np.nan_to_num(np.asarray(change, dtype=float), nan=np.inf)))
+    return np.asarray(np.clip(figures, 0, ALL_FIGURES), dtype=np.intp)
+
+
+_LEAST, _MORE = 3, 2  # significant digits of the smallest of a column; decimals that are added for it
+
+
+def column_texts(values: ArrayLike, significant: int = 5) -> list[str]:
+    """Return the numbers of a column, all with the same decimals, so that they are compared at sight.
+
+    The largest has so many significant digits, or up to two more where the smallest would have fewer than three. Where that is not
+    enough, as the numbers differ by powers of ten, each has its own significant digits.
+
+    Parameters
+    ----------
+    values : array_like
+        Numbers in one unit; NaN becomes a dash.
+    significant : int
+        Significant digits of the largest.
+
+    Examples
+    --------
+    >>> column_texts([9.70894, 0.65, 0.0])
+    ['9.7089', '0.6500', '0.0000']
+    >>> column_texts([1200.0, 0.0123], 4)
+    ['1200', '0.01230']
+    """
+    numbers = np.asarray(values, dtype=float)
+    sizes = np.abs(numbers[np.isfinite(numbers) & (numbers != 0.0)])
+    if not sizes.size:
+        return [digits(float(value), significant) for value in numbers]
+    top, bottom = (int(f"{size:.{significant - 1}e}".split("e")[1]) for size in (sizes.max(), sizes.min()))
+    usual = max(0, significant - 1 - top)
+    decimals = max(usual, min(_LEAST, significant) - 1 - bottom)
+    if not -4 <= top <= 7 or decimals > usual + _MORE:
+        return [digits(float(value), significant) for value in numbers]
+    return [fixed(float(value), decimals) for value in numbers]
 
 
 def fixed(value: float, decimals: int) -> str:

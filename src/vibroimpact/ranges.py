@@ -44,6 +44,16 @@ class Range:
         high = self.below - 1e-12 * abs(self.below) if math.isfinite(self.below) else self.at_most
         return np.clip(values, low, high)
 
+    def bounded(self, values: Any) -> Any:
+        """Return values moved into the range, onto its ends even where these are left out: of an interval, say.
+
+        Examples
+        --------
+        >>> Range(above=0, at_most=1).bounded(np.array([-0.2, 0.5, 1.3])).tolist()
+        [0.0, 0.5, 1.0]
+        """
+        return np.clip(values, max(self.above, self.at_least), min(self.below, self.at_most))
+
     def check(self, values: Any, unit: str = "", shown: str = "") -> None:
         """Raise unless all `values` are finite and inside.
 

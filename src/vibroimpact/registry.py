@@ -9,6 +9,7 @@ from types import ModuleType
 from typing import TypeVar
 
 from vibroimpact.errors import InputError, did_you_mean
+from vibroimpact.shown import shown
 
 Found = TypeVar("Found")
 
@@ -50,5 +51,5 @@ def find_named(kind: str, name: str, known: Mapping[str, Found]) -> Found:
     vibroimpact.errors.InputError: there is no law "herz"; there are hertz. Did you mean "hertz"?
     """
     if name not in known:
-        raise InputError(f'there is no {kind} "{name}"; there are {", ".join(known)}.{did_you_mean(name, known)}')
+        raise InputError(f"there is no {kind} {shown(name)}; there are {', '.join(known)}.{did_you_mean(name, known)}")
     return known[name]

@@ -1,37 +1,71 @@
-"""Pieces of what was read, as messages and figures show them: in one line, without control characters, and not too long."""
+"""What people and files give, as it is shown to people: printable, and no longer than can be read."""
 
 from __future__ import annotations
 
-ELLIPSIS = "..."
+import reprlib
+import unicodedata
+from typing import Any
 
 
-def visible(text: str, most: int = 60) -> str:
-    r"""Return a text of at most `most` characters, in which those that can't be seen stand as their escapes, such as \n or \x1b.
-
-    Examples
-    --------
-    >>> visible("a name of 300 letters" * 15, 20)
-    'a name of 300 let...'
-    >>> print(visible("left\nupper"))
-    left\nupper
-    """
-    # a text of any length is cut before it is worked on
-    plain = "".join(letter if letter.isprintable() else _escape(letter) for letter in text[: most + 1])
-    return plain if len(plain) <= most else plain[: most - len(ELLIPSIS)] + ELLIPSIS
-
-
-def shown(text: str, most: int = 40) -> str:
-    """Return the beginning of a text in quotes, fit for a message.
+def visible(text: str) -> str:
+    r"""Return a text in which nothing steers a terminal: control characters, line breaks and their like stand as escapes.
 
     Examples
     --------
-    >>> shown("1.0.0")
-    '"1.0.0"'
-    >>> shown("0123456789", 4)
-    '"0123..."'
+    >>> print(visible("red\x1b[31m, a\nb"))
+    red\x1b[31m, a\nb
+    >>> visible("8 mm steel")
+    '8 mm steel'
     """
-    return f'"{visible(text[:most], 10 * most)}{ELLIPSIS if len(text) > most else ""}"'
+    return text if text.isprintable() else "".join(map(_visible, text))
 
 
-def _escape(letter: str) -> str:
-    return letter.encode("unicode_escape").decode("ascii")
+def _visible(character: str) -> str:
+    if character.isprintable():
+        return character
+    if unicodedata.category(character) == "Zs":  # a blank that does not break, and the other widths
+        return " "
+    return character.encode("unicode_escape").decode()
+
+
+def shortened(text: str, most: int) -> str:
+    """Return a text of at most so many characters, without its middle if it is longer.
+
+    Examples
+    --------
+    >>> shortened("a name that never comes to an end", 20)
+    'a name tha ... n end'
+    """
+    if len(text) <= most:
+        return text
+    end = (most - 5) // 3
+    return f"{text[: most - 5 - end]} ... {text[len(text) - end :]}"
+
+
+def shown(value: Any, most: int = 60) -> str:
+    r"""Return a value of a case as a message shows it: a text in quotes, other things as they are, no more than can be read.
+
+    Examples
+    --------
+    >>> shown("25 kg"), shown([1, 2.5]), shown([0] * 1000)
+    ('"25 kg"', '[1, 2.5]', '[0, 0, 0, 0, 0, 0, ...]')
+    >>> print(shown("a\nb"))
+    "a\nb"
+    """
+    if isinstance(value, str):
+        return f'"{shortened(visible(value[: 10 * most]), most)}"'
+    return shortened(visible(_short.repr(value)), most)
+
+
+class _Short(reprlib.Repr):
+    """Looks into no more of a value than is shown: one from Python may be without end."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.maxlevel, self.maxstring, self.maxother = 4, 60, 60
+
+    def repr_int(self, x: int, level: int) -> str:
+        return repr(x) if x.bit_length() < 400 else f"a whole number of {int(x.bit_length() * 0.30103)} digits"
+
+
+_short = _Short()

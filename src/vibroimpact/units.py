@@ -13,7 +13,7 @@ from functools import cache, lru_cache
 from typing import TYPE_CHECKING
 
 from vibroimpact.errors import InputError
-from vibroimpact.shown import shown, visible
+from vibroimpact.shown import shortened, shown
 from vibroimpact.unit_grammar import is_unit
 
 if TYPE_CHECKING:
@@ -94,13 +94,15 @@ def to_si(value: float | str, unit: str = "") -> float:
     2260000000.0
     >>> to_si(0.025, "m")
     0.025
+    >>> to_si("500 g", "m/s^2")  # as data sheets have it: standard gravity; of a mass "g" is the gram
+    4903.325
     >>> to_si("25 kg", "m")
     Traceback (most recent call last):
         ...
     vibroimpact.errors.InputError: "25 kg" is a mass; what is wanted is a length (a number in m, or a string such as "25 mm")
     """
     if isinstance(value, bool) or not isinstance(value, (int, float, str)):
-        raise InputError(f"{visible(repr(value))} is not {_wanted(unit)}")
+        raise InputError(f"{shown(value)} is not {_wanted(unit)}")
     if isinstance(value, str):
         return _finite(_parse(value, unit), value)
     try:
@@ -164,7 +166,7 @@ def convert_units(value: float, unit: str, to: str) -> float:
         found = float(_registry().Quantity(number, have).to(want).magnitude)
     except OverflowError:
         found = math.inf
-    return _finite(found, f"{value:g} {visible(unit)} in {visible(to)}")
+    return _finite(found, f"{value:g} {unit} in {to}")
 
 
 def dimension_of(unit: str) -> dict[str, float]:
@@ -223,7 +225,7 @@ def _dimension_words(unit: pint.Unit) -> str:
     dimension = unit_text(_dimension(unit).items())
     if kind is None:
         return f"of the dimension {dimension}"
-    named = f"{'an' if kind[0] in 'aeiou' else 'a'} {kind}"
+    named = f"{_article(kind)} {kind}"
     return named if kind == dimension else f"{named} ({dimension})"
 
 
@@ -257,7 +259,7 @@ def _split(text: str) -> tuple[float, str] | None:
         return None
     unit = (match[2] or "").strip()
     if re.match(r",\d", unit):
-        raise InputError(f"{shown(text, 80)} has a comma in its number; write a point: {visible(text.replace(',', '.', 1), 90)}")
+        raise InputError(f"{shown(text, 80)} has a comma in its number; write a point: {text.replace(',', '.', 1)}")
     return float(match[1]), unit
 
 
@@ -268,6 +270,10 @@ def _parse_unit(text: str) -> pint.Unit:
     return _registry().parse_units(text)
 
 
+_GRAVITIES = {"g": "g0", "mg": "mg0", "ug": "ug0", "µg": "ug0", "μg": "ug0"}
+"""What accelerometers' data sheets write for standard gravity, 9.80665 m/s^2, and its multiples, by what pint calls it."""
+
+
 @lru_cache(maxsize=1000)
 def _factor(given: str, unit: str, text: str) -> float:
     """Return how many `unit` there are in one `given`."""
@@ -275,11 +281,12 @@ def _factor(given: str, unit: str, text: str) -> float:
 
     registry = _registry()
     try:
-        have, want = registry.Quantity(1.0, _parse_unit(given)), registry.parse_units(unit)
+        spelled = _GRAVITIES.get(given, given) if unit == "m/s^2" else given  # no mass can be meant by 500 g of acceleration
+        have, want = registry.Quantity(1.0, _parse_unit(spelled)), registry.parse_units(unit)
         return float(have.to(want).magnitude)
     except pint.DimensionalityError:
         kind = next((k for u, k in _KIND.items() if u and have.check(registry.parse_units(u).dimensionality)), None)
-        is_a = f"is a {kind}" if kind else "is another kind of quantity"
+        is_a = f"is {_article(kind)} {kind}" if kind else "is another kind of quantity"
         raise InputError(f"{shown(text, 80)} {is_a}; what is wanted is {_wanted(unit)}") from None
     except Exception as error:  # pint raises many kinds for a unit that it can't read
         raise InputError(
@@ -295,14 +302,19 @@ def _long(number: float) -> str:
         return "a number of thousands of digits"
 
 
+def _article(noun: str) -> str:
+    return "an" if noun[0] in "aeiou" else "a"
+
+
 def _wanted(unit: str) -> str:
     if not unit:
         return "a plain number"
     example = _EXAMPLE.get(unit, f"1 {unit}")
-    return f'a {_KIND.get(unit, "quantity")} (a number in {unit}, or a string such as "{example}")'
+    kind = _KIND.get(unit, "quantity")
+    return f'{_article(kind)} {kind} (a number in {unit}, or a string such as "{example}")'
 
 
 def _finite(number: float, value: float | str) -> float:
     if not math.isfinite(number):
-        raise InputError(f"{visible(str(value))} is not finite")
+        raise InputError(f"{shortened(str(value), 60)} is not finite")
     return number

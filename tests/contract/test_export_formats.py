@@ -52,7 +52,7 @@ class Strange(CompliantLaw):
 
 def written(format: ExportFormat, drop: Drop) -> dict[str, bytes] | None:
     """Return the files, or None if the drop is refused as it should be: in one clear line."""
-    files, message = {}, ""
+    files, message, drop = {}, "", format.told(drop)
     try:
         files = dict(format.write(drop))
     except vi.InputError as error:

@@ -11,8 +11,9 @@ PACKAGE = Path(vibroimpact.__file__).parent
 
 # from the ground up; a module may import its own layer's package and what is below
 LAYERS = [
-    {"errors", "_version", "shown"},
-    {"ranges", "registry", "files", "unit_grammar"},
+    {"shown", "_version"},
+    {"errors"},
+    {"ranges", "registry", "writing", "files", "unit_grammar"},
     {"units", "materials", "quantity"},
     {"contact"},
     {"structures"},

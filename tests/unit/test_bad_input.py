@@ -41,7 +41,7 @@ FAULTS = [
     ({"drop__gravity": 0}, "drop.gravity: without gravity a sphere does not fall"),
     ({"plate__size": [0.1, 0.1, 0.01], "drop__position": [0.06, 0]}, "drop.position: (0.06, 0) m lies outside the plate"),
     ({"plate__size": [0.1, 0.1]}, "plate.size: there are too few values; it takes length (x), width (y) and thickness (z)"),
-    ({"plate__size": [0.1, 0.1, -0.1]}, "plate.size.2: -0.1 is not allowed"),
+    ({"plate__size": [0.1, 0.1, -0.1]}, "plate.size.thickness: -0.1 is not allowed"),
     ({"sphere__material": "steal"}, 'Did you mean "steel"?'),
     ({"sphere__material": "rigid"}, 'sphere.material: "rigid" has no density'),
     ({"sphere__material": {"density": 1, "youngs_modulus": 1, "poissons_ratio": 0.5}}, "poissons_ratio: 0.5 is not allowed"),

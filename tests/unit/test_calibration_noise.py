@@ -7,6 +7,7 @@ noise of a speed is looked at on records of Adams' IMPACT.
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import cache
 
 import numpy as np
 import pytest
@@ -61,8 +62,10 @@ def restitutions(random: np.random.Generator, *, known: bool, part: float = 0.02
     return from_table(RANGE, wanted, {"separation_speed": part * exact} if known else None, tuple(f"row {row}" for row in range(8)))
 
 
-def repeated(measure: Callable[[np.random.Generator], Observations], times: int = TIMES, **more: object) -> list[Calibration]:
-    return [calibrate(drop(), measure(np.random.default_rng(seed)), **more) for seed in range(times)]
+@cache  # several tests look at the same repetitions
+def repeated(measure: Callable[..., Observations], *, known: bool, confidence: float = 0.95) -> list[Calibration]:
+    seen = (measure(np.random.default_rng(seed), known=known) for seed in range(TIMES))
+    return [calibrate(drop(), one, bootstrap=0, confidence=confidence) for one in seen]
 
 
 def check_coverage(inside: Floats, confidence: float = 0.95, level: float = 1e-3) -> None:
@@ -92,7 +95,7 @@ def scatter_over_stated(found: list[Calibration]) -> Floats:
 @pytest.mark.parametrize("confidence", [0.95, pytest.param(0.8, marks=pytest.mark.slow)])
 @pytest.mark.parametrize(("measure", "exact"), [(heights, truth(SPEEDS)), (restitutions, truth(RANGE))], ids=["heights", "restitutions"])
 def test_known_deviations(measure: Callable[..., Observations], exact: Floats, confidence: float) -> None:
-    found = repeated(lambda random: measure(random, known=True), confidence=confidence, bootstrap=0)
+    found = repeated(measure, known=True, confidence=confidence)
     check_coverage(holds_values(found, exact), confidence)
     check_coverage(holds_coefficients(found, confidence), confidence)
     np.testing.assert_allclose(scatter_over_stated(found), 1.0, atol=0.15)
@@ -104,7 +107,7 @@ def test_known_deviations(measure: Callable[..., Observations], exact: Floats, c
 @pytest.mark.parametrize("measure", [heights, restitutions])
 def test_unknown_deviations(measure: Callable[..., Observations]) -> None:
     """The scatter about the polynomial tells their size, with the quantiles of Student's distribution."""
-    found = repeated(lambda random: measure(random, known=False), bootstrap=0)
+    found = repeated(measure, known=False)
     check_coverage(holds_coefficients(found))
     np.testing.assert_allclose(scatter_over_stated(found), 1.0, atol=0.15)
     freedom = (5 if measure is heights else 8) - 3
@@ -115,7 +118,7 @@ def test_unknown_deviations(measure: Callable[..., Observations]) -> None:
 
 def test_a_reading_that_two_impacts_share_counts_once() -> None:
     """A height is what one impact leaves with and the next comes with: the errors of their restitutions are opposite."""
-    found = repeated(lambda random: heights(random, known=True), bootstrap=0)
+    found = repeated(heights, known=True, confidence=0.95)
     values = np.array([one.values for one in found])
     assert np.all(np.array([np.corrcoef(values[:, row], values[:, row + 1])[0, 1] for row in range(4)]) < -0.3)
 

@@ -36,9 +36,9 @@ def contact(**keys: Any) -> dict[str, Any]:
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
-        ({"sensors": [{**SENSOR, "position": [0.3, 0.0]}]}, r'sensor "a1": \(0\.3, 0\) m is not on the body'),
-        ({"sensors": [{**SENSOR, "rate": 0}]}, r"sensors\.0\.rate: 0 is not allowed; it must be greater than 0 Hz"),
-        ({"sensors": [{**SENSOR, "direction": [0, 0, 0]}]}, r"sensors\.0\.direction: it has no length"),
+        ({"sensors": [{**SENSOR, "position": [0.3, 0.0]}]}, r'sensors\."a1"\.position: \(0\.3, 0\) m lies outside the plate'),
+        ({"sensors": [{**SENSOR, "rate": 0}]}, r'sensors\."a1"\.rate: 0 is not allowed; it must be greater than 0 Hz'),
+        ({"sensors": [{**SENSOR, "direction": [0, 0, 0]}]}, r'sensors\."a1"\.direction: it has no length'),
         ({"sensors": [{**SENSOR, "quantity": "velocity", "accelerometer": {}}]}, "an accelerometer reads acceleration"),
         (
             {"plate": {"material": "rigid", "model": "rigid", "modes": None, "supports": None}, "sensors": [SENSOR]},
@@ -130,13 +130,13 @@ def test_an_unknown_key_of_an_accelerometer_is_named_with_the_others() -> None:
 @pytest.mark.parametrize(
     ("given", "said"),
     [
-        ({"filter": "butterwort"}, r'sensors\.0\.filter.*one of "sigma-delta", "butterworth", "none"\. Did you mean "butterworth"'),
-        ({"filter": 8}, r"sensors\.0\.filter"),
-        ({"corner": "10 kHz"}, r'sensors\.0\.corner.*"sigma-delta" takes no corner; leave it out, or take "butterworth"'),
-        ({"filter": "butterworth", "corner": -1.0}, r"sensors\.0\.corner"),
+        ({"filter": "butterwort"}, r'sensors\."a1"\.filter.*one of "sigma-delta", "butterworth", "none"\. Did you mean "butterworth"'),
+        ({"filter": 8}, r'sensors\."a1"\.filter'),
+        ({"corner": "10 kHz"}, r'sensors\."a1"\.corner.*"sigma-delta" takes no corner; leave it out, or take "butterworth"'),
+        ({"filter": "butterworth", "corner": -1.0}, r'sensors\."a1"\.corner'),
         (
             {"filter": "butterworth", "rate": "50 kHz", "corner": "25 kHz"},
-            r"sensors\.0\.corner: 25000 Hz is not allowed.*below half of the 50000 samples.*20000 Hz or less",
+            r'sensors\."a1"\.corner: 25000 Hz is not allowed.*below half of the 50000 samples.*20000 Hz or less',
         ),
         ({"fliter": "none"}, r'unknown key "fliter".*Did you mean "filter"'),
     ],

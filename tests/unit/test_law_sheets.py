@@ -62,18 +62,25 @@ def test_asked_and_achieved_are_shown() -> None:
 @pytest.mark.parametrize("name", LAWS)
 def test_every_law_is_drawn(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
-    assert run(monkeypatch, name) == 0
+    assert run(monkeypatch, name, "-o", f"{name}.png") == 0
     with Image.open(f"{name}.png") as picture:
         assert picture.size == (1200, 735)
         assert len(picture.getcolors(1 << 20) or ()) > 20
 
 
+def test_a_sheet_alone_writes_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert run(monkeypatch, "hertz") == 0
+    assert "Elastic contact" in capsys.readouterr().out
+    assert not list(tmp_path.iterdir())
+
+
 def test_a_picture_that_is_there_is_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     target = tmp_path / "mine.png"
     target.write_bytes(b"mine")
-    assert run(monkeypatch, "hertz", "-o", str(target)) == 0
+    assert run(monkeypatch, "hertz", "-o", str(target)) == 2
     assert target.read_bytes() == b"mine"
-    assert "is there already and was left as it is" in capsys.readouterr().out
+    assert "mine.png is there already; --force replaces it" in capsys.readouterr().err
     assert run(monkeypatch, "hertz", "-o", str(target), "--force") == 0
     assert target.read_bytes().startswith(b"\x89PNG")
 

@@ -128,7 +128,7 @@ def test_a_ledger_keeps_what_was_noted(tmp_path: Path) -> None:
         assert [tuple(chunk) for chunk in ledger.chunks("waiting")] == [(0, 0, 10), (1, 10, 10), (2, 20, 5)]
         ledger.done(ledger.chunks("waiting")[1], "abc", 3)
     with open_ledger(tmp_path) as ledger:
-        assert ledger.facts == {"digest": "x"}
+        assert ledger.facts == {"digest": "x", "size": "25"}
         assert ledger.checksums() == {1: "abc"}
         ledger.undone(1)
         assert len(ledger.chunks("waiting")) == 3

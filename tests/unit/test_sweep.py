@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import csv
 import json
+import socket
+from contextlib import suppress
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -251,4 +253,8 @@ def test_processes_and_dask_compute_the_same_bits(tmp_path: Path) -> None:
 
     here = _chunks(this_process)
     assert _chunks(partial(processes, 2, _nothing, tmp_path)) == here
-    assert _chunks(partial(dask_workers, "local", 2, _nothing)) == here
+    with socket.socket() as other:
+        with suppress(OSError):  # then it is taken already
+            other.bind(("", 8787))  # where Dask's dashboards are
+            other.listen()
+        assert _chunks(partial(dask_workers, "local", 2, _nothing)) == here

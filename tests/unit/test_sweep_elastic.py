@@ -7,7 +7,6 @@ import signal
 import subprocess
 import sys
 import threading
-import time
 import zlib
 from collections.abc import Iterator
 from pathlib import Path
@@ -22,6 +21,7 @@ from studies import study_table
 from vibroimpact.cases.swept_keys import case_at
 from vibroimpact.storage.compute_study import compute_study
 from vibroimpact.structures.store import PLACE, entries
+from waiting import wait_until
 
 PLATE = {
     "size": ["520 mm", "420 mm", "8 mm"],
@@ -143,11 +143,9 @@ def scheduler(tmp_path: Path) -> Iterator[tuple[str, list[subprocess.Popen[bytes
     join = [f"{dask[2]}dask_worker", "--scheduler-file", str(file), "--nthreads", "1", "--no-dashboard", "--no-nanny"]
     running += [subprocess.Popen([*dask[:2], *join], **quiet) for _ in range(2)]
     try:
-        limit = time.monotonic() + 60.0
-        while not (file.exists() and file.read_text()) and time.monotonic() < limit:
-            time.sleep(0.05)
-        with Client(scheduler_file=str(file)) as client:
-            client.wait_for_workers(2, timeout=60)
+        wait_until(lambda: file.exists() and file.read_text() != "", *running)
+        with Client(scheduler_file=str(file), timeout="1 h") as client:
+            client.wait_for_workers(2)
             address = client.scheduler.address
         yield address, running[1:], store
     finally:

@@ -27,6 +27,7 @@ from vibroimpact.studies.chunk_file import ChunkResult
 from vibroimpact.studies.ledger import LEDGER, Span, open_ledger
 from vibroimpact.studies.run_chunks import run_chunks
 from vibroimpact.studies.workers import Crew, processes, this_process
+from waiting import wait_until
 
 DRAWN = vi.read_sweep(study_table(RANDOM))
 SMALL = int(200 * (4000 + 4 * DRAWN.bytes / DRAWN.size)) + 1
@@ -56,9 +57,8 @@ def killed_again_and_again(tmp_path: Path, kills: int, seed: int) -> None:
         begun = (folder / LEDGER).exists()
         options = ["--processes", str(1 + number % 2), *(["--resume"] if begun else [])]
         running = subprocess.Popen(sweep_command(study, folder, *options), stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
-        limit = time.monotonic() + 60.0
-        while not (chunks_done(folder) > done or (begun and number % 3 == 0)) and running.poll() is None and time.monotonic() < limit:
-            time.sleep(0.005)
+        if not begun or number % 3:  # else at once, before anything is done
+            wait_until(lambda before=done: chunks_done(folder) > before, running)
         time.sleep(random_moment.uniform(0.0, 0.15))
         assert running.poll() is None, "the study was done before it could be killed"
         running.kill()
@@ -83,16 +83,12 @@ def test_no_process_outlives_the_one_that_leads(tmp_path: Path) -> None:
     study = study_file(tmp_path, MANY)
     command = sweep_command(study, tmp_path / "out", "--processes", "2")
     leader = subprocess.Popen(command, stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
-    limit = time.monotonic() + 60.0
-    while not chunks_done(tmp_path / "out") and time.monotonic() < limit:
-        time.sleep(0.01)
+    wait_until(lambda: chunks_done(tmp_path / "out") > 0, leader)
     children = _children(leader.pid)
     leader.kill()
     leader.wait()
     assert children
-    while time.monotonic() < limit and any(_is_alive(child) for child in children):
-        time.sleep(0.05)
-    assert not any(_is_alive(child) for child in children)
+    wait_until(lambda: not any(_is_alive(child) for child in children))
 
 
 def _children(parent: int) -> list[int]:
@@ -109,11 +105,9 @@ def _is_alive(process: int) -> bool:
 def test_ctrl_c_says_how_to_go_on(tmp_path: Path) -> None:
     study, folder = study_file(tmp_path, MANY), tmp_path / "out"
     running = subprocess.Popen(sweep_command(study, folder, "--processes", "2"), stderr=subprocess.PIPE, text=True, start_new_session=True)
-    limit = time.monotonic() + 60.0
-    while not chunks_done(folder) and time.monotonic() < limit:
-        time.sleep(0.01)
+    wait_until(lambda: chunks_done(folder) > 0, running)
     os.killpg(running.pid, signal.SIGINT)  # as a terminal does: all processes of the group get it
-    told = running.communicate(timeout=60)[1]
+    told = running.communicate()[1]
     assert running.returncode == 130
     first, last = told.strip().splitlines()
     assert first == "vibroimpact: stopping after the drops that are under way; Ctrl-C once more stops at once"
@@ -357,12 +351,21 @@ def test_another_study_does_not_go_on_here(tmp_path: Path, monkeypatch: pytest.M
         patched.setattr(computing, "__version__", "9.9")
         with pytest.raises(vi.InputError, match=r"begun with vibroimpact .*, and this is 9.9; go on with that version"):
             compute_study(sweep, folder, resume=True)
-    with pytest.raises(vi.InputError, match="no study was begun in this folder; leave out --resume"):
-        compute_study(sweep, tmp_path / "nothing", resume=True)
     compute_study(vi.load_sweep(folder / "study.toml"), folder, resume=True)  # what was begun is there, and is the same
     compute_study(vi.load_sweep(folder / "study.toml"), folder, resume=True)  # nothing is left to do
     with pytest.raises(vi.InputError, match=r"this is a study of many drops, not the result of a run"):
         vi.read_result(folder)
+
+
+def test_resume_begins_where_nothing_was_begun_and_replaces_nothing(tmp_path: Path) -> None:
+    sweep = vi.read_sweep(study_table({**RANDOM, "samples": 10}))
+    begun, again = (compute_study(sweep, tmp_path / name, resume=name == "begun") for name in ("begun", "again"))
+    assert results(begun) == results(again)
+    (tmp_path / "other").mkdir()
+    (tmp_path / "other" / "thesis.tex").write_text("years")
+    for force in (False, True):
+        with pytest.raises(vi.InputError, match="the folder is there"):
+            compute_study(sweep, tmp_path / "other", resume=True, force=force)
 
 
 def test_a_study_takes_the_place_of_another_only_if_it_is_told_to(tmp_path: Path) -> None:
@@ -380,3 +383,55 @@ def test_this_process_computes_as_well() -> None:
     with this_process() as crew:
         assert crew.executor.submit(int, "3").result() == 3
         assert isinstance(crew.executor.submit(int, "x").exception(), ValueError)
+
+
+# Ctrl-C at any moment ----------------------------------------------------------------------------
+
+
+def interrupted_after(seconds: float, study: Path, folder: Path) -> tuple[int, str]:
+    """Run a study of two processes, and send an interrupt to all of them, as a terminal does; return its status and what it told."""
+    command = sweep_command(study, folder, "--processes", "2")
+    running = subprocess.Popen(command, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True, start_new_session=True)
+    time.sleep(seconds)
+    os.killpg(running.pid, signal.SIGINT)
+    told = running.communicate(timeout=300)[1]
+    return running.returncode, told
+
+
+@pytest.mark.slow
+def test_ctrl_c_is_never_lost(tmp_path: Path) -> None:
+    study = study_file(tmp_path, {**RANDOM, "samples": 40_000})
+    for number in range(24):
+        status, told = interrupted_after(0.4 + 0.2 * number, study, tmp_path / f"out{number}")
+        assert status in (1, 130), (number, told)  # 1: before the command has begun
+        assert told.count("Traceback") <= (number < 3), (number, told)  # of the interpreter, which was starting
+
+
+def test_an_interrupt_waits_while_a_process_is_started_and_is_not_lost(monkeypatch: pytest.MonkeyPatch) -> None:
+    from multiprocessing.context import SpawnProcess
+
+    from vibroimpact.studies import workers
+
+    seen: list[str] = []
+
+    def starts(self: object) -> None:
+        os.kill(os.getpid(), signal.SIGINT)
+        seen.append("started")
+
+    monkeypatch.setattr(SpawnProcess, "start", starts)
+    before = signal.signal(signal.SIGINT, lambda *_: seen.append("told"))
+    try:
+        workers._Deaf(target=_nothing).start()
+    finally:
+        signal.signal(signal.SIGINT, before)
+    assert seen == ["started", "told"]
+
+
+def test_all_processes_are_deaf_to_interrupts(tmp_path: Path) -> None:
+    with processes(2, _nothing, tmp_path) as crew:
+        masks = [crew.executor.submit(_hears_interrupts).result() for _ in range(2)]
+    assert masks == [False, False]
+
+
+def _hears_interrupts() -> bool:
+    return signal.SIGINT not in signal.pthread_sigmask(signal.SIG_BLOCK, ())

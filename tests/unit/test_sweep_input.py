@@ -55,7 +55,7 @@ FAULTS: list[tuple[object, str]] = [
     ),
     (over(drop__position__x={"from": -0.1, "to": 0.1, "scale": "log"}), 'sweep.over."drop.position.x".from: -0.1 has no logarithm'),
     (over(run__impacts={"from": 1, "to": 5}), 'sweep.over."run.impacts": this key holds no quantity, so that it takes a list'),
-    (normal(distribution="gaussian"), f"{RADIUS}.distribution: 'gaussian' is not allowed; it must be one of normal, lognormal, uniform"),
+    (normal(distribution="gaussian"), f'{RADIUS}.distribution: "gaussian" is not allowed; it must be one of normal, lognormal, uniform'),
     (normal(standard_deviation="0 mm"), f'{RADIUS}.standard_deviation: "0 mm" is not allowed; it must be greater than 0 m'),
     (normal(standard_deviation="-1 mm"), f'{RADIUS}.standard_deviation: "-1 mm" is not allowed'),
     (normal(standard_deviation="5 s"), f'{RADIUS}.standard_deviation: "5 s" is a time'),

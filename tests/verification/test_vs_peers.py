@@ -36,7 +36,7 @@ def run(drop: Drop, program: str, folder: Path, command: list[str]) -> dict[str,
     """Write a drop for a program, run it, and return the impacts that it prints."""
     (file,) = (folder / name for name in find_export_format(program).write(drop))
     file.write_bytes(find_export_format(program).write(drop)[file.name])
-    done = subprocess.run([*command, file.name], cwd=folder, capture_output=True, text=True, timeout=60, check=False)
+    done = subprocess.run([*command, file.name], cwd=folder, capture_output=True, text=True, check=False)
     rows = LINE.findall(done.stdout)
     assert done.returncode == 0, done.stdout[-3000:] + done.stderr[-3000:]
     assert [int(row[0]) for row in rows] == list(range(1, len(rows) + 1))

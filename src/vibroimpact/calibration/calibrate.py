@@ -13,6 +13,7 @@ from vibroimpact.calibration.match_measurement import match_measurement
 from vibroimpact.calibration.matching import Tunable
 from vibroimpact.calibration.observations import Floats, Observations
 from vibroimpact.calibration.outcomes import REBOUND, REBOUNDS, check_weights
+from vibroimpact.calibration.overlay import overlays
 from vibroimpact.calibration.reach import other_parameters
 from vibroimpact.calibration.tunables import law_parameter
 from vibroimpact.calibration.uncertainty import of_the_whole
@@ -104,9 +105,9 @@ def calibrate(
     else:
         found = match_drop(tuned, stated, target.to_problem(), weights, degree, speeds, tell)
     tell(0.9)
-    along, values = by_function(tuned, stated, found.fit.function)
+    along, values = by_function(tuned, stated, found.fit.function, found.seen)
     chain = (found.seen.speeds, found.values) if found.seen.of_the_drop else (along, values)
-    drops = drops_with(tuned, chain[1], values)
+    drops = drops_with(tuned, chain[1], values, found.seen)
     along = along[: len(drops["function"]["impact"])]
     if not isinstance(target, Observations):
         drops = {"target": simulate(shortened(target.to_problem(), len(chain[1]))).impacts, **drops}
@@ -114,16 +115,19 @@ def calibrate(
     given = tuned.given[np.minimum(rows, len(tuned.given) - 1)]
     as_given = {} if np.isnan(given).any() else tuned.respond(found.seen.speeds, given, rows)
     missed = bool(as_given) and any(not np.allclose(as_given[name], found.seen.wanted[name], rtol=_MET, atol=0.0) for name in weights)
+    outcomes = tuned.respond(found.seen.speeds, found.values, rows)
+    overlaid = overlays(tuned, found.seen, found.values, outcomes)
     tell(1.0)
     return Calibration(
         problem=stated,
         parameter=tuned.name,
         unit=tuned.unit,
+        allowed=tuned.allowed,
         weights=dict(weights),
         observations=found.seen,
         values=found.values,
         intervals=found.intervals,
-        outcomes=tuned.respond(found.seen.speeds, found.values, rows),
+        outcomes=outcomes,
         given=given,
         as_given=as_given,
         others=other_parameters(stated, tuned, found.seen, weights) if missed else {},
@@ -133,6 +137,7 @@ def calibrate(
         drops=drops,
         confidence=confidence,
         bootstrap=found.draws,
+        overlays=overlaid,
         doubts=(*found.doubts, *of_the_whole(stated, tuned, found.seen, found.fit, found.curve, along)),
     )
 

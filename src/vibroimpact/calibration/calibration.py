@@ -7,7 +7,9 @@ from dataclasses import dataclass, field
 
 from vibroimpact.calibration.fitting import Fit
 from vibroimpact.calibration.observations import Floats, Observations
+from vibroimpact.calibration.overlay import Overlay
 from vibroimpact.dynamics.problem import Problem
+from vibroimpact.ranges import Range
 
 
 @dataclass(frozen=True)
@@ -20,6 +22,8 @@ class Calibration:
         The drop with its contact law as it was given.
     parameter, unit : str
         What was tuned.
+    allowed : Range
+        Of what was tuned.
     weights : mapping of str to float
         What was matched, by the names of `OUTCOMES`.
     observations : Observations
@@ -49,6 +53,8 @@ class Calibration:
         Of the intervals.
     bootstrap : int
         How many measurements were drawn again for them; 0 if they are of first order.
+    overlays : tuple of Overlay
+        What was recorded beside what is simulated with the values found; none where no record was given.
     doubts : tuple of str
         What to doubt of it.
     """
@@ -56,6 +62,7 @@ class Calibration:
     problem: Problem = field(repr=False)
     parameter: str
     unit: str
+    allowed: Range = field(repr=False)
     weights: Mapping[str, float]
     observations: Observations = field(repr=False)
     values: Floats
@@ -70,4 +77,5 @@ class Calibration:
     drops: Mapping[str, Mapping[str, Floats]] = field(repr=False)
     confidence: float
     bootstrap: int
+    overlays: tuple[Overlay, ...] = field(repr=False)
     doubts: tuple[str, ...]

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 import numpy as np
 
+from vibroimpact.calibration.flights import Flights
 from vibroimpact.calibration.matching import Tunable
-from vibroimpact.calibration.observations import Floats
+from vibroimpact.calibration.observations import Floats, Observations
 from vibroimpact.calibration.one_impact import first_speed
+from vibroimpact.calibration.outcomes import OUTCOMES
 from vibroimpact.calibration.speed_function import SpeedFunction
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.simulate import simulate
@@ -23,25 +25,48 @@ def impacts_of(problem: Problem) -> int:
     return min(problem.impacts or MOST_IMPACTS, MOST_IMPACTS)
 
 
-def by_function(tunable: Tunable, problem: Problem, function: SpeedFunction) -> tuple[Floats, Floats]:
+def by_function(tunable: Tunable, problem: Problem, function: SpeedFunction, seen: Observations) -> tuple[Floats, Floats]:
     """Return approach speeds [m/s] and values of the impacts of a drop whose value follows its approach speed."""
-    speeds, values, speed = [], [], first_speed(problem)
-    for impact in range(impacts_of(problem)):
-        value = tunable.allowed.clip(np.array([function(speed)]))
-        speeds.append(speed)
-        values.append(float(value[0]))
-        speed = float(tunable.respond(np.array([speed]), value, np.array([impact]))["next_speed"][0])
-        if not speed > 0.0:
-            break
-    return np.array(speeds), np.array(values)
+    first = first_speed(problem) if seen.flights is None else float(seen.speeds[0])
+    table = _chained(tunable, lambda _, speed: function(speed), impacts_of(problem), first, seen.flights)
+    return table["approach_speed_m_s"], table["value"]
 
 
-def drops_with(tunable: Tunable, values: Floats, by_speed: Floats) -> dict[str, Mapping[str, Floats]]:
-    """Return the impact tables of the drop with the first value at each impact, with each its own, and with those of the function."""
+def drops_with(tunable: Tunable, values: Floats, by_speed: Floats, seen: Observations) -> dict[str, Mapping[str, Floats]]:
+    """Return the impact tables of the drop with the first value at each impact, with each its own, and with those of the function.
+
+    Where the sphere flies in air, the impacts follow one another through that.
+    """
     found: dict[str, Mapping[str, Floats]] = {}
     for name, given in (("constant", values[:1]), ("variable", values), ("function", by_speed)):
-        found[name] = simulate(shortened(tunable.drop(given), len(values))).impacts
+        if seen.flights is None:
+            found[name] = simulate(shortened(tunable.drop(given), len(values))).impacts
+        else:
+            found[name] = _chained(tunable, _one_each(given), len(values), float(seen.speeds[0]), seen.flights)
     return found
+
+
+def _one_each(values: Floats) -> Callable[[int, float], float]:
+    return lambda impact, _: float(values[min(impact, len(values) - 1)])
+
+
+def _chained(
+    tunable: Tunable, value_of: Callable[[int, float], float], number: int, first: float, flights: Flights | None
+) -> dict[str, Floats]:
+    """Return impacts that follow one another, and the value of each, as columns of an impact table."""
+    rows: list[dict[str, float]] = []
+    speed = first
+    for impact in range(number):
+        value = tunable.allowed.clip(np.array([value_of(impact, speed)]))
+        found = tunable.respond(np.array([speed]), value, np.array([impact]))
+        outcomes = {column: float(found[name][0]) for name, (column, *_) in OUTCOMES.items()}
+        rows.append({"impact": impact + 1, "approach_speed_m_s": speed, "value": float(value[0]), **outcomes})
+        speed = float(found["next_speed"][0])
+        if not speed > 0.0:
+            break
+        if flights is not None:
+            speed = float(flights.flown(np.asarray(speed)).back)
+    return {name: np.array([row[name] for row in rows]) for name in rows[0]}
 
 
 def shortened(problem: Problem, impacts: int) -> Problem:

@@ -38,8 +38,8 @@ def match_measurement(
     tell(0.5)
     values = with_nearest_end(tuned, alone, seen.speeds, seen.wanted, weights, seen.which)
     doubts = list(seen.doubts) + [
-        f"{label}: nothing that {tuned.name} can be meets it, but its noise explains that"
-        for label, value in zip(seen.labels, alone, strict=True)
+        f"{label}: no {tuned.name} meets it, which noise explains; {nearest:.5g}, as near as {tuned.name} can come, stands for it"
+        for label, value, nearest in zip(seen.labels, alone, values, strict=True)
         if np.isnan(value)
     ]
     sized = seen if seen.deviations_known else scaled(seen, fit.scatter, weights)
@@ -51,4 +51,5 @@ def match_measurement(
     if draws:
         intervals, fit = redrawn(tuned, sized, weights, fit, deviations, draws, confidence, seed, lambda done: tell(0.5 + 0.4 * done))
     doubts += undetermined(tuned, values, intervals, seen, fit, confidence)
-    return Matched(seen, values, fit, intervals, None, draws, doubts)
+    within = None if intervals is None else tuned.allowed.bounded(intervals)
+    return Matched(seen, values, fit, within, None, draws, doubts)

@@ -4,11 +4,24 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from vibroimpact.calibration.flights import Flights, VacuumFlights, as_in_vacuum
+
 Floats = NDArray[np.float64]
+
+
+class Record(NamedTuple):
+    """What was recorded over time: times [s] and values of a force [N], above its level at rest, one piece an impact; or of a position
+    [m], in one piece, and when the first impact ends in that [s].
+    """
+
+    quantity: Literal["force", "position"]
+    pieces: tuple[tuple[Floats, Floats], ...]
+    begin: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -38,6 +51,13 @@ class Observations:
         Where the sizes of the sources come from, in words.
     doubts : tuple of str
         What to doubt of them.
+    flights : Flights, optional
+        How the sphere flies from impact to impact, where that is not in a vacuum; then rebound heights are those that it would
+        reach in one.
+    record : Record, optional
+        The record that they were found in.
+    notes : tuple of str
+        How they were evaluated, in sentences.
     """
 
     speeds: Floats
@@ -49,6 +69,9 @@ class Observations:
     of_the_drop: bool = True
     noise_from: str = "the given standard deviations"
     doubts: tuple[str, ...] = ()
+    flights: Flights | None = None
+    record: Record | None = None
+    notes: tuple[str, ...] = ()
 
     @property
     def measured(self) -> bool:
@@ -67,11 +90,18 @@ class Observations:
 
 
 def from_heights(
-    heights: Floats, deviation: Floats | None, *, first_speed: float, radius: float, gravity: float, labels: tuple[str, ...] = ()
+    heights: Floats,
+    deviation: Floats | None,
+    *,
+    first_speed: float,
+    radius: float,
+    gravity: float,
+    labels: tuple[str, ...] = (),
+    flights: Flights | None = None,
 ) -> Observations:
     r"""Return the impacts between measured rebound heights.
 
-    With :math:`\sqrt{2 g (h - R)}` the sphere comes down from a height h to the next.
+    With :math:`\sqrt{2 g (h - R)}` the sphere comes down from a height h to the next; in air more slowly.
 
     Parameters
     ----------
@@ -85,19 +115,24 @@ def from_heights(
         Of the sphere [m], and acceleration [m/s^2].
     labels : tuple of str, optional
         What each is called.
+    flights : Flights, optional
+        How the sphere flies; in a vacuum by default.
 
     Examples
     --------
     >>> found = from_heights(np.array([0.525, 0.1]), None, first_speed=4.0, radius=0.025, gravity=9.8)
-    >>> found.speeds.round(4).tolist(), found.wanted["rebound_height"].tolist()
+    >>> found.speeds.round(4).tolist(), found.wanted["rebound_height"].round(9).tolist()
     ([4.0, 3.1305], [0.525, 0.1])
     """
-    falls = np.sqrt(2.0 * gravity * (heights - radius))
+    flying = flights or VacuumFlights(gravity)
+    falls, slopes = flying.falling(heights - radius)
+    rises, scales = as_in_vacuum(flying, heights - radius)
     noise = np.diag(np.ones(len(heights)) if deviation is None else deviation)
-    before = np.vstack([np.zeros(len(heights)), (gravity / falls)[:-1, None] * noise[:-1]])
+    before = np.vstack([np.zeros(len(heights)), slopes[:-1, None] * noise[:-1]])
     names = labels or tuple(f"impact {number + 1}" for number in range(len(heights)))
-    speeds = np.append(first_speed, falls[:-1])
-    return Observations(speeds, {"rebound_height": heights}, before, {"rebound_height": noise}, deviation is not None, names)
+    speeds, known = np.append(first_speed, falls[:-1]), deviation is not None
+    wanted, noises = {"rebound_height": radius + rises}, {"rebound_height": scales[:, None] * noise}
+    return Observations(speeds, wanted, before, noises, known, names, flights=flights)
 
 
 def scaled(seen: Observations, scatter: float, weights: Mapping[str, float]) -> Observations:

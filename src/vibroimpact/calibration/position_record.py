@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from vibroimpact.calibration.observations import Floats, Observations
+from vibroimpact.calibration.flights import Flights, VacuumFlights, as_in_vacuum
+from vibroimpact.calibration.observations import Floats, Observations, Record
 from vibroimpact.calibration.record_noise import ABOVE_NOISE, named_samples, record_noise
+from vibroimpact.contact.roots import find_root
 from vibroimpact.errors import InputError
 
 _FEWEST = 5
@@ -19,11 +22,14 @@ _FEWEST = 5
 _SMALL, _LEAST = 0.02, 1e-9
 """Parts of the largest rise: what is no flight, and the least noise that a record has."""
 
+_SETTLED, _ROUNDS = 1e-13, 30
+"""When a fitted flight no longer moves, as a part of its height, and after how many rounds at the latest."""
+
 _FAR = 0.5  # of the radius, that flights may meet above or below where the sphere touches
 
 
 class _Flight(NamedTuple):
-    """A parabola: height of its top [m] and when it is there [s]; the standard deviation of the height under noise of one; the sum
+    """A flight: height of its top [m] and when it is there [s]; the standard deviation of the height under noise of one; the sum
     of squares that is left of how many degrees of freedom; then its standard deviation [m].
     """
 
@@ -36,12 +42,19 @@ class _Flight(NamedTuple):
 
 
 def impacts_in_position(
-    time: Floats, position: Floats, *, radius: float, gravity: float, first_speed: float, lines: Sequence[int] | None = None
+    time: Floats,
+    position: Floats,
+    *,
+    radius: float,
+    gravity: float,
+    first_speed: float,
+    lines: Sequence[int] | None = None,
+    flights: Flights | None = None,
 ) -> Observations:
     """Return the impacts of a sphere whose height was recorded.
 
-    A parabola with the given gravity goes through each flight by least squares; its top tells the speeds at its ends. Samples
-    near an impact are left out, so that it does not matter how well the contact is resolved.
+    A free flight with the given gravity, a parabola in a vacuum, goes through each by least squares; its top tells the speeds at
+    its ends. Samples near an impact are left out, so that it does not matter how well the contact is resolved.
 
     Parameters
     ----------
@@ -53,11 +66,13 @@ def impacts_in_position(
         Of the first touch [m/s]; used if the record begins too late to tell it.
     lines : sequence of int, optional
         The line of a file that each sample stands on, for messages.
+    flights : Flights, optional
+        How the sphere flies; in a vacuum by default.
 
     Returns
     -------
     Observations
-        With standard deviations from what is left over of the parabolas.
+        With standard deviations from what is left over of the fitted flights.
 
     Raises
     ------
@@ -72,12 +87,12 @@ def impacts_in_position(
     >>> found.speeds.round(3).tolist(), found.wanted["rebound_height"].round(4).tolist()
     ([4.9], [0.4842])
     """
-    noise, at = record_noise(position), named_samples(lines)
+    noise, at, flying = record_noise(position), named_samples(lines), flights or VacuumFlights(gravity)
     lows = _lowest(position, noise)
     if not len(lows):
         raise InputError("the record does not show an impact: nowhere does the sphere stop falling and rise again")
     ends = [0, *lows, len(time) - 1]
-    flights: list[_Flight | None] = []
+    fitted: list[_Flight | None] = []
     for number, (begin, end) in enumerate(itertools.pairwise(ends)):
         inside = np.arange(begin, end + 1)
         above = position[inside] > radius + ABOVE_NOISE * noise
@@ -88,52 +103,59 @@ def impacts_in_position(
                     f"between the impacts at {at(begin)} and {at(end)} only {len(inside)} samples show the sphere above its radius, and it "
                     f"takes {_FEWEST}; sample faster, end the record sooner, or look at sign and unit of the position"
                 )
-            flights.append(None)
+            fitted.append(None)
             continue
-        flights.append(_parabola(time[inside], position[inside], gravity))
-    if any(flights):
-        flights = _pooled(flights, _LEAST * float(np.ptp(position)))
-    if flights[1] is None:
+        fitted.append(_fitted(time[inside], position[inside], flying))
+    if any(fitted):
+        fitted = _pooled(fitted, _LEAST * float(np.ptp(position)))
+    if fitted[1] is None:
         raise InputError("the record ends before it shows how high the sphere rebounds from the first impact")
-    last = len(flights) if flights[-1] is not None else len(flights) - 1
-    known = [flight for flight in flights[1:last] if flight is not None]
-    _check_level(flights, [at(low) for low in lows], radius, gravity)
-    tops = np.array([flight.top for flight in known])
-    if np.any(tops <= radius):
+    last = len(fitted) if fitted[-1] is not None else len(fitted) - 1
+    known = [flight for flight in fitted[1:last] if flight is not None]
+    _check_level(fitted, [at(low) for low in lows], radius, flying)
+    if any(flight.top <= radius for flight in known):
         raise InputError("the sphere never rises above its radius; position must be the height of its centre above the plate")
-    return _between_flights(flights[0], known, tops, radius, gravity, first_speed, [at(low) for low in lows])
+    labels = tuple(f"impact {number + 1}, {at(low)}" for number, low in enumerate(lows[: len(known)]))
+    begin = known[0].when - float(flying.flown(flying.rising(np.array(known[0].top - radius))[0]).rise)
+    found = _between_flights(fitted[0], known, radius, flying, first_speed, labels)
+    return replace(found, flights=flights, record=Record("position", ((time, position),), begin))
 
 
 def _between_flights(
-    first: _Flight | None, known: list[_Flight], tops: Floats, radius: float, gravity: float, first_speed: float, places: list[str]
+    first: _Flight | None, known: list[_Flight], radius: float, flying: Flights, first_speed: float, labels: tuple[str, ...]
 ) -> Observations:
-    falls = np.sqrt(2.0 * gravity * (tops - radius))
-    deviations = np.array([flight.deviation for flight in known])
+    tops, deviations = (np.array([getattr(flight, name) for flight in known]) for name in ("top", "deviation"))
+    falls, slopes = flying.falling(tops - radius)
+    rises, scales = as_in_vacuum(flying, tops - radius)
     number = len(known)
     sources, before = np.zeros((number, number + 1)), np.zeros((number, number + 1))
-    sources[:, 1:] = np.diag(deviations)
-    before[1:, 1:] = np.diag(gravity / falls * deviations)[:-1]
+    sources[:, 1:] = np.diag(scales * deviations)
+    before[1:, 1:] = np.diag(slopes * deviations)[:-1]
     if first is not None and first.top > radius:
-        first_speed = float(np.sqrt(2.0 * gravity * (first.top - radius)))
-        before[0, 0] = gravity / first_speed * first.deviation
-    labels = tuple(f"impact {number + 1}, {place}" for number, place in enumerate(places[: len(known)]))
-    speeds = np.append(first_speed, falls[:-1])
+        speed, slope = flying.falling(np.array(first.top - radius))
+        first_speed, before[0, 0] = float(speed), float(slope) * first.deviation
+    wanted, noise = {"rebound_height": radius + rises}, {"rebound_height": sources}
     noise_from = "the scatter of the record"
-    return Observations(speeds, {"rebound_height": tops}, before, {"rebound_height": sources}, True, labels, noise_from=noise_from)
+    return Observations(np.append(first_speed, falls[:-1]), wanted, before, noise, True, labels, noise_from=noise_from)
 
 
-def _parabola(time: Floats, position: Floats, gravity: float) -> _Flight:
-    """Return the flight through samples: only height and speed are free."""
-    middle = time.mean()
+def _fitted(time: Floats, position: Floats, flying: Flights) -> _Flight:
+    """Return the flight through samples, by least squares: only its top and when that is are free."""
+    middle, gravity = float(time.mean()), flying.gravity
     across = time - middle
     powers = np.vander(across, 2, increasing=True)
-    fallen = position + 0.5 * gravity * across**2
-    (height, speed), *_ = np.linalg.lstsq(powers, fallen, rcond=None)
-    left = fallen - powers @ np.array([height, speed])
-    slope = np.array([1.0, speed / gravity])
-    under_noise = float(np.sqrt(slope @ np.linalg.inv(powers.T @ powers) @ slope))
-    when = float(middle + speed / gravity)
-    return _Flight(float(height + 0.5 * speed**2 / gravity), when, under_noise, float(left @ left), len(time) - 2)
+    (height, speed), *_ = np.linalg.lstsq(powers, position + 0.5 * gravity * across**2, rcond=None)  # in a vacuum, to begin with
+    top, when = float(height + 0.5 * speed**2 / gravity), float(middle + speed / gravity)
+    for _ in range(_ROUNDS):
+        fallen, downwards = flying.fallen(time - when)
+        left, slopes = position - (top - fallen), np.stack([np.ones_like(time), downwards], axis=1)
+        step, *_ = np.linalg.lstsq(slopes, left, rcond=None)
+        top, when = top + float(step[0]), when + float(step[1])
+        if abs(step[0]) <= _SETTLED * abs(top):
+            break
+    left = position - (top - flying.fallen(time - when)[0])
+    inverse = np.linalg.pinv(slopes.T @ slopes)
+    return _Flight(top, when, float(np.sqrt(inverse[0, 0])), float(left @ left), len(time) - 2)
 
 
 def _pooled(flights: list[_Flight | None], least: float) -> list[_Flight | None]:
@@ -143,20 +165,30 @@ def _pooled(flights: list[_Flight | None], least: float) -> list[_Flight | None]
     return [flight and flight._replace(deviation=noise * flight.under_noise) for flight in flights]
 
 
-def _check_level(flights: list[_Flight | None], places: list[str], radius: float, gravity: float) -> None:
+def _check_level(fitted: list[_Flight | None], places: list[str], radius: float, flying: Flights) -> None:
     """Raise unless neighbouring flights meet about where the sphere touches the plate."""
-    for (one, other), place in zip(itertools.pairwise(flights), places, strict=True):
+    for (one, other), place in zip(itertools.pairwise(fitted), places, strict=True):
         if one is None or other is None:
             continue
-        # where two parabolas of the same gravity cross
-        across = other.when - one.when
-        at = 0.5 * across + (one.top - other.top) / (gravity * across)
-        level = one.top - 0.5 * gravity * at**2
-        if abs(level - radius) > _FAR * radius:
+        level = _where_they_meet(one, other, flying)
+        if not abs(level - radius) <= _FAR * radius:
+            meet = f"meet at {level:.4g} m" if np.isfinite(level) else "do not meet"
             raise InputError(
-                f"the flights before and after {place} meet at {level:.4g} m, and the sphere touches at its radius, {radius:g} m; position "
+                f"the flights before and after {place} {meet}, and the sphere touches at its radius, {radius:g} m; position "
                 "must be the height of its centre above the plate, and its unit, time and gravity those of the record"
             )
+
+
+def _where_they_meet(one: _Flight, other: _Flight, flying: Flights) -> float:
+    """Return the height at which a flight that comes down crosses one that goes up after it [m]; NaN if they don't between their tops."""
+
+    def apart(time: Floats) -> Floats:
+        return (other.top - flying.fallen(time - other.when)[0]) - (one.top - flying.fallen(time - one.when)[0])
+
+    ends = np.array([one.when]), np.array([other.when])
+    if not (apart(ends[0])[0] < 0.0 < apart(ends[1])[0]):
+        return float("nan")
+    return float(one.top - flying.fallen(find_root(apart, *ends) - one.when)[0][0])
 
 
 def _lowest(position: Floats, noise: float) -> NDArray[np.intp]:

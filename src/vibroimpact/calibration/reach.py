@@ -7,15 +7,18 @@ from dataclasses import fields
 
 import numpy as np
 
+from vibroimpact.calibration.believed import believed, restitutions
 from vibroimpact.calibration.matching import Match, Tunable, match, slopes
 from vibroimpact.calibration.observations import Floats, Observations
-from vibroimpact.calibration.outcomes import OUTCOMES
+from vibroimpact.calibration.outcomes import OUTCOMES, REBOUNDS
 from vibroimpact.calibration.tunables import law_parameter
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.errors import InputError
 
 _BEYOND_NOISE = 3.0  # standard deviations
+_LOSSLESS = 1e-4  # how near to no loss a law must come for a restitution above 1 to be noise
+
 _NEAR = 3  # steps of four from what is given, in which another parameter is looked for
 
 
@@ -36,7 +39,7 @@ def check_reached(tunable: Tunable, problem: Problem, seen: Observations, weight
     wanted, (_, unit, words) = seen.wanted[name], OUTCOMES[name]
     for row in missed:
         beyond = max(wanted[row] - found.most[row], found.least[row] - wanted[row])
-        if 0.0 < beyond <= _BEYOND_NOISE * _noise_of(tunable, seen, name, int(row)):
+        if 0.0 < beyond <= max(_BEYOND_NOISE * _noise_of(tunable, seen, name, int(row)), _above_one(problem, seen, name, int(row))):
             continue
         others = other_parameters(problem, tunable, seen, weights, row=int(row))
         hint = "; with the rest as given it would take " + " or ".join(_value(problem, *item) for item in others.items()) if others else ""
@@ -48,6 +51,19 @@ def check_reached(tunable: Tunable, problem: Problem, seen: Observations, weight
             reach = f"at most {found.most[row]:.5g} {unit}, without any {tunable.name}"
         raise InputError(f"{asked}, and {problem.laws[0].name} gives {reach}{hint}", "target")
     return found.values
+
+
+def _above_one(problem: Problem, seen: Observations, name: str, row: int) -> float:
+    """Return by how much a rebound is more than one without loss, where that may be noise whose size is not known."""
+    if seen.deviations_known or not seen.measured or name not in REBOUNDS:
+        return 0.0
+    radius, gravity, speed = float(problem.sphere.contact_offset), float(problem.gravity), float(seen.speeds[row])
+    found = restitutions(seen, radius, gravity)
+    if found is None or not 1.0 < found[row] <= believed(seen.speeds, found, None).most[row]:
+        return 0.0
+    height = 0.5 * speed**2 / gravity if name == "rebound_height" else 0.0
+    lossless, scale = (radius + height, height) if height else (speed, speed)
+    return float(seen.wanted[name][row]) - lossless + _LOSSLESS * scale
 
 
 def _noise_of(tunable: Tunable, seen: Observations, name: str, row: int) -> float:

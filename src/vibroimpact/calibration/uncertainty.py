@@ -134,7 +134,7 @@ def undetermined(
         return told
     wide = np.flatnonzero(intervals[:, 1] - intervals[:, 0] > _DETERMINED * np.abs(values))
     for row in wide[:_MOST_TOLD]:
-        low, high = max(intervals[row, 0], tunable.allowed.at_least), intervals[row, 1]
+        low, high = tunable.allowed.bounded(intervals[row])
         value = f"{values[row]:.4g} {tunable.unit}".rstrip()
         told.append(f"{observations.labels[row]} does not determine {tunable.name}: {value}, but {low:.4g} to {high:.4g} at {percent}")
     if len(wide) > _MOST_TOLD:

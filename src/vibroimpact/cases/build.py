@@ -65,7 +65,8 @@ def check_case(case: Case) -> None:
     Raises
     ------
     InputError
-        If the contact law can't be made for these bodies, the sphere would bounce for ever, or an elastic body can't be made.
+        If the contact law can't be made for these bodies, the sphere would bounce for ever, an elastic body can't be made, or what must
+        lie on the plate does not.
     """
     law = contact_laws_of(case)[-1]
     if impacts_of(case) is None and case.run.duration is None:
@@ -89,7 +90,9 @@ def check_case(case: Case) -> None:
         raise InputError(f"{law.name} gives no force that a finite sphere would change; leave this out", "contact.finite_sphere")
     if elastic_names(case):
         from vibroimpact.cases.build_elastic import elastic_bodies  # which loads sparse matrices
+        from vibroimpact.cases.places import check_places
 
+        check_places(case)
         elastic_bodies(case)
 
 

@@ -5,18 +5,21 @@ from __future__ import annotations
 from typing import Annotated, Any, Literal
 
 import numpy as np
-from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
+from pydantic import BeforeValidator, Field, StrictBool, WithJsonSchema, model_validator
 
 from vibroimpact.calibration.outcomes import OUTCOMES, check_weights
+from vibroimpact.cases.bounds import Name, at_most
 from vibroimpact.cases.contact_section import ContactSection, law_schema, read_contact
 from vibroimpact.cases.quantities import Quantity
 from vibroimpact.cases.section import Section, read_table
 from vibroimpact.errors import InputError, did_you_mean
 from vibroimpact.ranges import Range
+from vibroimpact.shown import shown
 
 MOST_SPEEDS = 10_000
 
 _POSITIVE = Range(above=0)
+_Measured = Annotated[float, Quantity("", "restitution; noise may lift it a little above 1", _POSITIVE)]
 _Speed = Annotated[float, Quantity("m/s", "approach speed", _POSITIVE)]
 _Restitution = Annotated[float, Quantity("", "restitution", Range(above=0, at_most=1))]
 _Height = Annotated[float, Quantity("m", "height of the sphere's centre at the top of a rebound", _POSITIVE)]
@@ -25,8 +28,10 @@ _Height = Annotated[float, Quantity("m", "height of the sphere's centre at the t
 class RestitutionTarget(Section):
     """A restitution: one for every impact, or one at each of several approach speeds."""
 
-    restitution: _Restitution | tuple[_Restitution, ...] = Field(description="separation speed over approach speed")
-    approach_speed: tuple[_Speed, ...] | None = Field(
+    restitution: Annotated[_Restitution | tuple[_Measured, ...], at_most(MOST_SPEEDS, "restitutions")] = Field(
+        description="separation speed over approach speed"
+    )
+    approach_speed: Annotated[tuple[_Speed, ...], at_most(MOST_SPEEDS, "speeds")] | None = Field(
         None, description="a list of speeds [m/s] at which each of several restitutions was measured"
     )
     standard_deviation: Annotated[float, Quantity("", "standard deviation of each", _POSITIVE)] | None = None
@@ -46,7 +51,7 @@ class RestitutionTarget(Section):
 class HeightsTarget(Section):
     """Measured rebound heights, from the first impact on."""
 
-    rebound_heights: tuple[_Height, ...] = Field(
+    rebound_heights: Annotated[tuple[_Height, ...], at_most(MOST_SPEEDS, "heights")] = Field(
         min_length=1, description="a list of heights of the sphere's centre above the plate, one an impact [m]"
     )
     standard_deviation: Annotated[float, Quantity("m", "standard deviation of each", _POSITIVE)] | None = None
@@ -60,7 +65,7 @@ class ImpactTarget(Section):
     duration: Annotated[float, Quantity("s", "duration of the contact", _POSITIVE)] | None = None
     separation_speed: Annotated[float, Quantity("m/s", "speed after the impact", _POSITIVE)] | None = None
     rebound_height: _Height | None = None
-    restitution: _Restitution | None = None
+    restitution: _Measured | None = None
     relative_deviation: Annotated[float, Quantity("", "standard deviation of each, as a part of it", Range(above=0, below=1))] | None = None
 
     @model_validator(mode="after")
@@ -72,9 +77,10 @@ class ImpactTarget(Section):
 
 
 class FileTarget(Section):
-    """A CSV file: impacts, rebound heights, or a record of position or force."""
+    """A file: impacts, rebound heights, or a record of position, force or the sphere's acceleration."""
 
-    file: str = Field(description="a CSV file whose header names its columns with their units")
+    file: str = Field(description="a CSV file whose header names its columns with their units, or a universal file (UFF 58) with a record")
+    function: str | None = Field(None, description="which function of a universal file, by its first line of identification or its number")
 
 
 Target = ContactSection | RestitutionTarget | HeightsTarget | ImpactTarget | FileTarget
@@ -92,7 +98,7 @@ def _read_target(value: Any) -> Any:
     if isinstance(value, str):
         return FileTarget(file=value)
     if not isinstance(value, dict):
-        raise InputError(f"{value!r} is not allowed; it must be a table with law, {', '.join(_KEYS)}, or the name of a CSV file")
+        raise InputError(f"{shown(value)} is not allowed; it must be a table with law, {', '.join(_KEYS)}, or the name of a file")
     if "law" in value:
         return read_contact(value)
     kind = next((key for key in _KEYS if key in value), None)
@@ -111,7 +117,7 @@ def _read_match(value: Any) -> Any:
     if isinstance(value, str):
         value = {value: 1.0}
     if not isinstance(value, dict):
-        raise InputError(f"{value!r} is not allowed; it must be one of {', '.join(OUTCOMES)}, or a table of them with weights")
+        raise InputError(f"{shown(value)} is not allowed; it must be one of {', '.join(OUTCOMES)}, or a table of them with weights")
     try:
         weights = {str(name): float(weight) for name, weight in value.items()}
     except (TypeError, ValueError):
@@ -145,7 +151,7 @@ class SpeedsTable(Section):
 _TARGET_SCHEMA = {
     "description": "what impacts are to be like",
     "anyOf": [
-        {"type": "string", "description": "a CSV file"},
+        {"type": "string", "description": "a CSV or universal file"},
         law_schema(),
         *(kind.model_json_schema() for kind in dict.fromkeys(_KEYS.values())),
     ],
@@ -168,8 +174,13 @@ class CalibrateSection(Section):
     model: Annotated[Any, BeforeValidator(_read_model), WithJsonSchema(law_schema())] = Field(
         None, description="the contact law that is tuned; by default that of the case"
     )
-    parameter: str | None = Field(
+    parameter: Name | None = Field(
         None, description='what is tuned: a parameter of the law, "sphere.damping" or "plate.damping"; by default what sets the law\'s loss'
+    )
+    air: StrictBool | None = Field(
+        None,
+        description="whether the sphere was measured in air, whose drag its flights then have; without this key they are those of a "
+        "vacuum, and a doubt says where drag matters",
     )
     match: Annotated[Any, BeforeValidator(_read_match), WithJsonSchema(_MATCH_SCHEMA)] = Field(
         None, description="what of an impact is matched: one, or a table of several with weights; by default the rebound, if it is there"

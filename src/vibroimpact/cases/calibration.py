@@ -20,6 +20,7 @@ from vibroimpact.cases.contact_section import read_contact
 from vibroimpact.cases.local_section import LocalSection
 from vibroimpact.cases.reader import load_table, named, read_case
 from vibroimpact.cases.schema import Case
+from vibroimpact.cases.slips.find import slips
 from vibroimpact.cases.targets import target_of
 from vibroimpact.contact.law import find_contact_law
 from vibroimpact.contact.pair import ContactPair
@@ -81,7 +82,7 @@ def read_calibration(table: Mapping[str, Any]) -> ToCalibrate:
         try:
             return ToCalibrate(read_case(whole), started is contact)
         except InputError as error:
-            raise InputError("\n".join(_where(line, own, model is not None) for line in str(error).splitlines())) from None
+            raise InputError.of_several(_where(line, own, model is not None) for line in error.lines) from None
     return ToCalibrate(read_case(whole), True)
 
 
@@ -119,7 +120,7 @@ def calibrate_case(
         raise InputError(f"{words}; set it to false, or run.impacts = 1", "drop.same_spot")
     try:
         tunable = _tunable(problem, section.parameter)
-        return calibrate(
+        found = calibrate(
             problem,
             target_of(case, problem, section),
             tunable=tunable if what.given else replace(tunable, given=np.full(1, np.nan)),
@@ -133,6 +134,8 @@ def calibrate_case(
         )
     except InputError as error:
         raise InputError(error.message, f"calibrate.{error.key}".rstrip(".")) from None
+    tuned = (f"contact.{found.parameter}", found.parameter)  # where it begins says nothing
+    return replace(found, doubts=(*slips(resolved(case), tuned), *found.doubts))
 
 
 def calibrated_case(case: Case, found: Calibration) -> Case:

@@ -11,6 +11,8 @@ from vibroimpact.cases.reader import read_case
 from vibroimpact.cases.schema import Case
 from vibroimpact.contact.law import ContactLaw, find_contact_law, unit_of
 from vibroimpact.errors import InputError, did_you_mean
+from vibroimpact.ranges import Range
+from vibroimpact.shown import shown
 
 
 def cases_under(case: Case, laws: Iterable[str], given: Mapping[str, Any] | None = None, achieving: float | None = None) -> dict[str, Case]:
@@ -51,6 +53,8 @@ def cases_under(case: Case, laws: Iterable[str], given: Mapping[str, Any] | None
     names, table = list(laws), dict(given or {})
     if not names:
         raise InputError("name at least one contact law")
+    if achieving is not None:
+        Range(at_least=0, at_most=1).check(achieving, shown=f"a restitution of {achieving:g} to achieve")
     for name in names:
         if names.count(name) > 1:
             raise InputError(f'"{name}" is named twice; a law can only be compared with others')
@@ -74,7 +78,9 @@ def _case_under(case: Case, law: type[ContactLaw], given: Mapping[str, Any], ach
         elif key not in contact and achieving is not None and item.default is MISSING and item.metadata["example"] is not None:
             contact[key] = item.metadata["example"]  # something to start from, if it is what is tuned
             guessed.append(key)
-    table = {**resolved(case), "name": f"{case.name or 'a drop'}, {law.name}", "contact": contact}
+    own_name = case.name or "a drop"  # which may name the case's own law
+    named = own_name if law.name == case.contact.law else f"{law.name} on the drop of: {own_name}"
+    table = {**resolved(case), "name": named, "contact": contact}
     try:
         found = read_case(table)
         tuned = contact_laws_of(found)[0].free_parameter
@@ -104,7 +110,7 @@ def _check_given(given: Mapping[str, Any], laws: Mapping[str, type[ContactLaw]])
     known = [*keys, *(f"{name}.{item.name}" for name, law in laws.items() for item in fields(law))]
     for key, value in given.items():
         if key not in known:
-            raise InputError(f'"{key}" is no parameter of {", ".join(laws)}.{did_you_mean(key, known)}')
+            raise InputError(f"{shown(key)} is no parameter of {', '.join(laws)}.{did_you_mean(key, known)}")
         units = {name: _unit(item) for name, law in laws.items() for item in fields(law) if item.name == key}
         if len(set(units.values())) > 1 and not isinstance(value, str):
             of_each = ", ".join(f"{name} [{unit}]" for name, unit in units.items())

@@ -19,7 +19,7 @@ from vibroimpact.dynamics.response import Response
 from vibroimpact.dynamics.sensor import Sensor, sample_count
 from vibroimpact.dynamics.simulate import simulate
 from vibroimpact.dynamics.tabulate import ImpactTable, tabulate
-from vibroimpact.errors import ComputationError, InputError
+from vibroimpact.errors import ComputationError, InputError, lines_of
 from vibroimpact.studies.axes import Values
 from vibroimpact.studies.chunk_file import ChunkResult
 from vibroimpact.studies.columns import FIRST, LARGEST, OUTCOME, SENSOR_PEAK, SIGNAL
@@ -122,12 +122,15 @@ def _parts(study: _Study, places: NDArray[np.intp]) -> Iterator[_Part]:
     except InputError:  # of one of them: the others must not suffer
         yield from (_alone(study, place) for place in places)
         return
-    failed = np.zeros(len(table), dtype=bool)
-    failed[list(table.failures)] = True
-    columns = _columns(table, study.keep)
-    columns |= limit_columns(batch_conditions(case, arrays, problem.laws[0], columns), len(table))
+    columns, failures = _columns(table, study.keep), table.failures
+    if len(table) < places.size:  # what is swept has no effect on rigid bodies, such as the plate's thickness: it is one drop for all
+        columns = {name: np.repeat(values, places.size, axis=0) for name, values in columns.items()}
+        failures = {drop: reason for reason in failures.values() for drop in range(places.size)}
+    columns |= limit_columns(batch_conditions(case, arrays, problem.laws[0], columns), places.size)
+    failed = np.zeros(places.size, dtype=bool)
+    failed[list(failures)] = True
     columns = {name: values[~failed] for name, values in columns.items()}  # nothing that failed is a result
-    yield _Part(places[~failed], columns, {int(places[drop]): reason for drop, reason in table.failures.items()})
+    yield _Part(places[~failed], columns, {int(places[drop]): reason for drop, reason in failures.items()})
 
 
 def _alone(study: _Study, place: np.intp) -> _Part:
@@ -137,7 +140,7 @@ def _alone(study: _Study, place: np.intp) -> _Part:
         response = simulate(replace(problem, sensors=tuple(_noise(sensor, study.first + int(place)) for sensor in problem.sensors)))
     except Exception as error:  # whatever it is, it is the reason of this drop, and the others go on
         name = "" if isinstance(error, (InputError, ComputationError)) else f"{type(error).__name__}: "
-        return _Part(np.array([place]), {}, {int(place): f"{name}{error}"})
+        return _Part(np.array([place]), {}, {int(place): "; ".join(lines_of(f"{name}{error}".split("\n")))})
     signals = {}
     if "signals" in study.keep:
         duration = problem.duration or 0.0  # the study has seen to it; a contact under way at its end was finished

@@ -77,7 +77,7 @@ class Conditions:
     @cached_property
     def mass(self) -> Array:
         """Mass of the sphere [kg]."""
-        return 4.0 / 3.0 * math.pi * self.radius**3 * self.materials["sphere"].density
+        return 4.0 / 3.0 * math.pi * np.power(self.radius, 3) * self.materials["sphere"].density
 
     @cached_property
     def modulus(self) -> Array:

@@ -6,11 +6,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from typing import Any
 
+from vibroimpact.cases.bounds import MOST_OF_A_LIST, check_count
 from vibroimpact.cases.local_section import LocalSection
 from vibroimpact.cases.quantities import quantity_schema, read_quantity
 from vibroimpact.cases.section import read_table
 from vibroimpact.contact.law import ContactLaw, contact_laws, find_contact_law, unit_of
 from vibroimpact.errors import InputError, did_you_mean
+from vibroimpact.shown import shown
 
 
 @dataclass(frozen=True)
@@ -47,12 +49,13 @@ def read_contact(value: Any) -> ContactSection:
         if key not in known:
             others = ", ".join(LocalSection.model_fields)
             hint = did_you_mean(key, [*known, *LocalSection.model_fields])
-            raise InputError(f'unknown key "{key}"; {law.name} takes {", ".join(known)}, and every law {others}.{hint}', key)
+            raise InputError(f"unknown key {shown(key)}; {law.name} takes {', '.join(known)}, and every law {others}.{hint}", key)
         unit, allowed = unit_of(known[key], exponent), known[key].metadata["range"]
         try:
             if isinstance(given, list):
                 if not given:
                     raise InputError("the list is empty; it must have one value an impact, the last one goes on")
+                check_count(len(given), MOST_OF_A_LIST, "values")
                 parameters[key] = tuple(read_quantity(item, unit, allowed) for item in given)
             else:
                 parameters[key] = read_quantity(given, unit, allowed)

@@ -9,6 +9,7 @@ from pydantic import BeforeValidator, WithJsonSchema
 from vibroimpact.cases.quantities import read_quantity
 from vibroimpact.errors import InputError, did_you_mean
 from vibroimpact.ranges import Range
+from vibroimpact.shown import shown
 from vibroimpact.structures.damping import AdamsDefault, ConstantRatio, Damping, LossFactor, RatioOfEach, RatioTable, Rayleigh
 
 ADAMS = "adams-default"
@@ -26,12 +27,12 @@ def _read_damping(value: Any) -> Any:
         return value
     if isinstance(value, str):
         if value != ADAMS:
-            raise InputError(f'"{value}" is not allowed; it must be {_ALLOWED}.{did_you_mean(value, (ADAMS, MATERIAL))}')
+            raise InputError(f"{shown(value)} is not allowed; it must be {_ALLOWED}.{did_you_mean(value, (ADAMS, MATERIAL))}")
         return AdamsDefault()
     if isinstance(value, dict):
         return _read_table(value)
     if isinstance(value, bool) or not isinstance(value, (int, float)):
-        raise InputError(f"{value!r} is not allowed; it must be {_ALLOWED}")
+        raise InputError(f"{shown(value)} is not allowed; it must be {_ALLOWED}")
     _NOT_NEGATIVE.check(value)
     return ConstantRatio(float(value))
 

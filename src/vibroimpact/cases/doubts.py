@@ -1,16 +1,17 @@
-"""What to doubt of a drop: where its assumptions are strained, said by numbers."""
+"""What to doubt of a drop: numbers that look like a slip of a unit, and where its assumptions are strained."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Container, Mapping
 from typing import Any
 
 from vibroimpact.cases.conditions import Conditions, Seen
 from vibroimpact.cases.limit import limits, numbers_of
+from vibroimpact.cases.slips.find import slips
 
 
-def doubts(case: Mapping[str, Any], seen: Seen) -> list[str]:
-    """Return what to doubt of a drop of a case: the limits that it is beyond, each with a number, its cause and a remedy.
+def doubts(case: Mapping[str, Any], seen: Seen, aside: Container[str] = ()) -> list[str]:
+    """Return what to doubt of a drop of a case: slips of units, and limits that it is beyond, each with a cause and a remedy.
 
     Parameters
     ----------
@@ -18,6 +19,8 @@ def doubts(case: Mapping[str, Any], seen: Seen) -> list[str]:
         A resolved case; empty of a problem made in Python, of which less can be told.
     seen : Seen
         What came of the drop, or is expected of it.
+    aside : container of str
+        Dotted keys whose slips are told elsewhere.
 
     Examples
     --------
@@ -26,4 +29,5 @@ def doubts(case: Mapping[str, Any], seen: Seen) -> list[str]:
     """
     drop = Conditions(case, seen)
     found = {name: float(number) for name, number in numbers_of(drop).items()}
-    return [limits()[name].sentence(drop, number) for name, number in found.items() if number > limits()[name].threshold]
+    beyond = [limits()[name].sentence(drop, number) for name, number in found.items() if number > limits()[name].threshold]
+    return [*(slips(case, aside) if case else ()), *beyond]

@@ -14,6 +14,7 @@ from vibroimpact.errors import InputError
 from vibroimpact.exchange.lines import MESH
 from vibroimpact.files import about, file_digest
 from vibroimpact.ranges import Range
+from vibroimpact.shown import shown
 
 if TYPE_CHECKING:  # they load sparse matrices, which a case of rigid bodies does without
     from vibroimpact.structures.mesh import Mesh
@@ -112,7 +113,7 @@ def _mesh_reader(kind: type[Section]) -> Any:
             return BroughtMeshTable(file=value)
         if isinstance(value, dict):
             return read_table(BroughtMeshTable if "file" in value else kind, value)
-        raise InputError(f"{value!r} is neither the name of a file nor a table")
+        raise InputError(f"{shown(value)} is neither the name of a file nor a table")
 
     schemas = [{"type": "string"}, BroughtMeshTable.model_json_schema(), kind.model_json_schema()]
     return Annotated[Any, BeforeValidator(read), WithJsonSchema({"description": "a file, or how the mesh is made here", "anyOf": schemas})]

@@ -9,13 +9,13 @@ import numpy as np
 
 from vibroimpact.cases.build import contact_laws_of, contact_pair, first_speed
 from vibroimpact.cases.conditions import Seen
+from vibroimpact.cases.slips.facts import HERTZ_DURATION
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.phase.encounter import encounter_of
 
 if TYPE_CHECKING:
     from vibroimpact.cases.schema import Case
 
-_HERTZ = 2.943  # durations of a contact over indentation over speed, where the force grows with the power 1.5
 _SUPPORTED, _CLAMPED = 0.0116, 0.0056
 """Deflection of a square plate under a force at its centre over F a^2 / D: Timoshenko and Woinowsky-Krieger 1959, Tables 23 and 37."""
 
@@ -29,7 +29,7 @@ def expected_of(case: Case) -> Seen:
     encounter = encounter_of(law, contact_pair(case).effective_mass * one, case.drop.gravity * one, speed * one)
     depth = float(encounter.depth[0])
     force = float(np.asarray(law.forces(encounter.depth, 0.0 * one, encounter.approach_speed)[0])[0])
-    return Seen(force, depth, _HERTZ * depth / speed, speed, _deflection(case, speed))
+    return Seen(force, depth, HERTZ_DURATION * depth / speed, speed, _deflection(case, speed))
 
 
 def _deflection(case: Case, speed: float) -> float:

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from typing import Any
 
 from pydantic import BaseModel, ValidationError
 
 from vibroimpact.errors import did_you_mean
+from vibroimpact.shown import shown
 
 SectionAt = Callable[[tuple[str, ...]], type[BaseModel] | None]
 """Which section of a case lies at a place, if one does."""
@@ -17,14 +17,17 @@ def explained(error: ValidationError, section_at: SectionAt) -> Iterator[tuple[s
     """Yield the dotted place of each fault, and a sentence about it."""
     for fault in error.errors():
         where = tuple(str(part) for part in fault["loc"] if not _is_branch(str(part)))
+        if where[-1:] == ("str",) and fault["type"] == "string_type" and isinstance(fault["input"], (list, tuple)):
+            continue  # it need not be a text: what is wrong with it as a list is told too
         path = ".".join(where)
         kind, context = fault["type"], fault.get("ctx", {})
-        cause, shown = context.get("error"), _show(fault["input"])
+        cause, given = context.get("error"), shown(fault["input"])
         if kind == "extra_forbidden":
             section = section_at(where[:-1])
             known = list(section.model_fields) if section else []
-            place = f"[{'.'.join(where[:-1])}]" if where[:-1] else "a case"
-            yield path, f'unknown key "{where[-1]}"; {place} takes {", ".join(known)}.{did_you_mean(where[-1], known)}'
+            above = ".".join(part for part in where[:-1] if not part.isdigit())
+            place = "a case" if not above else f"[[{above}]]" if where[-2].isdigit() else f"[{above}]"
+            yield path, f"unknown key {shown(where[-1])}; {place} takes {', '.join(known)}.{did_you_mean(where[-1], known)}"
         elif kind == "missing" and where[-1].isdigit():
             yield ".".join(where[:-1]), f"there are too few values; it takes {_about(where[:-1], section_at).removeprefix(': ')}"
         elif kind == "missing":
@@ -35,18 +38,18 @@ def explained(error: ValidationError, section_at: SectionAt) -> Iterator[tuple[s
             key = getattr(cause, "key", "")
             yield ".".join(part for part in (path, key) if part), getattr(cause, "message", str(cause))
         elif kind == "literal_error":
-            yield path, f"{shown} is not allowed; it must be {context['expected']}"
+            yield path, f"{given} is not allowed; it must be {context['expected']}"
         elif kind == "string_type":
-            yield path, f"{shown} is not a text; put it in quotes"
+            yield path, f"{given} is not a text; put it in quotes"
         elif kind == "bool_type":
-            yield path, f"{shown} is not allowed; it must be true or false"
+            yield path, f"{given} is not allowed; it must be true or false"
         elif kind in ("model_type", "dict_type"):
-            yield path, f"{shown} is not a table"
+            yield path, f"{given} is not a table"
         elif kind in ("tuple_type", "too_long", "too_short"):
             about = _about(where, section_at).removeprefix(": ")
-            yield path, f"{shown} does not have the right number of values" + (f"; it takes {about}" if about else "")
+            yield path, f"{given} does not have the right number of values" + (f"; it takes {about}" if about else "")
         else:
-            yield path, f"{shown} is not allowed; {fault['msg'].replace('Input should', 'it must')}"
+            yield path, f"{given} is not allowed; {fault['msg'].replace('Input should', 'it must')}"
 
 
 def _is_branch(part: str) -> bool:
@@ -59,8 +62,3 @@ def _about(where: tuple[str, ...], section_at: SectionAt) -> str:
     field = section.model_fields.get(where[-1]) if section else None
     text = (field.description or "") if field else ""
     return f": {text}" if text else ""
-
-
-def _show(value: Any) -> str:
-    text = f'"{value}"' if isinstance(value, str) else str(value)
-    return text if len(text) <= 60 else text[:57] + "..."

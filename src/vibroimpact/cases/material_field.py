@@ -7,11 +7,13 @@ from typing import Annotated, Any
 
 from pydantic import BeforeValidator, WithJsonSchema
 
+from vibroimpact.cases.bounds import Name
 from vibroimpact.cases.quantities import Quantity
 from vibroimpact.cases.section import Section
 from vibroimpact.errors import InputError
 from vibroimpact.materials import RIGID, Material, find_material
 from vibroimpact.ranges import Range
+from vibroimpact.shown import shown
 
 
 class InlineMaterial(Section):
@@ -24,7 +26,7 @@ class InlineMaterial(Section):
     compressive_strength: Annotated[float, Quantity("Pa", "compressive strength of a brittle material", Range(above=0))] | None = None
     tensile_strength: Annotated[float, Quantity("Pa", "tensile strength of a brittle material", Range(above=0))] | None = None
     loss_factor: Annotated[float, Quantity("", "loss factor", Range(at_least=0))] | None = None
-    name: str = ""
+    name: Name = ""
 
 
 def _read_material(value: Any) -> Material:
@@ -34,7 +36,7 @@ def _read_material(value: Any) -> Material:
         return find_material(value)
     if isinstance(value, dict):
         return Material(**InlineMaterial.model_validate(value).model_dump())
-    raise InputError(f"{value!r} is neither the name of a material nor a table with density, youngs_modulus and poissons_ratio")
+    raise InputError(f"{shown(value)} is neither the name of a material nor a table with density, youngs_modulus and poissons_ratio")
 
 
 _SCHEMA = {

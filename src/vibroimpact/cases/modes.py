@@ -11,6 +11,7 @@ import numpy as np
 
 from vibroimpact.bodies.elastic import ElasticBody
 from vibroimpact.cases.build_elastic import elastic_bodies
+from vibroimpact.cases.meshes import meshes_of
 from vibroimpact.errors import InputError
 from vibroimpact.structures.damping import ConstantRatio, RatioOfEach, RatioTable
 from vibroimpact.structures.frequency_error import MESH, REDUCTION, SUPPORTS, THEORY
@@ -94,6 +95,7 @@ def compute_modes(
             basis = body.basis(model)
             found[name] = BodyModes(body, model, basis, tuple(_doubts(case, name, body, model, basis)))
         except InputError as error:
+            meshes_of(case)  # says it by its key, if something does not lie on a mesh
             raise InputError(error.message, ".".join(part for part in (name, error.key) if part)) from None
     return found
 

@@ -9,6 +9,7 @@ from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
 from pydantic_core import CoreSchema, core_schema
 
 from vibroimpact.ranges import Range
+from vibroimpact.shown import shown
 from vibroimpact.units import to_si
 
 
@@ -26,7 +27,7 @@ def read_quantity(value: Any, unit: str, allowed: Range) -> float:
     0.025
     """
     number = to_si(value, unit)
-    allowed.check(number, unit, f'"{value}"' if isinstance(value, str) else str(value))
+    allowed.check(number, unit, shown(value))
     return number
 
 
@@ -49,4 +50,5 @@ def quantity_schema(unit: str, description: str) -> dict[str, Any]:
     """Return the JSON schema of a quantity."""
     if not unit:
         return {"type": "number", "description": description}
-    return {"type": ["number", "string"], "description": f"{description} [{unit}]; a string carries its own unit"}
+    gravity = ', in which "g" is standard gravity, 9.80665 m/s^2' if unit == "m/s^2" else ""
+    return {"type": ["number", "string"], "description": f"{description} [{unit}]; a string carries its own unit{gravity}"}

@@ -11,19 +11,21 @@ from typing import Any, TypeVar
 
 from pydantic import BaseModel, ValidationError
 
+from vibroimpact.cases.bounds import MOST_BYTES, check_bounds, check_text
 from vibroimpact.cases.build import check_case
 from vibroimpact.cases.calibrate_section import CalibrateSection, SpeedsTable
 from vibroimpact.cases.explain import explained
 from vibroimpact.cases.material_field import InlineMaterial
+from vibroimpact.cases.place_words import place_in_words
 from vibroimpact.cases.schema import AccelerometerTable, Case, DropSection, PlateSection, RunSection, SensorSection, SphereSection
 from vibroimpact.cases.sweep_section import SweepSection
 from vibroimpact.errors import InputError, did_you_mean
 from vibroimpact.files import FileKind, read_text
-from vibroimpact.shown import visible
+from vibroimpact.shown import shortened, shown
 
 Read = TypeVar("Read")
 
-_CASE = FileKind('a case is a TOML file, or a shipped one such as "paper:type1-theory"', 1_000_000, "a case is a page of text")
+_CASE = FileKind('a case is a TOML file, or a shipped one such as "paper:type1-theory"', MOST_BYTES, "a case is a page of text")
 
 _SECTIONS: dict[tuple[str, ...], type[BaseModel]] = {
     (): Case,
@@ -69,10 +71,14 @@ def _read_to_run(table: dict[str, Any]) -> Case:
         return read_case(table)
     except InputError as error:
         if "calibrate" in table and "contact" in str(error) and "missing" in str(error):
-            raise InputError(f"{error}; for `vibroimpact calibrate` what it tunes may be left out") from None
+            raise _with_hint(error, "for `vibroimpact calibrate` what it tunes may be left out") from None
         if "sweep" in table and "missing" in str(error):
-            raise InputError(f"{error}; for `vibroimpact sweep` what it sweeps may be left out") from None
+            raise _with_hint(error, "for `vibroimpact sweep` what it sweeps may be left out") from None
         raise
+
+
+def _with_hint(error: InputError, hint: str) -> InputError:
+    return InputError.of_several([*error.lines[:-1], f"{error.lines[-1]}; {hint}"])
 
 
 def load_table(source: str | PathLike[str]) -> dict[str, Any]:
@@ -84,12 +90,14 @@ def load_table(source: str | PathLike[str]) -> dict[str, Any]:
         If it can't be read or is not TOML; the message does not name the source.
     """
     text = _shipped(str(source)) if str(source).startswith("paper:") else read_text(Path(source), _CASE)
+    check_text(text)
     try:
         table = tomllib.loads(text)
     except ValueError as error:  # tomllib's own, or a number of thousands of digits
         raise InputError(f"this is not valid TOML: {error}") from None
     except RecursionError:
         raise InputError("this is not a case: its tables are nested too deeply") from None
+    check_bounds(table)
     return _beside(table, Path(source).parent)
 
 
@@ -98,8 +106,8 @@ def named(source: str | PathLike[str], read: Callable[[], Read]) -> Read:
     try:
         return read()
     except InputError as error:
-        name = visible(str(source), 300)
-        raise InputError("\n".join(f"{name}: {line}" for line in str(error).splitlines())) from None
+        place = shortened(str(source), 160)
+        raise InputError.of_several(f"{place}: {line}" for line in error.lines) from None
 
 
 def read_case(table: Mapping[str, Any]) -> Case:
@@ -110,12 +118,15 @@ def read_case(table: Mapping[str, Any]) -> Case:
     InputError
         If it is not a valid case; one line a fault.
     """
+    check_bounds(table)
     try:
         case = Case.model_validate(dict(table))
         check_case(case)
     except ValidationError as error:
-        lines = (f"{path}: {message}" if path else message for path, message in explained(error, _section))
-        raise InputError("\n".join(dict.fromkeys(lines))) from None
+        faults = explained(error, _section)
+        raise InputError.of_several(
+            f"{shortened(place_in_words(path, table), 160)}: {message}" if path else message for path, message in faults
+        ) from None
     return case
 
 
@@ -127,9 +138,7 @@ def shipped_cases() -> dict[str, str]:
     >>> "paper:type1-theory" in shipped_cases()
     True
     """
-    folder = files("vibroimpact").joinpath("cases/library")
-    names = sorted(entry.name.removesuffix(".toml") for entry in folder.iterdir() if entry.name.endswith(".toml"))
-    return {f"paper:{name}": tomllib.loads(_shipped(f"paper:{name}"))["name"] for name in names}
+    return {name: tomllib.loads(_shipped(name))["name"] for name in _names()}
 
 
 def _beside(table: dict[str, Any], folder: Path) -> dict[str, Any]:
@@ -158,9 +167,14 @@ def _columns_beside(inside: Any, folder: Path) -> None:
         _columns_beside(value, folder)
 
 
+def _names() -> list[str]:
+    """Return the names of the shipped cases."""
+    folder = files("vibroimpact").joinpath("cases/library")
+    return sorted(f"paper:{entry.name.removesuffix('.toml')}" for entry in folder.iterdir() if entry.name.endswith(".toml"))
+
+
 def _shipped(name: str) -> str:
     entry = files("vibroimpact").joinpath("cases/library", name.removeprefix("paper:") + ".toml")
-    if "/" in name or "\\" in name or not entry.is_file():
-        known = list(shipped_cases())
-        raise InputError(f'there is no shipped case "{name}"; there are {", ".join(known)}.{did_you_mean(name, known)}')
+    if name not in (known := _names()):
+        raise InputError(f"there is no shipped case {shown(name)}; there are {', '.join(known)}.{did_you_mean(name, known)}")
     return entry.read_text(encoding="utf-8")

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Callable
 from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, StrictBool, model_validator
 
+from vibroimpact.cases.bounds import MOST_ITEMS, Name, at_most
 from vibroimpact.cases.build import problem_of
 from vibroimpact.cases.calibrate_section import CalibrateSection
 from vibroimpact.cases.contact_section import ContactSection, contact_schema, read_contact
@@ -25,6 +27,7 @@ from vibroimpact.cases.elastic_fields import (
 from vibroimpact.cases.material_field import MaterialField
 from vibroimpact.cases.quantities import Quantity
 from vibroimpact.cases.section import Section
+from vibroimpact.cases.slips.lengths import likely_lengths
 from vibroimpact.cases.supports_field import SupportsField
 from vibroimpact.cases.sweep_section import SweepSection
 from vibroimpact.dynamics.problem import MOST_IMPACTS, STANDARD_GRAVITY, Problem
@@ -32,6 +35,7 @@ from vibroimpact.dynamics.sensor import FILTERS, Accelerometer, Sensor
 from vibroimpact.errors import InputError, did_you_mean
 from vibroimpact.materials import RIGID
 from vibroimpact.ranges import Range
+from vibroimpact.shown import shown
 
 
 class SphereSection(Section):
@@ -109,8 +113,7 @@ class DropSection(Section):
 def _read_impacts(value: Any) -> Any:
     if value is None or value == "all" or (type(value) is int and 1 <= value <= MOST_IMPACTS):
         return value
-    shown = f'"{value}"' if isinstance(value, str) else value
-    raise InputError(f'{shown} is not allowed; it must be a whole number from 1 to {MOST_IMPACTS}, or "all" to go on to rest')
+    raise InputError(f'{shown(value)} is not allowed; it must be a whole number from 1 to {MOST_IMPACTS}, or "all" to go on to rest')
 
 
 class AccelerometerTable(Section):
@@ -131,14 +134,14 @@ def _read_filter(value: Any) -> Any:
     if not isinstance(value, str) or value in FILTERS:
         return value
     known = ", ".join(f'"{name}"' for name in FILTERS)
-    raise InputError(f'"{value}" is not allowed; it must be one of {known}.{did_you_mean(value, FILTERS)}')
+    raise InputError(f"{shown(value)} is not allowed; it must be one of {known}.{did_you_mean(value, FILTERS)}")
 
 
 class SensorSection(Section):
     """A point of the plate that is watched."""
 
-    name: str = Field(min_length=1, description="what it is called in tables and figures")
-    position: tuple[Annotated[float, Quantity("m", "x")], Annotated[float, Quantity("m", "y")]] | str = Field(
+    name: Name = Field(min_length=1, description="what it is called in tables and figures")
+    position: tuple[Annotated[float, Quantity("m", "x")], Annotated[float, Quantity("m", "y")]] | Name = Field(
         description="on the plate, from its centre [m]; or the name of a set of a mesh that was brought"
     )
     face: Literal["upper", "lower"] = Field("upper", description="the side of the plate that it is on")
@@ -188,13 +191,15 @@ class Case(Section):
     """
 
     schema_version: Literal[1] = Field(1, description="version of this format")
-    name: str = Field("", description="what the case is, in a few words")
+    name: Name = Field("", description="what the case is, in a few words")
     sphere: SphereSection
     plate: PlateSection
     drop: DropSection
     contact: Annotated[ContactSection, BeforeValidator(read_contact)]
     run: RunSection = RunSection()
-    sensors: tuple[SensorSection, ...] = Field((), description="the points of the plate that are watched")
+    sensors: Annotated[tuple[SensorSection, ...], at_most(MOST_ITEMS, "sensors")] = Field(
+        (), description="the points of the plate that are watched"
+    )
     calibrate: CalibrateSection | None = Field(None, description="what `vibroimpact calibrate` does with it")
     sweep: SweepSection | None = Field(None, description="what `vibroimpact sweep` does with it")
 
@@ -202,9 +207,10 @@ class Case(Section):
     def _fits_together(self) -> Case:
         radius, height, size = self.sphere.radius, self.drop.height, self.plate.size
         if height is not None and height <= radius:
+            hint = likely_lengths([radius], [min(height, 3.0)]).replace("Write", "Write sphere.radius =")
             raise InputError(
                 f"{height:g} m is not above the surface; it is the height of the sphere's centre, so it must be "
-                f"greater than the radius, {radius:g} m",
+                f"greater than the radius, {radius:g} m{hint}",
                 "drop.height",
             )
         if height is not None and self.drop.gravity == 0:
@@ -213,11 +219,11 @@ class Case(Section):
         reach = [0.5 * length for length in size[:2]] if size and not in_own_coordinates else [math.inf, math.inf]
         if any(abs(at) > end for at, end in zip(self.drop.position, reach, strict=True)):
             x, y = self.drop.position
-            raise InputError(f"({x:g}, {y:g}) m lies outside the plate, which reaches to ({reach[0]:g}, {reach[1]:g}) m", "drop.position")
-        names = [sensor.name for sensor in self.sensors]
-        twice = next((name for name in names if names.count(name) > 1), None)
+            words = f"({x:g}, {y:g}) m lies outside the plate, which reaches to ({reach[0]:g}, {reach[1]:g}) m"
+            raise InputError(f"{words}{likely_lengths(self.drop.position, reach)}", "drop.position")
+        twice = next((name for name, often in Counter(sensor.name for sensor in self.sensors).items() if often > 1), None)
         if twice is not None:
-            raise InputError(f'two sensors are called "{twice}"; each needs a name of its own', "sensors")
+            raise InputError(f"two sensors are called {shown(twice)}; each needs a name of its own", "sensors")
         return self
 
     def to_problem(self, progress: Callable[[float], None] | None = None, tell: Callable[[str], None] | None = None) -> Problem:

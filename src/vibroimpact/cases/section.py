@@ -9,6 +9,7 @@ from pydantic import BaseModel, ConfigDict, ValidationError
 
 from vibroimpact.cases.explain import explained
 from vibroimpact.errors import InputError, did_you_mean
+from vibroimpact.shown import shown
 
 
 class Section(BaseModel):
@@ -31,7 +32,7 @@ def read_table(kind: type[Kind], value: Mapping[str, Any]) -> Kind:
     known = [info.alias or name for name, info in kind.model_fields.items() if name != "type"]
     for key in value:
         if key not in known and key not in kind.model_fields:
-            raise InputError(f'unknown key "{key}"; it takes {", ".join(known)}.{did_you_mean(key, known)}', key)
+            raise InputError(f"unknown key {shown(key)}; it takes {', '.join(known)}.{did_you_mean(key, known)}", key)
     try:
         return kind.model_validate(dict(value))
     except ValidationError as error:

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from vibroimpact.dynamics.recording import Signal
+from vibroimpact.quantity import text
 
 _PROMISED = 0.01  # of the rms value: what the modes left out may change in a signal without a word
 _NEAR = 2.0  # thicknesses from the contact
@@ -35,34 +36,37 @@ def sensor_doubts(case: Mapping[str, Any], signals: Mapping[str, Signal], highes
     """
     places = {one["name"]: one["position"] for one in case.get("sensors", ())}
     ranges = {one["name"]: one.get("accelerometer", {}).get("range") for one in case.get("sensors", ())}
-    found = []
+    found = [doubt for name, signal in signals.items() for doubt in _of_range(signal, ranges.get(name))]
+    alike: dict[tuple[str, str], dict[str, float]] = {}  # what is said of several sensors is said once: the parts by their names
     for name, signal in signals.items():
-        found += _of_range(signal, ranges.get(name))
         apart = _thicknesses(case, places.get(name))
         if apart < _NEAR:
             part = _known(signal.uncertainty) + _of_thickness(case, signal, duration)
-            found.append(
-                f'sensor "{name}" lies {apart:.2g} thicknesses from the contact: what the plate does there through its thickness, and in '
-                f"the modes left out, may change its signal by about {_per_cent(part)} of its rms value; "
-                f"{_remedy(signal, highest) if signal.uncertainty > _PROMISED else f'beyond {_NEAR:g} thicknesses plate theory holds'}"
-            )
+            cause = f"{apart:.2g} thicknesses from the contact what the plate does through its thickness, and in the modes left out,"
+            remedy = _remedy(signal, highest) if signal.uncertainty > _PROMISED else f"beyond {_NEAR:g} thicknesses plate theory holds"
+            alike.setdefault((cause, remedy), {})[name] = part
         elif signal.uncertainty > _PROMISED:
-            found.append(
-                f'sensor "{name}" takes {signal.sensor.rate:g} samples per second, and the modes of the plate end at {highest:.4g} Hz: '
-                f"those left out may change its signal by about {_per_cent(signal.uncertainty)} of its rms value; "
-                f"{_remedy(signal, highest)}"
-            )
-    return found
+            cause = f"the modes of the plate left out (above {text(highest, 'Hz')}, at {signal.sensor.rate:g} samples per second)"
+            alike.setdefault((cause, _remedy(signal, highest)), {})[name] = signal.uncertainty
+    return found + [_said(cause, remedy, parts) for (cause, remedy), parts in alike.items()]
+
+
+def _said(cause: str, remedy: str, parts: dict[str, float]) -> str:
+    """Return a doubt of sensors that have the same cause and remedy."""
+    each = list(dict.fromkeys(map(_per_cent, parts.values())))
+    names = ", ".join(f'"{name}"' for name in parts)
+    sensors, signal = ("sensors", "their signals") if len(parts) > 1 else ("sensor", "its signal")
+    return f"{sensors} {names}: {cause} may change {signal} by about {' and '.join(each)} of the rms value; {remedy}"
 
 
 def _of_range(signal: Signal, end: float | None) -> list[str]:
     limit = "its range" if end is None else f"its range of {end:g} m/s2"
     if not signal.overload_time:
         return []
-    least = float(f"{_ENOUGH * signal.peak:.1g}")
+    least, long = float(f"{_ENOUGH * signal.peak:.1g}"), text(signal.overload_time, "s", 2)
     least = least if least >= signal.peak else 2.0 * least
     return [
-        f'the accelerometer of sensor "{signal.sensor.name}" is driven beyond {limit} for {signal.overload_time:.2g} s in all, by up to '
+        f'the accelerometer of sensor "{signal.sensor.name}" is driven beyond {limit} for {long} in all, by up to '
         f"{signal.peak:.4g} m/s2: what lies beyond is cut off, and the signal around it is wrong; take one with a range of {least:g} m/s2 "
         "or so"
     ]
@@ -97,4 +101,4 @@ def _known(part: float) -> float:
 
 
 def _per_cent(part: float) -> str:
-    return f"{100.0 * part:.2g} %" if part < 1.0 else "all"
+    return f"{100.0 * part:.2g} %" if part < 1.0 else "100 % or more"

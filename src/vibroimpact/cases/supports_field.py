@@ -8,12 +8,14 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, get_args
 
 from pydantic import AfterValidator, BeforeValidator, Field, WithJsonSchema, model_validator
 
+from vibroimpact.cases.bounds import MOST_ITEMS, Name, check_count
 from vibroimpact.cases.material_field import MaterialField, material_table
 from vibroimpact.cases.quantities import Quantity
 from vibroimpact.cases.section import Section, read_table
 from vibroimpact.errors import InputError, did_you_mean
 from vibroimpact.materials import RIGID, Material
 from vibroimpact.ranges import Range
+from vibroimpact.shown import shown
 
 if TYPE_CHECKING:  # they load sparse matrices, which a case of rigid bodies does without
     from vibroimpact.structures.supports.support import Support
@@ -178,7 +180,7 @@ class SetTable(_Table):
 
     what = "a named set of nodes or elements of a mesh that was brought, held still along some axes"
     type: Literal["set"] = "set"
-    name: str = Field(description="of the set")
+    name: Name = Field(description="of the set")
     directions: _Directions = Field("xyz", description="the axes along which it is held")
 
     def made(self) -> tuple[Support, ...]:
@@ -198,11 +200,12 @@ _ALLOWED = f"{', '.join(WORDS)}, or a table (or a list of tables) with type = {'
 def _read_supports(value: Any) -> Any:
     if isinstance(value, str):
         if value not in WORDS:
-            raise InputError(f'"{value}" is not allowed; it must be {_ALLOWED}.{did_you_mean(value, WORDS)}')
+            raise InputError(f"{shown(value)} is not allowed; it must be {_ALLOWED}.{did_you_mean(value, WORDS)}")
         return value
     if isinstance(value, dict):
         return (_read_one(value),)
     if isinstance(value, (list, tuple)):
+        check_count(len(value), MOST_ITEMS, "supports")
         found = []
         for number, item in enumerate(value):
             try:
@@ -210,16 +213,16 @@ def _read_supports(value: Any) -> Any:
             except InputError as error:
                 raise InputError(error.message, ".".join(part for part in (str(number), error.key) if part)) from None
         return tuple(found)
-    raise InputError(f"{value!r} is not allowed; it must be {_ALLOWED}")
+    raise InputError(f"{shown(value)} is not allowed; it must be {_ALLOWED}")
 
 
 def _read_one(value: Any) -> _Table:
     name = value.get("type") if isinstance(value, dict) else None
     if not isinstance(name, str) or name not in _TABLES:
         if value in WORDS:
-            raise InputError(f'"{value}" stands alone, without a list: supports = "{value}"')
-        shown = f'there is no support of type "{name}"' if name is not None else "a support is a table with a type"
-        raise InputError(f"{shown}; there are {', '.join(_TABLES)}.{did_you_mean(str(name), _TABLES)}")
+            raise InputError(f"{shown(value)} stands alone, without a list: supports = {shown(value)}")
+        fault = f"there is no support of type {shown(name)}" if name is not None else "a support is a table with a type"
+        raise InputError(f"{fault}; there are {', '.join(_TABLES)}.{did_you_mean(str(name), _TABLES)}")
     return read_table(_TABLES[name], value)
 
 

@@ -12,6 +12,9 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
+from vibroimpact.cases.bounds import MOST_ITEMS, check_bounds, check_count
 from vibroimpact.cases.build import deforms, impacts_of
 from vibroimpact.cases.quantities import Quantity
 from vibroimpact.cases.reader import load_table, named
@@ -24,10 +27,17 @@ from vibroimpact.dynamics.columns import IMPACT_COLUMNS, VIBRATION_IMPACT_COLUMN
 from vibroimpact.errors import InputError
 from vibroimpact.exchange.lines import MESH
 from vibroimpact.files import file_digest
-from vibroimpact.studies.axes import Axis, Values
+from vibroimpact.shown import shortened, shown, visible
+from vibroimpact.studies.axes import Axis, Listed, Values
 from vibroimpact.studies.columns import OUTCOME, PEAKS, SENSOR_PEAK, SIGNAL
 from vibroimpact.studies.design import find_design
 from vibroimpact.studies.plan import Plan
+
+MOST_KEYS = 100
+"""Swept keys of a study."""
+
+MOST_POINT_VALUES = 40_000_000
+"""Values of all keys at all points of a study that is no grid; they lie in memory."""
 
 _LONG = 100  # impacts that are reckoned with where a drop goes on to rest
 
@@ -176,12 +186,13 @@ def read_sweep(table: Mapping[str, Any]) -> Sweep:
     6
     """
     if not isinstance(table, Mapping):
-        raise InputError(f"a study is a table, as a TOML file holds it, not {table!r}")
+        raise InputError(f"a study is a table, as a TOML file holds it, not {shown(table)}")
+    check_bounds(table)
     base = {key: value for key, value in table.items() if key != "sweep"}
     if "sweep" not in table:
         raise InputError('it is missing; it says what runs over what, such as [sweep.over] "sphere.radius" = ["10 mm", "25 mm"]', "sweep")
     if not isinstance(table["sweep"], dict):
-        raise InputError(f"{table['sweep']!r} is not a table", "sweep")
+        raise InputError(f"{shown(table['sweep'])} is not a table", "sweep")
     try:
         section = read_table(SweepSection, table["sweep"])
         design = find_design(section.design)
@@ -196,20 +207,25 @@ def read_sweep(table: Mapping[str, Any]) -> Sweep:
             raise InputError("this key stands there twice, in quotes and in a table", f'over."{twice}"')
         if not over:
             raise InputError("it is empty; it takes dotted keys of the case", "over")
+        check_count(len(over), MOST_KEYS, "swept keys")
         quantities, axes = {}, {}
         for key, value in over.items():
             try:
                 quantities[key] = find_quantity(base, key)
                 axes[key] = read_axis(value, quantities[key])
+                _check_names(axes[key])
             except InputError as error:
                 raise InputError(error.message, f'over."{key}".{error.key}'.rstrip(".")) from None
-        for key, axis in axes.items() if section.design == "grid" else ():
-            again, often = Counter(map(repr, axis.levels().tolist())).most_common(1)[0]
-            if often > 1:
-                raise InputError(f"{again} stands there twice, and a grid has each value once", f'over."{key}"')
         sweep = Sweep(base, section.model_copy(update={"over": over}), axes, quantities)
         if sweep.size > MOST_DROPS:
             raise InputError(f"there would be {sweep.size} drops, and {MOST_DROPS} are the most; sweep in parts", "over")
+        if sweep.size * len(axes) > MOST_POINT_VALUES and section.design != "grid":
+            words = f"there would be {sweep.size} drops of {len(axes)} values each, and {MOST_POINT_VALUES} values are the most"
+            raise InputError(f"{words}; sweep in parts", "over")
+        for key, axis in axes.items() if section.design == "grid" else ():
+            again = _twice(axis)
+            if again is not None:
+                raise InputError(f"{again} stands there twice, and a grid has each value once", f'over."{key}"')
     except InputError as error:
         raise InputError(error.message, f"sweep.{error.key}".rstrip(".")) from None
     _check_points(sweep)
@@ -226,6 +242,23 @@ def read_sweep(table: Mapping[str, Any]) -> Sweep:
         if sweep.case.run.duration is None:
             raise InputError("it is missing; signals need it, so that those of all drops are of one length", "run.duration")
     return sweep
+
+
+def _check_names(axis: Axis) -> None:
+    """Raise if there are more different names and tables than can be looked at: there is a case at each."""
+    if isinstance(axis, Listed) and len(axis.values) > MOST_ITEMS and axis.levels().dtype == object:
+        check_count(len(_different(axis.levels())), MOST_ITEMS, "different names and tables")
+
+
+def _twice(axis: Axis) -> str | None:
+    """Return a level that an axis has twice; those of a range and of a distribution differ, unless it is narrower than numbers are."""
+    levels = axis.levels()
+    if levels.dtype == object:
+        again, often = Counter(map(repr, levels.tolist())).most_common(1)[0]
+        return shortened(again, 80) if often > 1 else None
+    ordered = np.sort(levels)
+    same = np.flatnonzero(ordered[1:] == ordered[:-1])
+    return repr(ordered[same[0]].item()) if same.size else None
 
 
 def _flat(over: Mapping[str, Any], above: str = "") -> Iterator[tuple[str, Any]]:
@@ -257,7 +290,7 @@ def _check_points(sweep: Sweep) -> None:
             try:
                 sweep.case_at({**first, key: value})
             except InputError as error:
-                raise InputError("\n".join(f"at {key} = {value}: {line}" for line in str(error).splitlines())) from None
+                raise InputError.of_several(f"at {key} = {shortened(visible(str(value)), 60)}: {line}" for line in error.lines) from None
 
 
 def _different(values: Values) -> list[Any]:

@@ -13,6 +13,7 @@ from vibroimpact.cases.section import Section, read_table
 from vibroimpact.errors import InputError, did_you_mean
 from vibroimpact.exchange.table_file import TableFile, name_and_unit, read_table_file
 from vibroimpact.ranges import Range
+from vibroimpact.shown import shown
 from vibroimpact.studies.axes import Axis, Listed, Normal, Spaced
 from vibroimpact.studies.design import designs, find_design
 
@@ -25,7 +26,7 @@ _Levels = Annotated[int, Field(ge=2, le=MOST_DROPS, strict=True)]
 
 def _read_design(value: Any) -> str:
     if not isinstance(value, str):
-        raise InputError(f"{value!r} is not allowed; it must be one of {', '.join(designs())}")
+        raise InputError(f"{shown(value)} is not allowed; it must be one of {', '.join(designs())}")
     return find_design(value).name
 
 
@@ -110,7 +111,7 @@ def read_axis(value: Any, quantity: Quantity | None) -> Axis:
             raise InputError("the list is empty; it must have one value or more")
         return Listed(tuple(value if quantity is None else [_read_item(item, quantity) for item in value]))
     if not isinstance(value, Mapping):
-        raise InputError(f"{value!r} is not allowed; it must be {_ASKED}")
+        raise InputError(f"{shown(value)} is not allowed; it must be {_ASKED}")
     if quantity is None:
         raise InputError("this key holds no quantity, so that it takes a list of values alone")
     if "file" in value:
@@ -119,7 +120,7 @@ def read_axis(value: Any, quantity: Quantity | None) -> Axis:
         kind = value["distribution"]
         if not isinstance(kind, str) or kind not in _DISTRIBUTIONS:
             hint = did_you_mean(str(kind), _DISTRIBUTIONS)
-            raise InputError(f"{kind!r} is not allowed; it must be one of {', '.join(_DISTRIBUTIONS)}.{hint}", "distribution")
+            raise InputError(f"{shown(kind)} is not allowed; it must be one of {', '.join(_DISTRIBUTIONS)}.{hint}", "distribution")
         table = read_table(_DISTRIBUTIONS[kind], value)
         return _normal(table, quantity) if isinstance(table, NormalTable) else _spaced(table, quantity, is_random=True)
     if "from" not in value and "to" not in value:

@@ -19,6 +19,7 @@ from vibroimpact.contact.law import find_contact_law, unit_of
 from vibroimpact.errors import InputError, did_you_mean
 from vibroimpact.materials import find_material
 from vibroimpact.ranges import Range
+from vibroimpact.shown import shown
 
 _SECTIONS: dict[str, type[Section]] = {"sphere": SphereSection, "plate": PlateSection, "drop": DropSection, "run": RunSection}
 _PLACES = {"position": ("x", "y"), "size": ("length", "width", "thickness")}
@@ -95,20 +96,25 @@ def with_values(table: Mapping[str, Any], values: Mapping[str, Any]) -> dict[str
         inside: Any = found
         for number, part in enumerate(way):
             holder = inside
+            if not isinstance(inside, dict):
+                raise InputError(f"{shown(inside)} is not a table, so that it has no {part}", ".".join(way[:number]))
             inside = inside.setdefault(part, [0.0, 0.0] if way[number:] == ["position"] else {})
             if isinstance(inside, str) and part == "material":
                 named = material_table(find_material(inside))
                 if isinstance(named, str):
-                    raise InputError(f'"{inside}" has no numbers that could be swept', ".".join(way))
+                    raise InputError(f"{shown(inside)} has no numbers that could be swept", ".".join(way))
                 inside = holder[part] = {name: number for name, number in named.items() if name != "name"}  # it is another one now
         if not inside and last in _PLACES.get(way[-1], ()):
             raise InputError(f"it is missing, so that it has no {last} that could be swept; give all of it", ".".join(way))
-        if isinstance(inside, list) and last in _PLACES.get(way[-1], ()):
-            inside[_PLACES[way[-1]].index(last)] = value
+        names = _PLACES.get(way[-1], ()) if way else ()
+        if isinstance(inside, list) and last in names:
+            if len(inside) != len(names):
+                raise InputError(f"{shown(inside)} does not have the right number of values; it takes {', '.join(names)}", ".".join(way))
+            inside[names.index(last)] = value
         elif isinstance(inside, dict):
             inside[last] = value
         else:
-            raise InputError(f"{inside!r} is not a table, so that it has no {last}", ".".join(way))
+            raise InputError(f"{shown(inside)} is not a table, so that it has no {last}", ".".join(way))
     return found
 
 

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from vibroimpact.cli.shared import CaseArgument, Force, app, console, note, stem, whole_or_nothing
+from vibroimpact.cli.shared import CaseArgument, Force, app, console, note, say, stem, whole_or_nothing
 
 
 @app.command()
@@ -39,4 +39,4 @@ def calibrate(
             found = named(case, lambda: calibrate_case(what, progress, note))
         folder = save_calibration(what.case, found, target, force=force)
     screen.print(calibration_summary(what.case, found))
-    typer.echo(f"wrote {folder / 'report.html'}")
+    say(f"wrote {folder / 'report.html'}")

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from vibroimpact.cli.shared import CaseArgument, Force, app, console, names_in, stem, whole_or_nothing
+from vibroimpact.cli.shared import CaseArgument, Force, app, console, names_in, say, stem, whole_or_nothing
 from vibroimpact.errors import InputError
 
 
@@ -37,7 +37,7 @@ def compare(
     from vibroimpact.cases.reader import load_case
     from vibroimpact.report.comparison import compare_laws
     from vibroimpact.report.comparison_folder import save_comparison
-    from vibroimpact.report.console import comparison_summary
+    from vibroimpact.report.comparison_text import comparison_summary
     from vibroimpact.report.progress import patient_progress
     from vibroimpact.storage.folder import check_free
 
@@ -56,7 +56,7 @@ def compare(
             )
         folder = save_comparison(comparison, target, force=force)
     screen.print(comparison_summary(comparison))
-    typer.echo(f"wrote {folder / 'report.html'}")
+    say(f"wrote {folder / 'report.html'}")
 
 
 def _settings(given: list[str]) -> dict[str, object]:

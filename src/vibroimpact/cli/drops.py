@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from vibroimpact.cli.shared import CaseArgument, Force, app, console, note, stem, whole_or_nothing
+from vibroimpact.cli.shared import CaseArgument, Force, app, console, note, say, stem, whole_or_nothing
 
 
 @app.command()
@@ -47,15 +47,16 @@ def check(case: CaseArgument) -> None:
 
     table = named(case, lambda: load_table(case))
     if "sweep" not in table:
-        console().print(case_explained(load_case(case)))
+        found = load_case(case)
+        console().print(named(case, lambda: case_explained(found)))
         return
     study = named(case, lambda: read_sweep(table))
     console().print(sweep_explained(study))
-    console().print(case_explained(study.case))
+    console().print(named(case, lambda: case_explained(study.case, study.axes)))
 
 
 def _run(name: str, output: Path | None, *, force: bool) -> None:
-    from vibroimpact.cases.reader import load_case
+    from vibroimpact.cases.reader import load_case, named
     from vibroimpact.dynamics.simulate import simulate
     from vibroimpact.report.console import result_summary
     from vibroimpact.report.progress import patient_progress
@@ -68,12 +69,12 @@ def _run(name: str, output: Path | None, *, force: bool) -> None:
     screen = console()
     with whole_or_nothing():
         with patient_progress("computing modes", screen) as progress:
-            problem = case.to_problem(progress, note)
+            problem = named(name, lambda: case.to_problem(progress, note))
         with patient_progress("simulating", screen) as progress:
             response = simulate(problem, progress)
         folder = save_result(response, target, force=force)
     screen.print(result_summary(read_result(folder), screen.width))
-    typer.echo(f"wrote {folder / 'report.html'}")
+    say(f"wrote {folder / 'report.html'}")
 
 
 @app.command()
@@ -87,7 +88,7 @@ def modes(
     The folder holds a table of frequencies, pictures of the first modes, and the meshes for ParaView, Nastran and Abaqus.
     """
     from vibroimpact.cases.modes import compute_modes
-    from vibroimpact.cases.reader import load_case
+    from vibroimpact.cases.reader import load_case, named
     from vibroimpact.report.modes_folder import save_modes
     from vibroimpact.report.modes_text import modes_summary
     from vibroimpact.report.progress import patient_progress
@@ -99,10 +100,10 @@ def modes(
     screen = console()
     with whole_or_nothing():
         with patient_progress("computing modes", screen) as progress:
-            bodies = compute_modes(found, progress, note)
+            bodies = named(case, lambda: compute_modes(found, progress, note))
         folder = save_modes(found, bodies, target, force=force)
     screen.print(modes_summary(found, bodies))
-    typer.echo(f"wrote {folder / 'modes.csv'}, and pictures and meshes beside it")
+    say(f"wrote {folder / 'modes.csv'}, and pictures and meshes beside it")
 
 
 @app.command()
@@ -110,4 +111,4 @@ def report(directory: Annotated[Path, typer.Argument(metavar="DIR", help="A resu
     """Remake the report of a result folder."""
     from vibroimpact.report.save import remake_report
 
-    typer.echo(f"wrote {remake_report(directory) / 'report.html'}")
+    say(f"wrote {remake_report(directory) / 'report.html'}")

@@ -41,6 +41,6 @@ def export(
     found = find_export_format(to)
     if directory is None:
         raise InputError(f"name the folder that is to be exported: vibroimpact export DIR --to {to}")
-    drop = drop_of(directory)
+    drop = found.told(drop_of(directory))
     written = save_export(drop, found, default_output(directory, to) if output is None else output, force=force)
     console().print(export_summary(drop, found, written))

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from vibroimpact.cli.shared import app, console
+from vibroimpact.cli.shared import app, console, say
 from vibroimpact.errors import ComputationError, InputError
 
 
@@ -36,13 +36,11 @@ def units(
 
 @app.command()
 def laws(
-    name: Annotated[str | None, typer.Argument(metavar="[NAME]", help="Show one law, and draw its curves.")] = None,
-    output: Annotated[
-        Path | None, typer.Option("-o", "--output", metavar="PNG", help="The picture of its curves; by default NAME.png.")
-    ] = None,
+    name: Annotated[str | None, typer.Argument(metavar="[NAME]", help="Show one law.")] = None,
+    output: Annotated[Path | None, typer.Option("-o", "--output", metavar="PNG", help="Draw its curves into this picture.")] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace an existing picture.")] = False,
 ) -> None:
-    """List the contact laws, or show one: equation, parameters, sources, and a picture of its curves."""
+    """List the contact laws, or show one: equation, parameters, sources; with -o PNG also a picture of its curves."""
     from vibroimpact.report.law_sheet import law_sheet, law_table
 
     screen = console()
@@ -51,15 +49,16 @@ def laws(
             raise InputError("name the law that is to be drawn: vibroimpact laws NAME -o PNG")
         screen.print(law_table(screen.width))
         return
-    from vibroimpact.report.law_curves import picture_path, save_law_picture
+    sheet = law_sheet(name)
+    if output is not None:
+        from vibroimpact.report.law_curves import check_picture
 
-    sheet, target = law_sheet(name), picture_path(name, output)
+        check_picture(output, force=force)  # before the work, not after it
     screen.print(sheet)
-    typer.echo()
-    if target.exists() and not force:
-        typer.echo(f"{target} is there already and was left as it is; --force draws it anew")
-    else:
-        typer.echo(f"wrote {save_law_picture(name, target)}")
+    if output is not None:
+        from vibroimpact.report.law_curves import save_law_picture
+
+        say(f"\nwrote {save_law_picture(name, output)}")
 
 
 @app.command()
@@ -67,7 +66,7 @@ def materials(
     name: Annotated[str | None, typer.Argument(metavar="[NAME]", help="Show one material, with the source of each number.")] = None,
 ) -> None:
     """List the shipped materials, or one with its sources."""
-    from vibroimpact.report.console import material_sheet, material_table
+    from vibroimpact.report.material_text import material_sheet, material_table
 
     console().print(material_sheet(name) if name else material_table())
 
@@ -79,7 +78,7 @@ def schema() -> None:
 
     from vibroimpact.cases.schema import case_schema
 
-    typer.echo(json.dumps(case_schema(), indent=2))
+    say(json.dumps(case_schema(), indent=2))
 
 
 @app.command()
@@ -93,10 +92,10 @@ def doctor(
     if clear_store:
         from vibroimpact.structures.store import clear_store as clear
 
-        typer.echo(f"removed {clear()} entries from the store of modes")
+        say(f"removed {clear()} entries from the store of modes")
         return
     console().print(versions_table(diagnose()))
     error = first_rebound_error()
     if not error < 2e-6:
         raise ComputationError(f"the self-test is off by {error:.1e}; reinstall the package")
-    typer.echo(f"self-test passed: the paper's first rebound, off by {error:.1e}")
+    say(f"self-test passed: the paper's first rebound, off by {error:.1e}")

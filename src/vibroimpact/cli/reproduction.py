@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from vibroimpact.cli.shared import app, console, fail, names_in, note
+from vibroimpact.cli.shared import app, console, fail, names_in, note, say
 
 
 @app.command()
@@ -41,4 +41,4 @@ def reproduce(
         some = f" --only {','.join(left)}" if left else ""
         fail(f"interrupted; the parts that are done stay; go on with: vibroimpact reproduce -o {shlex.quote(str(output))}{some}", 130)
     screen.print(summary_table(folder))
-    typer.echo(f"wrote {folder / 'report.html'}")
+    say(f"wrote {folder / 'report.html'}")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import os
 import signal
 import sys
@@ -11,6 +12,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, NoReturn
 
 import typer
+
+from vibroimpact.errors import lines_of
+from vibroimpact.shown import visible
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -33,7 +37,7 @@ def _show_version(wanted: bool) -> None:
     if wanted:
         from vibroimpact._version import __version__
 
-        typer.echo(f"vibroimpact {__version__}")
+        say(f"vibroimpact {__version__}")
         raise typer.Exit
 
 
@@ -44,19 +48,38 @@ def common(
     """What happens when a particle hits a plate: contact, energy and vibration, in a second."""
 
 
+_LONGEST_STEM = 60  # what is added to it, here and while it is written, fits into the 255 bytes of a name on disk
+
+
 def stem(case: str) -> str:
     """Return what a folder made from a case is called."""
-    return Path(case.removeprefix("paper:")).stem
+    name = Path(case.removeprefix("paper:")).stem[:_LONGEST_STEM]
+    return "".join(character if character.isprintable() else "_" for character in name)
 
 
 def console() -> Console:
-    """Return the console, wide where it is no terminal."""
-    from rich.console import Console
+    """Return the console, wide where it is no terminal, in letters that it can show."""
+    from vibroimpact.report.terminal import TerminalConsole
 
-    screen = Console()
+    screen = TerminalConsole()
     if not screen.is_terminal:
-        screen = Console(width=160)  # a pipe or a file has no width; tables must not be cut
+        screen = TerminalConsole(width=160)  # a pipe or a file has no width; tables must not be cut
     return screen
+
+
+def say(text: str, *, err: bool = False) -> None:
+    """Print lines, on standard error if so wanted, in letters that the stream has; what they name can't steer the terminal."""
+    from vibroimpact.report.encodable import encodable
+
+    stream, text = sys.stderr if err else sys.stdout, "\n".join(map(visible, text.split("\n")))
+    print(encodable(text, getattr(stream, "encoding", None) or "ascii"), file=stream, flush=True)  # a closed pipe is told here, not at exit
+
+
+def never_fail_to_print() -> None:
+    """Let standard output and error give letters that they lack by their numbers, whatever prints them."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")
 
 
 def names_in(text: str) -> list[str]:
@@ -66,7 +89,7 @@ def names_in(text: str) -> list[str]:
 
 def note(text: str) -> None:
     """Tell what takes long, apart from what the command prints."""
-    typer.echo(f"vibroimpact: {text}", err=True)
+    say(f"vibroimpact: {text}", err=True)
 
 
 @contextmanager
@@ -109,5 +132,5 @@ def stopping(told: str) -> Iterator[Callable[[], bool]]:
 
 def fail(message: str, status: int) -> NoReturn:
     """Say what went wrong, and leave with an exit status."""
-    typer.echo("\n".join(f"vibroimpact: {line}" for line in message.splitlines()), err=True)
+    say("\n".join(f"vibroimpact: {line}" for line in lines_of(message.split("\n"))), err=True)
     sys.exit(status)

@@ -4,13 +4,17 @@ from __future__ import annotations
 
 import os
 import shlex
+from collections.abc import Callable
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from vibroimpact.cli.shared import app, console, fail, note, stem, stopping
+from vibroimpact.cli.shared import app, console, fail, note, say, stem, stopping
 from vibroimpact.errors import InputError
+
+if TYPE_CHECKING:
+    from vibroimpact.cases.sweep import Sweep
 
 MOST_UNASKED = 100_000
 """Drops beyond which a study must be confirmed by --yes."""
@@ -25,7 +29,7 @@ def sweep(
     output: Annotated[
         Path | None, typer.Option("-o", "--output", metavar="DIR", help="The folder to make; by default STUDY-sweep.")
     ] = None,
-    resume: Annotated[bool, typer.Option("--resume", help="Go on with the study that was begun in the folder.")] = False,
+    resume: Annotated[bool, typer.Option("--resume", help="Go on with the study in the folder; where there is none, begin.")] = False,
     force: Annotated[bool, typer.Option("--force", help="Replace the folder of a study that is there.")] = False,
     yes: Annotated[bool, typer.Option("--yes", help=f"Run also more than {MOST_UNASKED:,} drops, or 10 GB of results.")] = False,
     processes: Annotated[
@@ -43,11 +47,42 @@ def sweep(
 
     The [sweep] section of the case says which keys run over what. What is done is kept, whatever stops the study: --resume goes on.
     """
+    target = Path(f"{stem(study)}-sweep") if output is None else output
+    options = "" if scheduler is None else f" --scheduler {shlex.quote(scheduler)}"
+    command = f"vibroimpact sweep {shlex.quote(study)} -o {shlex.quote(str(target))} --resume{options}"
+    told = f"interrupted; the drops that are done stay; go on with: {command}"
+    try:
+        with stopping(told) as stopped:  # from here on no Ctrl-C is lost, whatever is imported or begun
+            _sweep(study, target, memory, stopped, resume=resume, force=force, yes=yes, processes=processes, scheduler=scheduler)
+    except KeyboardInterrupt:
+        fail(told, 130)
+
+
+def _sweep(
+    study: str,
+    target: Path,
+    memory: str,
+    stopped: Callable[[], bool],
+    *,
+    resume: bool,
+    force: bool,
+    yes: bool,
+    processes: int | None,
+    scheduler: str | None,
+) -> None:
+    """Do what `sweep` was asked for.
+
+    Raises
+    ------
+    KeyboardInterrupt
+        Where it can stop, once it was told to.
+    """
+    from vibroimpact.cases.study_slips import whole_slips
     from vibroimpact.cases.sweep import load_sweep
     from vibroimpact.report.progress import counting_progress, patient_progress
     from vibroimpact.report.study.folder import run_sweep
     from vibroimpact.report.study.text import study_summary
-    from vibroimpact.storage.study import read_study
+    from vibroimpact.storage.study import begun, read_study
     from vibroimpact.units import to_si
 
     try:
@@ -56,43 +91,50 @@ def sweep(
         raise InputError(error.message, "--memory") from None
     if size < 1e6:
         raise InputError(f"{memory} is too little; it must be 1 MB or more", "--memory")
-    target = Path(f"{stem(study)}-sweep") if output is None else output
-    found = load_sweep(study)
-    if found.size > MOST_UNASKED and not (yes or resume):
+    found, screen = load_sweep(study), console()
+    _see_that_it_is_wanted(study, found, yes=yes or (resume and begun(target)))
+    for doubt in whole_slips(found):
+        note(f"doubt: {doubt}")  # now, and not only when all is computed
+    with patient_progress("computing modes", screen) as modes, counting_progress("drops", screen) as count:
+
+        def see_whether_it_goes_on() -> None:
+            if stopped():
+                raise KeyboardInterrupt
+
+        def progress(done: int, total: int) -> None:
+            count(done, total)
+            see_whether_it_goes_on()
+
+        def modes_progress(done: float) -> None:
+            modes(done)
+            see_whether_it_goes_on()
+
+        see_whether_it_goes_on()
+        folder = run_sweep(
+            found,
+            target,
+            resume=resume,
+            force=force,
+            workers=processes or _cores(),
+            scheduler=scheduler,
+            memory=size,
+            progress=progress,
+            modes_progress=modes_progress,
+            tell=note,
+        )
+    screen.print(study_summary(read_study(folder), screen.width))
+    say(f"wrote {folder / 'study.nc'} and {folder / 'report.html'}")
+
+
+def _see_that_it_is_wanted(study: str, found: Sweep, *, yes: bool) -> None:
+    """Raise where a study is large, and nobody has said that it is wanted."""
+    if found.size > MOST_UNASKED and not yes:
         raise InputError(
             f"{study}: there would be {found.size:,} drops, more than {MOST_UNASKED:,}; confirm that they are wanted with --yes"
         )
-    if found.bytes > MOST_BYTES_UNASKED and not (yes or resume):
+    if found.bytes > MOST_BYTES_UNASKED and not yes:
         words = f"the results would take about {found.bytes / 1e9:.3g} GB, more than {MOST_BYTES_UNASKED / 1e9:g} GB"
         raise InputError(f"{study}: {words}; confirm that they are wanted with --yes, or keep fewer signals")
-    screen = console()
-    options = "" if scheduler is None else f" --scheduler {shlex.quote(scheduler)}"
-    command = f"vibroimpact sweep {shlex.quote(study)} -o {shlex.quote(str(target))} --resume{options}"
-    told = f"interrupted; the drops that are done stay; go on with: {command}"
-    try:
-        with patient_progress("computing modes", screen) as modes, counting_progress("drops", screen) as count, stopping(told) as stopped:
-
-            def progress(done: int, total: int) -> None:
-                count(done, total)
-                if stopped():
-                    raise KeyboardInterrupt
-
-            folder = run_sweep(
-                found,
-                target,
-                resume=resume,
-                force=force,
-                workers=processes or _cores(),
-                scheduler=scheduler,
-                memory=size,
-                progress=progress,
-                modes_progress=modes,
-                tell=note,
-            )
-    except KeyboardInterrupt:
-        fail(told, 130)
-    screen.print(study_summary(read_study(folder), screen.width))
-    typer.echo(f"wrote {folder / 'study.nc'} and {folder / 'report.html'}")
 
 
 def _cores() -> int:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
+from functools import cached_property
 from numbers import Integral
 from typing import TYPE_CHECKING, Any, Protocol
 
@@ -157,7 +158,7 @@ class Problem:
         modes = (self.sphere.modes, self.plate.modes, self.local_element)
         return any(part is not None for part in modes) or bool(self.quasi_static)
 
-    @property
+    @cached_property
     def shape(self) -> tuple[int, ...]:
         """() for one drop, (B,) for a batch."""
         values = [self.sphere.mass, self.sphere.contact_offset, self.height, self.speed, self.gravity, self.rest_speed]

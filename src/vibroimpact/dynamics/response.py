@@ -10,46 +10,24 @@ from os import PathLike
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from vibroimpact.contact.phase.collocation import Floats
-from vibroimpact.contact.phase.contact import Contact
-from vibroimpact.contact.phase.encounter import Encounter
-from vibroimpact.contact.phase.glide import Glide
-from vibroimpact.contact.phase.oscillators import FreeMotion
-from vibroimpact.contact.phase.stretch import Stretch
 from vibroimpact.dynamics.columns import HISTORY_COLUMNS, VIBRATION_HISTORY_COLUMNS
-from vibroimpact.dynamics.flight import Flight
+from vibroimpact.dynamics.history_grid import points_kept, thinned
+from vibroimpact.dynamics.leg import Leg
 from vibroimpact.dynamics.lying import Lying
 from vibroimpact.dynamics.outcome import Outcome
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.recording import Signal, record
-from vibroimpact.dynamics.segments import FlightSegment, GlideSegment, RestSegment, Segment, StretchSegment
+from vibroimpact.dynamics.segments import FlightSegment, RestSegment
 from vibroimpact.dynamics.sensor import Sensor, sample_count
 from vibroimpact.dynamics.status import status_of
+from vibroimpact.dynamics.timeline import Timeline, end_of, timeline_of
 from vibroimpact.dynamics.truncation import truncation_estimates
 from vibroimpact.dynamics.vibrating_history import vibrating_history
 from vibroimpact.dynamics.vibrating_segment import VibratingSegment, vibrating_timeline
 from vibroimpact.dynamics.vibration import modes_of
 from vibroimpact.errors import InputError
-
-
-@dataclass(frozen=True)
-class Leg:
-    """One flight of some drops and the contact it ends in; arrays belong to `drops`, (b,).
-
-    `flight_end`: when the flight ends [s]. `contact` and `encounter` belong to `contact_drops`; they are
-    None for a flight that ends the run and for an instantaneous law.
-    """
-
-    drops: NDArray[np.intp]
-    flight: Flight
-    flight_end: Floats
-    contact_drops: NDArray[np.intp]
-    contact: Contact | None = None
-    encounter: Encounter | None = None
-    motions: tuple[FreeMotion, ...] = ()
-    """Of each of the drops, in flight, where a body vibrates."""
 
 
 @dataclass(frozen=True)
@@ -102,7 +80,7 @@ class Response:
     outcomes: tuple[Outcome, ...]
     end_time: Floats
     rest: Rest
-    legs: tuple[Leg, ...]
+    legs: Sequence[Leg]
 
     def __len__(self) -> int:
         """Return the number of drops."""
@@ -131,7 +109,7 @@ class Response:
             self.outcomes[index : index + 1],
             self.end_time[index : index + 1],
             Rest(*(value[index : index + 1] for value in vars(self.rest).values())),
-            tuple(small for leg in self.legs if (small := _leg_of(leg, index)) is not None),
+            tuple(small for leg in self.legs if (small := leg.of(index)) is not None),
         )
 
     def squeezed(self) -> Response:
@@ -182,7 +160,7 @@ class Response:
         end = float(self.end_time[0])
         if not np.all((flat >= 0.0) & (flat <= end)):
             raise InputError(f"times must lie within the run, 0 to {end:.6g} s")
-        starts = np.array([segment.start for segment in self._segments])
+        starts = self._starts
         index = np.maximum(np.searchsorted(starts, flat, side="right") - 1, 0)
         columns = {name: np.empty(flat.shape) for name in self.history_columns}
         for number in np.unique(index):
@@ -208,11 +186,30 @@ class Response:
             raise InputError(f"{count:.3g} samples are more than 1e8; ask for a lower rate, or for parts by at()")
         return self.at(np.minimum(np.arange(sample_count(float(self.end_time[0]), rate)) / rate, self.end_time[0]))
 
-    def history(self) -> dict[str, Floats]:
-        """Return the history of one drop on a grid that resolves every contact, with both sides of each event."""
-        parts = [self._history(number, segment.grid()) for number, segment in enumerate(self._segments)]
-        history = {name: np.concatenate([part[name] for part in parts]) for name in self.history_columns}
-        history["time_s"] = np.maximum.accumulate(history["time_s"])  # the two sides of an event may differ by rounding
+    def history(self, most: int | None = None) -> dict[str, Floats]:
+        """Return the history of one drop on a grid that resolves every contact, with both sides of each event.
+
+        Parameters
+        ----------
+        most : int, optional
+            How many points there may be, about. Of a longer history the first impacts keep all of theirs, as many as fill a
+            quarter; each flight and each part of a contact after them keeps its ends and equally many points between. Each impact
+            takes about 170 points, and each point 100 bytes, or twice as many where bodies vibrate.
+
+        Raises
+        ------
+        InputError
+            If the response is of several drops.
+        """
+        points = np.array([len(segment.grid()) for segment in self._segments])
+        kept = points if most is None else points_kept(points, most)
+        history = {name: np.empty(int(kept.sum())) for name in self.history_columns}
+        begin = 0
+        for number, (segment, count) in enumerate(zip(self._segments, kept.tolist(), strict=True)):
+            for name, values in self._history(number, thinned(segment.grid(), count)).items():
+                history[name][begin : begin + count] = values
+            begin += count
+        np.maximum.accumulate(history["time_s"], out=history["time_s"])  # the two sides of an event may differ by rounding
         return history
 
     def modal(self, times: Any) -> dict[str, Floats]:
@@ -229,7 +226,7 @@ class Response:
             "sphere" and "plate", (T, modes) [kg^1/2 m]; times a mode's shape they are displacements.
         """
         flat = np.atleast_1d(np.asarray(times, dtype=float))
-        starts = np.array([segment.start for segment in self._segments])
+        starts = self._starts
         index = np.maximum(np.searchsorted(starts, flat, side="right") - 1, 0)
         found = np.zeros((len(flat), modes_of(self.problem.sphere) + modes_of(self.problem.plate)))
         for number in np.unique(index):
@@ -290,7 +287,8 @@ class Response:
             return vibrating_history(self.problem, segment, times)
         mass, gravity = float(problem.sphere.mass), float(problem.gravity)
         gap, velocity, force, stored, lost, plastic = segment.at(times)
-        lost_before, plastic_before = self._spent_before[number]
+        assert isinstance(self._segments, Timeline)
+        lost_before, plastic_before = self._segments.spent[number]
         resting, flying = isinstance(segment, RestSegment), isinstance(segment, FlightSegment)
         return {
             "time_s": segment.start + times,
@@ -308,64 +306,21 @@ class Response:
         }
 
     @cached_property
-    def _segments(self) -> Sequence[Segment | VibratingSegment]:
-        if self.problem.vibrates:
-            if self.problem.shape != ():
-                raise InputError(_OF_ONE)
-            return vibrating_timeline(self.legs, self.rest.lying[0], float(self.end_time[0]))
-        return [segment for segment, _ in self._timeline]
-
-    @cached_property
-    def _spent_before(self) -> list[Floats]:
-        """Energy lost in damping and in plastic deformation before each segment [J]."""
-        return [spent for _, spent in self._timeline]
-
-    @cached_property
-    def _timeline(self) -> list[tuple[Segment, Floats]]:
-        """The segments of one drop in order, each with the energy lost before it in damping and in plastic deformation [J]."""
+    def _segments(self) -> Sequence[VibratingSegment] | Timeline:
+        """What the history of one drop is made of, in order."""
         if self.problem.shape != ():
-            raise InputError(_OF_ONE)
-        timeline: list[tuple[Segment, Floats]] = []
-        plastic = self.impacts["plastic_work_J"]
-        spent_in_impacts = np.zeros((len(plastic) + 1, 2))
-        np.cumsum(np.stack([self.impacts["energy_lost_J"] - plastic, plastic], axis=1), axis=0, out=spent_in_impacts[1:])
-        for number, leg in enumerate(self.legs):
-            spent = spent_in_impacts[number].copy()
-            touch = float(leg.flight_end[0])
-            timeline.append((FlightSegment(float(leg.flight.start[0]), touch, leg.flight), spent))
-            if leg.contact is None or leg.encounter is None:
-                continue
-            for piece in leg.contact.pieces:
-                begin = touch + float(piece.start[0])
-                finish = begin + float(piece.motion.duration[0])
-                segment: Segment
-                if isinstance(piece.motion, Stretch):
-                    segment = StretchSegment(begin, finish, piece.motion, leg.encounter.under(piece.law))
-                else:
-                    assert isinstance(piece.motion, Glide)
-                    segment = GlideSegment(begin, finish, piece.motion, piece.law)
-                timeline.append((segment, spent))
-                spent = spent + [float(part[0]) for part in segment.at(piece.motion.duration)[-2:]]
+            raise InputError("a history belongs to one drop: ask response.drop(0), response.drop(1), ...")
+        end = float(self.end_time[0])
+        if self.problem.vibrates:
+            return vibrating_timeline(self.legs, self.rest.lying[0], end)
+        plastic, rest = self.impacts["plastic_work_J"], None
         if self.outcomes[0].at_rest:
             weight = float(self.problem.sphere.mass) * float(self.problem.gravity)
-            begin = timeline[-1][0].end
-            segment = RestSegment(begin, float(self.end_time[0]), float(self.rest.sag[0]), weight, float(self.rest.stored[0]))
-            timeline.append((segment, spent_in_impacts[-1]))
-        return timeline
+            rest = RestSegment(end_of(self.legs[-1]), end, float(self.rest.sag[0]), weight, float(self.rest.stored[0]))
+        return timeline_of(self.legs, rest, np.stack([self.impacts["energy_lost_J"] - plastic, plastic], axis=1))
 
-
-_OF_ONE = "a history belongs to one drop: ask response.drop(0), response.drop(1), ..."
-
-
-def _leg_of(leg: Leg, index: int) -> Leg | None:
-    """Return the leg of one drop of a batch, or None if it takes no part."""
-    here = np.flatnonzero(leg.drops == index)
-    if not here.size:
-        return None
-    one = np.zeros(1, dtype=np.intp)
-    flight = Flight(leg.flight.start[here], leg.flight.gap[here], leg.flight.velocity[here], leg.flight.gravity[here])
-    contact_here = np.flatnonzero(leg.contact_drops == index)
-    motions = leg.motions[int(here[0]) : int(here[0]) + 1]
-    if leg.contact is None or leg.encounter is None or not contact_here.size:
-        return Leg(one, flight, leg.flight_end[here], one[: contact_here.size], motions=motions)
-    return Leg(one, flight, leg.flight_end[here], one, leg.contact.of(int(contact_here[0])), leg.encounter.take(contact_here), motions)
+    @cached_property
+    def _starts(self) -> Floats:
+        """When each segment begins [s]."""
+        segments = self._segments
+        return segments.starts if isinstance(segments, Timeline) else np.array([segment.start for segment in segments])

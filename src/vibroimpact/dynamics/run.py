@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -17,9 +18,11 @@ from vibroimpact.contact.static import static_indentation
 from vibroimpact.dynamics.columns import IMPACT_COLUMNS, VIBRATION_IMPACT_COLUMNS
 from vibroimpact.dynamics.energy import CLOSURE_LIMIT, WRITE_OFF_LIMIT, close_ledger
 from vibroimpact.dynamics.flight import Flight
+from vibroimpact.dynamics.impact_rows import ImpactRows
+from vibroimpact.dynamics.leg import Leg
 from vibroimpact.dynamics.outcome import OUTCOMES, Outcome
 from vibroimpact.dynamics.problem import MOST_IMPACTS, Problem
-from vibroimpact.dynamics.response import Leg, Response, Rest
+from vibroimpact.dynamics.response import Response, Rest
 from vibroimpact.dynamics.sensitivity import Neighbours
 from vibroimpact.dynamics.vibration import Vibration, contact_of
 
@@ -48,8 +51,7 @@ class Run:
         self.neighbours = None if self.vibration is None else Neighbours(problem, self.vibration.oscillators, self.size)
         self.columns = {**IMPACT_COLUMNS, **(VIBRATION_IMPACT_COLUMNS if self.vibration else {})}
         self.memories = {name: self.spread(value) for name, value in problem.laws[0].memories().items()}
-        self.legs: list[Leg] = []
-        self.rows: list[dict[str, Floats]] = []
+        self.rows = ImpactRows(self.columns, self.size)
 
     def spread(self, value: object) -> Floats:
         """Return a value of the problem with one entry a drop."""
@@ -76,7 +78,7 @@ class Run:
         if self.problem.duration is not None:
             done = max(done, float(self.time[self.moving].min()) / self.problem.duration)
         if self.problem.impacts is None and self.rows:  # to rest: the logarithm of the speed falls steadily
-            first = self.rows[0]["approach_speed_m_s"][self.moving]
+            first = self.rows.first["approach_speed_m_s"][self.moving]
             slowed = np.log(first / self.velocity[self.moving]) / np.log(first / self.rest_speed[self.moving])
             done = max(done, float(np.nanmin(np.clip(slowed, 0.0, 1.0), initial=1.0)))
         return done
@@ -89,8 +91,8 @@ class Run:
 
     # one flight and one contact --------------------------------------------------------------------
 
-    def advance(self) -> None:
-        """Fly all moving drops to their next touch and take them through one contact."""
+    def advance(self) -> Leg:
+        """Fly all moving drops to their next touch, take them through one contact, and return both."""
         drops = np.flatnonzero(self.moving)
         flight = Flight(self.time[drops], self.gap[drops], self.velocity[drops], self.gravity[drops])
         law = self.law().take(drops)
@@ -122,14 +124,13 @@ class Run:
         if not stops.all():
             leg = self.collide(leg, touch[~stops], speed[~stops])
         if self.neighbours is not None and (grown := self.neighbours.follow(leg)).size:
-            self.rows[-1]["sensitivity"][leg.contact_drops] = grown
-        self.legs.append(leg)
+            self.rows.last["sensitivity"][leg.contact_drops] = grown
+        return leg
 
     def collide(self, leg: Leg, touch: Floats, speed: Floats) -> Leg:
         """Take drops through a contact: write the row of the impact, return the leg with its contact."""
-        drops, row = leg.contact_drops, {name: np.full(self.size, np.nan) for name in self.columns}
-        law = self.law().take(drops)
-        self.rows.append(row)
+        drops, law = leg.contact_drops, self.law().take(leg.contact_drops)
+        row = self.rows.add()
         row["impact"][drops], row["time_s"][drops], row["approach_speed_m_s"][drops] = len(self.rows), touch, speed
         row["restitution_asked"][drops] = _asked(law)
         if isinstance(law, InstantaneousLaw):
@@ -231,13 +232,13 @@ class Run:
 
     # the end of the run ----------------------------------------------------------------------------
 
-    def response(self) -> Response:
-        """Return the response, of one drop with arrays of one."""
-        response = self.batch()
+    def response(self, legs: Sequence[Leg]) -> Response:
+        """Return the response with its history, of one drop with arrays of one."""
+        response = replace(self.batch(), legs=legs)
         return response.squeezed() if self.problem.shape == () else response
 
     def batch(self) -> Response:
-        """Return the response as that of a batch."""
+        """Return the response as that of a batch, without a history."""
         at_rest = np.array([outcome.at_rest for outcome in OUTCOMES])[self.outcomes]
         if self.problem.duration is not None:
             self.end_time[at_rest] = np.maximum(self.end_time, self.problem.duration)[at_rest]
@@ -265,15 +266,14 @@ class Run:
         self.outcomes[~(closes & (self.written_off >= -WRITE_OFF_LIMIT * (self.energy_in + added)))] = Outcome.FAILED.code
         nothing = (np.full(self.size, np.nan), (None,) * self.size)
         left, lying = nothing if self.vibration is None else (self.vibration.left, tuple(self.vibration.lying))
-        table = {name: np.array([row[name] for row in self.rows]).reshape(-1, self.size).T for name in self.columns}
         return Response(
             self.problem,
-            table,
+            self.rows.table(),
             energy,
             tuple(OUTCOMES[code] for code in self.outcomes.tolist()),
             self.end_time,
             Rest(self.rest_speed, self.rest_time, self.sag, self.stored, self.written_off, left, lying),
-            tuple(self.legs),
+            (),
         )
 
     def final_motion(self, at_rest: NDArray[np.bool_]) -> tuple[Floats, Floats]:

@@ -49,6 +49,11 @@ class StretchSegment:
     stretch: Stretch
     encounter: Encounter
 
+    @property
+    def duration(self) -> Floats:
+        """How long it lasts [s], (1,)."""
+        return self.stretch.duration
+
     def grid(self) -> Floats:
         """Times since its start that draw the segment well [s]."""
         return np.asarray(self.stretch.duration[0] * self.stretch.rule.map_time(np.linspace(0.0, 1.0, 61)))
@@ -85,6 +90,11 @@ class GlideSegment:
     end: float
     glide: Glide
     law: CompliantLaw
+
+    @property
+    def duration(self) -> Floats:
+        """How long it lasts [s], (1,)."""
+        return self.glide.duration
 
     def grid(self) -> Floats:
         """Times since its start that draw the segment well [s]."""

@@ -25,7 +25,7 @@ from vibroimpact.contact.roots import highest
 from vibroimpact.dynamics.problem import Problem
 
 if TYPE_CHECKING:
-    from vibroimpact.dynamics.response import Leg
+    from vibroimpact.dynamics.leg import Leg
 
 RELATIVE_CHANGE = 1e-9
 """A relative change of the drop that nobody can rule out: of 4 m, 4 nm."""

@@ -5,8 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
+from vibroimpact.contact.phase.collocation import Rule
 from vibroimpact.contact.phase.solve_contact import collocated
+from vibroimpact.dynamics.leg import Leg
 from vibroimpact.dynamics.outcome import Outcome
+from vibroimpact.dynamics.packed_list import PackedList
 from vibroimpact.dynamics.problem import StatesProblem
 from vibroimpact.dynamics.response import Response
 from vibroimpact.dynamics.run import Run
@@ -54,11 +57,12 @@ def simulate(problem: StatesProblem, progress: Callable[[float], None] | None = 
         raise InputError(f"simulate takes a Problem, or a case as vi.load_case(...) reads it, not {problem!r}")
     stated = problem.to_problem()
     run = Run(stated, collocated(stated.tolerance, math.prod(stated.shape)))
+    legs: PackedList[Leg] | list[Leg] = PackedList[Leg](Rule) if stated.shape == () and not stated.vibrates else []
     while run.moving.any():
-        run.advance()
+        legs.append(run.advance())
         if progress is not None:
             progress(run.fraction_done())
-    response = run.response()
+    response = run.response(legs)
     if response.problem.shape == () and response.outcomes[0] is Outcome.FAILED:
         raise ComputationError(response.status)
     return response

@@ -132,7 +132,6 @@ def _table_of(problem: Problem) -> Response:
     run = Run(problem, quick(problem.laws[0], problem.tolerance, math.prod(problem.shape)))
     while run.moving.any():
         run.advance()
-        run.legs.clear()
     return run.batch()
 
 

@@ -15,7 +15,7 @@ from vibroimpact.contact.phase.visit import Apart
 from vibroimpact.dynamics.lying import Lying
 
 if TYPE_CHECKING:
-    from vibroimpact.dynamics.response import Leg
+    from vibroimpact.dynamics.leg import Leg
 
 _STRETCH_POINTS = 25
 _FREE_POINTS, _LATER_POINTS, _PERIODS = 2001, 1001, 10.0

@@ -15,9 +15,6 @@ from vibroimpact.shown import shown
 from vibroimpact.structures.element_kinds import ELEMENT_KINDS
 from vibroimpact.structures.mesh import Mesh
 
-_LONG = 80
-"""Letters of a name that is longer than any that is mistyped."""
-
 _KINDS = {"4": "tet4", "8": "hex8", "10": "tet10", "20": "hex20", "27": "hex27"}
 _SOLID = re.compile(r"C3D(\d+)[A-Z]*")
 _OTHER_SOLID = re.compile(r"E?C3D|SC[68]|CSS8|CCL\d|Q3D")
@@ -191,8 +188,7 @@ class _Reader:
     def _known(self, kind: str, name: str, line: Line) -> Selection:
         exact = next((key for key in (name.upper(), name.rpartition(".")[2].upper()) if (kind, key) in self.names), None)
         if exact is None:
-            known = [key for of, key in self.names if of == kind and len(key) <= _LONG][:1000]
-            suggestion = did_you_mean(name.upper(), known) if len(name) <= _LONG else ""
+            suggestion = did_you_mean(name.upper(), [key for of, key in self.names if of == kind and len(key) < 100][:1000])
             raise line.wrong(f"{shown(name)} is neither a number nor a *{kind} before this line; it must be one of them.{suggestion}")
         return self._selection(kind, exact)
 

@@ -3,17 +3,24 @@
 from __future__ import annotations
 
 import math
-import re
 from dataclasses import dataclass
+from textwrap import wrap
 from typing import NamedTuple
 
 from vibroimpact.exchange.adams_contact import AdamsContact, adams_contact
-from vibroimpact.exchange.contact_alone import first_contact, laws_of_impacts
+from vibroimpact.exchange.contact_alone import first_contact, laws_of_impacts, shared_notes
 from vibroimpact.exchange.drop import Drop
+from vibroimpact.exchange.plain_names import identifier, plain_words
 from vibroimpact.materials import Material
 
 _STEPS, _OUTPUTS = 50, 20  # a contact, at least
 _LONGEST_NAME = 40
+
+_OWN_NAMES = {
+    *("ground", "spot", "corner", "plate", "sphere", "cm", "ball"),
+    *("touch", "approach_speed", "damping", "contact", "gravity", "motion", "drop"),
+}
+"""What else has a name in the model."""
 
 LINE = 80
 """Columns of a line, at most."""
@@ -25,8 +32,8 @@ SENSOR_ERROR = 1e-4
 """How far from first touch the sensor may still fire [mm]: 1/1000 of Adams' penetration of full damping."""
 
 TESTED = (
-    "a strict parser of the documented syntax, which integrates the contact of what it reads; vibroimpact's own restitution, peak force "
-    "and rebound heights within 1e-7. No Adams was run"
+    "a strict parser of the documented syntax, which integrates the contact of what it reads; restitution, peak force and rebound "
+    "heights of vibroimpact's drops between rigid bodies within 1e-7. No Adams was run"
 )
 
 
@@ -51,6 +58,7 @@ class AdamsModel:
     velocity: float
     plate: tuple[float, float, float] | None
     materials: tuple[MaterialData, ...]
+    notes: tuple[str, ...]
     end: float
     longest_step: float
     output_step: float
@@ -87,13 +95,15 @@ def adams_model(drop: Drop) -> AdamsModel:
     x, y = drop.position
     return AdamsModel(
         name=legal_name(drop.name),
-        title=" ".join(re.sub(r"[^ -~]|[&;\\]", " ", drop.name).split()),
+        # without underscores, for the remark adams_view_name='...' names what comes next
+        title=f'the case "{plain_words(drop.name).replace("_", " ")}"',
         contact=contact,
         mass=drop.mass,
         centre=(1e3 * x, 1e3 * y, 1e3 * drop.height),
         velocity=-1e3 * drop.speed,
         plate=None if drop.plate_size is None else (1e3 * drop.plate_size[0], 1e3 * drop.plate_size[1], 1e3 * drop.plate_size[2]),
         materials=_material_data([material for material in both if _is_elastic(material)]),
+        notes=tuple(shared_notes(drop)),
         end=drop.end_time,
         longest_step=_round_down(duration / _STEPS),
         output_step=_round_down(duration / _OUTPUTS),
@@ -116,7 +126,7 @@ def remarks(model: AdamsModel) -> list[str]:
             "the sensor is true while the sphere is free; it then stores the speed of the next touch, from the energy, which is "
             "the same at any moment of a flight; in contact it is false, and the value is held"
         )
-    return lines
+    return [*lines, *model.notes]
 
 
 def legal_name(text: str) -> str:
@@ -127,10 +137,13 @@ def legal_name(text: str) -> str:
     >>> legal_name("the paper's Type 1"), legal_name("4 m"), legal_name("")
     ('the_paper_s_Type_1', 'drop_4_m', 'drop')
     """
-    name = re.sub(r"[^A-Za-z0-9]+", "_", text).strip("_") or "drop"
-    if len(name) > _LONGEST_NAME:
-        name = name[:_LONGEST_NAME].rpartition("_")[0] or name[:_LONGEST_NAME]
+    name = identifier(text, "A-Za-z0-9", "drop", longest=_LONGEST_NAME)
     return f"drop_{name}" if name[0].isdigit() else name
+
+
+def comments(model: AdamsModel) -> list[str]:
+    """Return the comment lines at the head of a file."""
+    return [f"! {line}" for remark in (model.title, *remarks(model)) for line in wrap(remark, LINE - 2, break_on_hyphens=False)]
 
 
 def broken(text: str, width: int) -> list[str]:
@@ -155,11 +168,12 @@ def _is_elastic(material: Material) -> bool:
 
 
 def _material_data(materials: list[Material]) -> tuple[MaterialData, ...]:
-    """Return materials under names that differ."""
+    """Return materials under names that differ from each other, and from what else the model has, however they are written."""
     names: list[str] = []
     for material in materials:
         name = legal_name(material.name or "material")
-        names.append(f"{name}_{len(names) + 1}" if name in names else name)
+        taken = name.lower() in _OWN_NAMES or name.lower() in (one.lower() for one in names)
+        names.append(f"{name}_material_{len(names) + 1}" if taken else name)
     each = zip(names, materials, strict=True)
     return tuple(MaterialData(name, 1e-9 * one.density, 1e-6 * one.youngs_modulus, one.poissons_ratio) for name, one in each)
 

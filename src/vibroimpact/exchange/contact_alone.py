@@ -9,6 +9,7 @@ import numpy as np
 
 from vibroimpact.bodies.body import Body
 from vibroimpact.bodies.plate import rigid_plate
+from vibroimpact.calibration.speed_function import SpeedFunction
 from vibroimpact.contact.kelvin_voigt import KelvinVoigtLaw
 from vibroimpact.contact.law import ContactLaw
 from vibroimpact.contact.laws.adams_impact import AdamsImpact
@@ -18,17 +19,19 @@ from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.simulate import simulate
 from vibroimpact.errors import InputError
 from vibroimpact.exchange.drop import Drop
+from vibroimpact.exchange.rigid_notes import rigid_notes
 from vibroimpact.ranges import Range
 
 
 def approach_speeds(drop: Drop) -> list[float]:
-    """Return the approach speed of each impact of the drop [m/s].
+    """Return the approach speed of each impact of a drop of rigid bodies [m/s].
 
     Raises
     ------
     InputError
         If it has no impact, or there is no gravity.
     """
+    assert drop.rigid is None, "the approach speeds of what deforms are not those that rigid bodies have: take as_rigid(drop)"
     if drop.gravity == 0.0:
         raise InputError("there is no gravity in this run; a drop that is written for another program needs it, to come back")
     speeds = [float(speed) for speed in drop.impacts["approach_speed_m_s"]]
@@ -45,9 +48,13 @@ def laws_of_impacts(drop: Drop) -> list[ContactLaw]:
     speeds = approach_speeds(drop)
     if drop.function is None:
         return list(drop.laws[: len(speeds)])
-    name, function = drop.function
-    allowed: Range = next(item for item in fields(drop.laws[0]) if item.name == name).metadata["range"]
-    return [drop.laws[0].changed({name: float(allowed.clip(function(speed)))}) for speed in speeds]
+    return [law_at(drop.laws[0], *drop.function, speed) for speed in speeds]
+
+
+def law_at(law: ContactLaw, name: str, function: SpeedFunction, speed: float) -> ContactLaw:
+    """Return a law with the value that the function of its parameter `name` has at an approach speed [m/s], or the nearest allowed."""
+    allowed: Range = next(item for item in fields(law) if item.name == name).metadata["range"]
+    return law.changed({name: float(allowed.clip(function(speed)))})
 
 
 def spring(law: ContactLaw, program: str) -> tuple[float, float]:
@@ -106,12 +113,7 @@ def first_contact(law: ContactLaw, drop: Drop) -> tuple[float, float]:
 
 def shared_notes(drop: Drop) -> list[str]:
     """Return what no program with rigid bodies takes of a drop, and where its function is used beyond its speeds."""
-    notes = []
-    if drop.elastic:
-        what = f"{' and '.join(drop.elastic)} {'is' if len(drop.elastic) == 1 else 'are'} written as rigid"
-        notes.append(f"{what}; the contact law is written alone, without what vibrates.")
-    if drop.finite_sphere:
-        notes.append("the contact law is written alone, with Hertz's half space for the sphere, whose finite size was corrected here.")
+    notes = rigid_notes(drop)
     if drop.function is not None and drop.function[1].degree:
         name, function = drop.function
         speeds = function.beyond(np.array(approach_speeds(drop)))

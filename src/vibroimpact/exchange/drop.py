@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from vibroimpact.calibration.speed_function import SpeedFunction
 from vibroimpact.contact.law import ContactLaw
+from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.recording import Signal
 from vibroimpact.materials import Material
 
@@ -43,9 +44,16 @@ class Drop:
     function : tuple of str and SpeedFunction, optional
         A parameter of the law, and its value as a function of the approach speed; then it stands in place of the laws' values.
     elastic : tuple of str
-        Which of "sphere" and "plate" deform in the case; a program that takes them as rigid gets the contact alone.
+        Which of "sphere" and "plate" deform in the case.
+    local_element : bool
+        Is a local element, which stands for the sphere's deformation, in series with the contact law?
     finite_sphere : bool
         Was Hertz's half space corrected to a sphere of finite size?
+    rigid : Problem, optional
+        The same drop between rigid bodies, under the contact law alone, where `impacts` are not those of it: `as_rigid` runs it for
+        programs that can be told of nothing else.
+    here : mapping of str to array
+        The impact table of the drop of which this one was made by taking what deforms as rigid; empty if it is as it was.
     end_time : float
         When the run ends [s].
     impacts : mapping of str to array
@@ -73,7 +81,10 @@ class Drop:
     laws: tuple[ContactLaw, ...]
     function: tuple[str, SpeedFunction] | None = None
     elastic: tuple[str, ...] = ()
+    local_element: bool = False
     finite_sphere: bool = False
+    rigid: Problem | None = None
+    here: Mapping[str, Floats] = field(default_factory=dict, repr=False)
     end_time: float
     impacts: Mapping[str, Floats] = field(repr=False)
     history: Mapping[str, Floats] = field(default_factory=dict, repr=False)

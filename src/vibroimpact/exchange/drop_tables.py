@@ -12,7 +12,7 @@ from vibroimpact.dynamics.columns import COUNTS, history_columns, impact_columns
 from vibroimpact.dynamics.recording import Signal
 from vibroimpact.errors import InputError
 from vibroimpact.exchange.drop import Drop
-from vibroimpact.exchange.plain_names import plain_names
+from vibroimpact.exchange.plain_names import one_line, plain_names
 
 
 class Column(NamedTuple):
@@ -42,7 +42,7 @@ def tables_of(drop: Drop) -> dict[str, Table]:
     for name, plain in plain_names(list(drop.signals)).items():
         tables[f"sensors/{plain}"] = _of_signal(drop.signals[name])
     if not tables:
-        raise InputError(f'"{drop.name}" has no impacts, no history and no signals; there is nothing to write')
+        raise InputError(f'"{one_line(drop.name)}" has no impacts, no history and no signals; there is nothing to write')
     return tables
 
 
@@ -61,5 +61,5 @@ def _table(columns: Mapping[str, NDArray[np.float64]], told: Mapping[str, tuple[
 def _of_signal(signal: Signal) -> Table:
     sensor = signal.sensor
     name = f"{sensor.quantity}_{sensor.unit.replace('/', '_')}"
-    meaning = f"{sensor.quantity} that the sensor {sensor.name} reads"
+    meaning = f"{sensor.quantity} that the sensor {one_line(sensor.name)} reads"
     return {"time_s": Column(signal.time, "s", "time since the start"), name: Column(signal.value, sensor.unit, meaning)}

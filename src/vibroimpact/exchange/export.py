@@ -13,6 +13,7 @@ from vibroimpact.errors import InputError
 from vibroimpact.materials import Material
 from vibroimpact.structures.element_kinds import PLATE_ORDER
 from vibroimpact.structures.mesh import ElementBlock, Floats, Integers, Mesh
+from vibroimpact.writing.file import write_file
 
 # a square of 3 x 3 nodes, as (row, column): corners, middles of the edges, centre
 _SQUARE = np.array([(0, 0), (0, 2), (2, 2), (2, 0), (0, 1), (1, 2), (2, 1), (1, 0), (1, 1)])
@@ -94,7 +95,7 @@ def check_thickness(thickness: float | None) -> None:
 
 
 def write_text(path: str | PathLike[str], text: str) -> None:
-    """Write a text file.
+    """Write a text file, whole or not at all.
 
     Raises
     ------
@@ -102,7 +103,7 @@ def write_text(path: str | PathLike[str], text: str) -> None:
         If it can't be written.
     """
     try:
-        Path(path).write_text(text, encoding="utf-8", newline="\n")
+        write_file(Path(path), text.encode())
     except OSError as error:
         raise InputError(f"{path}: the file can't be written: {error.strerror}") from None
 

@@ -28,6 +28,9 @@ class ExportFormat:
         Takes a `Drop`, returns the bytes of each file by its name. Raises InputError if the format can't hold the drop.
     notes : callable
         Takes a `Drop`, returns what the format can't represent of it, one sentence each.
+    told : callable
+        Takes a `Drop`, returns the one that the program can be told of, which `write` and `notes` take: `as_rigid` of a program that
+        is to move the bodies itself and knows rigid ones alone; the drop itself by default.
     """
 
     name: str
@@ -36,6 +39,7 @@ class ExportFormat:
     tested: str
     write: Callable[[Drop], Mapping[str, bytes]]
     notes: Callable[[Drop], list[str]] = lambda drop: []
+    told: Callable[[Drop], Drop] = lambda drop: drop
 
 
 @cache

@@ -15,7 +15,7 @@ from vibroimpact.errors import InputError
 from vibroimpact.exchange.geometry_process import MARK
 from vibroimpact.exchange.gmsh_file import read_gmsh
 from vibroimpact.files import FileKind, about, beginning
-from vibroimpact.shown import visible
+from vibroimpact.shown import shortened
 from vibroimpact.structures.mesh import Mesh
 
 STEP, BREP = (".step", ".stp"), (".brep",)
@@ -102,6 +102,6 @@ def _run_gmsh(path: Path, arguments: list[str]) -> None:
         )
     if kind in ("ImportError", "ModuleNotFoundError", "OSError"):
         raise InputError(
-            f'{path}: meshing a geometry needs Gmsh, which can\'t be loaded ({visible(what, 200)}): pip install "vibroimpact[mesh]"'
+            f'{path}: meshing a geometry needs Gmsh, which can\'t be loaded ({shortened(what, 200)}): pip install "vibroimpact[mesh]"'
         )
-    raise InputError(f"{path}: the geometry can't be meshed: {visible(what, 300)}")
+    raise InputError(f"{path}: the geometry can't be meshed: {shortened(what, 300)}")

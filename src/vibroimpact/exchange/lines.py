@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from vibroimpact.errors import InputError
 from vibroimpact.files import FileKind, about, read_text_bytes
-from vibroimpact.shown import shown, visible
+from vibroimpact.shown import shortened, shown
 
 MESH = FileKind("a mesh is a file of nodes and elements, in plain text (UTF-8 or Latin-1)", 2_000_000_000, "write a coarser mesh")
 """What is asked of the file of a mesh."""
@@ -23,7 +23,7 @@ class Line(NamedTuple):
 
     def wrong(self, message: str) -> InputError:
         """Return the error that says where and what."""
-        return InputError(f"{visible(str(self.path), 300)}:{self.number}: {message}")
+        return InputError(f"{shortened(str(self.path), 200)}:{self.number}: {message}")
 
 
 def read_lines(path: Path) -> list[Line]:

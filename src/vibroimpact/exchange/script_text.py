@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import re
-
 from vibroimpact.exchange.drop import Drop
+from vibroimpact.exchange.plain_names import identifier
 
 
 def file_name(drop: Drop, ending: str) -> str:
@@ -16,19 +15,7 @@ def file_name(drop: Drop, ending: str) -> str:
     >>> file_name(SimpleNamespace(name="the paper's Type 1"), ".in")
     'the-paper-s-type-1.in'
     """
-    words = re.findall(r"[a-z0-9]+", drop.name.lower())
-    return f"{'-'.join(words) or 'drop'}{ending}"
-
-
-def one_line(text: str) -> str:
-    """Return a text without line breaks and double quotes, for a comment.
-
-    Examples
-    --------
-    >>> one_line('a "hard" rock,\\ndropped')
-    "a 'hard' rock, dropped"
-    """
-    return "".join(letter for letter in " ".join(text.split()) if letter.isprintable()).replace('"', "'")
+    return f"{identifier(drop.name.lower(), 'a-z0-9', 'drop', '-')}{ending}"
 
 
 def comment_lines(notes: list[str]) -> str:

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from vibroimpact.errors import InputError, did_you_mean
 from vibroimpact.files import FileKind, read_text
-from vibroimpact.shown import shown, visible
+from vibroimpact.shown import shortened, shown
 from vibroimpact.units import to_si
 
 Floats = NDArray[np.float64]
@@ -107,7 +107,7 @@ def read_table_file(path: str | PathLike[str], units: Mapping[str, str]) -> Tabl
             lines.append(number)
             last = number
     except InputError as error:
-        where = visible(str(file), 300)
+        where = shortened(str(file), 200)
         raise InputError(f"{where}{', ' if error.message.startswith('line ') else ': '}{error.message}") from None
     if not lines:
         raise InputError(f"{file}: there are no rows under the header")
@@ -176,7 +176,7 @@ def _places(number: int, header: Sequence[str], units: Mapping[str, str]) -> tup
     if not places:
         names = [name_and_unit(cell)[0] for cell in header[:_MOST_NAMED]]
         hint = next((words for name in names if len(name) < _LONG_NAME and (words := did_you_mean(name, units))), "")
-        told = ", ".join(visible(name, _LONG_NAME) for name in names) + (", ..." if len(header) > _MOST_NAMED else "")
+        told = ", ".join(shortened(name, _LONG_NAME) for name in names) + (", ..." if len(header) > _MOST_NAMED else "")
         raise InputError(f"line {number}: no column is known among {told}; {_allowed(units)}.{hint}")
     return places, factors
 
@@ -216,7 +216,7 @@ def _factor(line: int, cell: str, unit: str | None, wanted: str) -> float:
             raise InputError(f"{where}: it is a plain number, and has no unit")
         return 1.0
     if unit is None or not unit:
-        name = visible(cell.split("[")[0].strip(), _LONG_NAME)
+        name = shortened(cell.split("[")[0].strip(), _LONG_NAME)
         raise InputError(f"{where}: the unit is missing; write it in brackets, such as {name} [{wanted}]")
     try:
         return to_si(f"1 {unit}", wanted)

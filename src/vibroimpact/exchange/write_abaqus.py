@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from os import PathLike
 
 from vibroimpact.exchange.export import check_elastic, check_thickness, exported, write_text
+from vibroimpact.exchange.plain_names import one_line
 from vibroimpact.materials import Material
 from vibroimpact.structures.mesh import Mesh
 
@@ -87,5 +88,6 @@ def _rows(numbers: Sequence[int]) -> Iterator[str]:
 
 def _quoted(name: str) -> str:
     """Return a name as a label: in quotes if it is not a plain word."""
-    plain = name.replace("_", "").replace("-", "").isalnum() and name[0].isalpha()
-    return name if plain else '"' + " ".join(name.replace('"', "'").split()) + '"'
+    label = one_line(name.replace('"', "'"))  # as long as Abaqus takes it
+    plain = label.isascii() and label.replace("_", "").replace("-", "").isalnum() and label[0].isalpha()
+    return label if plain else f'"{label}"'

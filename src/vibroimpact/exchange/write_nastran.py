@@ -9,6 +9,7 @@ import numpy as np
 
 from vibroimpact.exchange.export import check_elastic, check_thickness, exported, write_text
 from vibroimpact.exchange.node_order import NASTRAN, from_ours
+from vibroimpact.exchange.plain_names import one_line
 from vibroimpact.materials import Material
 from vibroimpact.structures.mesh import Integers, Mesh
 
@@ -123,4 +124,4 @@ def _set(number: int, nodes: Integers) -> Iterator[str]:
 
 
 def _one_line(text: str) -> str:
-    return " ".join(text.replace("$", " ").split())
+    return " ".join(one_line(text).replace("$", " ").split())

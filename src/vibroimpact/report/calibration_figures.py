@@ -9,6 +9,7 @@ from matplotlib.ticker import MaxNLocator
 from vibroimpact.calibration.calibration import Calibration
 from vibroimpact.calibration.comparison import COMPARED, WAYS, differences
 from vibroimpact.report.layout import label_vertical, new_figure, row_of_axes, wide_axes
+from vibroimpact.report.record_figure import draw_record
 from vibroimpact.report.style import ACCENT, INK, LOOPS, MARK, style
 
 _SMOOTH = 200
@@ -25,10 +26,12 @@ def draw_calibration(found: Calibration) -> dict[str, Figure]:
     Returns
     -------
     dict of str to Figure
-        `parameter`, and `differences` where there is something to compare with.
+        `parameter`; `record` where a record was measured; and `differences` where there is something to compare with.
     """
     with style():
         figures = {"parameter": _draw_parameter(found)}
+        if found.overlays:
+            figures["record"] = draw_record(found.overlays)
         if differences(found) and len(found.impacts[1]) > 1:
             figures["differences"] = _draw_differences(found)
     return figures
@@ -44,7 +47,8 @@ def _draw_parameter(found: Calibration) -> Figure:
         if np.isfinite(band).all():
             of_what = "band" if found.observations.measured else "band of the misfit"
             label = f"{100.0 * found.confidence:g} % {of_what}"
-            axes.fill_between(smooth, fitted - band, fitted + band, color=ACCENT, alpha=0.15, linewidth=0.0, label=label)
+            low, high = found.allowed.bounded(np.array([fitted - band, fitted + band]))
+            axes.fill_between(smooth, low, high, color=ACCENT, alpha=0.15, linewidth=0.0, label=label)
         name = ("constant", "line")[function.degree] if function.degree < 2 else f"polynomial of degree {function.degree}"
         axes.plot(smooth, fitted, color=ACCENT, linestyle=(0, (6, 2)), label=name)
     if found.curve is not None:

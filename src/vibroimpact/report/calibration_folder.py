@@ -26,11 +26,16 @@ from vibroimpact.report.calibration_tables import (
 from vibroimpact.report.figures import save_figures
 from vibroimpact.report.page import picture, template
 from vibroimpact.storage.calibration_file import CALIBRATION, calibration_table, columns_of, comparison_rows, matched_rows
+from vibroimpact.storage.check_sums import CHECK_SUMS, file_digest, sealed
 from vibroimpact.storage.folder import SUMMARY, new_folder
 from vibroimpact.storage.tables import write_csv
 
 _TITLES = {
     "parameter": ("The value over the approach speed", "Each impact by itself, and the polynomial through them."),
+    "record": (
+        "Measured and simulated",
+        "The record, and what is simulated with the values found: each impact at the speed with which it came.",
+    ),
     "differences": ("What is still wrong", "Each impact of the drop beside what was wanted, with the value given in three ways."),
 }
 
@@ -63,11 +68,11 @@ def save_calibration(case: Case, found: Calibration, directory: str | PathLike[s
         If something is there already, or the place can't be written to.
     """
     with new_folder(directory, force=force) as folder:
-        table = calibration_table(case, found)
-        (folder / CALIBRATION).write_text(json.dumps(table, indent=2, allow_nan=False) + "\n", encoding="utf-8")
+        (folder / "case.toml").write_text(tomli_w.dumps(resolved(calibrated_case(case, found))), encoding="utf-8")
+        table = {**calibration_table(case, found), CHECK_SUMS: {"case.toml": file_digest(folder / "case.toml")}}
+        (folder / CALIBRATION).write_text(sealed(table), encoding="utf-8")
         summary = {"name": case.name, "version": __version__, "calibration": found.parameter}
         (folder / SUMMARY).write_text(json.dumps(summary, indent=2) + "\n", encoding="utf-8")
-        (folder / "case.toml").write_text(tomli_w.dumps(resolved(calibrated_case(case, found))), encoding="utf-8")
         for name, rows in (("matched", matched_rows(found)), ("comparison", comparison_rows(found))):
             write_csv(rows, columns_of(rows), folder / f"{name}.csv")
         (folder / "figures").mkdir()

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from vibroimpact.calibration.calibration import Calibration
 from vibroimpact.calibration.comparison import COMPARED, WAYS, differences, largest_misfit
 from vibroimpact.calibration.outcomes import OUTCOMES, REBOUNDS
 from vibroimpact.calibration.tunables import law_parameter
-from vibroimpact.quantity import MISSING, digits, fixed, text
+from vibroimpact.quantity import column_texts, digits, fixed, largest, text
 from vibroimpact.report.tables import column
 
 _MOST_ROWS = 50
@@ -27,13 +28,14 @@ def values_table(found: Calibration) -> Cells:
     """Return headers with units, and a row for each impact that was matched."""
     seen = found.observations
     headers = [("", ""), ("Approach speed", "m/s"), (found.parameter, found.unit)]
-    columns = [list(seen.labels), [digits(value) for value in seen.speeds], [digits(value, 6) for value in found.values]]
+    columns = [list(seen.labels), column_texts(seen.speeds), column_texts(found.values, 6)]
     if found.intervals is not None:
         headers.append((f"Interval, {_percent(found.confidence)}", found.unit))
-        columns.append([f"{digits(low, 6)} to {digits(high, 6)}" for low, high in found.intervals])
+        ends = column_texts(np.ravel(found.intervals), 6)
+        columns.append([f"{low} to {high}" for low, high in zip(ends[::2], ends[1::2], strict=True)])
     if found.as_given:
         headers.append(("As the case gives it", found.unit))
-        columns.append([digits(value, 6) for value in found.given])
+        columns.append(column_texts(found.given, 6))
     for name in found.weights:
         header = OUTCOMES[name].words.capitalize()
         unit, cells = column(OUTCOMES[name].column, np.concatenate([seen.wanted[name], found.outcomes[name]]))
@@ -41,7 +43,7 @@ def values_table(found: Calibration) -> Cells:
         columns += [cells[: len(seen.speeds)], cells[len(seen.speeds) :]]
         if found.as_given:
             headers.append(("as given, off by", "%"))
-            columns.append([_off(value) for value in found.as_given[name] / seen.wanted[name] - 1.0])
+            columns.append(_off(found.as_given[name] / seen.wanted[name] - 1.0))
     rows = [list(row) for row in zip(*columns, strict=True)]
     return headers, rows if len(rows) <= _MOST_ROWS else [*rows[: _MOST_ROWS - 1], ["…", *[""] * (len(headers) - 1)]]
 
@@ -57,7 +59,8 @@ def differences_tables(found: Calibration) -> dict[str, Cells]:
     tables = {}
     for name, ways in off.items():
         number = len(next(iter(ways.values())))
-        rows = [[str(impact + 1), *(_off(ways[way][impact]) for way in WAYS)] for impact in range(number)]
+        cells = np.reshape(_off(np.concatenate([ways[way] for way in WAYS])), (len(WAYS), number))
+        rows = [[str(impact + 1), *cells[:, impact].tolist()] for impact in range(number)]
         tables[COMPARED[name]] = ([("Impact", ""), *((way, "%") for way in WAYS)], rows[:_MOST_ROWS])
     return tables if len(found.impacts[1]) > 1 else {}
 
@@ -88,7 +91,7 @@ def function_words(found: Calibration) -> str:
 def fit_sentences(found: Calibration) -> list[str]:
     """Return how good the polynomial is: how well it is known, and how far it is off."""
     fit, seen = found.fit, found.observations
-    told = []
+    told = list(seen.notes)
     if seen.measured:
         half = fit.half_widths(found.confidence)
         if np.isfinite(half).all():
@@ -117,7 +120,7 @@ def given_sentences(found: Calibration) -> list[str]:
         words = f"With {found.parameter} = {given}, as the case gives it, the {OUTCOMES[name].words} of {found.observations.labels[worst]}"
         instead, asked = (text(float(value), OUTCOMES[name].unit, 5) for value in (comes[worst], wanted[worst]))
         verdict = ": the target can't be met so" if abs(off[worst]) > _MET else ""
-        told.append(f"{words} is {instead} instead of {asked}, off by {_off(float(off[worst]))} %{verdict}. {meets} meets it.")
+        told.append(f"{words} is {instead} instead of {asked}, off by {_off(off[worst])[0]} %{verdict}. {meets} meets it.")
         missed |= bool(verdict)
     if missed and found.others:
         each = [f"{name} = {digits(value, 6)} {law_parameter(found.problem, name).unit}".rstrip() for name, value in found.others.items()]
@@ -139,10 +142,10 @@ def ways_words(found: Calibration) -> str:
     return "; ".join(f"{way}: {_MEANING[way]}" for way in WAYS) + chain
 
 
-def _off(value: float) -> str:
-    if not np.isfinite(value):
-        return MISSING
-    return "0" if abs(value) < 5e-9 else fixed(100.0 * value, 3) if abs(value) < 0.1 else fixed(100.0 * value, 2)
+def _off(parts: ArrayLike) -> list[str]:
+    """Return parts in percent, all with the same decimals: three, or two where one is 10 % or more."""
+    percent = 100.0 * np.atleast_1d(np.asarray(parts, dtype=float))
+    return [fixed(float(value), 3 if largest(percent) < 10.0 else 2) for value in percent]
 
 
 def _percent(confidence: float) -> str:

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from rich.columns import Columns
 from rich.console import Group, RenderableType
-from rich.markup import escape
-from rich.table import Table
 from rich.text import Text
 
 from vibroimpact.calibration.calibration import Calibration
@@ -20,6 +18,7 @@ from vibroimpact.report.calibration_tables import (
     values_table,
     ways_words,
 )
+from vibroimpact.report.terminal_table import Column, TerminalTable, numbers
 
 
 def calibration_summary(case: Case, found: Calibration) -> RenderableType:
@@ -37,18 +36,14 @@ def calibration_summary(case: Case, found: Calibration) -> RenderableType:
         parts += [Text(), *(Text(sentence) for sentence in sentences)]
     if tables := differences_tables(found):
         parts += [Text(), Text("What is still wrong", style="bold")]
-        parts.append(Columns([_table(cells, title) for title, cells in tables.items()], padding=(0, 4)))
+        parts.append(Columns([Group(Text(f" {title}"), _table(cells)) for title, cells in tables.items()], padding=(0, 4)))
         parts.append(Text(f" {ways_words(found)}", style="dim"))
     parts += [Text(), *(Text(f"Doubt: {doubt}.") for doubt in found.doubts)] if found.doubts else []
     return Group(*parts)
 
 
-def _table(cells: Cells, title: str | None = None) -> Table:
-    headers, rows = cells
-    table = Table(box=None, padding=(0, 1), header_style="bold", title=title, title_justify="left", title_style="")
-    for number, (heading, unit) in enumerate(headers):
-        words = f"{heading}\n[{unit}]".replace(", ", ",\n") if unit else heading
-        table.add_column(escape(words), justify="right" if number else "left", overflow="fold", vertical="bottom")
-    for row in rows:
-        table.add_row(*(escape(cell) for cell in row))
-    return table
+def _table(cells: Cells) -> TerminalTable:
+    (first, *headers), rows = cells
+    names, *columns = zip(*rows, strict=True)
+    key = Column(first[0], names, words=True)
+    return TerminalTable([key, *(numbers(heading, unit, one) for (heading, unit), one in zip(headers, columns, strict=True))])

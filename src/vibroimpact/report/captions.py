@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from vibroimpact.dynamics.problem import STANDARD_GRAVITY
-from vibroimpact.quantity import digits, fixed, text
+from vibroimpact.quantity import certain, digits, fixed, text
 from vibroimpact.report.captions_motion import (
     deflection_caption,
     plate_energy_caption,
@@ -16,6 +16,7 @@ from vibroimpact.report.captions_motion import (
 from vibroimpact.report.excerpt import contacts, enlarged
 from vibroimpact.report.sensor_figures import drawn_sensors
 from vibroimpact.report.style import ENLARGED
+from vibroimpact.report.tables import energy_text, entry_text, figures_of
 from vibroimpact.storage.result import Result
 
 
@@ -56,7 +57,7 @@ def _position(result: Result) -> str:
 def _force(result: Result) -> str:
     impacts, most = result.impacts, int(np.nanargmax(result.impacts["max_force_N"]))
     lead = float(impacts["time_of_max_indentation_s"][most] - impacts["time_of_max_force_s"][most])
-    words = f"The largest force, {text(float(impacts['max_force_N'][most]), 'N')}, acts in impact {most + 1}"
+    words = f"The largest force, {entry_text(result, most, 'max_force_N', 'N')}, acts in impact {most + 1}"
     if lead > 0.001 * impacts["duration_s"][most]:
         words += f", {text(lead, 's', 3)} before the largest indentation: damping adds to the force on the way in"
     return f"{words}. {_in_whole_run(result)}".strip()
@@ -75,9 +76,10 @@ def _velocity(result: Result) -> str:
 
 def _acceleration(result: Result) -> str:
     most = int(np.nanargmax(result.impacts["max_acceleration_m_s2"]))
-    value = float(result.impacts["max_acceleration_m_s2"][most])
+    value = float(result.impacts["max_acceleration_m_s2"][most]) / STANDARD_GRAVITY
+    times = certain(digits(value, 3), value, int(figures_of("max_acceleration_m_s2", result.change_by_impact)[most]))
     return (
-        f"The largest magnitude, {text(value, 'm/s2')} in impact {most + 1}, is {digits(value / STANDARD_GRAVITY, 3)} times "
+        f"The largest magnitude, {entry_text(result, most, 'max_acceleration_m_s2', 'm/s2')} in impact {most + 1}, is {times} times "
         f"standard gravity. {_in_whole_run(result)}"
     ).strip()
 
@@ -90,7 +92,7 @@ def _loops(result: Result) -> str:
         )
     if np.max(lost) < 1e-9 * result.energy["input_J"]:
         return "The way in and the way out coincide: no energy is lost in contact."
-    first, last = (text(float(lost[impact]), "J") for impact in (found[0], found[-1]))
+    first, last = (entry_text(result, impact, "energy_lost_J", "J") for impact in (found[0], found[-1]))
     also = " and what goes into the sphere's own vibration. Lost" if "sphere" in result.peaks else ""
     if result.deformation.get("treatment") == "identified":
         also = " and what the local element still holds at release. Lost"
@@ -99,9 +101,10 @@ def _loops(result: Result) -> str:
 
 
 def _energy(result: Result) -> str:
-    energy, put_in = result.energy, result.energy["input_J"]
-    lost = energy["contact_dissipated_J"] + energy["plastic_work_J"]
-    words = f"Of {text(put_in, 'J')} put in, {text(lost, 'J')} ({fixed(100.0 * lost / put_in, 1)} %) are lost in contact by the end."
+    put_in = result.energy["input_J"]
+    words = (
+        f"Of {text(put_in, 'J')} put in, {energy_text(result, 'contact_dissipated_J', 'plastic_work_J')} are lost in contact by the end."
+    )
     words += _vibration(result) if result.vibrates else ""
     if np.min(result.history["potential_J"]) < -0.01 * put_in:
         words += " Below the height of first touch the potential energy is negative; there the other bands begin below zero."
@@ -110,13 +113,9 @@ def _energy(result: Result) -> str:
 
 def _vibration(result: Result) -> str:
     """Tell where the energy of vibration went: what is left of it, and what its damping took."""
-    energy, put_in = result.energy, result.energy["input_J"]
-    damped = energy["sphere_damping_J"] + energy["plate_damping_J"]
-    left = sum(energy[name] for name in ("sphere_vibration_J", "sphere_strain_J", "plate_kinetic_J", "plate_strain_J"))
-    return (
-        f" The damping of the bodies took {text(damped, 'J')} ({fixed(100.0 * damped / put_in, 1)} %), and {text(left, 'J')} "
-        f"({fixed(100.0 * left / put_in, 1)} %) are still in their vibration."
-    )
+    damped = energy_text(result, "sphere_damping_J", "plate_damping_J")
+    left = energy_text(result, "sphere_vibration_J", "sphere_strain_J", "plate_kinetic_J", "plate_strain_J")
+    return f" The damping of the bodies took {damped}, and {left} are still in their vibration."
 
 
 def _enlarged(result: Result) -> str:

@@ -81,6 +81,8 @@ def sensor_caption(result: Result, name: str) -> str:
         f"Largest magnitude {text(float(np.abs(signal.value).max()), sensor.unit)}, of {len(signal.value)} samples at {digits(sensor.rate)}"
         f"\u00a0Hz, {_FILTERS[sensor.filter]}."
     )
+    if signal.overload_time > 0.0:
+        words += " Its accelerometer is overdriven: what is beyond its range is cut off before the filter, which may overshoot the cut."
     values = signal.value[part]
     if len(values) < 4 or not np.any(values):
         return words

@@ -14,7 +14,7 @@ from vibroimpact.cases.schema import Case
 from vibroimpact.contact.law import ContactLaw
 from vibroimpact.contact.restitution import achieved_restitution
 from vibroimpact.dynamics.simulate import simulate
-from vibroimpact.quantity import MISSING, fixed
+from vibroimpact.quantity import MISSING, text
 from vibroimpact.report.tables import HEADERS, column
 from vibroimpact.storage.result import Result, result_of
 
@@ -98,22 +98,40 @@ def compare_laws(
 _COLUMNS = ("max_indentation_m", "max_force_N", "duration_s", "rebound_height_m", "energy_lost_J")
 
 
+def comparison_title(comparison: Comparison) -> str:
+    """Return what heads a comparison: how many laws, of one drop. The name of the case may name a law that is not among them."""
+    number = len(comparison.results)
+    return f"One drop under {number} contact law{'' if number == 1 else 's'}"
+
+
+def comparison_subtitle(comparison: Comparison) -> str:
+    """Return whose drop it is, and how fast it arrives."""
+    speeds = next(iter(comparison.results.values())).impacts["approach_speed_m_s"]
+    arrives = f", which arrives at {text(float(speeds[0]), 'm/s')}" if len(speeds) else ""
+    return f'The drop is that of the case "{comparison.name}"{arrives}.'
+
+
 def comparison_table(comparison: Comparison) -> tuple[list[tuple[str, str]], list[list[str]]]:
     """Return headers with units, and a row a law: asked and achieved restitution, and the first impact."""
     headers = [("Law", ""), ("Impacts", ""), ("Restitution asked", ""), ("achieved, first", ""), ("achieved, last", "")]
     rows = []
     for name, one in comparison.results.items():
-        achieved = one.impacts["restitution_achieved"]
-        asked = one.impacts["restitution_asked"]
-        some = [fixed(float(values[at]), 4) if len(values) else MISSING for values, at in ((asked, 0), (achieved, 0), (achieved, -1))]
-        rows.append([name, str(len(achieved)), *some])
+        some = [_restitution(one, "restitution_asked", 0), *(_restitution(one, "restitution_achieved", at) for at in (0, -1))]
+        rows.append([name, str(len(one.impacts["impact"])), *some])
     for name in _COLUMNS:
         first = np.array([one.impacts[name][0] if len(one.impacts[name]) else np.nan for one in comparison.results.values()])
-        unit, cells = column(name, first)
+        change = np.array([one.change_by_impact[0] if len(one.impacts[name]) else 0.0 for one in comparison.results.values()])
+        unit, cells = column(name, first, change)
         headers.append((HEADERS[name], unit))
         for row, cell in zip(rows, cells, strict=True):
             row.append(cell)
     return headers, rows
+
+
+def _restitution(result: Result, name: str, at: int) -> str:
+    """Return the restitution of the first or the last impact, in the digits that are certain."""
+    values = result.impacts[name]
+    return column(name, values, result.change_by_impact)[1][at] if len(values) else MISSING
 
 
 def comparison_doubts(comparison: Comparison) -> list[str]:

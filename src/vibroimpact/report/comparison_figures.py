@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -19,6 +19,9 @@ _HEIGHT, _LINE = 3.6, 0.2
 """Height of the axes, and of a row of the legend below them [in]."""
 
 _ROW = 3
+
+_LABEL = 0.036
+"""Height of a label, of the restitutions that the axes show."""
 
 
 def draw_comparison(results: Mapping[str, Result], speeds: Floats, restitutions: Mapping[str, Floats]) -> dict[str, Figure]:
@@ -88,15 +91,35 @@ def _draw_restitutions(
         axes.semilogx(speeds, restitutions[name], label=name, **looks[name])
         impacts = one.impacts
         axes.plot(impacts["approach_speed_m_s"], impacts["restitution_achieved"], "o", markersize=3.5, color=looks[name]["color"], zorder=3)
-    asked = {float(one.impacts["restitution_asked"][0]) for one in results.values() if len(one.impacts["restitution_asked"])}
-    for value in sorted(value for value in asked if np.isfinite(value)):
-        axes.axhline(value, color="#888888", linewidth=0.8, linestyle=(0, (1, 2)))
-        axes.annotate(f"asked {value:.4g}", (1.0, value), xycoords=("axes fraction", "data"), ha="right", va="bottom", fontsize=7.5)
+    _mark_asked(axes, results)
     axes.set_ylim(0.0, 1.05)
     axes.set_title("Restitution achieved (lines: any speed, without gravity; marks: this run)")
     axes.set_xlabel("Approach speed [m/s]")
     label_vertical(axes, "Separation speed over approach speed")
     return _with_legend(figure, axes)
+
+
+def _mark_asked(axes: Axes, results: Mapping[str, Result]) -> None:
+    """Draw a line at each restitution that a law is asked for, and name it where no other name stands."""
+    first = (float(one.impacts["restitution_asked"][0]) for one in results.values() if len(one.impacts["restitution_asked"]))
+    asked = sorted({float(f"{value:.4g}") for value in first if np.isfinite(value)})
+    for value, place in zip(asked, apart(asked, _LABEL), strict=True):
+        axes.axhline(value, color="#888888", linewidth=0.8, linestyle=(0, (1, 2)))
+        axes.annotate(f"asked {value:.4g}", (1.0, place), xycoords=("axes fraction", "data"), ha="right", va="bottom", fontsize=7.5)
+
+
+def apart(places: Sequence[float], gap: float) -> list[float]:
+    """Return ascending places at least a gap from each other, each as near to where it was as those below it allow.
+
+    Examples
+    --------
+    >>> [round(place, 3) for place in apart([0.1, 0.7, 0.716, 0.72], 0.04)]
+    [0.1, 0.7, 0.74, 0.78]
+    """
+    found: list[float] = []
+    for place in places:
+        found.append(max(place, found[-1] + gap) if found else place)
+    return found
 
 
 def _axes(number: int) -> tuple[Figure, Axes]:

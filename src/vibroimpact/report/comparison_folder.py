@@ -10,7 +10,14 @@ import tomli_w
 
 from vibroimpact._version import __version__
 from vibroimpact.dynamics.columns import impact_columns
-from vibroimpact.report.comparison import Comparison, comparison_doubts, comparison_table, free_parameter_words
+from vibroimpact.report.comparison import (
+    Comparison,
+    comparison_doubts,
+    comparison_subtitle,
+    comparison_table,
+    comparison_title,
+    free_parameter_words,
+)
 from vibroimpact.report.comparison_figures import draw_comparison
 from vibroimpact.report.figures import save_figures
 from vibroimpact.report.page import picture, template
@@ -67,7 +74,8 @@ def save_comparison(comparison: Comparison, directory: str | PathLike[str], *, f
         pictures = save_figures(drawn, folder / "figures")
         headers, cells = comparison_table(comparison)
         page = template("comparison.html.j2").render(
-            name=comparison.name[:1].upper() + comparison.name[1:],
+            name=comparison_title(comparison),
+            subtitle=comparison_subtitle(comparison),
             headers=headers,
             rows=cells,
             free=[(name, free_parameter_words(law)) for name, law in comparison.laws.items()],

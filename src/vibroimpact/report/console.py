@@ -1,14 +1,13 @@
-"""What the command line prints: tables of results and materials, and a case explained."""
+"""What the command line prints of a drop: its results, and a case explained."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Container, Iterable
 from dataclasses import fields
 
+import numpy as np
 from rich.console import Group, RenderableType
-from rich.markup import escape
-from rich.table import Table
 from rich.text import Text
 
 from vibroimpact.cases.build import contact_laws_of, contact_pair, deforms, elastic_names, first_speed, impacts_of, resolved
@@ -17,30 +16,30 @@ from vibroimpact.cases.expected import expected_of
 from vibroimpact.cases.schema import Case, SensorSection
 from vibroimpact.contact.law import CompliantLaw, ContactLaw, unit_of
 from vibroimpact.contact.restitution import achieved_restitution
-from vibroimpact.dynamics.columns import LEDGER, VIBRATION_LEDGER
+from vibroimpact.dynamics.problem import STANDARD_GRAVITY
 from vibroimpact.errors import InputError
-from vibroimpact.materials import RIGID, Material, find_material, material_library
-from vibroimpact.report.comparison import Comparison, comparison_doubts, comparison_table, free_parameter_words
+from vibroimpact.materials import RIGID, Material
 from vibroimpact.report.deformation import deformation_rows, treatment_sentence
-from vibroimpact.report.tables import certain_figures, several_contacts, takes_digits
+from vibroimpact.report.tables import PUT_IN, SUM, column, ledger_table, several_contacts, takes_digits
+from vibroimpact.report.terminal_table import Column, TerminalTable, facts, numbers, with_gap
 from vibroimpact.storage.result import Result
 
-# column, heading, factor, digits
-_IMPACT_TABLE = (
-    ("time_s", "time\n[s]", 1.0, 6),
-    ("duration_s", "contact\n[us]", 1e6, 4),
-    ("approach_speed_m_s", "approach\n[m/s]", 1.0, 4),
-    ("separation_speed_m_s", "separation\n[m/s]", 1.0, 4),
-    ("restitution_asked", "e\nasked", 1.0, 3),
-    ("restitution_achieved", "e\nachieved", 1.0, 5),
-    ("max_indentation_m", "indentation\n[um]", 1e6, 4),
-    ("max_force_N", "force\n[N]", 1.0, 5),
-    ("max_acceleration_m_s2", "acceleration\n[m/s2]", 1.0, 6),
-    ("rebound_height_m", "rebound\n[m]", 1.0, 5),
-    ("energy_lost_J", "lost\n[J]", 1.0, 4),
-    ("contacts", "con-\ntacts", 1.0, 3),
-    ("sensitivity", "sensi-\ntivity", 1.0, 2),
-)
+_HEADINGS = {
+    "impact": "#",
+    "time_s": "time",
+    "duration_s": "contact",
+    "approach_speed_m_s": "approach",
+    "separation_speed_m_s": "separation",
+    "restitution_asked": "e\u00a0asked",
+    "restitution_achieved": "e achieved",
+    "max_indentation_m": "indentation",
+    "max_force_N": "force",
+    "max_acceleration_m_s2": "acceleration",
+    "rebound_height_m": "rebound",
+    "energy_lost_J": "lost",
+    "contacts": "contacts",
+    "sensitivity": "sensitivity",
+}
 _FIRST_LEFT_OUT = (
     "max_acceleration_m_s2",
     "energy_lost_J",
@@ -53,14 +52,14 @@ _FIRST_LEFT_OUT = (
     "approach_speed_m_s",
 )
 """Columns that a narrow terminal does without, in this order, until the others fit."""
-_BETWEEN = 2  # columns of a terminal between two columns of a table
 _FIRST_ROWS, _LAST_ROWS = 15, 3
 
 
 def impact_table(result: Result, width: int) -> RenderableType:
     """Return the table of impacts for a terminal of a width: columns that do not fit are left out, numbers are not cut.
 
-    The middle of a long table is left out. Numbers are shown with the digits that they have where the drop is sensitive.
+    The middle of a long table is left out. Units are those of the page; numbers have the digits that they have where the drop is
+    sensitive.
     """
     impacts, change = result.impacts, result.change_by_impact
     number = len(impacts["impact"])
@@ -68,38 +67,30 @@ def impact_table(result: Result, width: int) -> RenderableType:
         return Text("No impact within the run.")
     rows = [index for index in range(number) if not _FIRST_ROWS <= index < number - _LAST_ROWS]
     told = {"contacts": several_contacts(impacts), "sensitivity": takes_digits(change)}
-    columns = {"impact": ["", "#", *(str(int(impacts["impact"][index])) for index in rows)]}
-    for name, heading, factor, digits in _IMPACT_TABLE:
-        if told.get(name, True):
-            figures, values = certain_figures(change, name), impacts[name]
-            cells = (_number(float(values[index]) * factor, digits, int(figures[index])) for index in rows)
-            columns[name] = [*heading.split("\n"), *cells]
-    for name in _FIRST_LEFT_OUT:
-        if sum(max(map(len, column)) + _BETWEEN for column in columns.values()) > width:
-            columns.pop(name, None)
-    table = Table(box=None, padding=(0, 1), header_style="bold")
-    for above, below, *_ in columns.values():
-        table.add_column(escape(f"{above}\n{below}"), justify="right", no_wrap=True)
-    for place, row in enumerate(zip(*(column[2:] for column in columns.values()), strict=True)):
-        if place == _FIRST_ROWS and len(rows) < number:
-            table.add_row("...")
-        table.add_row(*row)
-    return table
+    told["restitution_asked"] = bool(np.isfinite(impacts["restitution_asked"]).any())
+    cells = {name: column(name, impacts[name], change) for name in _HEADINGS if told.get(name, True)}
+    columns = {name: numbers(_HEADINGS[name], unit, [shown[index] for index in rows]) for name, (unit, shown) in cells.items()}
+    left_out = [name for name in _FIRST_LEFT_OUT if name in columns]
+    while left_out and TerminalTable(tuple(columns.values())).width > width:
+        del columns[left_out.pop(0)]
+    table = TerminalTable(with_gap(tuple(columns.values()), _FIRST_ROWS) if len(rows) < number else tuple(columns.values()))
+    note = Text(" A wider terminal shows more columns; impacts.csv has all, in SI units.", style="dim")
+    return Group(table, *([note] if len(columns) < len(cells) else []))
 
 
-def energy_table(energy: Mapping[str, float]) -> RenderableType:
+def energy_table(result: Result) -> RenderableType:
     """Return the ledger at the end of the run, without the entries that are zero."""
-    table = Table(box=None, padding=(0, 1), header_style="bold")
-    table.add_column("energy at the end")
-    table.add_column(escape("[J]"), justify="right")
-    table.add_column("%", justify="right")
-    whole = energy["input_J"]
-    for name in (*LEDGER, *(name for name in VIBRATION_LEDGER if name in energy)):
-        part = energy[name] / whole
-        if abs(part) > 1e-12:  # less is rounding
-            table.add_row(name.removesuffix("_J").replace("_", " "), _number(energy[name], 6), _number(100.0 * part, 4))
-    table.add_row("[bold]put in[/bold]", f"[bold]{_number(whole, 6)}[/bold]", "100")
-    return Group(table, Text(f" closure {energy['closure_relative']:.1e} of the energy put in", style="dim"))
+    unit, ledger = ledger_table(result)
+    whole = result.energy["input_J"]
+    shown = [row for row in ledger if row.name != SUM and abs(result.energy.get(row.name, whole)) > 1e-12 * abs(whole)]  # less is rounding
+    names = [row.name.removesuffix("_J").replace("_", " ") if row.name != PUT_IN else "put in" for row in shown]
+    columns = (
+        Column("energy at the end", names, words=True),
+        numbers("", unit, [row.energy for row in shown]),
+        Column("%", [row.part for row in shown]),
+    )
+    closure = Text(f" closure {result.energy['closure_relative']:.1e} of the energy put in", style="dim")
+    return Group(TerminalTable(columns, bold=(len(shown) - 1,)), closure)
 
 
 def result_summary(result: Result, width: int) -> RenderableType:
@@ -108,81 +99,22 @@ def result_summary(result: Result, width: int) -> RenderableType:
         Text(result.name, style="bold"),
         impact_table(result, width),
         Text(),
-        energy_table(result.energy),
+        energy_table(result),
         Text(),
         Text(result.status),
         *_deformation(result),
-        *_doubt_lines(result.doubts),
+        *doubt_lines(result.doubts),
     )
 
 
 def _deformation(result: Result) -> list[RenderableType]:
     """Return how the bodies deform, where they do: a sentence, and its numbers."""
-    rows, table = deformation_rows(result), Table.grid(padding=(0, 2))
-    for words, value in rows:
-        table.add_row(f" {escape(words)}", escape(value))
-    sentence = treatment_sentence(result)
-    return [Text(), *([Text(sentence)] if sentence else []), table] if rows or sentence else []
+    rows, sentence = deformation_rows(result), treatment_sentence(result)
+    return [Text(), *([Text(sentence)] if sentence else []), *([facts(rows, indent=1)] if rows else [])] if rows or sentence else []
 
 
-def comparison_summary(comparison: Comparison) -> RenderableType:
-    """Return what a comparison prints: a row a law, and the parameter that sets the loss of each."""
-    headers, rows = comparison_table(comparison)
-    table = Table(box=None, padding=(0, 1), header_style="bold")
-    for number, (heading, unit) in enumerate(headers):
-        words = f"{heading}\n[{unit}]" if unit else heading
-        table.add_column(escape(words), justify="right" if number else "left", no_wrap=not number, vertical="bottom")
-    for row in rows:
-        table.add_row(*(escape(cell) for cell in row))
-    free = Table.grid(padding=(0, 2))
-    for name, law in comparison.laws.items():
-        free.add_row(f" {name}", escape(free_parameter_words(law)), escape(comparison.results[name].status))
-    note = Text(" Indentation, force, duration, height and energy are those of the first impact.", style="dim")
-    title = Text("What sets the loss, and how the run ended", style="bold")
-    return Group(Text(comparison.name, style="bold"), table, note, Text(), title, free, *_doubt_lines(comparison_doubts(comparison)))
-
-
-def material_table() -> RenderableType:
-    """Return the table of shipped materials."""
-    table = Table(box=None, padding=(0, 1), header_style="bold")
-    table.add_column("\nname", no_wrap=True)
-    for heading in ("density\n[kg/m3]", "Young's\n[GPa]", "Poisson's\n[-]"):
-        table.add_column(escape(heading), justify="right", no_wrap=True)
-    table.add_column("\nwhat", overflow="fold")
-    for name, material in material_library().items():
-        numbers = f"{material.density:g}", f"{material.youngs_modulus / 1e9:g}", f"{material.poissons_ratio:g}"
-        table.add_row(name, *numbers, escape(material.description))
-    notes = 'Also "rigid" for a plate. "vibroimpact materials NAME" gives the source of each number. Rock and coal vary widely.'
-    return Group(table, Text(), Text(notes))
-
-
-def material_sheet(name: str) -> RenderableType:
-    """Return one material with the source of each number.
-
-    Raises
-    ------
-    InputError
-        If there is no such material.
-    """
-    material, table = find_material(name), Table.grid(padding=(0, 2))
-    for key, unit in (
-        ("density", "kg/m3"),
-        ("youngs_modulus", "Pa"),
-        ("poissons_ratio", ""),
-        ("yield_strength", "Pa"),
-        ("compressive_strength", "Pa"),
-        ("tensile_strength", "Pa"),
-        ("loss_factor", ""),
-    ):
-        value = getattr(material, key)
-        if value is not None:
-            table.add_row(key, f"{value:g} {unit}".strip(), escape(material.sources.get(key, "")))
-    note = [Text(material.note)] if material.note else []
-    return Group(Text(f"{material.name}: {material.description}", style="bold"), table, *note)
-
-
-def case_explained(case: Case) -> RenderableType:
-    """Return what a case means: the resolved numbers, what to expect, and what to doubt."""
+def case_explained(case: Case, aside: Container[str] = ()) -> RenderableType:
+    """Return what a case means: the resolved numbers, what to expect, and what to doubt; but slips of units at keys told elsewhere."""
     laws, pair, speed = contact_laws_of(case), contact_pair(case), first_speed(case)
     mass, radius, gravity = float(pair.effective_mass), case.sphere.radius, case.drop.gravity
     rows: list[tuple[str, str]] = [
@@ -223,11 +155,8 @@ def case_explained(case: Case) -> RenderableType:
     if not math.isnan(expected.force):
         numbers = f"indentation {expected.depth:.4g} m, force {expected.force:.4g} N"
         rows.append(("if nothing were lost" + ("" if rigid else ", rigid"), numbers))
-    found = doubts(resolved(case), expected)
-    table = Table.grid(padding=(0, 2))
-    for row in rows:
-        table.add_row(*(escape(cell) for cell in row))
-    return Group(Text(case.name or "a drop", style="bold"), table, *_doubt_lines(found))
+    found = doubts(resolved(case), expected, aside)
+    return Group(Text(case.name or "a drop", style="bold"), facts(rows), *doubt_lines(found))
 
 
 def _elastic_rows(case: Case) -> list[tuple[str, str]]:
@@ -268,7 +197,7 @@ def _accelerometer(sensor: SensorSection) -> list[str]:
         return []
     given = [
         ("resonance", meter.resonance, f"Hz with a damping ratio of {meter.damping_ratio:g}"),
-        ("range", meter.range, "m/s2"),
+        ("range", meter.range, f"m/s2, {(meter.range or 0.0) / STANDARD_GRAVITY:.4g} times standard gravity"),
         ("noise", meter.noise or None, "m/s2"),
         ("resolution", meter.resolution, "m/s2"),
     ]
@@ -301,10 +230,7 @@ def _restitution_lines(law: ContactLaw, mass: float, speed: float) -> list[str]:
 
 def versions_table(rows: Iterable[tuple[str, str]]) -> RenderableType:
     """Return a plain table of two columns."""
-    table = Table.grid(padding=(0, 2))
-    for row in rows:
-        table.add_row(*(escape(cell) for cell in row))
-    return table
+    return facts(rows)
 
 
 def _stuff(material: Material) -> str:
@@ -316,14 +242,6 @@ def _stuff(material: Material) -> str:
     )
 
 
-def _doubt_lines(found: Iterable[str]) -> list[RenderableType]:
+def doubt_lines(found: Iterable[str]) -> list[RenderableType]:
+    """Return what to doubt, a paragraph each."""
     return [Text(f"Doubt: {doubt}.", style="yellow") for doubt in found]
-
-
-def _number(value: float, digits: int, certain: int = 17) -> str:
-    """Return a number in so many digits, or in the fewer that are certain."""
-    if not math.isfinite(value):
-        return "-"
-    if certain < digits:
-        return f"{value:#.{certain}g}".replace(".e", "e").rstrip(".") if certain else "?"  # zeros at the end are digits too
-    return f"{value:.{digits}g}" if value == 0 or 1e-3 <= abs(value) < 10.0 ** (digits + 1) else f"{value:.{max(digits - 2, 1)}e}"

@@ -24,6 +24,9 @@ _LEFT, _BETWEEN, _TITLE, _HEAD, _FOOT = 0.2, 0.14, 0.26, 0.38, 0.62
 _AT_REST = 0.015
 """Of the largest deflection: where all around is less there is no line."""
 
+_ROUNDING = 1e-9
+"""Of the largest deflection: less is none."""
+
 _HALO = [withStroke(linewidth=1.8, foreground="white", alpha=0.8)]
 """Around the names of sensors, which lie on dark ground too."""
 
@@ -63,7 +66,8 @@ def chosen_frames(result: Result, deflection: Deflection) -> list[int]:
 
 
 def _draw(axes: Axes, result: Result, deflection: Deflection, frame: int, scale: Multiple, most: float) -> AxesImage:
-    height = deflection.height[frame] / scale.size
+    still = np.abs(deflection.height) <= _ROUNDING * most
+    height = np.where(still[frame], 0.0, deflection.height[frame]) / scale.size
     half = 0.5 * np.array([deflection.x[1] - deflection.x[0], deflection.y[1] - deflection.y[0]])
     edges = (deflection.x[0] - half[0], deflection.x[-1] + half[0], deflection.y[0] - half[1], deflection.y[-1] + half[1])
     picture = axes.imshow(
@@ -81,8 +85,9 @@ def _draw(axes: Axes, result: Result, deflection: Deflection, frame: int, scale:
     levels = own * np.linspace(-0.9, 0.9, 7)
     levels[3] = 0.0
     styles = ["--"] * 3 + ["-"] * 4
-    # where the plate hardly moves, as at its supports, the line at rest would wander
-    lined = np.ma.masked_where(maximum_filter(np.nan_to_num(np.abs(height)), 3) < _AT_REST * own, height)
+    # where the plate hardly moves, or is held, the line at rest would wander
+    hidden = (maximum_filter(np.nan_to_num(np.abs(height)), 3) < _AT_REST * own) | np.all(still, axis=0)
+    lined = np.ma.masked_where(hidden, height)
     axes.contour(deflection.x, deflection.y, lined, levels=levels, colors=INK, linewidths=[0.5] * 3 + [0.9] + [0.5] * 3, linestyles=styles)
     axes.plot(*deflection.contact, "o", markersize=6, markerfacecolor="white", markeredgecolor=INK, markeredgewidth=1.2)
     for name, x, y in sensor_places(result):

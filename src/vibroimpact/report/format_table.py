@@ -7,12 +7,11 @@ from os.path import commonpath
 from pathlib import Path
 
 from rich.console import Group, RenderableType
-from rich.markup import escape
-from rich.table import Table
 from rich.text import Text
 
 from vibroimpact.exchange.drop import Drop
 from vibroimpact.exchange.export_format import ExportFormat, export_formats
+from vibroimpact.report.terminal_table import Column, TerminalTable
 
 _MOST = 6
 """Files that are named; of more, the first ones, and how many there are."""
@@ -20,12 +19,10 @@ _MOST = 6
 
 def format_table() -> RenderableType:
     """Return the table of export formats."""
-    table = Table(box=None, padding=(0, 1), header_style="bold")
-    table.add_column("format", no_wrap=True)
-    for heading in ("read by", "files", "tested"):
-        table.add_column(heading, overflow="fold")
-    for name, one in export_formats().items():
-        table.add_row(name, escape(one.program), escape(one.files), escape(one.tested))
+    formats = export_formats()
+    said = {"read by": [one.program for one in formats.values()], "files": [one.files for one in formats.values()]}
+    said["tested"] = [one.tested for one in formats.values()]
+    table = TerminalTable([Column("format", list(formats), words=True), *(Column(name, cells, words=True) for name, cells in said.items())])
     return Group(table, Text(), Text("vibroimpact export DIR --to FORMAT writes a result folder, or a calibration folder, in one of them."))
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass, fields
 from pathlib import Path
-from tempfile import TemporaryDirectory
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -27,6 +26,8 @@ from vibroimpact.report.figures import render_png
 from vibroimpact.report.law_text import paper_pair
 from vibroimpact.report.layout import label_vertical, new_figure, row_of_axes
 from vibroimpact.report.style import ACCENT, INK, LOOPS, style
+from vibroimpact.writing.file import write_file
+from vibroimpact.writing.settle import settle
 
 _SPEEDS = np.geomspace(1e-3, 30.0, 60)
 _POINTS = 600
@@ -73,27 +74,29 @@ def draw_law(law: type[ContactLaw]) -> Figure:
     return figure
 
 
-def picture_path(name: str, output: Path | None = None) -> Path:
-    """Return where the picture of a law goes: `output`, or NAME.png in the current folder.
+def check_picture(target: Path, *, force: bool) -> None:
+    """Refuse a place where no picture of a law can be made, or where a file is there already.
 
     Raises
     ------
     InputError
-        If no PNG file can be made there.
+        If no PNG file can be made there, or one is there and must not be replaced.
 
     Examples
     --------
-    >>> picture_path("hertz").name
-    'hertz.png'
+    >>> check_picture(Path("hertz.svg"), force=False)
+    Traceback (most recent call last):
+        ...
+    vibroimpact.errors.InputError: hertz.svg: the picture is a PNG file; give a name that ends in .png
     """
-    target = Path(f"{name}.png") if output is None else output
     if target.suffix.lower() != ".png":
         raise InputError(f"{target}: the picture is a PNG file; give a name that ends in .png")
     if target.is_dir():
         raise InputError(f"{target}: this is a folder; name a file in it")
     if not target.parent.is_dir():
         raise InputError(f"{target}: there is no folder {target.parent}; make it, or name another place")
-    return target
+    if target.exists() and not force:
+        raise InputError(f"{target} is there already; --force replaces it")
 
 
 def save_law_picture(name: str, target: Path) -> Path:
@@ -106,10 +109,8 @@ def save_law_picture(name: str, target: Path) -> Path:
     """
     picture = render_png(draw_law(find_contact_law(name)))
     try:
-        with TemporaryDirectory(prefix=f".{target.name}.", dir=target.parent) as working:
-            file = Path(working) / target.name
-            file.write_bytes(picture)
-            file.replace(target)
+        settle(target)
+        write_file(target, picture)
     except OSError as error:
         raise InputError(f"{target}: the picture can't be written: {error.strerror}") from None
     return target

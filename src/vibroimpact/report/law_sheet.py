@@ -5,32 +5,31 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from rich.console import Group, RenderableType
-from rich.markup import escape
 from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
 from vibroimpact.contact.law import CompliantLaw, ContactLaw, contact_laws, find_contact_law
 from vibroimpact.report.law_text import SPEED, LawText, ParameterText, asked_and_achieved, law_text, plain_paragraph, short_source
+from vibroimpact.report.terminal_table import Column, TerminalTable
 
 _ENDS = {"zero-indentation": "no overlap", "zero-force": "no force", "pull-off": "torn apart"}
 _PULLS = {"none": "never", "cut": "cut", "kept": "yes"}
-_NARROW, _WIDE = 90, 130  # columns of a terminal: below the one rows are set close, from the other sources are printed in full
+_WIDE = 130  # columns of a terminal, from which sources are printed in full
 
 
 def law_table(width: int) -> RenderableType:
     """Return the table of contact laws for a terminal of a width."""
-    table = Table(box=None, padding=(0, 1 if width < _NARROW else 2, 0, 0), header_style="bold", pad_edge=False)
-    table.add_column("law", no_wrap=True, style="bold")
-    table.add_column("loses by", min_width=16)
-    table.add_column("ends at", no_wrap=True)
-    table.add_column("pulls", no_wrap=True)
-    table.add_column("source")
+    rows = []
     for name, law in contact_laws().items():
         end, pulls = ("at once", "-") if not issubclass(law, CompliantLaw) else (_ENDS[law.contact_end], _PULLS[law.tension])
         source = law.source if width >= _WIDE else short_source(law)
-        table.add_row(name, law_text(law).loses_by.replace("nothing is lost", "-"), end, pulls, escape(source))
-    hint = '"vibroimpact laws NAME" prints one with its equation, parameters and sources, and draws its curves.'
+        rows.append((name, law_text(law).loses_by.replace("nothing is lost", "-"), end, pulls, source))
+    headings = ("law", "loses by", "ends at", "pulls", "source")
+    table = TerminalTable(
+        [Column(words, cells, words=True) for words, cells in zip(headings, zip(*rows, strict=True), strict=True)], indent=0
+    )
+    hint = '"vibroimpact laws NAME" prints one with its equation, parameters and sources; with -o PNG it draws its curves.'
     return Group(table, Text(), Text(hint))
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from vibroimpact.shown import visible
+from vibroimpact.shown import shortened, visible
 
 
 def lettering(name: str, most: int = 60) -> str:
@@ -14,7 +14,7 @@ def lettering(name: str, most: int = 60) -> str:
     --------
     >>> print(lettering(r"a$\frac{$b"))
     a\$\frac{\$b
-    >>> print(lettering("left\nupper"), lettering("a" * 300, 8))
-    left\nupper aaaaa...
+    >>> print(lettering("left\nupper"), lettering("a" * 300, 10))
+    left\nupper aaaa ... a
     """
-    return visible(name, most).replace("$", r"\$")
+    return shortened(visible(name[: 10 * most]), most).replace("$", r"\$")

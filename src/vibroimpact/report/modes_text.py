@@ -5,18 +5,19 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import numpy as np
+from numpy.typing import NDArray
 from rich.console import Group, RenderableType
-from rich.markup import escape
-from rich.table import Table
 from rich.text import Text
 
 from vibroimpact.bodies.elastic import ElasticBody
 from vibroimpact.cases.build_elastic import elastic_bodies
+from vibroimpact.cases.meshes import meshes_of
 from vibroimpact.cases.modes import BodyModes
 from vibroimpact.cases.schema import Case
+from vibroimpact.quantity import MISSING, column_texts, fixed
+from vibroimpact.report.terminal_table import Column, TerminalTable, facts, numbers, with_gap
 from vibroimpact.structures.recipe import model_key
 from vibroimpact.structures.store import has_model
-from vibroimpact.structures.surface import place_of, surface_motion
 
 _ROWS = 20
 
@@ -26,7 +27,6 @@ def modes_summary(case: Case, modes: Mapping[str, BodyModes]) -> RenderableType:
     parts: list[RenderableType] = [Text(case.name or "modes", style="bold")]
     for name, found in modes.items():
         properties = found.model.properties
-        facts = Table.grid(padding=(0, 2))
         rows = [
             (
                 name,
@@ -38,46 +38,34 @@ def modes_summary(case: Case, modes: Mapping[str, BodyModes]) -> RenderableType:
         ]
         if "left out of the file" in found.model.facts:
             rows.append(("left out of the file", found.model.facts["left out of the file"]))
-        for row in rows:
-            facts.add_row(*(escape(cell) for cell in row))
-        parts += [facts, _table(found), *(Text(f"Doubt: {doubt}.", style="yellow") for doubt in found.doubts), Text()]
+        parts += [facts(rows), _table(found), *(Text(f"Doubt: {doubt}.", style="yellow") for doubt in found.doubts), Text()]
     return Group(*parts[:-1])
 
 
-def _table(found: BodyModes) -> Table:
-    table = Table(box=None, padding=(0, 1), header_style="bold")
-    for heading in (
-        "mode",
-        "frequency\n[Hz]",
-        "within\n[%]",
-        "damping\nratio",
-        "shape at contact\n[1/sqrt kg]",
-        "effective mass, vertical\n[kg]",
-    ):
-        table.add_column(escape(heading), justify="right", no_wrap=True, vertical="bottom")
-    basis = found.basis
-    for mode in range(min(_ROWS, len(basis.frequencies))):
-        table.add_row(
-            str(mode + 1),
-            f"{basis.frequencies[mode]:.6g}",
-            _within(found.model.frequency_errors[mode]),
-            f"{basis.damping_ratios[mode]:.4g}",
-            _clean(basis.contact[mode], float(np.abs(basis.contact).max())),
-            _clean(basis.participation[mode, 2] ** 2, found.model.properties.mass),
-        )
-    if len(basis.frequencies) > _ROWS:
-        table.add_row("...", f"{basis.frequencies[-1]:.6g}", _within(found.model.frequency_errors[-1]), "", "", "")
-    return table
+def _table(found: BodyModes) -> TerminalTable:
+    """Return the table of the lowest modes, and of the highest where some between are left out."""
+    basis, number = found.basis, len(found.basis.frequencies)
+    shown = list(range(min(_ROWS, number))) + ([number - 1] if number > _ROWS else [])
+    effective = basis.participation[:, 2] ** 2
+    columns = (
+        Column("mode", [str(mode + 1) for mode in shown]),
+        numbers("frequency", "Hz", column_texts(basis.frequencies[shown], 6)),
+        numbers("within", "%", _within(found.model.frequency_errors[shown])),
+        Column("damping ratio", column_texts(basis.damping_ratios[shown], 4)),
+        numbers("shape at contact", "1/sqrt kg", _four(basis.contact[shown], float(np.abs(basis.contact).max()))),
+        numbers("effective mass, vertical", "kg", _four(effective[shown], found.model.properties.mass)),
+    )
+    return TerminalTable(with_gap(columns, _ROWS) if number > _ROWS else columns)
 
 
-def _within(error: float) -> str:
-    """Return in per cent by how much a frequency may be off."""
-    return f"{100.0 * error:.2g}" if np.isfinite(error) else "not known"
+def _within(errors: NDArray[np.float64]) -> list[str]:
+    """Return in per cent by how much frequencies may be off."""
+    return [cell if cell != MISSING else "not known" for cell in column_texts(100.0 * errors, 2)]
 
 
-def _clean(value: float, whole: float) -> str:
-    """Return a number, or 0 where it is rounding of the whole."""
-    return f"{value:.4f}" if abs(value) > 1e-6 * whole else "0"
+def _four(values: NDArray[np.float64], whole: float) -> list[str]:
+    """Return numbers with four decimals, or 0 where they are rounding of the whole."""
+    return [fixed(float(value), 4) if abs(value) > 1e-6 * whole else "0" for value in values]
 
 
 def elastic_rows(case: Case) -> list[tuple[str, str]]:
@@ -86,14 +74,12 @@ def elastic_rows(case: Case) -> list[tuple[str, str]]:
     Raises
     ------
     InputError
-        If a mesh can't be made.
+        If a mesh can't be made, or what must lie on it does not.
     """
     rows: list[tuple[str, str]] = []
+    meshes = meshes_of(case)
     for name, body in elastic_bodies(case).items():
-        mesh = body.recipe.shape.mesh(body.recipe.supports)
-        points = {"the contact point": (body.contact, body.side), **{f'sensor "{key}"': place for key, place in body.watched.items()}}
-        for what, (spot, side) in points.items():  # are they on the body?
-            surface_motion(mesh, np.array([place_of(mesh, spot, side)]), side, what=f"{name}: {what}")
+        mesh = meshes[name]
         elements = ", ".join(f"{len(block.connectivity)} {block.kind}" for block in mesh.blocks)
         reduction = body.recipe.reduction
         kept = f"{reduction.modes} modes" if reduction.modes else f"modes up to {reduction.max_frequency:g} Hz"

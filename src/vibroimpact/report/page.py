@@ -79,12 +79,14 @@ def render_page(result: Result, pictures: Mapping[str, bytes], animation: bytes 
     animation : bytes, optional
         Plate and ball as GIF; a large one is not held by the page, which then names its file.
     """
+    unit, ledger = ledger_table(result)
     return template("page.html.j2").render(
         name=result.name[:1].upper() + result.name[1:],
         status=result.status,
         failed=result.status.startswith("Failed"),
         impacts=impact_table(result),
-        ledger=ledger_table(result),
+        ledger_unit=unit,
+        ledger=ledger,
         closure=f"{digits(result.energy['closure_J'], 2)} J",
         closure_relative=digits(result.energy["closure_relative"], 2),
         closure_limit=digits(CLOSURE_LIMIT, 1),

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from vibroimpact.quantity import certain, digits, multiple
 from vibroimpact.report.excerpt import Floats, gravity, touch_height
 from vibroimpact.report.histories import Quantity
-from vibroimpact.report.tables import certain_figures
+from vibroimpact.report.tables import entry_text
 from vibroimpact.storage.result import Result
 
 Points = tuple[Floats, Floats]
@@ -54,27 +53,20 @@ def _touch_and_release(result: Result) -> Points:
     return times, np.concatenate([-impacts["approach_speed_m_s"], impacts["separation_speed_m_s"]])
 
 
-def _shown(result: Result, impact: int, name: str, unit: str) -> str:
-    """Return an entry of the impact table with its unit, in the digits that it has where the drop is sensitive."""
-    value, figures = float(result.impacts[name][impact]), int(certain_figures(result.change_by_impact, name)[impact])
-    best = multiple(unit, value)
-    return f"{certain(digits(value / best.size), value / best.size, figures)}\u00a0{best.unit}".rstrip("\u00a0")
-
-
 def _indentation(result: Result, impact: int) -> str:
-    return _shown(result, impact, "max_indentation_m", "m")
+    return entry_text(result, impact, "max_indentation_m", "m")
 
 
 def _force(result: Result, impact: int) -> str:
-    return _shown(result, impact, "max_force_N", "N")
+    return entry_text(result, impact, "max_force_N", "N")
 
 
 def _restitution(result: Result, impact: int) -> str:
-    return f"e = {_shown(result, impact, 'restitution_achieved', '')}"
+    return f"e = {entry_text(result, impact, 'restitution_achieved', '')}"
 
 
 def _acceleration(result: Result, impact: int) -> str:
-    return _shown(result, impact, "max_acceleration_m_s2", "m/s2")
+    return entry_text(result, impact, "max_acceleration_m_s2", "m/s2")
 
 
 POSITION = Quantity(

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from vibroimpact.exchange.plain_names import plain_names
-from vibroimpact.quantity import Multiple, largest, multiple
+from vibroimpact.quantity import Multiple, digits, largest, multiple
 from vibroimpact.report.excerpt import thinned
 from vibroimpact.report.layout import label_vertical, new_figure, row_of_axes, wide_axes
 from vibroimpact.report.lettering import lettering
@@ -19,6 +19,9 @@ from vibroimpact.storage.result import Result
 
 MOST = 8
 """How many sensors are drawn; the signals of the others are in the data."""
+
+_NEAR = 0.3
+"""Of its range that a signal reaches where the range is drawn."""
 
 _DECADES = 4.5
 """How far below its peak a spectrum is shown."""
@@ -39,14 +42,28 @@ def draw_sensor(result: Result, name: str) -> Figure:
     clock = multiple("s", signal.time)
     whole.plot(*thinned(signal.time / clock.size, signal.value / scale.size), color=INK, linewidth=0.8)
     whole.margins(x=0.01, y=0.08)
-    whole.set_title(f"{quantity.capitalize()} at {lettering(name)}, whole run")
+    whole.set_title(f"{quantity.capitalize()} at {lettering(name)}, whole run{_mark_range(whole, result, name, scale)}")
     whole.set_xlabel(f"Time [{clock.unit}]")
     label_vertical(whole, f"{quantity.capitalize()} [{scale.unit}]")
     left, right = row_of_axes(figure, 2, 0.5, 2.3)
     _draw_close(left, result, name, scale)
+    _mark_range(left, result, name, scale)
     label_vertical(left, f"{quantity.capitalize()} [{scale.unit}]")
     _draw_spectrum(right, result, name)
     return figure
+
+
+def _mark_range(axes: Axes, result: Result, name: str, scale: Multiple) -> str:
+    """Draw the range of a sensor's accelerometer where the signal comes near it; return what the title says of it, if it has one."""
+    given = {one["name"]: one.get("accelerometer", {}).get("range") for one in result.case.get("sensors", ())}
+    if (end := given.get(name)) is None:
+        return ""
+    words = f"range ±{digits(end / scale.size, 3)} {scale.unit}"
+    if largest(result.signals[name].value) < _NEAR * end:  # the axes would show the range, and not the signal
+        return f" ({words}, beyond the axes)"
+    for side in (-end, end):
+        axes.axhline(side / scale.size, color=MARK, linewidth=0.8, linestyle=(0, (5, 3)))
+    return f" (dashed: {words})"
 
 
 def _draw_close(axes: Axes, result: Result, name: str, scale: Multiple) -> None:
@@ -54,10 +71,10 @@ def _draw_close(axes: Axes, result: Result, name: str, scale: Multiple) -> None:
     clock = multiple("s", span)
     here = (signal.time >= touch - 0.06 * span) & (signal.time <= touch + span)
     axes.plot((signal.time[here] - touch) / clock.size, signal.value[here] / scale.size, color=ACCENT, linewidth=1.0)
-    axes.axvline(0.0, color=MARK, linewidth=0.8, linestyle=(0, (2, 2)))
+    axes.axvline(0.0, color=MARK, linewidth=0.8, linestyle=(0, (1, 2)))
     axes.margins(x=0.01, y=0.08)
     axes.xaxis.set_major_locator(MaxNLocator(6, steps=[1, 2, 5, 10]))
-    axes.set_title("After the first touch (dashed)")
+    axes.set_title("After the first touch (dotted)")
     axes.set_xlabel(f"Time since first touch [{clock.unit}]")
 
 

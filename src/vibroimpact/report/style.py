@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from contextlib import AbstractContextManager
+from functools import cache
 from typing import Any
 
 import matplotlib as mpl
@@ -91,6 +92,25 @@ _SETTINGS: dict[Any, Any] = {
 }
 
 
+_OF_THE_PROCESS = ("backend", "backend_fallback", "interactive", "toolbar", "timezone")
+"""Settings that have nothing to do with how figures look; they stay as they are."""
+
+
 def style() -> AbstractContextManager[None]:
-    """Return a context in which figures have the report's look; matplotlib's own settings come back after it."""
-    return mpl.rc_context(_SETTINGS)
+    """Return a context in which figures have the report's look, whatever matplotlib is set to, and which sets that again at its end."""
+    return mpl.rc_context({**_foreign(), **_SETTINGS})
+
+
+def _foreign() -> dict[Any, Any]:
+    """Return the defaults of what somebody has set otherwise: text by LaTeX, fonts that a computer may not have, ..."""
+    have = dict(mpl.rcParams.items())
+    return {
+        name: value
+        for name, value in _defaults().items()
+        if name not in _SETTINGS and (type(value) is not type(have.get(name)) or value != have.get(name))
+    }
+
+
+@cache
+def _defaults() -> dict[Any, Any]:
+    return {name: value for name, value in mpl.rcParamsDefault.items() if name not in _OF_THE_PROCESS}

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from vibroimpact.quantity import certain, digits, fixed, multiple
+from vibroimpact.quantity import ALL_FIGURES, certain, certain_figures, column_texts, digits, fixed, multiple
 from vibroimpact.report.excerpt import Floats
 from vibroimpact.storage.result import Result
 
@@ -19,7 +19,8 @@ _MOST_ROWS, _FIRST, _LAST = 50, 45, 3
 _CONTACTS = {"contacts": "Contacts in the visit"}
 """Shown where a visit has more than one: the plate comes back to the sphere, or the sphere's own vibration does."""
 
-_SHOWN, _ALL = 6, 17  # significant figures in a table, and of a number
+_SHOWN = 6  # significant figures in a table
+_DIGITS = 5
 
 _SENSITIVITY = {"sensitivity": "Sensitivity"}
 """Shown where it takes digits away."""
@@ -60,6 +61,9 @@ _OF_VIBRATION = {
     "plate_strain_J": "Strain energy of the plate's modes, from where it rests",
     "plate_damping_J": "Lost in the damping of the plate's modes",
 }
+_LOSSES = ("contact_dissipated_J", "plastic_work_J", "sphere_damping_J", "plate_damping_J")
+_SLOW = 0.1  # of the approach speed: what leaves more slowly counts as that
+SUM, PUT_IN = "Sum", "Put in at the start"
 _UNITS = {"_m_s2": "m/s2", "_m_s": "m/s", "_s": "s", "_m": "m", "_N": "N", "_J": "J"}
 """Units by the ends of column names, the longest first."""
 
@@ -71,6 +75,15 @@ class Table(NamedTuple):
     head: list[list[str]]
     left_out: int
     tail: list[list[str]]
+
+
+class LedgerRow(NamedTuple):
+    """An entry of the ledger: its name, what it is, its energy and its part of the energy put in [%]."""
+
+    name: str
+    title: str
+    energy: str
+    part: str
 
 
 def impact_table(result: Result) -> Table:
@@ -90,12 +103,53 @@ def several_contacts(impacts: Mapping[str, Floats]) -> bool:
     return bool(np.max(impacts.get("contacts", np.ones(1)), initial=1.0) > 1.0)
 
 
-def ledger_table(result: Result) -> list[tuple[str, str, str]]:
-    """Return the ledger at the end: entry, energy [J] and part of the energy put in [%]."""
-    put_in = result.energy["input_J"]
-    entries = [(title, result.energy[name]) for name, title in {**_ENTRIES, **_OF_VIBRATION}.items() if name in result.energy]
-    lines = [*entries, ("Sum", sum(value for _, value in entries)), ("Put in at the start", put_in)]
-    return [(title, _beside(value, put_in, 6), _beside(100.0 * value / put_in, 100.0, 6)) for title, value in lines]
+def ledger_table(result: Result) -> tuple[str, list[LedgerRow]]:
+    """Return the unit of the ledger at the end and its entries, their sum and the energy put in, with the digits that are certain."""
+    put_in, names = result.energy["input_J"], {**_ENTRIES, **_OF_VIBRATION}
+    scale = multiple("J", put_in)
+    values = {name: result.energy[name] for name in names if name in result.energy}
+    figures = {name: _certain_of(name, result) for name in values}
+    values |= {SUM: sum(values.values()), PUT_IN: put_in}
+
+    def shown(name: str, value: float, whole: float) -> str:
+        return certain(_beside(value, whole, 6), value, figures.get(name, ALL_FIGURES))
+
+    rows = []
+    for name, value in values.items():
+        energy, part = shown(name, value / scale.size, put_in / scale.size), shown(name, 100.0 * value / put_in, 100.0)
+        rows.append(LedgerRow(name, names.get(name, name), energy, part))
+    return scale.unit, rows
+
+
+def energy_text(result: Result, *entries: str) -> str:
+    """Return the sum of entries of the ledger, with its unit and its part of the energy put in, in the digits that are certain."""
+    value, put_in = sum(result.energy[entry] for entry in entries), result.energy["input_J"]
+    figures = min(_certain_of(entry, result) for entry in entries)
+    scale, part = multiple("J", value), 100.0 * value / put_in
+    percent = certain(fixed(part, 1), part, figures)
+    return f"{certain(digits(value / scale.size), value / scale.size, figures)}\u00a0{scale.unit} ({percent} %)"
+
+
+def _certain_of(entry: str, result: Result) -> int:
+    """Return how many significant figures of an entry of the ledger are certain.
+
+    Energy goes with the square of the speed, and changes twice as much. What is left in motion or stored is as certain as the speed
+    after the last impact, and no more than the energy that the sphere left with; what was lost is as certain as the impacts that lost
+    it, each by its part.
+    """
+    impacts, change = result.impacts, np.minimum(np.nan_to_num(result.change_by_impact, nan=1.0), 1.0)
+    if not len(change) or not change[-1] > 0.0:
+        return ALL_FIGURES
+    lost = np.abs(impacts["energy_lost_J"])
+    if entry in _LOSSES and lost.sum() > 0.0:
+        return int(certain_figures(2.0 * change @ lost / lost.sum()))
+    first, closing, separation = (
+        float(impacts[name][place]) for name, place in (("approach_speed_m_s", 0), ("approach_speed_m_s", -1), ("separation_speed_m_s", -1))
+    )
+    # the change of a slow speed is told as a part of a tenth of that of approach
+    energy = result.energy["input_J"] * separation * max(separation, _SLOW * closing) / first**2
+    value = abs(result.energy[entry])
+    return int(certain_figures(2.0 * change[-1] * max(1.0, energy / value if value > 0.0 else 1.0)))
 
 
 def _beside(value: float, whole: float, significant: int) -> str:
@@ -108,28 +162,31 @@ def _beside(value: float, whole: float, significant: int) -> str:
     return fixed(value, decimals) if abs(value) >= 100.0 * 10.0**-decimals else digits(value, 3)
 
 
-def certain_figures(change: Floats, name: str = "max_force_N") -> NDArray[np.intp]:
-    """Return how many significant figures of a column of the impact table are certain; the last may be off by three.
+def figures_of(name: str, change: Floats) -> NDArray[np.intp]:
+    """Return how many significant figures are certain of a column of the impact table, for each impact.
 
     Parameters
     ----------
-    change : array, shape (impacts,)
-        Relative change of each impact [-] for one in the drop that nobody can rule out.
     name : str
         The column.
+    change : array, shape (impacts,)
+        Relative change of each impact [-] for one in the drop that nobody can rule out.
 
     Examples
     --------
-    >>> certain_figures(np.array([0.0, 1e-9, 0.003, 0.12, 0.5])).tolist()
-    [17, 9, 3, 1, 0]
+    >>> figures_of("max_force_N", np.array([0.0, 0.003])).tolist(), figures_of("time_s", np.array([0.0, 0.003])).tolist()
+    ([17, 3], [17, 17])
     """
     if name in _EXACT:
-        return np.full(len(change), _ALL)
-    if name in _ARRIVAL:
-        change = np.concatenate([change[:1], change[:-1]])
-    with np.errstate(divide="ignore", invalid="ignore"):
-        figures = np.floor(0.5 - np.log10(np.nan_to_num(change, nan=np.inf)))
-    return np.clip(figures, 0, _ALL).astype(np.intp)
+        return np.full(len(change), ALL_FIGURES)
+    return certain_figures(np.concatenate([change[:1], change[:-1]]) if name in _ARRIVAL else change)
+
+
+def entry_text(result: Result, impact: int, name: str, unit: str) -> str:
+    """Return an entry of the impact table with its unit, in the digits that it has where the drop is sensitive."""
+    value, figures = float(result.impacts[name][impact]), int(figures_of(name, result.change_by_impact)[impact])
+    best = multiple(unit, value)
+    return f"{certain(digits(value / best.size), value / best.size, figures)}\u00a0{best.unit}".rstrip("\u00a0")
 
 
 def takes_digits(change: Floats) -> bool:
@@ -144,17 +201,17 @@ def column(name: str, values: Floats, change: Floats | None = None) -> tuple[str
     if name == "sensitivity":
         return "", [digits(value, 2) for value in values]
     unit, values, cells = _cells(name, values)
-    figures = certain_figures(np.zeros(len(values)) if change is None else change, name).tolist()
+    figures = figures_of(name, np.zeros(len(values)) if change is None else change).tolist()
     return unit, [certain(cell, value, number) for cell, value, number in zip(cells, values, figures, strict=True)]
 
 
 def _cells(name: str, values: Floats) -> tuple[str, Floats, list[str]]:
     """Return the unit in which a column is shown, its values in it, and these as texts."""
     if name.startswith("restitution"):
-        return "", values, [fixed(value, 4) for value in values]
+        return "", values, [fixed(value, _DIGITS) for value in values]
     scale = multiple(next(unit for end, unit in _UNITS.items() if name.endswith(end)), values)
     values = values / scale.size
     if name == "time_s":
         # times are compared with each other: a microsecond counts, however late it is
         return scale.unit, values, [fixed(value, 6 if scale.unit == "s" else 3) for value in values]
-    return scale.unit, values, [digits(value) for value in values]
+    return scale.unit, values, column_texts(values, _DIGITS)

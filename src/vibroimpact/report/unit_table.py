@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from rich.console import Group, RenderableType
-from rich.markup import escape
-from rich.table import Table
 from rich.text import Text
 
 from vibroimpact.errors import InputError
+from vibroimpact.report.terminal_table import Column, TerminalTable
 from vibroimpact.units import convert_units, dimension_of, unit_text
 
 _DIGITS = 10
@@ -69,12 +68,9 @@ def unit_table(value: float, unit: str) -> RenderableType:
     InputError
         As `in_unit_systems`.
     """
-    table = Table(box=None, padding=(0, 1), header_style="bold")
-    table.add_column("unit system", no_wrap=True)
-    table.add_column("number", justify="right", no_wrap=True)
-    table.add_column("unit", no_wrap=True)
-    for name, number, there in in_unit_systems(value, unit):
-        table.add_row(escape(name), number_text(number), escape(there))
+    names, values, there = zip(*in_unit_systems(value, unit), strict=True)
+    shown = [number_text(one) for one in values]
+    table = TerminalTable([Column("unit system", names, words=True), Column("number", shown), Column("unit", there, words=True)])
     return Group(Text(f"{number_text(value)} {unit}", style="bold"), table, *_trap(unit))
 
 

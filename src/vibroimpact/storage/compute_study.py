@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import json
+import os
 import shutil
 from collections.abc import Callable
 from functools import partial
@@ -16,8 +16,9 @@ from vibroimpact.cases.compute_points import compute_points
 from vibroimpact.cases.coupling import carried_modes
 from vibroimpact.cases.sweep import Sweep
 from vibroimpact.errors import ComputationError, InputError
+from vibroimpact.storage.check_sums import sealed
 from vibroimpact.storage.folder import SUMMARY, new_folder
-from vibroimpact.storage.study import DATASET, STUDY, is_study
+from vibroimpact.storage.study import DATASET, STUDY, clear_study, is_study, settle_study
 from vibroimpact.storage.study_dataset import write_dataset
 from vibroimpact.storage.study_table import MOST_ROWS, write_drops
 from vibroimpact.storage.study_toml import study_toml
@@ -80,11 +81,13 @@ def compute_study(
     folder = Path(directory)
     if scheduler is not None:
         check_scheduler(scheduler)
-    if resume:
-        _check_begun(folder, sweep, memory)
+    settle_study(folder)
+    if resume and is_study(folder):
+        _see_that_there_is_a_ledger(folder, sweep, memory)
     else:
-        _begin(folder, sweep, memory, force=force)
+        _begin(folder, sweep, memory, force=force and not resume)
     with open_ledger(folder) as ledger:
+        clear_study(folder)
         _check_same(ledger, folder, sweep)
         if not (folder / DATASET).is_file():
             _forget_damaged(ledger, folder, tell)
@@ -108,13 +111,11 @@ def _begin(folder: Path, sweep: Sweep, memory: float, *, force: bool) -> None:
         (working / FOLDER).mkdir()
         make_ledger(working, _facts(sweep), sweep.size, chunk_size(sweep, memory))
         summary = {"name": sweep.name, "version": __version__, "study": {"design": sweep.section.design, "drops": sweep.size}}
-        (working / SUMMARY).write_text(json.dumps(summary, indent=2) + "\n", encoding="utf-8")
+        (working / SUMMARY).write_text(sealed(summary), encoding="utf-8")
 
 
-def _check_begun(folder: Path, sweep: Sweep, memory: float) -> None:
-    """Raise unless a study was begun in a folder; make its ledger anew if that alone is missing."""
-    if not is_study(folder):
-        raise InputError(f"{folder}: no study was begun in this folder; leave out --resume to begin one")
+def _see_that_there_is_a_ledger(folder: Path, sweep: Sweep, memory: float) -> None:
+    """Make the ledger of a study that was begun anew if it is missing."""
     if (folder / LEDGER).is_file():
         return
     make_ledger(folder, _facts(sweep), sweep.size, chunk_size(sweep, memory))
@@ -179,9 +180,8 @@ def _assemble(folder: Path, ledger: Ledger, sweep: Sweep) -> None:
             write_drops(folder, chunks, sweep.digest, sweep.plan, sweep.meanings)
         write_dataset(folder, sweep.name, chunks, sweep.digest, sweep.plan, sweep.whole_table, sweep.meanings, rates)
     except OSError as error:
-        for part in folder.glob("*.part"):
-            part.unlink()
-        words = f"the results can't be put together: {error.strerror or error}; see to the disk, then go on with --resume"
+        why = os.strerror(error.errno) if error.errno else str(error)
+        words = f"the results can't be put together: {why}; see to the disk, then go on with --resume"
         raise ComputationError(f"{folder}: {words}") from None
 
 

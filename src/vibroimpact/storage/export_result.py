@@ -4,14 +4,18 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Mapping
+from functools import partial
 from os import PathLike
 from pathlib import Path
-from tempfile import TemporaryDirectory
 
 from vibroimpact.errors import InputError
 from vibroimpact.exchange.drop import Drop
 from vibroimpact.exchange.export_format import ExportFormat, find_export_format
 from vibroimpact.storage.exported import drop_of
+from vibroimpact.writing.file import write_file
+from vibroimpact.writing.folder import whole_folder
+from vibroimpact.writing.into_folder import write_into
+from vibroimpact.writing.settle import settle
 
 _MOST_NAMED = 3
 
@@ -53,7 +57,8 @@ def export_result(
     ...     [file.name for file in export_result(Path(place, "drop"), "csv")]
     ['impacts.csv', 'history.csv']
     """
-    found, drop = find_export_format(format), drop_of(directory)
+    found = find_export_format(format)
+    drop = found.told(drop_of(directory))
     return save_export(drop, found, default_output(directory, format) if output is None else Path(output), force=force)
 
 
@@ -71,7 +76,7 @@ def default_output(directory: str | PathLike[str], format: str) -> Path:
 
 
 def save_export(drop: Drop, format: ExportFormat, output: Path, *, force: bool = False) -> list[Path]:
-    """Write a drop; as `export_result`.
+    """Write a drop that the format's program can be told of; as `export_result`.
 
     Raises
     ------
@@ -79,6 +84,7 @@ def save_export(drop: Drop, format: ExportFormat, output: Path, *, force: bool =
         As `export_result`.
     """
     contents = format.write(drop)
+    settle(output)
     targets = _targets(contents, output)
     _check_free(targets.values(), force=force)
     try:
@@ -110,18 +116,20 @@ def _check_free(targets: Iterable[Path], *, force: bool) -> None:
 
 
 def _write(contents: Mapping[str, bytes], targets: Mapping[str, Path], output: Path) -> None:
-    """Write all files beside where they go, and put them in place when they are whole; a new folder appears with all of them."""
+    """Write one file, a new folder, or files into a folder that is there: all of them or none."""
     output.parent.mkdir(parents=True, exist_ok=True)
-    with TemporaryDirectory(prefix=f".{output.name}.", dir=output.parent) as beside:
-        whole = Path(beside, "export")
-        whole.mkdir()
-        for name, content in contents.items():
-            file = whole / name
-            file.parent.mkdir(parents=True, exist_ok=True)
-            file.write_bytes(content)
-        if not output.exists() and all(target != output for target in targets.values()):
-            whole.rename(output)
-            return
-        for name, target in targets.items():
-            target.parent.mkdir(parents=True, exist_ok=True)
-            os.replace(whole / name, target)
+    if list(targets.values()) == [output]:
+        write_file(output, *contents.values())
+        return
+    if output.exists():
+        write_into(output, partial(_fill, contents))
+        return
+    with whole_folder(output, partial(_check_free, targets.values(), force=False)) as working:
+        _fill(contents, working)
+
+
+def _fill(contents: Mapping[str, bytes], folder: Path) -> None:
+    for name, content in contents.items():
+        file = folder / name
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_bytes(content)

@@ -2,20 +2,22 @@
 
 from __future__ import annotations
 
-import json
 from os import PathLike
 from pathlib import Path
 from typing import Any
 
 from vibroimpact.calibration.speed_function import SpeedFunction
-from vibroimpact.cases.build import contact_laws_of, contact_pair, elastic_names
+from vibroimpact.cases.build import contact_laws_of, contact_pair, deforms, elastic_names, rigid_problem
 from vibroimpact.cases.reader import load_case, read_case
 from vibroimpact.cases.schema import Case
 from vibroimpact.errors import InputError
 from vibroimpact.exchange.drop import Drop
 from vibroimpact.storage.calibration_file import CALIBRATION
+from vibroimpact.storage.check_sums import CHECK_SUMS, check_file, read_sealed
 from vibroimpact.storage.folder import read_result
+from vibroimpact.storage.hdf5 import why
 from vibroimpact.storage.result import Result, result_of
+from vibroimpact.writing.settle import settle
 
 
 def drop_of(directory: str | PathLike[str]) -> Drop:
@@ -32,6 +34,7 @@ def drop_of(directory: str | PathLike[str]) -> Drop:
         If it is neither, a file of it is missing or damaged, or it is the result of a problem made in Python, which has no case.
     """
     folder = Path(directory)
+    settle(folder)
     if (folder / CALIBRATION).is_file():
         return _of_calibration(folder)
     result = read_result(folder)
@@ -44,7 +47,7 @@ def drop_of(directory: str | PathLike[str]) -> Drop:
 
 
 def drop_of_result(result: Result, case: Case, function: tuple[str, SpeedFunction] | None = None) -> Drop:
-    """Return a run as a drop.
+    """Return a run as a drop, with the same between rigid bodies where the run is not one of them, or not one under the function.
 
     Parameters
     ----------
@@ -73,7 +76,9 @@ def drop_of_result(result: Result, case: Case, function: tuple[str, SpeedFunctio
         laws=contact_laws_of(case),
         function=function,
         elastic=tuple(elastic_names(case)),
+        local_element=case.contact.local.local_compliance == "identified",
         finite_sphere=case.contact.local.finite_sphere,
+        rigid=rigid_problem(case) if deforms(case) or function is not None else None,
         end_time=float(result.history["time_s"][-1]),
         impacts=result.impacts,
         history=result.history,
@@ -86,14 +91,17 @@ def _of_calibration(folder: Path) -> Drop:
     """Return the drop of a calibration: its case, simulated, and the function that was fitted."""
     from vibroimpact.dynamics.simulate import simulate
 
-    file = folder / CALIBRATION
+    name = CALIBRATION
     try:
-        function = _fitted(json.loads(file.read_text(encoding="utf-8")))
+        table = read_sealed(folder / name)
+        function = _fitted(table)
+        name = "case.toml"
+        check_file(folder / name, table.get(CHECK_SUMS, {}).get(name))
     except KeyError as error:
-        raise InputError(f"{file}: the file is damaged: it has no {error}") from None
-    except (OSError, ValueError, TypeError) as error:
-        raise InputError(f"{file}: the file is missing or damaged: {error}") from None
-    case = load_case(folder / "case.toml")
+        raise InputError(f"{folder / name}: the file is damaged: it has no {error}; make the calibration anew") from None
+    except (OSError, ValueError, TypeError, AttributeError) as error:
+        raise InputError(f"{folder / name}: the file is missing or damaged: {why(error)}; make the calibration anew") from None
+    case = load_case(folder / name)
     return drop_of_result(result_of(simulate(case.to_problem())), case, function)
 
 

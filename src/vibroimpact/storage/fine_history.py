@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from vibroimpact.dynamics.history_grid import MOST_POINTS
+
 if TYPE_CHECKING:
     from vibroimpact.dynamics.response import Response
 
@@ -22,7 +24,7 @@ _MOST = 4000
 
 def fine_history(response: Response) -> dict[str, Floats]:
     """Return the history of one drop, fine enough to find the peaks of the plate's motion and to enlarge the first visits."""
-    history = response.history()
+    history = response.history(MOST_POINTS)
     impacts, plate, sphere = response.impacts, response.problem.plate.modes, response.problem.sphere.modes
     times = []
     for touch, duration in zip(impacts["time_s"][:_VISITS], impacts["duration_s"][:_VISITS], strict=True):

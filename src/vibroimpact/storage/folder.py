@@ -1,30 +1,39 @@
-"""The result folder: written beside and renamed, so that it is there whole or not at all."""
+"""The result folder: there whole or not at all, and read back."""
 
 from __future__ import annotations
 
-import json
 import math
 import os
-import shutil
-import tempfile
+import shlex
 import tomllib
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Iterator, Mapping
+from contextlib import ExitStack, contextmanager
+from functools import partial
 from os import PathLike
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import tomli_w
 
 from vibroimpact.dynamics.columns import IMPACT_COLUMNS, history_columns, impact_columns
 from vibroimpact.errors import InputError
+from vibroimpact.storage.check_sums import CHECK_SUMS, check_file, file_digest, read_sealed, sealed
+from vibroimpact.storage.damaged_part import check_hdf5
+from vibroimpact.storage.hdf5 import why
 from vibroimpact.storage.netcdf import read_groups, write_groups
 from vibroimpact.storage.result import Result
 from vibroimpact.storage.signal_csv import write_signal_files
 from vibroimpact.storage.summary import summary_of
+from vibroimpact.storage.summary_types import check_types
 from vibroimpact.storage.tables import impact_rows, write_csv
+from vibroimpact.writing.folder import whole_folder
+from vibroimpact.writing.settle import settle
 
-SUMMARY = "summary.json"
+SUMMARY, CASE, DATA = "summary.json", "case.toml", "result.nc"
+
+LONGEST_FOLDER_NAME = 200
+"""Bytes; most disks take 255, and while it is written a folder has a longer name."""
 
 
 _OTHER_FOLDERS = {
@@ -55,23 +64,17 @@ def new_folder(directory: str | PathLike[str], *, force: bool = False) -> Iterat
     """
     target = Path(directory)
     check_free(target, force=force)
-    try:
-        target.parent.mkdir(parents=True, exist_ok=True)
-        working = Path(tempfile.mkdtemp(prefix=f".{target.name}.", dir=target.parent))
-    except OSError as error:
-        raise InputError(f"{target}: the folder can't be made: {error.strerror}") from None
-    try:
-        working.chmod(0o777 & ~_umask())
+    with ExitStack() as stack:
+        try:
+            target.parent.mkdir(parents=True, exist_ok=True)
+            working = stack.enter_context(whole_folder(target, partial(check_free, target, force=force)))
+        except OSError as error:
+            raise InputError(f"{target}: the folder can't be made: {error.strerror}") from None
         yield working
-        check_free(target, force=force)  # another process may have been quicker
-        _put_in_place(working, target)
-    except BaseException:
-        shutil.rmtree(working, ignore_errors=True)
-        raise
 
 
 def check_free(directory: str | PathLike[str], *, force: bool = False) -> None:
-    """Raise unless a result folder may be written to `directory`.
+    """Raise unless a result folder may be written to `directory`; what a process that died has left of it is put right.
 
     Raises
     ------
@@ -79,6 +82,13 @@ def check_free(directory: str | PathLike[str], *, force: bool = False) -> None:
         If something is there that may not be replaced.
     """
     target = Path(directory)
+    if "\0" in str(target):
+        raise InputError(f"{target}: a path can't have the character NUL")
+    if len(os.fsencode(target.name)) > LONGEST_FOLDER_NAME:
+        raise InputError(f"{target}: the name of a folder may have {LONGEST_FOLDER_NAME} letters at most")
+    if target.absolute() == Path(target.absolute().anchor):
+        raise InputError(f"{target}: this is where all files are; name a folder inside it")
+    settle(target)
     if target.resolve() == Path.cwd():
         raise InputError(f"{target}: this is the folder you stand in; name one inside it")
     above = next(folder for folder in target.absolute().parents if folder.exists())
@@ -98,10 +108,11 @@ def check_free(directory: str | PathLike[str], *, force: bool = False) -> None:
 def write_result(result: Result, directory: Path) -> None:
     """Write the data files of a result into a folder: case.toml, impacts.csv, summary.json, result.nc, and short signals as CSV."""
     if result.case:  # a problem made in Python has no case; its provenance says what it was
-        (directory / "case.toml").write_text(tomli_w.dumps(result.case), encoding="utf-8")
+        (directory / CASE).write_text(tomli_w.dumps(result.case), encoding="utf-8")
     write_csv(impact_rows(result.impacts), list(impact_columns(result.impacts)), directory / "impacts.csv")
-    (directory / SUMMARY).write_text(json.dumps(summary_of(result), indent=2, allow_nan=False) + "\n", encoding="utf-8")
-    write_groups(result, directory / "result.nc")
+    write_groups(result, directory / DATA)
+    check_sums = {name: file_digest(directory / name) for name in (CASE, DATA) if (directory / name).is_file()}
+    (directory / SUMMARY).write_text(sealed({**summary_of(result), CHECK_SUMS: check_sums}), encoding="utf-8")
     write_signal_files(result.signals, directory / "sensors")
 
 
@@ -114,60 +125,63 @@ def read_result(directory: str | PathLike[str]) -> Result:
         If it is not a result folder, or a file of it is missing or damaged.
     """
     folder = Path(directory)
+    settle(folder)
     if not (folder / SUMMARY).is_file():
         raise InputError(f"{folder}: this is not a result folder; it has no {SUMMARY}")
     name = SUMMARY
     try:
-        summary = json.loads((folder / name).read_text(encoding="utf-8"))
+        summary = read_sealed(folder / name)
         for key, words in _OTHER_FOLDERS.items():
             if key in summary:
                 raise InputError(f"{folder}: {words}")
-        name = "case.toml"
-        has_case = "problem" not in summary["provenance"]
-        case = tomllib.loads((folder / name).read_text(encoding="utf-8")) if has_case else {}
-        name = "result.nc"
-        groups = read_groups(folder / name)
-        missing = set(IMPACT_COLUMNS) - set(groups["impacts"])
-        if missing:
-            raise KeyError(f"no {', '.join(sorted(missing))}")
-        energy = {key: float(value) for key, value in groups["energy"].items()}
-        impacts = {key: np.atleast_1d(groups["impacts"][key]) for key in impact_columns(groups["impacts"])}
-        return Result(
-            case,
-            impacts,
-            {key: groups["history"][key] for key in history_columns(groups["history"])},
-            energy,
-            str(summary["status"]),
-            dict(summary["provenance"]),
-            dict(summary.get("deformation", {})),
-            {body: math.nan if value is None else float(value) for body, value in summary.get("truncation", {}).items()},
-            {body: dict(summary[body]) for body in ("sphere", "plate") if body in summary},
-            groups["sensors"],
-            groups["deflection"]["deflection"],
-        )
+        check_types(summary)
+        expected = summary.get(CHECK_SUMS, {})
+        name = CASE
+        case = {}
+        if "problem" not in summary["provenance"]:
+            check_file(folder / name, expected.get(name))
+            case = tomllib.loads((folder / name).read_text(encoding="utf-8"))
+        name = DATA
+        check_hdf5(folder / name, expected.get(name))
+        return _result(case, summary, read_groups(folder / name))
     except InputError:
         raise
-    except (OSError, ValueError, KeyError, TypeError) as error:
-        raise InputError(f"{folder / name}: the file is missing or damaged: {error}") from None
+    except Exception as error:  # of many kinds, as files are damaged in many ways
+        raise InputError(f"{folder / name}: the file is missing or damaged: {_why(error)}; {_anew(folder, name)}") from None
 
 
-def _put_in_place(working: Path, target: Path) -> None:
-    if not target.exists():
-        working.rename(target)
-        return
-    # the old folder goes aside first: at every moment one whole result is on disk
-    aside = Path(tempfile.mkdtemp(prefix=f".{target.name}.old.", dir=target.parent))
-    target.rename(aside / "result")
-    try:
-        working.rename(target)
-    except OSError:
-        (aside / "result").rename(target)
-        raise
-    finally:
-        shutil.rmtree(aside, ignore_errors=True)
+def _result(case: Mapping[str, Any], summary: Mapping[str, Any], groups: Mapping[str, Mapping[str, Any]]) -> Result:
+    missing = set(IMPACT_COLUMNS) - set(groups["impacts"])
+    if missing:
+        raise KeyError(f"no {', '.join(sorted(missing))}")
+    impacts = {key: np.atleast_1d(groups["impacts"][key]) for key in impact_columns(groups["impacts"])}
+    history = {key: groups["history"][key] for key in history_columns(groups["history"])}
+    for group, columns in (("impacts", impacts), ("history", history)):
+        if len({column.shape for column in columns.values()}) != 1:
+            raise ValueError(f"the columns of {group} are not of one length")
+    return Result(
+        case,
+        impacts,
+        history,
+        {key: float(value) for key, value in groups["energy"].items()},
+        summary["status"],
+        dict(summary["provenance"]),
+        dict(summary.get("deformation", {})),
+        {body: math.nan if value is None else float(value) for body, value in summary.get("truncation", {}).items()},
+        {body: dict(summary[body]) for body in ("sphere", "plate") if body in summary},
+        groups["sensors"],
+        groups["deflection"]["deflection"],
+    )
 
 
-def _umask() -> int:
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask
+def _why(error: Exception) -> str:
+    if isinstance(error, KeyError):
+        return f"it has no {error.args[0]}" if error.args and not str(error.args[0]).startswith("no ") else str(error.args[0])
+    return why(error)
+
+
+def _anew(folder: Path, name: str) -> str:
+    """Return what to do about a file of a result that is damaged."""
+    if name == CASE or not (folder / CASE).is_file():
+        return "make the result anew"
+    return f"make it anew with: vibroimpact run {shlex.quote(str(folder / CASE))} -o {shlex.quote(str(folder))} --force"

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
 
 import h5py
 import numpy as np
@@ -12,9 +11,7 @@ from vibroimpact.dynamics.recording import Signal
 from vibroimpact.dynamics.sensor import Sensor
 from vibroimpact.exchange.plain_names import plain_names
 from vibroimpact.storage.deflection import Deflection
-
-_PACKED: dict[str, Any] = {"compression": "gzip", "compression_opts": 1, "shuffle": True}
-"""For what is smooth: it gets several times smaller, in little time."""
+from vibroimpact.storage.hdf5 import PACKED, new_array, read_array
 
 
 def write_signals(file: h5py.File, signals: Mapping[str, Signal]) -> None:
@@ -29,10 +26,10 @@ def write_signals(file: h5py.File, signals: Mapping[str, Signal]) -> None:
         facts = ("relative_uncertainty", "peak_before_range_m_s2", "overload_time_s")
         for fact, value in zip(facts, (signal.uncertainty, signal.peak, signal.overload_time), strict=True):
             group.attrs[fact] = value
-        time = group.create_dataset("time_s", data=signal.time, **_PACKED)
+        time = new_array(group, "time_s", signal.time, **PACKED)
         time.make_scale("time_s")
         _tell(time, "s", "time since the start")
-        value = group.create_dataset("value", data=signal.value)
+        value = new_array(group, "value", signal.value)
         value.dims[0].attach_scale(time)
         _tell(value, sensor.unit, f"{sensor.quantity} that the sensor {name} reads")
 
@@ -46,7 +43,7 @@ def read_signals(file: h5py.File) -> dict[str, Signal]:
         corner = float(told["filter_corner_Hz"]) if "filter_corner_Hz" in told else None
         sensor = Sensor(name, told["quantity"], (x, y, z), float(told["rate_Hz"]), None, str(told.get("filter", "none")), corner)
         facts = (told.get("relative_uncertainty", np.nan), told.get("peak_before_range_m_s2", np.nan), told.get("overload_time_s", 0.0))
-        found[name] = Signal(sensor, np.asarray(group["time_s"]), np.asarray(group["value"]), *map(float, facts))
+        found[name] = Signal(sensor, read_array(group["time_s"]), read_array(group["value"]), *map(float, facts))
     return found
 
 
@@ -62,10 +59,10 @@ def write_deflection(file: h5py.File, deflection: Deflection | None) -> None:
         ("y_m", deflection.y, "m", "y on the plate"),
         ("x_m", deflection.x, "m", "x on the plate"),
     ):
-        scales.append(group.create_dataset(name, data=values))
+        scales.append(new_array(group, name, values, **PACKED))
         scales[-1].make_scale(name)
         _tell(scales[-1], unit, meaning)
-    height = group.create_dataset("deflection_m", data=deflection.height, **_PACKED)
+    height = new_array(group, "deflection_m", deflection.height, **PACKED)
     _tell(height, "m", "displacement of the plate's upper side, upwards")
     for dimension, scale in zip(height.dims, scales, strict=True):
         dimension.attach_scale(scale)
@@ -73,7 +70,7 @@ def write_deflection(file: h5py.File, deflection: Deflection | None) -> None:
         ("sphere_position_m", deflection.sphere_position, "height of the sphere's centre above the plate's upper surface at rest"),
         ("contact_deflection_m", deflection.contact_deflection, "displacement of the plate at the contact point, upwards"),
     ):
-        data = group.create_dataset(name, data=values)
+        data = new_array(group, name, values, **PACKED)
         data.dims[0].attach_scale(scales[0])
         _tell(data, "m", meaning)
 
@@ -84,7 +81,7 @@ def read_deflection(file: h5py.File) -> Deflection | None:
         return None
     group = file["deflection"]
     names = ("time_s", "x_m", "y_m", "deflection_m", "sphere_position_m", "contact_deflection_m")
-    time, x, y, height, position, contact = (np.asarray(group[name]) for name in names)
+    time, x, y, height, position, contact = (read_array(group[name]) for name in names)
     return Deflection(time, x, y, height, position, contact, (float(group.attrs["contact_x_m"]), float(group.attrs["contact_y_m"])))
 
 

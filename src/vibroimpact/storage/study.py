@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import shlex
 import tomllib
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from math import prod
 from os import PathLike
@@ -14,10 +17,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vibroimpact.errors import InputError
+from vibroimpact.storage.check_sums import CHECK_SUMS, read_sealed
+from vibroimpact.storage.damaged_part import check_hdf5
+from vibroimpact.storage.folder import SUMMARY
+from vibroimpact.storage.hdf5 import read_array, why
 from vibroimpact.storage.study_doubts import StudyDoubt, study_doubts
+from vibroimpact.studies.chunk_file import CHUNK
+from vibroimpact.studies.chunk_file import FOLDER as CHUNKS
 from vibroimpact.studies.columns import SIGNAL
-from vibroimpact.studies.ledger import LEDGER
+from vibroimpact.studies.ledger import LEDGER, is_held
 from vibroimpact.studies.plan import SAMPLE
+from vibroimpact.writing.leftovers import remove
+from vibroimpact.writing.settle import clear, settle
 
 DATASET, STUDY = "study.nc", "study.toml"
 FAILED_POINT, FAILED_REASON = "failed_point", "failed_reason"
@@ -78,7 +89,8 @@ class Study:
     @property
     def doubts(self) -> list[StudyDoubt]:
         """The limits of the theory that drops are beyond: how many drops, and the worst of them."""
-        return study_doubts(self.path)
+        with _damage_told(self.path):
+            return study_doubts(self.path)
 
     def values(self, name: str, *place: Any) -> NDArray[Any]:
         """Return a variable, or the part of it at a place as NumPy counts.
@@ -93,11 +105,11 @@ class Study:
         Raises
         ------
         InputError
-            If there is no such variable.
+            If there is no such variable, or it is damaged.
         """
         self._check(name)
-        with h5py.File(self.path, "r") as file:
-            return np.asarray(file[name][place or ()])
+        with _damage_told(self.path), h5py.File(self.path, "r") as file:
+            return read_array(file[name], place or ())
 
     def __repr__(self) -> str:
         return f"<Study of {self.size} drops: {', '.join(f'{name} {length}' for name, length in self.dimensions.items())}>"
@@ -117,9 +129,9 @@ class Study:
         """
         name = f"{SIGNAL}{sensor}"
         self._check(name)
-        with h5py.File(self.path, "r") as file:
+        with _damage_told(self.path), h5py.File(self.path, "r") as file:
             (scale,) = file[name].dims[len(self.dimensions)].values()
-            return np.asarray(scale[()], dtype=np.float64)
+            return np.asarray(read_array(scale), dtype=np.float64)
 
     def _check(self, name: str) -> None:
         if name not in self.shapes:
@@ -129,6 +141,29 @@ class Study:
 def is_study(folder: Path) -> bool:
     """Was a study begun in a folder?"""
     return (folder / STUDY).is_file() or (folder / LEDGER).is_file()
+
+
+def begun(folder: Path) -> bool:
+    """Was a study begun in a folder, and is it there, or can it be brought back?"""
+    settle(folder)
+    return is_study(folder)
+
+
+def settle_study(folder: Path) -> None:
+    """Put right what processes that died have left of a study; if one is at work on it, all stays as it is."""
+    settle(folder)
+    if (folder / LEDGER).is_file() and not is_held(folder):
+        clear_study(folder)
+        if (folder / DATASET).is_file():
+            remove(folder / CHUNKS)
+
+
+def clear_study(folder: Path) -> None:
+    """Clear what lies half written in a study that no process is at work on: whole are its chunks alone."""
+    clear(folder)
+    for path in (folder / CHUNKS).glob("*"):
+        if path.suffix != CHUNK:
+            remove(path)
 
 
 def read_study(directory: str | PathLike[str]) -> Study:
@@ -145,28 +180,58 @@ def read_study(directory: str | PathLike[str]) -> Study:
         If there is none, or it is damaged.
     """
     path = Path(directory) / DATASET
-    try:
-        with h5py.File(path, "r") as file:
-            table = tomllib.loads(str(file.attrs["study"]))
-            over = list(table["sweep"]["over"])  # in the order of the dimensions
-            is_grid = _design(table) == "grid"
-            coordinates = {key: _of_file(file[key]) for key in over}
-            dimensions = {key: len(coordinates[key]) for key in over} if is_grid else {SAMPLE: len(file[SAMPLE])}
-            names = [one for one in file if not file[one].is_scale and one not in (*over, FAILED_REASON)]
-            meanings = {one: (str(file[one].attrs["units"]), str(file[one].attrs["long_name"])) for one in [*over, *names]}
-            reasons = [reason.decode() for reason in file[FAILED_REASON][()]]
-            failures = dict(zip(file[FAILED_POINT][()].tolist(), reasons, strict=True))
-            shapes = {one: tuple(file[one].shape) for one in names}
-            name, version = str(file.attrs["title"]), str(file.attrs["version"])
-            return Study(path, name, table, version, dimensions, coordinates, meanings, shapes, failures)
-    except FileNotFoundError:
+    settle_study(path.parent)
+    if not path.is_file():
         folder = Path(directory)
         if not (folder / STUDY).is_file():
-            raise InputError(f"{folder}: this is not the folder of a study; it has no {DATASET}") from None
-        command = f"vibroimpact sweep {folder / STUDY} -o {folder} --resume"
-        raise InputError(f"{folder}: the study is not done; if nothing is at work on it, go on with: {command}") from None
-    except (OSError, KeyError, ValueError) as error:
-        raise InputError(f"{path}: the file is damaged: {error}") from None
+            raise InputError(f"{folder}: this is not the folder of a study; it has no {DATASET}")
+        command = f"vibroimpact sweep {shlex.quote(str(folder / STUDY))} -o {shlex.quote(str(folder))} --resume"
+        raise InputError(f"{folder}: the study is not done; if nothing is at work on it, go on with: {command}")
+    with _damage_told(path):
+        check_hdf5(path, _check_sum(path.parent))
+    with _damage_told(path), h5py.File(path, "r") as file:
+        table = tomllib.loads(str(file.attrs["study"]))
+        over = list(table["sweep"]["over"])  # in the order of the dimensions
+        is_grid = _design(table) == "grid"
+        coordinates = {key: _of_file(file[key]) for key in over}
+        dimensions = {key: len(coordinates[key]) for key in over} if is_grid else {SAMPLE: len(file[SAMPLE])}
+        names = [one for one in file if not file[one].is_scale and one not in (*over, FAILED_REASON)]
+        meanings = {one: (str(file[one].attrs["units"]), str(file[one].attrs["long_name"])) for one in [*over, *names]}
+        reasons = [reason.decode() for reason in read_array(file[FAILED_REASON])]
+        failures = dict(zip(read_array(file[FAILED_POINT]).tolist(), reasons, strict=True))
+        shapes = {one: tuple(file[one].shape) for one in names}
+        name, version = str(file.attrs["title"]), str(file.attrs["version"])
+        return Study(path, name, table, version, dimensions, coordinates, meanings, shapes, failures)
+
+
+def _check_sum(folder: Path) -> str | None:
+    """Return the check sum of the dataset; None of an earlier version, which wrote none.
+
+    Raises
+    ------
+    InputError
+        If the summary that holds it is damaged.
+    """
+    try:
+        return dict(read_sealed(folder / SUMMARY)[CHECK_SUMS])[DATASET] if (folder / SUMMARY).is_file() else None
+    except KeyError:
+        return None
+    except (OSError, ValueError, TypeError) as error:
+        words = "delete it, and the dataset is read without being checked"
+        raise InputError(f"{folder / SUMMARY}: the file is damaged: {why(error)}; {words}") from None
+
+
+@contextmanager
+def _damage_told(path: Path) -> Iterator[None]:
+    """Say of a dataset that can't be read that it is damaged."""
+    try:
+        yield
+    except InputError:
+        raise
+    except Exception as error:  # of many kinds, as files are damaged in many ways
+        folder = shlex.quote(str(path.parent))
+        command = f"vibroimpact sweep {shlex.quote(str(path.parent / STUDY))} -o {folder} --force"
+        raise InputError(f"{path}: the file is damaged: {why(error)}; make it anew with: {command}") from None
 
 
 def _design(table: dict[str, Any]) -> str:
@@ -175,5 +240,5 @@ def _design(table: dict[str, Any]) -> str:
 
 def _of_file(data: h5py.Dataset) -> NDArray[Any]:
     """Return the values of a coordinate: numbers, or texts."""
-    values = data[()]
+    values = read_array(data)
     return np.array([text.decode() for text in values], dtype=object) if values.dtype == object else np.asarray(values)

@@ -16,12 +16,16 @@ from numpy.typing import NDArray
 from vibroimpact._version import __version__
 from vibroimpact.cases.limit import limits
 from vibroimpact.dynamics.outcome import OUTCOMES, Outcome
+from vibroimpact.storage.check_sums import CHECK_SUMS, file_digest, read_sealed, sealed
+from vibroimpact.storage.folder import SUMMARY
+from vibroimpact.storage.hdf5 import CHECKED, FORMAT, chunk_shape, new_array
 from vibroimpact.storage.study import DATASET, FAILED_POINT, FAILED_REASON
 from vibroimpact.storage.study_toml import study_toml
 from vibroimpact.studies.chunk_file import chunk_layout, read_chunk
 from vibroimpact.studies.columns import DOUBTS, LIMIT, OUTCOME, SIGNAL
 from vibroimpact.studies.ledger import Span
 from vibroimpact.studies.plan import SAMPLE, Plan
+from vibroimpact.writing.file import new_file, write_file
 
 Meanings = Mapping[str, tuple[str, str]]
 """Unit and meaning of variables by their names."""
@@ -71,10 +75,28 @@ def write_dataset(
         for variable, ((_, *wide), dtype) in chunk_layout(folder, chunk.number).items():
             before = layout.get(variable, (wide, dtype))[0]
             layout[variable] = (tuple(map(max, before, wide)), dtype)
-    working = (folder / DATASET).with_suffix(".part")
-    columns = sum(values.nbytes for values in plan.columns.values()) + 8 * plan.size
-    _see_that_there_is_room(working, columns + plan.size * sum(prod(wide) * dtype.itemsize for wide, dtype in layout.values()))
-    with h5py.File(working, "w", track_order=True) as file:
+    with new_file(folder / DATASET) as working:  # last: once it is there, all is
+        columns = sum(values.nbytes for values in plan.columns.values()) + 8 * plan.size
+        _see_that_there_is_room(working, columns + plan.size * sum(prod(wide) * dtype.itemsize for wide, dtype in layout.values()))
+        _write(working, folder, name, chunks, study, plan, table, meanings, rates, layout)
+        summary = {**read_sealed(folder / SUMMARY), CHECK_SUMS: {DATASET: file_digest(working)}}
+        write_file(folder / SUMMARY, sealed(summary).encode())  # before the dataset is there: it is never without
+
+
+def _write(
+    path: Path,
+    folder: Path,
+    name: str,
+    chunks: Sequence[Span],
+    study: str,
+    plan: Plan,
+    table: Mapping[str, Any],
+    meanings: Meanings,
+    rates: Mapping[str, float],
+    layout: Mapping[str, tuple[tuple[int, ...], np.dtype[Any]]],
+) -> None:
+    """Write the dataset into a file; `layout` says of each variable the shape of one drop's values, and their type."""
+    with h5py.File(path, "w", track_order=True, locking=False, libver=FORMAT) as file:
         file.attrs["title"] = name
         file.attrs["version"] = __version__
         file.attrs["study"] = study_toml(table)
@@ -87,7 +109,6 @@ def write_dataset(
                 _put(data[variable], (), tuple(plan.dimensions.values()), chunk.first, values)
             failures |= {chunk.first + place: reason for place, reason in result.failures.items()}
         _write_failures(file, failures)
-    working.replace(folder / DATASET)  # last: once it is there, all is
 
 
 def as_text(value: Any) -> Any:
@@ -113,14 +134,21 @@ def _write_coordinates(file: h5py.File, plan: Plan, meanings: Meanings) -> list[
         if plan.is_grid:
             scales.append(_scale(file, key, shown, meanings[key]))
         else:
-            _described(file.create_dataset(key, data=shown, dtype=h5py.string_dtype() if texts else None), meanings[key], scales)
+            _described(_values(file, key, shown), meanings[key], scales)
     return scales
 
 
 def _scale(file: h5py.File, name: str, values: NDArray[Any], meaning: tuple[str, str]) -> h5py.Dataset:
-    data = file.create_dataset(name, data=values, dtype=h5py.string_dtype() if values.dtype == object else None)
+    data = _values(file, name, values)
     data.make_scale(name)
     return _described(data, meaning, [])
+
+
+def _values(file: h5py.File, name: str, values: NDArray[Any]) -> h5py.Dataset:
+    """Write numbers; or texts, for which HDF5 has no check sum, while that of the file holds them too."""
+    if values.dtype != object:
+        return new_array(file, name, values)
+    return file.create_dataset(name, data=values, dtype=h5py.string_dtype())
 
 
 def _described(data: h5py.Dataset, meaning: tuple[str, str], scales: Sequence[h5py.Dataset]) -> h5py.Dataset:
@@ -148,7 +176,9 @@ def _new_variable(
             file[_IMPACT] if _IMPACT in file else _scale(file, _IMPACT, np.arange(1, wide[0] + 1), ("1", "number of the impact, from 1"))
         )
     fill = np.nan if dtype.kind == "f" else Outcome.FAILED.code if name == OUTCOME else 0
-    data = file.create_dataset(name, shape=tuple(len(scale) for scale in own), dtype=dtype, fillvalue=fill)
+    shape = tuple(len(scale) for scale in own)
+    chunks = {"chunks": chunk_shape(shape, dtype.itemsize), **CHECKED} if prod(shape) else {}
+    data = file.create_dataset(name, shape=shape, dtype=dtype, fillvalue=fill, **chunks)
     if name == OUTCOME:
         data.attrs["flag_values"] = np.arange(len(OUTCOMES), dtype=dtype)
         data.attrs["flag_meanings"] = " ".join(outcome.value.replace(": ", "_").replace(" ", "_") for outcome in OUTCOMES)
@@ -183,5 +213,5 @@ def _put(data: h5py.Dataset, above: tuple[int, ...], shape: tuple[int, ...], fir
 
 def _write_failures(file: h5py.File, failures: Mapping[int, str]) -> None:
     points = _scale(file, FAILED_POINT, np.array(list(failures), dtype=np.int64), ("1", "number of a drop that failed, from 0"))
-    reasons = file.create_dataset(FAILED_REASON, data=np.array(list(failures.values()), dtype=object), dtype=h5py.string_dtype())
+    reasons = _values(file, FAILED_REASON, np.array(list(failures.values()), dtype=object))
     _described(reasons, ("1", "why it failed"), [points])

@@ -8,6 +8,7 @@ from typing import NamedTuple
 import h5py
 import numpy as np
 
+from vibroimpact.storage.hdf5 import read_array
 from vibroimpact.studies.columns import DOUBTS, LIMIT
 
 
@@ -43,11 +44,11 @@ def study_doubts(dataset: Path) -> list[StudyDoubt]:
     with h5py.File(dataset, "r") as file:
         if DOUBTS not in file:
             return []
-        beyond, found = file[DOUBTS][()].ravel(), []
+        beyond, found = read_array(file[DOUBTS]).ravel(), []
         for mask, limit in zip(file[DOUBTS].attrs["flag_masks"], str(file[DOUBTS].attrs["flag_meanings"]).split(), strict=True):
             doubted = (beyond & mask) != 0
             if doubted.any():
-                numbers = np.where(doubted, file[f"{LIMIT}{limit}"][()].ravel(), -np.inf)
+                numbers = np.where(doubted, read_array(file[f"{LIMIT}{limit}"]).ravel(), -np.inf)
                 worst = int(np.argmax(numbers))
                 found.append(StudyDoubt(limit, int(doubted.sum()), worst, float(numbers[worst])))
     return sorted(found, key=lambda one: -one.drops)

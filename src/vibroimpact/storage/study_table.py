@@ -17,6 +17,7 @@ from vibroimpact.studies.chunk_file import ChunkResult, chunk_layout, read_chunk
 from vibroimpact.studies.columns import DOUBTS, OUTCOME, PEAKS, SENSOR_PEAK
 from vibroimpact.studies.ledger import Span
 from vibroimpact.studies.plan import Plan
+from vibroimpact.writing.file import new_file
 
 TABLE = "drops.csv"
 MOST_ROWS = 1_000_000
@@ -39,14 +40,12 @@ def write_drops(folder: Path, chunks: Sequence[Span], study: str, plan: Plan, me
     kept = {name for chunk in chunks for name in chunk_layout(folder, chunk.number)}
     peaks = [name for name in meanings if name in kept and (name in PEAKS or name.endswith(SENSOR_PEAK))]
     keys = [key if meanings[key][0] == "1" else f"{key} [{meanings[key][0]}]" for key in plan.columns]
-    working = (folder / TABLE).with_suffix(".part")
-    with working.open("w", newline="", encoding="utf-8") as file:
+    with new_file(folder / TABLE) as working, working.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(["drop", *keys, *peaks, OUTCOME, DOUBTS, "reason"])
         for chunk in chunks:
             result = read_chunk(folder, chunk, study, {*peaks, OUTCOME, DOUBTS})
             writer.writerows(_rows(chunk, plan, result, peaks))
-    working.replace(folder / TABLE)
 
 
 def _rows(chunk: Span, plan: Plan, result: ChunkResult, peaks: Sequence[str]) -> Iterator[tuple[Any, ...]]:

@@ -50,7 +50,7 @@ def solid_plate_mesh(
     >>> solid_plate_mesh((0.52, 0.42, 0.008), 0.004, layers=2).number_of_elements
     27300
     """
-    if size[0] * size[1] / element_size**2 * layers > MOST_ELEMENTS:
+    if (size[0] / element_size) * (size[1] / element_size) * layers > MOST_ELEMENTS:
         raise InputError(f"elements of {element_size:g} m in {layers} layers would be more than {MOST_ELEMENTS}; make them larger")
     below = splits if lower_splits is None else lower_splits
     height = with_midpoints(split_at(np.linspace(-0.5 * size[2], 0.5 * size[2], layers + 1), below), 2)

@@ -15,8 +15,9 @@ MOST_ELEMENTS = 2_000_000
 """More than this are refused before they are made; no machine would find their modes."""
 
 _CORE = 0.5  # half the side of the square inside a disc, in radii
+_SMALLEST = 1e-5  # radius of a disc over the longer side; lines of a mesh that are nearer to one another are one
 _MARGIN = 1.5  # half the side of the square around a disc, in radii
-_CLOSEST = 1.15  # of the radius: how near to the centre of a disc an edge of the plate, or half way to another disc, may be
+CLOSEST = 1.15  # of the radius: how near to the centre of a disc an edge of the plate, or half way to another disc, may be
 
 _CROWDED = 0.5  # of a margin: nearer than this to another edge of elements there is none
 
@@ -78,8 +79,9 @@ def rectangle_blocks(
     >>> len(rectangle_blocks((1.0, 1.0), 0.1, 2, [Disc(0.0, 0.0, 0.1)]))
     17
     """
-    if size[0] * size[1] / element_size**2 > MOST_ELEMENTS:
-        raise InputError(f"elements of {element_size:g} m would be more than {MOST_ELEMENTS} on this plate; make them larger")
+    if (size[0] / element_size) * (size[1] / element_size) > MOST_ELEMENTS:
+        words = f"elements of {element_size:g} m would be more than {MOST_ELEMENTS} on this plate; make them larger"
+        raise InputError(words, "mesh.element_size")
     boxes = [_box(disc, size, discs) for disc in discs]
     breaks = []
     for axis in range(2):
@@ -100,15 +102,19 @@ def rectangle_blocks(
 def _box(disc: Disc, size: Sequence[float], discs: Sequence[Disc]) -> tuple[tuple[float, float], tuple[float, float]]:
     """Return the box around a disc, as x and y from and to: clear of other discs, and no sliver along the edge."""
     said = f"the round support at ({disc.x:g}, {disc.y:g}) m, radius {disc.radius:g} m,"
+    if disc.radius < _SMALLEST * max(size[:2]):
+        least = f"{_SMALLEST * max(size[:2]):g} m"
+        raise InputError(f"{said} is too small for a plate of {size[0]:g} m x {size[1]:g} m; take a point, or a radius of at least {least}")
     sides = []
     for at, length, axis in ((disc.x, size[0], "x"), (disc.y, size[1], "y")):
         ends = []
         for edge in (-0.5 * length, 0.5 * length):
             room = (edge - at) * (1.0 if edge > 0.0 else -1.0)
-            if room < _CLOSEST * disc.radius:
+            if room < CLOSEST * disc.radius:
                 raise InputError(
                     f"{said} does not lie wholly on the plate, which reaches from {-0.5 * length:g} to {0.5 * length:g} m along {axis}; "
-                    "between it and the edge must be at least 0.15 radii"
+                    "between it and the edge must be at least 0.15 radii",
+                    "supports",
                 )
             ends.append(edge)
         sides.append((ends[0], ends[1]))
@@ -117,8 +123,8 @@ def _box(disc: Disc, size: Sequence[float], discs: Sequence[Disc]) -> tuple[tupl
         apart = max(abs(other.x - disc.x), abs(other.y - disc.y))
         if other is not disc:
             reach = min(reach, apart * disc.radius / (disc.radius + other.radius))
-    if reach < _CLOSEST * disc.radius:
-        raise InputError(f"{said} is too near to another one; between them must be at least 0.3 radii")
+    if reach < CLOSEST * disc.radius:
+        raise InputError(f"{said} is too near to another one; between them must be at least 0.3 radii", "supports")
     for index, at in enumerate((disc.x, disc.y)):
         low, high = sides[index]
         near = reach + 0.5 * disc.radius  # no sliver along the edge

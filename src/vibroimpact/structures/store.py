@@ -7,9 +7,9 @@ import hashlib
 import json
 import math
 import os
-import tempfile
 import zlib
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import cache
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -20,6 +20,8 @@ from vibroimpact.errors import InputError
 from vibroimpact.structures.geometry import MassProperties
 from vibroimpact.structures.mesh import ElementBlock, Mesh
 from vibroimpact.structures.modal_model import ModalModel
+from vibroimpact.writing.file import write_file
+from vibroimpact.writing.settle import clear
 
 FORMAT = 2
 """Counts up when what is stored, or how it is computed, changes."""
@@ -105,6 +107,7 @@ def load_entry(key: str, kind: str, read: Callable[[Mapping[str, Any]], Content]
         Makes the content of its arrays.
     """
     path = _path(key, kind)
+    _clear_once(store_folder())
     try:
         content = read(_unpacked(path.read_bytes()))
         os.utime(path)  # it was used just now
@@ -127,14 +130,7 @@ def _put(key: str, kind: str, pieces: Sequence[bytes]) -> str:
     folder = store_folder()
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        handle, name = tempfile.mkstemp(prefix=f".{key}.", dir=folder)
-        try:
-            with os.fdopen(handle, "wb") as file:
-                file.writelines(pieces)
-            os.replace(name, _path(key, kind))
-        except BaseException:
-            Path(name).unlink(missing_ok=True)
-            raise
+        write_file(_path(key, kind), pieces)
         _make_room(sum(map(len, pieces)))
     except OSError as error:
         return f"the {kind} can't be kept in {folder} ({error.strerror}) and will be computed again next time"
@@ -233,6 +229,12 @@ def clear_store() -> int:
     for path in found:
         path.unlink(missing_ok=True)
     return len(found)
+
+
+@cache
+def _clear_once(folder: Path) -> None:
+    """Clear what processes that died have left in the store, once in the life of this one."""
+    clear(folder)
 
 
 _written = [math.inf]  # bytes, since this process looked

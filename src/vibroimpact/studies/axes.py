@@ -23,6 +23,9 @@ class Axis(Protocol):
     def is_random(self) -> bool:
         """Is it a distribution, rather than values that were chosen?"""
 
+    def __len__(self) -> int:
+        """Return how many values it has in a grid."""
+
     def levels(self) -> Values:
         """Return its values in a grid."""
 
@@ -54,6 +57,9 @@ class Listed:
     def is_random(self) -> bool:
         """They were chosen."""
         return False
+
+    def __len__(self) -> int:
+        return len(self.values)
 
     def levels(self) -> Values:
         """Return the values: floats or whole numbers if all are, else as they are."""
@@ -91,6 +97,9 @@ class Spaced:
     number: int
     scale: Literal["linear", "log"] = "linear"
     is_random: bool = False
+
+    def __len__(self) -> int:
+        return self.number
 
     def levels(self) -> Values:
         """Return the values, both ends among them."""
@@ -164,6 +173,9 @@ class Normal:
             ends = [math.log(end) if end > 0.0 else -math.inf for end in ends]
         low, high = (float(ndtr((end - middle) / spread)) for end in ends)
         return low, high
+
+    def __len__(self) -> int:
+        return self.number
 
     def levels(self) -> Values:
         """Return the middles of parts that are equally likely."""

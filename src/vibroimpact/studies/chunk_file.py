@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from hashlib import sha256
@@ -16,8 +15,10 @@ from numpy.typing import NDArray
 
 from vibroimpact.errors import ComputationError
 from vibroimpact.studies.ledger import Span
+from vibroimpact.writing.file import write_file
 
-FOLDER = "chunks"
+FOLDER, CHUNK = "chunks", ".h5"
+"""Where chunks are in the folder of a study, and how their names end."""
 
 
 @dataclass(frozen=True)
@@ -38,7 +39,7 @@ class ChunkResult:
 
 def chunk_path(folder: Path, number: int) -> Path:
     """Return where a chunk of a study is kept."""
-    return folder / FOLDER / f"{number:06d}.h5"
+    return folder / FOLDER / f"{number:06d}{CHUNK}"
 
 
 def write_chunk(folder: Path, chunk: Span, result: ChunkResult, study: str) -> str:
@@ -61,25 +62,20 @@ def write_chunk(folder: Path, chunk: Span, result: ChunkResult, study: str) -> s
         If there is no room for it.
     """
     memory = BytesIO()
-    with h5py.File(memory, "w") as file:
+    with h5py.File(memory, "w", libver=("v110", "v110")) as file:  # whose headers have check sums
         file.attrs["study"], file.attrs["first"], file.attrs["size"] = study, chunk.first, chunk.size
         file.create_group("arrays")  # there also if nothing came of any drop
         for name, values in result.arrays.items():
             checked = {"fletcher32": True} if values.size else {}  # so that damage shows when it is read, also without a ledger
             file.create_dataset(f"arrays/{name}", data=values, **checked)
-        file.create_dataset("failures/place", data=np.array(list(result.failures), dtype=np.int64))
-        file.create_dataset("failures/reason", data=np.array(list(result.failures.values()), dtype=object), dtype=h5py.string_dtype())
+        reasons = [reason.encode() for reason in result.failures.values()]
+        for name, given in (("place", np.array(list(result.failures), dtype=np.int64)), ("reason", np.array(reasons, dtype=bytes))):
+            file.create_dataset(f"failures/{name}", data=given, **({"fletcher32": True} if reasons else {}))
     data, target = memory.getvalue(), chunk_path(folder, chunk.number)
-    working = target.with_suffix(".part")
     try:
         target.parent.mkdir(exist_ok=True)
-        with working.open("wb") as out:
-            out.write(data)
-            out.flush()
-            os.fsync(out.fileno())
-        working.replace(target)
+        write_file(target, data, durable=True)
     except OSError as error:
-        working.unlink(missing_ok=True)
         words = "see to the disk, then go on with --resume; the chunks that are done stay"
         raise ComputationError(f"{target}: the chunk can't be written: {error.strerror}; {words}") from None
     return sha256(data).hexdigest()
@@ -122,6 +118,7 @@ def read_chunk(folder: Path, chunk: Span, study: str, names: Collection[str] | N
         told = (file.attrs["study"], file.attrs["first"], file.attrs["size"])
         if told != (study, chunk.first, chunk.size):
             raise ValueError("it is of another study, or has other drops")
-        arrays = {name: np.asarray(values) for name, values in file["arrays"].items() if names is None or name in names}
+        # [()], for np.asarray makes an object of a dataset that can't be read
+        arrays = {name: np.asarray(values[()]) for name, values in file["arrays"].items() if names is None or name in names}
         reasons = [reason.decode() for reason in file["failures/reason"][()]]
         return ChunkResult(arrays, dict(zip(file["failures/place"][()].tolist(), reasons, strict=True)))

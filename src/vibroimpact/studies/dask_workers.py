@@ -15,7 +15,7 @@ from vibroimpact.studies.workers import Crew, Setup
 LOCAL = "local"
 """Instead of an address: a cluster that is started for the study."""
 
-_PATIENCE = 10  # seconds to wait for a scheduler
+_PATIENCE = 30  # seconds to wait for a scheduler: its machine may be busy
 
 
 def check_scheduler(address: str) -> None:
@@ -58,7 +58,9 @@ def dask_workers(address: str, number: int, setup: Setup) -> Iterator[Crew]:
         def setup(self, worker: object) -> None:
             setup()
 
-    options = {"n_workers": number, "threads_per_worker": 1, "dashboard_address": None, "silence_logs": logging.CRITICAL}
+    # the scheduler answers questions about its health even without a dashboard; a free port for that, as 8787 may be taken
+    questions = {"dashboard": False, "dashboard_address": "localhost:0"}
+    options = {"n_workers": number, "threads_per_worker": 1, "scheduler_kwargs": questions, "silence_logs": logging.CRITICAL}
     with LocalCluster(**options) if address == LOCAL else nullcontext(address) as cluster, Client(cluster) as client:
         client.register_plugin(Setting())
         yield Crew(client.get_executor(pure=False), lambda: 2 * max(1, sum(client.nthreads().values())))

@@ -7,12 +7,13 @@ from __future__ import annotations
 
 import sqlite3
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
 
 from vibroimpact.errors import ComputationError, InputError
+from vibroimpact.writing.file import new_file
 
 LEDGER = "ledger.sqlite"
 
@@ -67,15 +68,14 @@ class Ledger:
 
 
 def make_ledger(folder: Path, facts: Mapping[str, str], size: int, chunk: int) -> None:
-    """Make the ledger of a study of `size` points in chunks of `chunk`, none of them done."""
-    with _told(folder / LEDGER):
-        connection = sqlite3.connect(folder / LEDGER)
+    """Make, whole or not at all, the ledger of a study of `size` points in chunks of `chunk`, none of them done."""
+    with _told(folder / LEDGER), new_file(folder / LEDGER) as working, closing(sqlite3.connect(working)) as connection:
+        connection.execute("PRAGMA journal_mode = MEMORY")  # it is whole or not at all, and nothing is beside it
         with connection:
             connection.executescript(_SCHEMA)
-            connection.executemany("INSERT INTO study VALUES (?, ?)", facts.items())
+            connection.executemany("INSERT INTO study VALUES (?, ?)", {**facts, "size": str(size)}.items())
             spans = ((number, first, min(chunk, size - first)) for number, first in enumerate(range(0, size, chunk)))
             connection.executemany("INSERT INTO chunk (number, first, count) VALUES (?, ?, ?)", spans)
-        connection.close()
 
 
 def busy(folder: Path) -> str:
@@ -122,10 +122,22 @@ def open_ledger(folder: Path) -> Iterator[Ledger]:
             found = connection.execute("PRAGMA quick_check").fetchone()[0]
             if found != "ok":
                 raise sqlite3.DatabaseError(found)
-            connection.execute("SELECT count(*) FROM study, chunk").fetchone()
+            _check_chunks(connection)
         yield Ledger(connection, path)
     finally:
         connection.close()
+
+
+def _check_chunks(connection: sqlite3.Connection) -> None:
+    """Raise unless the chunks follow each other without a gap, and are done or not: a database has no check sums of its own."""
+    rows = connection.execute("SELECT number, first, count, state FROM chunk ORDER BY number").fetchall()
+    begin = 0
+    for place, (number, first, count, state) in enumerate(rows):
+        if number != place or first != begin or not isinstance(count, int) or count < 1 or state not in ("waiting", "done"):
+            raise sqlite3.DatabaseError(f"chunk {place} is not what it was")
+        begin += count
+    if [str(begin)] != [value for (value,) in connection.execute("SELECT value FROM study WHERE key = 'size'")]:
+        raise sqlite3.DatabaseError("chunks are missing")
 
 
 @contextmanager
@@ -138,14 +150,20 @@ def _told(path: Path) -> Iterator[None]:
             raise InputError(busy(path.parent)) from None
         if "no such table" in str(error):
             raise InputError(_damaged(path, str(error))) from None
-        raise ComputationError(f"{path}: the ledger can't be written: {error}; see to the disk, then go on with --resume") from None
-    except sqlite3.DatabaseError as error:
+        raise ComputationError(_unwritten(path, str(error))) from None
+    except (sqlite3.Error, UnicodeError) as error:
         raise InputError(_damaged(path, str(error))) from None
+    except OSError as error:
+        raise ComputationError(_unwritten(path, error.strerror or str(error))) from None
+
+
+def _unwritten(path: Path, why: str) -> str:
+    """Return what to tell of a ledger that can't be written."""
+    return f"{path}: the ledger can't be written: {why}; see to the disk, then go on with --resume"
 
 
 def _damaged(path: Path, why: str) -> str:
     """Return what to tell of a ledger that is damaged."""
-    return (
-        f"{path}: the ledger is damaged ({why}); delete this file and go on with --resume: it is made anew from the chunks that are there "
-        "and whole"
-    )
+    shown = "".join(letter if letter.isprintable() else " " for letter in why)[:100]
+    words = "delete this file and go on with --resume: it is made anew from the chunks that are there and whole"
+    return f"{path}: the ledger is damaged ({shown}); {words}"

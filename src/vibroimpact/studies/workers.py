@@ -11,6 +11,8 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, Future, ProcessPoolExecutor
 from contextlib import AbstractContextManager, contextmanager
 from functools import partial
+from multiprocessing import resource_tracker
+from multiprocessing.context import SpawnContext, SpawnProcess
 from pathlib import Path
 from tempfile import NamedTemporaryFile
 from typing import Any, NamedTuple
@@ -85,30 +87,36 @@ def _from_file(result: Future[Any], written: Future[Path]) -> None:
         result.set_exception(error)
 
 
+class _Deaf(SpawnProcess):
+    """A process that takes no notice of Ctrl-C from its first instruction on: that is for the one that leads."""
+
+    def start(self) -> None:
+        """Start it, while this thread lets interrupts wait: it inherits that, and what has waited here comes up at the end."""
+        if not hasattr(signal, "pthread_sigmask"):  # Windows
+            super().start()
+            return
+        resource_tracker.ensure_running()  # which has interrupts come up when it starts
+        before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+        try:
+            super().start()
+        finally:
+            signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+class _DeafContext(SpawnContext):
+    """Starts processes that take no notice of Ctrl-C, whenever an executor starts them; spawned, for a fork would copy locks of threads."""
+
+    Process = _Deaf
+
+
 @contextmanager
 def processes(number: int, setup: Setup, folder: Path) -> Iterator[Crew]:
     """Compute in `number` processes of this machine, which leave their results in a folder until they are taken."""
-    # spawned, not forked: a fork would copy locks that threads of this process hold
-    pool = ProcessPoolExecutor(number, multiprocessing.get_context("spawn"), initializer=_begin, initargs=(setup,))
+    pool = ProcessPoolExecutor(number, _DeafContext(), initializer=_begin, initargs=(setup,))
     try:
-        with _interrupts_ignored():  # by the processes that start now, from their first instruction on
-            pool.submit(int)
         yield Crew(_ByFile(pool, folder), lambda: 2 * number)
     finally:
         pool.shutdown(cancel_futures=True)  # each ends after the chunk that it is at, or with this process
-
-
-@contextmanager
-def _interrupts_ignored() -> Iterator[None]:
-    """Let processes that start now take no notice of Ctrl-C, which is for the one that leads."""
-    if threading.current_thread() is not threading.main_thread():
-        yield  # only the main thread may say so
-        return
-    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGINT, before)
 
 
 def _begin(setup: Setup) -> None:

@@ -9,30 +9,9 @@ import numpy as np
 from vibroimpact.cases.conditions import Conditions
 from vibroimpact.cases.limit import Limit, percent_less
 from vibroimpact.contact.pair import Array
-
-AIR_DENSITY, AIR_VISCOSITY = 1.2, 1.81e-5
-"""Density [kg/m^3] and viscosity [Pa s] of air at 20 C and sea level."""
+from vibroimpact.dynamics.air import AIR_DENSITY, AIR_VISCOSITY, drag_coefficient
 
 _ROUNDS = 2  # of speed and coefficient; each takes the error of the speed down twenty times
-
-
-def drag_coefficient(reynolds: Array) -> Array:
-    r"""Return the drag coefficient of a smooth sphere at a Reynolds number.
-
-    .. math:: C_d = \frac{24}{Re}\left(1 + 0.15\,Re^{0.687}\right) + \frac{0.42}{1 + 42500\,Re^{-1.16}}
-
-    Within 6 % of measurements up to a Reynolds number of 3e5.
-
-    References
-    ----------
-    Clift, R. and Gauvin, W. H. (1970). The motion of particles in turbulent gas streams. Proc. Chemeca '70, 1, 14-28.
-
-    Examples
-    --------
-    >>> round(float(drag_coefficient(1e4)), 2)
-    0.42
-    """
-    return 24.0 / reynolds * (1.0 + 0.15 * reynolds**0.687) + 0.42 / (1.0 + 42500.0 * reynolds**-1.16)
 
 
 def drag_loss(radius: Array, density: Array, fall: Array, gravity: Array) -> Array:

@@ -10,6 +10,7 @@ import numpy as np
 from vibroimpact.cases.conditions import Conditions
 from vibroimpact.cases.limit import Limit
 from vibroimpact.contact.pair import Array
+from vibroimpact.quantity import text
 
 _TRUNCATED = 0.05  # of the largest force
 _CYCLES, _ENOUGH = 1.5, 3.0  # periods of the highest mode in a contact: too few, and enough
@@ -25,8 +26,8 @@ def _number(body: str, drops: Conditions) -> Array:
 def _sentence(body: str, drop: Conditions, _: float) -> str:
     (part, highest), duration = drop.seen.modes[body], float(drop.seen.duration)
     return (
-        f"the modes of the {body} end at {highest:.4g} Hz, and the contact lasts {duration:.3g} s: those left out may change the "
-        f"largest force by up to {float(f'{100.0 * part:.2g}'):g} %, and rebound and vibration by more; ask for "
+        f"the modes of the {body} end at {text(highest, 'Hz')}, and the contact lasts {text(duration, 's', 3)}: those left out may "
+        f"change the largest force by up to {float(f'{100.0 * part:.2g}'):g} %, and rebound and vibration by more; ask for "
         f'{body}.max_frequency = "{_ENOUGH / duration / 1e3:.3g} kHz" or so'
     )
 
@@ -40,7 +41,7 @@ LIMITS = tuple(
         threshold=1.0,
         number=partial(_number, body),
         sentence=partial(_sentence, body),
-        shown=lambda ratio: f"{ratio:.2g} times what is allowed",
+        shown=lambda ratio: f"{ratio:.2g} times the limit (5 % of the largest force, or 1.5 periods of the highest mode in a contact)",
         without_case=True,
     )
     for body in ("sphere", "plate")

@@ -33,6 +33,11 @@ def _sentence(drop: Conditions, _: float) -> str:
     )
 
 
+def _shown(change: float) -> str:
+    part = f"{100.0 * change:.2g} %" if change < 1.0 else "100 % or more"
+    return f"an impact that changes by {part} for a relative change of {RELATIVE_CHANGE:g} in the drop"
+
+
 def _undamped(drop: Conditions) -> str:
     """Return what vibrates without damping, in words; nothing if all of it is damped."""
     if not drop.case:  # nothing is known of the bodies
@@ -49,7 +54,7 @@ LIMITS = (
         threshold=_PREDICTED,
         number=_number,
         sentence=_sentence,
-        shown=lambda change: f"{100.0 * change:.2g} %" if change < 1.0 else "all of an impact",
+        shown=_shown,
         without_case=True,
     ),
 )

@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from vibroimpact.exchange.adams_contact import Names, number, numbers, titles
-from vibroimpact.exchange.adams_model import ACCURACY, LINE, SENSOR_ERROR, TESTED, AdamsModel, adams_model, broken, remarks
+from vibroimpact.exchange.adams_model import ACCURACY, LINE, SENSOR_ERROR, TESTED, AdamsModel, adams_model, broken, comments
 from vibroimpact.exchange.contact_alone import shared_notes
 from vibroimpact.exchange.drop import Drop
 from vibroimpact.exchange.export_format import ExportFormat
+from vibroimpact.exchange.rigid_drop import as_rigid
 
 _NAMES = Names(centre="11", spot="1", sensor="1", speed="1", damping="2")
 _GROUND, _SPHERE, _CORNER = 1, 2, 2  # parts, and the marker at the plate's corner
@@ -31,8 +32,7 @@ def _dataset(model: AdamsModel) -> Iterator[str]:
     contact = model.contact
     # the first line is always taken as the title; Adams View takes the model's name from it, and others from comments
     yield f"Adams View model name: {model.name}"
-    for remark in (model.title, *remarks(model)):
-        yield from (f"! {line}" for line in broken(remark, LINE - 2))
+    yield from comments(model)
     yield from _statement("UNITS/", FORCE="NEWTON", MASS="KILOGRAM", LENGTH="MILLIMETER", TIME="SECOND")
     yield from _headed("ground", "PART", _GROUND, "GROUND")
     x, y, z = model.centre
@@ -130,4 +130,5 @@ FORMAT = ExportFormat(
     tested=TESTED,
     write=write,
     notes=shared_notes,
+    told=as_rigid,
 )

@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from vibroimpact.exchange.adams_contact import Names, number, numbers, titles
-from vibroimpact.exchange.adams_model import ACCURACY, LINE, SENSOR_ERROR, TESTED, AdamsModel, adams_model, broken, remarks
+from vibroimpact.exchange.adams_model import ACCURACY, LINE, SENSOR_ERROR, TESTED, AdamsModel, adams_model, broken, comments
 from vibroimpact.exchange.contact_alone import shared_notes
 from vibroimpact.exchange.drop import Drop
 from vibroimpact.exchange.export_format import ExportFormat
+from vibroimpact.exchange.rigid_drop import as_rigid
 
 _UPRIGHT = "0.0d, 0.0d, 0.0d"
 
@@ -29,8 +30,7 @@ def _commands(model: AdamsModel) -> Iterator[str]:
     contact, top = model.contact, f".{model.name}"
     ground, sphere = f"{top}.ground", f"{top}.sphere"
     names = Names(f"{sphere}.cm", f"{ground}.spot", f"{top}.touch", f"{top}.approach_speed", f"{top}.damping")
-    for remark in (model.title, *remarks(model)):
-        yield from (f"! {line}" for line in broken(remark, LINE - 2))
+    yield from comments(model)
     yield from _command("defaults units", length="mm", angle="deg", force="newton", mass="kg", time="sec")
     yield from _command("defaults units", coordinate_system_type="cartesian", orientation_type="body313")
     yield from _command("model create", model_name=model.name)
@@ -154,4 +154,5 @@ FORMAT = ExportFormat(
     tested=TESTED,
     write=write,
     notes=shared_notes,
+    told=as_rigid,
 )

@@ -12,7 +12,9 @@ from vibroimpact.errors import InputError
 from vibroimpact.exchange.contact_alone import approach_speeds, first_contact, shared_notes
 from vibroimpact.exchange.drop import Drop
 from vibroimpact.exchange.export_format import ExportFormat
-from vibroimpact.exchange.script_text import comment_lines, file_name, one_line
+from vibroimpact.exchange.plain_names import plain_words
+from vibroimpact.exchange.rigid_drop import as_rigid
+from vibroimpact.exchange.script_text import comment_lines, file_name
 from vibroimpact.ranges import Range
 
 # the damping factor D of the laws F = K delta^n (1 + D rate / approach), by the restitution e that is asked for
@@ -100,8 +102,8 @@ def _write(drop: Drop) -> Mapping[str, bytes]:
     return {
         file_name(drop, "-exudyn.py"): f'''\
 """A sphere that falls on a plate, for EXUDYN 1.13 or later. Units: m, kg, s, N."""
-# {one_line(drop.name)}
 # The contact law is {law.name}: {law.equation}
+# The case "{plain_words(drop.name)}"
 {comment_lines(shared_notes(drop))}
 import math
 from types import SimpleNamespace
@@ -220,7 +222,8 @@ FORMAT = ExportFormat(
     name="exudyn",
     program="EXUDYN",
     files="a Python script (.py)",
-    tested="run with EXUDYN 1.13.6",
+    tested="run with EXUDYN 1.13.6, beside vibroimpact's drops between rigid bodies",
     write=_write,
     notes=shared_notes,
+    told=as_rigid,
 )

@@ -23,7 +23,9 @@ from vibroimpact.exchange.contact_alone import (
 )
 from vibroimpact.exchange.drop import Drop
 from vibroimpact.exchange.export_format import ExportFormat
-from vibroimpact.exchange.script_text import comment_lines, file_name, one_line
+from vibroimpact.exchange.plain_names import plain_words
+from vibroimpact.exchange.rigid_drop import as_rigid
+from vibroimpact.exchange.script_text import comment_lines, file_name
 
 _STEPS = 20_000
 """Steps in the first contact: restitution and largest force are then right to 5e-5 (LAMMPS takes the damping half a step late)."""
@@ -71,7 +73,7 @@ def _write(drop: Drop) -> Mapping[str, bytes]:
     top = max(drop.height, drop.radius + max(speeds) ** 2 / (2.0 * drop.gravity)) + drop.radius
     density = drop.mass / (4.0 / 3.0 * math.pi * drop.radius**3)
     text = f"""\
-# The case "{one_line(drop.name)}"
+# The case "{plain_words(drop.name)}"
 # A sphere that falls on a plate, for LAMMPS with its package GRANULAR: lmp -in FILE. Units: m, kg, s, N.
 # The contact law is {laws[0].name}: {laws[0].equation}
 {comment_lines(_notes(drop))}
@@ -150,7 +152,8 @@ FORMAT = ExportFormat(
     name="lammps",
     program="LAMMPS, package GRANULAR",
     files="an input file (.in)",
-    tested="run with LAMMPS 22 Jul 2025, update 4",
+    tested="run with LAMMPS 22 Jul 2025, update 4, beside vibroimpact's drops between rigid bodies",
     write=_write,
     notes=_notes,
+    told=as_rigid,
 )

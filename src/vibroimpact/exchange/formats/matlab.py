@@ -15,7 +15,7 @@ from vibroimpact.contact.law import unit_of
 from vibroimpact.exchange.drop import Drop
 from vibroimpact.exchange.drop_tables import Table, tables_of
 from vibroimpact.exchange.export_format import ExportFormat
-from vibroimpact.exchange.plain_names import plain_names
+from vibroimpact.exchange.plain_names import one_line, plain_names
 from vibroimpact.exchange.script_text import file_name
 
 _LONGEST = 63
@@ -68,14 +68,16 @@ def legal_names(names: list[str]) -> dict[str, str]:
     """
     starts = (plain.replace("-", "_") for plain in plain_names(names).values())
     legal = [start if re.match("[A-Za-z]", start) and start not in _KEYWORDS else f"s_{start}" for start in starts]
-    found: list[str] = []
-    for name in legal:
-        number, tried = 1, name[:_LONGEST]
+    found: set[str] = set()
+    numbers: dict[str, int] = {}
+    for place, name in enumerate(legal):
+        tried = start = name[:_LONGEST]
         while tried in found:
-            number += 1
-            tried = f"{name[: _LONGEST - 1 - len(str(number))]}_{number}"
-        found.append(tried)
-    return dict(zip(names, found, strict=True))
+            numbers[start] = numbers.get(start, 1) + 1
+            tried = f"{name[: _LONGEST - 1 - len(str(numbers[start]))]}_{numbers[start]}"
+        found.add(tried)
+        legal[place] = tried
+    return dict(zip(names, legal, strict=True))
 
 
 def _values(table: Table) -> dict[str, Any]:
@@ -91,14 +93,14 @@ def _signal(drop: Drop, name: str, table: Table) -> dict[str, Any]:
         "quantity": sensor.quantity,
         "rate_Hz": sensor.rate,
         "direction": np.array(sensor.direction),
-        "name": name,
+        "name": one_line(name),
     }
 
 
 def _facts(drop: Drop) -> tuple[dict[str, Any], dict[str, Any]]:
     """Return what is dropped on what, and the units."""
     told: Mapping[str, tuple[Any, str]] = {
-        "name": (drop.name, ""),
+        "name": (one_line(drop.name), ""),
         "radius": (drop.radius, "m"),
         "mass": (drop.mass, "kg"),
         "height": (drop.height, "m"),
@@ -136,7 +138,7 @@ FORMAT = ExportFormat(
     tested="read back with scipy.io.loadmat of SciPy 1.17, values, names and units the same; not with MATLAB itself",
     write=write,
     notes=lambda drop: [
-        f'The sensor "{name}" is called signals.{legal} in it, a name that MATLAB takes.'
+        f'The sensor "{one_line(name)}" is called signals.{legal} in it, a name that MATLAB takes.'
         for name, legal in legal_names(list(drop.signals)).items()
         if name != legal
     ],

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Mapping
 from xml.sax.saxutils import quoteattr
 
@@ -11,7 +12,9 @@ from vibroimpact.contact.restitution import achieved_restitution
 from vibroimpact.exchange.contact_alone import approach_speeds, clipped_dashpot, first_contact, laws_of_impacts, shared_notes, spring
 from vibroimpact.exchange.drop import Drop
 from vibroimpact.exchange.export_format import ExportFormat
-from vibroimpact.exchange.script_text import comment_lines, file_name, one_line
+from vibroimpact.exchange.plain_names import plain_words
+from vibroimpact.exchange.rigid_drop import as_rigid
+from vibroimpact.exchange.script_text import comment_lines, file_name
 
 _STEPS = 1000
 """Steps in the first contact: its restitution is then right to 1e-3."""
@@ -45,17 +48,18 @@ def _write(drop: Drop) -> Mapping[str, bytes]:
     x, y = (float(value) for value in drop.position)
     inertia = 0.4 * drop.mass * drop.radius**2
     comment = f"""\
-{one_line(drop.name)}. Units: m, kg, s, N.
+{plain_words(drop.name)}. Units: m, kg, s, N.
 The contact law is {laws[0].name}: {laws[0].equation}
 {comment_lines(_notes(drop)).replace("# ", "")}
 solref = -(stiffness / mass), -(damping / mass) of the contact: {linear.stiffness:.9g} N/m and {linear.damping_max:.9g} N s/m.
 Duration of the first contact {duration:.6g} s; largest force {force:.6g} N, where the law has {own_force:.6g} N.
-The sphere's height above the plate is qpos[0], its velocity qvel[0].""".replace("--", "- -")
+The sphere's height above the plate is qpos[0], its velocity qvel[0]."""
+    comment = re.sub("-(?=-)", "- ", comment)  # two of them end a comment
     text = f"""\
 <!--
 {comment}
 -->
-<mujoco model={quoteattr(one_line(drop.name))}>
+<mujoco model={quoteattr(plain_words(drop.name))}>
   <option timestep="{duration / _STEPS!r}" gravity="0 0 {-drop.gravity!r}" integrator="Euler" cone="elliptic"/>
   <default>
     <geom condim="1" solref="{-linear.stiffness / drop.mass!r} {-linear.damping_max / drop.mass!r}"
@@ -96,7 +100,8 @@ FORMAT = ExportFormat(
     name="mujoco",
     program="MuJoCo",
     files="a model (.xml, MJCF)",
-    tested="run with MuJoCo 3.2.7 and 3.17.0",
+    tested="run with MuJoCo 3.2.7 and 3.17.0, the first impact beside vibroimpact's between rigid bodies",
     write=_write,
     notes=_notes,
+    told=as_rigid,
 )

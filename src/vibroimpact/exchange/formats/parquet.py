@@ -8,6 +8,7 @@ from vibroimpact.errors import InputError
 from vibroimpact.exchange.drop import Drop
 from vibroimpact.exchange.drop_tables import Table, tables_of
 from vibroimpact.exchange.export_format import ExportFormat
+from vibroimpact.exchange.plain_names import one_line
 
 
 def write(drop: Drop) -> dict[str, bytes]:
@@ -18,7 +19,7 @@ def write(drop: Drop) -> dict[str, bytes]:
     InputError
         If the drop has no tables, or pyarrow is not installed.
     """
-    return {f"{name}.parquet": _bytes(table, drop.name) for name, table in tables_of(drop).items()}
+    return {f"{name}.parquet": _bytes(table, one_line(drop.name)) for name, table in tables_of(drop).items()}
 
 
 def _bytes(table: Table, title: str) -> bytes:

@@ -17,6 +17,7 @@ from vibroimpact._version import __version__
 from vibroimpact.errors import InputError
 from vibroimpact.exchange.drop import Drop
 from vibroimpact.exchange.export_format import ExportFormat
+from vibroimpact.exchange.plain_names import one_line, plain_words
 from vibroimpact.exchange.resample import motion_at
 from vibroimpact.exchange.script_text import file_name
 
@@ -26,7 +27,11 @@ _MOST_SAMPLES = 2_000_000
 """Of a function of the history."""
 _SPHERE, _FIRST_SENSOR = 1, 2  # nodes
 _UP = 3  # the direction +z
-_MOTION = {
+_LINE = 80
+"""Letters of a line of text."""
+_MOST_NAMED = 10
+"""Sensors that are told by name."""
+MOTION = {
     "position_m": ("height of the sphere's centre", 8, "m"),
     "velocity_m_s": ("velocity of the sphere", 11, "m/s"),
     "acceleration_m_s2": ("acceleration of the sphere", 12, "m/s2"),
@@ -56,7 +61,9 @@ def write(drop: Drop) -> dict[str, bytes]:
     """
     functions = [*_of_signals(drop), *_of_history(drop)]
     if not functions:
-        raise InputError(f'"{drop.name}" has no sensors, and {_why_no_history(drop)}; there is nothing to write as functions of time')
+        raise InputError(
+            f'"{one_line(drop.name)}" has no sensors, and {_why_no_history(drop)}; there is nothing to write as functions of time'
+        )
     try:
         import pyuff
     except ImportError:
@@ -91,7 +98,7 @@ def _of_signals(drop: Drop) -> Iterator[_Function]:
     for node, (name, signal) in enumerate(drop.signals.items(), _FIRST_SENSOR):
         sensor = signal.sensor
         if len(signal.value) > 1:
-            words = f"{sensor.quantity} of {name}"
+            words = f"{sensor.quantity} of {plain_words(name)}"
             yield _Function(words, node, _direction(sensor.direction), _QUANTITIES[sensor.quantity], sensor.unit, sensor.rate, signal.value)
 
 
@@ -100,7 +107,7 @@ def _of_history(drop: Drop) -> Iterator[_Function]:
     if rate is None:
         return
     motion = motion_at(drop.history, np.arange(int(drop.history["time_s"][-1] * rate * (1.0 + 1e-12)) + 1) / rate)
-    for name, (words, kind, unit) in _MOTION.items():
+    for name, (words, kind, unit) in MOTION.items():
         yield _Function(words, _SPHERE, _UP, kind, unit, rate, motion[name])
 
 
@@ -114,7 +121,7 @@ def _direction(along: tuple[float, float, float]) -> int:
 
 def _header(drop: Drop) -> dict[str, Any]:
     date = {f"{what}_{when}": "" for what in ("date", "time") for when in ("db_created", "db_saved", "file_written")}
-    words = {"model_name": _line(drop.name), "description": "a sphere that falls on a plate", "db_app": "vibroimpact"}
+    words = {"model_name": plain_words(drop.name), "description": "a sphere that falls on a plate", "db_app": "vibroimpact"}
     return {"type": 151, **words, "program": f"vibroimpact {__version__}", **date}
 
 
@@ -128,8 +135,8 @@ def _dataset(one: _Function, drop: Drop) -> dict[str, Any]:
     return {
         "type": 58,
         "binary": 1,
-        "id1": _line(one.words),
-        "id2": _line(drop.name),
+        "id1": one.words[:_LINE],
+        "id2": plain_words(drop.name),
         "func_type": 1,
         "rsp_ent_name": "NONE",
         "rsp_node": one.node,
@@ -148,11 +155,6 @@ def _dataset(one: _Function, drop: Drop) -> dict[str, Any]:
     }
 
 
-def _line(text: str) -> str:
-    """Return a text as a line of 80 letters; never an empty one."""
-    return " ".join(text.encode("ascii", "replace").decode().split())[:80] or "NONE"
-
-
 def _why_no_history(drop: Drop) -> str:
     if not len(drop.history.get("time_s", ())):
         return "it has no history"
@@ -163,14 +165,15 @@ def _why_no_history(drop: Drop) -> str:
 
 def _notes(drop: Drop) -> list[str]:
     rate = history_rate(drop)
-    nodes = [f"{number} is the sensor {name}" for number, name in enumerate(drop.signals, _FIRST_SENSOR)]
+    nodes = [f"{number} is the sensor {one_line(name)}" for number, name in enumerate(drop.signals, _FIRST_SENSOR)]
+    nodes = nodes if len(nodes) <= _MOST_NAMED else [*nodes[: _MOST_NAMED - 1], "and so on"]
     notes = [f"Node {_SPHERE} is the sphere" + "".join(f", {words}" for words in nodes) + "; directions are the plate's, +z upwards."]
     if rate is None:
         notes.append(f"The history is left out: {_why_no_history(drop)}.")
     else:
         notes.append(f"The history is sampled at {rate:g} Hz: at least {_IN_CONTACT} times in the shortest contact.")
     notes.append("Nothing is filtered against aliasing.")
-    slanting = [name for name, signal in drop.signals.items() if not _direction(signal.sensor.direction)]
+    slanting = [one_line(name) for name, signal in drop.signals.items() if not _direction(signal.sensor.direction)]
     if slanting:
         notes.append(f"The direction of {', '.join(slanting)} lies along no axis; it is written as a scalar.")
     rates = {signal.sensor.rate for signal in drop.signals.values()} | ({rate} if rate else set())

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from vibroimpact.errors import InputError
 from vibroimpact.exchange.drop import Drop
 from vibroimpact.exchange.export_format import ExportFormat
+from vibroimpact.exchange.plain_names import one_line
 from vibroimpact.exchange.resample import motion_at
 
 Floats = NDArray[np.float64]
@@ -48,7 +49,7 @@ def _sphere_path(drop: Drop) -> tuple[Floats, Floats]:
     if drop.surface:
         return drop.surface["time"], drop.surface["sphere_position"]
     if len(drop.history.get("time_s", ())) < 2:
-        raise InputError(f'"{drop.name}" has no history; there is no motion to write')
+        raise InputError(f'"{one_line(drop.name)}" has no history; there is no motion to write')
     times = np.linspace(0.0, float(drop.history["time_s"][-1]), _EVEN)
     if drop.impacts:
         touch, duration, deepest = (drop.impacts[name][:_IMPACTS] for name in ("time_s", "duration_s", "time_of_max_indentation_s"))

@@ -11,7 +11,7 @@ from vibroimpact.dynamics.recording import Signal
 from vibroimpact.errors import InputError
 from vibroimpact.exchange.drop import Drop
 from vibroimpact.exchange.export_format import ExportFormat
-from vibroimpact.exchange.plain_names import plain_names
+from vibroimpact.exchange.plain_names import one_line, plain_names
 
 _HIGHEST_RATE = 2**32 // 4 - 1
 """Samples a second: the header holds the bytes a second in 32 bits."""
@@ -27,7 +27,7 @@ def write(drop: Drop) -> dict[str, bytes]:
         If there is no sensor, or WAV can't hold its rate or its length.
     """
     if not drop.signals:
-        raise InputError(f'"{drop.name}" has no sensors, and a WAV file holds the signal of one; add [[sensors]] to the case')
+        raise InputError(f'"{one_line(drop.name)}" has no sensors, and a WAV file holds the signal of one; add [[sensors]] to the case')
     return {f"{plain}.wav": _file(drop.signals[name]) for name, plain in plain_names(list(drop.signals)).items()}
 
 
@@ -42,13 +42,17 @@ def _file(signal: Signal) -> bytes:
     rate = round(signal.sensor.rate)
     if not 1 <= rate <= _HIGHEST_RATE:
         raise InputError(
-            f'{signal.sensor.rate:g} Hz of "{signal.sensor.name}" is not allowed in a WAV file; it must be 1 to {_HIGHEST_RATE}'
+            f'{signal.sensor.rate:g} Hz of "{one_line(signal.sensor.name)}" is not allowed in a WAV file; it must be 1 to {_HIGHEST_RATE}'
         )
     if 4 * len(signal.value) > _MOST_BYTES:
-        raise InputError(f'the {len(signal.value)} samples of "{signal.sensor.name}" do not fit into a WAV file, which holds 4 GB')
+        raise InputError(
+            f'the {len(signal.value)} samples of "{one_line(signal.sensor.name)}" do not fit into a WAV file, which holds 4 GB'
+        )
     scale, file = full_scale(signal), BytesIO()
     wavfile.write(file, rate, (signal.value / scale).astype(np.float32))
-    return _with_comment(file.getvalue(), f"1.0 is {scale!r} {signal.sensor.unit} ({signal.sensor.quantity} of {signal.sensor.name})")
+    return _with_comment(
+        file.getvalue(), f"1.0 is {scale!r} {signal.sensor.unit} ({signal.sensor.quantity} of {one_line(signal.sensor.name)})"
+    )
 
 
 def _with_comment(wave: bytes, words: str) -> bytes:

@@ -22,7 +22,9 @@ from vibroimpact.exchange.contact_alone import (
 )
 from vibroimpact.exchange.drop import Drop
 from vibroimpact.exchange.export_format import ExportFormat
-from vibroimpact.exchange.script_text import comment_lines, file_name, one_line
+from vibroimpact.exchange.plain_names import plain_words
+from vibroimpact.exchange.rigid_drop import as_rigid
+from vibroimpact.exchange.script_text import comment_lines, file_name
 
 _STEPS = 10_000
 """Steps in the first contact: restitutions and largest forces are then right to 1e-4, but for gravity: damping is calibrated without."""
@@ -78,8 +80,8 @@ def _write(drop: Drop) -> Mapping[str, bytes]:
     return {
         file_name(drop, "-yade.py"): f'''\
 """A sphere that falls on a plate, for YADE: yade -n -x FILE. Units: m, kg, s, N."""
-# {one_line(drop.name)}
 # The contact law is {laws[0].name}: {laws[0].equation}
+# The case "{plain_words(drop.name)}"
 {comment_lines(_notes(drop))}
 import math
 
@@ -151,7 +153,8 @@ FORMAT = ExportFormat(
     name="yade",
     program="YADE",
     files="a Python script (.py)",
-    tested="run with YADE 2023.02a",
+    tested="run with YADE 2023.02a, beside vibroimpact's drops between rigid bodies",
     write=_write,
     notes=_notes,
+    told=as_rigid,
 )

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import json
-import os
 import re
 import shlex
 from collections.abc import Callable, Iterable
 from contextlib import suppress
 from os import PathLike
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Any
 
 from vibroimpact._version import __version__
@@ -22,8 +20,11 @@ from vibroimpact.report.reproduction.markdown import FIGURES
 from vibroimpact.report.reproduction.page import report_html, report_text
 from vibroimpact.report.reproduction.parts import PARTS, Part, find_parts
 from vibroimpact.reproduction.runs import Runs
+from vibroimpact.storage.check_sums import read_sealed, sealed
 from vibroimpact.storage.folder import SUMMARY, new_folder
 from vibroimpact.storage.tables import write_csv
+from vibroimpact.writing.into_folder import write_into
+from vibroimpact.writing.settle import settle
 
 _PARTS = "parts"
 
@@ -63,7 +64,9 @@ def reproduce_paper(
     InputError
         If there is no part of a name, something else is there already, or it can't be written to.
     """
-    folder, there = Path(directory), is_reproduction(Path(directory)) and not force
+    folder = Path(directory)
+    settle(folder)
+    there = is_reproduction(folder) and not force
     if isinstance(only, str):
         only = [only]
     elif only is None:
@@ -99,7 +102,7 @@ def missing_parts(directory: str | PathLike[str]) -> list[str]:
 def _version(part: Path) -> str | None:
     """Return by which version a part was made; None if there is none, or it is damaged."""
     try:
-        return str(json.loads(part.read_text(encoding="utf-8"))["version"])
+        return str(read_sealed(part)["version"])
     except (OSError, ValueError, KeyError, TypeError):
         return None
 
@@ -144,7 +147,7 @@ def read_parts(folder: Path) -> dict[str, dict[str, Any]]:
         file = _file(folder, name)
         if file.is_file():
             try:
-                table = json.loads(file.read_text(encoding="utf-8"))
+                table = read_sealed(file)
                 rows = [{**row, "verdict": str(row["verdict"])} for row in table["rows"]]
                 found[name] = {"title": str(table["title"]), "text": str(table["text"]), "rows": rows}
             except (OSError, ValueError, KeyError, TypeError):
@@ -171,17 +174,16 @@ def _file(folder: Path, part: str) -> Path:
 def _write_part(part: Part, runs: Runs, folder: Path) -> None:
     """Make a part, and put it in place once all of it is there."""
     made = make_part(part, runs)
-    try:
+
+    def write(working: Path) -> None:
         for name in (_PARTS, FIGURES):
-            (folder / name).mkdir(exist_ok=True)
-        with TemporaryDirectory(prefix=".part.", dir=folder) as working:
-            files = []
-            if made.drawing is not None:
-                save_figures({part.name: made.drawing.figure}, Path(working))
-                files = [(Path(working) / f"{part.name}.{kind}", folder / FIGURES / f"{part.name}.{kind}") for kind in ("png", "svg")]
-            table = {"version": __version__, "title": made.title, "text": made.text, "rows": made.rows}
-            (Path(working) / "part.json").write_text(json.dumps(table, indent=1) + "\n", encoding="utf-8")
-            for here, there in [*files, (Path(working) / "part.json", _file(folder, part.name))]:
-                os.replace(here, there)
+            (working / name).mkdir()
+        if made.drawing is not None:
+            save_figures({part.name: made.drawing.figure}, working / FIGURES)
+        table = {"version": __version__, "title": made.title, "text": made.text, "rows": made.rows}
+        _file(working, part.name).write_text(sealed(table), encoding="utf-8")
+
+    try:
+        write_into(folder, write)
     except OSError as error:
-        raise InputError(f"{folder}: the part {part.name} can't be written: {error.strerror}") from None
+        raise InputError(f"{folder}: the part {part.name} can't be written: {error.strerror or error}") from None

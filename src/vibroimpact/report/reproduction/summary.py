@@ -4,19 +4,14 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from rich.table import Table
-
 from vibroimpact.report.reproduction.folder import read_parts
 from vibroimpact.report.reproduction.page import counts
+from vibroimpact.report.terminal_table import Column, TerminalTable
 from vibroimpact.reproduction.row import Verdict
 
 
-def summary_table(folder: Path) -> Table:
+def summary_table(folder: Path) -> TerminalTable:
     """Return how many values have each verdict, part by part."""
-    table = Table(box=None, padding=(0, 1), header_style="bold")
-    table.add_column("part")
-    for verdict in Verdict:
-        table.add_column(verdict.value, justify="right")
-    for name, by in counts(read_parts(folder)).items():
-        table.add_row(name, *map(str, by.values()), style="bold" if name == "all" else "")
-    return table
+    parts = counts(read_parts(folder))
+    verdicts = [Column(verdict.value, [str(by[verdict.value]) for by in parts.values()]) for verdict in Verdict]
+    return TerminalTable([Column("part", list(parts), words=True), *verdicts], bold=[len(parts) - 1])

@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 from vibroimpact.cases.limit import limits
+from vibroimpact.cases.study_slips import study_slips
 from vibroimpact.quantity import digits
 from vibroimpact.report.study.axes import study_axes
 from vibroimpact.report.study.tables import point_of
 from vibroimpact.report.study.words import value_text
 from vibroimpact.storage.study import Study
 
+COUNTED_FROM = "Drops are counted from 0, as in study.nc and drops.csv."
+
 _KEYS = 4  # of the worst drop that are shown; all are in drops.csv
 
 
 def doubt_sentences(study: Study) -> list[str]:
-    """Return a sentence for each limit that drops of a study are beyond: how many drops, and the worst of them."""
-    axes, found = study_axes(study), []
+    """Return what to doubt of a study: slips of units, then each limit that drops are beyond, how many drops, the worst, counted from 0."""
+    axes, found = study_axes(study), study_slips(study.table, study.coordinates)
     for limit, drops, worst, number in study.doubts:
         known = limits().get(limit)
         title, shown = (known.title, known.shown(number)) if known else (limit.replace("_", " "), digits(number, 3))

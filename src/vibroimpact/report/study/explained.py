@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from rich.console import Group, RenderableType
-from rich.markup import escape
-from rich.table import Table
 from rich.text import Text
 
+from vibroimpact.cases.study_slips import slips_of_axes
 from vibroimpact.cases.sweep import Sweep
+from vibroimpact.report.terminal_table import Column, TerminalTable
 from vibroimpact.studies.axes import Axis, Listed, Normal, Spaced
 
 
@@ -16,15 +16,13 @@ def sweep_explained(sweep: Sweep) -> RenderableType:
     section = sweep.section
     drawn = f", drawn with seed {section.seed}" if section.samples else ""
     kept = " and ".join(dict.fromkeys(["peaks", *section.keep])) + f", about {sweep.bytes / 1e6:.3g} MB"
-    table = Table(box=None, padding=(0, 1), header_style="bold")
-    table.add_column("swept key")
-    table.add_column("over")
-    for key, axis in sweep.axes.items():
-        quantity = sweep.quantities[key]
-        table.add_row(escape(key), escape(_words(axis, quantity.unit if quantity else "", is_drawn=section.samples is not None)))
+    units = {key: quantity.unit if quantity else "" for key, quantity in sweep.quantities.items()}
+    over = [_words(axis, units[key], is_drawn=section.samples is not None) for key, axis in sweep.axes.items()]
+    table = TerminalTable([Column("swept key", list(sweep.axes), words=True), Column("over", over, words=True)])
     return Group(
         Text(f"A study of {sweep.size:,} drops: {section.design}{drawn}; keeps {kept}.", style="bold"),
         table,
+        *(Text(f"Doubt: {doubt}.", style="yellow") for doubt in slips_of_axes(sweep)),
         Text("The case at its first point:\n"),
     )
 
@@ -35,7 +33,7 @@ def _words(axis: Axis, unit: str, *, is_drawn: bool) -> str:
         shown = [f"{value:g}" if isinstance(value, float) else str(value) for value in axis.values]
         text = ", ".join(shown) if len(shown) <= 8 else f"{len(shown)} values, {shown[0]} to {shown[-1]}"
         return f"{text} {unit}".rstrip()
-    number = "" if is_drawn else f"{len(axis.levels())} values "
+    number = "" if is_drawn else f"{len(axis)} values "
     if isinstance(axis, Spaced):
         return f"{number}from {axis.start:g} to {axis.end:g} {unit}".rstrip() + (", logarithmic" if axis.scale == "log" else "")
     assert isinstance(axis, Normal)

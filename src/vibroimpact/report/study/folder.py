@@ -37,7 +37,7 @@ def run_sweep(
     directory : path
         The folder to make.
     resume : bool, default False
-        Go on with the study that was begun there.
+        Go on with the study that was begun there; where there is none, begin.
     force : bool, default False
         Replace the folder of a study that is there.
     workers : int, default 1
@@ -88,5 +88,7 @@ def run_sweep(
         modes_progress=modes_progress,
         tell=tell,
     )
+    if progress is not None:
+        progress(sweep.size, sweep.size)  # who was told to stop while the results were put together does
     write_study_report(read_study(folder), folder)
     return folder

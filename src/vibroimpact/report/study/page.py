@@ -9,7 +9,7 @@ from vibroimpact.report.beside import write_beside
 from vibroimpact.report.figures import save_figures
 from vibroimpact.report.page import Picture, picture, template
 from vibroimpact.report.study.axes import study_axes
-from vibroimpact.report.study.doubts import doubt_sentences
+from vibroimpact.report.study.doubts import COUNTED_FROM, doubt_sentences
 from vibroimpact.report.study.figures import draw, study_figures
 from vibroimpact.report.study.outputs import Output, drawn_outputs, study_outputs
 from vibroimpact.report.study.restitution import restitution_of, restitution_sentence
@@ -86,6 +86,7 @@ def _page(study: Study, outputs: list[Output], found: Sensitivity | None, pictur
         failed=len(study.failures) == study.size,
         restitution=restitution_sentence(restitution_of(study)),
         doubts=doubt_sentences(study),
+        counted_from=COUNTED_FROM,
         design=f"{study.design}: {find_design(study.design).meaning}",
         axes=axes_table(study, study_axes(study)),
         reasons=[(f"{drops_text(number)}{', such as' if number > 1 else ''}", words) for number, words in reasons(study)],

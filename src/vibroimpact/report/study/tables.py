@@ -55,7 +55,7 @@ def failures_table(study: Study) -> tuple[list[str], list[list[str]]]:
         rows.append(
             [str(number), *(value_text(axis, value) for axis, value in zip(axes, point_of(study, axes, number), strict=True)), reason]
         )
-    return ["Drop", *(axis.key for axis in axes), "Why it failed"], rows
+    return ["Drop (from 0)", *(axis.key for axis in axes), "Why it failed"], rows
 
 
 def point_of(study: Study, axes: list[StudyAxis], number: int) -> list[Any]:

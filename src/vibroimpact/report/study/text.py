@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 from rich.console import Group, RenderableType
-from rich.markup import escape
-from rich.table import Table
 from rich.text import Text
 
 from vibroimpact.quantity import digits
+from vibroimpact.report.console import doubt_lines
 from vibroimpact.report.study.axes import study_axes
-from vibroimpact.report.study.doubts import doubt_sentences
+from vibroimpact.report.study.doubts import COUNTED_FROM, doubt_sentences
 from vibroimpact.report.study.outputs import study_outputs
 from vibroimpact.report.study.restitution import restitution_of, restitution_sentence
 from vibroimpact.report.study.sensitivity import RANKS, SOBOL, Sensitivity, sensitivity_of, strongest
 from vibroimpact.report.study.tables import counts_sentence, reasons
 from vibroimpact.report.study.words import percent, with_unit
+from vibroimpact.report.terminal_table import Column, TerminalTable
 from vibroimpact.storage.study import Study
 from vibroimpact.studies.percentiles import PERCENTILES
 
@@ -29,26 +29,24 @@ def study_summary(study: Study, width: int) -> RenderableType:
     outputs = ([one for one in there if one.spread.varies] or there)[:_RESULTS]
     found = sensitivity_of(study, outputs)
     told = found if width >= _NARROW else None
-    table = Table(box=None, padding=(0, 1), header_style="bold")
-    table.add_column("result", overflow="fold")
+    columns = [Column("result", [with_unit(one.title, one.scale.unit) for one in outputs], words=True)]
     for part in _TOLD:
-        table.add_column(f"{part} %", justify="right", no_wrap=True)
+        cells = [digits(one.spread.percentiles[PERCENTILES.index(part)] / one.scale.size) for one in outputs]
+        columns.append(Column(f"{part}\u00a0%", cells))
     if told is not None:
         named = told.way == RANKS and any(not axis.numeric for axis in study_axes(study))
-        table.add_column("moved most, of keys that are numbers, by" if named else "moved most by", overflow="fold")
-    for one in outputs:
-        cells = [digits(one.spread.percentiles[PERCENTILES.index(part)] / one.scale.size) for part in _TOLD]
-        most = [] if told is None else [escape(_strongest(told, one.name))]
-        table.add_row(escape(with_unit(one.title, one.scale.unit)), *cells, *most)
+        heading = "moved most, of keys that are numbers, by" if named else "moved most by"
+        columns.append(Column(heading, [_strongest(told, one.name) for one in outputs], words=True))
     why = [Text(f" {number}: {words}", style="yellow") for number, words in reasons(study)[:_REASONS]]
-    restitution = restitution_sentence(restitution_of(study))
+    restitution, doubts = restitution_sentence(restitution_of(study)), doubt_sentences(study)
     return Group(
         Text(study.name, style="bold"),
         Text(counts_sentence(study)),
         *why,
-        *([table] if outputs else []),
+        *([TerminalTable(columns)] if outputs else []),
         *([Text(restitution)] if restitution else []),
-        *(Text(f"Doubt: {doubt}.", style="yellow") for doubt in doubt_sentences(study)),
+        *doubt_lines(doubts),
+        *([Text(COUNTED_FROM, style="dim")] if doubts else []),
     )
 
 

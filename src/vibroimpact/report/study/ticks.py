@@ -13,7 +13,6 @@ from vibroimpact.report.excerpt import Floats
 from vibroimpact.report.lettering import lettering
 from vibroimpact.report.study.axes import StudyAxis
 from vibroimpact.report.study.words import with_unit
-from vibroimpact.shown import visible
 
 _LONGEST = 24  # letters of a name on an axis
 _BESIDE = 36  # letters of all names below a panel
@@ -45,7 +44,7 @@ class Ticks:
     @property
     def turned(self) -> bool:
         """Are there names that have no room beside each other?"""
-        return sum(len(visible(name, _LONGEST)) for name in self.names) > _BESIDE
+        return sum(len(lettering(name, _LONGEST)) for name in self.names) > _BESIDE
 
     def places(self, values: NDArray[Any]) -> Floats:
         """Return where values lie."""

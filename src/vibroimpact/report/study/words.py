@@ -8,7 +8,7 @@ import numpy as np
 
 from vibroimpact.quantity import digits, multiple, text
 from vibroimpact.report.study.axes import StudyAxis
-from vibroimpact.shown import visible
+from vibroimpact.shown import shortened, visible
 from vibroimpact.studies.percentiles import PERCENTILES
 
 BAND = f"{PERCENTILES[0]} to {PERCENTILES[-1]} %"
@@ -17,7 +17,7 @@ BAND = f"{PERCENTILES[0]} to {PERCENTILES[-1]} %"
 
 def value_text(axis: StudyAxis, value: Any) -> str:
     """Return one value of an axis as it is read."""
-    return text(float(value), axis.unit) if axis.numeric else visible(str(value))
+    return text(float(value), axis.unit) if axis.numeric else shortened(visible(str(value)), 60)
 
 
 def range_text(axis: StudyAxis) -> str:
@@ -27,7 +27,7 @@ def range_text(axis: StudyAxis) -> str:
     if not axis.numeric:
         names = list(dict.fromkeys(axis.values))
         more = f", and {len(names) - 6} more" if len(names) > 6 else ""
-        return ", ".join(visible(str(name), 40) for name in names[:6]) + more
+        return ", ".join(shortened(visible(str(name)), 40) for name in names[:6]) + more
     low, high = float(np.min(axis.values)), float(np.max(axis.values))
     scale = multiple(axis.unit, [low, high])
     return f"{digits(low / scale.size)} to {digits(high / scale.size)}\u00a0{scale.unit}".rstrip("\u00a0")

@@ -12,7 +12,7 @@ from vibroimpact.studies.plan import Plan
 
 def size(axes: Mapping[str, Axis], samples: int) -> int:
     """Return how many combinations there are."""
-    return prod(len(axis.levels()) for axis in axes.values())
+    return prod(map(len, axes.values()))
 
 
 def plan(axes: Mapping[str, Axis], samples: int, seed: int) -> Plan:

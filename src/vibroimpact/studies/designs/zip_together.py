@@ -23,7 +23,7 @@ def size(axes: Mapping[str, Axis], samples: int) -> int:
             raise InputError(
                 'a distribution has no values in an order; take a list or a range, or design = "latin-hypercube"', f'over."{key}"'
             )
-    counts = {key: len(axis.levels()) for key, axis in axes.items()}
+    counts = {key: len(axis) for key, axis in axes.items()}
     if len(set(counts.values())) > 1:
         told = ", ".join(f"{key} has {count}" for key, count in counts.items())
         raise InputError(f"all keys of a zip need as many values as each other, and {told}", "over")

@@ -1,0 +1,159 @@
+r"""Flights in air, with the drag of every moment."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from vibroimpact.calibration.flights import Floats, Flown, Lasted
+from vibroimpact.dynamics.air import drag
+from vibroimpact.errors import InputError
+
+_POINTS = 513  # of a table; cubics between them are off by 1e-9 of a fall of 4 m
+_BEGIN = 1e-6  # of the table's square root of a height: there is no drag to speak of
+_CLOSE = 1e-11
+_FASTEST = 1e4  # m/s, that a sphere is followed to
+
+
+@dataclass(frozen=True)
+class AirFlights:
+    r"""Flights in air that is at rest.
+
+    Below the top of a flight, at a depth s, :math:`v\,dv/ds = g - a(v)` on the way down and :math:`g + a(v)` on the way up, with
+    the drag a of `vibroimpact.dynamics.air.drag`. Both are integrated once over the square root of s, in which speeds and times
+    are smooth, and read from cubics after that.
+
+    Parameters
+    ----------
+    gravity : float
+        Acceleration [m/s^2], > 0.
+    radius, density : float
+        Of the sphere [m], [kg/m^3].
+    highest : float
+        The highest rise that is asked for [m].
+
+    Raises
+    ------
+    InputError
+        Where a flight is asked for that reaches beyond that.
+
+    Examples
+    --------
+    >>> pebble = AirFlights(9.8, 0.002, 1250.0, 4.0)
+    >>> [round(float(speed), 2) for speed in (pebble.falling(np.array(4.0))[0], pebble.rising(np.array(4.0))[0])]
+    [7.68, 10.33]
+    """
+
+    gravity: float
+    radius: float
+    density: float
+    highest: float
+
+    def falling(self, height: Floats) -> tuple[Floats, Floats]:
+        """Return the speed after a fall from rest by a height [m/s], and its derivative by the height [1/s]."""
+        speed = self._within(self._tables.down, height)
+        return speed, (self.gravity - drag(speed, self.radius, self.density)) / speed
+
+    def rising(self, height: Floats) -> tuple[Floats, Floats]:
+        """Return the speed that it takes to rise by a height [m/s], and its derivative by the height [1/s]."""
+        speed = self._within(self._tables.up, height)
+        return speed, (self.gravity + drag(speed, self.radius, self.density)) / speed
+
+    def fallen(self, time: Floats) -> tuple[Floats, Floats]:
+        """Return how far below the top of its flight a sphere is [m] at a time from it [s], and its downward velocity [m/s]."""
+        depth = self._tables.depth
+        at = np.clip(time, depth.x[0], depth.x[-1])
+        return np.asarray(depth(at)), np.asarray(depth(at, 1))
+
+    def lasting(self, time: Floats) -> Lasted:
+        """Return the speeds at both ends of flights of given durations [s]."""
+        tables = self._tables
+        if np.any(time > tables.lasted.x[-1]):
+            raise self._too_far(f"a flight of {np.max(time):.4g} s")
+        root, by_time = tables.lasted(time), tables.lasted(time, 1)
+        ends = [tables.up, tables.down]
+        speeds, slopes = zip(*((np.asarray(end(root)), np.asarray(end(root, 1) * by_time)) for end in ends), strict=True)
+        return Lasted(*speeds, *slopes)
+
+    def flown(self, speed: Floats) -> Flown:
+        """Return the flights that begin with given speeds [m/s]."""
+        tables = self._tables
+        if np.any(speed > tables.risen.x[-1]):
+            raise self._too_far(f"a flight that begins with {np.max(speed):.4g} m/s")
+        root = tables.risen(speed)
+        return Flown(np.asarray(root**2), np.asarray(tables.rise(root)), np.asarray(tables.time(root)), np.asarray(tables.down(root)))
+
+    def _within(self, table: Any, height: Floats) -> Floats:
+        if np.any(height > table.x[-1] ** 2):
+            raise self._too_far(f"a rise of {np.max(height):.4g} m")
+        return np.asarray(table(np.sqrt(height)))
+
+    def _too_far(self, what: str) -> InputError:
+        return InputError(
+            f"{what} is not possible in air, for a sphere of {self.radius:g} m and {self.density:g} kg/m^3; look at units, radius and "
+            "density, or leave out air"
+        )
+
+    @cached_property
+    def _tables(self) -> _Tables:
+        from scipy.interpolate import CubicHermiteSpline  # which takes longer to load than most calibrations
+
+        last = float(np.sqrt(self.highest))
+        root, up = self._branch(1.0, last)
+        root, down = self._branch(-1.0, float(root[-1]))
+        slopes = []  # of speed and time over the root of the depth, on the way up and down
+        for sign, (speed, _) in ((1.0, up), (-1.0, down)):
+            with np.errstate(invalid="ignore"):
+                slow = np.where(root > 0.0, 2.0 * root / speed, np.sqrt(2.0 / self.gravity))
+            slopes.append((slow * (self.gravity + sign * drag(speed, self.radius, self.density)), slow))
+        times = up[1] + down[1]
+        by_root = slopes[0][1] + slopes[1][1]
+        clock = np.concatenate([-up[1][:0:-1], down[1]])
+        fallen = np.concatenate([root[:0:-1], root]) ** 2
+        velocity = np.concatenate([-up[0][:0:-1], down[0]])
+        return _Tables(
+            up=CubicHermiteSpline(root, up[0], slopes[0][0]),
+            down=CubicHermiteSpline(root, down[0], slopes[1][0]),
+            rise=CubicHermiteSpline(root, up[1], slopes[0][1]),
+            time=CubicHermiteSpline(root, times, by_root),
+            depth=CubicHermiteSpline(clock, fallen, velocity),
+            lasted=CubicHermiteSpline(times, root, 1.0 / by_root),
+            risen=CubicHermiteSpline(up[0], root, 1.0 / slopes[0][0]),
+        )
+
+    def _branch(self, sign: float, last: float) -> tuple[Floats, Floats]:
+        """Return roots of depths, and speed and time from the top there, on the way up (1) or down (-1)."""
+        from scipy.integrate import solve_ivp
+
+        def slope(root: float, state: Floats) -> list[float]:
+            slow = 2.0 * root / state[0]
+            return [slow * (self.gravity + sign * float(drag(state[0], self.radius, self.density))), slow]
+
+        def too_fast(root: float, state: Floats) -> float:
+            return float(state[0]) - _FASTEST
+
+        too_fast.terminal = True  # type: ignore[attr-defined]
+        first = _BEGIN * last
+        begin = [np.sqrt(2.0 * self.gravity) * first, np.sqrt(2.0 / self.gravity) * first]
+        found = solve_ivp(
+            slope, (first, last), begin, method="DOP853", rtol=_CLOSE, atol=0.0, dense_output=True, events=too_fast, first_step=first
+        )
+        root = np.linspace(0.0, found.t[-1], _POINTS)
+        return root, np.hstack([np.zeros((2, 1)), found.sol(root[1:])])
+
+
+class _Tables(NamedTuple):
+    """Cubics over the root of a height: speeds on the way up and down, and the times of the first and of both; the depth over the time
+    from the top; and the root of the height over the time of both, and over the speed at the start.
+    """
+
+    up: Any
+    down: Any
+    rise: Any
+    time: Any
+    depth: Any
+    lasted: Any
+    risen: Any

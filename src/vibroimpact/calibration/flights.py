@@ -1,0 +1,107 @@
+"""How a sphere flies between impacts, and flights in a vacuum."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+
+
+class Flown(NamedTuple):
+    """A flight from the plate and back to it: how high it rises [m], for how long it does and how long it is [s], and the speed with
+    which it comes back [m/s].
+    """
+
+    height: Floats
+    rise: Floats
+    time: Floats
+    back: Floats
+
+
+class Lasted(NamedTuple):
+    """The speeds at the start and at the end of a flight of some duration [m/s], and their derivatives by it [m/s^2]."""
+
+    start: Floats
+    end: Floats
+    start_slope: Floats
+    end_slope: Floats
+
+
+class Flights(Protocol):
+    """Vertical flights of a sphere: heights are counted from where it touches the plate, or from the top of a flight."""
+
+    @property
+    def gravity(self) -> float:
+        """Acceleration of gravity [m/s^2]."""
+
+    def falling(self, height: Floats) -> tuple[Floats, Floats]:
+        """Return the speed after a fall from rest by a height [m/s], and its derivative by the height [1/s]."""
+
+    def rising(self, height: Floats) -> tuple[Floats, Floats]:
+        """Return the speed that it takes to rise by a height [m/s], and its derivative by the height [1/s]."""
+
+    def fallen(self, time: Floats) -> tuple[Floats, Floats]:
+        """Return how far below the top of its flight a sphere is [m] at a time from it [s], and its downward velocity [m/s].
+
+        Times before the top are negative.
+        """
+
+    def lasting(self, time: Floats) -> Lasted:
+        """Return the speeds at both ends of flights of given durations [s]."""
+
+    def flown(self, speed: Floats) -> Flown:
+        """Return the flights that begin with given speeds [m/s]."""
+
+
+@dataclass(frozen=True)
+class VacuumFlights:
+    """Flights without air, which are parabolas.
+
+    Parameters
+    ----------
+    gravity : float
+        Acceleration [m/s^2], > 0.
+
+    Examples
+    --------
+    >>> [round(float(value), 3) for value in VacuumFlights(9.8).flown(np.array(4.9))]
+    [1.225, 0.5, 1.0, 4.9]
+    """
+
+    gravity: float
+
+    def falling(self, height: Floats) -> tuple[Floats, Floats]:
+        """Return the speed after a fall from rest by a height [m/s], and its derivative by the height [1/s]."""
+        speed = np.sqrt(2.0 * self.gravity * height)
+        return speed, self.gravity / speed
+
+    rising = falling
+
+    def fallen(self, time: Floats) -> tuple[Floats, Floats]:
+        """Return how far below the top of its flight a sphere is [m] at a time from it [s], and its downward velocity [m/s]."""
+        return 0.5 * self.gravity * time**2, self.gravity * time
+
+    def lasting(self, time: Floats) -> Lasted:
+        """Return the speeds at both ends of flights of given durations [s]."""
+        speed, slope = 0.5 * self.gravity * time, np.full_like(time, 0.5 * self.gravity)
+        return Lasted(speed, speed, slope, slope)
+
+    def flown(self, speed: Floats) -> Flown:
+        """Return the flights that begin with given speeds [m/s]."""
+        return Flown(0.5 * speed**2 / self.gravity, speed / self.gravity, 2.0 * speed / self.gravity, speed)
+
+
+def as_in_vacuum(flights: Flights, height: Floats) -> tuple[Floats, Floats]:
+    """Return how high a sphere would rise in a vacuum that rises by a height [m], and the derivative by that height.
+
+    Examples
+    --------
+    >>> round(float(as_in_vacuum(VacuumFlights(9.8), np.array(0.5))[0]), 9)
+    0.5
+    """
+    speed, slope = flights.rising(height)
+    return 0.5 * speed**2 / flights.gravity, speed * slope / flights.gravity

@@ -1,0 +1,70 @@
+"""The meshes of the elastic bodies of a case, made or read, with all that must lie on them: told by the keys at which it stands."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.sparse import csr_array
+
+from vibroimpact.cases.build_elastic import elastic_bodies
+from vibroimpact.cases.place_words import in_list
+from vibroimpact.errors import InputError
+from vibroimpact.structures.geometry import mass_properties
+from vibroimpact.structures.mesh import Mesh
+from vibroimpact.structures.structure import Structure
+from vibroimpact.structures.supports.constraints import Constraints
+from vibroimpact.structures.surface import Side, Spot, place_of, surface_motion
+
+if TYPE_CHECKING:
+    from vibroimpact.bodies.elastic import ElasticBody
+    from vibroimpact.cases.schema import Case
+
+
+def meshes_of(case: Case) -> dict[str, Mesh]:
+    """Return the mesh of each elastic body of a case; nothing is assembled.
+
+    Raises
+    ------
+    InputError
+        If one can't be made or read, or the contact point, a sensor or a support does not lie on it; with its key.
+    """
+    found = {}
+    for name, body in elastic_bodies(case).items():
+        try:
+            mesh = body.recipe.shape.mesh(body.recipe.supports)
+        except InputError as error:
+            raise InputError(error.message, f"{name}.{error.key}".rstrip(".")) from None
+        brought = getattr(getattr(case, name), "mesh", None)
+        at = f"{name}.mesh.contact" if getattr(brought, "contact", None) else "drop.position" if name == "plate" else f"{name}.mesh"
+        _check_spot(mesh, body.contact, body.side, at)
+        names = [{"name": one} for one in body.watched]
+        for number, (spot, face) in enumerate(body.watched.values()):
+            _check_spot(mesh, spot, face, f"{in_list('sensors', names, number)}.position")
+        if name == "plate":
+            _check_supports(case, body, mesh)
+        found[name] = mesh
+    return found
+
+
+def _check_spot(mesh: Mesh, spot: Spot, side: Side, key: str) -> None:
+    try:
+        surface_motion(mesh, np.array([place_of(mesh, spot, side)]), side)
+    except InputError as error:
+        raise InputError(error.message, key) from None
+
+
+def _check_supports(case: Case, body: ElasticBody, mesh: Mesh) -> None:
+    """Raise unless each support finds something to hold, that no other one holds."""
+    tables = case.plate.supports if isinstance(case.plate.supports, tuple) else ()
+    dofs = mesh.dofs_per_node * len(mesh.nodes)
+    nothing = csr_array((dofs, dofs))
+    thickness = case.plate.size[2] if case.plate.size is not None and mesh.is_flat else 0.0
+    constraints = Constraints(Structure(mesh, nothing, nothing, mass_properties(mesh, 1.0, thickness or 1.0), thickness))
+    kinds = [{"type": table.type} for table in tables]
+    for number, table in enumerate(tables):
+        for support in table.made():
+            try:
+                support.hold(constraints)
+            except InputError as error:
+                raise InputError(error.message, in_list("plate.supports", kinds, number)) from None

@@ -1,0 +1,89 @@
+"""Are the supports and the sensors of a plate on it? Told by the keys at which they stand, before anything is computed."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+from vibroimpact.cases.elastic_fields import BroughtMeshTable
+from vibroimpact.cases.place_words import in_list
+from vibroimpact.cases.slips.lengths import likely_lengths
+from vibroimpact.errors import InputError
+from vibroimpact.structures.rectangle import CLOSEST
+
+if TYPE_CHECKING:
+    from vibroimpact.cases.schema import Case
+
+_ROUNDING = 1.0 + 1e-9
+_RIGID = ("patch", "patches", "bar", "bars")  # whose rim is an edge of elements
+
+
+def check_places(case: Case) -> None:
+    """Raise unless the supports and the sensors of an elastic plate that is meshed here lie on it.
+
+    Raises
+    ------
+    InputError
+        With the key of the first that does not.
+    """
+    plate = case.plate
+    if plate.model == "rigid" or plate.size is None or isinstance(plate.mesh, BroughtMeshTable):
+        return
+    half = (0.5 * plate.size[0], 0.5 * plate.size[1])
+    names = [{"name": sensor.name} for sensor in case.sensors]
+    for number, sensor in enumerate(case.sensors):
+        key = f"{in_list('sensors', names, number)}.position"
+        if isinstance(sensor.position, str):
+            raise InputError(f'a plate that is meshed here has no set "{sensor.position}"; give x and y', key)
+        _check_point(sensor.position, half, key)
+    tables = plate.supports if isinstance(plate.supports, tuple) else ()
+    kinds = [{"type": table.type} for table in tables]
+    for number, table in enumerate(tables):
+        _check_support(table, half, in_list("plate.supports", kinds, number))
+
+
+def _check_point(position: Sequence[float], half: tuple[float, float], key: str) -> None:
+    if any(abs(at) > _ROUNDING * end for at, end in zip(position, half, strict=True)):
+        raise InputError(f"{_shown(position)} m lies outside the plate, {_reaches(half)}{likely_lengths(position, half)}", key)
+
+
+def _check_support(table: Any, half: tuple[float, float], key: str) -> None:
+    """Raise unless a support lies on the plate: its centre, or those of four, and its rim."""
+    if table.type == "set":
+        raise InputError(f'a plate that is meshed here has no set "{table.name}"; give patches, bars, edges, points or springs', key)
+    centre = getattr(table, "position", None)
+    if centre is not None:
+        _check_point(centre, half, f"{key}.position")
+    elif (spacing := getattr(table, "spacing", None)) is not None:
+        if any(0.5 * apart > _ROUNDING * end for apart, end in zip(spacing, half, strict=True)):
+            sides = (2.0 * half[0], 2.0 * half[1])
+            raise InputError(
+                f"{_shown(spacing)} m is wider than the plate, {_shown(sides)} m{likely_lengths(spacing, sides)}", f"{key}.spacing"
+            )
+        centre = (0.5 * spacing[0], 0.5 * spacing[1])
+    if centre is None:
+        return
+    room = [end - abs(at) for at, end in zip(centre, half, strict=True)]
+    if getattr(table, "size", None) is not None:
+        if any(0.5 * side > left + 1e-9 * end for side, left, end in zip(table.size, room, half, strict=True)):
+            hint = likely_lengths(table.size, [2.0 * end for end in half])
+            raise InputError(
+                f"{_shown(table.size)} m around {_shown(centre)} m reaches beyond the plate, {_reaches(half)}{hint}", f"{key}.size"
+            )
+        return
+    radius = getattr(table, "radius", None) or 0.0
+    is_rigid = table.type in _RIGID
+    least = CLOSEST * radius if is_rigid else radius - 1e-9 * max(half)  # rims are held to it as exactly as meshes hold them
+    if least > min(room):
+        margin = f"; between it and the edge must be at least {CLOSEST - 1.0:.2g} radii" if is_rigid else ""
+        words = f"{radius:g} m around {_shown(centre)} m reaches beyond the plate, {_reaches(half)}{margin}"
+        raise InputError(f"{words}{likely_lengths([radius], [min(half)])}", f"{key}.radius")
+
+
+def _reaches(half: Sequence[float]) -> str:
+    """Return how far a plate reaches from its centre, in words."""
+    return f"which reaches to {_shown(half)} m from its centre"
+
+
+def _shown(pair: Sequence[float]) -> str:
+    return f"({pair[0]:g}, {pair[1]:g})"

@@ -1,0 +1,124 @@
+"""What a case tells of its drop before anything is computed, to which its numbers are held."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from vibroimpact.cases.conditions import Conditions, Seen
+from vibroimpact.contact.pair import hertz_stiffness
+from vibroimpact.materials import Material
+
+HERTZ_DURATION = 2.943
+"""Durations of a contact over indentation over speed, where the force grows with the power 1.5 (Johnson 1985, eq. 11.24)."""
+
+
+@dataclass(frozen=True)
+class Facts:
+    """What follows from a case by Hertz's undamped contact of its two bodies; NaN of what does not.
+
+    Parameters
+    ----------
+    case : mapping
+        A resolved case.
+    """
+
+    case: Mapping[str, Any]
+
+    @cached_property
+    def _conditions(self) -> Conditions:
+        return Conditions(self.case, Seen())
+
+    @property
+    def plate(self) -> Material:
+        """Material of the plate."""
+        return self._conditions.materials["plate"]
+
+    @property
+    def size(self) -> tuple[float, float, float]:
+        """Length, width and thickness of the plate [m]."""
+        size = self.case["plate"].get("size")
+        return (math.nan, math.nan, math.nan) if size is None else tuple(size)
+
+    @property
+    def across(self) -> float:
+        """The longer of length and width of the plate [m]."""
+        return max(self.size[:2])
+
+    @property
+    def radius(self) -> float:
+        """Radius of the sphere [m]."""
+        return float(self.case["sphere"]["radius"])
+
+    @cached_property
+    def mass(self) -> float:
+        """Mass of the sphere [kg]."""
+        return float(self._conditions.mass)
+
+    @cached_property
+    def speed(self) -> float:
+        """Speed at the first touch [m/s]."""
+        drop = self.case["drop"]
+        if drop.get("speed") is not None:
+            return float(drop["speed"])
+        return float(np.sqrt(2.0 * drop["gravity"] * max(drop["height"] - self.radius, 0.0)))
+
+    @property
+    def touch(self) -> float:
+        """Time of the first touch [s]."""
+        return 0.0 if self.case["drop"].get("speed") is not None else self.speed / self.case["drop"]["gravity"]
+
+    @cached_property
+    def stiffness(self) -> float:
+        """Hertz's stiffness of the two bodies [N/m^1.5]."""
+        found = float(hertz_stiffness(self._conditions.modulus, self.radius))
+        return found if math.isfinite(found) else math.nan
+
+    @cached_property
+    def depth(self) -> float:
+        """Largest indentation [m]."""
+        return math.pow(1.25 * self.mass * self.speed**2 / self.stiffness, 0.4)
+
+    @property
+    def force(self) -> float:
+        """Largest force [N]."""
+        return self.stiffness * math.pow(self.depth, 1.5)
+
+    @property
+    def contact_time(self) -> float:
+        """Duration of the first contact [s]."""
+        return HERTZ_DURATION * self.depth / self.speed
+
+    @property
+    def critical_damping(self) -> float:
+        """Critical damping of the sphere on the contact as stiff as it is at the largest indentation [N s/m]."""
+        return 2.0 * math.sqrt(self.mass * 1.5 * self.stiffness * math.sqrt(self.depth))
+
+    @property
+    def exponent(self) -> float:
+        """Exponent of the law's elastic force."""
+        known: Mapping[str, Any] = self._conditions.law.__dataclass_fields__
+        if "exponent" in known:
+            return float(self._conditions.of_law("exponent", 1.5))
+        return 1.5 if "stiffness" in known and "1.5" in known["stiffness"].metadata["unit"] else 1.0
+
+    @property
+    def told_by_the_bodies(self) -> set[str]:
+        """Parameters of the law that have the values which the two bodies give, so that nobody wrote them."""
+        bodies = self._conditions.materials.values()
+        strengths = [material.yield_strength for material in bodies if material.yield_strength is not None]
+        given = {
+            "stiffness": [self.stiffness],
+            "effective_modulus": [float(self._conditions.modulus)],
+            "effective_mass": [self.mass],
+            "effective_radius": [self.radius],
+            "yield_strength": strengths,
+            "yield_pressure": [1.6 * strength for strength in strengths],
+        }
+        contact = self.case["contact"]
+        return {name for name, values in given.items() if any(math.isclose(contact.get(name, math.nan), value) for value in values)}

@@ -1,0 +1,65 @@
+"""The table of impacts of a run while it grows, a row an impact."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+
+from vibroimpact.contact.phase.collocation import Floats
+
+_FIRST = 4  # rows; each block of memory has as many as all before it
+
+
+class ImpactRows:
+    """The rows of the impacts of B drops so far; what a drop does not have is NaN.
+
+    Parameters
+    ----------
+    columns : iterable of str
+        The names of the columns.
+    size : int
+        How many drops, B.
+
+    Examples
+    --------
+    >>> rows = ImpactRows(["time_s"], 2)
+    >>> rows.add()["time_s"][0] = 0.5
+    >>> len(rows), rows.table()["time_s"].tolist()
+    (1, [[0.5], [nan]])
+    """
+
+    def __init__(self, columns: Iterable[str], size: int) -> None:
+        self._columns, self._size = tuple(columns), size
+        self._blocks: list[Floats] = []  # (columns, rows, B)
+        self._count, self._room = 0, 0
+
+    def __len__(self) -> int:
+        return self._count
+
+    def add(self) -> dict[str, Floats]:
+        """Add a row; return its columns (B,), to be written to."""
+        if self._count == self._room:
+            rows = max(_FIRST, self._room)
+            self._blocks.append(np.full((len(self._columns), rows, self._size), np.nan))
+            self._room += rows
+        self._count += 1
+        return self._row(self._blocks[-1], self._count - 1 - self._room)
+
+    @property
+    def first(self) -> dict[str, Floats]:
+        """The columns of the first row (B,)."""
+        return self._row(self._blocks[0], 0)
+
+    @property
+    def last(self) -> dict[str, Floats]:
+        """The columns of the last row (B,)."""
+        return self._row(self._blocks[-1], self._count - 1 - self._room)
+
+    def table(self) -> dict[str, Floats]:
+        """Return the columns of all rows, (B, impacts)."""
+        whole = np.concatenate([np.zeros((len(self._columns), 0, self._size)), *self._blocks], axis=1)[:, : self._count]
+        return {name: column.T for name, column in zip(self._columns, whole, strict=True)}
+
+    def _row(self, block: Floats, number: int) -> dict[str, Floats]:
+        return dict(zip(self._columns, block[:, number], strict=True))

@@ -1,0 +1,46 @@
+"""A leg of a run: one flight of some drops, and the contact that it ends in."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vibroimpact.contact.phase.collocation import Floats
+from vibroimpact.contact.phase.contact import Contact
+from vibroimpact.contact.phase.encounter import Encounter
+from vibroimpact.contact.phase.oscillators import FreeMotion
+from vibroimpact.dynamics.flight import Flight
+
+
+@dataclass(frozen=True)
+class Leg:
+    """One flight of some drops and the contact it ends in; arrays belong to `drops`, (b,).
+
+    `flight_end`: when the flight ends [s]. `contact` and `encounter` belong to `contact_drops`; they are
+    None for a flight that ends the run and for an instantaneous law.
+    """
+
+    drops: NDArray[np.intp]
+    flight: Flight
+    flight_end: Floats
+    contact_drops: NDArray[np.intp]
+    contact: Contact | None = None
+    encounter: Encounter | None = None
+    motions: tuple[FreeMotion, ...] = ()
+    """Of each of the drops, in flight, where a body vibrates."""
+
+    def of(self, drop: int) -> Leg | None:
+        """Return the leg of one drop, or None if it takes no part."""
+        here = np.flatnonzero(self.drops == drop)
+        if not here.size:
+            return None
+        one, flight = np.zeros(1, dtype=np.intp), self.flight
+        alone = Flight(flight.start[here], flight.gap[here], flight.velocity[here], flight.gravity[here])
+        contact_here = np.flatnonzero(self.contact_drops == drop)
+        motions = self.motions[int(here[0]) : int(here[0]) + 1]
+        if self.contact is None or self.encounter is None or not contact_here.size:
+            return Leg(one, alone, self.flight_end[here], one[: contact_here.size], motions=motions)
+        contact, encounter = self.contact.of(int(contact_here[0])), self.encounter.take(contact_here)
+        return Leg(one, alone, self.flight_end[here], one, contact, encounter, motions)

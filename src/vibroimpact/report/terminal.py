@@ -1,0 +1,37 @@
+r"""The console of the command line: what it prints has stand-ins for letters that the terminal lacks, and can't steer it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from rich.console import Console, ConsoleOptions, RenderableType
+from rich.segment import Segment
+from rich.text import Text
+
+from vibroimpact.report.encodable import encodable
+from vibroimpact.shown import visible
+
+
+class TerminalConsole(Console):
+    r"""A console whose texts get stand-ins for letters that the terminal lacks, and show control characters as escapes.
+
+    Examples
+    --------
+    >>> from io import StringIO
+    >>> screen = TerminalConsole(file=StringIO())
+    >>> screen.print(Text("a\x1b[2Jb"))
+    >>> print(screen.file.getvalue().rstrip())
+    a\x1b[2Jb
+    """
+
+    def render(self, renderable: RenderableType, options: ConsoleOptions | None = None) -> Iterator[Segment]:
+        """Yield what a renderable comes to."""
+        if isinstance(renderable, Text):
+            words = encodable(renderable.plain, self.encoding)  # before it is wrapped
+            if words != renderable.plain:
+                renderable = Text(words, renderable.style, justify=renderable.justify, overflow=renderable.overflow)
+        for segment in super().render(renderable, options):
+            if segment.control or segment.text.isprintable() or segment.text == "\n":
+                yield segment
+            else:
+                yield Segment("\n".join(map(visible, segment.text.split("\n"))), segment.style)

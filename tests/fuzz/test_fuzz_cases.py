@@ -1,0 +1,53 @@
+"""Hostile case files: each is explained or refused in a few clean lines, within seconds, and what is quick to run runs."""
+
+from __future__ import annotations
+
+from io import StringIO
+from pathlib import Path
+
+import vibroimpact as vi
+from attack import failures, number
+from mutations import case_files
+from vibroimpact.cases.build import deforms
+from vibroimpact.cases.reader import load_table, named
+from vibroimpact.report.console import case_explained
+from vibroimpact.report.study.explained import sweep_explained
+from vibroimpact.report.terminal import TerminalConsole
+
+
+def shown(renderable: object) -> None:
+    """Print to a terminal that is none; no character of what a file holds may steer it."""
+    written = StringIO()
+    TerminalConsole(file=written, width=100).print(renderable)
+    bad = {character for character in written.getvalue() if not character.isprintable() and character not in "\n\u00a0"}
+    assert not bad, f"{bad} would reach the terminal"
+
+
+def check(data: bytes, folder: Path) -> vi.Case:
+    """Do what `vibroimpact check` does with a file."""
+    file = folder / "case.toml"
+    file.write_bytes(data)
+    table = named(file, lambda: load_table(file))
+    if "sweep" not in table:
+        case = vi.load_case(file)
+    else:
+        study = named(file, lambda: vi.read_sweep(table))
+        shown(sweep_explained(study))
+        case = study.case
+    shown(case_explained(case))
+    return case
+
+
+def test_hostile_cases_are_explained_or_refused(tmp_path: Path) -> None:
+    told = failures(lambda data: check(data, tmp_path), list(case_files(number(120), 1)))
+    assert not told, told
+
+
+def test_hostile_cases_that_are_accepted_run(tmp_path: Path) -> None:
+    def run(data: bytes) -> None:
+        case = check(data, tmp_path)
+        if not deforms(case):
+            vi.simulate(case)
+
+    told = failures(run, list(case_files(number(40), 2)))
+    assert not told, told

@@ -1,0 +1,31 @@
+"""Hostile studies: each is refused in a few clean lines, or a few of its drops are computed, within seconds."""
+
+from __future__ import annotations
+
+from test_fuzz_cases import shown
+
+import vibroimpact as vi
+from attack import failures, number
+from mutations import Table, studies
+from vibroimpact.cases.compute_points import compute_points
+from vibroimpact.report.console import case_explained
+from vibroimpact.report.study.explained import sweep_explained
+
+
+def compute_a_few(table: Table) -> None:
+    study = vi.read_sweep(table)
+    shown(sweep_explained(study))
+    shown(case_explained(study.case))
+    if study.deforms:
+        return
+    keep = tuple(study.section.keep)
+    found = compute_points(study.table, keep, 0, study.plan.points(0, min(5, study.size)))
+    assert len(found.arrays["outcome"]) == min(5, study.size)
+    for reason in found.failures.values():
+        assert reason.isprintable(), reason
+        assert "Error: " not in reason, reason
+
+
+def test_hostile_studies_are_refused_or_run() -> None:
+    told = failures(compute_a_few, list(studies(number(40), 3)))
+    assert not told, told

@@ -1,0 +1,27 @@
+"""An extra exists when something imports it: in the package, or in an example of the documents."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+EXTRAS: dict[str, list[str]] = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["optional-dependencies"]
+_IMPORTED_AS = {"dask": "distributed"}  # of which the scheduler is used
+
+
+@pytest.mark.parametrize("extra", EXTRAS)
+def test_an_extra_is_imported_by_something(extra: str) -> None:
+    files = [*(ROOT / "src").rglob("*.py"), *(ROOT / "docs").glob("*.md")]
+    text = "\n".join(file.read_text(encoding="utf-8") for file in files)
+    name = re.split(r"[\[<>=~]", EXTRAS[extra][0])[0]
+    assert re.search(rf"^\s*(?:import|from) {_IMPORTED_AS.get(name, name)}\b", text, re.M)
+
+
+def test_no_text_names_an_extra_that_is_not_there() -> None:
+    files = [*(ROOT / "src").rglob("*.py"), *(ROOT / "docs").glob("*.md"), ROOT / "README.md"]
+    named = {extra for file in files for extra in re.findall(r"vibroimpact\[(\w+)\]", file.read_text(encoding="utf-8"))}
+    assert named <= EXTRAS.keys()

@@ -1,0 +1,211 @@
+"""What every command prints, in terminals of any width and encoding: the same numbers, whole, and no traceback."""
+
+from __future__ import annotations
+
+import io
+import os
+import re
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from rich.console import RenderableType
+
+import vibroimpact as vi
+from studies import study_table
+from support import plain_case
+from told import told_case
+from vibroimpact.calibration.calibrate import calibrate
+from vibroimpact.cases.modes import compute_modes
+from vibroimpact.cases.sweep import read_sweep
+from vibroimpact.cli import main
+from vibroimpact.doctor import diagnose
+from vibroimpact.exchange.export_format import find_export_format
+from vibroimpact.report.calibration_text import calibration_summary
+from vibroimpact.report.comparison import compare_laws
+from vibroimpact.report.comparison_text import comparison_summary
+from vibroimpact.report.console import case_explained, result_summary, versions_table
+from vibroimpact.report.format_table import export_summary, format_table
+from vibroimpact.report.law_sheet import law_sheet, law_table
+from vibroimpact.report.material_text import material_sheet, material_table
+from vibroimpact.report.modes_text import modes_summary
+from vibroimpact.report.reproduction import summary
+from vibroimpact.report.study.explained import sweep_explained
+from vibroimpact.report.study.text import study_summary
+from vibroimpact.report.terminal import TerminalConsole
+from vibroimpact.report.unit_table import converted, unit_table
+from vibroimpact.reproduction.row import Verdict
+from vibroimpact.storage.result import result_of
+
+_NUMBER = re.compile(r"(?<![\w.])[-\u2212+]?\d+(?:\.\d+)?(?:·10[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+|e[-+]?\d+)?(?![\w.]*\d)")
+_WIDTHS = (60, 80, 120, 160)
+
+Printed = dict[str, Callable[[int], RenderableType]]
+
+ELASTIC = plain_case(
+    plate={"model": "elastic", "material": "steel", "size": [0.3, 0.2, 0.01], "modes": 30, "damping": 0.01, "supports": "clamped"},
+    drop={"height": 0.1, "position": [0.02, 0.01]},
+    sensors=[
+        {"name": "a1", "position": [0.1, 0.05], "rate": 20e3, "accelerometer": {"range": 100.0}},
+        {"name": "a2", "position": [0.1, 0.05], "rate": 20e3},
+    ],
+)
+
+
+@pytest.fixture(scope="module")
+def commands(tmp_path_factory: pytest.TempPathFactory, variable: vi.Response) -> Printed:
+    """What each command prints, by its name, for a terminal of a width."""
+    folder = tmp_path_factory.mktemp("terminals")
+    elastic, rigid = vi.read_case(ELASTIC), result_of(variable)
+    rung = result_of(vi.simulate(elastic))
+    modes = compute_modes(elastic)
+    compared = compare_laws(vi.load_case("paper:type1-theory"), ["hunt-crossley", "flores", "newton", "jankowski"])
+    case = vi.load_case("paper:type1-constant")
+    calibrated = calibrate(case, vi.load_case("paper:type1-theory"))
+    sweep = read_sweep(study_table())
+    study = vi.read_study(vi.run_sweep(sweep, folder / "study", workers=1))
+    drop = told_case("paper:type1-variable")
+    return {
+        "run": lambda width: result_summary(rigid, width),
+        "run, elastic": lambda width: result_summary(rung, width),
+        "check": lambda _: case_explained(elastic),
+        "check, study": lambda _: sweep_explained(sweep),
+        "compare": lambda _: comparison_summary(compared),
+        "calibrate": lambda _: calibration_summary(case, calibrated),
+        "modes": lambda _: modes_summary(elastic, modes),
+        "sweep": lambda width: study_summary(study, width),
+        "export": lambda _: format_table(),
+        "export, done": lambda _: export_summary(drop, find_export_format("lammps"), [folder / "drop.in"]),
+        "laws": law_table,
+        "laws NAME": lambda _: law_sheet("jackson-green-marghitu"),
+        "materials": lambda _: material_table(),
+        "materials NAME": lambda _: material_sheet("granite"),
+        "units": lambda _: unit_table(5.115e8, "N/m^1.5"),
+        "units --to": lambda _: converted(3.0, "N/µm", "N/m"),
+        "doctor": lambda _: versions_table([row for row in diagnose() if row[0] not in ("memory free", "store of modes")]),
+    }
+
+
+NAMES = (
+    "run",
+    "run, elastic",
+    "check",
+    "check, study",
+    "compare",
+    "calibrate",
+    "modes",
+    "sweep",
+    "export",
+    "export, done",
+    "laws",
+    "laws NAME",
+    "materials",
+    "materials NAME",
+    "units",
+    "units --to",
+    "doctor",
+)
+
+
+def shown(what: RenderableType, width: int, encoding: str = "utf-8") -> list[str]:
+    """Return the lines of what is printed to a terminal."""
+    file = io.TextIOWrapper(io.BytesIO(), encoding=encoding, errors="strict", newline="\n")
+    TerminalConsole(width=width, file=file).print(what)
+    file.flush()
+    return file.buffer.getvalue().decode(encoding).splitlines()
+
+
+def test_every_command_is_here(commands: Printed) -> None:
+    from vibroimpact.cli.shared import app
+
+    silent = {"demo", "report", "schema", "reproduce"}  # as run; one line; JSON; below
+    there = {re.split("[, ]", name)[0] for name in NAMES} | silent
+    assert {one.callback.__name__ for one in app.registered_commands if one.callback} <= there
+    assert set(NAMES) == commands.keys()
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_narrow_terminal_shows_no_number_that_a_wide_one_does_not(commands: Printed, name: str) -> None:
+    whole = set(_NUMBER.findall(" ".join(shown(commands[name](240), 240))))
+    for width in _WIDTHS:
+        lines = shown(commands[name](width), width)
+        assert max(map(len, lines)) <= width
+        assert not any("\u2026" in line for line in lines)
+        assert set(_NUMBER.findall(" ".join(" ".join(lines).split()))) <= whole, width
+
+
+@pytest.mark.parametrize("encoding", ["ascii", "cp1252"])
+@pytest.mark.parametrize("name", NAMES)
+def test_every_command_is_readable_in_every_encoding(commands: Printed, name: str, encoding: str) -> None:
+    for width in (60, 160):
+        lines = shown(commands[name](width), width, encoding)
+        asked = "\n".join(shown(commands[name](width), width)).count("?")
+        assert "\n".join(lines).count("?") == asked
+        assert "\\u" not in "\n".join(lines)
+        assert max(map(len, lines)) <= width
+
+
+def test_verdicts_of_the_reproduction_fit(monkeypatch: pytest.MonkeyPatch) -> None:
+    rows = {"rows": [{"verdict": verdict.value} for verdict in Verdict] * 30, "title": "", "text": ""}
+    monkeypatch.setattr(summary, "read_parts", lambda _: {"table1": rows, "section5.2": rows})
+    for width in (40, 60):
+        lines = shown(summary.summary_table(Path()), width)
+        assert max(map(len, lines)) <= width
+        assert {*_NUMBER.findall(" ".join(lines))} == {"30", "60"}
+
+
+@pytest.mark.parametrize("encoding", ["ascii", "cp1252", "utf-8"])
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ("laws",),
+        ("laws", "jkr"),
+        ("materials", "granite"),
+        ("units", "5", "N/µm"),
+        ("check", "paper:type2"),
+        ("export",),
+        ("schema",),
+        ("doctor",),
+        ("check", "größe.toml"),
+        ("units", "5", "µß"),
+        ("materials", "粒子"),
+    ],
+    ids=" ".join,
+)
+def test_no_command_ends_in_a_traceback(arguments: tuple[str, ...], encoding: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    streams = [io.TextIOWrapper(io.BytesIO(), encoding=encoding) for _ in range(2)]
+    monkeypatch.setattr("sys.stdout", streams[0])
+    monkeypatch.setattr("sys.stderr", streams[1])
+    monkeypatch.setattr("sys.argv", ["vibroimpact", *arguments])
+    with pytest.raises(SystemExit) as left:
+        main()
+    for stream in streams:
+        stream.flush()
+    out, err = (stream.buffer.getvalue().decode(encoding) for stream in streams)
+    assert left.value.code in ((2,) if err else (0, None))
+    assert "Traceback" not in err
+    assert out or err
+
+
+def test_a_run_in_a_terminal_of_another_time(tmp_path: Path) -> None:
+    surroundings = {name: value for name, value in os.environ.items() if not name.startswith(("LC_", "LANG", "PYTHONIOENC", "PYTHONUTF8"))}
+    surroundings |= {"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0", "PYTHONWARNDEFAULTENCODING": "1"}
+    command = [sys.executable, "-m", "vibroimpact", "run", "paper:type1-variable", "-o", str(tmp_path / "out")]
+    done = subprocess.run(command, capture_output=True, env=surroundings, timeout=300, check=False)
+    assert done.returncode == 0, done.stderr
+    assert b"[us]" in done.stdout
+    assert b"?" not in done.stdout
+    assert b"vibroimpact/" not in done.stderr  # where an EncodingWarning names our own line
+
+
+@pytest.mark.parametrize("arguments", [("laws",), ("schema",), ("units", "5", "N/m"), ("--version",)], ids=" ".join)
+def test_a_pipe_that_is_closed_early_ends_quietly(arguments: tuple[str, ...]) -> None:
+    command = [sys.executable, "-m", "vibroimpact", *arguments]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as running:
+        assert running.stdout is not None
+        assert running.stderr is not None
+        running.stdout.close()
+        assert running.stderr.read() == b""
+        assert running.wait(timeout=300) in (0, 1)
