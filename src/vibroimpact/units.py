@@ -13,13 +13,13 @@ from functools import cache, lru_cache
 from typing import TYPE_CHECKING
 
 from vibroimpact.errors import InputError
-from vibroimpact.shown import shown
+from vibroimpact.shown import shortened, shown
+from vibroimpact.unit_grammar import is_unit
 
 if TYPE_CHECKING:
     import pint
 
 _QUANTITY = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*((?:1/)?[^\d\s.+-].*)?")
-_UNIT = re.compile(r"(?:1/)?[A-Za-z%°µμ][A-Za-z%°µμ*/^ ()·.0-9-]{0,39}")
 
 _KIND = {
     "m": "length",
@@ -108,7 +108,7 @@ def to_si(value: float | str, unit: str = "") -> float:
     try:
         return _finite(float(value), value)
     except OverflowError:
-        raise InputError(f"{str(value)[:20]}... is too large for a number") from None
+        raise InputError(f"{_long(value)} is too large for a number") from None
 
 
 def read_quantity(text: str) -> tuple[float, str]:
@@ -126,7 +126,7 @@ def read_quantity(text: str) -> tuple[float, str]:
     """
     parts = _split(text)
     if parts is None or not parts[1]:
-        raise InputError(f'"{text[:80]}" is not a number with a unit, such as "5.115e8 N/m^1.5"')
+        raise InputError(f'{shown(text, 80)} is not a number with a unit, such as "5.115e8 N/m^1.5"')
     return _finite(parts[0], text), parts[1]
 
 
@@ -160,9 +160,13 @@ def convert_units(value: float, unit: str, to: str) -> float:
     have, want = _known_unit(unit), _known_unit(to)
     number = _finite(to_si(value), value)
     if have.dimensionality != want.dimensionality:
-        told = " and ".join(f'"{name}" is {_dimension_words(one)}' for name, one in ((unit, have), (to, want)))
+        told = " and ".join(f"{shown(name)} is {_dimension_words(one)}" for name, one in ((unit, have), (to, want)))
         raise InputError(f"{told}; one can't be converted to the other")
-    return _finite(float(_registry().Quantity(number, have).to(want).magnitude), f"{value:g} {unit} in {to}")
+    try:
+        found = float(_registry().Quantity(number, have).to(want).magnitude)
+    except OverflowError:
+        found = math.inf
+    return _finite(found, f"{value:g} {unit} in {to}")
 
 
 def dimension_of(unit: str) -> dict[str, float]:
@@ -229,20 +233,22 @@ def _known_unit(text: str) -> pint.Unit:
     try:
         return _parse_unit(text)
     except Exception as error:  # pint raises many kinds for a unit that it can't read
-        raise InputError(f'"{text}" is not a unit that is known; write it as "N/mm^1.5", "N s/m" or "kg/s"') from error
+        raise InputError(f'{shown(text, 80)} is not a unit that is known; write it as "N/mm^1.5", "N s/m" or "kg/s"') from error
 
 
 def _parse(text: str, unit: str) -> float:
     parts = _split(text)
     if parts is None:
-        raise InputError(f'"{text[:80]}" is not {_wanted(unit)}')
+        raise InputError(f"{shown(text, 80)} is not {_wanted(unit)}")
     number, given = parts
     if not unit:
         if given:
-            raise InputError(f'"{text}" has a unit, but a plain number is wanted: write {number / 100 if given == "%" else number:g}')
+            raise InputError(
+                f"{shown(text, 80)} has a unit, but a plain number is wanted: write {number / 100 if given == '%' else number:g}"
+            )
         return number
     if not given:
-        raise InputError(f'"{text}" has no unit: write {number:g} (it is then in {unit}) or "{number:g} {unit}"')
+        raise InputError(f'{shown(text, 80)} has no unit: write {number:g} (it is then in {unit}) or "{number:g} {unit}"')
     return float(number * _factor(given, unit, text))
 
 
@@ -253,13 +259,13 @@ def _split(text: str) -> tuple[float, str] | None:
         return None
     unit = (match[2] or "").strip()
     if re.match(r",\d", unit):
-        raise InputError(f'"{text}" has a comma in its number; write a point: {text.replace(",", ".", 1)}')
+        raise InputError(f"{shown(text, 80)} has a comma in its number; write a point: {text.replace(',', '.', 1)}")
     return float(match[1]), unit
 
 
 def _parse_unit(text: str) -> pint.Unit:
     """Return a unit; raises ValueError, and whatever pint does for one that it can't read."""
-    if not _UNIT.fullmatch(text) or re.search(r"\d{4}", text):
+    if not is_unit(text):
         raise ValueError(text)
     return _registry().parse_units(text)
 
@@ -281,9 +287,19 @@ def _factor(given: str, unit: str, text: str) -> float:
     except pint.DimensionalityError:
         kind = next((k for u, k in _KIND.items() if u and have.check(registry.parse_units(u).dimensionality)), None)
         is_a = f"is {_article(kind)} {kind}" if kind else "is another kind of quantity"
-        raise InputError(f'"{text}" {is_a}; what is wanted is {_wanted(unit)}') from None
+        raise InputError(f"{shown(text, 80)} {is_a}; what is wanted is {_wanted(unit)}") from None
     except Exception as error:  # pint raises many kinds for a unit that it can't read
-        raise InputError(f'"{given}" in "{text}" is not a unit that is known; what is wanted is {_wanted(unit)}') from error
+        raise InputError(
+            f"{shown(given, 80)} in {shown(text, 80)} is not a unit that is known; what is wanted is {_wanted(unit)}"
+        ) from error
+
+
+def _long(number: float) -> str:
+    """Return the first digits of a whole number, which may have more than Python writes."""
+    try:
+        return f"{str(number)[:20]}..."
+    except ValueError:
+        return "a number of thousands of digits"
 
 
 def _article(noun: str) -> str:
@@ -300,5 +316,5 @@ def _wanted(unit: str) -> str:
 
 def _finite(number: float, value: float | str) -> float:
     if not math.isfinite(number):
-        raise InputError(f"{value} is not finite")
+        raise InputError(f"{shortened(str(value), 60)} is not finite")
     return number

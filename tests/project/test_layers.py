@@ -13,7 +13,7 @@ PACKAGE = Path(vibroimpact.__file__).parent
 LAYERS = [
     {"shown", "_version"},
     {"errors"},
-    {"ranges", "registry", "writing"},
+    {"ranges", "registry", "writing", "files", "unit_grammar"},
     {"units", "materials", "quantity"},
     {"contact"},
     {"structures"},

@@ -117,7 +117,7 @@ def test_every_fault_of_a_case_is_named_at_once() -> None:
     ("content", "message"),
     [
         (b"radius = = 3", "this is not valid TOML"),
-        (b"\xff\xfe\x00", "it is not UTF-8 text"),
+        (b"\xff\xfe\x00", "the file is not UTF-8 text but UTF-16; save it as UTF-8"),
         (b"a = 1\n" * 200_000, "the file is larger than 1 MB"),
         (b"a = " + b"[" * 5000, "nested too deeply"),
         (b"", "sphere: this section is missing"),

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
@@ -12,6 +11,8 @@ from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
 from vibroimpact.cases.quantities import Quantity
 from vibroimpact.cases.section import Section, read_table
 from vibroimpact.errors import InputError
+from vibroimpact.exchange.lines import MESH
+from vibroimpact.files import about, file_digest
 from vibroimpact.ranges import Range
 from vibroimpact.shown import shown
 
@@ -50,12 +51,11 @@ class BroughtMeshTable(Section):
         """
         from vibroimpact.structures.recipe import BroughtMesh
 
-        path = Path(self.file)
         try:
-            digest = hashlib.sha256(path.read_bytes()).hexdigest()
-        except OSError as error:
-            raise InputError(f"{path}: the file can't be read: {error.strerror}", "mesh") from None
-        return BroughtMesh(json.dumps([digest, path.suffix.lower(), self.unit, self.element_size]), self.read)
+            content = file_digest(self.file, MESH)
+        except InputError as error:
+            raise about(self.file, error, "mesh") from None
+        return BroughtMesh(json.dumps([content, Path(self.file).suffix.lower(), self.unit, self.element_size]), self.read)
 
     def read(self) -> Mesh:
         """Read the mesh [m]."""

@@ -21,9 +21,12 @@ from vibroimpact.cases.place_words import place_in_words
 from vibroimpact.cases.schema import AccelerometerTable, Case, DropSection, PlateSection, RunSection, SensorSection, SphereSection
 from vibroimpact.cases.sweep_section import SweepSection
 from vibroimpact.errors import InputError, did_you_mean
+from vibroimpact.files import FileKind, read_text
 from vibroimpact.shown import shortened, shown
 
 Read = TypeVar("Read")
+
+_CASE = FileKind('a case is a TOML file, or a shipped one such as "paper:type1-theory"', MOST_BYTES, "a case is a page of text")
 
 _SECTIONS: dict[tuple[str, ...], type[BaseModel]] = {
     (): Case,
@@ -87,7 +90,7 @@ def load_table(source: str | PathLike[str]) -> dict[str, Any]:
     InputError
         If it can't be read or is not TOML; the message does not name the source.
     """
-    text = _shipped(str(source)) if str(source).startswith("paper:") else _file(Path(source))
+    text = _shipped(str(source)) if str(source).startswith("paper:") else read_text(Path(source), _CASE)
     check_text(text)
     try:
         table = tomllib.loads(text)
@@ -177,21 +180,3 @@ def _shipped(name: str) -> str:
     if name not in (known := _names()):
         raise InputError(f"there is no shipped case {shown(name)}; there are {', '.join(known)}.{did_you_mean(name, known)}")
     return entry.read_text(encoding="utf-8")
-
-
-def _file(path: Path) -> str:
-    try:
-        if path.is_dir():
-            raise InputError("this is a directory; a case is a TOML file")
-        with path.open("rb") as file:
-            data = file.read(MOST_BYTES + 1)
-        if len(data) > MOST_BYTES:
-            raise InputError(f"the file is larger than {MOST_BYTES // 1_000_000} MB; a case is a page of text")
-        return data.decode("utf-8-sig")  # some editors put a byte-order mark first
-    except FileNotFoundError:
-        raise InputError('there is no such file; a case is a TOML file, or a shipped one such as "paper:type1-theory"') from None
-    except (OSError, ValueError) as error:
-        reason = "it is not UTF-8 text" if isinstance(error, UnicodeDecodeError) else getattr(error, "strerror", None) or str(error)
-        if isinstance(error, InputError):
-            raise
-        raise InputError(f"the file can't be read: {reason}") from None

@@ -25,6 +25,8 @@ from vibroimpact.cases.sweep_section import MOST_DROPS, SweepSection, read_axis
 from vibroimpact.cases.swept_keys import case_at, find_quantity, holds_keys
 from vibroimpact.dynamics.columns import IMPACT_COLUMNS, VIBRATION_IMPACT_COLUMNS
 from vibroimpact.errors import InputError
+from vibroimpact.exchange.lines import MESH
+from vibroimpact.files import file_digest
 from vibroimpact.shown import shortened, shown, visible
 from vibroimpact.studies.axes import Axis, Listed, Values
 from vibroimpact.studies.columns import OUTCOME, PEAKS, SENSOR_PEAK, SIGNAL
@@ -144,7 +146,7 @@ class Sweep:
     @cached_property
     def digest(self) -> str:
         """A fingerprint of the case, its meshes, the points and what is kept."""
-        meshes = [sha256(file.read_bytes()).hexdigest() for file in _meshes(self.table)]
+        meshes = [file_digest(file, MESH) for file in _meshes(self.table)]
         rest = json.dumps([self.table, meshes, self.section.keep], sort_keys=True, default=str)
         return sha256(f"{self.plan.digest()} {rest}".encode()).hexdigest()
 

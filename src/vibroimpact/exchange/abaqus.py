@@ -8,9 +8,10 @@ from pathlib import Path
 
 from vibroimpact.errors import did_you_mean
 from vibroimpact.exchange.abaqus_blocks import Block, blocks, included_file
-from vibroimpact.exchange.lines import Line, lines_with_includes, real, shown, whole
+from vibroimpact.exchange.lines import Line, lines_with_includes, real, whole
 from vibroimpact.exchange.node_order import ABAQUS
 from vibroimpact.exchange.parts import Parts, Selection
+from vibroimpact.shown import shown
 from vibroimpact.structures.element_kinds import ELEMENT_KINDS
 from vibroimpact.structures.mesh import Mesh
 
@@ -182,12 +183,12 @@ class _Reader:
                     chosen.numbers.add(whole(number, line, "the number of a member"))
                 elif text not in included:
                     included.add(text)
-                    chosen.update(self._known(kind, text.strip('"'), line))
+                    self.parts.add_members(line, chosen, self._known(kind, text.strip('"'), line))
 
     def _known(self, kind: str, name: str, line: Line) -> Selection:
         exact = next((key for key in (name.upper(), name.rpartition(".")[2].upper()) if (kind, key) in self.names), None)
         if exact is None:
-            suggestion = did_you_mean(name.upper(), [key for of, key in self.names if of == kind][:1000])
+            suggestion = did_you_mean(name.upper(), [key for of, key in self.names if of == kind and len(key) < 100][:1000])
             raise line.wrong(f"{shown(name)} is neither a number nor a *{kind} before this line; it must be one of them.{suggestion}")
         return self._selection(kind, exact)
 

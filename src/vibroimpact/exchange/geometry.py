@@ -14,10 +14,17 @@ from tempfile import TemporaryDirectory
 from vibroimpact.errors import InputError
 from vibroimpact.exchange.geometry_process import MARK
 from vibroimpact.exchange.gmsh_file import read_gmsh
-from vibroimpact.exchange.lines import read_bytes
+from vibroimpact.files import FileKind, about, beginning
+from vibroimpact.shown import shortened
 from vibroimpact.structures.mesh import Mesh
 
 STEP, BREP = (".step", ".stp"), (".brep",)
+
+GEOMETRY = FileKind("a geometry is a STEP or BREP file with one solid", 500_000_000, "leave out details that an impact does not feel")
+"""What is asked of the file of a geometry."""
+
+MOST_SECONDS = 1200.0
+"""That Gmsh may take: more than three million elements need; on some damaged geometries it works for ever."""
 
 
 def mesh_geometry(path: str | PathLike[str], size: float | None = None, order: int = 2, unit_in_metres: float = 1.0) -> Mesh:
@@ -60,7 +67,11 @@ def mesh_geometry(path: str | PathLike[str], size: float | None = None, order: i
         raise InputError(f"{path}: a STEP file names its own unit; leave unit_in_metres at 1")
     # STEP is read in millimetres, as the tolerances of the geometry kernel are made for
     unit = 1e-3 if suffix in STEP else unit_in_metres
-    read_bytes(path)
+    try:
+        if not beginning(path, GEOMETRY, 1):
+            raise InputError(f"the file is empty; {GEOMETRY.what}")
+    except InputError as error:
+        raise about(path, error) from None
     with TemporaryDirectory() as folder:
         made = Path(folder, "mesh.msh")
         # a bare file name that starts with a dash, or a link, is no trouble when the path is whole
@@ -73,7 +84,13 @@ def _run_gmsh(path: Path, arguments: list[str]) -> None:
     """Run Gmsh, and say what went wrong."""
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
     command = [sys.executable, "-m", "vibroimpact.exchange.geometry_process", *arguments]
-    done = subprocess.run(command, env=environment, stdin=subprocess.DEVNULL, capture_output=True, check=False)
+    try:
+        done = subprocess.run(command, env=environment, stdin=subprocess.DEVNULL, capture_output=True, check=False, timeout=MOST_SECONDS)
+    except subprocess.TimeoutExpired:
+        raise InputError(
+            f"{path}: Gmsh did not end within {MOST_SECONDS / 60:g} minutes and was stopped; "
+            "give a larger element size, or mesh the geometry in another program"
+        ) from None
     if done.returncode == 0:
         return
     _, mark, reason = done.stderr.decode("utf-8", errors="replace").rpartition(MARK)
@@ -84,5 +101,7 @@ def _run_gmsh(path: Path, arguments: list[str]) -> None:
             f"{path}: Gmsh stopped with status {done.returncode} while it meshed the geometry; check the file in another program"
         )
     if kind in ("ImportError", "ModuleNotFoundError", "OSError"):
-        raise InputError(f'{path}: meshing a geometry needs Gmsh, which can\'t be loaded ({what}): pip install "vibroimpact[mesh]"')
-    raise InputError(f"{path}: the geometry can't be meshed: {what}")
+        raise InputError(
+            f'{path}: meshing a geometry needs Gmsh, which can\'t be loaded ({shortened(what, 200)}): pip install "vibroimpact[mesh]"'
+        )
+    raise InputError(f"{path}: the geometry can't be meshed: {shortened(what, 300)}")

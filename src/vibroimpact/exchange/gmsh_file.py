@@ -8,9 +8,11 @@ from pathlib import Path
 
 from vibroimpact.errors import InputError
 from vibroimpact.exchange.gmsh_sections import Section, sections
-from vibroimpact.exchange.lines import Line, read_bytes, read_lines, real, shown, whole
+from vibroimpact.exchange.lines import MESH, Line, read_lines, real, whole
 from vibroimpact.exchange.node_order import GMSH
 from vibroimpact.exchange.parts import Parts
+from vibroimpact.files import about, beginning
+from vibroimpact.shown import shown
 from vibroimpact.structures.element_kinds import ELEMENT_KINDS
 from vibroimpact.structures.mesh import Mesh
 
@@ -18,6 +20,7 @@ _SOLIDS = {4: "tet4", 11: "tet10", 5: "hex8", 17: "hex20", 12: "hex27"}
 _PRISMS = {6: "prism", 13: "prism", 18: "prism", 7: "pyramid", 14: "pyramid", 19: "pyramid"}
 # the elements of points, lines and surfaces: their dimension and how many nodes they have
 _SKINS = {15: (0, 1), 1: (1, 2), 8: (1, 3), 2: (2, 3), 9: (2, 6), 3: (2, 4), 16: (2, 8), 10: (2, 9)}
+_MOST_GROUPS = 100  # of an entity: each of its elements is put into all of them
 _BINARY = re.compile(rb"\s*\$MeshFormat\s+[\d.]+\s+1\s")
 _VERSIONS = re.compile(r"2(\.\d+)?|4(\.[01]0*)?")
 
@@ -51,7 +54,11 @@ def read_gmsh(path: str | PathLike[str]) -> Mesh:
     ('tet4', ['group5'])
     """
     path = Path(path)
-    if _BINARY.match(read_bytes(path)[:200]):
+    try:
+        start = beginning(path, MESH, 200)
+    except InputError as error:
+        raise about(path, error) from None
+    if _BINARY.match(start):
         raise InputError(f"{path}: this is a binary file; save the mesh as ASCII (in Gmsh the option Mesh.Binary = 0)")
     reader = _Reader(path)
     found = sections(read_lines(path), ("MeshFormat", "PhysicalNames", "Entities", "Nodes", "Elements"), reader.parts.skipped)
@@ -112,6 +119,8 @@ class _Reader:
             box = 3 if dimension == 0 and not self.is_40 else 6
             for line, entity in section.take(whole(word, first, "the number of entities"), 2 + box):
                 count = whole(entity[1 + box], line, "the number of groups")
+                if count > _MOST_GROUPS:
+                    raise line.wrong(f"the entity belongs to {count} groups; it may belong to {_MOST_GROUPS}")
                 tags = [whole(tag.lstrip("-"), line, "the number of a group") for tag in entity[2 + box : 2 + box + count]]
                 self.groups[dimension, whole(entity[0], line, "the number of an entity")] = tags
 

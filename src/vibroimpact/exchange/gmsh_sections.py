@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Collection, Iterable, Iterator
 
-from vibroimpact.exchange.lines import Line, shown
+from vibroimpact.exchange.lines import Line
+from vibroimpact.shown import shown
 
 
 class Section:

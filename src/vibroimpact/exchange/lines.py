@@ -7,9 +7,11 @@ from pathlib import Path
 from typing import NamedTuple
 
 from vibroimpact.errors import InputError
+from vibroimpact.files import FileKind, about, read_text_bytes
+from vibroimpact.shown import shortened, shown
 
-LARGEST_FILE = 2_000_000_000
-LARGEST_NUMBER = 10**18
+MESH = FileKind("a mesh is a file of nodes and elements, in plain text (UTF-8 or Latin-1)", 2_000_000_000, "write a coarser mesh")
+"""What is asked of the file of a mesh."""
 
 
 class Line(NamedTuple):
@@ -21,43 +23,7 @@ class Line(NamedTuple):
 
     def wrong(self, message: str) -> InputError:
         """Return the error that says where and what."""
-        return InputError(f"{self.path}:{self.number}: {message}")
-
-
-def shown(text: str) -> str:
-    """Return a piece of a file in quotes, fit for a message.
-
-    Examples
-    --------
-    >>> shown("1.0.0")
-    '"1.0.0"'
-    """
-    return '"' + "".join(letter if letter.isprintable() else "?" for letter in text[:40]) + ('..."' if len(text) > 40 else '"')
-
-
-def read_bytes(path: Path) -> bytes:
-    """Return what a file holds.
-
-    Raises
-    ------
-    InputError
-        If it is no file, can't be read, is empty or is larger than 2 GB.
-    """
-    try:
-        if path.is_dir():
-            raise InputError(f"{path}: this is a directory; a mesh is a file")
-        if not path.is_file():
-            raise InputError(f"{path}: there is no such file")
-        if path.stat().st_size > LARGEST_FILE:
-            raise InputError(f"{path}: the file is larger than 2 GB; write a coarser mesh")
-        data = path.read_bytes()
-    except (OSError, ValueError, RuntimeError) as error:  # InputError is a ValueError too, and goes on as it is
-        if isinstance(error, InputError):
-            raise
-        raise InputError(f"{path}: the file can't be read: {getattr(error, 'strerror', None) or error}") from None
-    if not data.strip():
-        raise InputError(f"{path}: the file is empty; a mesh file holds nodes and elements")
-    return data
+        return InputError(f"{shortened(str(self.path), 200)}:{self.number}: {message}")
 
 
 def read_lines(path: Path) -> list[Line]:
@@ -68,9 +34,12 @@ def read_lines(path: Path) -> list[Line]:
     InputError
         If there is no such file, or it is not text.
     """
-    data = read_bytes(path)
-    if b"\0" in data:
-        raise InputError(f"{path}: this is not a text file; write the mesh as plain text (UTF-8 or Latin-1)")
+    try:
+        data = read_text_bytes(path, MESH)
+    except InputError as error:
+        raise about(path, error) from None
+    if not data.strip():
+        raise InputError(f"{path}: the file is empty; a mesh file holds nodes and elements")
     try:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError:
@@ -96,8 +65,8 @@ def lines_with_includes(path: Path, included: Callable[[str], str | None]) -> It
     InputError
         If a file can't be read, or is included twice.
     """
-    seen = {path.resolve()}
     stack = [iter(read_lines(path))]
+    seen = {path.resolve()}
     while stack:
         line = next(stack[-1], None)
         if line is None:

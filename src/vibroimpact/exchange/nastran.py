@@ -8,10 +8,11 @@ from os import PathLike
 from pathlib import Path
 
 from vibroimpact.errors import InputError
-from vibroimpact.exchange.lines import Line, lines_with_includes, shown, whole
+from vibroimpact.exchange.lines import Line, lines_with_includes, whole
 from vibroimpact.exchange.nastran_cards import Card, cards, included_file, nastran_real
 from vibroimpact.exchange.node_order import NASTRAN
 from vibroimpact.exchange.parts import Parts, Selection
+from vibroimpact.shown import shown
 from vibroimpact.structures.mesh import Mesh
 
 _KINDS = {"CTETRA": {4: "tet4", 10: "tet10"}, "CHEXA": {8: "hex8", 20: "hex20"}}

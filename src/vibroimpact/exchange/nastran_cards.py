@@ -6,7 +6,8 @@ import re
 from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
-from vibroimpact.exchange.lines import Line, real, shown
+from vibroimpact.exchange.lines import Line, real
+from vibroimpact.shown import shown
 
 _EXPONENT = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+))(?:[dD]([+-]?\d+)|([+-]\d+))")
 _INCLUDE = re.compile(r"""\s*INCLUDE\s+(?:'([^']+)'|"([^"]+)"|([^'"$\s]+))\s*(?:\$.*)?""", re.IGNORECASE)

@@ -11,12 +11,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vibroimpact.errors import InputError
-from vibroimpact.exchange.lines import Line, shown
+from vibroimpact.exchange.lines import Line
 from vibroimpact.exchange.node_order import to_ours
+from vibroimpact.shown import shown
 from vibroimpact.structures.element_kinds import ELEMENT_KINDS
 from vibroimpact.structures.mesh import ElementBlock, Integers, Mesh
 
 LARGEST_COORDINATE = 1e15
+MOST_MEMBERS = 10_000_000
+"""Of all sets of nodes, or of elements, together: with sets of sets and ranges a short file can ask for more than fits into memory."""
+
 EMPTY_SET = "set without solid elements or their nodes"
 
 
@@ -42,10 +46,14 @@ class Selection:
         places = np.sort(places[known[places] == numbers])
         if not self.ranges:  # nothing here costs as much as all that is known: there may be many small sets
             return places
-        chosen = np.zeros(len(known), dtype=bool)
+        ranges = np.array(list(self.ranges), dtype=np.int64)
+        starts, stops = np.searchsorted(known, ranges[:, 0]), np.searchsorted(known, ranges[:, 1], side="right")
+        whole = ranges[:, 2] == 1
+        # where ranges without gaps begin and end: thousands of them cost as much as one
+        ends = np.bincount(starts[whole], minlength=len(known) + 1) - np.bincount(stops[whole], minlength=len(known) + 1)
+        chosen = np.cumsum(ends[:-1]) > 0
         chosen[places] = True
-        for first, last, step in self.ranges:
-            start, stop = np.searchsorted(known, [first, last + 1])
+        for (first, _, step), start, stop in zip(ranges[~whole].tolist(), starts[~whole].tolist(), stops[~whole].tolist(), strict=True):
             chosen[start:stop] |= (known[start:stop] - first) % step == 0
         return np.flatnonzero(chosen)
 
@@ -81,6 +89,7 @@ class Parts:
     node_sets: defaultdict[str, Selection] = field(default_factory=lambda: defaultdict(Selection))
     element_sets: defaultdict[str, Selection] = field(default_factory=lambda: defaultdict(Selection))
     skipped: Counter[str] = field(default_factory=Counter)
+    _copied: int = 0
     _node_lines: list[Line] = field(default_factory=list)
     _node_numbers: list[int] = field(default_factory=list)
     _points: list[tuple[float, float, float]] = field(default_factory=list)
@@ -100,6 +109,19 @@ class Parts:
         self._node_lines.append(line)
         self._node_numbers.append(number)
         self._points.append(point)
+
+    def add_members(self, line: Line, chosen: Selection, more: Selection) -> None:
+        """Add to a set what another one selects.
+
+        Raises
+        ------
+        InputError
+            If there are too many in all.
+        """
+        self._copied += len(more.numbers) + len(more.ranges)
+        if self._copied > MOST_MEMBERS:
+            raise line.wrong(_too_many_members())
+        chosen.update(more)
 
     def add_element(self, line: Line, kind: str, number: int, nodes: Sequence[int]) -> None:
         """Add an element with as many nodes as its kind has, in the file's order."""
@@ -177,7 +199,17 @@ class Parts:
 
     def _sets(self, sets: Mapping[str, Selection], numbers: Integers, places: Integers) -> dict[str, Integers]:
         """Return the sets as places; what the mesh does not have is left out of them."""
-        found = {name: np.sort(places[selection.places(numbers)]) for name, selection in sets.items()}
+        found: dict[str, Integers] = {}
+        total = 0
+        for name, selection in sets.items():
+            found[name] = np.sort(places[selection.places(numbers)])
+            total += len(found[name])
+            if total > MOST_MEMBERS:
+                raise InputError(f"{self.path}: {_too_many_members()}")
         empty = [name for name, members in found.items() if len(members) == 0]
         self.skipped.update({EMPTY_SET: len(empty)} if empty else {})
         return {name: members for name, members in found.items() if len(members)}
+
+
+def _too_many_members() -> str:
+    return f"the sets have more than {MOST_MEMBERS:,} members in all; leave out those that are not needed"

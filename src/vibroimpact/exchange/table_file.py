@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import csv
 import re
-from collections.abc import Mapping, Sequence
+from array import array
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from io import StringIO
+from math import isfinite
 from os import PathLike
 from pathlib import Path
 
@@ -13,16 +16,23 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vibroimpact.errors import InputError, did_you_mean
+from vibroimpact.files import FileKind, read_text
+from vibroimpact.shown import shortened, shown
 from vibroimpact.units import to_si
 
 Floats = NDArray[np.float64]
 
-LARGEST = 500_000_000
-"""Bytes of a file that is read."""
+TABLE = FileKind("a table is a CSV file", 500_000_000, "keep the part with the impacts")
+"""What is asked of the file of a table."""
 
+MOST_LINES = 10_000_000
+"""Of a table: five seconds at 2 MHz."""
+
+_LARGEST_NUMBER = 1e30  # whose powers are numbers too
 _LONGEST = 100_000  # characters of a line
-
-_BRACKETS = re.compile(r"(.*?)\s*[\[(]\s*([^\])]*)\s*[\])]\s*")
+_MOST_COLUMNS = 1000
+_MOST_NAMED = 12  # columns that a message names
+_LONG_NAME = 40  # characters of a name in a message
 _ENDINGS = {
     "_m_s2": "m/s^2",
     "_m_s": "m/s",
@@ -75,45 +85,38 @@ def read_table_file(path: str | PathLike[str], units: Mapping[str, str]) -> Tabl
     [0.0, 0.001]
     """
     file = Path(path)
-    raw = _text(file).splitlines()
-    longest = max(map(len, raw), default=0)
-    if longest > _LONGEST:
-        raise InputError(f"{file}: a line has {longest} characters; this is not a table")
-    plain = (line.partition("#")[0].rstrip() for line in raw)  # without comments
-    lines = [(number, line) for number, line in enumerate(plain, 1) if line.strip(" ,;\t")]
+    try:
+        rows = _rows(read_text(file, TABLE))
+        number, first = next(rows, (0, ""))
+        if not first:
+            raise InputError("the file is empty")
+        header, mark = _header(number, first)
+        places, factors = _places(number, header, units)
+        found: list[array[float]] = [array("d") for _ in places]
+        lines, empty, last = array("q"), array("q"), number
+        for number, line in rows:
+            if not line:
+                empty.append(number)
+                continue
+            cells = line.split(mark) if '"' not in line else next(csv.reader([line], delimiter=mark))
+            if len(cells) > len(header):
+                hint = "; where a comma is the decimal point, semicolons separate the fields" if mark == "," else ""
+                raise InputError(f"line {number}: there are {len(cells)} fields, and the header has {len(header)}{hint}")
+            for values, place, factor in zip(found, places.values(), factors, strict=True):
+                values.append(_number(number, header[place], cells, place, mark) * factor)
+            lines.append(number)
+            last = number
+    except InputError as error:
+        where = shortened(str(file), 200)
+        raise InputError(f"{where}{', ' if error.message.startswith('line ') else ': '}{error.message}") from None
     if not lines:
-        raise InputError(f"{file}: the file is empty")
-    first = lines[0][1]
-    mark = next((mark for mark in ("\t", ";", ",") if mark in first), ",")
-    header = [cell.strip() for cell in next(csv.reader([first], delimiter=mark))]
-    found: dict[str, tuple[int, float]] = {}
-    for place, cell in enumerate(header):
-        name, unit = name_and_unit(cell)
-        if name not in units:
-            continue
-        if name in found:
-            raise InputError(f'{file}, line {lines[0][0]}: there are two columns "{name}"')
-        found[name] = (place, _factor(file, lines[0][0], cell, unit, units[name]))
-    if not found:
-        names = [name_and_unit(cell)[0] for cell in header]
-        hint = next((words for name in names if (words := did_you_mean(name, units))), "")
-        raise InputError(f"{file}, line {lines[0][0]}: no column is known among {', '.join(names)}; {_allowed(units)}.{hint}")
-    rows = []
-    for number, line in lines[1:]:
-        cells = next(csv.reader([line], delimiter=mark))
-        if len(cells) > len(header):
-            hint = "; where a comma is the decimal point, semicolons separate the fields" if mark == "," else ""
-            raise InputError(f"{file}, line {number}: there are {len(cells)} fields, and the header has {len(header)}{hint}")
-        rows.append([_number(file, number, header[place], cells, place, mark) * factor for place, factor in found.values()])
-    if not rows:
         raise InputError(f"{file}: there are no rows under the header")
-    table = np.array(rows, dtype=float).T
-    empty = [number for number, line in enumerate(raw, 1) if not line.strip(" ,;\t") and number < lines[-1][0]]
-    return TableFile(file, dict(zip(found, table, strict=True)), [number for number, _ in lines[1:]], empty)
+    columns = {name: np.array(values) for name, values in zip(places, found, strict=True)}
+    return TableFile(file, columns, lines.tolist(), [number for number in empty if number < last])
 
 
 def rising(table: TableFile, column: str) -> TableFile:
-    """Return a table without the rows at which a column stands still; raise if it goes backwards.
+    """Return a table without the rows at which a column stands still; raise if it goes backwards, or stands still throughout.
 
     Raises
     ------
@@ -126,24 +129,56 @@ def rising(table: TableFile, column: str) -> TableFile:
         at = int(back[0])
         one, other = table.columns[column][at : at + 2]
         raise InputError(f"{table.path}, line {table.lines[at + 1]}: {column} goes backwards, from {one:.9g} to {other:.9g}")
+    if not (steps > 0.0).any():
+        raise InputError(f"{table.path}: {column} stands still; a record has more than one moment")
     kept = np.append(True, steps > 0.0)
     lines = [line for line, keep in zip(table.lines, kept, strict=True) if keep]
     return TableFile(table.path, {name: values[kept] for name, values in table.columns.items()}, lines)
 
 
-def _text(file: Path) -> str:
-    try:
-        if file.is_dir():
-            raise InputError(f"{file}: this is a directory; a table is a CSV file")
-        if file.stat().st_size > LARGEST:
-            raise InputError(f"{file}: the file is larger than {LARGEST // 1_000_000} MB; keep the part with the impacts")
-        return file.read_text(encoding="utf-8-sig")
-    except FileNotFoundError:
-        raise InputError(f"{file}: there is no such file") from None
-    except UnicodeDecodeError:
-        raise InputError(f"{file}: the file is not UTF-8 text; a table is a CSV file") from None
-    except OSError as error:
-        raise InputError(f"{file}: the file can't be read: {error.strerror}") from None
+def _rows(text: str) -> Iterator[tuple[int, str]]:
+    """Yield the number and the text of each line without its comment: from the first on that is not empty, and "" for an empty one."""
+    begun = False
+    for number, whole in enumerate(StringIO(text, newline=None), 1):
+        if number > MOST_LINES:
+            raise InputError(f"the file has more than {MOST_LINES:,} lines; keep the part with the impacts, or fewer samples a second")
+        if len(whole) > _LONGEST:
+            raise InputError(f"line {number}: it has more than {_LONGEST:,} characters; this is not a table")
+        line = whole.partition("#")[0].rstrip()
+        if not line.strip(" ,;\t"):
+            line = ""
+        begun = begun or bool(line)
+        if begun:
+            yield number, line
+
+
+def _header(number: int, line: str) -> tuple[list[str], str]:
+    """Return the cells of the line that names the columns, and what separates them."""
+    mark = next((mark for mark in ("\t", ";", ",") if mark in line), ",")
+    header = [cell.strip() for cell in next(csv.reader([line], delimiter=mark))]
+    if len(header) > _MOST_COLUMNS:
+        raise InputError(f"line {number}: there are {len(header)} columns; a table has {_MOST_COLUMNS} at most")
+    return header, mark
+
+
+def _places(number: int, header: Sequence[str], units: Mapping[str, str]) -> tuple[dict[str, int], list[float]]:
+    """Return where the columns stand that are known, and what their numbers are multiplied by."""
+    places: dict[str, int] = {}
+    factors = []
+    for place, cell in enumerate(header):
+        name, unit = name_and_unit(cell)
+        if name not in units:
+            continue
+        if name in places:
+            raise InputError(f'line {number}: there are two columns "{name}"')
+        places[name] = place
+        factors.append(_factor(number, cell, unit, units[name]))
+    if not places:
+        names = [name_and_unit(cell)[0] for cell in header[:_MOST_NAMED]]
+        hint = next((words for name in names if len(name) < _LONG_NAME and (words := did_you_mean(name, units))), "")
+        told = ", ".join(shortened(name, _LONG_NAME) for name in names) + (", ..." if len(header) > _MOST_NAMED else "")
+        raise InputError(f"line {number}: no column is known among {told}; {_allowed(units)}.{hint}")
+    return places, factors
 
 
 def name_and_unit(cell: str) -> tuple[str, str | None]:
@@ -154,9 +189,14 @@ def name_and_unit(cell: str) -> tuple[str, str | None]:
     >>> name_and_unit("Rebound height [mm]"), name_and_unit("time_s"), name_and_unit("count")
     (('rebound_height', 'mm'), ('time', 's'), ('count', None))
     """
-    match = _BRACKETS.fullmatch(cell)
-    if match:
-        return _plain(match[1]), match[2].strip()
+    whole = cell.strip()
+    if whole.endswith(("]", ")")):
+        # the unit stands between the last two brackets; a search for that as a pattern takes minutes for a long line of brackets
+        inside = whole[:-1]
+        start = max(inside.rfind("]"), inside.rfind(")")) + 1
+        opening = min((at for at in (inside.find("[", start), inside.find("(", start)) if at >= 0), default=-1)
+        if opening >= 0:
+            return _plain(inside[:opening]), inside[opening + 1 :].strip()
     for ending, unit in sorted(_ENDINGS.items(), key=lambda item: -len(item[0])):
         if cell.endswith(ending):
             return _plain(cell.removesuffix(ending)), unit
@@ -167,8 +207,8 @@ def _plain(name: str) -> str:
     return re.sub(r"[\s-]+", "_", name.strip().lower())
 
 
-def _factor(file: Path, line: int, cell: str, unit: str | None, wanted: str) -> float:
-    where = f'{file}, line {line}, column "{cell}"'
+def _factor(line: int, cell: str, unit: str | None, wanted: str) -> float:
+    where = f"line {line}, column {shown(cell)}"
     if not wanted:
         if unit == "%":
             return 0.01
@@ -176,27 +216,29 @@ def _factor(file: Path, line: int, cell: str, unit: str | None, wanted: str) -> 
             raise InputError(f"{where}: it is a plain number, and has no unit")
         return 1.0
     if unit is None or not unit:
-        raise InputError(f"{where}: the unit is missing; write it in brackets, such as {cell.split('[')[0].strip()} [{wanted}]")
+        name = shortened(cell.split("[")[0].strip(), _LONG_NAME)
+        raise InputError(f"{where}: the unit is missing; write it in brackets, such as {name} [{wanted}]")
     try:
         return to_si(f"1 {unit}", wanted)
     except InputError as error:
         raise InputError(f"{where}: {error.message}") from None
 
 
-def _number(file: Path, line: int, column: str, row: list[str], place: int, mark: str) -> float:
-    where = f'{file}, line {line}, column "{column}"'
+def _number(line: int, column: str, row: list[str], place: int, mark: str) -> float:
     if place >= len(row):
-        raise InputError(f"{where}: the cell is missing; the line has {len(row)}")
-    text = row[place].strip()
+        raise InputError(f"line {line}, column {shown(column)}: the cell is missing; the line has {len(row)}")
+    text = row[place]
     try:
         if "_" in text:  # which Python takes in a number
             raise ValueError(text)
         value = float(text.replace(",", ".") if mark != "," else text)
     except ValueError:
-        raise InputError(f'{where}: "{text[:40]}" is not a number' if text else f"{where}: the cell is empty") from None
-    if not np.isfinite(value):
-        raise InputError(f'{where}: "{text[:40]}" is not finite')
-    return value
+        what = f"{shown(text.strip())} is not a number" if text.strip() else "the cell is empty"
+    else:
+        if -_LARGEST_NUMBER < value < _LARGEST_NUMBER:
+            return value
+        what = f"{shown(text.strip())} is not {'finite' if not isfinite(value) else 'a measurement; it must be less than 1e30 in size'}"
+    raise InputError(f"line {line}, column {shown(column)}: {what}")
 
 
 def _allowed(units: Mapping[str, str]) -> str:

@@ -11,6 +11,7 @@ from scipy.ndimage import maximum_filter
 
 from vibroimpact.quantity import Multiple, digits, multiple, text
 from vibroimpact.report.layout import WIDTH, new_figure
+from vibroimpact.report.lettering import lettering
 from vibroimpact.report.style import INK
 from vibroimpact.storage.deflection import Deflection
 from vibroimpact.storage.result import Result
@@ -91,7 +92,7 @@ def _draw(axes: Axes, result: Result, deflection: Deflection, frame: int, scale:
     axes.plot(*deflection.contact, "o", markersize=6, markerfacecolor="white", markeredgecolor=INK, markeredgewidth=1.2)
     for name, x, y in sensor_places(result):
         axes.plot(x, y, "^", markersize=5, markerfacecolor="#ffd54a", markeredgecolor=INK, markeredgewidth=0.8)
-        axes.annotate(name, (x, y), (4, 3), textcoords="offset points", fontsize=7, path_effects=_HALO)
+        axes.annotate(lettering(name, 14), (x, y), (4, 3), textcoords="offset points", fontsize=7, path_effects=_HALO)
     axes.text(
         0.985,
         0.02,

@@ -11,6 +11,7 @@ from vibroimpact.exchange.plain_names import plain_names
 from vibroimpact.quantity import Multiple, digits, largest, multiple
 from vibroimpact.report.excerpt import thinned
 from vibroimpact.report.layout import label_vertical, new_figure, row_of_axes, wide_axes
+from vibroimpact.report.lettering import lettering
 from vibroimpact.report.motion_figures import plate_span
 from vibroimpact.report.spectrum import amplitude_spectrum, first_response
 from vibroimpact.report.style import ACCENT, INK, MARK
@@ -41,7 +42,7 @@ def draw_sensor(result: Result, name: str) -> Figure:
     clock = multiple("s", signal.time)
     whole.plot(*thinned(signal.time / clock.size, signal.value / scale.size), color=INK, linewidth=0.8)
     whole.margins(x=0.01, y=0.08)
-    whole.set_title(f"{quantity.capitalize()} at {name}, whole run{_mark_range(whole, result, name, scale)}")
+    whole.set_title(f"{quantity.capitalize()} at {lettering(name)}, whole run{_mark_range(whole, result, name, scale)}")
     whole.set_xlabel(f"Time [{clock.unit}]")
     label_vertical(whole, f"{quantity.capitalize()} [{scale.unit}]")
     left, right = row_of_axes(figure, 2, 0.5, 2.3)

@@ -78,8 +78,8 @@ def _looking(mesh: Mesh, side: Side) -> list[Faces]:
     for faces in groups:
         corner = mesh.nodes[faces.connectivity[:, list(faces.corners)]]
         normal = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
-        height = normal[:, 2] / np.linalg.norm(normal, axis=1)
-        looks = height > 1e-3 if side == "upper" else height < -1e-3
+        upwards, area = normal[:, 2] if side == "upper" else -normal[:, 2], np.linalg.norm(normal, axis=1)
+        looks = upwards > 1e-3 * area  # which a face without area does not
         found.append(Faces(faces.kind, faces.corners, faces.connectivity[looks]))
     return [faces for faces in found if len(faces.connectivity)]
 

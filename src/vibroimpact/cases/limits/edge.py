@@ -58,7 +58,8 @@ def _kept(drops: Conditions) -> Array:
 
 
 def _number(drops: Conditions) -> Array:
-    return _kept(drops) / _distance(drops)
+    distance = _distance(drops)
+    return distance if np.all(np.isnan(distance)) else _kept(drops) / distance
 
 
 def _sentence(drop: Conditions, _: float) -> str:

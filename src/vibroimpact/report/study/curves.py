@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from matplotlib.figure import Figure
 
+from vibroimpact.report.lettering import lettering
 from vibroimpact.report.study.axes import StudyAxis
 from vibroimpact.report.study.outputs import Output, on_grid
 from vibroimpact.report.study.panels import add_legend, panels, scale_vertical, title_of
 from vibroimpact.report.study.ticks import Ticks, rising
-from vibroimpact.report.study.words import plain
 from vibroimpact.report.style import ENLARGED, LOOPS, MARKS
 from vibroimpact.storage.study import Study
 from vibroimpact.studies.columns import PEAK_TABLE
@@ -47,7 +47,7 @@ def draw_curves(study: Study, axis: StudyAxis, outputs: list[Output]) -> Figure:
 def curve_words(study: Study, axis: StudyAxis) -> str:
     """Return the caption of the curves."""
     kept = _impacts_kept(study)
-    words = f"Results over {plain(axis.key)}"
+    words = f"Results over {lettering(axis.key)}"
     if not kept:
         return f"{words}; impacts were not kept one by one, so that these are the peaks of each drop."
     of_many = f" (the first {ENLARGED} of {kept})" if kept > ENLARGED else ""

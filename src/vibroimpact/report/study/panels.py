@@ -9,9 +9,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from vibroimpact.report.layout import new_figure, row_of_axes, wide_axes
+from vibroimpact.report.lettering import lettering
 from vibroimpact.report.study.outputs import Output
 from vibroimpact.report.study.ticks import plain_log_ticks
-from vibroimpact.report.study.words import plain, with_unit
+from vibroimpact.report.study.words import with_unit
 
 _HEIGHT, _WIDE_HEIGHT = 1.9, 3.0
 _BETWEEN = 0.85  # rows: a title, tick labels and a label [in]
@@ -50,7 +51,7 @@ def add_legend(figure: Figure, axes: Axes, enlarged: float = 1.0) -> None:
 
 def title_of(output: Output) -> str:
     """Return the title of a panel: the result and its unit."""
-    return with_unit(plain(output.title), output.scale.unit)
+    return with_unit(lettering(output.title), output.scale.unit)
 
 
 def is_log(output: Output) -> bool:

@@ -9,9 +9,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from vibroimpact.report.layout import WIDTH, new_figure
+from vibroimpact.report.lettering import lettering
 from vibroimpact.report.study.outputs import Output
 from vibroimpact.report.study.sensitivity import RANGES, RANKS, SOBOL, Sensitivity
-from vibroimpact.report.study.words import plain, shortened
 from vibroimpact.report.style import ACCENT, INK, MARK
 from vibroimpact.storage.study import Study
 
@@ -42,10 +42,10 @@ def draw_sensitivity(study: Study, found: Sensitivity, outputs: list[Output]) ->
         total = figure.get_figheight()
         axes = figure.add_axes((place[0] / WIDTH, low / total, width / WIDTH, tall / total))
         _draw(axes, found, output, order)
-        names = [plain(shortened(found.keys[key], 34)) for key in order]
+        names = [lettering(found.keys[key], 34) for key in order]
         axes.set_yticks(range(len(order)), names if column == 0 else [""] * len(order))
         axes.set_ylim(-0.6, len(order) - 0.4)
-        axes.set_title(plain(shortened(output.short, _LETTERS)))
+        axes.set_title(lettering(output.short, _LETTERS))
         if number + _COLUMNS >= len(shown):
             axes.set_xlabel(_LABELS[found.way])
         drawn.append(axes)

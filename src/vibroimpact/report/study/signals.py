@@ -11,9 +11,10 @@ from vibroimpact.exchange.plain_names import plain_names
 from vibroimpact.quantity import Multiple, multiple
 from vibroimpact.report.excerpt import Floats
 from vibroimpact.report.layout import label_vertical, new_figure, wide_axes
+from vibroimpact.report.lettering import lettering
 from vibroimpact.report.study.outputs import some
 from vibroimpact.report.study.panels import add_legend
-from vibroimpact.report.study.words import BAND, drops_text, plain, with_unit
+from vibroimpact.report.study.words import BAND, drops_text, with_unit
 from vibroimpact.report.style import ACCENT, INK, LOOPS
 from vibroimpact.storage.study import Study
 from vibroimpact.studies.columns import SIGNAL
@@ -52,7 +53,7 @@ def draw_signals(study: Study, sensor: str) -> Figure | None:
     _draw_few(close, time, signals, scale)
     for axes in (whole, close):
         label_vertical(axes, with_unit(study.meanings[name][1].split(" that ")[0].capitalize(), scale.unit))
-    whole.set_title(f"Readings of {plain(sensor)} in {drops_text(len(signals))}, from just before the first one begins")
+    whole.set_title(f"Readings of {lettering(sensor, 40)} in {drops_text(len(signals))}, from just before the first one begins")
     add_legend(figure, close)
     return figure
 

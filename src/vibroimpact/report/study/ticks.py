@@ -10,8 +10,9 @@ from numpy.typing import NDArray
 
 from vibroimpact.quantity import multiple
 from vibroimpact.report.excerpt import Floats
+from vibroimpact.report.lettering import lettering
 from vibroimpact.report.study.axes import StudyAxis
-from vibroimpact.report.study.words import plain, shortened, with_unit
+from vibroimpact.report.study.words import with_unit
 
 _LONGEST = 24  # letters of a name on an axis
 _BESIDE = 36  # letters of all names below a panel
@@ -31,7 +32,7 @@ class Ticks:
     def __init__(self, axis: StudyAxis) -> None:
         self.names: list[str] = []
         self.is_log = False
-        self.label = plain(axis.key)
+        self.label = lettering(axis.key)
         if axis.numeric:
             scale = multiple(axis.unit, axis.values)
             self._size = scale.size
@@ -43,7 +44,7 @@ class Ticks:
     @property
     def turned(self) -> bool:
         """Are there names that have no room beside each other?"""
-        return sum(len(shortened(name, _LONGEST)) for name in self.names) > _BESIDE
+        return sum(len(lettering(name, _LONGEST)) for name in self.names) > _BESIDE
 
     def places(self, values: NDArray[Any]) -> Floats:
         """Return where values lie."""
@@ -60,7 +61,7 @@ class Ticks:
             plain_log_ticks(line)
         if self.names:
             shown = range(0, len(self.names), math.ceil(len(self.names) / _MOST_NAMES))
-            line.set_ticks(list(shown), [plain(shortened(self.names[place], _LONGEST)) for place in shown])
+            line.set_ticks(list(shown), [lettering(self.names[place], _LONGEST) for place in shown])
             getattr(axes, f"set_{side}lim")(-0.5, len(self.names) - 0.5)
             if side == "x" and self.turned:
                 for text in line.get_ticklabels():

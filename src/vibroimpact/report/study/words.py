@@ -8,6 +8,7 @@ import numpy as np
 
 from vibroimpact.quantity import digits, multiple, text
 from vibroimpact.report.study.axes import StudyAxis
+from vibroimpact.shown import shortened, visible
 from vibroimpact.studies.percentiles import PERCENTILES
 
 BAND = f"{PERCENTILES[0]} to {PERCENTILES[-1]} %"
@@ -16,7 +17,7 @@ BAND = f"{PERCENTILES[0]} to {PERCENTILES[-1]} %"
 
 def value_text(axis: StudyAxis, value: Any) -> str:
     """Return one value of an axis as it is read."""
-    return text(float(value), axis.unit) if axis.numeric else shortened(str(value), 60)
+    return text(float(value), axis.unit) if axis.numeric else shortened(visible(str(value)), 60)
 
 
 def range_text(axis: StudyAxis) -> str:
@@ -26,7 +27,7 @@ def range_text(axis: StudyAxis) -> str:
     if not axis.numeric:
         names = list(dict.fromkeys(axis.values))
         more = f", and {len(names) - 6} more" if len(names) > 6 else ""
-        return ", ".join(shortened(str(name), 40) for name in names[:6]) + more
+        return ", ".join(shortened(visible(str(name)), 40) for name in names[:6]) + more
     low, high = float(np.min(axis.values)), float(np.max(axis.values))
     scale = multiple(axis.unit, [low, high])
     return f"{digits(low / scale.size)} to {digits(high / scale.size)}\u00a0{scale.unit}".rstrip("\u00a0")
@@ -57,13 +58,3 @@ def percent(part: float) -> str:
 def with_unit(name: str, unit: str) -> str:
     """Return a label: a name, and its unit in brackets where it has one."""
     return f"{name} [{unit}]" if unit else name
-
-
-def shortened(words: str, most: int) -> str:
-    """Return words, without their end where there are too many letters."""
-    return words if len(words) <= most else f"{words[: most - 1]}…"
-
-
-def plain(words: str) -> str:
-    """Return words as a figure shows them letter by letter: a dollar sign would begin a formula."""
-    return words.replace("$", r"\$")

@@ -1,18 +1,20 @@
-"""Damaged mesh files: a reader returns a mesh or raises InputError, and does so quickly, whatever the file holds."""
+"""Damaged mesh files: each is read or refused with a sentence, quickly; and what is read goes on to its modes, or is refused there."""
 
 from __future__ import annotations
 
 import random
 from collections.abc import Callable
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, given, settings
-from hypothesis import strategies as st
 
-from vibroimpact.errors import InputError
+import vibroimpact as vi
+from attack import failures, number
+from support import plain_case
 from vibroimpact.exchange.mesh_file import read_mesh
+from vibroimpact.report.console import case_explained
 
 NASTRAN = """\
 SOL 103
@@ -155,7 +157,9 @@ HOSTILE = [
     "INCLUDE '" + "a" * 5000 + "'", "CPENTA,1,1,1,2,3,4,5,6", "CHEXA,1,1,1,2,3,4,5,6,7,8", "GRID*", "=,*1,=",
     "*INCLUDE, INPUT=mesh.inp", "*NODE, INPUT=/dev/null", "*NODE", "*NODE, SYSTEM=C", "*ELEMENT, TYPE=C3D6",
     "*ELEMENT, TYPE=C3D20", "*ELEMENT", "*NSET", "*NSET, NSET=x, GENERATE\n1, 999999999999999999, 1", "*ELSET, ELSET=A\nA, A",
-    "*PART", "*INSTANCE", "*NGEN", "*ASSEMBLY", "NSET=", "TYPE=",
+    "*PART", "*INSTANCE", "*NGEN", "*ASSEMBLY", "NSET=", "TYPE=", "\x1b[31m", "1e-300", "1e14", "1.0000000001", "9" * 400, "(" * 5000,
+    " " * 90_000, "a" * 90_000, "a," * 30_000, '"' * 30_000, "*NODE, " + "INPUT " * 5000, "$Entities", "$PhysicalNames", "\u00b2",
+    "*NSET, NSET=" + "a" * 40_000, "*ELSET, ELSET=b\n" + "a" * 40_000, "1, 10, 1\n" * 3000, "SET 9 = " + "1," * 20_000,
 ]  # fmt: skip
 
 
@@ -225,22 +229,35 @@ def test_seeds_are_good(suffix: str, tmp_path: Path) -> None:
         assert read_mesh(file).number_of_elements == (1 if suffix == ".msh" else 2)
 
 
-@pytest.mark.parametrize("suffix", SEEDS)
-@settings(max_examples=400, deadline=2000, suppress_health_check=[HealthCheck.function_scoped_fixture])
-@given(number=st.integers(0, 2**32))
-def test_damaged_files(suffix: str, number: int, tmp_path: Path) -> None:
-    choose = random.Random(number)
-    file = tmp_path / f"mesh{suffix}"
-    file.write_bytes(damaged(choose.choice(SEEDS[suffix]), choose))
-    try:
-        mesh, message = read_mesh(file), ""
-    except InputError as error:
-        mesh, message = None, str(error)
-    if mesh is None:
-        assert message.startswith(str(file))
-        assert "\n" not in message
-    else:
+class Given(NamedTuple):
+    """One damaged file."""
+
+    suffix: str
+    data: bytes
+
+
+def at_work(folder: Path) -> Callable[[Given], None]:
+    """Return what is done with a damaged file: read it, and look at the mesh; then take it as the plate of a case, down to its modes."""
+
+    def work(given: Given) -> None:
+        file = folder / f"mesh{given.suffix}"
+        file.write_bytes(given.data)
+        mesh = read_mesh(file)
         assert np.isfinite(mesh.nodes).all()
         assert all(block.connectivity.max() < len(mesh.nodes) for block in mesh.blocks)
         assert all(members.max() < len(mesh.nodes) for members in mesh.node_sets.values())
         assert all(members.max() < mesh.number_of_elements for members in mesh.element_sets.values())
+        plate = {"material": "steel", "model": "elastic", "mesh": str(file), "supports": "free", "modes": 2}
+        case = vi.read_case(plain_case(plate=plate, drop={"speed": 1.0, "position": [0.2, 0.2]}))
+        case_explained(case)
+        vi.compute_modes(case)
+
+    return work
+
+
+@pytest.mark.parametrize("suffix", SEEDS)
+def test_damaged_meshes(suffix: str, tmp_path: Path) -> None:
+    """A reader returns a mesh or raises InputError, quickly, whatever the file holds; and so does what a case makes of the mesh."""
+    chosen = [random.Random(f"{suffix} {seed}") for seed in range(number(100))]
+    told = failures(at_work(tmp_path), [Given(suffix, damaged(choose.choice(SEEDS[suffix]), choose)) for choose in chosen])
+    assert not told, told

@@ -1,0 +1,156 @@
+"""Damaged tables and records: each is read or refused with a sentence, quickly; and what is read goes on to what it is used for."""
+
+from __future__ import annotations
+
+import math
+import random
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import vibroimpact as vi
+from attack import failures, number
+from support import plain_case
+from vibroimpact.cases.build import problem_of
+from vibroimpact.cases.calibration import read_calibration
+from vibroimpact.cases.sweep import read_sweep
+from vibroimpact.cases.targets import target_of
+from vibroimpact.exchange.table_file import read_table_file
+
+HEIGHTS = "impact,rebound_height [mm]\n1,310\n2,190\n3,130\n"
+IMPACTS = "approach_speed_m_s,restitution,restitution_standard_deviation\n1,0.7,0.01\n2,0.65,0.02\n3,0.6,0.02\n"
+SWEPT = "# pebbles from the belt\nradius (mm);mass [g];share\n5;1,2;10\n7,5;4;20\n10;9;5\n20;70;1\n"
+
+
+def force_record() -> str:
+    """Two half sines, as a force sensor records them."""
+    time = np.arange(0.0, 0.6, 2e-4)
+    force = sum(
+        np.where(np.abs(time - at) < 2e-3, most * np.cos(math.pi * (time - at) / 4e-3), 0.0) for at, most in ((0.01, 800.0), (0.45, 500.0))
+    )
+    return "time [ms],force (N)\n" + "".join(f"{1e3 * at:.6g},{value:.5g}\n" for at, value in zip(time, force, strict=True))
+
+
+def position_record() -> str:
+    """A ball that bounces, as a camera sees it."""
+    rows, speed, start = [], 3.0, 0.0
+    for _ in range(3):
+        flight = 2.0 * speed / 9.80665
+        for at in np.arange(0.0, flight, 0.004):
+            rows.append(f"{start + at:.5f}\t{0.025 + speed * at - 0.5 * 9.80665 * at**2:.6f}")
+        start, speed = start + flight, 0.7 * speed
+    return "\n".join(["time_s\tposition_m", *rows, ""])
+
+
+HOSTILE = [
+    "[" * 90_000, "(" * 50_000, " " * 90_000, "[ " * 40_000, "a" * 90_000, "," * 90_000, "time_s," * 10_000, "x\n" * 20_000, "1," * 2000,
+    "[]" * 40_000, "time [s^9^9^9]", "force [N^9^9^9^9]", "[ms]", "[", "]", "(", ")", "((", "))", "[s)", "force_N", "time_s", "time_m",
+    "position_um", "radius [mm]", "rebound_height_m", "approach_speed_m_s", "restitution", "restitution [%]", "max_force_kN",
+    "force_standard_deviation", "1e308", "-1e308", "1e-308", "5e-324", "1e999", "nan", "inf", "-inf", "1_0", "0", "-0", "-1", "1e15",
+    "9" * 400, "0." + "0" * 400 + "1", "0x10", "1e", "1,5", "1.2.3", "\u0663", "\x00", "\x1b[31m", "\x0b", "\x1c", "\u2028", "\u202e",
+    "\ufeff", '"', '""', '"a', "'", "#", "# ", ";", ",", "\t", "\n", "\r", "\r\n", "\n\n", "=1+1", "$", "\\", "%", "/",
+    "time[" + "s" * 200 + "]",
+]  # fmt: skip
+
+
+def damaged(text: str, choose: random.Random) -> bytes:
+    """A table with a few faults: of bytes, of lines, of cells."""
+    data = text.encode()
+    for _ in range(choose.randint(1, 4)):
+        kind, at = choose.randrange(8), choose.randrange(len(data) + 1)
+        if choose.random() < 0.3:  # the header is hit as often as all of a long record
+            at = min(at, choose.randrange(60))
+        rows = data.split(b"\n")
+        row, other = (choose.randrange(len(rows)) for _ in range(2))
+        if kind == 0:
+            data = data[:at] + bytes([choose.randrange(256)]) + data[at + 1 :]
+        elif kind == 1:
+            data = data[:at] + data[at + choose.randint(0, 60) :]
+        elif kind == 2:
+            data = data[:at]
+        elif kind == 3:
+            data = data[:at] + choose.choice(HOSTILE).encode("utf-8", "surrogatepass") + data[at:]
+        elif kind == 4:
+            cells = rows[row].split(b",")
+            cells[choose.randrange(len(cells))] = choose.choice(HOSTILE).encode("utf-8", "surrogatepass")
+            data = b"\n".join([*rows[:row], b",".join(cells), *rows[row + 1 :]])
+        elif kind == 5:
+            rows[row], rows[other] = rows[other], rows[row]
+            data = b"\n".join(rows)
+        elif kind == 6:
+            data = b"\n".join(rows[:row] + rows[min(row, other) : max(row, other)] + rows[row:])
+        else:  # one column by a factor, as a wrong unit is
+            factor = choose.choice([0.0, 1e3, 1e-6, 1e12, -1.0, 1e300])
+            cells_of = [line.split(b",") for line in rows]
+            data = b"\n".join(b",".join(scaled(cell, factor) for cell in line) for line in cells_of)
+    return data
+
+
+def scaled(cell: bytes, factor: float) -> bytes:
+    """Return a cell, multiplied if it is a number."""
+    try:
+        return repr(float(cell) * factor).encode()
+    except ValueError:
+        return cell
+
+
+def observed(file: Path) -> None:
+    """Take what a file tells as the target of a calibration, up to where the fit begins."""
+    section = {"target": str(file)}
+    case = read_calibration(plain_case(contact={"law": "adams-impact", "damping_max": 100.0}, calibrate=section)).case
+    assert case.calibrate is not None
+    target_of(case, problem_of(case), case.calibrate)
+
+
+def swept(file: Path) -> None:
+    """Take columns of a file as what a study runs over."""
+    over = {"sphere": {"radius": {"file": str(file), "column": "radius [mm]", "weights": "share"}}}
+    sweep = read_sweep(plain_case(sweep={"design": "latin-hypercube", "samples": 8, "over": over}))
+    _ = sweep.plan.points(0, 8)
+
+
+def read(file: Path) -> None:
+    read_table_file(file, {"time": "s", "force": "N", "radius": "m", "share": "", "restitution": ""})
+
+
+USES: dict[str, tuple[Callable[[Path], None], Callable[[], str]]] = {
+    "heights": (observed, lambda: HEIGHTS),
+    "impacts": (observed, lambda: IMPACTS),
+    "force": (observed, force_record),
+    "position": (observed, position_record),
+    "swept": (swept, lambda: SWEPT),
+    "plain": (read, lambda: SWEPT.replace("mass", "force").replace("[g]", "[kN]")),
+}
+
+
+@pytest.mark.parametrize("use", USES)
+def test_tables_are_good(use: str, tmp_path: Path) -> None:
+    work, made = USES[use]
+    file = tmp_path / "table.csv"
+    file.write_text(made())
+    work(file)
+
+
+@pytest.mark.parametrize("use", USES)
+def test_damaged_tables(use: str, tmp_path: Path) -> None:
+    work, made = USES[use]
+    text, file = made(), tmp_path / "table.csv"
+
+    def attempt(data: bytes) -> None:
+        file.write_bytes(data)
+        work(file)
+
+    told = failures(attempt, [damaged(text, random.Random(f"{use} {seed}")) for seed in range(number(50))])
+    assert not told, told
+
+
+@pytest.mark.parametrize("header", ["[" * 90_000, "(" * 90_000, " " * 90_000 + "]", "[ " * 45_000, "a," * 45_000, "a" * 90_000])
+def test_a_hostile_header(header: str, tmp_path: Path) -> None:
+    file = tmp_path / "table.csv"
+    file.write_text(f"{header}\n1\n")
+    told = failures(lambda _: read(file), [None])
+    assert not told, told
+    with pytest.raises(vi.InputError):
+        read(file)

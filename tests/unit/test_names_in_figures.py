@@ -1,0 +1,102 @@
+"""Names of sensors that are no names: pictures, files and groups of a result of them, and the way back."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import h5py
+import pytest
+from matplotlib.text import Text
+
+import vibroimpact as vi
+from support import plain_case
+from vibroimpact.exchange.plain_names import plain_names
+from vibroimpact.report.deflection_figure import draw_deflection
+from vibroimpact.report.figures import render_png, render_svg
+from vibroimpact.report.lettering import lettering
+from vibroimpact.report.sensor_figures import draw_sensor
+from vibroimpact.report.style import style
+from vibroimpact.storage.result import Result
+
+NAMES = [
+    r"a$\frac{$b",
+    "a" * 300,
+    "left\nupper",
+    "../../up",
+    "a/b",
+    ".",
+    "CON",
+    "a\tb\x1b[31m",
+    "$",
+    r"back\$slash",
+    "-o",
+    "two $x$ and _y^",
+]
+
+IN_A_CASE = [r"a$\frac{$b", "a" * 200, "../../up", "$", "CON"]
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    plate = {"size": [0.52, 0.42, 0.008], "material": "steel-paper", "model": "elastic", "supports": "clamped", "modes": 4}
+    sensors = [{"name": name, "position": [0.01 * place, 0.05], "rate": 20e3} for place, name in enumerate(IN_A_CASE)]
+    case = vi.read_case(plain_case(plate=plate, sensors=sensors, run={"impacts": 1, "duration": 0.33}))
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("vibroimpact.report.figures._DPI", 40)
+        patch.setattr("vibroimpact.storage.deflection._FRAMES", 24)
+        place = tmp_path_factory.mktemp("results") / "named"
+        vi.simulate(case).save(place)
+        return place
+
+
+@pytest.fixture(scope="module")
+def result(folder: Path) -> Result:
+    return vi.read_result(folder)
+
+
+def test_the_folder_holds_a_picture_and_a_table_of_each(folder: Path, result: Result) -> None:
+    assert list(result.signals) == IN_A_CASE  # as they were given
+    for place, ending in (("sensors", ".csv"), ("figures", ".png"), ("figures", ".svg")):
+        begins = "" if place == "sensors" else "sensor_"
+        files = [name for name in os.listdir(folder / place) if name.endswith(ending) and name.startswith(begins)]
+        assert len(files) == len(IN_A_CASE)
+        assert all(name.isascii() and name.isprintable() and len(name) < 100 and not name.startswith((".", "-")) for name in files)
+    assert {path.parent for path in folder.parent.rglob("*.csv")} <= {folder, folder / "sensors"}
+    with h5py.File(folder / "result.nc") as file:
+        assert len(file["sensors"]) == len(IN_A_CASE)
+        assert all("value" in group for group in file["sensors"].values())
+
+
+def test_figures_show_every_name_in_one_line(result: Result) -> None:
+    with style():
+        figures = [draw_sensor(result, name) for name in result.signals] + [draw_deflection(result)]
+    for figure, name in zip(figures, [*result.signals, ""], strict=True):
+        title = next((text.get_text() for text in figure.findobj(Text) if "whole run" in text.get_text()), "")
+        assert lettering(name) in title
+        render_png(figure)
+        render_svg(figure)
+        extent = [text.get_window_extent() for text in figure.findobj(Text) if "whole run" in text.get_text()]
+        assert all(box.x1 <= figure.bbox.x1 and box.height < 40 for box in extent)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_lettering_is_read_letter_by_letter(name: str) -> None:
+    from matplotlib.figure import Figure
+
+    shown = lettering(name)
+    assert len(shown.replace(r"\$", "$")) <= 60
+    text = Figure().text(0.5, 0.5, shown)
+    plain, is_mathematics = text._preprocess_math(shown)  # type: ignore[attr-defined]
+    assert not is_mathematics
+    assert plain == shown.replace(r"\$", "$")
+
+
+def test_plain_names_differ_and_can_be_files(tmp_path: Path) -> None:
+    names = [*NAMES, *(f"{name}!" for name in NAMES), "A1", "a1", "a1_2", "a1 ", *(f"s{'/' * number}" for number in range(2000))]
+    found = plain_names(names)
+    assert list(found) == list(dict.fromkeys(names))
+    assert len({plain.lower() for plain in found.values()}) == len(found)
+    for plain in list(found.values())[:40]:
+        (tmp_path / f"sensor_{plain}.csv").touch()
+    assert len(os.listdir(tmp_path)) == 40
