@@ -127,10 +127,7 @@ class Elastic:
         ComputationError
             If the iteration does not converge.
         """
-        size = self.stiffness.shape[0]
-        most = int(self._heavy.sum()) - self.rigid.shape[1]
-        if size > _DENSE:
-            most = int(_MOST * most)
+        size, most = self.stiffness.shape[0], most_modes(self.mass, self.rigid.shape[1])
         if not 1 <= number <= most:
             raise InputError(
                 f"{number} modes are not to be had from {size} degrees of freedom; it must be from 1 to {most}"
@@ -172,3 +169,9 @@ class Elastic:
         responses, turned = np.linalg.eigh(root.T @ response)
         lowest = slice(-1, -number - 1, -1)
         return Eigenmodes(1.0 / np.sqrt(responses[lowest]), response @ (turned[:, lowest] / responses[lowest]))
+
+
+def most_modes(mass: csr_array, rigid: int) -> int:
+    """Return how many modes of a system mean anything, of which so many motions are rigid."""
+    most = int(np.count_nonzero(mass.diagonal() > 0.0)) - rigid
+    return most if mass.shape[0] <= _DENSE else int(_MOST * most)

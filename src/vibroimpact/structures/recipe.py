@@ -24,6 +24,7 @@ from vibroimpact.structures.frequency_error import (
     of_supports,
 )
 from vibroimpact.structures.mesh import Floats, Integers, Mesh
+from vibroimpact.structures.mirrored import elastic_of
 from vibroimpact.structures.modal_model import ModalModel, modal_model
 from vibroimpact.structures.modes import Eigenmodes, Elastic, Progress
 from vibroimpact.structures.plate_mesh import plate_mesh, solid_plate_mesh
@@ -317,7 +318,7 @@ def _errors(recipe: Recipe, held: HeldStructure, modes: Eigenmodes, material: Ma
         kept = Eigenmodes(least, closer.shapes[:, :number])
     try:
         other = held_by(shape.structure(shape.mesh(recipe.supports), material), recipe.supports)
-        found = Elastic(other.stiffness, other.mass, other.rigid, other.order).modes(number, tolerance=_ROUGH)
+        found = elastic_of(other).modes(number, tolerance=_ROUGH)
     except (InputError, ComputationError):
         return {}  # the coarser mesh has not so many modes, or does not follow the supports
     parts[MESH] = from_coarser(kept.angular_frequencies, found.angular_frequencies, gain)
@@ -330,7 +331,7 @@ def _errors(recipe: Recipe, held: HeldStructure, modes: Eigenmodes, material: Ma
 
 
 def _kept(held: HeldStructure, reduction: Reduction, progress: Progress | None) -> Eigenmodes:
-    elastic = Elastic(held.stiffness, held.mass, held.rigid, held.order)
+    elastic = elastic_of(held)
     number = reduction.modes
     if number is None:
         number = elastic.count_below(2.0 * np.pi * (reduction.max_frequency or 0.0))

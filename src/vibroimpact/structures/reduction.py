@@ -10,6 +10,7 @@ from scipy.sparse import csr_array
 
 from vibroimpact.errors import InputError
 from vibroimpact.structures.mesh import Floats, Integers
+from vibroimpact.structures.mirrored import MirroredElastic
 from vibroimpact.structures.modes import Eigenmodes, Elastic, Progress
 
 _RIGID = 1e-6  # of the norm of a motion: what is left of one that is rigid is less
@@ -81,12 +82,12 @@ def craig_bampton(
     return basis
 
 
-def attachment_modes(elastic: Elastic, modes: Eigenmodes, loads: Floats) -> Floats:
+def attachment_modes(elastic: Elastic | MirroredElastic, modes: Eigenmodes, loads: Floats) -> Floats:
     """Return what truncated modes lack of the static response to loads (residual attachment modes).
 
     Parameters
     ----------
-    elastic : Elastic
+    elastic : Elastic or MirroredElastic
         The system.
     modes : Eigenmodes
         Its lowest modes.

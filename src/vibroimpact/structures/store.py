@@ -23,7 +23,7 @@ from vibroimpact.structures.modal_model import ModalModel
 from vibroimpact.writing.file import write_file
 from vibroimpact.writing.settle import clear
 
-FORMAT = 2
+FORMAT = 3
 """Counts up when what is stored, or how it is computed, changes."""
 
 PLACE = "VIBROIMPACT_STORE"

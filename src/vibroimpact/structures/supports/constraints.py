@@ -27,6 +27,8 @@ class HeldStructure:
         Of the degrees of freedom that are left free.
     expansion : sparse array, shape (dofs, free)
         From the free degrees of freedom to those of the structure.
+    free : int array, shape (free,)
+        Their numbers among all: those of the structure, then those of the bodies that hold it.
     order : int array, shape (free,)
         An elimination order.
     rigid : array, shape (free, r)
@@ -43,6 +45,7 @@ class HeldStructure:
     stiffness: csr_array
     mass: csr_array
     expansion: csr_array
+    free: Integers
     order: Integers
     rigid: Floats
     left: Floats
@@ -205,6 +208,7 @@ class Constraints:
             reduced[0],
             reduced[1],
             csr_array(expansion[: structure.stiffness.shape[0]]),
+            free,
             order[order >= 0],
             motions[free] @ left.T,
             left,
