@@ -9,7 +9,7 @@ import numpy as np
 
 from vibroimpact.cases.build import contact_laws_of, contact_pair, first_speed
 from vibroimpact.cases.conditions import Seen
-from vibroimpact.cases.slips.facts import HERTZ_DURATION
+from vibroimpact.contact.hertz_time import HERTZ_TIME
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.phase.encounter import encounter_of
 
@@ -29,7 +29,7 @@ def expected_of(case: Case) -> Seen:
     encounter = encounter_of(law, contact_pair(case).effective_mass * one, case.drop.gravity * one, speed * one)
     depth = float(encounter.depth[0])
     force = float(np.asarray(law.forces(encounter.depth, 0.0 * one, encounter.approach_speed)[0])[0])
-    return Seen(force, depth, HERTZ_DURATION * depth / speed, speed, _deflection(case, speed))
+    return Seen(force, depth, HERTZ_TIME * depth / speed, speed, _deflection(case, speed))
 
 
 def _deflection(case: Case, speed: float) -> float:

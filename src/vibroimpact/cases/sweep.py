@@ -39,7 +39,8 @@ MOST_KEYS = 100
 MOST_POINT_VALUES = 40_000_000
 """Values of all keys at all points of a study that is no grid; they lie in memory."""
 
-_LONG = 100  # impacts that are reckoned with where a drop goes on to rest
+LONG = 100
+"""Impacts that are reckoned with where a drop goes on to rest."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,7 +116,7 @@ class Sweep:
     @property
     def bytes(self) -> float:
         """About how large its results are."""
-        impacts = (impacts_of(self.case) or _LONG) if "impacts" in self.section.keep else 0
+        impacts = (impacts_of(self.case) or LONG) if "impacts" in self.section.keep else 0
         kept = self.case.sensors if "signals" in self.section.keep else ()
         samples = sum(sensor.rate * (self.case.run.duration or 0.0) for sensor in kept)
         double, single = len(self.axes) + len(PEAKS) + impacts * len(IMPACT_COLUMNS), len(limit_meanings()) + samples

@@ -7,13 +7,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from vibroimpact.contact.hertz_time import HERTZ_TIME
 from vibroimpact.contact.phase.collocation import Floats
 from vibroimpact.dynamics.problem import Problem
 
 if TYPE_CHECKING:
     from vibroimpact.structures.modal_model import ModalBasis
-
-_HERTZ = 2.94  # the time of Hertz's contact, in depths over speeds
 
 
 def truncation_estimates(problem: Problem, impacts: dict[str, Floats]) -> dict[str, float]:
@@ -57,7 +56,7 @@ def time_of_contact(impacts: Mapping[str, Any]) -> float:
     duration, contacts = float(impacts["duration_s"][0]), impacts.get("contacts")
     if contacts is None or contacts[0] < 2:
         return duration
-    return min(duration, _HERTZ * float(impacts["max_indentation_m"][0]) / float(impacts["approach_speed_m_s"][0]))
+    return min(duration, HERTZ_TIME * float(impacts["max_indentation_m"][0]) / float(impacts["approach_speed_m_s"][0]))
 
 
 def _estimate(modes: ModalBasis, impacts: dict[str, Floats], carried: bool) -> float:

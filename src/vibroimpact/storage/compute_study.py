@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 import shutil
 from collections.abc import Callable
@@ -12,9 +13,10 @@ from pathlib import Path
 import numpy as np
 
 from vibroimpact._version import __version__
+from vibroimpact.cases.build import impacts_of
 from vibroimpact.cases.compute_points import compute_points
 from vibroimpact.cases.coupling import carried_modes
-from vibroimpact.cases.sweep import Sweep
+from vibroimpact.cases.sweep import LONG, Sweep
 from vibroimpact.errors import ComputationError, InputError
 from vibroimpact.storage.check_sums import sealed
 from vibroimpact.storage.folder import SUMMARY, new_folder
@@ -32,9 +34,15 @@ from vibroimpact.studies.workers import Workers, processes, this_process
 MEMORY = 500e6
 """Bytes that the drops of a chunk may take, where nothing else is said."""
 
+LEAST_MEMORY = 1e6
+"""The least of that."""
+
 _CHUNK = 8000  # drops of rigid bodies: a tenth of a second
 _ELASTIC_CHUNK = 8  # drops of elastic ones: half a second
 _PER_DROP, _COPIES = 4000.0, 4.0  # bytes that a drop takes while it is computed, and how often its results are there until they are written
+
+_FEW_CHUNKS = 40  # what so many cost beside their drops is two seconds, however small they are
+_USEFUL, _USEFUL_ELASTIC = 15_000, 3  # impacts of rigid bodies, or drops of elastic ones, beside which a chunk costs a third more at most
 
 _MANY = 50_000  # drops from which on it takes seconds to put them together
 
@@ -76,8 +84,10 @@ def compute_study(
         raise InputError(f"a study is wanted, as vi.load_sweep(...) reads it, not {sweep!r}")
     if not isinstance(workers, int) or workers < 1:
         raise InputError(f"{workers!r} is not allowed; it must be a whole number from 1", "workers")
-    if isinstance(memory, str) or not memory >= 1e6:
+    if isinstance(memory, str) or not memory >= LEAST_MEMORY:
         raise InputError(f"{memory!r} is not allowed; it must be a number of bytes, 1e6 or more", "memory")
+    if not resume:
+        _check_memory(sweep, memory)
     folder = Path(directory)
     if scheduler is not None:
         check_scheduler(scheduler)
@@ -204,6 +214,35 @@ def _facts(sweep: Sweep) -> dict[str, str]:
     return {"digest": sweep.digest, "version": __version__, "numpy": np.__version__}
 
 
+def least_memory(sweep: Sweep) -> float:
+    """Return the bytes for the drops of a chunk below which a study becomes dearer by more than a third, for what each chunk costs.
+
+    Parameters
+    ----------
+    sweep : Sweep
+        The study.
+    """
+    useful = _USEFUL_ELASTIC if sweep.deforms else math.ceil(_USEFUL / (impacts_of(sweep.case) or LONG))
+    return max(LEAST_MEMORY, min(useful, math.ceil(sweep.size / _FEW_CHUNKS)) * _bytes_each(sweep))
+
+
+def _check_memory(sweep: Sweep, memory: float) -> None:
+    """Raise if so little memory makes a study much dearer."""
+    least = least_memory(sweep)
+    if memory < least:
+        size = chunk_size(sweep, memory)
+        raise InputError(
+            f"{memory / 1e6:.3g} MB is too little for {sweep.size:,} drops: computed {size:,} at a time they take several times as long; "
+            f"give {math.ceil(least / 1e6)} MB or more",
+            "memory",
+        )
+
+
+def _bytes_each(sweep: Sweep) -> float:
+    """Return how many bytes a drop of a chunk takes."""
+    return _PER_DROP + _COPIES * sweep.bytes / sweep.size
+
+
 def chunk_size(sweep: Sweep, memory: float) -> int:
     """Return how many drops a chunk has: fewer if memory is short, and the same however many workers there are.
 
@@ -214,5 +253,4 @@ def chunk_size(sweep: Sweep, memory: float) -> int:
     memory : float
         Bytes that the drops of a chunk may take.
     """
-    each = _PER_DROP + _COPIES * sweep.bytes / sweep.size
-    return max(1, min(_ELASTIC_CHUNK if sweep.deforms else _CHUNK, int(memory / each)))
+    return max(1, min(_ELASTIC_CHUNK if sweep.deforms else _CHUNK, int(memory / _bytes_each(sweep))))

@@ -11,11 +11,9 @@ from typing import Any
 import numpy as np
 
 from vibroimpact.cases.conditions import Conditions, Seen
+from vibroimpact.contact.hertz_time import HERTZ_TIME
 from vibroimpact.contact.pair import hertz_stiffness
 from vibroimpact.materials import Material
-
-HERTZ_DURATION = 2.943
-"""Durations of a contact over indentation over speed, where the force grows with the power 1.5 (Johnson 1985, eq. 11.24)."""
 
 
 @dataclass(frozen=True)
@@ -92,7 +90,7 @@ class Facts:
     @property
     def contact_time(self) -> float:
         """Duration of the first contact [s]."""
-        return HERTZ_DURATION * self.depth / self.speed
+        return HERTZ_TIME * self.depth / self.speed
 
     @property
     def critical_damping(self) -> float:
