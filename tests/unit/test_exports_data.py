@@ -314,7 +314,7 @@ def test_the_history_is_sampled_as_finely_as_the_contact_needs(elastic: Drop, ri
 
 def test_a_step_that_has_more_digits_than_the_format_is_told(rigid: Drop) -> None:
     assert "rounded" not in notes_of("uff58", rigid)
-    signal = Signal(Sensor("a", rate=3000.0), np.arange(9) / 3000.0, np.zeros(9), 0)
+    signal = Signal(Sensor("a", rate=3000.0), np.zeros(9), 0)
     assert "The time step of 3000 Hz, " in notes_of("uff58", replace(rigid, signals={"a": signal}))
 
 
@@ -376,7 +376,7 @@ def test_a_signal_is_heard_to_scale(elastic: Drop) -> None:
 
 @pytest.mark.parametrize(("rate", "words"), [(0.3, "must be 1 to"), (2e9, "must be 1 to"), (44100.4, None), (1e6, None)])
 def test_rates_that_a_wav_file_can_hold(rate: float, words: str | None, rigid: Drop) -> None:
-    signal = Signal(Sensor("a", rate=rate), np.arange(5) / rate, np.zeros(5), 0)
+    signal = Signal(Sensor("a", rate=rate), np.zeros(5), 0)
     drop = replace(rigid, signals={"a": signal})
     if words:
         with pytest.raises(vi.InputError, match=words):

@@ -73,6 +73,7 @@ def _run(name: str, output: Path | None, *, force: bool) -> None:
         with patient_progress("simulating", screen) as progress:
             response = simulate(problem, progress)
         folder = save_result(response, target, force=force)
+    del response  # what is read back may be as large
     screen.print(result_summary(read_result(folder), screen.width))
     say(f"wrote {folder / 'report.html'}")
 

@@ -40,8 +40,8 @@ class Signal:
     ----------
     sensor : Sensor
         What recorded it.
-    time, value : array, shape (samples,)
-        Times since the start [s], and what was read then, in the unit of the sensor.
+    value : array, shape (samples,)
+        What was read at `time`, in the unit of the sensor.
     uncertainty : float, default NaN
         About how far it may be off for the modes left out, as a part of its rms value around the first contact.
     peak : float, default NaN
@@ -51,11 +51,29 @@ class Signal:
     """
 
     sensor: Sensor
-    time: Floats
     value: Floats
     uncertainty: float = float("nan")
     peak: float = float("nan")
     overload_time: float = 0.0
+
+    @property
+    def time(self) -> Floats:
+        """Times of the samples since the start [s], made anew when they are asked for: they take as much memory as the values."""
+        return self.times(0, len(self.value))
+
+    def times(self, first: int, last: int) -> Floats:
+        """Return the times of some samples [s], from the first to before the last."""
+        return np.arange(first, min(last, len(self.value))) / self.sensor.rate
+
+    def first_at(self, time: float) -> int:
+        """Return the number of the first sample that is not before a time [s]; if there is none, how many there are."""
+        about = min(max(int(time * self.sensor.rate) - 2, 0), len(self.value))  # which is off by rounding
+        return about + int(np.searchsorted(self.times(about, about + 5), time))
+
+    @property
+    def largest(self) -> float:
+        """The largest magnitude."""
+        return float(max(self.value.max(initial=0.0), -self.value.min(initial=0.0)))
 
 
 def record(problem: Problem, segments: Sequence[VibratingSegment], sensors: Sequence[Sensor], end: float) -> dict[str, Signal]:
@@ -143,7 +161,7 @@ def _recorded(
     left_out = filtered_chain(_of_next_octave(plate, shapes, orders, resonance), known.rate, longest_span(segments, known.rate))
     whole, doubted = (np.linalg.norm(around_first_contact(one, segments), axis=1) for one in (known, left_out))
     uncertainties = doubted / np.where(whole > 0.0, whole, np.inf)
-    time, signals = np.arange(count) / sensor.rate, {}
+    signals = {}
     for number, one in enumerate(group):
         value, meter, facts = values[number], one.accelerometer, {"uncertainty": float(uncertainties[number])}
         if meter is not None and meter.range is not None:
@@ -152,7 +170,7 @@ def _recorded(
             clipped = one.filter == "none"
             value = np.clip(value, -meter.range, meter.range) if clipped else value - taken_away(found, through, one.rate, count)
             facts |= {"peak": found.peak, "overload_time": found.time}
-        signals[one.name] = Signal(one, time, _digitised(one, value), **facts)
+        signals[one.name] = Signal(one, _digitised(one, value), **facts)
     return signals
 
 

@@ -78,7 +78,7 @@ def sensor_caption(result: Result, name: str) -> str:
     signal = result.signals[name]
     sensor, part = signal.sensor, first_response(result, name)
     words = (
-        f"Largest magnitude {text(float(np.abs(signal.value).max()), sensor.unit)}, of {len(signal.value)} samples at {digits(sensor.rate)}"
+        f"Largest magnitude {text(signal.largest, sensor.unit)}, of {len(signal.value)} samples at {digits(sensor.rate)}"
         f"\u00a0Hz, {_FILTERS[sensor.filter]}."
     )
     if signal.overload_time > 0.0:

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 from numpy.typing import NDArray
 
+from vibroimpact.dynamics.recording import Signal
 from vibroimpact.report.style import ENLARGED
 from vibroimpact.storage.result import Result
 
@@ -15,6 +18,8 @@ MARGIN = 0.15
 
 _COLUMNS = 1500
 """Into how many columns a long history is sorted: more than a figure has pixels that matter."""
+
+_AT_ONCE = 2**20  # points that are sorted at once
 
 
 def contacts(result: Result) -> NDArray[np.intp]:
@@ -87,9 +92,27 @@ def gravity(result: Result) -> float:
 
 def thinned(x: Floats, y: Floats) -> tuple[Floats, Floats]:
     """Return a long line with the points that show: in each column of the figure its ends and its extremes."""
-    if len(x) <= 4 * _COLUMNS:
-        return x, y
-    column = np.searchsorted(np.linspace(x[0], x[-1], _COLUMNS + 1)[1:-1], x, side="right")
+    return _thinned(len(x), lambda first, last: (x[first:last], y[first:last]))
+
+
+def thinned_samples(signal: Signal) -> tuple[Floats, Floats]:
+    """Return times [s] and values of the samples of a signal that show, as `thinned` does."""
+    return _thinned(len(signal.value), lambda first, last: (signal.times(first, last), signal.value[first:last]))
+
+
+def _thinned(count: int, part: Callable[[int, int], tuple[Floats, Floats]]) -> tuple[Floats, Floats]:
+    """Return the points that show of a line of so many points, which is looked at in parts: columns of a long one fill gigabytes."""
+    if count <= 4 * _COLUMNS:
+        return part(0, count)
+    edges = np.linspace(part(0, 1)[0][0], part(count - 1, count)[0][0], _COLUMNS + 1)[1:-1]
+    found = [_showing(*part(first, min(first + _AT_ONCE, count)), edges) for first in range(0, count, _AT_ONCE)]
+    x, y = (np.concatenate(side) for side in zip(*found, strict=True))
+    return (x, y) if len(found) == 1 else _showing(x, y, edges)
+
+
+def _showing(x: Floats, y: Floats, edges: Floats) -> tuple[Floats, Floats]:
+    """Return the ends and the extremes of a line in each of the columns between edges."""
+    column = np.searchsorted(edges, x, side="right")
     starts = np.flatnonzero(np.diff(column, prepend=-1))
     ends = np.append(starts[1:], len(x)) - 1
     by_height = np.lexsort((y, column))

@@ -9,7 +9,7 @@ from matplotlib.ticker import MaxNLocator
 
 from vibroimpact.exchange.plain_names import plain_names
 from vibroimpact.quantity import Multiple, digits, largest, multiple
-from vibroimpact.report.excerpt import thinned
+from vibroimpact.report.excerpt import thinned, thinned_samples
 from vibroimpact.report.layout import label_vertical, new_figure, row_of_axes, wide_axes
 from vibroimpact.report.lettering import lettering
 from vibroimpact.report.motion_figures import plate_span
@@ -36,11 +36,12 @@ def drawn_sensors(result: Result) -> dict[str, str]:
 def draw_sensor(result: Result, name: str) -> Figure:
     """Draw what a sensor recorded, and its spectrum from the first touch to the next."""
     signal = result.signals[name]
-    scale, quantity = multiple(signal.sensor.unit, signal.value), signal.sensor.quantity
+    scale, quantity = multiple(signal.sensor.unit, signal.largest), signal.sensor.quantity
     figure = new_figure(5.6)
     whole = wide_axes(figure, 3.65, 1.6)
-    clock = multiple("s", signal.time)
-    whole.plot(*thinned(signal.time / clock.size, signal.value / scale.size), color=INK, linewidth=0.8)
+    clock = multiple("s", signal.times(len(signal.value) - 1, len(signal.value)))
+    time, value = thinned_samples(signal)
+    whole.plot(time / clock.size, value / scale.size, color=INK, linewidth=0.8)
     whole.margins(x=0.01, y=0.08)
     whole.set_title(f"{quantity.capitalize()} at {lettering(name)}, whole run{_mark_range(whole, result, name, scale)}")
     whole.set_xlabel(f"Time [{clock.unit}]")
@@ -69,8 +70,8 @@ def _mark_range(axes: Axes, result: Result, name: str, scale: Multiple) -> str:
 def _draw_close(axes: Axes, result: Result, name: str, scale: Multiple) -> None:
     signal, touch, span = result.signals[name], float(result.impacts["time_s"][0]), plate_span(result)
     clock = multiple("s", span)
-    here = (signal.time >= touch - 0.06 * span) & (signal.time <= touch + span)
-    axes.plot((signal.time[here] - touch) / clock.size, signal.value[here] / scale.size, color=ACCENT, linewidth=1.0)
+    first, last = signal.first_at(touch - 0.06 * span), signal.first_at(touch + span)
+    axes.plot((signal.times(first, last) - touch) / clock.size, signal.value[first:last] / scale.size, color=ACCENT, linewidth=1.0)
     axes.axvline(0.0, color=MARK, linewidth=0.8, linestyle=(0, (1, 2)))
     axes.margins(x=0.01, y=0.08)
     axes.xaxis.set_major_locator(MaxNLocator(6, steps=[1, 2, 5, 10]))

@@ -52,6 +52,6 @@ def amplitude_spectrum(values: Floats, rate: float) -> Spectrum:
 def first_response(result: Result, name: str) -> slice:
     """Return which samples of a sensor lie between the first touch and the next one, or the end; at most 131072."""
     touches, signal = result.impacts["time_s"], result.signals[name]
-    first = int(np.searchsorted(signal.time, touches[0])) if len(touches) else 0
-    last = int(np.searchsorted(signal.time, touches[1])) if len(touches) > 1 else len(signal.time)
+    first = signal.first_at(float(touches[0])) if len(touches) else 0
+    last = signal.first_at(float(touches[1])) if len(touches) > 1 else len(signal.value)
     return slice(first, min(last, first + _LONGEST))

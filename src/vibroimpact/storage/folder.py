@@ -26,7 +26,7 @@ from vibroimpact.storage.result import Result
 from vibroimpact.storage.signal_csv import write_signal_files
 from vibroimpact.storage.summary import summary_of
 from vibroimpact.storage.summary_types import check_types
-from vibroimpact.storage.tables import impact_rows, write_csv
+from vibroimpact.storage.tables import write_impacts
 from vibroimpact.writing.folder import whole_folder
 from vibroimpact.writing.settle import settle
 
@@ -109,7 +109,7 @@ def write_result(result: Result, directory: Path) -> None:
     """Write the data files of a result into a folder: case.toml, impacts.csv, summary.json, result.nc, and short signals as CSV."""
     if result.case:  # a problem made in Python has no case; its provenance says what it was
         (directory / CASE).write_text(tomli_w.dumps(result.case), encoding="utf-8")
-    write_csv(impact_rows(result.impacts), list(impact_columns(result.impacts)), directory / "impacts.csv")
+    write_impacts(result.impacts, directory / "impacts.csv")
     write_groups(result, directory / DATA)
     check_sums = {name: file_digest(directory / name) for name in (CASE, DATA) if (directory / name).is_file()}
     (directory / SUMMARY).write_text(sealed({**summary_of(result), CHECK_SUMS: check_sums}), encoding="utf-8")

@@ -11,7 +11,9 @@ from vibroimpact.dynamics.recording import Signal
 from vibroimpact.dynamics.sensor import Sensor
 from vibroimpact.exchange.plain_names import plain_names
 from vibroimpact.storage.deflection import Deflection
-from vibroimpact.storage.hdf5 import PACKED, new_array, read_array
+from vibroimpact.storage.hdf5 import PACKED, chunk_shape, new_array, read_array
+
+_AT_ONCE = 2**20  # times of samples that are written at once
 
 
 def write_signals(file: h5py.File, signals: Mapping[str, Signal]) -> None:
@@ -26,7 +28,10 @@ def write_signals(file: h5py.File, signals: Mapping[str, Signal]) -> None:
         facts = ("relative_uncertainty", "peak_before_range_m_s2", "overload_time_s")
         for fact, value in zip(facts, (signal.uncertainty, signal.peak, signal.overload_time), strict=True):
             group.attrs[fact] = value
-        time = new_array(group, "time_s", signal.time, **PACKED)
+        number = len(signal.value)
+        time = group.create_dataset("time_s", (number,), np.float64, chunks=chunk_shape((number,), 8), **PACKED)
+        for first in range(0, number, _AT_ONCE):
+            time[first : first + _AT_ONCE] = signal.times(first, first + _AT_ONCE)
         time.make_scale("time_s")
         _tell(time, "s", "time since the start")
         value = new_array(group, "value", signal.value)
@@ -43,7 +48,7 @@ def read_signals(file: h5py.File) -> dict[str, Signal]:
         corner = float(told["filter_corner_Hz"]) if "filter_corner_Hz" in told else None
         sensor = Sensor(name, told["quantity"], (x, y, z), float(told["rate_Hz"]), None, str(told.get("filter", "none")), corner)
         facts = (told.get("relative_uncertainty", np.nan), told.get("peak_before_range_m_s2", np.nan), told.get("overload_time_s", 0.0))
-        found[name] = Signal(sensor, read_array(group["time_s"]), read_array(group["value"]), *map(float, facts))
+        found[name] = Signal(sensor, read_array(group["value"]), *map(float, facts))
     return found
 
 

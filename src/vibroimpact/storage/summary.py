@@ -5,8 +5,6 @@ from __future__ import annotations
 import math
 from typing import Any
 
-import numpy as np
-
 from vibroimpact.storage.result import Result
 from vibroimpact.storage.tables import impact_rows
 
@@ -36,7 +34,7 @@ def _of_vibration(result: Result) -> dict[str, Any]:
             "unit": signal.sensor.unit,
             "rate_Hz": signal.sensor.rate,
             "samples": len(signal.value),
-            "max_magnitude": float(np.abs(signal.value).max()),
+            "max_magnitude": signal.largest,
             "filter": signal.sensor.filter,
             "relative_uncertainty": signal.uncertainty if math.isfinite(signal.uncertainty) else None,
             "peak_before_range": signal.peak if math.isfinite(signal.peak) else None,

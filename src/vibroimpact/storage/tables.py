@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import math
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -20,18 +21,25 @@ def impact_rows(impacts: dict[str, Any]) -> list[dict[str, float | int | None]]:
     >>> impact_rows({name: np.array([1.0]) for name in IMPACT_COLUMNS})[0]["impact"]
     1
     """
-    rows: list[dict[str, float | int | None]] = []
+    return list(_rows(impacts))
+
+
+def write_impacts(impacts: dict[str, Any], path: Path) -> None:
+    """Write the impact table as CSV."""
+    write_csv(_rows(impacts), list(impact_columns(impacts)), path)
+
+
+def _rows(impacts: dict[str, Any]) -> Iterator[dict[str, float | int | None]]:
     columns = impact_columns(impacts)
     for index in range(len(impacts["impact"])):
         row: dict[str, float | int | None] = {}
         for name in columns:
             value = float(impacts[name][index])
             row[name] = (int(value) if name in COUNTS else value) if math.isfinite(value) else None
-        rows.append(row)
-    return rows
+        yield row
 
 
-def write_csv(rows: list[dict[str, Any]], columns: list[str], path: Path) -> None:
+def write_csv(rows: Iterable[dict[str, Any]], columns: list[str], path: Path) -> None:
     """Write rows with every digit; an empty cell where there is no value."""
     with path.open("w", newline="", encoding="utf-8") as file:
         writer = csv.DictWriter(file, columns, lineterminator="\n")
