@@ -56,6 +56,7 @@ def check(case: CaseArgument) -> None:
 
 
 def _run(name: str, output: Path | None, *, force: bool) -> None:
+    from vibroimpact.cases.costs import costs_told
     from vibroimpact.cases.reader import load_case, named
     from vibroimpact.dynamics.simulate import simulate
     from vibroimpact.report.console import result_summary
@@ -66,6 +67,8 @@ def _run(name: str, output: Path | None, *, force: bool) -> None:
     case = load_case(name)
     target = Path(stem(name)) if output is None else output
     check_free(target, force=force)  # before the work, not after it
+    for sentence in costs_told(case):
+        note(sentence)
     screen = console()
     with whole_or_nothing():
         with patient_progress("computing modes", screen) as progress:
@@ -88,6 +91,7 @@ def modes(
 
     The folder holds a table of frequencies, pictures of the first modes, and the meshes for ParaView, Nastran and Abaqus.
     """
+    from vibroimpact.cases.costs import costs_told
     from vibroimpact.cases.modes import compute_modes
     from vibroimpact.cases.reader import load_case, named
     from vibroimpact.report.modes_folder import save_modes
@@ -98,6 +102,8 @@ def modes(
     found = load_case(case)
     target = Path(f"{stem(case)}-modes") if output is None else output
     check_free(target, force=force)
+    for sentence in costs_told(found, modes_alone=True):
+        note(sentence)
     screen = console()
     with whole_or_nothing():
         with patient_progress("computing modes", screen) as progress:

@@ -11,6 +11,7 @@ from rich.console import Group, RenderableType
 from rich.text import Text
 
 from vibroimpact.cases.build import contact_laws_of, contact_pair, deforms, elastic_names, first_speed, impacts_of, resolved
+from vibroimpact.cases.costs import costs_told
 from vibroimpact.cases.doubts import doubts
 from vibroimpact.cases.expected import expected_of
 from vibroimpact.cases.schema import Case, SensorSection
@@ -155,6 +156,7 @@ def case_explained(case: Case, aside: Container[str] = ()) -> RenderableType:
     if not math.isnan(expected.force):
         numbers = f"indentation {expected.depth:.4g} m, force {expected.force:.4g} N"
         rows.append(("if nothing were lost" + ("" if rigid else ", rigid"), numbers))
+    rows += [("" if number else "cost", line) for number, line in enumerate(costs_told(case))]
     found = doubts(resolved(case), expected, aside)
     return Group(Text(case.name or "a drop", style="bold"), facts(rows), *doubt_lines(found))
 

@@ -1,0 +1,149 @@
+"""What a run of a case will take: time, memory and room on disk, told beforehand where they are large."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, NamedTuple
+
+from vibroimpact.cases.build import contact_laws_of, contact_pair, deforms, first_speed, impacts_of
+from vibroimpact.cases.build_elastic import elastic_bodies
+from vibroimpact.contact.law import CompliantLaw
+from vibroimpact.contact.restitution import achieved_restitution
+from vibroimpact.contact.static import static_indentation
+from vibroimpact.dynamics.history_grid import MOST_POINTS
+from vibroimpact.dynamics.problem import MOST_IMPACTS
+from vibroimpact.structures.factor import check_room
+from vibroimpact.structures.recipe import BroughtMesh, model_key
+from vibroimpact.structures.store import has_model
+
+if TYPE_CHECKING:
+    from vibroimpact.cases.schema import Case
+
+# measured on one core of 2.5 GHz or so, by benchmarks/bench_costs.py
+_PROGRAM = 170e6  # bytes that the program takes with its figures
+_IMPACT_SECONDS, _IMPACT_BYTES, _IMPACT_ON_DISK = 5e-3, 2.2e3, 1e3
+_POINTS, _POINT_BYTES, _POINT_ON_DISK = 170, 130.0, 100.0  # of an impact in a history, and what each takes
+_SAMPLE_SECONDS, _SAMPLE_BYTES, _SAMPLE_ON_DISK = 2e-7, 8.5, 9.0
+_MODES_SECONDS, _MODES_DOFS, _MODES_NUMBER = 35.0, 42_423, 300  # of a sphere, in eighths
+_WHOLE = 4.0  # times longer: a mesh that was brought is hardly ever its own mirror image
+_DOF_BYTES = 20e3
+_ELASTIC = 1e-7  # of the speed: what loses less in an impact goes on as if it lost nothing
+_LONG, _LARGE, _MUCH = 10.0, 1e9, 500e6
+"""Seconds, bytes of memory and bytes on disk from which on they are told."""
+
+
+class Cost(NamedTuple):
+    """A part of what a run takes: in seconds, in bytes of memory and on disk, for what, and how to have less of it."""
+
+    seconds: float
+    memory: float
+    disk: float
+    why: str
+    remedy: str
+
+
+def costs_of(case: Case, *, modes_alone: bool = False) -> list[Cost]:
+    """Return the parts of what a run of a case takes, about; modes that are in the store cost nothing.
+
+    Parameters
+    ----------
+    case : Case
+        The case.
+    modes_alone : bool, default False
+        Only what its modes take.
+    """
+    return [*_of_modes(case), *(() if modes_alone else (*_of_impacts(case), *_of_signals(case)))]
+
+
+def costs_told(case: Case, *, modes_alone: bool = False) -> list[str]:
+    """Return a sentence for each part of a run that takes more than ten seconds, 1 GB of memory or 500 MB on disk.
+
+    Raises
+    ------
+    InputError
+        If it would take more memory than is free; the message says what takes it, and how to have less.
+    """
+    told = []
+    for cost in costs_of(case, modes_alone=modes_alone):
+        check_room(_PROGRAM + cost.memory, f"{cost.why} need", cost.remedy)
+        if cost.seconds > _LONG or cost.memory > _LARGE or cost.disk > _MUCH:
+            told.append(f"{cost.why} take about {_listed(cost)}; {cost.remedy}")
+    return told
+
+
+def impacts_expected(case: Case) -> int:
+    r"""Return about how many impacts a drop of rigid bodies has.
+
+    The restitution e of the first is taken for that of all: from a speed :math:`v` to :math:`v_r` there are
+    :math:`\ln(v_r/v)/\ln e`, and in a time :math:`T` those whose flights, :math:`2 v e^k / g`, fill it.
+    """
+    most = impacts_of(case) or MOST_IMPACTS
+    law, pair, speed, gravity = contact_laws_of(case)[-1], contact_pair(case), first_speed(case), case.drop.gravity
+    mass = float(pair.effective_mass)
+    kept = float(achieved_restitution(law, mass, speed))
+    if kept <= 0.0 or not (speed > 0.0 and gravity > 0.0):
+        return 1
+    if kept >= 1.0 - _ELASTIC:
+        return int(min(most, 1.0 + 0.5 * (case.run.duration or math.inf) * gravity / speed))
+    rest = case.run.rest_speed
+    if rest is None:
+        sag = float(static_indentation(law, mass * gravity)) - float(law.touch_level) if isinstance(law, CompliantLaw) else 0.0
+        rest = max(1e-6 * speed, math.sqrt(2.0 * gravity * max(sag, 0.0)))
+    count = math.log(rest / speed) / math.log(kept) if 0.0 < rest < speed else math.inf
+    if case.run.duration is not None:
+        left = 1.0 - case.run.duration * gravity * (1.0 - kept) / (2.0 * speed * kept)
+        count = min(count, math.log(left) / math.log(kept) if left > 0.0 else math.inf)
+    return int(min(most, max(count, 0.0) + 1.0))
+
+
+def _of_impacts(case: Case) -> Iterator[Cost]:
+    if deforms(case):  # whose impacts are few: what they take goes into vibration
+        return
+    number = impacts_expected(case)
+    points = min(_POINTS * number, MOST_POINTS)
+    yield Cost(
+        _IMPACT_SECONDS * number,
+        _IMPACT_BYTES * number + _POINT_BYTES * points,
+        _IMPACT_ON_DISK * number + _POINT_ON_DISK * points,
+        f"about {float(f'{number:.2g}'):,.0f} impacts",
+        "give fewer run.impacts, or a higher run.rest_speed" if impacts_of(case) is None else "give fewer run.impacts",
+    )
+
+
+def _of_signals(case: Case) -> Iterator[Cost]:
+    if case.run.duration is None or not case.sensors:
+        return
+    samples = case.run.duration * sum(sensor.rate for sensor in case.sensors)
+    which = "the samples of the sensor" if len(case.sensors) == 1 else f"the samples of {len(case.sensors)} sensors"
+    remedy = "give a shorter run.duration or a lower rate of the sensors"
+    yield Cost(_SAMPLE_SECONDS * samples, _SAMPLE_BYTES * samples, _SAMPLE_ON_DISK * samples, f"{which}, {samples:.2g},", remedy)
+
+
+def _of_modes(case: Case) -> Iterator[Cost]:
+    for name, body in elastic_bodies(case).items() if deforms(case) else ():
+        recipe = body.recipe
+        if has_model(model_key(recipe)):
+            continue
+        mesh, number = recipe.shape.mesh(recipe.supports), recipe.reduction.modes or 100
+        dofs = mesh.dofs_per_node * len(mesh.nodes)
+        share = 0.3 + 0.7 * number / _MODES_NUMBER
+        seconds = _MODES_SECONDS * (dofs / _MODES_DOFS) ** (4.0 / 3.0) * share * (_WHOLE if isinstance(recipe.shape, BroughtMesh) else 1.0)
+        remedy = f"give fewer {name}.modes or larger elements; they are computed once and kept"
+        yield Cost(seconds, _DOF_BYTES * dofs, 8.0 * dofs * number, f"the modes of the {name}", remedy)
+
+
+def _listed(cost: Cost) -> str:
+    """Return what a part takes, in words."""
+    parts = [_time(cost.seconds)] if cost.seconds > 1.0 else []
+    parts.append(f"{_size(_PROGRAM + cost.memory)} of memory")
+    disk = f" and {_size(cost.disk)} on disk" if cost.disk > 1e6 else ""
+    return ", ".join(parts) + disk
+
+
+def _time(seconds: float) -> str:
+    return f"{float(f'{seconds:.1g}'):.0f} s" if seconds < 90.0 else f"{float(f'{seconds / 60.0:.2g}'):.0f} minutes"
+
+
+def _size(size: float) -> str:
+    return f"{size / 1e9:.2g} GB" if size >= 1e9 else f"{float(f'{size / 1e6:.2g}'):.0f} MB"
