@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import math
 import random
+import warnings
 from collections.abc import Callable
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import numpy as np
 import pytest
+import pyuff
 
 import vibroimpact as vi
 from attack import failures, number
@@ -44,6 +47,26 @@ def position_record() -> str:
     return "\n".join(["time_s\tposition_m", *rows, ""])
 
 
+def universal_record(binary: int) -> bytes:
+    """The position as a universal file, as programs of vibration testing write it."""
+    rows = [line.split("\t") for line in position_record().splitlines()[1:]]
+    place = np.interp(np.arange(0.0, 1.0, 0.002), *np.array(rows, dtype=float).T)
+    function = {
+        "type": 58, "id1": "height", "id2": "NONE", "func_type": 1, "rsp_ent_name": "NONE", "rsp_node": 1, "rsp_dir": 3,
+        "ref_ent_name": "NONE", "ref_node": 0, "ref_dir": 0, "abscissa_spacing": 1, "abscissa_spec_data_type": 17, "binary": binary,
+        "ordinate_spec_data_type": 8, "orddenom_spec_data_type": 0, "z_axis_spec_data_type": 0, "ordinate_axis_units_lab": "m",
+        "abscissa_axis_lab": "time", "abscissa_axis_units_lab": "s", "x": np.arange(0.0, 1.0, 0.002), "data": place,
+    }  # fmt: skip
+    scales = {"length": 1.0, "force": 1.0, "temp": 1.0, "temp_offset": 273.15}
+    units = {"type": 164, "units_code": 1, "units_description": "SI", "temp_mode": 1, **scales}
+    with TemporaryDirectory() as folder:
+        file = Path(folder, "record.uff")
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", ResourceWarning)  # pyuff leaves the file open
+            pyuff.UFF(str(file)).write_sets([units, function], "overwrite")
+        return file.read_bytes()
+
+
 HOSTILE = [
     "[" * 90_000, "(" * 50_000, " " * 90_000, "[ " * 40_000, "a" * 90_000, "," * 90_000, "time_s," * 10_000, "x\n" * 20_000, "1," * 2000,
     "[]" * 40_000, "time [s^9^9^9]", "force [N^9^9^9^9]", "[ms]", "[", "]", "(", ")", "((", "))", "[s)", "force_N", "time_s", "time_m",
@@ -55,9 +78,8 @@ HOSTILE = [
 ]  # fmt: skip
 
 
-def damaged(text: str, choose: random.Random) -> bytes:
+def damaged(data: bytes, choose: random.Random) -> bytes:
     """A table with a few faults: of bytes, of lines, of cells."""
-    data = text.encode()
     for _ in range(choose.randint(1, 4)):
         kind, at = choose.randrange(8), choose.randrange(len(data) + 1)
         if choose.random() < 0.3:  # the header is hit as often as all of a long record
@@ -115,13 +137,15 @@ def read(file: Path) -> None:
     read_table_file(file, {"time": "s", "force": "N", "radius": "m", "share": "", "restitution": ""})
 
 
-USES: dict[str, tuple[Callable[[Path], None], Callable[[], str]]] = {
-    "heights": (observed, lambda: HEIGHTS),
-    "impacts": (observed, lambda: IMPACTS),
-    "force": (observed, force_record),
-    "position": (observed, position_record),
-    "swept": (swept, lambda: SWEPT),
-    "plain": (read, lambda: SWEPT.replace("mass", "force").replace("[g]", "[kN]")),
+USES: dict[str, tuple[Callable[[Path], None], Callable[[], bytes]]] = {
+    "heights": (observed, lambda: HEIGHTS.encode()),
+    "impacts": (observed, lambda: IMPACTS.encode()),
+    "force": (observed, lambda: force_record().encode()),
+    "position": (observed, lambda: position_record().encode()),
+    "universal": (observed, lambda: universal_record(0)),
+    "universal, binary": (observed, lambda: universal_record(1)),
+    "swept": (swept, lambda: SWEPT.encode()),
+    "plain": (read, lambda: SWEPT.replace("mass", "force").replace("[g]", "[kN]").encode()),
 }
 
 
@@ -129,20 +153,20 @@ USES: dict[str, tuple[Callable[[Path], None], Callable[[], str]]] = {
 def test_tables_are_good(use: str, tmp_path: Path) -> None:
     work, made = USES[use]
     file = tmp_path / "table.csv"
-    file.write_text(made())
+    file.write_bytes(made())
     work(file)
 
 
 @pytest.mark.parametrize("use", USES)
 def test_damaged_tables(use: str, tmp_path: Path) -> None:
     work, made = USES[use]
-    text, file = made(), tmp_path / "table.csv"
+    whole, file = made(), tmp_path / "table.csv"
 
     def attempt(data: bytes) -> None:
         file.write_bytes(data)
         work(file)
 
-    told = failures(attempt, [damaged(text, random.Random(f"{use} {seed}")) for seed in range(number(50))])
+    told = failures(attempt, [damaged(whole, random.Random(f"{use} {seed}")) for seed in range(number(50))])
     assert not told, told
 
 

@@ -13,11 +13,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vibroimpact.errors import InputError
+from vibroimpact.files import FileKind, about, beginning, read_bytes
 
 Floats = NDArray[np.float64]
 
-LARGEST = 100_000_000
-"""Bytes of a file that is read."""
+UNIVERSAL = FileKind("a universal file holds datasets between lines of -1", 100_000_000, "keep the functions that are needed")
+"""What is asked of a universal file."""
+
+_LARGEST = 1e30
+"""What measurements are less than, whose powers are numbers too."""
 
 _MARK = b"-1"
 _HERE = re.compile(rb"[ \t]*-1[ \t\r]*(?:\n|\Z)")  # behind binary data, which no line ends
@@ -66,13 +70,9 @@ class UniversalFile(NamedTuple):
 
 def is_universal(path: str | Path) -> bool:
     """Return whether a file begins as universal files do, with a line of -1."""
-    file = Path(path)
     try:
-        if not file.is_file():
-            return False
-        with file.open("rb") as opened:
-            return opened.read(200).lstrip().split(b"\n")[0].strip() == _MARK
-    except OSError:  # whoever reads it says what is wrong
+        return beginning(path, UNIVERSAL, 200).lstrip().split(b"\n")[0].strip() == _MARK
+    except InputError:  # whoever reads it says what is wrong
         return False
 
 
@@ -91,11 +91,9 @@ def read_universal_file(path: str | Path) -> UniversalFile:
     """
     file = Path(path)
     try:
-        if file.stat().st_size > LARGEST:
-            raise InputError(f"{file}: the file is larger than {LARGEST // 1_000_000} MB; keep the functions that are needed")
-        raw = file.read_bytes()
-    except OSError as error:
-        raise InputError(f"{file}: the file can't be read: {error.strerror}") from None
+        raw = read_bytes(file, UNIVERSAL)
+    except InputError as error:
+        raise about(file, error) from None
     functions: list[Function] = []
     factors, number = None, 0
     for header, place in _datasets(raw):
@@ -170,7 +168,7 @@ def _function(raw: bytes, header: bytes, place: int, number: int) -> Function | 
     else:
         given, values = _text(raw, place, ordinate, count, even == 1)
     time = start + step * np.arange(count, dtype=float) if given is None else given
-    if not (np.isfinite(time).all() and np.isfinite(values).all()):
+    if not all((np.abs(numbers) < _LARGEST).all() for numbers in (time, values)):  # nor are they NaN
         raise ValueError
     unit = lines[8][47:67].strip()
     words = "".join(letter for letter in lines[0] if letter.isprintable()).strip()
