@@ -19,7 +19,7 @@ MARGIN = 0.15
 _COLUMNS = 1500
 """Into how many columns a long history is sorted: more than a figure has pixels that matter."""
 
-_AT_ONCE = 2**20  # points that are sorted at once
+_AT_ONCE = 2**17  # points that are sorted at once
 
 
 def contacts(result: Result) -> NDArray[np.intp]:
