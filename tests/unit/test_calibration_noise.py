@@ -104,7 +104,7 @@ def test_known_deviations(measure: Callable[..., Observations], exact: Floats, c
     np.testing.assert_allclose(np.std([one.values for one in found], axis=0) * quantile / stated, 1.0, atol=0.15)
 
 
-@pytest.mark.parametrize("measure", [heights, restitutions])
+@pytest.mark.parametrize("measure", [pytest.param(heights, marks=pytest.mark.slow), restitutions])
 def test_unknown_deviations(measure: Callable[..., Observations]) -> None:
     """The scatter about the polynomial tells their size, with the quantiles of Student's distribution."""
     found = repeated(measure, known=False)

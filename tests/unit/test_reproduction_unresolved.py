@@ -98,7 +98,7 @@ def test_a_sphere_that_does_not_leave_is_told(monkeypatch: pytest.MonkeyPatch) -
         unresolved_impact(drop_on(IMPACT), 1e-6, PHASES)
 
 
-@pytest.mark.parametrize("kind", [2, 3])
+@pytest.mark.parametrize("kind", [2, pytest.param(3, marks=pytest.mark.slow)])
 def test_type_2_and_3_resolved_are_what_short_steps_tend_to(runs: Runs, kind: int) -> None:
     """Coarse mesh: Richardson's extrapolation from steps of 8 and 4 µs, within 1 % of the simulation."""
     problem = superposed(runs, kind, "coarse")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import json
 import re
+import shutil
 from pathlib import Path
 
 import h5py
@@ -126,8 +127,8 @@ def test_result_reads_back(folder: Path, theory: vi.Response) -> None:
     assert result.status == theory.status
 
 
-def test_report_is_remade_and_other_files_stay(tmp_path: Path, theory: vi.Response) -> None:
-    theory.save(tmp_path / "out")
+def test_report_is_remade_and_other_files_stay(tmp_path: Path, folder: Path) -> None:
+    shutil.copytree(folder, tmp_path / "out")
     page = (tmp_path / "out" / "report.html").read_bytes()
     (tmp_path / "out" / "my notes.txt").write_text("mine")
     (tmp_path / "out" / "report.html").unlink()
@@ -151,8 +152,8 @@ def test_existing_folder_is_kept(tmp_path: Path, theory: vi.Response) -> None:
         theory.save(tmp_path / "file" / "below")
 
 
-def test_force_replaces_a_result(tmp_path: Path, theory: vi.Response, variable: vi.Response) -> None:
-    theory.save(tmp_path / "out")
+def test_force_replaces_a_result(tmp_path: Path, folder: Path, theory: vi.Response, variable: vi.Response) -> None:
+    shutil.copytree(folder, tmp_path / "out")
     with pytest.raises(vi.InputError, match="--force"):
         variable.save(tmp_path / "out")
     assert vi.read_result(tmp_path / "out").status == theory.status
@@ -161,8 +162,10 @@ def test_force_replaces_a_result(tmp_path: Path, theory: vi.Response, variable: 
     assert [path.name for path in tmp_path.iterdir()] == ["out"]
 
 
-def test_a_failure_leaves_nothing_and_loses_nothing(tmp_path: Path, theory: vi.Response, monkeypatch: pytest.MonkeyPatch) -> None:
-    theory.save(tmp_path / "out")
+def test_a_failure_leaves_nothing_and_loses_nothing(
+    tmp_path: Path, folder: Path, theory: vi.Response, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    shutil.copytree(folder, tmp_path / "out")
     before = (tmp_path / "out" / "summary.json").read_bytes()
 
     def breaks(*_: object) -> None:

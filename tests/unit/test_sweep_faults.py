@@ -65,13 +65,13 @@ def killed_again_and_again(tmp_path: Path, kills: int, seed: int) -> None:
         running.wait()
         progressed += chunks_done(folder) > done
         done = chunks_done(folder)
-    assert progressed >= kills // 2
+    assert progressed >= (kills + 1) // 2
     compute_study(vi.load_sweep(study), folder, resume=True)
     assert results(folder) == results(undisturbed)
 
 
 def test_a_study_that_is_killed_goes_on_to_the_same_bits(tmp_path: Path) -> None:
-    killed_again_and_again(tmp_path, 2, seed=1)
+    killed_again_and_again(tmp_path, 1, seed=1)
 
 
 @pytest.mark.slow
@@ -237,6 +237,7 @@ def _small_disk() -> bool:
     return shutil.which("unshare") is not None and subprocess.run(command, capture_output=True, check=False).returncode == 0
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not _small_disk(), reason="no file systems can be mounted here")
 def test_a_full_disk_ends_the_study_and_room_lets_it_go_on(tmp_path: Path) -> None:
     study = study_file(tmp_path, {**RANDOM, "samples": 4000})
