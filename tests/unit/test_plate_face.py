@@ -92,7 +92,8 @@ def test_which_treatment_has_a_face() -> None:
     face, node = case().to_problem(), case(local_compliance="superposed").to_problem()
     assert face.plate.modes is not None
     assert node.plate.modes is not None
-    ratio = (face.plate.modes.contact / node.plate.modes.contact)[np.abs(node.plate.modes.contact) > 0.5]
+    moving = np.abs(node.plate.modes.contact) > 0.5
+    ratio = face.plate.modes.contact[moving] / node.plate.modes.contact[moving]
     assert (ratio < 1.0).all()
     assert "plate_theory_inertia_m_s2_N" not in node.facts
     plate = {"mesh": {"theory": "thin"}}
@@ -136,7 +137,7 @@ def test_how_far_plate_theory_is_off_in_frequency_is_said() -> None:
 def test_the_time_of_a_visit_of_several_contacts() -> None:
     row = {"duration_s": [1e-2], "max_indentation_m": [1e-5], "approach_speed_m_s": [1.0], "contacts": [1]}
     assert time_of_contact(row) == 1e-2
-    assert time_of_contact({**row, "contacts": [3]}) == pytest.approx(2.94e-5)
+    assert time_of_contact({**row, "contacts": [3]}) == pytest.approx(2.9433e-5, rel=1e-5)
 
 
 def test_bricks_lie_in_as_many_layers_as_their_waves_want() -> None:

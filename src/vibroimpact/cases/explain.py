@@ -17,7 +17,7 @@ def explained(error: ValidationError, section_at: SectionAt) -> Iterator[tuple[s
     """Yield the dotted place of each fault, and a sentence about it."""
     for fault in error.errors():
         where = tuple(str(part) for part in fault["loc"] if not _is_branch(str(part)))
-        if where[-1:] == ("str",) and fault["type"] == "string_type" and isinstance(fault["input"], (list, tuple)):
+        if _of_a_text(fault["loc"]) and fault["type"] == "string_type" and isinstance(fault["input"], (list, tuple)):
             continue  # it need not be a text: what is wrong with it as a list is told too
         path = ".".join(where)
         kind, context = fault["type"], fault.get("ctx", {})
@@ -50,6 +50,11 @@ def explained(error: ValidationError, section_at: SectionAt) -> Iterator[tuple[s
             yield path, f"{given} does not have the right number of values" + (f"; it takes {about}" if about else "")
         else:
             yield path, f"{given} is not allowed; {fault['msg'].replace('Input should', 'it must')}"
+
+
+def _of_a_text(loc: tuple[int | str, ...]) -> bool:
+    """Is the last part of a location the alternative of a union that is a text, plain or looked at by a function?"""
+    return bool(loc) and (loc[-1] == "str" or str(loc[-1]).endswith(", str]"))
 
 
 def _is_branch(part: str) -> bool:

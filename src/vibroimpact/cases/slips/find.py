@@ -16,6 +16,7 @@ from vibroimpact.cases.slips.facts import Facts
 from vibroimpact.cases.slips.plausible import Place, Plausible, Words, number
 from vibroimpact.cases.slips.rules import stiffness_unit
 from vibroimpact.cases.slips.table import PLACES
+from vibroimpact.errors import InputError
 from vibroimpact.units import to_si
 
 _SHORT = 1e6  # what people type without an exponent
@@ -131,7 +132,7 @@ def _said(place: Place, facts: Facts, key: str, table: Mapping[Any, Any], given:
     """Return what is said of a value, or of several, "" if nothing; and the same with what was likely meant."""
     try:
         return _judged(place, facts, key, table, given)
-    except ArithmeticError:  # numbers beyond all bounds, to which nothing can be held
+    except (ArithmeticError, InputError):  # numbers beyond all bounds, to which nothing can be held: N/m^1e-200 is no unit
         return "", given
 
 
