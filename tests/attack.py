@@ -48,6 +48,11 @@ def number(few: int) -> int:
     return max(1, round(few * float(os.environ.get("VIBROIMPACT_FUZZ", "1"))))
 
 
+def seed(given: int) -> int:
+    """Return a seed of random numbers: the one given, or where VIBROIMPACT_SEED is set another, for inputs not met before."""
+    return given + 1_000_003 * int(os.environ.get("VIBROIMPACT_SEED", "0"))
+
+
 def attack(function: Callable[[Any], object], inputs: Sequence[Any]) -> list[Outcome]:
     """Return what came of each input: of a hang or a crash too, which end the process that works on it and no other."""
     outcomes: list[Outcome] = []

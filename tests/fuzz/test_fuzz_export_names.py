@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from attack import failures, number
+from attack import failures, number, seed
 from decks import named, said
 from vibroimpact.exchange.export_format import export_formats, find_export_format
 
@@ -56,7 +56,7 @@ def test_random_names_do_nothing(format: str) -> None:
         pytest.importorskip("pyarrow")
     if format == "uff58":
         pytest.importorskip("pyuff")
-    chance = random.Random(f"names for {format}")
+    chance = random.Random(f"names for {format} {seed(0)}")
     names = [[some_name(chance) for _ in range(6)] for _ in range(number(10))]
     inputs = [(format, one[0], [*one[1:3], one[3] + "3"], (one[4], one[5])) for one in names if len({one[1], one[2], one[3] + "3"}) == 3]
     plainly(format)  # for all

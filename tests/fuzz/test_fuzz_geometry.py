@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 import vibroimpact as vi
-from attack import failures, number
+from attack import failures, number, seed
 from vibroimpact.exchange.geometry import mesh_geometry
 from vibroimpact.exchange.mesh_file import read_mesh
 
@@ -65,7 +65,7 @@ def test_a_truncated_geometry(step: bytes, tmp_path: Path) -> None:
 
 @pytest.mark.slow
 def test_damaged_geometries(step: bytes, tmp_path: Path) -> None:
-    told = failures(lambda data: read_of(tmp_path, data), [step, *(damaged(step, random.Random(seed)) for seed in range(number(30)))])
+    told = failures(lambda data: read_of(tmp_path, data), [step, *(damaged(step, random.Random(seed(one))) for one in range(number(30)))])
     assert not told, told
 
 

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import vibroimpact as vi
-from attack import failures, number
+from attack import failures, number, seed
 from support import plain_case
 from vibroimpact.exchange.mesh_file import read_mesh
 from vibroimpact.report.console import case_explained
@@ -223,9 +223,9 @@ DAMAGES: list[Callable[[bytes, random.Random], bytes]] = [
 
 @pytest.mark.parametrize("suffix", SEEDS)
 def test_seeds_are_good(suffix: str, tmp_path: Path) -> None:
-    for seed in SEEDS[suffix]:
+    for text in SEEDS[suffix]:
         file = tmp_path / f"mesh{suffix}"
-        file.write_text(seed)
+        file.write_text(text)
         assert read_mesh(file).number_of_elements == (1 if suffix == ".msh" else 2)
 
 
@@ -258,6 +258,6 @@ def at_work(folder: Path) -> Callable[[Given], None]:
 @pytest.mark.parametrize("suffix", SEEDS)
 def test_damaged_meshes(suffix: str, tmp_path: Path) -> None:
     """A reader returns a mesh or raises InputError, quickly, whatever the file holds; and so does what a case makes of the mesh."""
-    chosen = [random.Random(f"{suffix} {seed}") for seed in range(number(100))]
+    chosen = [random.Random(f"{suffix} {seed(one)}") for one in range(number(100))]
     told = failures(at_work(tmp_path), [Given(suffix, damaged(choose.choice(SEEDS[suffix]), choose)) for choose in chosen])
     assert not told, told

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import random
 
-from attack import failures, number
+from attack import failures, number, seed
 from vibroimpact.errors import InputError
 from vibroimpact.units import convert_units, dimension_of, read_quantity, to_si
 
@@ -53,6 +53,6 @@ def test_hostile_units() -> None:
         if told:
             raise max(told, key=lambda error: (not str(error).isprintable(), len(str(error))))
 
-    units = [*KNOWN, *(hostile(random.Random(seed)) for seed in range(number(150)))]
+    units = [*KNOWN, *(hostile(random.Random(seed(one))) for one in range(number(150)))]
     told = failures(work, units)
     assert not told, told
