@@ -31,7 +31,7 @@ def calibrated(section: dict, **changes: object) -> tuple[vi.Calibration, vi.Res
     ("changes", "number"),
     [
         ({"run": {"duration": 1.2}}, 1),
-        ({"run": {"impacts": "all"}}, 6),
+        pytest.param({"run": {"impacts": "all"}}, 6, marks=pytest.mark.slow),
         ({"drop": {"speed": 3.0, "gravity": 0.0}}, 1),
         ({"drop": {"speed": 3.0, "gravity": 9.8}}, 5),
     ],

@@ -93,7 +93,13 @@ def scatter_over_stated(found: list[Calibration]) -> Floats:
 
 
 @pytest.mark.parametrize("confidence", [0.95, pytest.param(0.8, marks=pytest.mark.slow)])
-@pytest.mark.parametrize(("measure", "exact"), [(heights, truth(SPEEDS)), (restitutions, truth(RANGE))], ids=["heights", "restitutions"])
+@pytest.mark.parametrize(
+    ("measure", "exact"),
+    [
+        pytest.param(heights, truth(SPEEDS), id="heights"),
+        pytest.param(restitutions, truth(RANGE), id="restitutions", marks=pytest.mark.slow),
+    ],
+)
 def test_known_deviations(measure: Callable[..., Observations], exact: Floats, confidence: float) -> None:
     found = repeated(measure, known=True, confidence=confidence)
     check_coverage(holds_values(found, exact), confidence)

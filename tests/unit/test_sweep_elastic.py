@@ -166,6 +166,7 @@ def test_modes_travel_to_workers_that_do_not_see_the_store(
     assert (folder / "study.nc").read_bytes() == study.path.read_bytes()
 
 
+@pytest.mark.slow
 def test_a_dask_worker_that_is_killed_costs_nothing(
     study: vi.Study, scheduler: tuple[str, list[subprocess.Popen[bytes]], Path], tmp_path: Path
 ) -> None:

@@ -146,6 +146,7 @@ def _with_a_death(tmp_path: Path, *, always: bool) -> dict[int, ChunkResult]:
     return found
 
 
+@pytest.mark.slow
 def test_a_worker_that_is_killed_costs_nothing(tmp_path: Path) -> None:
     found = _with_a_death(tmp_path, always=False)
     assert (tmp_path / "mark").exists()

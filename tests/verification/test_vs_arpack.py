@@ -32,9 +32,10 @@ BODIES = {
         1e-8,
     ),
 }
+SLOW = {"sphere, multiplets of 5 to 13", "patches"}
 
 
-@pytest.mark.parametrize("body", BODIES)
+@pytest.mark.parametrize("body", [pytest.param(body, marks=pytest.mark.slow if body in SLOW else ()) for body in BODIES])
 def test_modes_of_arpack(body: str) -> None:
     structure, supports, number, tolerance = BODIES[body]()
     held = held_by(structure, supports)

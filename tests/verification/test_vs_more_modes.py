@@ -84,6 +84,7 @@ def test_400_modes(law: str, sphere: int) -> None:
     check(problem(law, 400, sphere=sphere), corrected, plain)
 
 
+@pytest.mark.slow
 def test_the_mesh_does_not_matter() -> None:
     """Plate elements and bricks, 60 modes: within 1 % in force."""
     forces = [force(problem("hertz", 60, size, element)) for size, element in ((0.08, "plate"), (0.03, "solid"))]

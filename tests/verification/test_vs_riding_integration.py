@@ -83,7 +83,7 @@ def at_rest_of(drops: dict[str, vi.Problem]) -> int:
 
 
 def test_drops_at_random() -> None:
-    assert at_rest_of({f"any {seed}": random_drop(seed) for seed in range(9)}) >= 4
+    assert at_rest_of({f"any {seed}": random_drop(seed) for seed in range(4)}) >= 2
 
 
 @pytest.mark.slow

@@ -86,6 +86,7 @@ def test_clamped_plates_of_either_elements(thickness: float, solid: float, layer
     assert thin == pytest.approx(thick * (1 - of_shear), rel=0.01)
 
 
+@pytest.mark.slow
 def test_the_plate_of_the_paper() -> None:
     """On patches, in the middle: both elements agree, if bricks are refined at the rims (else they are 2 % stiffer)."""
     patches = tuple(Patch(x, y, 0.015) for x in (-0.22, 0.22) for y in (-0.17, 0.17))

@@ -184,7 +184,11 @@ PERIODS = {0.3: 2.5, 0.5: 2.5, 1.0: 5.0, 2.0: 10.0}  # of the highest mode in He
 
 @pytest.mark.parametrize(
     ("plate", "side", "modes", "more"),
-    [(PMMA, 0.2, 80, {}), (STEEL, 0.2, 65, {}), (ALUMINIUM, 0.12, 24, {"element": "solid", "mesh": {"element_size": 0.008}})],
+    [
+        (PMMA, 0.2, 80, {}),
+        pytest.param(STEEL, 0.2, 65, {}, marks=pytest.mark.slow),
+        (ALUMINIUM, 0.12, 24, {"element": "solid", "mesh": {"element_size": 0.008}}),
+    ],
     ids=["PMMA", "steel", "aluminium of bricks"],
 )
 def test_some_impacts(plate: Elastic, side: float, modes: int, more: dict[str, Any]) -> None:
