@@ -41,7 +41,6 @@ def rows(parts: dict[str, Made]) -> list[dict]:
     return [row for made in parts.values() for row in made.rows]
 
 
-@pytest.mark.slow
 def test_every_number_is_the_one_computed_now(parts: dict[str, Made]) -> None:
     text = report_text({name: made._asdict() for name, made in parts.items()})
     found = other_numbers(PAGE.read_text(encoding="utf-8"), documented(text))
