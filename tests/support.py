@@ -2,6 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable
+from typing import Any
+
+import pytest
+
 
 def plain_case(**changes: object) -> dict:
     """A valid case as a mapping; `section__key=value` changes a key, None removes it."""
@@ -23,3 +28,8 @@ def plain_case(**changes: object) -> dict:
         else:
             table[key] = value
     return case
+
+
+def one_in(every: int, values: Iterable[Any], name: Callable[[Any], str] = str) -> list[Any]:
+    """Parameters of a test, of which one in so many is tried each time, and the others where there is time for the slow ones."""
+    return [pytest.param(value, id=name(value), marks=pytest.mark.slow if place % every else ()) for place, value in enumerate(values)]

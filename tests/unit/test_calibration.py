@@ -104,6 +104,7 @@ def test_beyond_the_speeds_that_were_measured_is_told() -> None:
     assert any("what it says there is a guess" in doubt for doubt in found.doubts)
 
 
+@pytest.mark.slow
 def test_a_jump_is_not_taken_for_a_solution() -> None:
     """A sphere that yields easily enough stays down; in between there is nothing."""
     case = {

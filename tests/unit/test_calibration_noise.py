@@ -195,6 +195,7 @@ def test_as_many_impacts_as_coefficients_and_no_deviation() -> None:
     assert np.isnan(found.fit.covariance).all()
 
 
+@pytest.mark.slow
 def test_weighted_set_with_known_deviations() -> None:
     """Force and rebound of Adams' IMPACT, both noisy: the damping of each impact is as uncertain as it scatters."""
     problem = vi.read_case(plain_case(contact={"law": "adams-impact", "damping_max": 150.0}, run={"impacts": 1})).to_problem()

@@ -10,6 +10,7 @@ from PIL import Image
 from rich.console import Console
 
 import vibroimpact as vi
+from support import one_in
 from vibroimpact.cli import main
 from vibroimpact.report.law_sheet import law_sheet, law_table
 from vibroimpact.report.law_text import law_text, short_source
@@ -59,7 +60,7 @@ def test_asked_and_achieved_are_shown() -> None:
     assert "achieved" not in printed(law_sheet("hertz"), 100)
 
 
-@pytest.mark.parametrize("name", [pytest.param(name, marks=pytest.mark.slow if place % 4 else ()) for place, name in enumerate(LAWS)])
+@pytest.mark.parametrize("name", one_in(4, LAWS))
 def test_every_law_is_drawn(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     assert run(monkeypatch, name, "-o", f"{name}.png") == 0

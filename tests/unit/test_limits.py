@@ -274,6 +274,7 @@ def test_a_finite_sphere_can_be_swept_and_leaves_nothing_to_doubt_of_it(tmp_path
     np.testing.assert_allclose(study.values("max_force_N", 1, 1), single, rtol=1e-12)
 
 
+@pytest.mark.slow
 def test_too_few_modes_are_doubted_in_studies_and_of_problems_made_in_python(tmp_path: Path) -> None:
     sweep = vi.read_sweep({**quiet(plate=ELASTIC, run={"impacts": 1}), "sweep": {"over": {"plate.modes": [2, 120]}}})
     study = vi.read_study(compute_study(sweep, tmp_path / "study"))

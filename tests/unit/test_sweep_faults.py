@@ -80,6 +80,7 @@ def test_a_study_that_is_killed_twenty_times_goes_on_to_the_same_bits(tmp_path: 
     killed_again_and_again(tmp_path, 20, seed=2)
 
 
+@pytest.mark.slow
 def test_no_process_outlives_the_one_that_leads(tmp_path: Path) -> None:
     study = study_file(tmp_path, MANY)
     command = sweep_command(study, tmp_path / "out", "--processes", "2")
@@ -430,6 +431,7 @@ def test_an_interrupt_waits_while_a_process_is_started_and_is_not_lost(monkeypat
     assert seen == ["started", "told"]
 
 
+@pytest.mark.slow
 def test_all_processes_are_deaf_to_interrupts(tmp_path: Path) -> None:
     with processes(2, _nothing, tmp_path) as crew:
         masks = [crew.executor.submit(_hears_interrupts).result() for _ in range(2)]

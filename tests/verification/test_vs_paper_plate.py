@@ -61,6 +61,7 @@ def test_default_meshes(element: Literal["plate", "solid"]) -> None:
     assert np.nanmax(found.frequency_errors) < 0.005
 
 
+@pytest.mark.slow
 def test_patches_of_half_the_radius() -> None:
     """About 152 Hz; the radius of the patches, which the paper does not print, matters more than all else."""
     assert modes_of(PlateOfPlates(SIZE, element_size=0.04), radius=0.01).frequencies[0] == pytest.approx(152.0, rel=0.02)

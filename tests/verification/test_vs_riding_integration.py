@@ -32,6 +32,7 @@ THIN = {
 }
 
 
+@pytest.mark.slow
 def test_a_thin_plate_throws_its_ball_again() -> None:
     """It has nine tenths of the energy when the ball leaves it at 5 mm/s for the first time; 11 ms later the ball leaves it at 1 m/s."""
     problem = replace(vi.read_case(THIN).to_problem(), tolerance=1e-11)
