@@ -14,6 +14,7 @@ from concurrent.futures import BrokenExecutor, Future, ThreadPoolExecutor
 from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
+from textwrap import dedent
 from typing import Any
 
 import numpy as np
@@ -25,7 +26,7 @@ from vibroimpact.cases.compute_points import compute_points
 from vibroimpact.storage import compute_study as computing
 from vibroimpact.storage.compute_study import compute_study
 from vibroimpact.studies.chunk_file import ChunkResult
-from vibroimpact.studies.ledger import LEDGER, Span, open_ledger
+from vibroimpact.studies.ledger import LEDGER, Span, make_ledger, open_ledger
 from vibroimpact.studies.run_chunks import run_chunks
 from vibroimpact.studies.workers import Crew, processes, this_process
 from waiting import wait_until
@@ -310,6 +311,23 @@ def test_a_second_sweep_in_a_folder_is_refused(tmp_path: Path) -> None:
     with pytest.raises(vi.InputError, match=r"a study is there already; go on with it by --resume, replace it by --force"):
         compute_study(sweep, folder)
     compute_study(sweep, folder, resume=True)
+
+
+def test_the_journal_of_a_ledger_whose_process_was_killed_goes_with_the_next_opening(tmp_path: Path) -> None:
+    make_ledger(tmp_path, {}, 10, 10)
+    script = f"""
+        import os, signal
+        from pathlib import Path
+        from vibroimpact.studies.ledger import Span, open_ledger
+        with open_ledger(Path({str(tmp_path)!r})) as ledger:
+            ledger.done(Span(0, 0, 10), "", 0)
+            os.kill(os.getpid(), signal.SIGKILL)
+    """
+    subprocess.run([sys.executable, "-c", dedent(script)], check=False)
+    assert sorted(path.name for path in tmp_path.iterdir()) == [LEDGER, f"{LEDGER}-journal"]
+    with open_ledger(tmp_path) as ledger:
+        assert [chunk.number for chunk in ledger.chunks("done")] == [0]
+    assert [path.name for path in tmp_path.iterdir()] == [LEDGER]
 
 
 def test_a_damaged_ledger_is_refused_and_made_anew_from_the_chunks(tmp_path: Path) -> None:

@@ -115,6 +115,9 @@ def open_ledger(folder: Path) -> Iterator[Ledger]:
         connection = sqlite3.connect(path, timeout=0.2)
     try:
         with _told(path):
+            # the journal of a process that died stays until something is written; leaving this mode rolls it back and deletes it
+            connection.execute("PRAGMA journal_mode = TRUNCATE")
+            connection.execute("PRAGMA journal_mode = DELETE")
             # an exclusive lock is held from the first write to the end of the connection, and the system frees it of a process that died
             connection.execute("PRAGMA locking_mode = EXCLUSIVE")
             connection.execute("BEGIN EXCLUSIVE")
