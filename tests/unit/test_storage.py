@@ -6,6 +6,9 @@ import csv
 import json
 import re
 import shutil
+import subprocess
+import sys
+import tracemalloc
 from pathlib import Path
 
 import h5py
@@ -18,6 +21,7 @@ import vibroimpact as vi
 from vibroimpact.cli import main
 from vibroimpact.dynamics.columns import HISTORY_COLUMNS, IMPACT_COLUMNS, LEDGER
 from vibroimpact.storage.folder import new_folder
+from vibroimpact.storage.hdf5 import new_array, new_hdf5, read_array
 
 HEADER = (
     "impact,time_s,duration_s,approach_speed_m_s,separation_speed_m_s,restitution_achieved,max_indentation_m,max_force_N,"
@@ -233,3 +237,48 @@ def test_results_of_earlier_versions_open(folder: Path, tmp_path: Path, theory: 
     (copy / "summary.json").write_text(json.dumps(summary))
     with pytest.raises(vi.InputError, match=r"summary.json: the file is missing or damaged: truncation is not of the kind"):
         vi.read_result(copy)
+
+
+def test_a_large_file_goes_to_the_disk_as_it_grows(tmp_path: Path) -> None:
+    values = np.random.default_rng(1).random(2_000_000)
+    tracemalloc.start()
+    try:
+        with new_hdf5(tmp_path / "large.nc") as file:
+            for name in "abc":
+                new_array(file, name, values)
+        peak = tracemalloc.get_traced_memory()[1]
+    finally:
+        tracemalloc.stop()
+    assert (tmp_path / "large.nc").stat().st_size > 3 * values.nbytes
+    assert peak < values.nbytes / 4
+    with h5py.File(tmp_path / "large.nc") as file:
+        np.testing.assert_array_equal(read_array(file["c"]), values)
+
+
+def test_a_file_that_finds_no_room_is_an_error_and_no_more(tmp_path: Path) -> None:
+    ran = subprocess.run([sys.executable, "-c", _NO_ROOM, str(tmp_path)], capture_output=True, text=True, check=True)
+    assert ran.stdout.splitlines() == [*["File too large"] * 4, "room again"]
+    assert ran.stderr == ""
+
+
+_NO_ROOM = """
+import resource, sys
+from pathlib import Path
+import numpy as np
+from vibroimpact.storage.hdf5 import new_array, new_hdf5
+
+def fill(size):
+    resource.setrlimit(resource.RLIMIT_FSIZE, (size, resource.RLIM_INFINITY))
+    with new_hdf5(Path(sys.argv[1], "x.nc")) as file:
+        for name in "abc":
+            new_array(file, name, np.ones(20_000))
+
+for size in (0, 50, 100_000, 480_500):
+    try:
+        fill(size)
+    except OSError as error:
+        print(error.strerror)
+fill(10_000_000)
+print("room again")
+"""
+"""A process that may write files of so many bytes only, as on a disk that is full."""

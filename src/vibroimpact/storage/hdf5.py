@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from io import BytesIO
+from io import FileIO
 from math import prod
 from pathlib import Path
 from typing import Any
@@ -28,13 +28,49 @@ PACKED: dict[str, Any] = {"compression": "gzip", "compression_opts": 1, "shuffle
 _CHUNK = 2**18  # bytes
 
 
+class _Patient(FileIO):
+    """A file whose writes never fail while HDF5 is at it, which would end the process: the first error waits in `error`."""
+
+    error: OSError | None = None
+
+    def write(self, data: Any) -> int:
+        """Write all of it, or nothing more once that could not be done."""
+        left = memoryview(data).cast("B")
+        size = len(left)
+        while left and self.error is None:
+            try:
+                left = left[super().write(left) :]
+            except OSError as error:
+                self.error = error
+        return size
+
+    def truncate(self, size: int | None = None) -> int:
+        """Set the length, unless the file is given up."""
+        try:
+            return super().truncate(size)
+        except OSError as error:
+            self.error = self.error or error
+            return size or 0
+
+
 @contextmanager
 def new_hdf5(path: Path) -> Iterator[h5py.File]:
-    """Give an HDF5 file to fill, which is made in memory and written at the end: where a disk is full, HDF5 would end the process."""
-    memory = BytesIO()
-    with h5py.File(memory, "w", track_order=True, libver=FORMAT) as file:
-        yield file
-    path.write_bytes(memory.getbuffer())
+    """Give an HDF5 file to fill, which goes to the disk as it grows; where that is full, an error says so, and the process lives.
+
+    Raises
+    ------
+    OSError
+        If it can't be written.
+    """
+    with _Patient(path, "w+") as disk:
+        try:
+            with h5py.File(disk, "w", track_order=True, libver=FORMAT) as file:
+                yield file
+        except Exception:
+            if disk.error is None:  # else that is the cause of whatever HDF5 says
+                raise
+        if disk.error is not None:
+            raise disk.error
 
 
 def new_array(group: h5py.Group, name: str, values: Any, **packing: Any) -> h5py.Dataset:
