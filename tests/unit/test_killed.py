@@ -19,6 +19,7 @@ import vibroimpact as vi
 from support import plain_case
 from traced import Ended, can_trace, traced
 from vibroimpact.cli import main
+from vibroimpact.structures.store import _clear_once
 
 pytestmark = pytest.mark.skipif(not can_trace(), reason="no process can be watched here")
 
@@ -34,8 +35,10 @@ CALIBRATION = plain_case(
 )
 UNSTEADY = {"ledger.sqlite"}  # which has the time at which a chunk was done
 
-EVERY = int(os.environ.get("VIBROIMPACT_EVERY", "1"))
-"""Which of the file operations the slow tests try: each, each second, ..."""
+EVERY = int(os.environ.get("VIBROIMPACT_EVERY", "32"))
+"""Which of the file operations the slow tests try: each (1), each second, ...; of the last ones eight times as many."""
+
+_LAST = 40
 
 Tree = dict[str, bytes]
 
@@ -48,7 +51,8 @@ def tree(folder: Path) -> Tree:
 
 
 def command(*arguments: object) -> None:
-    """Run the command line in this process."""
+    """Run the command line in this process, as if it were a new one."""
+    _clear_once.cache_clear()
     sys.argv = ["vibroimpact", *map(str, arguments)]
     with suppress(SystemExit):
         main()
@@ -199,18 +203,40 @@ def stage(request: pytest.FixtureRequest, tmp_path: Path, monkeypatch: pytest.Mo
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("VIBROIMPACT_STORE", "store")
     monkeypatch.setattr("vibroimpact.storage.result.datetime", Clock)
+    monkeypatch.setattr("time.process_time", lambda: 0.0)  # which a page tells of the modes
     monkeypatch.setattr("sys.argv", list(sys.argv))
     return Stage(SCENES[request.param], tmp_path)
 
 
-def kill_at(stage: Stage, moments: Callable[[int], range | list[int]]) -> None:
+def moments(operations: int) -> list[int]:
+    """Return the operations that are tried, counted from 1."""
+    last = range(operations, max(0, operations - _LAST), -max(1, EVERY // 8))
+    return sorted({*last, *range(operations, 0, -EVERY)})
+
+
+def try_each(stage: Stage, chosen: Callable[[int], list[int]], attempt: Callable[[int, str], None]) -> None:
+    """Attempt something at chosen operations of a command; fail with all that went wrong, and of how many."""
     whole = stage.run()
     assert whole.status == 0, whole.told
     assert stage.found(stage.place) == stage.new
-    for moment in moments(whole.operations):
+    tried, wrong = chosen(whole.operations), []
+    for moment in tried:
+        try:
+            attempt(moment, f"operation {moment} of {whole.operations}")
+        except AssertionError as error:
+            wrong.append(str(error))
+    counts = f"{whole.operations} operations, {len(tried)} tried, {len(wrong)} wrong"
+    print(counts)
+    assert not wrong, "\n".join([counts, *wrong])
+
+
+def kill_at(stage: Stage, chosen: Callable[[int], list[int]]) -> None:
+    def kill(moment: int, which: str) -> None:
         ended = stage.run(kill=moment)
-        assert ended.status is None, "it ended before it was killed"
-        stage.check_after_a_kill(f"killed before operation {moment} of {whole.operations}, {ended.last}")
+        assert ended.status is None, f"it ended before it was killed at {which}"
+        stage.check_after_a_kill(f"killed before {which}, {ended.last}")
+
+    try_each(stage, chosen, kill)
 
 
 @pytest.mark.parametrize("stage", ["run --force", "report", "laws"], indirect=True)
@@ -221,19 +247,20 @@ def test_a_command_that_is_killed_leaves_the_old_result_or_the_new_one(stage: St
 @pytest.mark.slow
 @pytest.mark.parametrize("stage", SCENES, indirect=True)
 def test_a_command_that_is_killed_at_any_file_operation_leaves_the_old_result_or_the_new_one(stage: Stage) -> None:
-    kill_at(stage, lambda number: range(1, number + 1, EVERY))
+    kill_at(stage, moments)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("error", [errno.ENOSPC, errno.EACCES], ids=["full disk", "no permission"])
 @pytest.mark.parametrize("stage", SCENES, indirect=True)
 def test_a_command_whose_file_operation_fails_says_so_once_and_leaves_the_old_result(stage: Stage, error: int) -> None:
-    whole = stage.run()
-    for moment in range(1, whole.operations + 1, EVERY):
+    def fails(moment: int, which: str) -> None:
         ended = stage.run(fail=moment, error=error)
-        where = f"operation {moment} of {whole.operations} failed, {ended.last}: {ended.status}, {ended.told}"
+        where = f"{which} failed, {ended.last}: {ended.status}, {ended.told}"
         assert ended.status in (0, 1, 2), where
         assert "Traceback" not in ended.told, where
         if ended.status:
             assert sum("vibroimpact: " in line for line in ended.told.splitlines()) == 1, where
         stage.check_after_a_kill(where)
+
+    try_each(stage, moments, fails)
