@@ -19,6 +19,7 @@ import vibroimpact as vi
 from support import plain_case
 from traced import Ended, can_trace, traced
 from vibroimpact.cli import main
+from vibroimpact.structures.recipe import _RECENT
 from vibroimpact.structures.store import _clear_once
 
 pytestmark = pytest.mark.skipif(not can_trace(), reason="no process can be watched here")
@@ -51,11 +52,9 @@ def tree(folder: Path) -> Tree:
 
 
 def command(*arguments: object) -> None:
-    """Run the command line in this process, as if it were a new one."""
-    _clear_once.cache_clear()
-    sys.argv = ["vibroimpact", *map(str, arguments)]
+    """Run the command line in this process, whatever its status."""
     with suppress(SystemExit):
-        main()
+        command_status(*arguments)
 
 
 class Clock(datetime):
@@ -194,6 +193,9 @@ class Stage:
 
 
 def command_status(*arguments: object) -> None:
+    """Run the command line in this process as if it were a new one, which remembers nothing."""
+    _clear_once.cache_clear()
+    _RECENT.clear()
     sys.argv = ["vibroimpact", *map(str, arguments)]
     main()
 
