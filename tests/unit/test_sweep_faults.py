@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import random
+import resource
 import shutil
 import signal
 import subprocess
@@ -24,6 +25,7 @@ import vibroimpact as vi
 from studies import RANDOM, study_file, study_table
 from vibroimpact.cases.compute_points import compute_points
 from vibroimpact.storage import compute_study as computing
+from vibroimpact.storage import study_dataset
 from vibroimpact.storage.compute_study import compute_study
 from vibroimpact.studies.chunk_file import ChunkResult
 from vibroimpact.studies.ledger import LEDGER, Span, make_ledger, open_ledger
@@ -268,6 +270,26 @@ def test_a_full_disk_ends_the_study_and_room_lets_it_go_on(tmp_path: Path) -> No
     assert results(tmp_path / "resumed") == results(undisturbed)
 
 
+def test_a_disk_that_fills_while_the_results_are_put_together_is_told(tmp_path: Path) -> None:
+    sweep = vi.read_sweep(study_table({**RANDOM, "samples": 100}))
+    expected = results(compute_study(sweep, tmp_path / "undisturbed"))
+    limits, kept = resource.getrlimit(resource.RLIMIT_FSIZE), study_dataset._see_that_there_is_room
+
+    def enough_for_now(path: Path, size: int) -> None:
+        kept(path, size)
+        resource.setrlimit(resource.RLIMIT_FSIZE, (5000, limits[1]))
+
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(study_dataset, "_see_that_there_is_room", enough_for_now)
+        try:
+            with pytest.raises(vi.ComputationError, match=r"the results can't be put together: File too large; see to the disk"):
+                compute_study(sweep, tmp_path / "out")
+        finally:
+            resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+    compute_study(sweep, tmp_path / "out", resume=True)
+    assert results(tmp_path / "out") == expected
+
+
 def test_a_chunk_that_can_not_be_written_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     sweep = vi.read_sweep(study_table(RANDOM))
 
@@ -412,7 +434,7 @@ def test_this_process_computes_as_well() -> None:
 
 def interrupted_after(seconds: float, study: Path, folder: Path) -> tuple[int, str]:
     """Run a study of two processes, and send an interrupt to all of them, as a terminal does; return its status and what it told."""
-    command = sweep_command(study, folder, "--processes", "2")
+    command = [sys.executable, "-m", "vibroimpact", "sweep", str(study), "-o", str(folder), "--processes", "2", "--yes"]
     running = subprocess.Popen(command, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True, start_new_session=True)
     time.sleep(seconds)
     os.killpg(running.pid, signal.SIGINT)
@@ -422,7 +444,7 @@ def interrupted_after(seconds: float, study: Path, folder: Path) -> tuple[int, s
 
 @pytest.mark.slow
 def test_ctrl_c_is_never_lost(tmp_path: Path) -> None:
-    study = study_file(tmp_path, {**RANDOM, "samples": 40_000})
+    study = study_file(tmp_path, {**RANDOM, "samples": 2_000_000})  # which would take a minute
     for number in range(24):
         status, told = interrupted_after(0.4 + 0.2 * number, study, tmp_path / f"out{number}")
         assert status in (1, 130), (number, told)  # 1: before the command has begun

@@ -18,7 +18,7 @@ from vibroimpact.cases.limit import limits
 from vibroimpact.dynamics.outcome import OUTCOMES, Outcome
 from vibroimpact.storage.check_sums import CHECK_SUMS, file_digest, read_sealed, sealed
 from vibroimpact.storage.folder import SUMMARY
-from vibroimpact.storage.hdf5 import CHECKED, FORMAT, chunk_shape, new_array
+from vibroimpact.storage.hdf5 import CHECKED, chunk_shape, new_array, new_hdf5
 from vibroimpact.storage.study import DATASET, FAILED_POINT, FAILED_REASON
 from vibroimpact.storage.study_toml import study_toml
 from vibroimpact.studies.chunk_file import chunk_layout, read_chunk
@@ -96,7 +96,7 @@ def _write(
     layout: Mapping[str, tuple[tuple[int, ...], np.dtype[Any]]],
 ) -> None:
     """Write the dataset into a file; `layout` says of each variable the shape of one drop's values, and their type."""
-    with h5py.File(path, "w", track_order=True, locking=False, libver=FORMAT) as file:
+    with new_hdf5(path) as file:
         file.attrs["title"] = name
         file.attrs["version"] = __version__
         file.attrs["study"] = study_toml(table)
@@ -117,7 +117,7 @@ def as_text(value: Any) -> Any:
 
 
 def _see_that_there_is_room(path: Path, size: int) -> None:
-    """Raise OSError unless so many bytes, and some more, can be written: HDF5 would end the process where a disk is full."""
+    """Raise OSError unless so many bytes, and some more, can be written, before the work is done."""
     with path.open("wb") as file:
         if hasattr(os, "posix_fallocate"):
             os.posix_fallocate(file.fileno(), 0, size + _MORE)
