@@ -73,6 +73,12 @@ def test_modes_that_take_long_are_told_until_they_are_stored(monkeypatch: pytest
     assert costs_of(case, modes_alone=True) == []
 
 
+def test_many_impacts_of_bodies_that_vibrate_are_told() -> None:
+    sphere = {**ELASTIC_SPHERE, "modes": 5, "damping": 1e-6}
+    told = costs_told(vi.read_case(plain_case(sphere=sphere, contact__restitution=0.9999, run={"impacts": 1000})))
+    assert any(one.startswith("up to about 1,000 impacts take about 20 s") for one in told), told
+
+
 def test_check_says_it(tmp_path: Path) -> None:
     file = tmp_path / "case.toml"
     file.write_text(tomli_w.dumps(plain_case(contact__restitution=0.9999, run={"impacts": "all"})), encoding="utf-8")

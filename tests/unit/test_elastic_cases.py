@@ -19,6 +19,7 @@ from support import plain_case
 from vibroimpact.cases.build import resolved
 from vibroimpact.cases.build_elastic import elastic_bodies
 from vibroimpact.cases.elastic_fields import Kind
+from vibroimpact.cases.meshes import meshes_of
 from vibroimpact.cases.supports_field import EdgeName
 from vibroimpact.cli import main
 from vibroimpact.structures.lattice import SOLID_KINDS, box_mesh, mesh_of_blocks
@@ -129,12 +130,16 @@ def test_too_large_for_the_memory(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.parametrize(
-    ("mesh", "message"),
-    [({"element_size": "1 um"}, "would be more than 2000000"), ({"elements": 1_000_000_000}, "would be more than 2000000")],
+    ("changes", "message"),
+    [
+        ({"element": "solid", "mesh": {"element_size": "1 um"}}, "would be more than 250000"),
+        ({"element": "solid", "mesh": {"elements": 1_000_000_000}}, "would be more than 1000000"),
+        ({"mesh": {"element_size": "1 mm"}}, "would be more than 62500 on this plate"),
+    ],
 )
-def test_far_too_many_elements_are_refused_before_they_are_made(mesh: dict, message: str) -> None:
+def test_far_too_many_elements_are_refused_before_they_are_made(changes: dict, message: str) -> None:
     with pytest.raises(vi.InputError, match=message):
-        vi.compute_modes(vi.read_case(plate_case(element="solid", mesh=mesh)))
+        meshes_of(vi.read_case(plate_case(**changes)))
 
 
 @pytest.mark.parametrize(

@@ -11,6 +11,7 @@ import vibroimpact as vi
 from attack import attack
 from support import plain_case
 from vibroimpact.cases.calibration import read_calibration
+from vibroimpact.cases.meshes import meshes_of
 from vibroimpact.exchange.mesh_file import read_mesh
 from vibroimpact.exchange.parts import Selection
 from vibroimpact.exchange.table_file import name_and_unit, read_table_file
@@ -88,9 +89,9 @@ def test_faces_without_area_are_told_without_a_warning(tmp_path: Path) -> None:
     file.write_text("*NODE\n1,0,0,0\n2,1,0,0\n3,0,1,0\n4,0,0,1\n5,2,0,0\n*ELEMENT,TYPE=C3D4\n1,1,2,3,4\n2,1,2,5,4\n")
     plate = {"material": "steel", "model": "elastic", "mesh": str(file), "supports": "free", "modes": 2}
     case = vi.read_case(plain_case(plate=plate, drop={"speed": 1.0, "position": [0.2, 0.2]}))
-    case_explained(case)
-    with pytest.raises(vi.InputError, match="1 of 2 elements are inverted or folded"):
-        vi.compute_modes(case)
+    for use in (case_explained, vi.compute_modes):
+        with pytest.raises(vi.InputError, match="1 of 2 elements are inverted or folded"):
+            use(case)
 
 
 # tables -----------------------------------------------------------------------------------------------
@@ -151,3 +152,12 @@ def test_a_record_of_one_moment(tmp_path: Path) -> None:
     case = plain_case(contact={"law": "adams-impact", "damping_max": 100.0}, calibrate={"target": str(file)})
     with pytest.raises(vi.InputError, match="time stands still; a record has more than one moment"):
         vi.calibrate_case(read_calibration(case))
+
+
+def test_a_brought_mesh_without_volume_is_refused_at_check(tmp_path: Path) -> None:
+    mesh = tmp_path / "flat.inp"
+    mesh.write_text("*NODE\n1, 0., 0., 0.\n2, 1., 0., 0.\n3, 0., 1., 0.\n4, 1., 1., 0.\n*ELEMENT, TYPE=C3D4\n1, 1, 2, 3, 4\n")
+    plate = {"material": "steel", "model": "elastic", "mesh": str(mesh), "supports": "free", "modes": 2}
+    case = vi.read_case(plain_case(plate=plate, drop={"speed": 1.0, "position": [0.2, 0.2]}))
+    with pytest.raises(vi.InputError, match=r"plate: 1 of 1 elements are inverted or folded \(their volume is not positive everywhere\)"):
+        meshes_of(case)

@@ -60,7 +60,7 @@ TOO_LARGE = [
     ({"plate": patches(supports={"type": "patches", "spacing": [0.3, 0.3], "radius": 1e-12}, mesh={"elements": 500}, element="solid")},
      "is too small for a plate of 0.5 m x 0.4 m; take a point, or a radius of at least 5e-06 m"),
     ({"plate": patches(size=[1e9, 0.4, 0.01], mesh={"elements": 500}, element="solid")}, "is too small for a plate of 1e+09 m x 0.4 m"),
-    ({"plate": {**PLATE, "element": "solid", "mesh": {"elements": 10**12}}}, "would be more than 2000000 on this plate"),
+    ({"plate": {**PLATE, "element": "solid", "mesh": {"elements": 10**12}}}, "would be more than 1000000 on this plate"),
 ]  # fmt: skip
 
 

@@ -10,8 +10,9 @@ from scipy.sparse import csr_array
 from vibroimpact.cases.build_elastic import elastic_bodies
 from vibroimpact.cases.place_words import in_list
 from vibroimpact.errors import InputError
-from vibroimpact.structures.geometry import mass_properties
+from vibroimpact.structures.geometry import check_mesh, mass_properties
 from vibroimpact.structures.mesh import Mesh
+from vibroimpact.structures.recipe import BroughtMesh
 from vibroimpact.structures.structure import Structure
 from vibroimpact.structures.supports.constraints import Constraints
 from vibroimpact.structures.surface import Side, Spot, place_of, surface_motion
@@ -33,6 +34,8 @@ def meshes_of(case: Case) -> dict[str, Mesh]:
     for name, body in elastic_bodies(case).items():
         try:
             mesh = body.recipe.shape.mesh(body.recipe.supports)
+            if isinstance(body.recipe.shape, BroughtMesh):  # what is meshed here is sound
+                check_mesh(mesh)
         except InputError as error:
             raise InputError(error.message, f"{name}.{error.key}".rstrip(".")) from None
         brought = getattr(getattr(case, name), "mesh", None)

@@ -10,7 +10,9 @@ from vibroimpact.errors import InputError
 from vibroimpact.structures.element_kinds import PLATE_ORDER
 from vibroimpact.structures.lattice import merged, mesh_of_blocks
 from vibroimpact.structures.mesh import ElementBlock, Mesh
-from vibroimpact.structures.rectangle import MOST_ELEMENTS, Disc, rectangle_blocks, split_at, with_midpoints
+from vibroimpact.structures.rectangle import MOST_NODES, Disc, rectangle_blocks, split_at, with_midpoints
+
+_NODES = 4  # of each element of a large mesh of the kind "hex20"
 
 
 def solid_plate_mesh(
@@ -50,8 +52,9 @@ def solid_plate_mesh(
     >>> solid_plate_mesh((0.52, 0.42, 0.008), 0.004, layers=2).number_of_elements
     27300
     """
-    if (size[0] / element_size) * (size[1] / element_size) * layers > MOST_ELEMENTS:
-        raise InputError(f"elements of {element_size:g} m in {layers} layers would be more than {MOST_ELEMENTS}; make them larger")
+    most = MOST_NODES // _NODES
+    if (size[0] / element_size) * (size[1] / element_size) * layers > most:
+        raise InputError(f"elements of {element_size:g} m in {layers} layers would be more than {most}; make them larger")
     below = splits if lower_splits is None else lower_splits
     height = with_midpoints(split_at(np.linspace(-0.5 * size[2], 0.5 * size[2], layers + 1), below), 2)
     margins = [0.5 * size[2] * 0.25**split for split in range(splits)]

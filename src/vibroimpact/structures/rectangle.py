@@ -11,8 +11,8 @@ import numpy as np
 from vibroimpact.errors import InputError
 from vibroimpact.structures.mesh import Floats
 
-MOST_ELEMENTS = 2_000_000
-"""More than this are refused before they are made; no machine would find their modes."""
+MOST_NODES = 1_000_000
+"""Meshes of more are refused before they are made: the factors of their stiffness have more entries than can be numbered."""
 
 _CORE = 0.5  # half the side of the square inside a disc, in radii
 _SMALLEST = 1e-5  # radius of a disc over the longer side; lines of a mesh that are nearer to one another are one
@@ -79,8 +79,9 @@ def rectangle_blocks(
     >>> len(rectangle_blocks((1.0, 1.0), 0.1, 2, [Disc(0.0, 0.0, 0.1)]))
     17
     """
-    if (size[0] / element_size) * (size[1] / element_size) > MOST_ELEMENTS:
-        words = f"elements of {element_size:g} m would be more than {MOST_ELEMENTS} on this plate; make them larger"
+    most = MOST_NODES // order**2
+    if (size[0] / element_size) * (size[1] / element_size) > most:
+        words = f"elements of {element_size:g} m would be more than {most} on this plate; make them larger"
         raise InputError(words, "mesh.element_size")
     boxes = [_box(disc, size, discs) for disc in discs]
     breaks = []
