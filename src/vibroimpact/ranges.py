@@ -62,6 +62,8 @@ class Range:
         InputError
             With the first value that is not (as `shown`, where given), and what is allowed.
         """
+        if isinstance(values, float) and self.above < values < self.below and self.at_least <= values <= self.at_most:
+            return  # as most are: an array of one takes ten times as long
         try:
             array = np.asarray(values, dtype=float)
         except (TypeError, ValueError):

@@ -30,16 +30,21 @@ def check_places(case: Case) -> None:
     if plate.model == "rigid" or plate.size is None or isinstance(plate.mesh, BroughtMeshTable):
         return
     half = (0.5 * plate.size[0], 0.5 * plate.size[1])
-    names = [{"name": sensor.name} for sensor in case.sensors]
     for number, sensor in enumerate(case.sensors):
-        key = f"{in_list('sensors', names, number)}.position"
-        if isinstance(sensor.position, str):
-            raise InputError(f'a plate that is meshed here has no set "{sensor.position}"; give x and y', key)
-        _check_point(sensor.position, half, key)
+        try:
+            if isinstance(sensor.position, str):
+                raise InputError(f'a plate that is meshed here has no set "{sensor.position}"; give x and y')
+            _check_point(sensor.position, half, "position")
+        except InputError as error:
+            names = [{"name": sensor.name} for sensor in case.sensors]
+            raise InputError(error.message, f"{in_list('sensors', names, number)}.position") from None
     tables = plate.supports if isinstance(plate.supports, tuple) else ()
-    kinds = [{"type": table.type} for table in tables]
     for number, table in enumerate(tables):
-        _check_support(table, half, in_list("plate.supports", kinds, number))
+        try:
+            _check_support(table, half)
+        except InputError as error:
+            kinds = [{"type": table.type} for table in tables]
+            raise InputError(error.message, f"{in_list('plate.supports', kinds, number)}.{error.key}".rstrip(".")) from None
 
 
 def _check_point(position: Sequence[float], half: tuple[float, float], key: str) -> None:
@@ -47,19 +52,17 @@ def _check_point(position: Sequence[float], half: tuple[float, float], key: str)
         raise InputError(f"{_shown(position)} m lies outside the plate, {_reaches(half)}{likely_lengths(position, half)}", key)
 
 
-def _check_support(table: Any, half: tuple[float, float], key: str) -> None:
+def _check_support(table: Any, half: tuple[float, float]) -> None:
     """Raise unless a support lies on the plate: its centre, or those of four, and its rim."""
     if table.type == "set":
-        raise InputError(f'a plate that is meshed here has no set "{table.name}"; give patches, bars, edges, points or springs', key)
+        raise InputError(f'a plate that is meshed here has no set "{table.name}"; give patches, bars, edges, points or springs')
     centre = getattr(table, "position", None)
     if centre is not None:
-        _check_point(centre, half, f"{key}.position")
+        _check_point(centre, half, "position")
     elif (spacing := getattr(table, "spacing", None)) is not None:
         if any(0.5 * apart > _ROUNDING * end for apart, end in zip(spacing, half, strict=True)):
             sides = (2.0 * half[0], 2.0 * half[1])
-            raise InputError(
-                f"{_shown(spacing)} m is wider than the plate, {_shown(sides)} m{likely_lengths(spacing, sides)}", f"{key}.spacing"
-            )
+            raise InputError(f"{_shown(spacing)} m is wider than the plate, {_shown(sides)} m{likely_lengths(spacing, sides)}", "spacing")
         centre = (0.5 * spacing[0], 0.5 * spacing[1])
     if centre is None:
         return
@@ -67,9 +70,7 @@ def _check_support(table: Any, half: tuple[float, float], key: str) -> None:
     if getattr(table, "size", None) is not None:
         if any(0.5 * side > left + 1e-9 * end for side, left, end in zip(table.size, room, half, strict=True)):
             hint = likely_lengths(table.size, [2.0 * end for end in half])
-            raise InputError(
-                f"{_shown(table.size)} m around {_shown(centre)} m reaches beyond the plate, {_reaches(half)}{hint}", f"{key}.size"
-            )
+            raise InputError(f"{_shown(table.size)} m around {_shown(centre)} m reaches beyond the plate, {_reaches(half)}{hint}", "size")
         return
     radius = getattr(table, "radius", None) or 0.0
     is_rigid = table.type in _RIGID
@@ -77,7 +78,7 @@ def _check_support(table: Any, half: tuple[float, float], key: str) -> None:
     if least > min(room):
         margin = f"; between it and the edge must be at least {CLOSEST - 1.0:.2g} radii" if is_rigid else ""
         words = f"{radius:g} m around {_shown(centre)} m reaches beyond the plate, {_reaches(half)}{margin}"
-        raise InputError(f"{words}{likely_lengths([radius], [min(half)])}", f"{key}.radius")
+        raise InputError(f"{words}{likely_lengths([radius], [min(half)])}", "radius")
 
 
 def _reaches(half: Sequence[float]) -> str:

@@ -69,7 +69,7 @@ def load_case(source: str | PathLike[str]) -> Case:
 
 def _read_to_run(table: dict[str, Any]) -> Case:
     try:
-        return read_case(table)
+        return _case_of(table)
     except InputError as error:
         if "calibrate" in table and "contact" in str(error) and "missing" in str(error):
             raise _with_hint(error, "for `vibroimpact calibrate` what it tunes may be left out") from None
@@ -120,6 +120,11 @@ def read_case(table: Mapping[str, Any]) -> Case:
         If it is not a valid case; one line a fault.
     """
     check_bounds(table)
+    return _case_of(table)
+
+
+def _case_of(table: Mapping[str, Any]) -> Case:
+    """Make a case from a mapping whose bounds have been checked."""
     try:
         case = Case.model_validate(dict(table))
         check_case(case)
