@@ -1,0 +1,29 @@
+"""Hostile cases of vibrating bodies: each is refused in a few clean lines, told to take long, or runs within seconds."""
+
+from __future__ import annotations
+
+from collections import Counter
+from importlib import import_module
+
+import pytest
+
+import vibroimpact as vi
+from attack import attack, number, seed
+from mutations import Table, elastic_cases
+from vibroimpact.cases.costs import costs_told
+
+
+def run_unless_told(table: Table) -> None:
+    case = vi.read_case(table)
+    if not costs_told(case):
+        vi.simulate(case)
+
+
+@pytest.mark.slow
+def test_hostile_elastic_cases_run_or_are_told() -> None:
+    import_module("vibroimpact.cases.build_elastic")  # once, and not in each process
+    cases = list(elastic_cases(number(40), seed(4)))
+    outcomes = [attack(run_unless_told, [case])[0] for case in cases]  # each in a process of its own: modes are remembered there
+    print(Counter(one.kind for one in outcomes))
+    told = [f"{one.kind}: {one.text}\n    of {case!r:.2000}" for case, one in zip(cases, outcomes, strict=True) if one.failed]
+    assert not told, "\n".join(told)
