@@ -96,7 +96,7 @@ class DropSection(Section):
     ) = None
     speed: Annotated[float, Quantity("m/s", "downward speed at first touch, where the run then begins", Range(above=0))] | None = None
     position: tuple[Annotated[float, Quantity("m", "x")], Annotated[float, Quantity("m", "y")]] = Field(
-        (0.0, 0.0), description="on the plate, from its centre [m]"
+        (0.0, 0.0), description="x and y on the plate, from its centre [m]"
     )
     gravity: Annotated[float, Quantity("m/s^2", "acceleration of gravity", Range(at_least=0))] = STANDARD_GRAVITY
     same_spot: StrictBool = Field(
@@ -142,7 +142,7 @@ class SensorSection(Section):
 
     name: Name = Field(min_length=1, description="what it is called in tables and figures")
     position: tuple[Annotated[float, Quantity("m", "x")], Annotated[float, Quantity("m", "y")]] | Name = Field(
-        description="on the plate, from its centre [m]; or the name of a set of a mesh that was brought"
+        description="x and y on the plate, from its centre [m]; or the name of a set of a mesh that was brought"
     )
     face: Literal["upper", "lower"] = Field("upper", description="the side of the plate that it is on")
     quantity: Literal["displacement", "velocity", "acceleration"] = Field("acceleration", description="what it takes")

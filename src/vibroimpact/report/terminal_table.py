@@ -151,9 +151,10 @@ def _fitted(columns: list[Column], width: int) -> list[int] | None:
 
 
 def _width(column: Column) -> int:
-    """Return the width that a column likes: of its cells on one line, and of its heading wrapped to them."""
+    """Return the width that a column likes: of its cells on one line; and of its heading, which is wrapped to numbers but not to words."""
     cells = max((cell_len(cell) for cell in _aligned(column)), default=0)
-    return max(cells, _longest(column.heading))
+    heading = max(map(cell_len, column.heading.split("\n"))) if column.words else _longest(column.heading)
+    return max(cells, heading)
 
 
 def _least(column: Column) -> int:

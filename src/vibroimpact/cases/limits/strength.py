@@ -57,7 +57,8 @@ def _broken(body: str, drop: Conditions, ratio: float) -> str:
     how = f": the tension at the rim of the contact is {_stress(stress)}, {ratio:.2g} times {known}"
     if name != "tensile_strength":
         begins = "yield" if name == "yield_strength" else "be crushed"
-        how = f", {ratio:.2g} times that at which it begins to {begins} ({_YIELD} times {known})"
+        times = "just above" if ratio < 1.05 else f"{ratio:.2g} times"
+        how = f", {times} that at which it begins to {begins} ({_YIELD} times {known})"
     remedy = (
         "take a law that yields, such as thornton"
         if name == "yield_strength"
