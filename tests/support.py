@@ -32,4 +32,5 @@ def plain_case(**changes: object) -> dict:
 
 def one_in(every: int, values: Iterable[Any], name: Callable[[Any], str] = str) -> list[Any]:
     """Parameters of a test, of which one in so many is tried each time, and the others where there is time for the slow ones."""
-    return [pytest.param(value, id=name(value), marks=pytest.mark.slow if place % every else ()) for place, value in enumerate(values)]
+    several = [value if isinstance(value, tuple) else (value,) for value in values]
+    return [pytest.param(*value, id=name(value[0]), marks=pytest.mark.slow if place % every else ()) for place, value in enumerate(several)]

@@ -45,7 +45,7 @@ def test_documented_commands_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     made: dict[str, str] = {}
     for command in dict.fromkeys(commands()):
         words, _, folder = command.partition(" -o ")
-        if folder and words in made:  # into another folder: nothing new is computed
+        if folder and made.get(words):  # into another folder: nothing new is computed
             shutil.copytree(made[words], folder)
             continue
         made[words] = folder

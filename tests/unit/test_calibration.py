@@ -153,6 +153,7 @@ def test_the_folder(tmp_path: Path) -> None:
         vi.save_calibration(what.case, found, folder)
 
 
+@pytest.mark.slow
 def test_the_damping_of_modes_is_found_again_and_is_no_function_of_the_law(tmp_path: Path) -> None:
     """From the rebound that it gives; and an export of it does not hold it."""
     sphere = {"radius": 0.025, "material": "rock-paper", "model": "elastic", "modes": 20, "damping": 0.3}
@@ -166,6 +167,7 @@ def test_the_damping_of_modes_is_found_again_and_is_no_function_of_the_law(tmp_p
     assert drop_of(folder).function is None
 
 
+@pytest.mark.slow
 def test_what_has_no_influence_is_told() -> None:
     """The first modes of a sphere only twist it."""
     sphere = {"radius": 0.025, "material": "rock-paper", "model": "elastic", "modes": 5, "damping": 0.3}

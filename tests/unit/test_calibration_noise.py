@@ -111,6 +111,7 @@ def test_known_deviations(measure: Callable[..., Observations], exact: Floats, c
 
 
 @pytest.mark.parametrize("measure", [pytest.param(heights, marks=pytest.mark.slow), restitutions])
+@pytest.mark.slow
 def test_unknown_deviations(measure: Callable[..., Observations]) -> None:
     """The scatter about the polynomial tells their size, with the quantiles of Student's distribution."""
     found = repeated(measure, known=False)

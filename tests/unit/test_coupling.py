@@ -72,6 +72,7 @@ def test_an_elastic_sphere_has_no_local_element_as_well() -> None:
         vi.simulate(vi.read_case(case(sphere, **contact(local_compliance="identified", measured=MEASURED))))
 
 
+@pytest.mark.slow
 def test_a_rebound_that_no_local_element_gives_is_refused_with_what_it_can() -> None:
     rigid = case(plate=RIGID)
     rigid["contact"] = {"law": "hertz", "local_compliance": "identified", "measured": {"max_force": 1000.0, "restitution": 0.01}}

@@ -156,6 +156,7 @@ def test_what_is_probably_not_meant_is_doubted(changes: dict, doubt: str) -> Non
     assert any(doubt in one for one in found.doubts)
 
 
+@pytest.mark.slow
 def test_a_graded_sphere_has_more_elements_or_is_doubted() -> None:
     sphere = {"radius": 0.025, "material": "rock-paper", "model": "elastic", "modes": 5, "mesh": {"grading": 4}}
     shape = elastic_bodies(vi.read_case(plain_case(sphere=sphere)))["sphere"].recipe.shape

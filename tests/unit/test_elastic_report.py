@@ -209,6 +209,7 @@ def test_a_sensor_faster_than_the_modes_is_doubted_with_numbers(result: Result, 
     assert doubt.split(",")[0].replace("\u00a0", " ") in printed(result)
 
 
+@pytest.mark.slow
 def test_report_is_remade_from_the_folder_alone(folder: Path, tmp_path: Path) -> None:
     copy = Path(shutil.copytree(folder, tmp_path / "copy"))
     shutil.rmtree(copy / "figures")

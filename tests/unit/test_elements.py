@@ -9,6 +9,7 @@ import pytest
 import skfem
 from scipy.optimize import brentq
 
+from support import one_in
 from vibroimpact.errors import InputError
 from vibroimpact.materials import Material
 from vibroimpact.structures.element_kinds import ELEMENT_KINDS
@@ -166,7 +167,9 @@ def exact_frequency_of_the_block() -> float:
 
 @pytest.mark.parametrize(
     ("kind", "counts", "rate"),
-    [("tet4", (4, 8, 12), 2), ("hex8", (4, 8, 12), 2), ("tet10", (4, 6, 8), 4), ("hex20", (2, 4, 6), 4), ("hex27", (4, 6, 8), 4)],
+    one_in(
+        3, [("hex20", (2, 4, 6), 4), ("hex27", (4, 6, 8), 4), ("tet10", (4, 6, 8), 4), ("tet4", (4, 8, 12), 2), ("hex8", (4, 8, 12), 2)]
+    ),
 )
 def test_rate_of_convergence(kind: str, counts: tuple[int, ...], rate: int) -> None:
     """Frequencies come from above, with twice the order of the element as power of its size; by regression, within 0.4."""

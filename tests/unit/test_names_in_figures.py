@@ -55,6 +55,7 @@ def result(folder: Path) -> Result:
     return vi.read_result(folder)
 
 
+@pytest.mark.slow
 def test_the_folder_holds_a_picture_and_a_table_of_each(folder: Path, result: Result) -> None:
     assert list(result.signals) == IN_A_CASE  # as they were given
     for place, ending in (("sensors", ".csv"), ("figures", ".png"), ("figures", ".svg")):

@@ -87,6 +87,7 @@ def test_beside_the_plate() -> None:
         slope_divergence(model((0.12, 0.1, 0.01), 0.03, "clamped", 2).mesh, (0.3, 0.0))
 
 
+@pytest.mark.slow
 def test_which_treatment_has_a_face() -> None:
     """A multibody program has nodes, and Kirchhoff's plate points."""
     face, node = case().to_problem(), case(local_compliance="superposed").to_problem()

@@ -120,6 +120,7 @@ def test_the_paper_in_numbers(runs: Runs) -> None:
         assert found.median(name) == pytest.approx(values, rel=0.06), name
 
 
+@pytest.mark.slow
 def test_the_step_that_fits_is_near_a_tenth_of_a_millisecond(runs: Runs) -> None:
     best = closest(superposed(runs, 2, "coarse"), paper_impact(runs, 2))
     assert 0.9e-4 < best.steps[0] < 1.0e-4
@@ -136,6 +137,7 @@ def test_the_range_holds_the_printed_numbers_of_the_sphere(runs: Runs) -> None:
             assert high < 2.0 * low
 
 
+@pytest.mark.slow
 def test_the_section_says_what_is_missed(runs: Runs) -> None:
     """Three numbers of the sphere in Type 3 are within the range over the phases; the two energies of the plate are not."""
     section = unresolved(runs)

@@ -88,7 +88,7 @@ def test_a_pull_between_two_nodes_is_cut() -> None:
     assert np.abs(vi.integrated_restitution(law, 5.57e-4, 5.06) - exact).max() < 1e-9
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=50, deadline=None)
 @example(AdamsImpact, 0.9340729747981871, -3.2543028886997925, 0.7045442911229172, 7.095838841638937)
 @example(vi.find_contact_law("krijt"), 0.5, -5.0, -1.5, 7.0)
 @given(

@@ -154,6 +154,7 @@ def scheduler(tmp_path: Path) -> Iterator[tuple[str, list[subprocess.Popen[bytes
             process.wait()
 
 
+@pytest.mark.slow
 def test_modes_travel_to_workers_that_do_not_see_the_store(
     study: vi.Study, scheduler: tuple[str, list[subprocess.Popen[bytes]], Path], tmp_path: Path
 ) -> None:

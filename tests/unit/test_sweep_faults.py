@@ -74,6 +74,7 @@ def killed_again_and_again(tmp_path: Path, kills: int, seed: int) -> None:
     assert results(folder) == results(undisturbed)
 
 
+@pytest.mark.slow
 def test_a_study_that_is_killed_goes_on_to_the_same_bits(tmp_path: Path) -> None:
     killed_again_and_again(tmp_path, 1, seed=1)
 

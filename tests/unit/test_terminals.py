@@ -189,6 +189,7 @@ def test_no_command_ends_in_a_traceback(arguments: tuple[str, ...], encoding: st
     assert out or err
 
 
+@pytest.mark.slow
 def test_a_run_in_a_terminal_of_another_time(tmp_path: Path) -> None:
     surroundings = {name: value for name, value in os.environ.items() if not name.startswith(("LC_", "LANG", "PYTHONIOENC", "PYTHONUTF8"))}
     surroundings |= {"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0", "PYTHONWARNDEFAULTENCODING": "1"}

@@ -98,6 +98,7 @@ def test_the_papers_rock() -> None:
         pytest.param(0.45, marks=pytest.mark.slow),
     ],
 )
+@pytest.mark.slow
 def test_other_materials(ratio: float) -> None:
     """The order of the multiplets changes with Poisson's ratio."""
     material = Material(2500.0, 60e9, ratio)
@@ -128,6 +129,7 @@ def test_fine_mesh() -> None:
     np.testing.assert_allclose(eta_of(modes.angular_frequencies), exact, rtol=1e-3)
 
 
+@pytest.mark.slow
 def test_mass_converges() -> None:
     """A sphere of curved elements gains its mass with the fourth power of their size; inertia is 2/5 m R^2."""
     exact = 4 / 3 * np.pi * RADIUS**3 * ROCK.density

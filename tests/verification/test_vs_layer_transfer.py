@@ -56,6 +56,7 @@ def test_the_face_of_a_plate(apart: float, face: Side) -> None:
     assert found == pytest.approx(series(place(apart), face), rel=0.002)
 
 
+@pytest.mark.slow
 def test_modes_and_what_they_lack() -> None:
     """As a case has them: what the modes left out give is of the face too, and is what modes of the exact layer above those kept have."""
     case = {

@@ -38,6 +38,7 @@ def test_bricks_refined_at_the_rims() -> None:
     assert np.all(found > REFERENCE)  # a conforming mesh is too stiff
 
 
+@pytest.mark.slow
 def test_refining_the_rims_converges_from_above() -> None:
     coarse, fine = (modes_of(PlateOfSolids(SIZE, element_size=0.03, splits=splits)).frequencies for splits in (0, 1))
     assert np.all(coarse > fine)

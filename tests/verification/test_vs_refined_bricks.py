@@ -54,6 +54,7 @@ def refined(material: Material, supports: tuple[Support, ...], splits: int) -> n
         for quick in [name == "cantilever" and material is STEEL and element == "plate"]
     ],
 )
+@pytest.mark.slow
 def test_default_meshes(name: str, material: Material, element: Literal["plate", "solid"]) -> None:
     supports = SUPPORTS[name]
     coarse, fine = (refined(material, supports, splits) for splits in (1, 2))

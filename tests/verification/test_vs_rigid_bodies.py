@@ -164,6 +164,7 @@ def test_the_program_is_told_of_rigid_bodies_and_people_are_too(
         assert all(one in said for one in words), said
 
 
+@pytest.mark.slow
 def test_the_remedy_that_is_named_rebounds_as_the_run(place: Path, tmp_path: Path) -> None:
     """Calibrated to the impacts of the run, rigid bodies have its restitution."""
     case = rigid(ELASTIC)

@@ -16,6 +16,7 @@ from vibroimpact.structures.surface import surface_motion
 
 
 @pytest.mark.parametrize("poissons_ratio", [0.0, 0.28])
+@pytest.mark.slow
 def test_under_the_pressure_of_hertz(poissons_ratio: float) -> None:
     """Unit radius, modulus and force; the mesh is carried by its inertia. What remains is that elements are too stiff."""
     structure = solid_structure(sphere_mesh(1.0, 8, "hex27", 3.0), Material(1.0, 1.0, poissons_ratio))
