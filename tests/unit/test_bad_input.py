@@ -160,3 +160,33 @@ def test_wrong_arguments(
     status, written = outcome(monkeypatch, capsys, *arguments)
     assert status == 2
     assert message in written
+
+
+@pytest.mark.parametrize(
+    ("line", "words"),
+    [
+        ("radius = 25 mm", 'a number with a unit is a text: write it in quotes, such as "25 mm"'),
+        ("radius = 2.5e-2m", "write it in quotes"),
+        ("radius = 1\nradius = 2", "stands there twice"),
+        ('material = "steel', "close the quotes on the line where they are opened"),
+    ],
+)
+def test_what_toml_does_not_say(line: str, words: str, tmp_path: Path) -> None:
+    (tmp_path / "case.toml").write_text(f"[sphere]\n{line}\n")
+    with pytest.raises(vi.InputError, match="this is not valid TOML") as raised:
+        vi.load_case(tmp_path / "case.toml")
+    assert words in str(raised.value)
+
+
+def test_check_sees_that_what_was_measured_is_not_there(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    table = plain_case(contact={"law": "adams-impact", "damping_max": 100.0}, calibrate={"target": {"file": "none.csv"}})
+    (tmp_path / "case.toml").write_text(tomli_w.dumps(table))
+    monkeypatch.setattr("sys.argv", ["vibroimpact", "check", str(tmp_path / "case.toml")])
+    with pytest.raises(SystemExit) as left:
+        main()
+    assert left.value.code == 2
+    told = capsys.readouterr().err
+    assert "calibrate.target" in told
+    assert "none.csv: there is no such file" in told

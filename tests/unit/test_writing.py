@@ -15,7 +15,7 @@ from vibroimpact.writing.file import new_file, write_file
 from vibroimpact.writing.folder import whole_folder
 from vibroimpact.writing.into_folder import write_into
 from vibroimpact.writing.leftovers import NEW, OLD, WHOLE, inner_path, working_path
-from vibroimpact.writing.settle import settle
+from vibroimpact.writing.recover import recover
 
 
 def nothing() -> None:
@@ -73,11 +73,11 @@ def test_a_folder_that_made_way_gets_its_name_back_and_what_was_half_written_goe
         path = working_path(target, kind)
         path.mkdir()
         (path / "a.txt").write_text(kind)
-    settle(target)
+    recover(target)
     assert leaves(tmp_path) == {"out/a.txt": OLD}
     path = working_path(target, OLD)  # of a process that died before it cleared it
     path.mkdir()
-    settle(target)
+    recover(target)
     assert [one.name for one in tmp_path.iterdir()] == ["out"]
 
 
@@ -94,13 +94,13 @@ with whole_folder(Path({str(tmp_path / "out")!r}), lambda: None) as a, new_file(
     with subprocess.Popen([sys.executable, "-c", code], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as living:
         assert living.stdout is not None
         assert living.stdout.readline() == "ready\n"
-        settle(tmp_path / "out")
-        settle(tmp_path / "file")
+        recover(tmp_path / "out")
+        recover(tmp_path / "file")
         assert len(list(tmp_path.iterdir())) == 2
         living.kill()
         living.wait()
-    settle(tmp_path / "out")
-    settle(tmp_path / "file")
+    recover(tmp_path / "out")
+    recover(tmp_path / "file")
     assert not list(tmp_path.iterdir())
 
 
@@ -118,7 +118,7 @@ def test_no_file_of_another_kind_is_taken_for_left_over(tmp_path: Path) -> None:
         for name in [*names, working_path(Path("another"), NEW).name]:
             (place / name).mkdir()
     before = sorted(tmp_path.rglob("*"))
-    settle(tmp_path / "out")
+    recover(tmp_path / "out")
     assert sorted(tmp_path.rglob("*")) == before
 
 
@@ -149,7 +149,7 @@ def test_files_that_were_whole_reach_their_places_after_a_death(tmp_path: Path) 
     (whole / "gone").mkdir()
     (whole / "put" / "sub" / "b.txt").write_text("new")
     (whole / "gone" / "old.txt").touch()
-    settle(tmp_path)
+    recover(tmp_path)
     assert leaves(tmp_path) == {"sub/b.txt": "new"}
     assert not list(tmp_path.glob(".*"))
 
@@ -163,7 +163,7 @@ def test_nothing_leaves_a_folder_by_its_links(tmp_path: Path) -> None:
         (whole / part / "figures").mkdir(parents=True)
         (whole / part / "figures" / "profile").write_text("theirs")
     (folder / "figures").symlink_to(home)
-    settle(folder)
+    recover(folder)
     assert leaves(home) == {"profile": "mine"}
     assert not list(folder.glob(".*"))
 

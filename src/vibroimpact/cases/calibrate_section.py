@@ -13,6 +13,7 @@ from vibroimpact.cases.contact_section import ContactSection, law_schema, read_c
 from vibroimpact.cases.quantities import Quantity
 from vibroimpact.cases.section import Section, read_table
 from vibroimpact.errors import InputError, did_you_mean
+from vibroimpact.files import FileKind, about, beginning
 from vibroimpact.ranges import Range
 from vibroimpact.shown import shown
 
@@ -208,3 +209,21 @@ def _as_table(value: Target) -> dict[str, Any]:
     if isinstance(value, ContactSection):
         return {"law": value.law, **{name: list(one) if isinstance(one, tuple) else one for name, one in value.parameters.items()}}
     return value.model_dump(exclude_none=True, mode="json")
+
+
+_MEASURED = FileKind("what was measured is in a CSV file or a universal file", 500_000_000, "keep the part with the impacts")
+
+
+def check_target(section: CalibrateSection | None) -> None:
+    """Raise unless the file with what was measured, if there is one, can be read; what it tells is not looked at.
+
+    Raises
+    ------
+    InputError
+        If it can't be.
+    """
+    if section is not None and isinstance(section.target, FileTarget):
+        try:
+            beginning(section.target.file, _MEASURED, 1)
+        except InputError as error:
+            raise about(section.target.file, error, "calibrate.target") from None

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import tomllib
 from collections.abc import Callable, Mapping
 from functools import cache
@@ -95,11 +96,22 @@ def load_table(source: str | PathLike[str]) -> dict[str, Any]:
     try:
         table = tomllib.loads(text)
     except ValueError as error:  # tomllib's own, or a number of thousands of digits
-        raise InputError(f"this is not valid TOML: {error}") from None
+        raise InputError(f"this is not valid TOML: {error}{_toml_hint(text, str(error))}") from None
     except RecursionError:
         raise InputError("this is not a case: its tables are nested too deeply") from None
     check_bounds(table)
     return _beside(table, Path(source).parent)
+
+
+def _toml_hint(text: str, fault: str) -> str:
+    """Return what is likely wrong with a line, of which TOML says only what it expected."""
+    place = re.search(r"at line (\d+)", fault)
+    line = text.splitlines()[int(place[1]) - 1] if place and int(place[1]) <= len(text.splitlines()) else ""
+    if re.match(r"[^=]{1,100}=\s*[+-]?[\d.]+(?:[eE][+-]?\d+)?\s*[^\W\d_][^\"']*$", line):
+        return '; a number with a unit is a text: write it in quotes, such as "25 mm"'
+    if "overwrite" in fault or "twice" in fault:
+        return "; a key or a table stands there twice"
+    return "; close the quotes on the line where they are opened" if "Illegal character '\\n'" in fault else ""
 
 
 def named(source: str | PathLike[str], read: Callable[[], Read]) -> Read:

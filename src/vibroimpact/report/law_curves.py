@@ -27,7 +27,7 @@ from vibroimpact.report.law_text import paper_pair
 from vibroimpact.report.layout import label_vertical, new_figure, row_of_axes
 from vibroimpact.report.style import ACCENT, INK, LOOPS, style
 from vibroimpact.writing.file import write_file
-from vibroimpact.writing.settle import settle
+from vibroimpact.writing.recover import recover
 
 _SPEEDS = np.geomspace(1e-3, 30.0, 60)
 _POINTS = 600
@@ -109,7 +109,7 @@ def save_law_picture(name: str, target: Path) -> Path:
     """
     picture = render_png(draw_law(find_contact_law(name)))
     try:
-        settle(target)
+        recover(target)
         write_file(target, picture)
     except OSError as error:
         raise InputError(f"{target}: the picture can't be written: {error.strerror}") from None

@@ -12,7 +12,7 @@ from vibroimpact.report.page import write_report
 from vibroimpact.storage.folder import new_folder, read_result, write_result
 from vibroimpact.storage.paraview import write_paraview
 from vibroimpact.storage.result import result_of
-from vibroimpact.writing.settle import settle
+from vibroimpact.writing.recover import recover
 
 
 def save_result(response: Response, directory: str | PathLike[str], *, force: bool = False) -> Path:
@@ -61,7 +61,7 @@ def remake_report(directory: str | PathLike[str]) -> Path:
     from vibroimpact.storage.study import is_study, read_study
 
     folder = Path(directory)
-    settle(folder)
+    recover(folder)
     if is_study(folder):
         write_study_report(read_study(folder), folder)
         return folder

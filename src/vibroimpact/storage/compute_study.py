@@ -20,7 +20,7 @@ from vibroimpact.cases.sweep import LONG, Sweep
 from vibroimpact.errors import ComputationError, InputError
 from vibroimpact.storage.check_sums import sealed
 from vibroimpact.storage.folder import SUMMARY, new_folder
-from vibroimpact.storage.study import DATASET, STUDY, clear_study, is_study, settle_study
+from vibroimpact.storage.study import DATASET, STUDY, clear_study, is_study, recover_study
 from vibroimpact.storage.study_dataset import write_dataset
 from vibroimpact.storage.study_table import MOST_ROWS, write_drops
 from vibroimpact.storage.study_toml import study_toml
@@ -91,7 +91,7 @@ def compute_study(
     folder = Path(directory)
     if scheduler is not None:
         check_scheduler(scheduler)
-    settle_study(folder)
+    recover_study(folder)
     if resume and is_study(folder):
         _see_that_there_is_a_ledger(folder, sweep, memory)
     else:

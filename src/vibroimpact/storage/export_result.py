@@ -15,7 +15,7 @@ from vibroimpact.storage.exported import drop_of
 from vibroimpact.writing.file import write_file
 from vibroimpact.writing.folder import whole_folder
 from vibroimpact.writing.into_folder import write_into
-from vibroimpact.writing.settle import settle
+from vibroimpact.writing.recover import recover
 
 _MOST_NAMED = 3
 
@@ -84,7 +84,7 @@ def save_export(drop: Drop, format: ExportFormat, output: Path, *, force: bool =
         As `export_result`.
     """
     contents = format.write(drop)
-    settle(output)
+    recover(output)
     targets = _targets(contents, output)
     _check_free(targets.values(), force=force)
     try:

@@ -17,7 +17,7 @@ from vibroimpact.storage.check_sums import CHECK_SUMS, DamageError, check_file, 
 from vibroimpact.storage.folder import read_result
 from vibroimpact.storage.hdf5 import why
 from vibroimpact.storage.result import Result, result_of
-from vibroimpact.writing.settle import settle
+from vibroimpact.writing.recover import recover
 
 
 def drop_of(directory: str | PathLike[str]) -> Drop:
@@ -34,7 +34,7 @@ def drop_of(directory: str | PathLike[str]) -> Drop:
         If it is neither, a file of it is missing or damaged, or it is the result of a problem made in Python, which has no case.
     """
     folder = Path(directory)
-    settle(folder)
+    recover(folder)
     if (folder / CALIBRATION).is_file():
         return _of_calibration(folder)
     result = read_result(folder)

@@ -28,7 +28,7 @@ from vibroimpact.storage.summary import summary_of
 from vibroimpact.storage.summary_types import check_types
 from vibroimpact.storage.tables import write_impacts
 from vibroimpact.writing.folder import whole_folder
-from vibroimpact.writing.settle import settle
+from vibroimpact.writing.recover import recover
 
 SUMMARY, CASE, DATA = "summary.json", "case.toml", "result.nc"
 
@@ -88,7 +88,7 @@ def check_free(directory: str | PathLike[str], *, force: bool = False) -> None:
         raise InputError(f"{target}: the name of a folder may have {LONGEST_FOLDER_NAME} letters at most")
     if target.absolute() == Path(target.absolute().anchor):
         raise InputError(f"{target}: this is where all files are; name a folder inside it")
-    settle(target)
+    recover(target)
     if target.resolve() == Path.cwd():
         raise InputError(f"{target}: this is the folder you stand in; name one inside it")
     above = next(folder for folder in target.absolute().parents if folder.exists())
@@ -125,7 +125,7 @@ def read_result(directory: str | PathLike[str]) -> Result:
         If it is not a result folder, or a file of it is missing or damaged.
     """
     folder = Path(directory)
-    settle(folder)
+    recover(folder)
     if not (folder / SUMMARY).is_file():
         raise InputError(f"{folder}: this is not a result folder; it has no {SUMMARY}")
     name = SUMMARY

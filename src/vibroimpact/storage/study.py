@@ -28,7 +28,7 @@ from vibroimpact.studies.columns import SIGNAL
 from vibroimpact.studies.ledger import LEDGER, is_held
 from vibroimpact.studies.plan import SAMPLE
 from vibroimpact.writing.leftovers import remove
-from vibroimpact.writing.settle import clear, settle
+from vibroimpact.writing.recover import clear, recover
 
 DATASET, STUDY = "study.nc", "study.toml"
 FAILED_POINT, FAILED_REASON = "failed_point", "failed_reason"
@@ -145,13 +145,13 @@ def is_study(folder: Path) -> bool:
 
 def begun(folder: Path) -> bool:
     """Was a study begun in a folder, and is it there, or can it be brought back?"""
-    settle(folder)
+    recover(folder)
     return is_study(folder)
 
 
-def settle_study(folder: Path) -> None:
+def recover_study(folder: Path) -> None:
     """Put right what processes that died have left of a study; if one is at work on it, all stays as it is."""
-    settle(folder)
+    recover(folder)
     if (folder / LEDGER).is_file() and not is_held(folder):
         clear_study(folder)
         if (folder / DATASET).is_file():
@@ -180,7 +180,7 @@ def read_study(directory: str | PathLike[str]) -> Study:
         If there is none, or it is damaged.
     """
     path = Path(directory) / DATASET
-    settle_study(path.parent)
+    recover_study(path.parent)
     if not path.is_file():
         folder = Path(directory)
         if not (folder / STUDY).is_file():

@@ -21,7 +21,7 @@ from vibroimpact.structures.geometry import MassProperties
 from vibroimpact.structures.mesh import ElementBlock, Mesh
 from vibroimpact.structures.modal_model import ModalModel
 from vibroimpact.writing.file import write_file
-from vibroimpact.writing.settle import clear
+from vibroimpact.writing.recover import clear
 
 FORMAT = 3
 """Counts up when what is stored, or how it is computed, changes."""

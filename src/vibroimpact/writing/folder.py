@@ -43,7 +43,7 @@ def _put_in_place(working: Path, target: Path) -> None:
     if exchange(working, target):
         remove(working)
         return
-    # for a moment neither has the name; if this process dies then, `settle` gives it back to the old one
+    # for a moment neither has the name; if this process dies then, `recover` gives it back to the old one
     aside = working_path(target, OLD)
     with held(target):
         target.rename(aside)

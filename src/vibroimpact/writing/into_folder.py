@@ -1,7 +1,7 @@
 """Write several files into a folder that is there: all, or none.
 
 They are written in a working folder inside, which is given another name once all are whole. Then each goes to its place. If the process
-dies on the way, the next command that meets the folder has the rest follow (`settle`), so that files of two writings never stay mixed.
+dies on the way, the next command that meets the folder has the rest follow (`recover`), so that files of two writings never stay mixed.
 """
 
 from __future__ import annotations

@@ -148,7 +148,7 @@ class _Phase:
             early[early] = good
             drops, level = drops[~early], level[~early]
         if drops.size:
-            self.settle(drops, self.aimed(drops, time_map, aim, level), aim, level)
+            self.recover(drops, self.aimed(drops, time_map, aim, level), aim, level)
 
     def aimed(self, drops: Drops, time_map: Map, aim: Aim, level: Floats) -> Stretch:
         """Solve a stretch to its end, from the last impact's solution or a sinusoidal guess."""
@@ -184,7 +184,7 @@ class _Phase:
 
     # what becomes of a solved stretch ------------------------------------------------------------
 
-    def settle(self, drops: Drops, stretch: Stretch, aim: Aim, level: Floats) -> None:
+    def recover(self, drops: Drops, stretch: Stretch, aim: Aim, level: Floats) -> None:
         """Accept an aimed stretch for the drops for which it holds; let the others march."""
         good = self.good(drops, stretch)
         if aim == "turn":

@@ -24,7 +24,7 @@ from vibroimpact.storage.check_sums import read_sealed, sealed
 from vibroimpact.storage.folder import SUMMARY, new_folder
 from vibroimpact.storage.tables import write_csv
 from vibroimpact.writing.into_folder import write_into
-from vibroimpact.writing.settle import settle
+from vibroimpact.writing.recover import recover
 
 _PARTS = "parts"
 
@@ -65,7 +65,7 @@ def reproduce_paper(
         If there is no part of a name, something else is there already, or it can't be written to.
     """
     folder = Path(directory)
-    settle(folder)
+    recover(folder)
     there = is_reproduction(folder) and not force
     if isinstance(only, str):
         only = [only]

@@ -10,7 +10,7 @@ from vibroimpact.writing.into_folder import check_places, finish
 from vibroimpact.writing.leftovers import OLD, WHOLE, all_leftovers, inner_leftovers, left_over, leftovers, remove
 
 
-def settle(target: Path) -> None:
+def recover(target: Path) -> None:
     """Clear what dead processes left of a file or a folder, beside it and in it; what a living one writes stays.
 
     A folder that made way for a new one which never came gets its name back. Files that were whole and on their way into the folder
