@@ -13,9 +13,11 @@ from numpy.typing import NDArray
 
 Item = TypeVar("Item")
 
+_UNPACKED = 32  # records at the end that are kept as they are: to pack the few of a short run takes a tenth of its time
+
 
 class PackedList(Sequence[Item], Generic[Item]):
-    """Records that are made of dataclasses, lists, tuples and arrays of numbers, each made anew when it is asked for.
+    """Records that are made of dataclasses, lists, tuples and arrays of numbers, each made anew when it is asked for but for the last ones.
 
     The numbers are those that were put in, to the last digit (whole ones up to 2^53).
 
@@ -33,8 +35,8 @@ class PackedList(Sequence[Item], Generic[Item]):
     ...     place: np.ndarray
     >>> points = PackedList[Point]()
     >>> points.append(Point("a", np.array([1.0, 2.0])))
-    >>> points[0], points.size
-    (Point(name='a', place=array([1., 2.])), 16)
+    >>> len(points), points[0]
+    (1, Point(name='a', place=array([1., 2.])))
     """
 
     def __init__(self, *shared: type) -> None:
@@ -42,15 +44,18 @@ class PackedList(Sequence[Item], Generic[Item]):
         self._numbers, self._starts = array("d"), array("q", [0])
         self._forms: list[_Form] = []
         self._known: dict[_Form, _Form] = {}  # forms that are equal are one
+        self._last: list[Item] = []
 
     def append(self, item: Item) -> None:
         """Add a record at the end."""
-        form = self._split(item)
-        self._forms.append(self._known.setdefault(form, form))
-        self._starts.append(len(self._numbers))
+        self._last.append(item)
+        if len(self._last) > _UNPACKED:
+            form = self._split(self._last.pop(0))
+            self._forms.append(self._known.setdefault(form, form))
+            self._starts.append(len(self._numbers))
 
     def __len__(self) -> int:
-        return len(self._forms)
+        return len(self._forms) + len(self._last)
 
     @overload
     def __getitem__(self, index: int) -> Item: ...
@@ -62,14 +67,11 @@ class PackedList(Sequence[Item], Generic[Item]):
         if isinstance(index, slice):
             return [self[number] for number in range(*index.indices(len(self)))]
         number = range(len(self))[index]
+        if number >= len(self._forms):
+            return self._last[number - len(self._forms)]
         numbers = np.frombuffer(self._numbers[self._starts[number] : self._starts[number + 1]])
         item: Item = _Reader(numbers).joined(self._forms[number])
         return item
-
-    @property
-    def size(self) -> int:
-        """How many bytes the numbers take."""
-        return self._numbers.itemsize * len(self._numbers)
 
     def _split(self, value: Any) -> _Form:
         """Put the numbers of a value into the buffer; return what else it is."""
