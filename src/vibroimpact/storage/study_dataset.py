@@ -78,37 +78,21 @@ def write_dataset(
     with new_file(folder / DATASET) as working:  # last: once it is there, all is
         columns = sum(values.nbytes for values in plan.columns.values()) + 8 * plan.size
         _see_that_there_is_room(working, columns + plan.size * sum(prod(wide) * dtype.itemsize for wide, dtype in layout.values()))
-        _write(working, folder, name, chunks, study, plan, table, meanings, rates, layout)
+        with new_hdf5(working) as file:
+            file.attrs["title"] = name
+            file.attrs["version"] = __version__
+            file.attrs["study"] = study_toml(table)
+            scales = _write_coordinates(file, plan, meanings)
+            data = {one: _new_variable(file, one, layout[one], scales, meanings, rates) for one in meanings if one in layout}
+            failures: dict[int, str] = {}
+            for chunk in chunks:
+                result = read_chunk(folder, chunk, study)
+                for variable, values in result.arrays.items():
+                    _put(data[variable], (), tuple(plan.dimensions.values()), chunk.first, values)
+                failures |= {chunk.first + place: reason for place, reason in result.failures.items()}
+            _write_failures(file, failures)
         summary = {**read_sealed(folder / SUMMARY), CHECK_SUMS: {DATASET: file_digest(working)}}
         write_file(folder / SUMMARY, sealed(summary).encode())  # before the dataset is there: it is never without
-
-
-def _write(
-    path: Path,
-    folder: Path,
-    name: str,
-    chunks: Sequence[Span],
-    study: str,
-    plan: Plan,
-    table: Mapping[str, Any],
-    meanings: Meanings,
-    rates: Mapping[str, float],
-    layout: Mapping[str, tuple[tuple[int, ...], np.dtype[Any]]],
-) -> None:
-    """Write the dataset into a file; `layout` says of each variable the shape of one drop's values, and their type."""
-    with new_hdf5(path) as file:
-        file.attrs["title"] = name
-        file.attrs["version"] = __version__
-        file.attrs["study"] = study_toml(table)
-        scales = _write_coordinates(file, plan, meanings)
-        data = {one: _new_variable(file, one, layout[one], scales, meanings, rates) for one in meanings if one in layout}
-        failures: dict[int, str] = {}
-        for chunk in chunks:
-            result = read_chunk(folder, chunk, study)
-            for variable, values in result.arrays.items():
-                _put(data[variable], (), tuple(plan.dimensions.values()), chunk.first, values)
-            failures |= {chunk.first + place: reason for place, reason in result.failures.items()}
-        _write_failures(file, failures)
 
 
 def as_text(value: Any) -> Any:
