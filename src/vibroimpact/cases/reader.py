@@ -106,7 +106,7 @@ def load_table(source: str | PathLike[str]) -> dict[str, Any]:
 def _toml_hint(text: str, fault: str) -> str:
     """Return what is likely wrong with a line, of which TOML says only what it expected."""
     place = re.search(r"at line (\d+)", fault)
-    line = text.splitlines()[int(place[1]) - 1] if place and int(place[1]) <= len(text.splitlines()) else ""
+    line = text.split("\n")[int(place[1]) - 1] if place else ""
     if re.match(r"[^=]{1,100}=\s*[+-]?[\d.]+(?:[eE][+-]?\d+)?\s*[^\W\d_][^\"']*$", line):
         return '; a number with a unit is a text: write it in quotes, such as "25 mm"'
     if "overwrite" in fault or "twice" in fault:
