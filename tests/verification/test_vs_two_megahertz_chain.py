@@ -28,19 +28,24 @@ def place(thicknesses: float) -> tuple[float, float]:
     return SPOT[0] + 0.8 * thicknesses * SIZE[2], SPOT[1] + 0.6 * thicknesses * SIZE[2]
 
 
-@pytest.fixture(scope="module")
-def response() -> vi.Response:
+def drop_watched(mesh: dict[str, Any], *more: dict[str, Any]) -> vi.Response:
+    """A drop on the plate, whose sensors away from the contact are watched, and more of them."""
     sensors = [{"name": name, "position": list(place(apart))} for name, apart in AWAY.items()]
+    plate = {"size": list(SIZE), "material": "steel", "model": "elastic", "supports": "simply-supported", "damping": RATIO}
     case = {
         "sphere": {"radius": 5e-3, "material": "steel"},
-        "plate": {"size": list(SIZE), "material": "steel", "model": "elastic", "supports": "simply-supported", "damping": RATIO},
+        "plate": {**plate, "max_frequency": 50e3, "mesh": mesh},
         "drop": {"speed": 1.0, "position": list(SPOT)},
         "contact": {"law": "hertz"},
         "run": {"duration": DURATION},
-        "sensors": [*sensors, {"name": "under", "position": list(SPOT), "face": "lower"}],
+        "sensors": [*sensors, *more],
     }
-    case["plate"] |= {"max_frequency": 50e3, "mesh": {"theory": "thin"}}  # type: ignore[operator]
     return vi.simulate(vi.read_case(case))
+
+
+@pytest.fixture(scope="module")
+def response() -> vi.Response:
+    return drop_watched({"theory": "thin"}, {"name": "under", "position": list(SPOT), "face": "lower"})
 
 
 @pytest.fixture(scope="module")
@@ -121,17 +126,7 @@ def test_under_the_contact_the_doubt_holds(response: vi.Response, motion: dict[s
 @pytest.fixture(scope="module")
 def thick() -> tuple[vi.Response, dict[str, dict[str, Floats]]]:
     """Plate elements of the thick theory, and all waves of an elastic layer above the modes kept, through the thickness too."""
-    sensors = [{"name": name, "position": list(place(apart))} for name, apart in AWAY.items()]
-    case = {
-        "sphere": {"radius": 5e-3, "material": "steel"},
-        "plate": {"size": list(SIZE), "material": "steel", "model": "elastic", "supports": "simply-supported", "damping": RATIO},
-        "drop": {"speed": 1.0, "position": list(SPOT)},
-        "contact": {"law": "hertz"},
-        "run": {"duration": DURATION},
-        "sensors": sensors,
-    }
-    case["plate"] |= {"max_frequency": 50e3}  # type: ignore[operator]
-    response = vi.simulate(vi.read_case(case))
+    response = drop_watched({"theory": "thick"})
     kept = response.problem.plate.modes
     assert kept is not None
     (length, width, thickness), layer = SIZE, Elastic(DENSITY, MODULUS, POISSON)
