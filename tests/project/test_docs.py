@@ -26,24 +26,27 @@ def blocks(page: Path, language: str) -> list[str]:
     return re.findall(rf"```{language}\n(.*?)```", page.read_text(encoding="utf-8"), flags=re.S)
 
 
-def commands() -> list[str]:
+def commands(pages: list[Path]) -> list[str]:
     return [
         line.split("  #")[0].removeprefix("$ ").strip()
-        for page in PAGES
+        for page in pages
         for block in blocks(page, "console")
         for line in block.splitlines()
         if line.startswith("$ vibroimpact")
     ]
 
 
-def test_documented_commands_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]) -> None:
+@pytest.mark.parametrize("pages", [pytest.param(PAGES[:1], id="README"), pytest.param(PAGES[1:], id="docs", marks=pytest.mark.slow)])
+def test_documented_commands_run(
+    pages: list[Path], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
     monkeypatch.chdir(tmp_path)
-    assert len(commands()) >= 8
+    assert len(commands(pages)) >= 8
     for block in blocks(ROOT / "docs" / "case-file.md", "toml"):
         name = re.match(r"# (\S+\.toml)\n", block)  # a block may say what its file is called
         (tmp_path / (name[1] if name else "case.toml")).write_text(block)
     made: dict[str, str] = {}
-    for command in dict.fromkeys(commands()):
+    for command in dict.fromkeys(commands(pages)):
         words, _, folder = command.partition(" -o ")
         if folder and made.get(words):  # into another folder: nothing new is computed
             shutil.copytree(made[words], folder)

@@ -62,6 +62,7 @@ def test_every_figure_is_there(parts: dict[str, Made]) -> None:
         assert (PAGE.parent / "images" / "reproduction" / f"{name}.png").is_file(), name
 
 
+@pytest.mark.slow
 def test_every_figure_is_small(parts: dict[str, Made]) -> None:
     for name, made in parts.items():
         if made.drawing is not None:

@@ -33,7 +33,7 @@ def calibrated(section: dict, **changes: object) -> tuple[vi.Calibration, vi.Res
         ({"run": {"duration": 1.2}}, 1),
         pytest.param({"run": {"impacts": "all"}}, 6, marks=pytest.mark.slow),
         ({"drop": {"speed": 3.0, "gravity": 0.0}}, 1),
-        ({"drop": {"speed": 3.0, "gravity": 9.8}}, 5),
+        pytest.param({"drop": {"speed": 3.0, "gravity": 9.8}}, 5, marks=pytest.mark.slow),
     ],
 )
 def test_the_impacts_of_the_drop_are_matched_as_far_as_it_goes(changes: dict, number: int) -> None:

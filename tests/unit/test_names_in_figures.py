@@ -17,7 +17,7 @@ from vibroimpact.report.figures import render_png, render_svg
 from vibroimpact.report.lettering import lettering
 from vibroimpact.report.sensor_figures import draw_sensor
 from vibroimpact.report.style import style
-from vibroimpact.storage.result import Result
+from vibroimpact.storage.result import Result, result_of
 
 NAMES = [
     r"a$\frac{$b",
@@ -38,26 +38,30 @@ IN_A_CASE = [r"a$\frac{$b", "a" * 200, "../../up", "$", "CON"]
 
 
 @pytest.fixture(scope="module")
-def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def response() -> vi.Response:
     plate = {"size": [0.52, 0.42, 0.008], "material": "steel-paper", "model": "elastic", "supports": "clamped", "modes": 4}
     sensors = [{"name": name, "position": [0.01 * place, 0.05], "rate": 20e3} for place, name in enumerate(IN_A_CASE)]
-    case = vi.read_case(plain_case(plate=plate, sensors=sensors, run={"impacts": 1, "duration": 0.33}))
+    return vi.simulate(vi.read_case(plain_case(plate=plate, sensors=sensors, run={"impacts": 1, "duration": 0.33})))
+
+
+@pytest.fixture(scope="module")
+def folder(response: vi.Response, tmp_path_factory: pytest.TempPathFactory) -> Path:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("vibroimpact.report.figures._DPI", 40)
         patch.setattr("vibroimpact.storage.deflection._FRAMES", 24)
         place = tmp_path_factory.mktemp("results") / "named"
-        vi.simulate(case).save(place)
+        response.save(place)
         return place
 
 
 @pytest.fixture(scope="module")
-def result(folder: Path) -> Result:
-    return vi.read_result(folder)
+def result(response: vi.Response) -> Result:
+    return result_of(response)
 
 
 @pytest.mark.slow
-def test_the_folder_holds_a_picture_and_a_table_of_each(folder: Path, result: Result) -> None:
-    assert list(result.signals) == IN_A_CASE  # as they were given
+def test_the_folder_holds_a_picture_and_a_table_of_each(folder: Path) -> None:
+    assert list(vi.read_result(folder).signals) == IN_A_CASE  # as they were given
     for place, ending in (("sensors", ".csv"), ("figures", ".png"), ("figures", ".svg")):
         begins = "" if place == "sensors" else "sensor_"
         files = [name for name in os.listdir(folder / place) if name.endswith(ending) and name.startswith(begins)]

@@ -39,7 +39,7 @@ def test_a_linear_spring_is_as_in_closed_form() -> None:
     assert found["separation_speed_m_s"][0] == pytest.approx(-states[-2].real, rel=1e-10)  # the last one would be pulled back
 
 
-@pytest.mark.parametrize("plate", [None, PLATE], ids=["rigid plate", "elastic plate"])
+@pytest.mark.parametrize("plate", [pytest.param(None, id="rigid plate"), pytest.param(PLATE, id="elastic plate", marks=pytest.mark.slow)])
 def test_it_converges_at_first_order_to_the_resolved_run(plate: object) -> None:
     """Half the step, half the error, within a tenth; and Richardson's extrapolation is within 1e-3 of the resolved run."""
     problem = drop_on(IMPACT, PLATE if plate is not None else None, SPHERE, height=0.5, sphere_inside=False)

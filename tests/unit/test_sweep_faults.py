@@ -56,20 +56,23 @@ def killed_again_and_again(tmp_path: Path, kills: int, seed: int) -> None:
     """Run a study that is killed at random moments, and compare it with one that was left in peace."""
     study, random_moment = study_file(tmp_path, MANY), random.Random(seed)
     undisturbed = compute_study(vi.load_sweep(study), tmp_path / "undisturbed", memory=SMALL)
-    folder, done, progressed = tmp_path / "disturbed", 0, 0
+    folder, done, progressed, killed = tmp_path / "disturbed", 0, 0, 0
     for number in range(kills):
         begun = (folder / LEDGER).exists()
         options = ["--processes", str(1 + number % 2), *(["--resume"] if begun else [])]
         running = subprocess.Popen(sweep_command(study, folder, *options), stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
         if not begun or number % 3:  # else at once, before anything is done
-            wait_until(lambda before=done: chunks_done(folder) > before, running)
+            wait_until(lambda before=done, it=running: chunks_done(folder) > before or it.poll() is not None)
         time.sleep(random_moment.uniform(0.0, 0.15))
-        assert running.poll() is None, "the study was done before it could be killed"
+        if running.poll() is not None:  # on a busy machine it may do many chunks before it is seen, and be done
+            break
         running.kill()
         running.wait()
+        killed += 1
         progressed += chunks_done(folder) > done
         done = chunks_done(folder)
-    assert progressed >= (kills + 1) // 2
+    assert killed >= (kills + 1) // 2
+    assert progressed >= (killed + 1) // 2
     compute_study(vi.load_sweep(study), folder, resume=True)
     assert results(folder) == results(undisturbed)
 
@@ -108,6 +111,7 @@ def _is_alive(process: int) -> bool:
         return False
 
 
+@pytest.mark.slow
 def test_ctrl_c_says_how_to_go_on(tmp_path: Path) -> None:
     study, folder = study_file(tmp_path, MANY), tmp_path / "out"
     running = subprocess.Popen(sweep_command(study, folder, "--processes", "2"), stderr=subprocess.PIPE, text=True, start_new_session=True)
@@ -214,6 +218,7 @@ def test_a_worker_that_dies_while_a_chunk_is_kept_costs_nothing() -> None:
     assert sorted(set(kept)) == list(range(6))
 
 
+@pytest.mark.slow
 def test_processes_that_never_begin_are_told_and_no_chunk_is_blamed(tmp_path: Path) -> None:
     with pytest.raises(vi.ComputationError, match="die before they have computed anything"):
         run_chunks(_dies, lambda chunk: {}, [Span(0, 0, 1)], partial(processes, 1, _cannot_begin, tmp_path), lambda *_: None)  # type: ignore[arg-type]

@@ -185,7 +185,7 @@ PERIODS = {0.3: 2.5, 0.5: 2.5, 1.0: 5.0, 2.0: 10.0}  # of the highest mode in He
 @pytest.mark.parametrize(
     ("plate", "side", "modes", "more"),
     [
-        (PMMA, 0.2, 80, {}),
+        pytest.param(PMMA, 0.2, 80, {}, marks=pytest.mark.slow),
         pytest.param(STEEL, 0.2, 65, {}, marks=pytest.mark.slow),
         (ALUMINIUM, 0.12, 24, {"element": "solid", "mesh": {"element_size": 0.008}}),
     ],
