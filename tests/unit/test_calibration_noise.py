@@ -92,6 +92,7 @@ def scatter_over_stated(found: list[Calibration]) -> Floats:
     return np.std([one.fit.function.coefficients for one in found], axis=0) / stated
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("confidence", [0.95, pytest.param(0.8, marks=pytest.mark.slow)])
 @pytest.mark.parametrize(
     ("measure", "exact"),

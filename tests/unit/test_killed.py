@@ -241,7 +241,7 @@ def kill_at(stage: Stage, chosen: Callable[[int], list[int]]) -> None:
     try_each(stage, chosen, kill)
 
 
-@pytest.mark.parametrize("stage", one_in(2, ["run --force", "report", "laws"]), indirect=True)
+@pytest.mark.parametrize("stage", one_in(3, ["run --force", "report", "laws"]), indirect=True)
 def test_a_command_that_is_killed_leaves_the_old_result_or_the_new_one(stage: Stage) -> None:
     kill_at(stage, lambda number: [max(1, number - 12), number - 1])
 

@@ -46,6 +46,7 @@ def test_an_impact_takes_less_than_two_thousand_bytes() -> None:
     assert (held[2] - held[1]) / 40 < 2000.0
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("traced")
 def test_a_history_takes_little_more_memory_than_its_numbers() -> None:
     response = vi.simulate(drop(60))

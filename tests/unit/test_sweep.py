@@ -25,7 +25,7 @@ from vibroimpact.storage.compute_study import chunk_size, compute_study
 from vibroimpact.studies.dask_workers import dask_workers
 from vibroimpact.studies.ledger import Span
 from vibroimpact.studies.run_chunks import run_chunks
-from vibroimpact.studies.workers import processes
+from vibroimpact.studies.workers import processes, this_process
 
 PEAKS = ("first_restitution_achieved", "largest_force_N", "total_energy_lost_J")
 
@@ -248,13 +248,14 @@ def _nothing() -> None:
     pass
 
 
-def test_processes_and_dask_compute_the_same_bits(tmp_path: Path) -> None:
-    from vibroimpact.studies.workers import this_process
+def test_processes_compute_the_same_bits(tmp_path: Path) -> None:
+    assert _chunks(partial(processes, 2, _nothing, tmp_path)) == _chunks(this_process)
 
-    here = _chunks(this_process)
-    assert _chunks(partial(processes, 2, _nothing, tmp_path)) == here
+
+@pytest.mark.slow
+def test_dask_computes_the_same_bits() -> None:
     with socket.socket() as other:
         with suppress(OSError):  # then it is taken already
             other.bind(("", 8787))  # where Dask's dashboards are
             other.listen()
-        assert _chunks(partial(dask_workers, "local", 2, _nothing)) == here
+        assert _chunks(partial(dask_workers, "local", 2, _nothing)) == _chunks(this_process)

@@ -167,6 +167,7 @@ def test_a_worker_that_is_killed_costs_nothing(tmp_path: Path) -> None:
             assert values.tobytes() == found[number].arrays[name].tobytes()
 
 
+@pytest.mark.slow
 def test_a_chunk_that_kills_every_worker_is_given_up_and_the_rest_go_on(tmp_path: Path) -> None:
     found = _with_a_death(tmp_path, always=True)
     assert len(found) == 4

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 import vibroimpact as vi
-from support import one_in, plain_case
+from support import plain_case
 from vibroimpact.structures.modal_model import ModalBasis
 
 LAWS = {"hertz": {}, "adams-impact": {"damping_max": 179.75, "full_damping_penetration": 1e-4}}
@@ -70,7 +70,8 @@ def check(whole: vi.Problem, bounds: dict[int, float], plain: dict[int, float]) 
         assert 1.0 < response.truncation["plate"] / error < 6.0, number
 
 
-@pytest.mark.parametrize("law", one_in(2, LAWS))
+@pytest.mark.slow
+@pytest.mark.parametrize("law", LAWS)
 def test_a_coarse_mesh(law: str) -> None:
     """120 modes on elements of 80 mm stand for 400."""
     check(problem(law, 120, 0.08), {20: 0.03, 60: 0.004}, {20: 0.06, 60: 0.024})

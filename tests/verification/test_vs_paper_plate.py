@@ -46,6 +46,7 @@ def test_refining_the_rims_converges_from_above() -> None:
     np.testing.assert_allclose(fine, REFERENCE, rtol=0.015)
 
 
+@pytest.mark.slow
 def test_plate_elements() -> None:
     """They rest on a bed; held rigidly they were 1.4 % and 1.1 % too stiff, as a plate does not bend within its thickness."""
     np.testing.assert_allclose(modes_of(PlateOfPlates(SIZE, element_size=0.04)).frequencies, REFERENCE, rtol=2e-3)

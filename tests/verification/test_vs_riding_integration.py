@@ -48,6 +48,7 @@ def test_a_thin_plate_throws_its_ball_again() -> None:
     assert response.impacts["separation_speed_m_s"][0] == pytest.approx(0.98468, rel=1e-4)
 
 
+@pytest.mark.slow
 def test_springs_of_3_hz_give_a_heavy_ball_back() -> None:
     """33 kg on a plate of 2 kg: ten contacts, the last of 0.7 s in which the springs are wound up and let go."""
     law = LankaraniNikravesh(stiffness=1e10, restitution=0.2)

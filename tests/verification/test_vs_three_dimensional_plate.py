@@ -182,6 +182,7 @@ SIDES = {0.3: 0.12, 0.5: 0.12, 1.0: 0.2, 2.0: 0.3}
 PERIODS = {0.3: 2.5, 0.5: 2.5, 1.0: 5.0, 2.0: 10.0}  # of the highest mode in Hertz's contact
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("plate", "side", "modes", "more"),
     [
