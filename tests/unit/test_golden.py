@@ -1,0 +1,15 @@
+"""Numbers that were kept before the solver was built anew are still the same."""
+
+from __future__ import annotations
+
+import pytest
+
+from golden import PROBLEMS, departures
+from support import one_in
+
+
+@pytest.mark.parametrize("name", one_in(6, PROBLEMS))
+def test_numbers_are_those_kept(name: str) -> None:
+    found = departures(name)
+    worst = max(found, key=lambda key: found[key])
+    assert found[worst] <= 1.0, worst
