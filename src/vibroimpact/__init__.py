@@ -47,12 +47,13 @@ if TYPE_CHECKING:
     from vibroimpact.contact.law import contact_laws as contact_laws
     from vibroimpact.contact.law import find_contact_law as find_contact_law
     from vibroimpact.contact.quasi_static import QuasiStatic as QuasiStatic
-    from vibroimpact.contact.restitution import achieved_restitution as achieved_restitution
-    from vibroimpact.contact.restitution import integrated_restitution as integrated_restitution
     from vibroimpact.dynamics.outcome import Outcome as Outcome
     from vibroimpact.dynamics.problem import Problem as Problem
     from vibroimpact.dynamics.recording import Signal as Signal
     from vibroimpact.dynamics.response import Response as Response
+    from vibroimpact.dynamics.restitution import achieved_restitution as achieved_restitution
+    from vibroimpact.dynamics.restitution import integrated_restitution as integrated_restitution
+    from vibroimpact.dynamics.restitution import law_achieving as law_achieving
     from vibroimpact.dynamics.sensor import Accelerometer as Accelerometer
     from vibroimpact.dynamics.sensor import Sensor as Sensor
     from vibroimpact.dynamics.simulate import simulate as simulate
@@ -114,7 +115,7 @@ _HOME = {
     "Study": "storage.study",
     "Sweep": "cases.sweep",
     "VibroimpactError": "errors",
-    "achieved_restitution": "contact.restitution",
+    "achieved_restitution": "dynamics.restitution",
     "calibrate": "calibration.calibrate",
     "calibrate_case": "cases.calibration",
     "calibrated_case": "cases.calibration",
@@ -130,7 +131,8 @@ _HOME = {
     "identify_local_element": "calibration.local_element",
     "impacts_in_force": "calibration.force_record",
     "impacts_in_position": "calibration.position_record",
-    "integrated_restitution": "contact.restitution",
+    "integrated_restitution": "dynamics.restitution",
+    "law_achieving": "dynamics.restitution",
     "law_parameter": "calibration.tunables",
     "load_calibration": "cases.calibration",
     "load_case": "cases.reader",

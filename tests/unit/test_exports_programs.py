@@ -23,7 +23,7 @@ from vibroimpact.contact.laws.linear_spring_dashpot import LinearSpringDashpot
 from vibroimpact.contact.laws.newton import Newton
 from vibroimpact.contact.laws.tsuji import Tsuji
 from vibroimpact.contact.pair import ContactPair
-from vibroimpact.contact.restitution import achieved_restitution
+from vibroimpact.dynamics.restitution import achieved_restitution
 from vibroimpact.errors import InputError
 from vibroimpact.exchange.contact_alone import clipped_dashpot
 from vibroimpact.exchange.drop import Drop

@@ -12,7 +12,7 @@ import pytest
 import vibroimpact as vi
 from vibroimpact.contact.laws.lankarani_nikravesh import LankaraniNikravesh
 from vibroimpact.contact.laws.walton_braun import WaltonBraun
-from vibroimpact.contact.phase.collocation import Rule
+from vibroimpact.dynamics.collocation import Rule
 from vibroimpact.dynamics.impact_rows import ImpactRows
 from vibroimpact.dynamics.packed_list import PackedList
 from vibroimpact.storage import fine_history as kept

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from vibroimpact.contact.phase.next_touch import next_touch
-from vibroimpact.contact.phase.oscillators import FreeMotion, Oscillators, State
+from vibroimpact.dynamics.next_touch import next_touch
+from vibroimpact.dynamics.oscillators import FreeMotion, Oscillators, State
 
 NONE = np.zeros(0)
 

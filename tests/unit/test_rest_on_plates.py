@@ -16,15 +16,15 @@ from vibroimpact.contact.law import CompliantLaw, contact_laws
 from vibroimpact.contact.laws.hertz import Hertz
 from vibroimpact.contact.laws.jkr import JKR
 from vibroimpact.contact.laws.lankarani_nikravesh import LankaraniNikravesh
-from vibroimpact.contact.local import LocalContact
 from vibroimpact.contact.pair import ContactPair
-from vibroimpact.contact.phase import visit
-from vibroimpact.contact.phase.oscillators import Oscillators, State
-from vibroimpact.contact.phase.riding import Riding
-from vibroimpact.contact.phase.vibrating_stretch import Surroundings
 from vibroimpact.contact.quasi_static import QuasiStatic
+from vibroimpact.dynamics import visit
 from vibroimpact.dynamics.columns import LEDGER, VIBRATION_LEDGER
+from vibroimpact.dynamics.local import LocalContact
 from vibroimpact.dynamics.lying import lay_down
+from vibroimpact.dynamics.oscillators import Oscillators, State
+from vibroimpact.dynamics.riding import Riding
+from vibroimpact.dynamics.vibrating_stretch import Surroundings
 
 LOSSY = LankaraniNikravesh(stiffness=STIFFNESS, restitution=0.5)
 PAIR = ContactPair(2.4264724e9, 0.025, 0.09032078879, 8e7, 0.28)

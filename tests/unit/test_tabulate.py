@@ -13,9 +13,9 @@ from vibroimpact.contact.law import CompliantLaw, ContactLaw, contact_laws
 from vibroimpact.contact.laws.hertz import Hertz
 from vibroimpact.contact.laws.lankarani_nikravesh import LankaraniNikravesh
 from vibroimpact.contact.pair import ContactPair
-from vibroimpact.contact.phase import quick_contact
-from vibroimpact.contact.phase.quick_contact import smooth_throughout
+from vibroimpact.dynamics import quick_contact
 from vibroimpact.dynamics import tabulate as module
+from vibroimpact.dynamics.quick_contact import smooth_throughout
 
 LAWS = list(contact_laws().values())
 SMOOTH = {

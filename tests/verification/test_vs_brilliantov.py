@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from vibroimpact.contact.laws.kuwabara_kono import KuwabaraKono
-from vibroimpact.contact.restitution import integrated_restitution
+from vibroimpact.dynamics.restitution import integrated_restitution
 
 
 @pytest.mark.parametrize(("b", "expected"), [(0.1, 0.892859), (0.3, 0.722085), (1.0, 0.393931)])

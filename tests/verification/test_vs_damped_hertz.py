@@ -63,7 +63,7 @@ def test_the_laws_without_a_printed_restitution(name: str) -> None:
 @pytest.mark.parametrize("wanted", EXACT)
 def test_the_factor_that_achieves_a_restitution_exactly(wanted: float) -> None:
     assert hysteretic_restitution(EXACT[wanted]) == pytest.approx(wanted, abs=1e-6)
-    law = vi.find_contact_law("flores")(stiffness=1e7, restitution=0.5).achieving(wanted, mass=0.3, speed=2.0)
+    law = vi.law_achieving(vi.find_contact_law("flores")(stiffness=1e7, restitution=0.5), wanted, mass=0.3, speed=2.0)
     assert law.damping_factor == pytest.approx(EXACT[wanted], abs=5e-6)  # of a printed 9.998159 the last digit
 
 

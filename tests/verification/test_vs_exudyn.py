@@ -8,7 +8,7 @@ from __future__ import annotations
 import pytest
 
 from vibroimpact.contact.laws.hunt_crossley import HuntCrossley
-from vibroimpact.contact.restitution import integrated_restitution
+from vibroimpact.dynamics.restitution import integrated_restitution
 
 
 @pytest.mark.parametrize(("asked", "speed"), [(0.9, 9.090299), (0.8, 8.329035), (0.5, 6.629838), (0.3, 5.813176), (0.1, 5.158574)])

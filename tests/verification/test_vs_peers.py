@@ -17,7 +17,7 @@ import vibroimpact as vi
 from told import MASS, STIFFNESS, told, told_case
 from vibroimpact.contact.law import ContactLaw, contact_laws
 from vibroimpact.contact.pair import ContactPair
-from vibroimpact.contact.restitution import achieved_restitution
+from vibroimpact.dynamics.restitution import achieved_restitution
 from vibroimpact.exchange.drop import Drop
 from vibroimpact.exchange.export_format import find_export_format
 

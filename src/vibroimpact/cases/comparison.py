@@ -10,6 +10,7 @@ from vibroimpact.cases.build import contact_laws_of, contact_pair, first_speed, 
 from vibroimpact.cases.reader import read_case
 from vibroimpact.cases.schema import Case
 from vibroimpact.contact.law import ContactLaw, find_contact_law, unit_of
+from vibroimpact.dynamics.restitution import law_achieving
 from vibroimpact.errors import InputError, did_you_mean
 from vibroimpact.ranges import Range
 from vibroimpact.shown import shown
@@ -100,7 +101,7 @@ def _case_under(case: Case, law: type[ContactLaw], given: Mapping[str, Any], ach
 def _tuned(case: Case, table: Mapping[str, Any], parameter: str, achieving: float) -> Case:
     """Return a case whose first impact achieves a restitution."""
     law, speed = contact_laws_of(case)[0], first_speed(case)
-    tuned = law.achieving(achieving, contact_pair(case).effective_mass, speed)
+    tuned = law_achieving(law, achieving, contact_pair(case).effective_mass, speed)
     return read_case({**table, "contact": {**table["contact"], parameter: getattr(tuned, parameter)}})
 
 

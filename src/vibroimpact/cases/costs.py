@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, NamedTuple
 from vibroimpact.cases.build import contact_laws_of, contact_pair, deforms, first_speed, impacts_of
 from vibroimpact.cases.build_elastic import elastic_bodies
 from vibroimpact.contact.law import CompliantLaw
-from vibroimpact.contact.restitution import achieved_restitution
 from vibroimpact.contact.static import static_indentation
 from vibroimpact.dynamics.history_grid import MOST_POINTS
 from vibroimpact.dynamics.problem import MOST_IMPACTS
+from vibroimpact.dynamics.restitution import achieved_restitution
 from vibroimpact.structures.factor import check_room
 from vibroimpact.structures.recipe import BroughtMesh, model_key
 from vibroimpact.structures.store import has_model

@@ -15,9 +15,9 @@ from vibroimpact.cases.local_section import MeasuredImpact
 from vibroimpact.cases.modes import BodyModes, compute_modes
 from vibroimpact.cases.residuals import residual_key, with_residuals
 from vibroimpact.contact.law import CompliantLaw
-from vibroimpact.contact.local import LocalContact
-from vibroimpact.contact.phase.encounter import encounter_of
 from vibroimpact.contact.quasi_static import QuasiStatic
+from vibroimpact.dynamics.encounter import encounter_of
+from vibroimpact.dynamics.local import LocalContact
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.simulate import simulate
 from vibroimpact.errors import InputError

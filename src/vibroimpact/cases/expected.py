@@ -11,7 +11,7 @@ from vibroimpact.cases.build import contact_laws_of, contact_pair, first_speed
 from vibroimpact.cases.conditions import Seen
 from vibroimpact.contact.hertz_time import HERTZ_TIME
 from vibroimpact.contact.law import CompliantLaw
-from vibroimpact.contact.phase.encounter import encounter_of
+from vibroimpact.dynamics.encounter import encounter_of
 
 if TYPE_CHECKING:
     from vibroimpact.cases.schema import Case

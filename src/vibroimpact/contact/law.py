@@ -93,7 +93,7 @@ class ContactLaw:
 
     @property
     def free_parameter(self) -> str | None:
-        """The parameter that sets how much is lost, which `achieving` may change; None if there is none."""
+        """The parameter that sets how much is lost, which `law_achieving` may change; None if there is none."""
         return "restitution" if getattr(self, "restitution", None) is not None else None
 
     def closed_form_restitution(self, mass: Array, speed: Array) -> Array | None:
@@ -107,34 +107,6 @@ class ContactLaw:
             Approach speed [m/s].
         """
         return None
-
-    def achieving(self, restitution: Array, mass: Array, speed: Array) -> Self:
-        """Return this law with its free parameter such that it achieves a restitution.
-
-        Parameters
-        ----------
-        restitution : float or array
-            Restitution to achieve, without gravity [-].
-        mass : float or array
-            Effective mass of the pair [kg].
-        speed : float or array
-            Approach speed [m/s].
-
-        Raises
-        ------
-        InputError
-            If no value of the parameter achieves it; the message names the range that can be reached.
-
-        Examples
-        --------
-        >>> from vibroimpact.contact.laws.flores import Flores
-        >>> law = Flores(stiffness=5e8, restitution=0.7).achieving(restitution=0.7, mass=0.09, speed=3.0)
-        >>> round(law.restitution, 6)
-        0.715939
-        """
-        from vibroimpact.contact.restitution import law_achieving  # which needs this module
-
-        return law_achieving(self, restitution, mass, speed)
 
     @classmethod
     def for_pair(cls, pair: ContactPair, **parameters: Any) -> Self:

@@ -16,10 +16,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
-from vibroimpact.contact.phase.collocation import Floats
-from vibroimpact.contact.phase.oscillators import Oscillators
 from vibroimpact.dynamics.antialias import FINENESS, REACH, kernel, kernel_derivatives
+from vibroimpact.dynamics.collocation import Floats
 from vibroimpact.dynamics.measuring_chain import MeasuringChain
+from vibroimpact.dynamics.oscillators import Oscillators
 from vibroimpact.dynamics.pulses import gauss_rule
 
 _ROWS = 64

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from vibroimpact.contact.phase.collocation import Floats
+from vibroimpact.dynamics.collocation import Floats
 
 
 @dataclass(frozen=True)

@@ -10,16 +10,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from vibroimpact.contact.phase.collocation import Floats
-from vibroimpact.contact.phase.oscillators import Oscillators
-from vibroimpact.contact.phase.vibrating_stretch import VibratingStretch
 from vibroimpact.dynamics.antialias import FINENESS, REACH, kernel
+from vibroimpact.dynamics.collocation import Floats
 from vibroimpact.dynamics.filtered_chain import FilteredChain, filter_gains, filtered_chain
 from vibroimpact.dynamics.lying import Lying
 from vibroimpact.dynamics.lying_chain import lying_chain, lying_pulses
 from vibroimpact.dynamics.measuring_chain import MeasuringChain
+from vibroimpact.dynamics.oscillators import Oscillators
 from vibroimpact.dynamics.pole_pairs import PolePairs
 from vibroimpact.dynamics.pulses import force_derivatives, pulses
+from vibroimpact.dynamics.vibrating_stretch import VibratingStretch
 
 if TYPE_CHECKING:
     from vibroimpact.dynamics.vibrating_segment import VibratingSegment

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from vibroimpact.contact.phase.collocation import Floats
+from vibroimpact.dynamics.collocation import Floats
 
 MOST_POINTS = 1_000_000
 """Of a history that is kept in a file: a hundred million bytes of it."""

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from vibroimpact.contact.phase.collocation import Floats
-from vibroimpact.contact.phase.contact import Contact
-from vibroimpact.contact.phase.encounter import Encounter
-from vibroimpact.contact.phase.oscillators import FreeMotion
+from vibroimpact.dynamics.collocation import Floats
+from vibroimpact.dynamics.contact import Contact
+from vibroimpact.dynamics.encounter import Encounter
 from vibroimpact.dynamics.flight import Flight
+from vibroimpact.dynamics.oscillators import FreeMotion
 
 
 @dataclass(frozen=True)

@@ -7,9 +7,9 @@ from functools import cached_property
 
 import numpy as np
 
-from vibroimpact.contact.phase.collocation import Floats
-from vibroimpact.contact.phase.oscillators import FreeMotion, Oscillators, State
-from vibroimpact.contact.phase.riding import Riding, coupled_oscillators
+from vibroimpact.dynamics.collocation import Floats
+from vibroimpact.dynamics.oscillators import FreeMotion, Oscillators, State
+from vibroimpact.dynamics.riding import Riding, coupled_oscillators
 
 
 @dataclass(frozen=True, eq=False)

@@ -18,11 +18,11 @@ from functools import reduce
 
 import numpy as np
 
-from vibroimpact.contact.phase.collocation import Floats
-from vibroimpact.contact.phase.oscillators import Oscillators
 from vibroimpact.dynamics.antialias import Section
+from vibroimpact.dynamics.collocation import Floats
 from vibroimpact.dynamics.lying import Lying
 from vibroimpact.dynamics.measuring_chain import MeasuringChain, of_section, point_at
+from vibroimpact.dynamics.oscillators import Oscillators
 from vibroimpact.dynamics.pole_pairs import PolePairs
 from vibroimpact.dynamics.pulses import gauss_rule
 

@@ -18,9 +18,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from vibroimpact.contact.phase.collocation import Floats
-from vibroimpact.contact.phase.oscillators import Oscillators
 from vibroimpact.dynamics.antialias import Section
+from vibroimpact.dynamics.collocation import Floats
+from vibroimpact.dynamics.oscillators import Oscillators
 from vibroimpact.dynamics.pole_pairs import PolePairs
 
 _APART = 1e-6

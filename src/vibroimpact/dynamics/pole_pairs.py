@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from vibroimpact.contact.phase.collocation import Floats
+from vibroimpact.dynamics.collocation import Floats
 
 
 @dataclass(frozen=True)

@@ -8,8 +8,8 @@ from functools import lru_cache
 import numpy as np
 from numpy.polynomial import legendre
 
-from vibroimpact.contact.phase.collocation import Floats
-from vibroimpact.contact.phase.vibrating_stretch import VibratingStretch
+from vibroimpact.dynamics.collocation import Floats
+from vibroimpact.dynamics.vibrating_stretch import VibratingStretch
 
 _NODES, _TURN = 16, 10.0
 """Of Gauss's rule on each panel, and radians of the fastest wave in it: to rounding."""

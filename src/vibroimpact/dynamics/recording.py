@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vibroimpact.contact.phase.collocation import Floats
-from vibroimpact.contact.phase.oscillators import Oscillators
 from vibroimpact.dynamics.antialias import Section, antialias_of
+from vibroimpact.dynamics.collocation import Floats
 from vibroimpact.dynamics.filtered_chain import filtered_chain
 from vibroimpact.dynamics.followed import around_first_contact, follow_at_instants, follow_filtered, longest_span
 from vibroimpact.dynamics.measuring_chain import MeasuringChain, measuring_chain
+from vibroimpact.dynamics.oscillators import Oscillators
 from vibroimpact.dynamics.overload import finer_rate, overload, taken_away
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.sensor import Sensor, sample_count

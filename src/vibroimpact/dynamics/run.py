@@ -9,21 +9,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vibroimpact.contact.law import CompliantLaw, ContactLaw, InstantaneousLaw
-from vibroimpact.contact.phase.collocation import Floats
-from vibroimpact.contact.phase.contact import CAPTURED, FAILED, RIDING, Contact, Drops
-from vibroimpact.contact.phase.encounter import Encounter, encounter_of
-from vibroimpact.contact.phase.oscillators import FreeMotion
-from vibroimpact.contact.phase.solve_contact import SolvesContact
 from vibroimpact.contact.static import static_indentation
+from vibroimpact.dynamics.collocation import Floats
 from vibroimpact.dynamics.columns import IMPACT_COLUMNS, VIBRATION_IMPACT_COLUMNS
+from vibroimpact.dynamics.contact import CAPTURED, FAILED, RIDING, Contact, Drops
+from vibroimpact.dynamics.encounter import Encounter, encounter_of
 from vibroimpact.dynamics.energy import CLOSURE_LIMIT, WRITE_OFF_LIMIT, close_ledger
 from vibroimpact.dynamics.flight import Flight
 from vibroimpact.dynamics.impact_rows import ImpactRows
 from vibroimpact.dynamics.leg import Leg
+from vibroimpact.dynamics.oscillators import FreeMotion
 from vibroimpact.dynamics.outcome import OUTCOMES, Outcome
 from vibroimpact.dynamics.problem import MOST_IMPACTS, Problem
 from vibroimpact.dynamics.response import Response, Rest
 from vibroimpact.dynamics.sensitivity import Neighbours
+from vibroimpact.dynamics.solve_contact import SolvesContact
 from vibroimpact.dynamics.vibration import Vibration, contact_of
 
 

@@ -10,11 +10,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from vibroimpact.contact.law import CompliantLaw
-from vibroimpact.contact.phase.collocation import Floats, collocation_rule
-from vibroimpact.contact.phase.encounter import Encounter
-from vibroimpact.contact.phase.glide import Glide
-from vibroimpact.contact.phase.stretch import Stretch
+from vibroimpact.dynamics.collocation import Floats, collocation_rule
+from vibroimpact.dynamics.encounter import Encounter
 from vibroimpact.dynamics.flight import Flight
+from vibroimpact.dynamics.glide import Glide
+from vibroimpact.dynamics.stretch import Stretch
 
 Motion = tuple[Floats, Floats, Floats, Floats, Floats, Floats]
 """Gap [m], upward velocity [m/s], contact force [N], stored energy [J], and energy lost in damping and in

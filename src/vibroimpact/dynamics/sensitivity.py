@@ -15,14 +15,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vibroimpact.contact.local import LocalContact
-from vibroimpact.contact.phase.collocation import Floats
-from vibroimpact.contact.phase.oscillators import FreeMotion, Oscillators, State
-from vibroimpact.contact.phase.tangent import difference_through
-from vibroimpact.contact.phase.vibrating_stretch import VibratingStretch
-from vibroimpact.contact.phase.visit import Apart
 from vibroimpact.contact.roots import highest
+from vibroimpact.dynamics.collocation import Floats
+from vibroimpact.dynamics.local import LocalContact
+from vibroimpact.dynamics.oscillators import FreeMotion, Oscillators, State
 from vibroimpact.dynamics.problem import Problem
+from vibroimpact.dynamics.tangent import difference_through
+from vibroimpact.dynamics.vibrating_stretch import VibratingStretch
+from vibroimpact.dynamics.visit import Apart
 
 if TYPE_CHECKING:
     from vibroimpact.dynamics.leg import Leg

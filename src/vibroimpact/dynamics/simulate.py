@@ -5,14 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
-from vibroimpact.contact.phase.collocation import Rule
-from vibroimpact.contact.phase.solve_contact import collocated
+from vibroimpact.dynamics.collocation import Rule
 from vibroimpact.dynamics.leg import Leg
 from vibroimpact.dynamics.outcome import Outcome
 from vibroimpact.dynamics.packed_list import PackedList
 from vibroimpact.dynamics.problem import StatesProblem
 from vibroimpact.dynamics.response import Response
 from vibroimpact.dynamics.run import Run
+from vibroimpact.dynamics.solve_contact import collocated
 from vibroimpact.errors import ComputationError, InputError
 
 

@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vibroimpact.contact.phase.visit import MOST_STEPS, MOST_STEPS_TO_A_TIME
 from vibroimpact.dynamics.energy import why_failed
 from vibroimpact.dynamics.outcome import Outcome
 from vibroimpact.dynamics.sensitivity import change_by_impact
+from vibroimpact.dynamics.visit import MOST_STEPS, MOST_STEPS_TO_A_TIME
 from vibroimpact.quantity import certain, certain_figures
 
 if TYPE_CHECKING:

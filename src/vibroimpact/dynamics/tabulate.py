@@ -8,11 +8,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from vibroimpact.contact.phase.collocation import Floats
-from vibroimpact.contact.phase.quick_contact import quick
+from vibroimpact.dynamics.collocation import Floats
 from vibroimpact.dynamics.energy import why_failed
 from vibroimpact.dynamics.outcome import Outcome
 from vibroimpact.dynamics.problem import Problem, StatesProblem
+from vibroimpact.dynamics.quick_contact import quick
 from vibroimpact.dynamics.response import Response
 from vibroimpact.dynamics.run import Run
 from vibroimpact.errors import InputError

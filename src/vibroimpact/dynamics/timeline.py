@@ -9,11 +9,11 @@ from typing import overload
 import numpy as np
 from numpy.typing import NDArray
 
-from vibroimpact.contact.phase.collocation import Floats
-from vibroimpact.contact.phase.glide import Glide
-from vibroimpact.contact.phase.stretch import Stretch
+from vibroimpact.dynamics.collocation import Floats
+from vibroimpact.dynamics.glide import Glide
 from vibroimpact.dynamics.leg import Leg
 from vibroimpact.dynamics.segments import FlightSegment, GlideSegment, RestSegment, Segment, StretchSegment
+from vibroimpact.dynamics.stretch import Stretch
 
 
 @dataclass(frozen=True, eq=False)

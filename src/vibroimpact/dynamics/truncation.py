@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from vibroimpact.contact.hertz_time import HERTZ_TIME
-from vibroimpact.contact.phase.collocation import Floats
+from vibroimpact.dynamics.collocation import Floats
 from vibroimpact.dynamics.problem import Problem
 
 if TYPE_CHECKING:

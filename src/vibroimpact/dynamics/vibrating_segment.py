@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vibroimpact.contact.phase.collocation import Floats
-from vibroimpact.contact.phase.oscillators import FreeMotion, Oscillators, State
-from vibroimpact.contact.phase.vibrating_stretch import VibratingStretch
-from vibroimpact.contact.phase.visit import Apart
+from vibroimpact.dynamics.collocation import Floats
 from vibroimpact.dynamics.lying import Lying
+from vibroimpact.dynamics.oscillators import FreeMotion, Oscillators, State
+from vibroimpact.dynamics.vibrating_stretch import VibratingStretch
+from vibroimpact.dynamics.visit import Apart
 
 if TYPE_CHECKING:
     from vibroimpact.dynamics.leg import Leg

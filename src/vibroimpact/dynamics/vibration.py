@@ -7,16 +7,16 @@ from numpy.typing import NDArray
 
 from vibroimpact.bodies.body import Body
 from vibroimpact.contact.law import CompliantLaw
-from vibroimpact.contact.phase.collocation import Floats
-from vibroimpact.contact.phase.contact import CAPTURED, RIDING, SETTLED, Contact, Drops, Piece
-from vibroimpact.contact.phase.encounter import Encounter
-from vibroimpact.contact.phase.next_touch import next_touch
-from vibroimpact.contact.phase.oscillators import FreeMotion, Oscillators, State
-from vibroimpact.contact.phase.riding import Riding
-from vibroimpact.contact.phase.vibrating_stretch import Surroundings
-from vibroimpact.contact.phase.visit import Visit, visit
+from vibroimpact.dynamics.collocation import Floats
+from vibroimpact.dynamics.contact import CAPTURED, RIDING, SETTLED, Contact, Drops, Piece
+from vibroimpact.dynamics.encounter import Encounter
 from vibroimpact.dynamics.lying import Lying, lay_down
+from vibroimpact.dynamics.next_touch import next_touch
+from vibroimpact.dynamics.oscillators import FreeMotion, Oscillators, State
 from vibroimpact.dynamics.problem import Problem
+from vibroimpact.dynamics.riding import Riding
+from vibroimpact.dynamics.vibrating_stretch import Surroundings
+from vibroimpact.dynamics.visit import Visit, visit
 
 
 def oscillators_of(problem: Problem) -> Oscillators:

@@ -16,6 +16,7 @@ from vibroimpact.contact.laws.adams_impact import AdamsImpact
 from vibroimpact.contact.laws.adams_poisson import AdamsPoisson
 from vibroimpact.contact.power_law import PowerLaw, SphereLaw
 from vibroimpact.dynamics.problem import Problem
+from vibroimpact.dynamics.restitution import law_achieving
 from vibroimpact.dynamics.simulate import simulate
 from vibroimpact.errors import InputError
 from vibroimpact.exchange.drop import Drop
@@ -140,4 +141,4 @@ def _unit_dashpot(exponent: float, restitution: float) -> float:
     """Return the same where stiffness, mass and speed are one, to which all others are alike."""
     # IMPACT, faded in over so little that it can't be seen
     law = AdamsImpact(stiffness=1.0, exponent=exponent, damping_max=1.0, full_damping_penetration=1e-7)
-    return float(law.achieving(restitution, 1.0, 1.0).damping_max)
+    return float(law_achieving(law, restitution, 1.0, 1.0).damping_max)

@@ -12,7 +12,7 @@ from vibroimpact.cases.build import contact_laws_of, contact_pair, first_speed
 from vibroimpact.cases.comparison import cases_under
 from vibroimpact.cases.schema import Case
 from vibroimpact.contact.law import ContactLaw
-from vibroimpact.contact.restitution import achieved_restitution
+from vibroimpact.dynamics.restitution import achieved_restitution
 from vibroimpact.dynamics.simulate import simulate
 from vibroimpact.quantity import MISSING, text
 from vibroimpact.report.tables import HEADERS, column

@@ -16,8 +16,8 @@ from vibroimpact.cases.doubts import doubts
 from vibroimpact.cases.expected import expected_of
 from vibroimpact.cases.schema import Case, SensorSection
 from vibroimpact.contact.law import CompliantLaw, ContactLaw, unit_of
-from vibroimpact.contact.restitution import achieved_restitution
 from vibroimpact.dynamics.problem import STANDARD_GRAVITY
+from vibroimpact.dynamics.restitution import achieved_restitution, law_achieving
 from vibroimpact.errors import InputError
 from vibroimpact.materials import RIGID, Material
 from vibroimpact.report.deformation import deformation_rows, treatment_sentence
@@ -223,7 +223,7 @@ def _restitution_lines(law: ContactLaw, mass: float, speed: float) -> list[str]:
         return [f"{achieved:.5g} achieved at the first touch, without gravity"]
     lines = [f"{asked:.5g} asked, {achieved:.5g} achieved at the first touch, without gravity"]
     try:
-        better = getattr(law.achieving(asked, mass, speed), "restitution", asked)
+        better = getattr(law_achieving(law, asked, mass, speed), "restitution", asked)
         lines.append(f"restitution = {better:.6g} would achieve {asked:.5g}")
     except InputError as error:
         lines.append(error.message)

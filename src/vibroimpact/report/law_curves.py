@@ -16,8 +16,8 @@ from vibroimpact.cases.build import contact_pair
 from vibroimpact.cases.reader import read_case
 from vibroimpact.contact.law import CompliantLaw, ContactLaw, find_contact_law, unit_of
 from vibroimpact.contact.pair import ContactPair
-from vibroimpact.contact.restitution import achieved_restitution
 from vibroimpact.dynamics.problem import Problem
+from vibroimpact.dynamics.restitution import achieved_restitution
 from vibroimpact.dynamics.simulate import simulate
 from vibroimpact.errors import InputError
 from vibroimpact.quantity import multiple, text

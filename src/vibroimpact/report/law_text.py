@@ -13,7 +13,7 @@ from vibroimpact.cases.build import contact_pair
 from vibroimpact.cases.reader import load_case
 from vibroimpact.contact.law import CompliantLaw, ContactLaw
 from vibroimpact.contact.pair import ContactPair
-from vibroimpact.contact.restitution import achieved_restitution
+from vibroimpact.dynamics.restitution import achieved_restitution
 from vibroimpact.report.plain_math import plain_text
 
 ASKED = (0.9, 0.7, 0.5, 0.3)

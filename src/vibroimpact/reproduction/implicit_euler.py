@@ -1,7 +1,7 @@
 r"""One impact in steps that are too long: what the implicit Euler method gives where it does not resolve the contact.
 
 A demonstration of what an unresolved run gives, and no way to compute an impact. With the oscillators behind the contact as in
-`contact.phase.oscillators`, a step h gives, all primed at its end,
+`dynamics.oscillators`, a step h gives, all primed at its end,
 
 .. math:: v' = v + h (g - F'/m),\qquad s' = s + h v'
 
@@ -21,9 +21,9 @@ import numpy as np
 
 from vibroimpact.calibration.one_impact import first_speed
 from vibroimpact.contact.law import CompliantLaw
-from vibroimpact.contact.phase.collocation import Floats
-from vibroimpact.contact.phase.oscillators import Oscillators, State
 from vibroimpact.contact.roots import find_root
+from vibroimpact.dynamics.collocation import Floats
+from vibroimpact.dynamics.oscillators import Oscillators, State
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.vibration import modes_of, oscillators_of
 from vibroimpact.errors import ComputationError, InputError

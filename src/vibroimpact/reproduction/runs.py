@@ -10,7 +10,7 @@ from vibroimpact.calibration.calibration import Calibration
 from vibroimpact.cases.calibration import calibrate_case, load_calibration
 from vibroimpact.cases.reader import load_case
 from vibroimpact.contact.pair import Array
-from vibroimpact.contact.phase.collocation import Floats
+from vibroimpact.dynamics.collocation import Floats
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.response import Response
 from vibroimpact.dynamics.simulate import simulate

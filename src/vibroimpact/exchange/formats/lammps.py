@@ -12,7 +12,7 @@ from vibroimpact.contact.laws.adams_impact import AdamsImpact
 from vibroimpact.contact.laws.hertz import Hertz
 from vibroimpact.contact.laws.kuwabara_kono import KuwabaraKono
 from vibroimpact.contact.laws.tsuji import Tsuji
-from vibroimpact.contact.restitution import achieved_restitution
+from vibroimpact.dynamics.restitution import achieved_restitution
 from vibroimpact.exchange.contact_alone import (
     approach_speeds,
     clipped_dashpot,

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from xml.sax.saxutils import quoteattr
 
 from vibroimpact.contact.laws.adams_impact import AdamsImpact
-from vibroimpact.contact.restitution import achieved_restitution
+from vibroimpact.dynamics.restitution import achieved_restitution
 from vibroimpact.exchange.contact_alone import approach_speeds, clipped_dashpot, first_contact, laws_of_impacts, shared_notes, spring
 from vibroimpact.exchange.drop import Drop
 from vibroimpact.exchange.export_format import ExportFormat

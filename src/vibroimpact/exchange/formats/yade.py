@@ -11,7 +11,7 @@ from vibroimpact.contact.law import ContactLaw
 from vibroimpact.contact.laws.hertz import Hertz
 from vibroimpact.contact.laws.tsuji import Tsuji
 from vibroimpact.contact.pair import Array
-from vibroimpact.contact.restitution import achieved_restitution
+from vibroimpact.dynamics.restitution import achieved_restitution, law_achieving
 from vibroimpact.exchange.contact_alone import (
     approach_speeds,
     clipped_dashpot,
@@ -50,7 +50,7 @@ def _damping(law: ContactLaw, drop: Drop, speed: float) -> float:
         return clipped_dashpot(stiffness, exponent, restitution, drop.mass, speed)
     clipped = _Clipped(stiffness=stiffness, restitution=restitution, effective_mass=drop.mass)
     # they take the critical damping of the spring's slope, 3/2 K sqrt(delta)
-    return math.sqrt(5.0 / 6.0) * float(damping_ratio_of(clipped.achieving(restitution, drop.mass, speed).restitution))
+    return math.sqrt(5.0 / 6.0) * float(damping_ratio_of(law_achieving(clipped, restitution, drop.mass, speed).restitution))
 
 
 def _linear(drop: Drop) -> bool:

@@ -15,15 +15,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vibroimpact.contact.law import CompliantLaw
-from vibroimpact.contact.phase.collocation import Floats, Map, Rule, collocation_rule
-from vibroimpact.contact.phase.contact import CAPTURED, COMPRESSION, FAILED, GLIDE, RELEASED, RESTITUTION, Contact, Drops, Piece
-from vibroimpact.contact.phase.encounter import Encounter
-from vibroimpact.contact.phase.glide import glide_until_push
-from vibroimpact.contact.phase.guess import first_guess, time_scale
-from vibroimpact.contact.phase.pull import first_pull, pulls_before_end
-from vibroimpact.contact.phase.stretch import Aim, Stretch, WarmStart, acceleration_unit, solve_stretch
-from vibroimpact.contact.phase.warm_starts import WarmStarts
 from vibroimpact.contact.static import static_indentation, static_work
+from vibroimpact.dynamics.collocation import Floats, Map, Rule, collocation_rule
+from vibroimpact.dynamics.contact import CAPTURED, COMPRESSION, FAILED, GLIDE, RELEASED, RESTITUTION, Contact, Drops, Piece
+from vibroimpact.dynamics.encounter import Encounter
+from vibroimpact.dynamics.glide import glide_until_push
+from vibroimpact.dynamics.guess import first_guess, time_scale
+from vibroimpact.dynamics.pull import first_pull, pulls_before_end
+from vibroimpact.dynamics.stretch import Aim, Stretch, WarmStart, acceleration_unit, solve_stretch
+from vibroimpact.dynamics.warm_starts import WarmStarts
 
 _MOST_STRETCHES = 2000  # the stiffest sensible contacts need about a hundred
 

@@ -20,7 +20,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from vibroimpact.contact.phase.collocation import Floats
+from vibroimpact.dynamics.collocation import Floats
 
 
 @dataclass(frozen=True)

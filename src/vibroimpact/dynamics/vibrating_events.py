@@ -9,8 +9,8 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from vibroimpact.contact.phase.collocation import Floats
-from vibroimpact.contact.phase.vibrating_stretch import VibratingStretch
+from vibroimpact.dynamics.collocation import Floats
+from vibroimpact.dynamics.vibrating_stretch import VibratingStretch
 
 GRID = np.linspace(0.0, 1.0, 33)
 """Where in a stretch events are looked for."""

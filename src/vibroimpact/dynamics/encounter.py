@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vibroimpact.contact.law import CompliantLaw
-from vibroimpact.contact.phase.collocation import Floats
 from vibroimpact.contact.static import free_depth, static_indentation
+from vibroimpact.dynamics.collocation import Floats
 
 
 @dataclass(frozen=True)

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from vibroimpact.contact.phase.collocation import Floats, Map
-from vibroimpact.contact.phase.contact import Drops
-from vibroimpact.contact.phase.stretch import Aim, WarmStart
+from vibroimpact.dynamics.collocation import Floats, Map
+from vibroimpact.dynamics.contact import Drops
+from vibroimpact.dynamics.stretch import Aim, WarmStart
 
 
 class WarmStarts:

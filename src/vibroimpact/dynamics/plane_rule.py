@@ -18,7 +18,7 @@ from functools import cache
 import numpy as np
 from numpy.polynomial import legendre
 
-from vibroimpact.contact.phase.collocation import Floats
+from vibroimpact.dynamics.collocation import Floats
 
 
 @dataclass(frozen=True)

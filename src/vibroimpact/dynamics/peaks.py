@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from vibroimpact.contact.phase.collocation import Floats, collocation_rule
-from vibroimpact.contact.phase.contact import Contact, Drops
-from vibroimpact.contact.phase.encounter import Encounter
-from vibroimpact.contact.phase.stretch import Stretch, WarmStart, acceleration_unit, solve_stretch
+from vibroimpact.dynamics.collocation import Floats, collocation_rule
+from vibroimpact.dynamics.contact import Contact, Drops
+from vibroimpact.dynamics.encounter import Encounter
+from vibroimpact.dynamics.stretch import Stretch, WarmStart, acceleration_unit, solve_stretch
 
 _PARABOLAS = 8  # two or three are what it takes
 _COARSE = 1e-6  # last terms, relative, from which on the inside of a stretch is not exact enough for the peak

@@ -18,9 +18,9 @@ from functools import cache, cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from vibroimpact.contact.local import Linearised, LocalContact
-from vibroimpact.contact.phase.collocation import Floats, Map, Rule, collocation_rule
-from vibroimpact.contact.phase.oscillators import Oscillators, State
+from vibroimpact.dynamics.collocation import Floats, Map, Rule, collocation_rule
+from vibroimpact.dynamics.local import Linearised, LocalContact
+from vibroimpact.dynamics.oscillators import Oscillators, State
 
 Complex = NDArray[np.complex128]
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from vibroimpact.contact.phase.collocation import Floats
-from vibroimpact.contact.phase.oscillators import FreeMotion, Oscillators, State
+from vibroimpact.dynamics.collocation import Floats
+from vibroimpact.dynamics.oscillators import FreeMotion, Oscillators, State
 
 _MOST_STEPS = 100_000
 _MOST_HORIZONS = 10_000

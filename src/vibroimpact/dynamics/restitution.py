@@ -12,12 +12,12 @@ import numpy as np
 
 from vibroimpact.contact.law import CompliantLaw, ContactLaw, InstantaneousLaw
 from vibroimpact.contact.pair import Array
-from vibroimpact.contact.phase.collocation import Floats
-from vibroimpact.contact.phase.contact import CAPTURED, FAILED
-from vibroimpact.contact.phase.contact_phase import contact_phase
-from vibroimpact.contact.phase.encounter import Encounter, encounter_of
-from vibroimpact.contact.phase.warm_starts import WarmStarts
 from vibroimpact.contact.roots import solve_monotonic
+from vibroimpact.dynamics.collocation import Floats
+from vibroimpact.dynamics.contact import CAPTURED, FAILED
+from vibroimpact.dynamics.contact_phase import contact_phase
+from vibroimpact.dynamics.encounter import Encounter, encounter_of
+from vibroimpact.dynamics.warm_starts import WarmStarts
 from vibroimpact.errors import ComputationError, InputError
 from vibroimpact.ranges import Range
 
@@ -134,7 +134,31 @@ def _loss(encounter: Encounter) -> Floats:
 
 
 def law_achieving(law: Law, restitution: Array, mass: Array, speed: Array) -> Law:
-    """Return a law with its free parameter such that it achieves a restitution; see `ContactLaw.achieving`."""
+    """Return a law with its free parameter such that it achieves a restitution.
+
+    Parameters
+    ----------
+    law : ContactLaw
+        The law; all but its free parameter stays.
+    restitution : float or array
+        Restitution to achieve, without gravity [-].
+    mass : float or array
+        Effective mass of the pair [kg].
+    speed : float or array
+        Approach speed [m/s].
+
+    Raises
+    ------
+    InputError
+        If no value of the parameter achieves it; the message names the range that can be reached.
+
+    Examples
+    --------
+    >>> from vibroimpact.contact.laws.flores import Flores
+    >>> law = law_achieving(Flores(stiffness=5e8, restitution=0.7), restitution=0.7, mass=0.09, speed=3.0)
+    >>> round(law.restitution, 6)
+    0.715939
+    """
     wanted, mass, speed = (np.asarray(value, dtype=float) for value in (restitution, mass, speed))
     try:
         Range(at_least=0, at_most=1).check(wanted)

@@ -11,9 +11,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from vibroimpact.contact.local import LocalContact
-from vibroimpact.contact.phase.oscillators import State
-from vibroimpact.contact.phase.vibrating_stretch import NODES, VibratingStretch, force_jacobian, impedance_of, receptance, unforced
+from vibroimpact.dynamics.local import LocalContact
+from vibroimpact.dynamics.oscillators import State
+from vibroimpact.dynamics.vibrating_stretch import NODES, VibratingStretch, force_jacobian, impedance_of, receptance, unforced
 
 
 def difference_through(stretch: VibratingStretch, difference: State, asides: Iterable[tuple[LocalContact, float]] = ()) -> VibratingStretch:

@@ -16,17 +16,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vibroimpact.contact.law import CompliantLaw
-from vibroimpact.contact.local import LocalContact
-from vibroimpact.contact.phase.collocation import Floats, Map
-from vibroimpact.contact.phase.contact import CAPTURED, FAILED, RELEASED, RIDING, SETTLED
-from vibroimpact.contact.phase.next_touch import next_touch, time_to_part
-from vibroimpact.contact.phase.oscillators import FreeMotion, State
-from vibroimpact.contact.phase.riding import Riding, least_energy, may_stay, stays_below
-from vibroimpact.contact.phase.vibrating_events import GRID, ROUNDING, Event, first_event
-from vibroimpact.contact.phase.vibrating_stretch import Surroundings, VibratingStretch, mechanical_energy, solve_vibrating
 from vibroimpact.contact.quasi_static import QuasiStatic
 from vibroimpact.contact.roots import find_root, highest
 from vibroimpact.contact.static import static_indentation
+from vibroimpact.dynamics.collocation import Floats, Map
+from vibroimpact.dynamics.contact import CAPTURED, FAILED, RELEASED, RIDING, SETTLED
+from vibroimpact.dynamics.local import LocalContact
+from vibroimpact.dynamics.next_touch import next_touch, time_to_part
+from vibroimpact.dynamics.oscillators import FreeMotion, State
+from vibroimpact.dynamics.riding import Riding, least_energy, may_stay, stays_below
+from vibroimpact.dynamics.vibrating_events import GRID, ROUNDING, Event, first_event
+from vibroimpact.dynamics.vibrating_stretch import Surroundings, VibratingStretch, mechanical_energy, solve_vibrating
 
 MOST_STEPS, MOST_STEPS_TO_A_TIME = 5_000, 20_000
 """How many stretches of contact a visit is followed for: some ten seconds' work; and where the run has an end in time."""

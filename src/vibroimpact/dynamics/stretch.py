@@ -8,8 +8,8 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from vibroimpact.contact.phase.collocation import Floats, Rule
-from vibroimpact.contact.phase.encounter import Encounter
+from vibroimpact.dynamics.collocation import Floats, Rule
+from vibroimpact.dynamics.encounter import Encounter
 
 Aim = Literal["duration", "turn", "indentation", "force"]
 """What ends a stretch: its duration is given, or it ends where the indentation rate is zero, where the

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from vibroimpact.contact.phase.collocation import Floats, Rule
-from vibroimpact.contact.phase.encounter import Encounter
-from vibroimpact.contact.phase.stretch import Aim
+from vibroimpact.dynamics.collocation import Floats, Rule
+from vibroimpact.dynamics.encounter import Encounter
+from vibroimpact.dynamics.stretch import Aim
 
 
 def time_scale(encounter: Encounter, delta: Floats, velocity: Floats, aim: Aim, level: Floats) -> Floats:

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import Protocol
 
-from vibroimpact.contact.phase.collocation import Floats
-from vibroimpact.contact.phase.contact import Contact, Drops
-from vibroimpact.contact.phase.contact_phase import contact_phase
-from vibroimpact.contact.phase.encounter import Encounter
-from vibroimpact.contact.phase.peaks import force_peak
-from vibroimpact.contact.phase.warm_starts import WarmStarts
+from vibroimpact.dynamics.collocation import Floats
+from vibroimpact.dynamics.contact import Contact, Drops
+from vibroimpact.dynamics.contact_phase import contact_phase
+from vibroimpact.dynamics.encounter import Encounter
+from vibroimpact.dynamics.peaks import force_peak
+from vibroimpact.dynamics.warm_starts import WarmStarts
 
 
 class SolvesContact(Protocol):

@@ -8,10 +8,10 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from vibroimpact.contact.phase.collocation import Floats
-from vibroimpact.contact.phase.contact import Drops
-from vibroimpact.contact.phase.encounter import Encounter
-from vibroimpact.contact.phase.plane_rule import PlaneRule
+from vibroimpact.dynamics.collocation import Floats
+from vibroimpact.dynamics.contact import Drops
+from vibroimpact.dynamics.encounter import Encounter
+from vibroimpact.dynamics.plane_rule import PlaneRule
 
 Way = Literal["in", "out"]
 

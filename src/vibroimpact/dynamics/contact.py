@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vibroimpact.contact.law import CompliantLaw
-from vibroimpact.contact.phase.collocation import Floats
-from vibroimpact.contact.phase.glide import Glide
-from vibroimpact.contact.phase.stretch import Stretch
+from vibroimpact.dynamics.collocation import Floats
+from vibroimpact.dynamics.glide import Glide
+from vibroimpact.dynamics.stretch import Stretch
 
 Drops = NDArray[np.intp]
 

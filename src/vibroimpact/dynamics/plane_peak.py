@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from vibroimpact.contact.pair import Array
-from vibroimpact.contact.phase.collocation import Floats
-from vibroimpact.contact.phase.encounter import Encounter
-from vibroimpact.contact.phase.half_contact import HalfContact
-from vibroimpact.contact.phase.plane_rule import PlaneRule
+from vibroimpact.dynamics.collocation import Floats
+from vibroimpact.dynamics.encounter import Encounter
+from vibroimpact.dynamics.half_contact import HalfContact
+from vibroimpact.dynamics.plane_rule import PlaneRule
 
 _NEAR = 2e-3  # from the top, in y: where a cubic through it is exact to 1e-11
 

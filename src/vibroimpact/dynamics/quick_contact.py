@@ -12,13 +12,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vibroimpact.contact.law import CompliantLaw, ContactLaw
-from vibroimpact.contact.phase.collocation import Floats
-from vibroimpact.contact.phase.contact import RELEASED, Contact, Drops
-from vibroimpact.contact.phase.encounter import Encounter
-from vibroimpact.contact.phase.half_contact import HalfContact, solve_half
-from vibroimpact.contact.phase.plane_peak import plane_peak
-from vibroimpact.contact.phase.plane_rule import PlaneRule, plane_rule
-from vibroimpact.contact.phase.solve_contact import SolvesContact, collocated
+from vibroimpact.dynamics.collocation import Floats
+from vibroimpact.dynamics.contact import RELEASED, Contact, Drops
+from vibroimpact.dynamics.encounter import Encounter
+from vibroimpact.dynamics.half_contact import HalfContact, solve_half
+from vibroimpact.dynamics.plane_peak import plane_peak
+from vibroimpact.dynamics.plane_rule import PlaneRule, plane_rule
+from vibroimpact.dynamics.solve_contact import SolvesContact, collocated
 
 _TIGHTEST = 1e-11  # below it rounding leaves too little room
 _LEAST_RESTITUTION = 0.1  # slower drops are left to what knows how to capture them

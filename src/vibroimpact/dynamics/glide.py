@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from vibroimpact.contact.phase.collocation import Floats
-from vibroimpact.contact.phase.encounter import Encounter
 from vibroimpact.contact.roots import find_root
+from vibroimpact.dynamics.collocation import Floats
+from vibroimpact.dynamics.encounter import Encounter
 
 _SAMPLES = 33
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from vibroimpact.contact.phase.collocation import Floats
-from vibroimpact.contact.phase.encounter import Encounter
-from vibroimpact.contact.phase.stretch import Stretch
+from vibroimpact.dynamics.collocation import Floats
+from vibroimpact.dynamics.encounter import Encounter
+from vibroimpact.dynamics.stretch import Stretch
 
 
 def first_pull(encounter: Encounter, stretch: Stretch, *, on_the_way_out: bool = False) -> Floats:

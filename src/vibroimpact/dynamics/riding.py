@@ -21,11 +21,11 @@ from functools import cached_property
 import numpy as np
 
 from vibroimpact.contact.law import CompliantLaw
-from vibroimpact.contact.local import LocalContact
-from vibroimpact.contact.phase.collocation import Floats
-from vibroimpact.contact.phase.oscillators import Oscillators, State
-from vibroimpact.contact.phase.vibrating_stretch import Surroundings, mechanical_energy
 from vibroimpact.contact.static import static_indentation
+from vibroimpact.dynamics.collocation import Floats
+from vibroimpact.dynamics.local import LocalContact
+from vibroimpact.dynamics.oscillators import Oscillators, State
+from vibroimpact.dynamics.vibrating_stretch import Surroundings, mechanical_energy
 
 _MARGIN = 0.5
 """Part of the weight by which the force may vary where a sphere stays: so near to the weight the spring of a contact is nearly
