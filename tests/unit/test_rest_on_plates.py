@@ -23,8 +23,8 @@ from vibroimpact.dynamics.columns import LEDGER, VIBRATION_LEDGER
 from vibroimpact.dynamics.local import LocalContact
 from vibroimpact.dynamics.lying import lay_down
 from vibroimpact.dynamics.oscillators import Oscillators, State
+from vibroimpact.dynamics.receptance import Surroundings
 from vibroimpact.dynamics.riding import Riding
-from vibroimpact.dynamics.vibrating_stretch import Surroundings
 
 LOSSY = LankaraniNikravesh(stiffness=STIFFNESS, restitution=0.5)
 PAIR = ContactPair(2.4264724e9, 0.025, 0.09032078879, 8e7, 0.28)

@@ -56,7 +56,7 @@ def at_rest(request: pytest.FixtureRequest) -> tuple[vi.Response, np.ndarray, np
     """A sphere that lies on a plate which still moves: instants, 32 a sample, and the deflection under it as the history has it."""
     plate = modes_of([6.0, 240.0, 900.0], [1.2, 1.5, -1.0], request.param)
     law = LankaraniNikravesh(stiffness=STIFFNESS, restitution=0.5)
-    response = vi.simulate(drop_on(law, plate, height=0.2, impacts=None, duration=1.1))
+    response = vi.simulate(drop_on(law, plate, height=0.18, impacts=None, duration=1.4))
     begun = float(response.rest.time[0])
     first = round((begun - 0.02) * RATE)
     times = first / RATE + np.arange(round(0.1 * RATE) * 32) / (32 * RATE)

@@ -23,14 +23,19 @@ _ASIDE = np.array([[[0.0], [1.0], [0.0]], [[0.0], [0.0], [1.0]]])
 
 
 class Linearised(NamedTuple):
-    """Forces [N] of a contact, their derivatives by the approach [N/m] and by the rate [N s/m], and the law's indentation [m]."""
+    """Forces [N] at the law's own indentations, the approach of the surfaces there [m], and derivatives.
+
+    `slope`: of the approach by the indentation [-]. `stiffness`: of the static force by it [N/m]. `dissipative_by_delta` [N/m] and
+    `dissipative_by_rate` [N s/m]: of the dissipative force.
+    """
 
     static: Array
     dissipative: Array
-    static_by_approach: Array
-    dissipative_by_approach: Array
+    approach: Array
+    slope: Array
+    stiffness: Array
+    dissipative_by_delta: Array
     dissipative_by_rate: Array
-    delta: Array
 
 
 @dataclass(frozen=True)
@@ -55,60 +60,84 @@ class LocalContact:
     series: QuasiStatic
     approach_speed: float
 
-    def forces(self, approach: Array, rate: Array, guess: Array | None = None) -> tuple[Array, Array]:
-        """Return the static and the dissipative force [N], before any clip, at the approach y [m] and its rate [m/s].
+    def forces(self, approach: Array, rate: Array) -> tuple[Array, Array]:
+        """Return the static and the dissipative force [N], before any clip, at the approach y [m] and its rate [m/s]."""
+        return self.law.forces(self.own(approach), rate, self.approach_speed)
 
-        A guess of the law's indentation makes it quicker.
-        """
+    # in terms of the law's own indentation ---------------------------------------------------------
+
+    def own_forces(self, delta: Array, rate: Array) -> tuple[Array, Array]:
+        """Return the static and the dissipative force [N], before any clip, at an indentation of the law [m] and a rate [m/s]."""
+        return self.law.forces(np.maximum(delta, self.least), rate, self.approach_speed)
+
+    def linearised(self, delta: Array, rate: Array) -> Linearised:
+        """Return the same with what Newton's method needs; the derivatives are differences. Beyond release, nothing changes any more."""
+        held, reached = delta > self.least, np.maximum(delta, self.least)
+        step, faster = _STEP * (np.abs(reached).max() + 1e-300), _STEP * (np.abs(rate).max() + 1e-300)
+        static, dissipative = self.law.forces(reached + step * _ASIDE[0], rate + faster * _ASIDE[1], self.approach_speed)
+        stiffness = (static[1] - static[0]) * (held / step)
+        approach, slope = delta, np.ones_like(delta)
+        if self.series:
+            approach, slope = delta + self.series.indentation(static[0]), 1.0 + self.series.compliance(static[0]) * stiffness
+        by_delta, by_rate = (dissipative[1] - dissipative[0]) * (held / step), (dissipative[2] - dissipative[0]) / faster
+        return Linearised(static[0], dissipative[0], approach, slope, stiffness, by_delta, by_rate)
+
+    def near(self, delta: float, approach: float) -> float:
+        """Return the law's own indentation at an approach [m], from one that is as near as rounding leaves it."""
         if not self.series:
-            return self.law.forces(approach, rate, self.approach_speed)
-        return self.law.forces(self.own(approach, guess)[0], rate, self.approach_speed)
+            return approach
+        now = self.linearised(np.array([delta]), np.zeros(1))
+        return max(delta + (approach - float(now.approach[0])) / float(now.slope[0]), self.least)
 
-    def linearised(self, approach: Array, rate: Array, guess: Array | None = None) -> Linearised:
-        """Return the forces with their derivatives, which are differences, good enough for Newton's method."""
-        delta, slope = self.own(approach, guess)
-        step, faster = _STEP * (np.abs(delta).max() + 1e-300), _STEP * (np.abs(rate).max() + 1e-300)
-        static, dissipative = self.law.forces(delta + step * _ASIDE[0], rate + faster * _ASIDE[1], self.approach_speed)
-        return Linearised(
-            static[0],
-            dissipative[0],
-            (static[1] - static[0]) / (step * slope),
-            (dissipative[1] - dissipative[0]) / (step * slope),
-            (dissipative[2] - dissipative[0]) / faster,
-            delta,
-        )
+    def about(self, approach: Array) -> Array:
+        """Return the law's own indentation at an approach [m], roughly."""
+        if not self.series:
+            return approach
+        return np.interp(approach, *self._table(self._size(approach)))
+
+    def own_energy(self, delta: Array) -> Array:
+        """Return the energy stored at an indentation of the law [J]."""
+        delta = np.maximum(delta, self.least)
+        stored = self.law.elastic_energy(delta)
+        return stored + self.series.energy(self._static(delta)) if self.series else stored
+
+    def own_work(self, delta: Array) -> Array:
+        """Return the energy stored and the plastic work together at an indentation of the law [J]."""
+        return self.own_energy(delta) + self.law.plastic_work(np.maximum(delta, self.least))
 
     def approach_at(self, delta: Array) -> Array:
         """Return the approach y [m] at an indentation of the law [m]."""
         return delta + self.series.indentation(self._static(delta)) if self.series else delta
 
-    def own(self, approach: Array, guess: Array | None = None) -> tuple[Array, Array]:
-        """Return the law's own indentation [m] at an approach [m], and dy/d delta to 1e-6; a guess of it makes it quicker.
+    def own(self, approach: Array) -> Array:
+        """Return the law's own indentation [m] at an approach [m].
 
         NaN where there is none, as the compliance taken out in series outweighs that of the law: the case is ill-posed.
         """
         approach = np.asarray(approach, dtype=float)
         if not self.series:
-            return approach, np.ones_like(approach)
-        least = self._least
-        size = max(float(np.abs(approach).max()), -2.0 * least) + 1e-300
-        delta = np.interp(approach, *self._table(size)) if guess is None else guess
-        step, slope = _STEP * size, np.ones_like(approach)
+            return approach
+        size, delta, slope = self._size(approach), self.about(approach), np.ones_like(approach)
+        step = _STEP * size
         aside = np.array([0.0, step]).reshape((2,) + (1,) * approach.ndim)
         for _ in range(_SWEEPS):
             force, deeper = self._static(delta + aside)
             slope = 1.0 + self.series.compliance(force) * ((deeper - force) / step)
             change = (delta + self.series.indentation(force) - approach) / slope
-            delta = np.maximum(delta - change, least)
+            delta = np.maximum(delta - change, self.least)
             if np.abs(change).max() <= _NEAR * size:  # and the next change would be below rounding
                 break
-        return np.where(slope > 0.0, delta, np.nan), slope
+        return np.where(slope > 0.0, delta, np.nan)
+
+    def _size(self, approach: Array) -> float:
+        """Return a size for approaches [m]."""
+        return max(float(np.abs(approach).max()), -2.0 * self.least) + 1e-300
 
     def _table(self, size: float) -> tuple[Array, Array]:
         """Return approaches and the law's indentations at them, to start from; for approaches up to a size [m]."""
         reach = math.frexp(size)[1]
         if reach not in self._tables:
-            delta = self._least + 2.0 * math.ldexp(1.0, reach) * np.linspace(0.0, 1.0, _ROWS) ** 2
+            delta = self.least + 2.0 * math.ldexp(1.0, reach) * np.linspace(0.0, 1.0, _ROWS) ** 2
             self._tables[reach] = np.maximum.accumulate(self.approach_at(delta)), delta
         return self._tables[reach]
 
@@ -130,11 +159,11 @@ class LocalContact:
     @cached_property
     def release_level(self) -> float:
         """Approach at which they part [m]."""
-        return float(self.approach_at(np.asarray(self._least)))
+        return float(self.approach_at(np.asarray(self.least)))
 
     @cached_property
-    def _least(self) -> float:
-        """The law's indentation at which they part [m]: where what is in series tears a sticking contact off, before the law does."""
+    def least(self) -> float:
+        """The law's own indentation at which they part [m]: where what is in series tears a sticking contact off, before the law does."""
         least, touch = float(self.law.release_level), float(self.law.touch_level)
         if not self.series or not least < touch:
             return least
@@ -149,22 +178,21 @@ class LocalContact:
 
     def elastic_energy(self, approach: Array) -> Array:
         """Return the energy stored by the law and in series with it [J]."""
-        delta, _ = self.own(approach)
-        stored = self.law.elastic_energy(delta)
-        return stored + self.series.energy(self._static(delta)) if self.series else stored
+        return self.own_energy(self.own(approach))
 
     def plastic_work(self, approach: Array) -> Array:
         """Return the work spent on plastic deformation since what the law remembers [J]."""
-        return self.law.plastic_work(self.own(approach)[0])
-
-    def work(self, approach: Array) -> Array:
-        """Return the energy stored and the plastic work together [J]: what moving there slowly takes."""
-        delta, _ = self.own(approach)
-        done = self.law.elastic_energy(delta) + self.law.plastic_work(delta)
-        return done + self.series.energy(self._static(delta)) if self.series else done
+        return self.law.plastic_work(self.own(approach))
 
     def after_compression(self, deepest: float) -> LocalContact:
         """Return the contact once it has been as deep as an approach of `deepest` [m]."""
-        law = self.law.after_compression(self.own(deepest)[0])
-        before, after = self.law.memories(), law.memories()
-        return self if all(np.all(before[name] == after[name]) for name in before) else replace(self, law=law)
+        return self.after_own(self.own(deepest))
+
+    def after_own(self, deepest: Array) -> LocalContact:
+        """Return the same once the law's own indentation has been `deepest` [m]."""
+        return replace(self, law=self.law.after_compression(deepest)) if self.learns(deepest) else self
+
+    def learns(self, deepest: Array) -> bool:
+        """Will the law remember an indentation of its own of `deepest` [m]?"""
+        before, after = self.law.memories(), self.law.after_compression(deepest).memories()
+        return not all(np.all(before[name] == after[name]) for name in before)

@@ -63,6 +63,16 @@ class Oscillators:
         return np.where(self.inside, 0.0, self.shape)
 
     @cached_property
+    def by_side(self) -> Floats:
+        """The shapes of the oscillators outside the contact, and of those inside (n, 2)."""
+        return np.stack([self.outer, self.shape - self.outer], axis=1)
+
+    @cached_property
+    def squares_by_side(self) -> Floats:
+        """Their squares (n, 2)."""
+        return self.by_side**2
+
+    @cached_property
     def local_compliance(self) -> Floats:
         """Compliance of the springs of the massless elements [m/N] (k,)."""
         return self.mobility / self.rate

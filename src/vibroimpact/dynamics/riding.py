@@ -25,7 +25,8 @@ from vibroimpact.contact.static import static_indentation
 from vibroimpact.dynamics.collocation import Floats
 from vibroimpact.dynamics.local import LocalContact
 from vibroimpact.dynamics.oscillators import Oscillators, State
-from vibroimpact.dynamics.vibrating_stretch import Surroundings, mechanical_energy
+from vibroimpact.dynamics.receptance import Surroundings
+from vibroimpact.dynamics.vibrating_stretch import mechanical_energy
 
 _MARGIN = 0.5
 """Part of the weight by which the force may vary where a sphere stays: so near to the weight the spring of a contact is nearly
@@ -97,8 +98,9 @@ class Riding:
     @cached_property
     def share(self) -> float:
         """The part of the static force that is there without motion: less than one where a law pushes less on the way out."""
-        level = np.array([float(self.local.approach_at(static_indentation(self.local.law, np.array([self.weight])))[0])])
-        static, dissipative = (float(part[0]) for part in self.local.forces(level, 0.0 * level))
+        static, dissipative = (
+            float(part[0]) for part in self.local.own_forces(static_indentation(self.local.law, np.array([self.weight])), np.zeros(1))
+        )
         return 1.0 + dissipative / static if dissipative else 1.0
 
     @cached_property
@@ -114,14 +116,15 @@ class Riding:
     @cached_property
     def stored(self) -> float:
         """What the contact holds at equilibrium, and gives back [J]."""
-        return self.share * float(self.local.elastic_energy(np.array([self.approach]))[0])
+        return self.share * float(self.local.own_energy(np.array([self.sag]))[0])
 
     @cached_property
     def contact(self) -> tuple[float, float]:
         """Stiffness [N/m] and damping [N s/m] of the contact at equilibrium."""
-        level, slow = np.array([self.approach]), np.array([1e-3 * np.sqrt(self.around.gravity * abs(self.sag)) + 1e-12])
-        stiffness = self.share * float(self.local.linearised(level, slow).static_by_approach[0])
-        towards, away = (self.local.forces(level, rate)[1] for rate in (slow, -slow))
+        sag, slow = np.array([self.sag]), np.array([1e-3 * np.sqrt(self.around.gravity * abs(self.sag)) + 1e-12])
+        now = self.local.linearised(sag, slow)
+        stiffness = self.share * float(now.stiffness[0] / now.slope[0])
+        towards, away = (self.local.own_forces(sag, rate)[1] for rate in (slow, -slow))
         return max(stiffness, _NONE), max(float((towards - away)[0] / (2.0 * slow[0])), 0.0)
 
     @cached_property

@@ -16,13 +16,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vibroimpact.contact.roots import highest
+from vibroimpact.dynamics.apart import Apart
 from vibroimpact.dynamics.collocation import Floats
 from vibroimpact.dynamics.local import LocalContact
 from vibroimpact.dynamics.oscillators import FreeMotion, Oscillators, State
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.tangent import difference_through
 from vibroimpact.dynamics.vibrating_stretch import VibratingStretch
-from vibroimpact.dynamics.visit import Apart
 
 if TYPE_CHECKING:
     from vibroimpact.dynamics.leg import Leg
@@ -193,8 +193,7 @@ class _Neighbour:
     def force_jumps(self, stretch: VibratingStretch) -> bool:
         """Does the force jump where a stretch follows the last one?"""
         assert self.last is not None
-        deep, rate = np.maximum(stretch.approach[:1], stretch.local.release_level), stretch.rate[:1]
-        before, after = self.last.force[-1], np.sum(stretch.local.forces(deep, rate), axis=0)
+        before, after = self.last.force[-1], np.add(*stretch.local.own_forces(stretch.delta[:1], stretch.rate[:1]))
         return bool(abs(float(after[0] - before)) > _JUMP * abs(before))
 
     def synchronise(self, stretch: VibratingStretch, excess: float, rate: float) -> None:

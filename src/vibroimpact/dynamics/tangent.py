@@ -13,7 +13,10 @@ import numpy as np
 
 from vibroimpact.dynamics.local import LocalContact
 from vibroimpact.dynamics.oscillators import State
-from vibroimpact.dynamics.vibrating_stretch import NODES, VibratingStretch, force_jacobian, impedance_of, receptance, unforced
+from vibroimpact.dynamics.receptance import NODES, Receptance
+from vibroimpact.dynamics.vibrating_stretch import VibratingStretch
+
+_UNIT = np.eye(NODES)
 
 
 def difference_through(stretch: VibratingStretch, difference: State, asides: Iterable[tuple[LocalContact, float]] = ()) -> VibratingStretch:
@@ -28,22 +31,22 @@ def difference_through(stretch: VibratingStretch, difference: State, asides: Ite
     asides : iterable of (LocalContact, float)
         Contacts whose laws know something a little differently, as the second drop's does, and how many times their change of force counts.
     """
-    around, local, at, length = replace(stretch.around, gravity=0.0), stretch.local, stretch.spectrum, stretch.length
-    impedance = impedance_of(around.oscillators, length * at.values)
-    approach, rate = unforced(around.oscillators, at, length, difference, 0.0, impedance)
-    held, reached, rates = (
-        stretch.approach[1:] > local.release_level,
-        np.maximum(stretch.approach[1:], local.release_level),
-        stretch.rate[1:],
-    )
-    now = local.linearised(reached, rates)
-    jacobian, slopes = force_jacobian(now, held, *receptance(around, at, length, impedance))
-    static, dissipative = slopes[0] * approach, slopes[1] * approach + slopes[2] * rate
+    around, local = replace(stretch.around, gravity=0.0), stretch.local
+    seen, delta, rates = Receptance(around, stretch.spectrum, stretch.length, difference), stretch.delta[1:], stretch.rate[1:]
+    now = local.linearised(delta, rates)
+    push, damping = now.stiffness + now.dissipative_by_delta, now.dissipative_by_rate
+    inward = np.linalg.inv(np.diag(now.slope) + seen.by_static * now.stiffness)
+    taken = inward @ seen.by_force
+    missing, changed, known = seen.approach, damping * seen.rate, np.zeros(NODES)
     for aside, times in asides:
-        other = aside.forces(reached, rates, now.delta)
-        static, dissipative = static + times * (other[0] - now.static), dissipative + times * (other[1] - now.dissipative)
+        other = aside.linearised(delta, rates)
+        static = times * (other.static - now.static)
+        missing = missing - times * (other.approach - now.approach) - seen.by_static @ static
+        changed = changed + static + times * (other.dissipative - now.dissipative)
+        known = known + static
     try:
-        forces = np.linalg.solve(jacobian, np.concatenate([static, dissipative]))
+        force = np.linalg.solve(_UNIT + damping[:, None] * seen.rate_by + push[:, None] * taken, changed + push * (inward @ missing))
     except np.linalg.LinAlgError:
-        forces = np.full(2 * NODES, np.nan)
-    return replace(stretch, around=around, start=difference, static=forces[:NODES], dissipative=forces[NODES:])
+        force = np.full(NODES, np.nan)
+    static = known + now.stiffness * (inward @ missing - taken @ force)
+    return replace(stretch, around=around, start=difference, static=static, dissipative=force - static)

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
-from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
 from vibroimpact.dynamics.collocation import Floats
+from vibroimpact.dynamics.solve_vibrating import Aim
 from vibroimpact.dynamics.vibrating_stretch import VibratingStretch
 
 GRID = np.linspace(0.0, 1.0, 33)
@@ -21,42 +20,40 @@ _STILL = 1e-9  # of the speed of the motion: what turns more slowly has turned b
 
 @dataclass(frozen=True)
 class Event:
-    """Something that ends a stretch: its name, the x after it, and what becomes positive there, at the nodes of a stretch."""
+    """Something that ends a stretch, and the x at about which it does."""
 
-    name: str
+    aim: Aim
     x: float
-    rises: Callable[[VibratingStretch], Floats]
 
 
 def first_event(stretch: VibratingStretch, speed: float, span: float) -> Event | None:
     """Return the first event in a stretch of a contact of about a speed [m/s] and a duration [s]."""
-    local, floor = stretch.local, stretch.local.release_level
+    local, law, least = stretch.local, stretch.local.law, stretch.local.least
     weights = stretch.rule.weights(GRID).T
-    approach, rate = weights @ stretch.approach, weights @ stretch.rate
-    events: list[tuple[str, NDArray[np.bool_], Callable[[VibratingStretch], Floats]]] = []
-    out = approach < floor - ROUNDING * (approach.max() - floor)
-    out[0] = False
-    events.append(("parted", out, lambda other: floor - other.approach))
-    if local.law.tension != "kept":  # what recoils fast enough makes the others pull as well
-        static, dissipative = local.forces(np.maximum(approach, floor), rate)
-        pulls = static + dissipative < -1e-11 * (np.abs(stretch.force).max() + stretch.around.mass * speed / span)
-        pulls[0] = False
-        events.append(("no push", pulls, lambda other: -other.force))
-    for level in local.breakpoints:
-        begun = approach[0] - level
-        on_it = abs(begun) <= ROUNDING * max(abs(level), float(np.ptp(approach)))
-        side = np.sign(approach[1] - level if on_it else begun)
-        crossed = (approach - level) * side < 0.0
-        crossed[0] = False
-        events.append(("breakpoint", crossed, partial(_crossing, side, level)))
-    if local.after_compression(float(approach.max())) is not local:
+    delta, rate = weights @ stretch.delta, weights @ stretch.rate
+    # of each: what falls below zero there, and where it has
+    events: list[tuple[Aim, Floats, NDArray[np.bool_]]] = []
+    above = delta - least
+    events.append((Aim("parted", least), above, above < -ROUNDING * above.max()))
+    if law.tension != "kept":  # what recoils fast enough makes the others pull as well
+        force = np.add(*local.own_forces(delta, rate))
+        slack = 1e-11 * (np.abs(stretch.force).max() + stretch.around.mass * speed / span)
+        events.append((Aim("no push"), force, force < -slack))
+    for level in (float(part) for part in law.breakpoints):
+        beyond = delta - level
+        on_it = abs(beyond[0]) <= ROUNDING * max(abs(level), float(np.ptp(delta)))
+        beyond = beyond * np.sign(beyond[1] if on_it else beyond[0])
+        events.append((Aim("breakpoint", level), beyond, beyond < 0.0))
+    if local.learns(float(delta.max())):
         closing = weights @ stretch.closing
-        turned = (closing < 0.0) & (np.maximum.accumulate(closing) > _STILL * speed)
-        events.append(("turn", turned, lambda other: -other.closing))
-    seen = [Event(name, float(GRID[where.argmax()]), rises) for name, where, rises in events if where.any()]
+        events.append((Aim("turn"), closing, (closing < 0.0) & (np.maximum.accumulate(closing) > _STILL * speed)))
+    seen = [Event(aim, _crossing(values, there)) for aim, values, there in events if there[1:].any()]
     return min(seen, key=lambda event: event.x, default=None)
 
 
-def _crossing(side: float, level: float, stretch: VibratingStretch) -> Floats:
-    """Return what becomes positive where the approach, from one side, crosses a level."""
-    return -side * (stretch.approach - level)
+def _crossing(values: Floats, there: NDArray[np.bool_]) -> float:
+    """Return the x where values on the grid fall below zero, by the secant through the first that is seen there and the one before."""
+    last = 1 + int(there[1:].argmax())
+    before, after = values[last - 1], values[last]
+    part = before / (before - after) if before > 0.0 > after else 1.0
+    return float(GRID[last - 1] + part * GRID[1])

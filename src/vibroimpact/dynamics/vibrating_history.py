@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from vibroimpact.bodies.body import Body
+from vibroimpact.dynamics.apart import Apart
 from vibroimpact.dynamics.collocation import Floats
 from vibroimpact.dynamics.local import LocalContact
 from vibroimpact.dynamics.lying import Lying
@@ -13,7 +14,6 @@ from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.vibrating_segment import VibratingSegment
 from vibroimpact.dynamics.vibrating_stretch import VibratingStretch
 from vibroimpact.dynamics.vibration import modes_of
-from vibroimpact.dynamics.visit import Apart
 
 
 def vibrating_history(problem: Problem, segment: VibratingSegment, time: Floats) -> dict[str, Floats]:

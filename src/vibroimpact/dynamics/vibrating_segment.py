@@ -8,16 +8,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from vibroimpact.dynamics.apart import Apart
 from vibroimpact.dynamics.collocation import Floats
 from vibroimpact.dynamics.lying import Lying
 from vibroimpact.dynamics.oscillators import FreeMotion, Oscillators, State
 from vibroimpact.dynamics.vibrating_stretch import VibratingStretch
-from vibroimpact.dynamics.visit import Apart
 
 if TYPE_CHECKING:
     from vibroimpact.dynamics.leg import Leg
 
-_STRETCH_POINTS = 25
+_STRETCH_POINTS, _GAP_POINTS = 49, 25
 _FREE_POINTS, _LATER_POINTS, _PERIODS = 2001, 1001, 10.0
 """How a free motion is drawn: so many points in so many periods of the lowest mode, and so many in what is left."""
 
@@ -58,7 +58,7 @@ class VibratingSegment:
         if isinstance(self.motion, VibratingStretch):
             return np.asarray(span * self.motion.rule.map_time(np.linspace(0.0, 1.0, _STRETCH_POINTS)))
         if isinstance(self.motion, Apart):
-            return np.linspace(0.0, span, _STRETCH_POINTS)
+            return np.linspace(0.0, span, _GAP_POINTS)
         lowest = float(self.oscillators.angular_frequency.min(initial=np.inf))
         early = min(span, _PERIODS * 2.0 * np.pi / lowest) if np.isfinite(lowest) else 0.0
         return np.concatenate([np.linspace(0.0, early, _FREE_POINTS)[:-1], np.linspace(early, span, _LATER_POINTS)])

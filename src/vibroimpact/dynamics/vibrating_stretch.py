@@ -1,66 +1,19 @@
-r"""A stretch of contact of bodies that vibrate, solved at once on the nodes of Radau collocation.
-
-The unknowns are the contact forces at the nodes. All else is linear in them: collocation integrates by a matrix
-Q, and with its eigenvalues :math:`\lambda_k` the oscillators are seen only through their receptance at the complex
-frequencies :math:`1/\sigma_k`, :math:`\sigma_k = h \lambda_k`,
-
-.. math:: G(\sigma) = \sum_i \frac{\chi_i^2 \sigma^2}{1 + 2 \zeta_i \omega_i \sigma + \omega_i^2 \sigma^2}
-
-so that their number hardly counts. Radau collocation is stable however stiff an oscillator is: one that is much
-faster than the stretch follows the force, and one that is not is integrated with order 2 N - 1.
-"""
+"""A stretch of contact of bodies that vibrate, as it was solved on the nodes of Radau collocation: its motion, its force, what it takes."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cache, cached_property
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
-from vibroimpact.dynamics.collocation import Floats, Map, Rule, collocation_rule
-from vibroimpact.dynamics.local import Linearised, LocalContact
-from vibroimpact.dynamics.oscillators import Oscillators, State
+from vibroimpact.dynamics.collocation import Floats, Rule
+from vibroimpact.dynamics.local import LocalContact
+from vibroimpact.dynamics.oscillators import State
+from vibroimpact.dynamics.receptance import Spectrum, Surroundings, impedance_of, own_drive
 
-Complex = NDArray[np.complex128]
-
-NODES = 12
-"""More would make the eigenvectors of the integration matrix too ill-conditioned, fewer the stretches too short."""
-
-_SWEEPS = 25
-_UNIT = np.eye(NODES)
-_CONVERGED, _STALLED = 1e-13, 1e-11
 _ROUNDING = 2e-14  # of the energy of the oscillators, which may be much more than that of a soft touch
-
-
-@dataclass(frozen=True)
-class Spectrum:
-    """A collocation rule with the eigenvalues of its integration matrix; constants and the time in its eigenvectors."""
-
-    rule: Rule
-    values: Complex
-    vectors: Complex
-    inverse: Complex
-    constant: Complex
-    time: Complex
-
-
-@cache
-def spectrum(time_map: Map, root: int) -> Spectrum:
-    """Return the spectrum of a rule."""
-    rule = collocation_rule(NODES, time_map, root)
-    values, vectors = np.linalg.eig(rule.integral)
-    inverse = np.linalg.inv(vectors)
-    return Spectrum(rule, values, vectors, inverse, inverse.sum(axis=1), np.asarray(inverse @ rule.time, dtype=np.complex128))
-
-
-@dataclass(frozen=True)
-class Surroundings:
-    """What surrounds the contact of one drop: the sphere's mass [kg], gravity [m/s^2], and what vibrates."""
-
-    mass: float
-    gravity: float
-    oscillators: Oscillators
 
 
 @dataclass(frozen=True)
@@ -69,7 +22,8 @@ class VibratingStretch:
 
     `length`: how long it lasts [s]. `start`: the state then. `static`, `dissipative`: parts of the force at the nodes [N].
     `approach`, `rate`: of the surfaces [m], and what the dashpot of the law feels [m/s], at its start and at the nodes
-    (N + 1,). `solved`: whether Newton's method converged. `broken`: what is lost at its end, as a sticking contact breaks [J].
+    (N + 1,). `delta`: the law's own indentation there [m]. `solved`: whether Newton's method converged. `broken`: what is lost at
+    its end, as a sticking contact breaks [J].
     """
 
     around: Surroundings
@@ -81,6 +35,7 @@ class VibratingStretch:
     dissipative: Floats
     approach: Floats
     rate: Floats
+    delta: Floats
     solved: bool
     broken: float = 0.0
 
@@ -108,7 +63,7 @@ class VibratingStretch:
         """Accelerations of the oscillators (N, n), and rates of the massless elements (N, k), at the nodes."""
         of, at, sigma = self.around.oscillators, self.spectrum, self.length * self.spectrum.values
         force, static = ((at.inverse @ part)[:, None] for part in (self.force, self.static))
-        drive = _own_drive(of, at, self.length, self.start) - of.outer * force - (of.shape - of.outer) * static
+        drive = own_drive(of, at, self.length, self.start) - of.outer * force - (of.shape - of.outer) * static
         oscillators = at.vectors @ (drive / impedance_of(of, sigma))
         massless = -of.mobility * force - at.constant[:, None] * (of.rate * self.start.local)
         return np.asarray(oscillators.real), np.asarray((at.vectors @ (massless / (1.0 + of.rate * sigma[:, None]))).real)
@@ -153,16 +108,16 @@ class VibratingStretch:
             start.local + h * (last @ massless),
         )
 
-    def motion(self, x: Floats) -> tuple[Floats, Floats]:
-        """Return approach [m], at least that of release, and rate [m/s] of the surfaces at x in [0, 1]."""
+    def law_force_at(self, x: Floats) -> Floats:
+        """Return the force that the law gives [N] at x in [0, 1], before any clip."""
         weights = self.rule.weights(np.asarray(x, dtype=float)).T
-        return np.maximum(weights @ self.approach, self.local.release_level), weights @ self.rate
+        static, dissipative = self.local.own_forces(weights @ self.delta, weights @ self.rate)
+        return np.asarray(static + dissipative)
 
     def force_at(self, x: Floats) -> Floats:
         """Return the contact force, clipped where the law may not pull [N], at x in [0, 1]."""
-        static, dissipative = self.local.forces(*self.motion(x))
-        force = static + dissipative
-        return np.asarray(force if self.local.law.tension == "kept" else np.maximum(force, 0.0))
+        force = self.law_force_at(x)
+        return force if self.local.law.tension == "kept" else np.maximum(force, 0.0)
 
     def indentation_at(self, x: Floats) -> Floats:
         """Return the approach of the sphere's centre to the surface of the body below [m] at x in [0, 1]."""
@@ -214,10 +169,10 @@ class VibratingStretch:
 
         Two measures that know nothing of each other: the roughness of the force, and the balance of energy.
         """
-        if not (self.solved and self.roughness**2 <= tolerance):
+        if not (self.solved and self.roughness**2 <= 0.1 * tolerance):
             return False
         lost = float(self.lost.sum())
-        begun, done = self.local.work(np.maximum(self.approach[[0, -1]], self.local.release_level))
+        begun, done = self.local.own_work(self.delta[[0, -1]])
         gain = mechanical_energy(self.around, self.end) + done - mechanical_energy(self.around, self.start) - begun
         rounding = _ROUNDING * float(sum(part.sum() for part in self.around.oscillators.energies(self.start)))
         return bool(abs(gain + lost) <= 0.03 * tolerance * self.around.mass * speed**2 + rounding)
@@ -228,100 +183,3 @@ def mechanical_energy(around: Surroundings, state: State) -> float:
     of = around.oscillators
     sphere = around.mass * (0.5 * state.speed**2 - around.gravity * state.approach)
     return float(sphere + sum(part.sum() for part in of.energies(state)) + of.local_energy(state))
-
-
-def solve_vibrating(
-    around: Surroundings,
-    local: LocalContact,
-    time_map: Map,
-    length: float,
-    start: State,
-    forces: tuple[Floats, Floats] | None = None,
-) -> VibratingStretch:
-    """Solve the motion through a stretch of contact of given length [s]; a guess of both parts of the force makes it quicker."""
-    of, at, floor = around.oscillators, spectrum(time_map, local.law.root), local.release_level
-    rule = at.rule
-    impedance = impedance_of(of, length * at.values)
-    free_approach, free_rate = unforced(of, at, length, start, around.gravity, impedance)
-    by_force, rate_by, by_static = receptance(around, at, length, impedance)
-    begun, begun_rate = max(float(of.approach(start)), floor), float(of.outer_rates(start))
-    if forces is None:  # that at the start goes on, and what the motion under it gives
-        static, dissipative = (np.full(NODES, float(part)) for part in local.forces(np.array(begun), np.array(begun_rate)))
-        approach = np.maximum(free_approach - by_force @ (static + dissipative) - by_static @ static, floor)
-        static, dissipative = local.forces(approach, free_rate - rate_by @ (static + dissipative))
-    else:
-        static, dissipative = forces
-    scale = around.mass * (np.abs(free_rate).max() / length + around.gravity)
-    solved, before, guess = False, np.inf, None
-    for _ in range(_SWEEPS):
-        force = static + dissipative
-        approach, rate = free_approach - by_force @ force - by_static @ static, free_rate - rate_by @ force
-        now = local.linearised(np.maximum(approach, floor), rate, guess)
-        guess = now.delta
-        jacobian, _ = force_jacobian(now, approach > floor, by_force, rate_by, by_static)
-        try:
-            change = np.linalg.solve(jacobian, np.concatenate([static - now.static, dissipative - now.dissipative]))
-        except np.linalg.LinAlgError:
-            break
-        static, dissipative = static - change[:NODES], dissipative - change[NODES:]
-        size = float(np.abs(change).max()) / (scale + float(np.abs(static).max()))
-        solved = size < _CONVERGED or (size < _STALLED and size > 0.3 * before)
-        if solved or not np.isfinite(size):
-            break
-        before = size
-    force = static + dissipative
-    approach, rate = free_approach - by_force @ force - by_static @ static, free_rate - rate_by @ force
-    if of.mobility.size:  # a dashpot takes up a jump of the force at once
-        begun_rate = float(rule.interpolate(np.zeros(1), rate)[0])
-    return VibratingStretch(
-        around, local, at, length, start, static, dissipative, np.append(begun, approach), np.append(begun_rate, rate), solved
-    )
-
-
-def force_jacobian(
-    now: Linearised, held: NDArray[np.bool_], by_force: Floats, rate_by: Floats, by_static: Floats
-) -> tuple[Floats, tuple[Floats, Floats, Floats]]:
-    """Return the Jacobian of the equations of both parts of the force at the nodes, (2 N, 2 N).
-
-    And the derivatives of the static part by the approach, of the dissipative part by it, and by the rate, (N,): the first two are zero
-    where the surfaces are not `held` together.
-    """
-    static_slope, slope, damping = now.static_by_approach * held, now.dissipative_by_approach * held, now.dissipative_by_rate
-    stiff, damped = static_slope[:, None] * by_force, slope[:, None] * by_force + damping[:, None] * rate_by
-    jacobian = np.block([[_UNIT + stiff + static_slope[:, None] * by_static, stiff], [damped + slope[:, None] * by_static, _UNIT + damped]])
-    return jacobian, (static_slope, slope, damping)
-
-
-def _own_drive(of: Oscillators, at: Spectrum, length: float, start: State) -> Complex:
-    """Return what drives each oscillator without contact force, in the eigenvectors (N, n): its motion at the start, going on."""
-    stiffness = of.angular_frequency**2
-    pull = of.damping * start.velocity + stiffness * start.displacement
-    return np.asarray(-at.constant[:, None] * pull - (length * at.time)[:, None] * (stiffness * start.velocity))
-
-
-def unforced(of: Oscillators, at: Spectrum, length: float, start: State, gravity: float, impedance: Complex) -> tuple[Floats, Floats]:
-    """Return the approach [m], and the rate outside the contact [m/s], at the nodes as they would be without contact force."""
-    sigma, time = length * at.values, length * at.rule.time
-    responses = _own_drive(of, at, length, start) / impedance
-    massless = -at.constant * ((of.rate * start.local) / (1.0 + of.rate * sigma[:, None])).sum(axis=1)
-    rate = float(start.speed + start.velocity @ of.outer) + gravity * time
-    rate = rate + (at.vectors @ (sigma * (responses @ of.outer) + massless)).real
-    approach = of.approach(start) + time * (start.speed + start.velocity @ of.shape + 0.5 * gravity * time)
-    return np.asarray(approach + (at.vectors @ (sigma * (sigma * (responses @ of.shape) + massless))).real), rate
-
-
-def receptance(around: Surroundings, at: Spectrum, length: float, impedance: Complex) -> tuple[Floats, Floats, Floats]:
-    """Return by how much forces at the nodes take back the approach and the rate there, and static ones the approach, (N, N)."""
-    of, sigma, mass = around.oscillators, length * at.values, around.mass
-    squares = of.shape**2 / impedance
-    rates = sigma * squares[:, ~of.inside].sum(axis=1) + (of.mobility / (1.0 + of.rate * sigma[:, None])).sum(axis=1)
-    parts = (sigma * rates, rates, sigma * sigma * squares[:, of.inside].sum(axis=1))
-    by_force, rate_by, by_static = (((at.vectors * part) @ at.inverse).real for part in parts)
-    by_force += length * length / mass * at.rule.integral_twice
-    return by_force, rate_by + length / mass * at.rule.integral, by_static
-
-
-def impedance_of(of: Oscillators, sigma: Complex) -> Complex:
-    """Return 1 + 2 zeta omega sigma + omega^2 sigma^2 of each oscillator, (N, n)."""
-    column = sigma[:, None]
-    return np.asarray(1.0 + column * (of.damping + of.angular_frequency**2 * column))

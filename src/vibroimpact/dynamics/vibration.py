@@ -14,8 +14,8 @@ from vibroimpact.dynamics.lying import Lying, lay_down
 from vibroimpact.dynamics.next_touch import next_touch
 from vibroimpact.dynamics.oscillators import FreeMotion, Oscillators, State
 from vibroimpact.dynamics.problem import Problem
+from vibroimpact.dynamics.receptance import Surroundings
 from vibroimpact.dynamics.riding import Riding
-from vibroimpact.dynamics.vibrating_stretch import Surroundings
 from vibroimpact.dynamics.visit import Visit, visit
 
 

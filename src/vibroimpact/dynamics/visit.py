@@ -13,20 +13,22 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.quasi_static import QuasiStatic
 from vibroimpact.contact.roots import find_root, highest
 from vibroimpact.contact.static import static_indentation
+from vibroimpact.dynamics.apart import Apart
 from vibroimpact.dynamics.collocation import Floats, Map
 from vibroimpact.dynamics.contact import CAPTURED, FAILED, RELEASED, RIDING, SETTLED
 from vibroimpact.dynamics.local import LocalContact
 from vibroimpact.dynamics.next_touch import next_touch, time_to_part
 from vibroimpact.dynamics.oscillators import FreeMotion, State
+from vibroimpact.dynamics.receptance import NODES, Surroundings, spectrum
 from vibroimpact.dynamics.riding import Riding, least_energy, may_stay, stays_below
-from vibroimpact.dynamics.vibrating_events import GRID, ROUNDING, Event, first_event
-from vibroimpact.dynamics.vibrating_stretch import Surroundings, VibratingStretch, mechanical_energy, solve_vibrating
+from vibroimpact.dynamics.solve_vibrating import solve_vibrating
+from vibroimpact.dynamics.vibrating_events import ROUNDING, Event, first_event
+from vibroimpact.dynamics.vibrating_stretch import VibratingStretch, mechanical_energy
 
 MOST_STEPS, MOST_STEPS_TO_A_TIME = 5_000, 20_000
 """How many stretches of contact a visit is followed for: some ten seconds' work; and where the run has an end in time."""
@@ -34,42 +36,10 @@ MOST_STEPS, MOST_STEPS_TO_A_TIME = 5_000, 20_000
 _FIRST = 0.125  # of the span of a contact: the first stretch
 _LONG = 10.0  # times the span of a contact: a sphere that long in touch rides
 _GLIDE_SAMPLES = 65
-_MOST_SECANTS = 60
+_EASY = 0.01  # of the roughness that is allowed: what the next stretch should have
+_MOST_AIMS = 4  # until the first event of a stretch is found
+_BEFORE_END = 0.98  # of a stretch: what is seen later is its end
 _AT_END = 1e-12  # of a stretch: nearer to its end is at its end
-
-
-@dataclass(frozen=True)
-class Apart:
-    """Free motion between two contacts, or inside an indentation once the law has stopped pushing.
-
-    `length` [s]. `local` holds in its indentation what is lost as it recovers; None once the surfaces have parted.
-    """
-
-    free: FreeMotion
-    length: float
-    local: LocalContact | None = None
-
-    @property
-    def duration(self) -> Floats:
-        """How long it lasts [s], as an array of one."""
-        return np.array([self.length])
-
-    def take(self, drops: NDArray[np.bool_]) -> Apart:
-        """Return itself: it is of one drop."""
-        return self
-
-    def lost_by(self, time: Floats) -> Floats:
-        """Return what is lost since the start [J] at times since then [s], (T, n + 1): in each oscillator; last, in the contact."""
-        return self.lost_at(self.free.state(time))
-
-    def lost_at(self, state: State) -> Floats:
-        """Return the same of states that the motion comes to."""
-        lost = self.free.lost_at(state)
-        if self.local is not None:
-            of, floor = self.free.oscillators, self.local.release_level
-            before, now = (np.maximum(of.approach(place), floor) for place in (self.free.start, state))
-            lost[..., -1] += self.local.elastic_energy(before) - self.local.elastic_energy(now)
-        return lost
 
 
 @dataclass(frozen=True)
@@ -164,6 +134,7 @@ class _Visit:
         self.forgets, self.rest_speed, self.until = forgets or not law.lasting, rest_speed, until
         self.found = Visit(state, law, np.zeros(len(around.oscillators.shape) + 1))
         self.local = self.at_touch(law)
+        self.delta = float(law.touch_level)  # the law's own indentation
         self.riding: Riding | None = None
         self.speed = max(self.local.approach_speed, float(np.sqrt(around.gravity * _sag(around, law))))
 
@@ -200,6 +171,7 @@ class _Visit:
     def contact(self) -> int:
         """March through one contact; return how it ended."""
         self.touching, begun, self.pace = True, self.time, min(self.pace, _FIRST * self.span)
+        self.delta = float(self.local.own(self.here()))
         while True:
             if not self.touching and self.here() <= self.floor and self.around.oscillators.rates(self.state) < 0.0:
                 self.left = self.time  # by less than rounding tells
@@ -213,41 +185,43 @@ class _Visit:
                 return self.stay(RIDING)
             stretch = self.solve("touch" if self.touching else "inside", min(self.pace, left) if rides else self.pace)
             event = first_event(stretch, self.speed, self.span) if stretch.solved else None
-            # up to where the surfaces part, the force is smooth in another root of time: the end may be resolved where this is not
-            ends = event is not None and event.name == "parted" and not self.touching
-            if not ends and not stretch.resolved(self.tolerance, self.speed):
-                self.pace *= 0.5
-                continue
             if event is None:
+                if not stretch.resolved(self.tolerance, self.speed):
+                    self.pace *= 0.5
+                    continue
                 self.accept(stretch)
-                if stretch.roughness**2 < 1e-4 * self.tolerance:
-                    self.pace *= 1.5
-            else:
-                ended = self.end_at(stretch, event)
-                if ended is None or not ended.resolved(self.tolerance, self.speed):
+                self.pace = stretch.length * self.growth(stretch)
+            else:  # which may be all that keeps the stretch from being resolved
+                found = self.end_at(stretch, event)
+                if found is None:
                     self.pace = 0.5 * min(self.pace, stretch.length * float(stretch.rule.map_time(np.array([event.x]))[0]))
                     continue
-                released = event.name == "parted" or (event.name == "no push" and self.ends_without_force and self.will_part(ended.end))
+                name, ended = found
+                released = name == "parted" or (name == "no push" and self.ends_without_force and self.will_part(ended.end))
                 if released:  # what is still stored is lost, of a sticking contact that breaks or of a surface that lags behind
-                    ended = replace(ended, broken=self.held_at(max(float(ended.approach[-1]), self.floor)))
+                    ended = replace(ended, broken=self.held_at(float(ended.delta[-1])))
                 self.accept(ended)
-                if not released and event.name == "no push":
+                if not released and name == "no push":
                     released = self.glide()
                 self.left = self.time
                 if released:
                     return RELEASED
-                if event.name == "turn":
+                if name == "turn":
                     self.turn()
             if self.held() or self.lies():
                 return self.stay(CAPTURED)
 
+    def growth(self, stretch: VibratingStretch) -> float:
+        """Return how many times as long the next stretch may be, by how fast the last coefficients of the force go with the length."""
+        return float(min(max((_EASY * self.tolerance**0.5 / max(stretch.roughness, 1e-300)) ** (1.0 / NODES), 0.7), 4.0))
+
     def stay(self, outcome: int) -> int:
         """End the visit in contact."""
-        self.found.stored, self.left = float(self.local.elastic_energy(self.here())), self.time
+        self.found.stored, self.left = float(self.local.own_energy(self.delta)), self.time
         return outcome
 
     def solve(self, time_map: Map, length: float) -> VibratingStretch:
-        return solve_vibrating(self.around, self.local, time_map, length, self.state)
+        return solve_vibrating(self.around, self.local, time_map, length, self.state, self.delta)
 
     @property
     def floor(self) -> float:
@@ -256,35 +230,30 @@ class _Visit:
     def here(self) -> float:
         return max(float(self.around.oscillators.approach(self.state)), self.floor)
 
-    def end_at(self, stretch: VibratingStretch, event: Event) -> VibratingStretch | None:
-        """Solve a stretch again so that it ends at an event: regula falsi from where it was seen; None if it is not found.
+    def end_at(self, stretch: VibratingStretch, event: Event) -> tuple[str, VibratingStretch] | None:
+        """Return the name of the first event of a stretch, and the stretch that ends there; None if it is not found.
 
-        One that was seen in a solution which is not resolved may not be there: then the search runs against the end of the stretch.
+        What was seen in a solution that is not resolved may not be there, or something else before it.
         """
-        time_map: Map = "touch" if self.touching else "release" if event.name in ("parted", "no push") else "inside"
-        rule = stretch.rule
-        low, high = (stretch.length * float(rule.map_time(np.array([x]))[0]) for x in (max(event.x - GRID[1], 0.0), event.x))
-        length, least, most = 0.5 * (low + high), 0.0, stretch.length
-        before: tuple[float, float] | None = None
-        forces = None
-        for _ in range(_MOST_SECANTS):
-            ended = solve_vibrating(self.around, self.local, time_map, length, self.state, forces)
-            if not ended.solved:
+        for _ in range(_MOST_AIMS):
+            ended = self.aimed(stretch, event)
+            if not ended.solved or not 0.0 < ended.length <= (1.0 + _AT_END) * stretch.length:
                 return None
-            values = event.rises(ended)
-            value = float(values[-1])
-            least, most = (least, min(most, length)) if value > 0.0 else (max(least, length), most)
-            if before is None:  # the slope at the end of what was solved
-                step = value * length * float(rule.time[-1] - rule.time[-2]) / max(float(values[-1] - values[-2]), 1e-300)
-            else:
-                step = value * (length - before[0]) / (value - before[1]) if value != before[1] else 0.0
-            if abs(step) <= 1e-13 * length:
-                return ended if value >= 0.0 or length < (1.0 - _AT_END) * stretch.length else None
-            before, following = (length, value), length - step
-            if not least < following < most:
-                following = 0.5 * (least + most)
-            length, forces = following, (ended.static, ended.dissipative)
+            before = first_event(ended, self.speed, self.span)
+            if before is None or before.x > _BEFORE_END:
+                return (event.aim.name, ended) if ended.resolved(self.tolerance, self.speed) else None
+            stretch, event = ended, before
         return None
+
+    def aimed(self, stretch: VibratingStretch, event: Event) -> VibratingStretch:
+        """Solve a stretch again so that it ends at an event that was seen in it."""
+        time_map: Map = "touch" if self.touching else "release" if event.aim.name in ("parted", "no push") else "inside"
+        part = float(stretch.rule.map_time(np.array([event.x]))[0])
+        rule = spectrum(time_map, self.law.root).rule
+        weights = stretch.rule.weights(stretch.rule.unmap_time(part * rule.time)).T
+        delta = weights @ stretch.delta
+        guess = delta, np.add(*self.local.own_forces(delta, weights @ stretch.rate))
+        return solve_vibrating(self.around, self.local, time_map, part * stretch.length, self.state, self.delta, guess, event.aim)
 
     def accept(self, stretch: VibratingStretch) -> None:
         """Take a stretch into the history."""
@@ -292,34 +261,33 @@ class _Visit:
         found.parts.append(Part(self.time, stretch))
         self.note_peaks(stretch)
         self.time += stretch.length
-        self.state = stretch.end
+        self.state, self.delta = stretch.end, float(stretch.delta[-1])
         found.lost += stretch.lost
         self.touching = False
         stretch.forget()  # thousands of stretches would not fit into memory
 
-    def held_at(self, approach: float) -> float:
-        """Return the energy stored in the contact at an approach of the surfaces [J], without what is rounding."""
-        held = float(self.local.elastic_energy(approach))
+    def held_at(self, delta: float) -> float:
+        """Return the energy stored in the contact at an indentation of the law [J], without what is rounding."""
+        held = float(self.local.own_energy(delta))
         return held if abs(held) > 1e-15 * self.around.mass * self.speed**2 else 0.0
 
     def break_off(self) -> None:
         """Lose what a contact still holds as it ends with a stretch that was taken already."""
-        last, held = self.found.parts[-1], self.held_at(self.floor)
+        last, held = self.found.parts[-1], self.held_at(self.local.least)
         if held and isinstance(last.motion, VibratingStretch):
             self.found.parts[-1] = replace(last, motion=replace(last.motion, broken=held))
             self.found.lost[-1] += held
 
     def turn(self) -> None:
         """Go on with a law that remembers how deep it has been."""
-        deepest = self.here()
-        self.found.plastic += float(self.local.plastic_work(deepest))
-        self.local = self.local.after_compression(deepest)
+        self.found.plastic += float(self.local.law.plastic_work(self.delta))
+        self.local = self.local.after_own(self.delta)
 
     def held(self) -> bool:
         """Is there too little energy left to get out of the indentation?"""
-        here, around = self.here(), self.around
-        energy = mechanical_energy(around, self.state) + float(self.local.work(here))
-        out = least_energy(around, self.floor, float(self.local.elastic_energy(self.floor)))
+        around = self.around
+        energy = mechanical_energy(around, self.state) + float(self.local.own_work(self.delta))
+        out = least_energy(around, self.floor, float(self.local.own_energy(self.local.least)))
         return energy < out + 0.5 * around.mass * (self.tolerance * self.speed) ** 2
 
     def lies(self) -> bool:
@@ -373,6 +341,7 @@ class _Visit:
         rises = (lambda time: floor - free.motion(time)[0]) if parted else push
         length = float(find_root(rises, np.array([early]), np.array([late]))[0])
         self.pass_freely(free, length, self.local)
+        self.delta = float(self.local.own(self.here()))
         return parted
 
     @property
