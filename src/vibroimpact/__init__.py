@@ -33,13 +33,13 @@ if TYPE_CHECKING:
     from vibroimpact.cases.calibration import calibrated_case as calibrated_case
     from vibroimpact.cases.calibration import load_calibration as load_calibration
     from vibroimpact.cases.calibration import read_calibration as read_calibration
+    from vibroimpact.cases.case import Case as Case
+    from vibroimpact.cases.case import case_schema as case_schema
     from vibroimpact.cases.modes import BodyModes as BodyModes
     from vibroimpact.cases.modes import compute_modes as compute_modes
     from vibroimpact.cases.reader import load_case as load_case
     from vibroimpact.cases.reader import read_case as read_case
     from vibroimpact.cases.reader import shipped_cases as shipped_cases
-    from vibroimpact.cases.schema import Case as Case
-    from vibroimpact.cases.schema import case_schema as case_schema
     from vibroimpact.cases.sweep import Sweep as Sweep
     from vibroimpact.cases.sweep import load_sweep as load_sweep
     from vibroimpact.cases.sweep import read_sweep as read_sweep
@@ -94,7 +94,7 @@ _HOME = {
     "Body": "bodies.body",
     "BodyModes": "cases.modes",
     "Calibration": "calibration.calibration",
-    "Case": "cases.schema",
+    "Case": "cases.case",
     "Comparison": "report.comparison",
     "ComputationError": "errors",
     "ContactLaw": "contact.law",
@@ -119,7 +119,7 @@ _HOME = {
     "calibrate": "calibration.calibrate",
     "calibrate_case": "cases.calibration",
     "calibrated_case": "cases.calibration",
-    "case_schema": "cases.schema",
+    "case_schema": "cases.case",
     "compare_laws": "report.comparison",
     "compute_modes": "cases.modes",
     "contact_laws": "contact.law",

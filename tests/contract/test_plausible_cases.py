@@ -13,9 +13,10 @@ from typing import Any
 import pytest
 
 import vibroimpact as vi
-from vibroimpact.cases.build import contact_pair, resolved
+from vibroimpact.cases.build import resolved
 from vibroimpact.cases.calibration import read_calibration
 from vibroimpact.cases.reader import load_table, shipped_cases
+from vibroimpact.cases.rigid import contact_pair
 from vibroimpact.cases.slips.facts import Facts
 from vibroimpact.cases.slips.find import slips, swept_slips
 from vibroimpact.cases.sweep import read_sweep

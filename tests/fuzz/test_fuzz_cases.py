@@ -8,8 +8,8 @@ from pathlib import Path
 import vibroimpact as vi
 from attack import failures, number, seed
 from mutations import case_files
-from vibroimpact.cases.build import deforms
 from vibroimpact.cases.reader import load_table, named
+from vibroimpact.cases.rigid import deforms
 from vibroimpact.report.console import case_explained
 from vibroimpact.report.study.explained import sweep_explained
 from vibroimpact.report.terminal import TerminalConsole

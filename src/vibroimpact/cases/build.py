@@ -6,60 +6,18 @@ from collections.abc import Callable
 from dataclasses import fields, replace
 from typing import TYPE_CHECKING, Any, Literal
 
-import numpy as np
-
-from vibroimpact.bodies.plate import rigid_plate
-from vibroimpact.bodies.sphere import rigid_sphere
 from vibroimpact.cases.calibrate_section import calibrate_table
 from vibroimpact.cases.material_field import material_table
-from vibroimpact.contact.law import CompliantLaw, ContactLaw, find_contact_law, loses_nothing
-from vibroimpact.contact.pair import Array, ContactPair, effective_modulus
+from vibroimpact.cases.rigid import contact_laws_of, deforms, elastic_names, impacts_of, rigid_problem
+from vibroimpact.contact.law import CompliantLaw, loses_nothing
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.errors import InputError
 
 if TYPE_CHECKING:
-    from vibroimpact.cases.schema import Case, PlateSection, SphereSection
-
-_DEFAULT_IMPACTS = 5
+    from vibroimpact.cases.schema import CaseTable, PlateSection, SphereSection
 
 
-def contact_pair(case: Case) -> ContactPair:
-    """Return the facts of the touching pair of a case: effective modulus, radius and mass."""
-    modulus = effective_modulus(case.sphere.material, case.plate.material)
-    mass = rigid_sphere(case.sphere.radius, case.sphere.material).mass
-    strength: Array | None = None
-    ratio: Array = case.sphere.material.poissons_ratio
-    for material in (case.sphere.material, case.plate.material):
-        if material.yield_strength is None:
-            continue
-        weaker = np.less(material.yield_strength, np.inf if strength is None else strength)
-        strength = np.where(weaker, material.yield_strength, np.inf if strength is None else strength)[()]
-        ratio = np.where(weaker, material.poissons_ratio, ratio)[()]
-    return ContactPair(modulus, case.sphere.radius, mass, strength, ratio)
-
-
-def contact_laws_of(case: Case) -> tuple[ContactLaw, ...]:
-    """Return the law of each impact: as many as the longest list of a parameter."""
-    law, pair = find_contact_law(case.contact.law), contact_pair(case)
-    lists = {key: value for key, value in case.contact.parameters.items() if isinstance(value, tuple)}
-    number = max((len(value) for value in lists.values()), default=1)
-    try:
-        return tuple(
-            law.for_pair(pair, **{**case.contact.parameters, **{key: value[min(impact, len(value) - 1)] for key, value in lists.items()}})
-            for impact in range(number)
-        )
-    except InputError as error:
-        raise InputError(error.message, f"contact.{error.key}".rstrip(".")) from None
-
-
-def impacts_of(case: Case) -> int | None:
-    """Return after how many impacts a case stops; None if it goes on to rest."""
-    if case.run.impacts is None:
-        return _DEFAULT_IMPACTS if case.run.duration is None else None
-    return None if case.run.impacts == "all" else case.run.impacts
-
-
-def check_case(case: Case) -> None:
+def check_case(case: CaseTable) -> None:
     """Raise unless a case can be stated as a problem, without computing anything.
 
     Raises
@@ -96,24 +54,12 @@ def check_case(case: Case) -> None:
         elastic_bodies(case)
 
 
-def elastic_names(case: Case) -> list[Literal["sphere", "plate"]]:
-    """Return which bodies of a case are elastic."""
-    names: tuple[Literal["sphere", "plate"], ...] = ("sphere", "plate")
-    return [name for name in names if getattr(case, name).model == "elastic"]
-
-
-def deforms(case: Case) -> bool:
-    """Does anything of a case but the contact itself deform?"""
-    local = case.contact.local
-    return bool(elastic_names(case)) or local.local_compliance == "identified" or local.finite_sphere
-
-
-def problem_of(case: Case, progress: Callable[[float], None] | None = None, tell: Callable[[str], None] | None = None) -> Problem:
+def problem_of(case: CaseTable, progress: Callable[[float], None] | None = None, tell: Callable[[str], None] | None = None) -> Problem:
     """Return the problem that a case states.
 
     Parameters
     ----------
-    case : Case
+    case : CaseTable
         The case.
     progress : callable, optional
         Called with a number from 0 to 1 while modes of elastic bodies are computed.
@@ -135,31 +81,7 @@ def problem_of(case: Case, progress: Callable[[float], None] | None = None, tell
     return coupled(case, problem, progress, tell)
 
 
-def rigid_problem(case: Case) -> Problem:
-    """Return the problem of a case as if its bodies were rigid; the numbers of the case may be arrays, one value a drop."""
-    return Problem(
-        sphere=rigid_sphere(case.sphere.radius, case.sphere.material),
-        plate=rigid_plate(case.plate.size[2] if case.plate.size else 0.0),
-        laws=contact_laws_of(case),
-        height=case.drop.height,
-        speed=case.drop.speed,
-        gravity=case.drop.gravity,
-        impacts=impacts_of(case),
-        duration=case.run.duration,
-        rest_speed=case.run.rest_speed,
-        same_spot=case.drop.same_spot,
-        tolerance=case.run.tolerance,
-    )
-
-
-def first_speed(case: Case) -> float:
-    """Return the speed of the first touch [m/s] of a case."""
-    if case.drop.speed is not None:
-        return case.drop.speed
-    return float((2.0 * case.drop.gravity * ((case.drop.height or 0.0) - case.sphere.radius)) ** 0.5)
-
-
-def resolved(case: Case) -> dict[str, Any]:
+def resolved(case: CaseTable) -> dict[str, Any]:
     """Return a case in full, in SI: what is written as `case.toml`, and reads back as the same case."""
     laws = contact_laws_of(case)
     contact: dict[str, Any] = {"law": case.contact.law}
@@ -182,7 +104,7 @@ def resolved(case: Case) -> dict[str, Any]:
     }
 
 
-def _body(case: Case, name: Literal["sphere", "plate"]) -> dict[str, Any]:
+def _body(case: CaseTable, name: Literal["sphere", "plate"]) -> dict[str, Any]:
     """Return a body in full, without what its model does not have."""
     section: SphereSection | PlateSection = getattr(case, name)
     found = section.model_dump(exclude_none=True, exclude={"material", "supports", "damping", "mesh"})

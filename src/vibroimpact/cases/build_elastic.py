@@ -6,9 +6,9 @@ import math
 from typing import TYPE_CHECKING, Any, Literal
 
 from vibroimpact.bodies.elastic import ElasticBody, plate_recipe, recipe_of, sphere_recipe
-from vibroimpact.cases.build import elastic_names
 from vibroimpact.cases.damping_field import damping_of, damping_table
 from vibroimpact.cases.elastic_fields import BroughtMeshTable, PlateMeshTable, SphereMeshTable, reduction_of
+from vibroimpact.cases.rigid import elastic_names
 from vibroimpact.cases.supports_field import supports_of, supports_table
 from vibroimpact.errors import InputError
 from vibroimpact.structures.recipe import BroughtMesh, Recipe, to_follow
@@ -17,12 +17,12 @@ from vibroimpact.structures.supports.support import Support
 from vibroimpact.structures.surface import Spot
 
 if TYPE_CHECKING:
-    from vibroimpact.cases.schema import Case
+    from vibroimpact.cases.schema import CaseTable
 
 _UNSPLIT = {"splits": 0, "lower_splits": 0}  # unless asked for: the number of elements is that of the case
 
 
-def elastic_bodies(case: Case) -> dict[str, ElasticBody]:
+def elastic_bodies(case: CaseTable) -> dict[str, ElasticBody]:
     """Return the bodies of a case that deform, by their names.
 
     Raises
@@ -33,14 +33,14 @@ def elastic_bodies(case: Case) -> dict[str, ElasticBody]:
     return {name: _body(case, name) for name in elastic_names(case)}
 
 
-def _body(case: Case, name: Literal["sphere", "plate"]) -> ElasticBody:
+def _body(case: CaseTable, name: Literal["sphere", "plate"]) -> ElasticBody:
     try:
         return (_sphere if name == "sphere" else _plate)(case)
     except InputError as error:
         raise InputError(error.message, f"{name}.{error.key}".rstrip(".")) from None
 
 
-def elastic_table(case: Case, name: Literal["sphere", "plate"]) -> dict[str, Any]:
+def elastic_table(case: CaseTable, name: Literal["sphere", "plate"]) -> dict[str, Any]:
     """Return the keys of an elastic body with what was chosen for it: its mesh, its modes and its damping."""
     section, body = getattr(case, name), _body(case, name)
     shape, reduction = body.recipe.shape, body.recipe.reduction
@@ -59,7 +59,7 @@ def elastic_table(case: Case, name: Literal["sphere", "plate"]) -> dict[str, Any
     return table
 
 
-def _sphere(case: Case) -> ElasticBody:
+def _sphere(case: CaseTable) -> ElasticBody:
     section, mesh = case.sphere, case.sphere.mesh
     contact = mesh.contact if isinstance(mesh, BroughtMeshTable) else None
     reduction = reduction_of("sphere", section, (contact, "lower"))
@@ -71,7 +71,7 @@ def _sphere(case: Case) -> ElasticBody:
     return ElasticBody(recipe, "lower", contact, damping_of(section.damping, section.material.loss_factor))
 
 
-def _plate(case: Case) -> ElasticBody:
+def _plate(case: CaseTable) -> ElasticBody:
     section = case.plate
     contact: Spot = case.drop.position
     if isinstance(section.mesh, BroughtMeshTable) and section.mesh.contact:
@@ -80,7 +80,7 @@ def _plate(case: Case) -> ElasticBody:
     return ElasticBody(_plate_recipe(case, contact), "upper", contact, damping_of(section.damping, section.material.loss_factor), watched)
 
 
-def _plate_recipe(case: Case, contact: Spot) -> Recipe:
+def _plate_recipe(case: CaseTable, contact: Spot) -> Recipe:
     section, mesh = case.plate, case.plate.mesh
     reduction = reduction_of("plate", section, (contact, "upper"))
     supports = supports_of(section.supports)

@@ -6,9 +6,10 @@ from collections.abc import Iterable, Mapping
 from dataclasses import MISSING, Field, fields
 from typing import Any
 
-from vibroimpact.cases.build import contact_laws_of, contact_pair, first_speed, resolved
+from vibroimpact.cases.build import resolved
+from vibroimpact.cases.case import Case
 from vibroimpact.cases.reader import read_case
-from vibroimpact.cases.schema import Case
+from vibroimpact.cases.rigid import contact_laws_of, contact_pair, first_speed
 from vibroimpact.contact.law import ContactLaw, find_contact_law, unit_of
 from vibroimpact.dynamics.restitution import law_achieving
 from vibroimpact.errors import InputError, did_you_mean

@@ -9,8 +9,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from vibroimpact.cases.build import deforms, rigid_problem
-from vibroimpact.cases.schema import Case
+from vibroimpact.cases.case import Case
+from vibroimpact.cases.rigid import deforms, rigid_problem
 from vibroimpact.cases.study_limits import batch_conditions, drop_conditions, limit_columns
 from vibroimpact.cases.swept_arrays import is_array_key, with_arrays
 from vibroimpact.cases.swept_keys import case_at

@@ -6,8 +6,8 @@ import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, NamedTuple
 
-from vibroimpact.cases.build import contact_laws_of, contact_pair, deforms, first_speed, impacts_of
 from vibroimpact.cases.build_elastic import elastic_bodies
+from vibroimpact.cases.rigid import contact_laws_of, contact_pair, deforms, first_speed, impacts_of
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.static import static_indentation
 from vibroimpact.dynamics.history_grid import MOST_POINTS
@@ -18,7 +18,7 @@ from vibroimpact.structures.recipe import BroughtMesh, model_key
 from vibroimpact.structures.store import has_model
 
 if TYPE_CHECKING:
-    from vibroimpact.cases.schema import Case
+    from vibroimpact.cases.case import Case
 
 # measured on one core of 2.5 GHz or so, by benchmarks/bench_costs.py
 _PROGRAM = 170e6  # bytes that the program takes with its figures

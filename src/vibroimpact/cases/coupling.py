@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, cast
 import numpy as np
 
 from vibroimpact.calibration.local_element import identify_local_element, local_element_deviations
-from vibroimpact.cases.build import contact_laws_of, contact_pair, elastic_names, first_speed
 from vibroimpact.cases.local_section import MeasuredImpact
 from vibroimpact.cases.modes import BodyModes, compute_modes
 from vibroimpact.cases.residuals import residual_key, with_residuals
+from vibroimpact.cases.rigid import contact_laws_of, contact_pair, elastic_names, first_speed
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.quasi_static import QuasiStatic
 from vibroimpact.dynamics.encounter import encounter_of
@@ -33,7 +33,7 @@ from vibroimpact.structures.store import carry
 from vibroimpact.structures.surface import Side, place_of
 
 if TYPE_CHECKING:
-    from vibroimpact.cases.schema import Case
+    from vibroimpact.cases.schema import CaseTable
 
 _LEAST_SLOPE = 0.25  # of the contact's own compliance that must be left when what the modes carry is taken out
 
@@ -60,12 +60,12 @@ class Coupling:
     models: Mapping[str, ModalModel]
 
 
-def treatment_of(case: Case) -> str:
+def treatment_of(case: CaseTable) -> str:
     """Return which treatment of local compliance a case has."""
     return case.contact.local.local_compliance or "consistent"
 
 
-def coupling_of(case: Case, progress: Callable[[float], None] | None = None, tell: Callable[[str], None] | None = None) -> Coupling:
+def coupling_of(case: CaseTable, progress: Callable[[float], None] | None = None, tell: Callable[[str], None] | None = None) -> Coupling:
     """Compute, or fetch from the store, how the elastic bodies of a case deform.
 
     Raises
@@ -112,7 +112,7 @@ def coupling_of(case: Case, progress: Callable[[float], None] | None = None, tel
 
 
 def carried_modes(
-    case: Case, progress: Callable[[float], None] | None = None, tell: Callable[[str], None] | None = None
+    case: CaseTable, progress: Callable[[float], None] | None = None, tell: Callable[[str], None] | None = None
 ) -> dict[str, bytes]:
     """Return the entries of the store that a case needs, so that a process on another disk computes no modes for it.
 
@@ -149,7 +149,7 @@ def _met(body: BodyModes) -> tuple[tuple[float, float], Side]:
     return place_of(body.model.mesh, body.body.contact, body.body.side), body.body.side
 
 
-def _finite_size(case: Case, patch: float) -> tuple[QuasiStatic, float]:
+def _finite_size(case: CaseTable, patch: float) -> tuple[QuasiStatic, float]:
     """Return what a sphere of finite size lacks of the half space, and its factor at a contact radius [m]."""
     ratio, radius = case.sphere.material.poissons_ratio, case.sphere.radius
     term, force = sphere_term(ratio), 4.0 / 3.0 * contact_pair(case).effective_modulus * radius**2
@@ -188,7 +188,7 @@ def _at_its_face(body: BodyModes) -> tuple[ModalBasis, float]:
     return replace(body.basis, contact=contact, points=points), inertia_beyond_bending(body.model.thickness, material)
 
 
-def _first_contact(case: Case) -> tuple[CompliantLaw, float]:
+def _first_contact(case: CaseTable) -> tuple[CompliantLaw, float]:
     """Return the law of the first impact and how deep it would get undamped between rigid bodies [m]."""
     law = contact_laws_of(case)[0]
     if not isinstance(law, CompliantLaw):
@@ -197,12 +197,12 @@ def _first_contact(case: Case) -> tuple[CompliantLaw, float]:
     return law, float(encounter_of(law, mass, gravity, speed).depth[0])
 
 
-def _contact_radius(case: Case) -> float:
+def _contact_radius(case: CaseTable) -> float:
     """Return Hertz's contact radius of the first impact at its deepest [m]."""
     return math.sqrt(case.sphere.radius * _first_contact(case)[1])
 
 
-def _refuse_ill_posed(case: Case, series: QuasiStatic, facts: Mapping[str, float | str]) -> None:
+def _refuse_ill_posed(case: CaseTable, series: QuasiStatic, facts: Mapping[str, float | str]) -> None:
     """Raise if what is taken out of the contact leaves too little of it, anywhere up to the deepest point.
 
     Raises
@@ -226,7 +226,7 @@ def _refuse_ill_posed(case: Case, series: QuasiStatic, facts: Mapping[str, float
     )
 
 
-def _rebound(case: Case, measured: MeasuredImpact) -> dict[str, float]:
+def _rebound(case: CaseTable, measured: MeasuredImpact) -> dict[str, float]:
     """Return the rebound that was measured as `identify_local_element` takes it."""
     if measured.separation_speed is not None:
         return {"separation_speed": measured.separation_speed}
@@ -240,7 +240,7 @@ def _rebound(case: Case, measured: MeasuredImpact) -> dict[str, float]:
 
 
 def coupled(
-    case: Case, problem: Problem, progress: Callable[[float], None] | None = None, tell: Callable[[str], None] | None = None
+    case: CaseTable, problem: Problem, progress: Callable[[float], None] | None = None, tell: Callable[[str], None] | None = None
 ) -> Problem:
     """Return the problem of a case with its bodies deforming; `problem` is that of rigid ones.
 
@@ -273,7 +273,7 @@ def coupled(
     return replace(found, local_element=element, facts={**coupling.facts, **facts})
 
 
-def _identified(case: Case, measured: MeasuredImpact, problem: Problem) -> tuple[tuple[float, float], dict[str, float | str]]:
+def _identified(case: CaseTable, measured: MeasuredImpact, problem: Problem) -> tuple[tuple[float, float], dict[str, float | str]]:
     """Return the local element that gives what was measured, and what is told of it."""
     try:
         element = identify_local_element(problem, measured.max_force, **_rebound(case, measured))

@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vibroimpact.cases.build import contact_laws_of, contact_pair, first_speed
 from vibroimpact.cases.conditions import Seen
+from vibroimpact.cases.rigid import contact_laws_of, contact_pair, first_speed
 from vibroimpact.contact.hertz_time import HERTZ_TIME
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.dynamics.encounter import encounter_of
 
 if TYPE_CHECKING:
-    from vibroimpact.cases.schema import Case
+    from vibroimpact.cases.case import Case
 
 _SUPPORTED, _CLAMPED = 0.0116, 0.0056
 """Deflection of a square plate under a force at its centre over F a^2 / D: Timoshenko and Woinowsky-Krieger 1959, Tables 23 and 37."""

@@ -12,8 +12,8 @@ from vibroimpact.calibration.air_flights import AirFlights
 from vibroimpact.calibration.believed import restitutions
 from vibroimpact.calibration.flights import Flights
 from vibroimpact.calibration.observations import Observations
-from vibroimpact.cases.build import first_speed
-from vibroimpact.cases.schema import Case
+from vibroimpact.cases.case import Case
+from vibroimpact.cases.rigid import first_speed
 from vibroimpact.dynamics.air import AIR_DENSITY
 from vibroimpact.errors import InputError
 

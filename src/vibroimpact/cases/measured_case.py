@@ -11,8 +11,8 @@ from vibroimpact.calibration.flights import Flights, Floats, VacuumFlights, as_i
 from vibroimpact.calibration.observations import Observations, from_heights, from_table
 from vibroimpact.calibration.outcomes import OUTCOMES
 from vibroimpact.cases.calibrate_section import ImpactTarget, RestitutionTarget
+from vibroimpact.cases.case import Case
 from vibroimpact.cases.in_air import Measurement, speed_at_touch
-from vibroimpact.cases.schema import Case
 from vibroimpact.errors import InputError
 
 

@@ -13,11 +13,11 @@ from vibroimpact.calibration.force_record import impacts_in_force
 from vibroimpact.calibration.observations import Observations, from_table
 from vibroimpact.calibration.outcomes import OUTCOMES
 from vibroimpact.calibration.position_record import impacts_in_position
-from vibroimpact.cases.build import contact_pair
 from vibroimpact.cases.calibrate_section import FileTarget
+from vibroimpact.cases.case import Case
 from vibroimpact.cases.in_air import Measurement, speed_at_touch
 from vibroimpact.cases.measured_case import check_restitutions, of_heights
-from vibroimpact.cases.schema import Case
+from vibroimpact.cases.rigid import contact_pair
 from vibroimpact.errors import InputError
 from vibroimpact.exchange.record_file import SPHERE_ACCELERATION, is_universal, read_universal_record
 from vibroimpact.exchange.table_file import TableFile, read_table_file, rising

@@ -19,10 +19,10 @@ from vibroimpact.structures.surface import Side, Spot, place_of, surface_motion
 
 if TYPE_CHECKING:
     from vibroimpact.bodies.elastic import ElasticBody
-    from vibroimpact.cases.schema import Case
+    from vibroimpact.cases.schema import CaseTable
 
 
-def meshes_of(case: Case) -> dict[str, Mesh]:
+def meshes_of(case: CaseTable) -> dict[str, Mesh]:
     """Return the mesh of each elastic body of a case; nothing is assembled.
 
     Raises
@@ -57,7 +57,7 @@ def _check_spot(mesh: Mesh, spot: Spot, side: Side, key: str) -> None:
         raise InputError(error.message, key) from None
 
 
-def _check_supports(case: Case, body: ElasticBody, mesh: Mesh) -> None:
+def _check_supports(case: CaseTable, body: ElasticBody, mesh: Mesh) -> None:
     """Raise unless each support finds something to hold, that no other one holds."""
     tables = case.plate.supports if isinstance(case.plate.supports, tuple) else ()
     dofs = mesh.dofs_per_node * len(mesh.nodes)

@@ -19,7 +19,7 @@ from vibroimpact.structures.modal_model import ModalBasis, ModalModel
 from vibroimpact.structures.recipe import MAIN_CAUSE, BroughtMesh, PlateOfSolids, Recipe, SphereOfSolids, is_thin, modal_model_of
 
 if TYPE_CHECKING:
-    from vibroimpact.cases.schema import Case
+    from vibroimpact.cases.schema import CaseTable
 
 _FREQUENCY_OFF = 0.005  # relative: frequencies that may be off by more are doubted
 _WEIGHT_OFF = 0.05  # relative: a mesh whose volume differs more from that of the case is doubted
@@ -50,13 +50,13 @@ class BodyModes:
 
 
 def compute_modes(
-    case: Case, progress: Callable[[float], None] | None = None, tell: Callable[[str], None] | None = None
+    case: CaseTable, progress: Callable[[float], None] | None = None, tell: Callable[[str], None] | None = None
 ) -> dict[str, BodyModes]:
     """Return the modes of the elastic bodies of a case, by the name of the body.
 
     Parameters
     ----------
-    case : Case
+    case : CaseTable
         A case with `model = "elastic"` for the sphere, the plate, or both.
     progress : callable, optional
         Called with a number from 0 to 1.
@@ -100,7 +100,7 @@ def compute_modes(
     return found
 
 
-def _doubts(case: Case, name: str, body: ElasticBody, model: ModalModel, basis: ModalBasis) -> Iterator[str]:
+def _doubts(case: CaseTable, name: str, body: ElasticBody, model: ModalModel, basis: ModalBasis) -> Iterator[str]:
     """Say where a plate would fall, and where a mesh or a damping does not look like what was meant."""
     if name == "plate" and not model.is_held_vertically:
         yield "the plate is not held: its supports let it fall or tilt, and a drop needs a plate that is held"
@@ -142,7 +142,7 @@ def _remedy(recipe: Recipe, cause: str) -> str:
     return f'give mesh.element_size = "{1e3 * size / 1.5:.3g} mm"{splits}'
 
 
-def _doubts_of_mass(case: Case, name: str, body: ElasticBody, model: ModalModel) -> Iterator[str]:
+def _doubts_of_mass(case: CaseTable, name: str, body: ElasticBody, model: ModalModel) -> Iterator[str]:
     brought, extent = isinstance(body.recipe.shape, BroughtMesh), model.mesh.extent
     size = " x ".join(f"{side:.3g}" for side in (*extent[:2], model.thickness or extent[2]))
     said = f"the mesh of the {name} is {size} m large and weighs {model.properties.mass:.4g} kg"

@@ -12,13 +12,13 @@ from vibroimpact.errors import InputError
 from vibroimpact.structures.rectangle import CLOSEST
 
 if TYPE_CHECKING:
-    from vibroimpact.cases.schema import Case
+    from vibroimpact.cases.schema import CaseTable
 
 _ROUNDING = 1.0 + 1e-9
 _RIGID = ("patch", "patches", "bar", "bars")  # whose rim is an edge of elements
 
 
-def check_places(case: Case) -> None:
+def check_places(case: CaseTable) -> None:
     """Raise unless the supports and the sensors of an elastic plate that is meshed here lie on it.
 
     Raises

@@ -16,10 +16,11 @@ from pydantic import BaseModel, ValidationError
 from vibroimpact.cases.bounds import MOST_BYTES, check_bounds, check_text
 from vibroimpact.cases.build import check_case
 from vibroimpact.cases.calibrate_section import CalibrateSection, SpeedsTable
+from vibroimpact.cases.case import Case
 from vibroimpact.cases.explain import explained
 from vibroimpact.cases.material_field import InlineMaterial
 from vibroimpact.cases.place_words import place_in_words
-from vibroimpact.cases.schema import AccelerometerTable, Case, DropSection, PlateSection, RunSection, SensorSection, SphereSection
+from vibroimpact.cases.schema import AccelerometerTable, DropSection, PlateSection, RunSection, SensorSection, SphereSection
 from vibroimpact.cases.sweep_section import SweepSection
 from vibroimpact.errors import InputError, did_you_mean
 from vibroimpact.files import FileKind, read_text

@@ -4,15 +4,13 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Callable
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, Self
 
 from pydantic import BeforeValidator, Field, StrictBool, model_validator
 
 from vibroimpact.cases.bounds import MOST_ITEMS, Name, at_most
-from vibroimpact.cases.build import problem_of
 from vibroimpact.cases.calibrate_section import CalibrateSection
-from vibroimpact.cases.contact_section import ContactSection, contact_schema, read_contact
+from vibroimpact.cases.contact_section import ContactSection, read_contact
 from vibroimpact.cases.damping_field import DampingField
 from vibroimpact.cases.elastic_fields import (
     BroughtMeshTable,
@@ -30,7 +28,7 @@ from vibroimpact.cases.section import Section
 from vibroimpact.cases.slips.lengths import likely_lengths
 from vibroimpact.cases.supports_field import SupportsField
 from vibroimpact.cases.sweep_section import SweepSection
-from vibroimpact.dynamics.problem import MOST_IMPACTS, STANDARD_GRAVITY, Problem
+from vibroimpact.dynamics.problem import MOST_IMPACTS, STANDARD_GRAVITY
 from vibroimpact.dynamics.sensor import FILTERS, Accelerometer, Sensor
 from vibroimpact.errors import InputError, did_you_mean
 from vibroimpact.materials import RIGID
@@ -184,11 +182,8 @@ class RunSection(Section):
     ] = 1e-9
 
 
-class Case(Section):
-    """A case: the file, validated, in SI.
-
-    Read one with `load_case` or `read_case`; `to_problem` states it for the simulation.
-    """
+class CaseTable(Section):
+    """A case as a file has it: its sections, validated, in SI."""
 
     schema_version: Literal[1] = Field(1, description="version of this format")
     name: Name = Field("", description="what the case is, in a few words")
@@ -204,7 +199,7 @@ class Case(Section):
     sweep: SweepSection | None = Field(None, description="what `vibroimpact sweep` does with it")
 
     @model_validator(mode="after")
-    def _fits_together(self) -> Case:
+    def _fits_together(self) -> Self:
         radius, height, size = self.sphere.radius, self.drop.height, self.plate.size
         if height is not None and height <= radius:
             hint = likely_lengths([radius], [min(height, 3.0)]).replace("Write", "Write sphere.radius =")
@@ -225,35 +220,3 @@ class Case(Section):
         if twice is not None:
             raise InputError(f"two sensors are called {shown(twice)}; each needs a name of its own", "sensors")
         return self
-
-    def to_problem(self, progress: Callable[[float], None] | None = None, tell: Callable[[str], None] | None = None) -> Problem:
-        """Return the problem that the case states; modes of elastic bodies are computed, or fetched from the store.
-
-        Parameters
-        ----------
-        progress : callable, optional
-            Called with a number from 0 to 1 while modes are computed.
-        tell : callable, optional
-            Called with a sentence if something is wrong with the store.
-
-        Raises
-        ------
-        InputError
-            If the contact law can't be made for these two bodies, or an elastic body can't.
-        """
-        return problem_of(self, progress, tell)
-
-
-def case_schema() -> dict[str, Any]:
-    """Return the JSON schema of a case file, with every contact law and its parameters.
-
-    Examples
-    --------
-    >>> sorted(case_schema()["properties"])
-    ['calibrate', 'contact', 'drop', 'name', 'plate', 'run', 'schema_version', 'sensors', 'sphere', 'sweep']
-    """
-    schema = Case.model_json_schema()
-    schema["$schema"] = "https://json-schema.org/draft/2020-12/schema"
-    schema["properties"]["contact"] = contact_schema()
-    schema["$defs"].pop("ContactSection", None)
-    return schema

@@ -10,10 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vibroimpact.cases.build import resolved
+from vibroimpact.cases.case import Case
 from vibroimpact.cases.conditions import Conditions, Seen
 from vibroimpact.cases.limit import limits, numbers_of
 from vibroimpact.cases.limits.plate_waves import plate_theory_error
-from vibroimpact.cases.schema import Case
 from vibroimpact.cases.swept_keys import with_values
 from vibroimpact.contact.law import ContactLaw
 from vibroimpact.dynamics.bending import largest_bending

@@ -8,7 +8,7 @@ from typing import Any
 from numpy.typing import NDArray
 
 from vibroimpact.cases.build import resolved
-from vibroimpact.cases.schema import Case
+from vibroimpact.cases.case import Case
 from vibroimpact.cases.slips.find import slips, swept_slips
 from vibroimpact.cases.sweep import Sweep
 from vibroimpact.cases.swept_keys import case_at

@@ -15,10 +15,10 @@ from typing import Any
 import numpy as np
 
 from vibroimpact.cases.bounds import MOST_ITEMS, check_bounds, check_count
-from vibroimpact.cases.build import deforms, impacts_of
+from vibroimpact.cases.case import Case
 from vibroimpact.cases.quantities import Quantity
 from vibroimpact.cases.reader import load_table, named
-from vibroimpact.cases.schema import Case
+from vibroimpact.cases.rigid import deforms, impacts_of
 from vibroimpact.cases.section import read_table
 from vibroimpact.cases.study_limits import limit_meanings
 from vibroimpact.cases.sweep_section import MOST_DROPS, SweepSection, read_axis

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
-from vibroimpact.cases.schema import Case
+from vibroimpact.cases.case import Case
 from vibroimpact.studies.axes import Values
 
 _OF_THE_RUN = ("run.duration", "run.tolerance")  # one for all drops of a batch
@@ -25,7 +25,7 @@ def with_arrays(case: Case, arrays: Mapping[str, Values]) -> Case:
     Examples
     --------
     >>> import numpy as np
-    >>> from vibroimpact.cases.build import rigid_problem
+    >>> from vibroimpact.cases.rigid import rigid_problem
     >>> from vibroimpact.cases.reader import load_case
     >>> case = with_arrays(load_case("paper:type1-theory"), {"drop.height": np.array([1.0, 2.0, 4.0])})
     >>> rigid_problem(case).shape

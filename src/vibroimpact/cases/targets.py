@@ -8,13 +8,13 @@ import numpy as np
 
 from vibroimpact.calibration.observations import Observations, from_table
 from vibroimpact.calibration.outcomes import REBOUND, REBOUNDS
-from vibroimpact.cases.build import contact_laws_of, first_speed
 from vibroimpact.cases.calibrate_section import CalibrateSection, FileTarget, HeightsTarget, ImpactTarget, RestitutionTarget
+from vibroimpact.cases.case import Case
 from vibroimpact.cases.contact_section import ContactSection
 from vibroimpact.cases.in_air import Measurement, in_air
 from vibroimpact.cases.measured_case import of_first, of_heights, of_speeds
 from vibroimpact.cases.measured_file import of_file
-from vibroimpact.cases.schema import Case
+from vibroimpact.cases.rigid import contact_laws_of, first_speed
 from vibroimpact.contact.laws.newton import Newton
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.errors import InputError

@@ -76,7 +76,7 @@ def schema() -> None:
     """Print the JSON schema of a case file."""
     import json
 
-    from vibroimpact.cases.schema import case_schema
+    from vibroimpact.cases.case import case_schema
 
     say(json.dumps(case_schema(), indent=2))
 

@@ -15,38 +15,19 @@ from vibroimpact.dynamics.collocation import Floats
 from vibroimpact.dynamics.columns import HISTORY_COLUMNS, VIBRATION_HISTORY_COLUMNS
 from vibroimpact.dynamics.history_grid import points_kept, thinned
 from vibroimpact.dynamics.leg import Leg
-from vibroimpact.dynamics.lying import Lying
 from vibroimpact.dynamics.outcome import Outcome
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.recording import Signal, record
+from vibroimpact.dynamics.rest import Rest
 from vibroimpact.dynamics.segments import FlightSegment, RestSegment
 from vibroimpact.dynamics.sensor import Sensor, sample_count
-from vibroimpact.dynamics.status import status_of
+from vibroimpact.dynamics.status import Ended, status_of
 from vibroimpact.dynamics.timeline import Timeline, end_of, timeline_of
 from vibroimpact.dynamics.truncation import truncation_estimates
 from vibroimpact.dynamics.vibrating_history import vibrating_history
 from vibroimpact.dynamics.vibrating_segment import VibratingSegment, vibrating_timeline
 from vibroimpact.dynamics.vibration import modes_of
 from vibroimpact.errors import InputError
-
-
-@dataclass(frozen=True)
-class Rest:
-    """How the drops that came to rest do so; arrays are (B,), NaN for the others.
-
-    `speed`: below which a sphere that leaves is at rest [m/s]. `time`: when the bounces that were not
-    followed any more would have ended [s]. `sag`: static indentation [m]. `stored`: energy in it [J].
-    `written_off`: energy that the sphere still had [J]. Where a body vibrates, `left`: what the sphere and what it lies on still
-    hold above their equilibrium then [J], and `lying`: how they move on.
-    """
-
-    speed: Floats
-    time: Floats
-    sag: Floats
-    stored: Floats
-    written_off: Floats
-    left: Floats
-    lying: tuple[Lying | None, ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -128,7 +109,7 @@ class Response:
 
         For a batch, how many drops ended by each rule, and the most that is left in vibration where they rest or ride.
         """
-        return status_of(self)
+        return status_of(Ended(self.problem, self.impacts, self.energy, self.outcomes, self.end_time, self.rest))
 
     def at(self, times: Any) -> dict[str, Floats]:
         """Return the history of one drop at any times.

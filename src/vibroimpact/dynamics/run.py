@@ -21,7 +21,8 @@ from vibroimpact.dynamics.leg import Leg
 from vibroimpact.dynamics.oscillators import FreeMotion
 from vibroimpact.dynamics.outcome import OUTCOMES, Outcome
 from vibroimpact.dynamics.problem import MOST_IMPACTS, Problem
-from vibroimpact.dynamics.response import Response, Rest
+from vibroimpact.dynamics.response import Response
+from vibroimpact.dynamics.rest import Rest
 from vibroimpact.dynamics.sensitivity import Neighbours
 from vibroimpact.dynamics.solve_contact import SolvesContact
 from vibroimpact.dynamics.vibration import Vibration, contact_of

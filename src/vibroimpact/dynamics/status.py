@@ -2,91 +2,104 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
+from dataclasses import dataclass
 
 import numpy as np
 
+from vibroimpact.dynamics.collocation import Floats
 from vibroimpact.dynamics.energy import why_failed
 from vibroimpact.dynamics.outcome import Outcome
+from vibroimpact.dynamics.problem import Problem
+from vibroimpact.dynamics.rest import Rest
 from vibroimpact.dynamics.sensitivity import change_by_impact
 from vibroimpact.dynamics.visit import MOST_STEPS, MOST_STEPS_TO_A_TIME
 from vibroimpact.quantity import certain, certain_figures
 
-if TYPE_CHECKING:
-    from vibroimpact.dynamics.response import Response
+
+@dataclass(frozen=True)
+class Ended:
+    """What a response tells of the end of a run, under the same names."""
+
+    problem: Problem
+    impacts: Mapping[str, Floats]
+    energy: Mapping[str, Floats]
+    outcomes: tuple[Outcome, ...]
+    end_time: Floats
+    rest: Rest
 
 
-def status_of(response: Response) -> str:
+def status_of(run: Ended) -> str:
     """Return why the run of a drop ended, and when, in the digits that are certain; of a batch, how many drops each rule ended."""
-    if len(response) > 1 or response.problem.shape != ():
-        return "; ".join(_ended_by(response, outcome) for outcome in Outcome if outcome in response.outcomes)
-    number, end, outcome = len(response.impacts["impact"]), float(response.end_time[0]), response.outcomes[0]
+    if len(run.outcomes) > 1 or run.problem.shape != ():
+        return "; ".join(_ended_by(run, outcome) for outcome in Outcome if outcome in run.outcomes)
+    number, end, outcome = len(run.impacts["impact"]), float(run.end_time[0]), run.outcomes[0]
     after = f"after {number} impact{'' if number == 1 else 's'}"
     if outcome is Outcome.IMPACTS:
-        return f"Stopped {after}, at the top of the last rebound, at {_time(response, end, 6)} s."
+        return f"Stopped {after}, at the top of the last rebound, at {_time(run, end, 6)} s."
     if outcome is Outcome.RIDING:
         steps = f"{MOST_STEPS} steps of the integration; give a duration to follow it for longer"
-        if response.problem.duration is not None:
+        if run.problem.duration is not None:
             steps = f"{MOST_STEPS_TO_A_TIME} steps of the integration"
-        return f"Stopped {after}, at {_time(response, end, 6)} s: {_riding(response)}. A ride is followed for at most {steps}."
+        return f"Stopped {after}, at {_time(run, end, 6)} s: {_riding(run)}. A ride is followed for at most {steps}."
     if outcome is Outcome.DURATION:
-        asked = float(response.problem.duration or end)
-        finished = f", and the contact under way was finished, at {_time(response, end, 9)} s" if end > asked else ""
-        riding = f"; {_riding(response)}" if np.isfinite(response.rest.left[0]) else ""
+        asked = float(run.problem.duration or end)
+        finished = f", and the contact under way was finished, at {_time(run, end, 9)} s" if end > asked else ""
+        riding = f"; {_riding(run)}" if np.isfinite(run.rest.left[0]) else ""
         return f"Stopped {after} at {asked:.6g} s, the duration asked for{finished}{riding}."
     if outcome is Outcome.LIMIT:
-        return f"Stopped {after}, the most that are followed, at {_time(response, end, 6)} s; the sphere is not at rest."
+        return f"Stopped {after}, the most that are followed, at {_time(run, end, 6)} s; the sphere is not at rest."
     if outcome is Outcome.LEFT:
         return f"The sphere leaves {after} and, without gravity, never comes back."
     if outcome is Outcome.FAILED:
-        return f"Failed {after}: {why_failed(response.energy)}"
-    return f"At rest {after}: {_at_rest(response)}"
+        return f"Failed {after}: {why_failed(run.energy)}"
+    return f"At rest {after}: {_at_rest(run)}"
 
 
-def _ended_by(response: Response, outcome: Outcome) -> str:
+def _ended_by(run: Ended, outcome: Outcome) -> str:
     """Say how many drops of a batch a rule ended, and what is left in vibration."""
-    ended = np.array([one is outcome for one in response.outcomes])
-    left = response.rest.left[ended & np.isfinite(response.rest.left)]
-    counted = f"{np.count_nonzero(ended)} of {len(response)} drops: {outcome.value}"
+    ended = np.array([one is outcome for one in run.outcomes])
+    left = run.rest.left[ended & np.isfinite(run.rest.left)]
+    counted = f"{np.count_nonzero(ended)} of {len(run.outcomes)} drops: {outcome.value}"
     if not left.size:
         return counted
     riding = "" if outcome.at_rest else f"{left.size} of them riding, "
     return f"{counted} ({riding}at most {left.max():.3g} J left in vibration)"
 
 
-def _riding(response: Response) -> str:
+def _riding(run: Ended) -> str:
     """Say that the sphere is in contact still, and not at rest."""
-    return f"the sphere rides on the plate and is not at rest, with {_shown(response, float(response.rest.left[0]), 3)} J left in vibration"
+    return f"the sphere rides on the plate and is not at rest, with {_shown(run, float(run.rest.left[0]), 3)} J left in vibration"
 
 
-def _at_rest(response: Response) -> str:
+def _at_rest(run: Ended) -> str:
     """Say by which rule the sphere is at rest, and what is left in what carries it."""
-    time, left = float(response.rest.time[0]), float(response.rest.left[0])
-    vibration = "" if np.isnan(left) else f" {_shown(response, left, 3)} J are left in vibration, too little at the contact to lift it."
-    when = _time(response, time, 7)
-    if response.outcomes[0] is Outcome.CAPTURED:
+    time, left = float(run.rest.time[0]), float(run.rest.left[0])
+    vibration = "" if np.isnan(left) else f" {_shown(run, left, 3)} J are left in vibration, too little at the contact to lift it."
+    when = _time(run, time, 7)
+    if run.outcomes[0] is Outcome.CAPTURED:
         if vibration:
             return f"at {when} s it lies in its indentation for good.{vibration}"
         return f"from {when} s on it has too little energy left to get out of its indentation, and lies there for good."
-    if response.outcomes[0] is Outcome.STUCK:
+    if run.outcomes[0] is Outcome.STUCK:
         return f"from {when} s on it has too little energy left to break the adhesion, and sticks.{vibration}"
-    speed, last = float(response.rest.speed[0]), float(response.impacts["separation_speed_m_s"][-1])
+    speed, last = float(run.rest.speed[0]), float(run.impacts["separation_speed_m_s"][-1])
     limit = f" Bounces with the last restitution would end at {when} s." if np.isfinite(time) else ""
-    return f"it left at {_shown(response, last, 3)} m/s, below the rest speed of {speed:.3g} m/s (rest-speed rule).{limit}{vibration}"
+    return f"it left at {_shown(run, last, 3)} m/s, below the rest speed of {speed:.3g} m/s (rest-speed rule).{limit}{vibration}"
 
 
-def _time(response: Response, time: float, significant: int) -> str:
+def _time(run: Ended, time: float, significant: int) -> str:
     """Return a time of the end in so many digits, or in the fewer that are certain: each flight is as certain as the impact before it."""
-    change, begin = change_by_impact(response.impacts, response.problem.tolerance), response.impacts["time_s"]
+    change, begin = change_by_impact(run.impacts, run.problem.tolerance), run.impacts["time_s"]
     if not len(begin) or not np.isfinite(time):
         return f"{time:.{significant}g}"
     flights = np.diff(begin, append=max(time, float(begin[-1])))
     return _digits(time, float(np.minimum(np.nan_to_num(change, nan=1.0), 1.0) @ flights) / time, significant)
 
 
-def _shown(response: Response, value: float, significant: int) -> str:
+def _shown(run: Ended, value: float, significant: int) -> str:
     """Return what the last impact left in so many digits, or in the fewer that are certain."""
-    change = change_by_impact(response.impacts, response.problem.tolerance)
+    change = change_by_impact(run.impacts, run.problem.tolerance)
     return _digits(value, float(change[-1]) if len(change) else 0.0, significant)
 
 

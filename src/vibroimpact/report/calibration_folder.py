@@ -12,7 +12,7 @@ from vibroimpact._version import __version__
 from vibroimpact.calibration.calibration import Calibration
 from vibroimpact.cases.build import resolved
 from vibroimpact.cases.calibration import calibrated_case
-from vibroimpact.cases.schema import Case
+from vibroimpact.cases.case import Case
 from vibroimpact.report.calibration_figures import draw_calibration
 from vibroimpact.report.calibration_tables import (
     differences_tables,

@@ -7,7 +7,7 @@ from rich.console import Group, RenderableType
 from rich.text import Text
 
 from vibroimpact.calibration.calibration import Calibration
-from vibroimpact.cases.schema import Case
+from vibroimpact.cases.case import Case
 from vibroimpact.report.calibration_tables import (
     Cells,
     differences_tables,

@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from vibroimpact.cases.build import contact_laws_of, contact_pair, first_speed
+from vibroimpact.cases.case import Case
 from vibroimpact.cases.comparison import cases_under
-from vibroimpact.cases.schema import Case
+from vibroimpact.cases.rigid import contact_laws_of, contact_pair, first_speed
 from vibroimpact.contact.law import ContactLaw
 from vibroimpact.dynamics.restitution import achieved_restitution
 from vibroimpact.dynamics.simulate import simulate

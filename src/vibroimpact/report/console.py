@@ -10,11 +10,13 @@ import numpy as np
 from rich.console import Group, RenderableType
 from rich.text import Text
 
-from vibroimpact.cases.build import contact_laws_of, contact_pair, deforms, elastic_names, first_speed, impacts_of, resolved
+from vibroimpact.cases.build import resolved
+from vibroimpact.cases.case import Case
 from vibroimpact.cases.costs import costs_told
 from vibroimpact.cases.doubts import doubts
 from vibroimpact.cases.expected import expected_of
-from vibroimpact.cases.schema import Case, SensorSection
+from vibroimpact.cases.rigid import contact_laws_of, contact_pair, deforms, elastic_names, first_speed, impacts_of
+from vibroimpact.cases.schema import SensorSection
 from vibroimpact.contact.law import CompliantLaw, ContactLaw, unit_of
 from vibroimpact.dynamics.problem import STANDARD_GRAVITY
 from vibroimpact.dynamics.restitution import achieved_restitution, law_achieving

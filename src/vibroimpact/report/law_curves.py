@@ -12,8 +12,8 @@ from matplotlib.ticker import FuncFormatter
 
 from vibroimpact.bodies.body import Body
 from vibroimpact.bodies.plate import rigid_plate
-from vibroimpact.cases.build import contact_pair
 from vibroimpact.cases.reader import read_case
+from vibroimpact.cases.rigid import contact_pair
 from vibroimpact.contact.law import CompliantLaw, ContactLaw, find_contact_law, unit_of
 from vibroimpact.contact.pair import ContactPair
 from vibroimpact.dynamics.problem import Problem

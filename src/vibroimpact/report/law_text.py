@@ -9,8 +9,8 @@ from dataclasses import MISSING, Field, dataclass, fields
 from functools import cache
 from typing import Any
 
-from vibroimpact.cases.build import contact_pair
 from vibroimpact.cases.reader import load_case
+from vibroimpact.cases.rigid import contact_pair
 from vibroimpact.contact.law import CompliantLaw, ContactLaw
 from vibroimpact.contact.pair import ContactPair
 from vibroimpact.dynamics.restitution import achieved_restitution

@@ -12,8 +12,8 @@ import tomli_w
 
 from vibroimpact._version import __version__
 from vibroimpact.cases.build import resolved
+from vibroimpact.cases.case import Case
 from vibroimpact.cases.modes import BodyModes
-from vibroimpact.cases.schema import Case
 from vibroimpact.exchange.vtu import write_vtu
 from vibroimpact.exchange.write_abaqus import write_abaqus
 from vibroimpact.exchange.write_nastran import write_nastran

@@ -11,9 +11,9 @@ from rich.text import Text
 
 from vibroimpact.bodies.elastic import ElasticBody
 from vibroimpact.cases.build_elastic import elastic_bodies
+from vibroimpact.cases.case import Case
 from vibroimpact.cases.meshes import meshes_of
 from vibroimpact.cases.modes import BodyModes
-from vibroimpact.cases.schema import Case
 from vibroimpact.quantity import MISSING, column_texts, fixed
 from vibroimpact.report.terminal_table import Column, TerminalTable, facts, numbers, with_gap
 from vibroimpact.structures.recipe import model_key

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from vibroimpact.cases.build import contact_pair, resolved
+from vibroimpact.cases.build import resolved
 from vibroimpact.cases.reader import load_case
+from vibroimpact.cases.rigid import contact_pair
 from vibroimpact.contact.laws.adams_impact import AdamsImpact
 from vibroimpact.dynamics.simulate import simulate
 from vibroimpact.reproduction.printed import printed

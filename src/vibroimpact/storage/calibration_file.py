@@ -13,7 +13,7 @@ from vibroimpact.calibration.calibration import Calibration
 from vibroimpact.calibration.comparison import COMPARED, WAYS, differences, largest_misfit, reference
 from vibroimpact.calibration.outcomes import OUTCOMES
 from vibroimpact.cases.build import resolved
-from vibroimpact.cases.schema import Case
+from vibroimpact.cases.case import Case
 
 CALIBRATION = "calibration.json"
 _SHORT = {outcome.column: name for name, outcome in OUTCOMES.items()}

@@ -13,9 +13,9 @@ from pathlib import Path
 import numpy as np
 
 from vibroimpact._version import __version__
-from vibroimpact.cases.build import impacts_of
 from vibroimpact.cases.compute_points import compute_points
 from vibroimpact.cases.coupling import carried_modes
+from vibroimpact.cases.rigid import impacts_of
 from vibroimpact.cases.sweep import LONG, Sweep
 from vibroimpact.errors import ComputationError, InputError
 from vibroimpact.storage.check_sums import sealed

@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import Any
 
 from vibroimpact.calibration.speed_function import SpeedFunction
-from vibroimpact.cases.build import contact_laws_of, contact_pair, deforms, elastic_names, rigid_problem
+from vibroimpact.cases.case import Case
 from vibroimpact.cases.reader import load_case, read_case
-from vibroimpact.cases.schema import Case
+from vibroimpact.cases.rigid import contact_laws_of, contact_pair, deforms, elastic_names, rigid_problem
 from vibroimpact.errors import InputError
 from vibroimpact.exchange.drop import Drop
 from vibroimpact.storage.calibration_file import CALIBRATION
