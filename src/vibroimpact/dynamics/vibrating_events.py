@@ -56,4 +56,4 @@ def _crossing(values: Floats, there: NDArray[np.bool_]) -> float:
     last = 1 + int(there[1:].argmax())
     before, after = values[last - 1], values[last]
     part = before / (before - after) if before > 0.0 > after else 1.0
-    return float(GRID[last - 1] + part * GRID[1])
+    return float(max(GRID[last - 1] + part * GRID[1], 0.5 * GRID[1]))

@@ -27,7 +27,7 @@ from vibroimpact.dynamics.oscillators import FreeMotion, State
 from vibroimpact.dynamics.receptance import NODES, Surroundings, spectrum
 from vibroimpact.dynamics.riding import Riding, least_energy, may_stay, stays_below
 from vibroimpact.dynamics.solve_vibrating import solve_vibrating
-from vibroimpact.dynamics.vibrating_events import ROUNDING, Event, first_event
+from vibroimpact.dynamics.vibrating_events import GRID, ROUNDING, Event, first_event
 from vibroimpact.dynamics.vibrating_stretch import VibratingStretch, mechanical_energy
 
 MOST_STEPS, MOST_STEPS_TO_A_TIME = 5_000, 20_000
@@ -194,7 +194,9 @@ class _Visit:
             else:  # which may be all that keeps the stretch from being resolved
                 found = self.end_at(stretch, event)
                 if found is None:
-                    self.pace = 0.5 * min(self.pace, stretch.length * float(stretch.rule.map_time(np.array([event.x]))[0]))
+                    # short of the event, if there is one: of what is not resolved, that is not certain
+                    near = max(event.x, GRID[1]) if stretch.resolved(self.tolerance, self.speed) else 1.0
+                    self.pace = 0.5 * min(self.pace, stretch.length * float(stretch.rule.map_time(np.array([near]))[0]))
                     continue
                 name, ended = found
                 released = name == "parted" or (name == "no push" and self.ends_without_force and self.will_part(ended.end))
