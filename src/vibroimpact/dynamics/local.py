@@ -171,11 +171,6 @@ class LocalContact:
         torn = np.flatnonzero(np.gradient(self.approach_at(delta), delta) < _TORN)
         return float(delta[torn[-1]]) if torn.size else least
 
-    @cached_property
-    def breakpoints(self) -> tuple[float, ...]:
-        """Approaches at which the force is not smooth [m]."""
-        return tuple(float(self.approach_at(np.asarray(level, dtype=float))) for level in self.law.breakpoints)
-
     def elastic_energy(self, approach: Array) -> Array:
         """Return the energy stored by the law and in series with it [J]."""
         return self.own_energy(self.own(approach))

@@ -76,8 +76,7 @@ class Receptance:
         self.squares = self.admittance @ of.squares_by_side
         time = length * rule.time
         outer, inner = start.speed + start.velocity @ of.outer, start.velocity @ (of.shape - of.outer)
-        outside = sigma * self.driven[:, 0] + yielding
-        inside = sigma * self.driven[:, 1]
+        self.outside, self.inside = outside, inside = sigma * self.driven[:, 0] + yielding, sigma * self.driven[:, 1]
         self.rate = outer + around.gravity * time + (vectors @ outside).real
         self.closing = self.rate + (inner + (vectors @ inside).real)
         self.approach = (
@@ -102,11 +101,11 @@ class Receptance:
         slower = self.massless**2
         yielding = at.constant * at.values * (slower @ (of.rate**2 * start.local))
         rates = self.squares[:, 0] + sigma * squares[:, 0] - slower @ (of.mobility * of.rate)
-        massless = -at.constant * (self.massless @ (of.rate * start.local))
-        outside, outside_by = sigma * self.driven[:, 0] + massless, at.values * self.driven[:, 0] + sigma * driven[:, 0] + yielding
-        inside, inside_by = sigma * self.driven[:, 1], at.values * self.driven[:, 1] + sigma * driven[:, 1]
-        outside_by = outside_by - at.values * rates * pushed
-        whole = at.values * (outside + inside) + sigma * (at.values * self.driven.sum(axis=1) + sigma * driven.sum(axis=1) + yielding)
+        outside_by = at.values * self.driven[:, 0] + sigma * driven[:, 0] + yielding - at.values * rates * pushed
+        inside_by = at.values * self.driven[:, 1] + sigma * driven[:, 1]
+        whole = at.values * (self.outside + self.inside) + sigma * (
+            at.values * self.driven.sum(axis=1) + sigma * driven.sum(axis=1) + yielding
+        )
         whole = whole - at.values * (self.rates + sigma * rates) * pushed
         whole = whole - at.values * (2.0 * sigma * self.squares[:, 1] + sigma * sigma * squares[:, 1]) * statically
         inside_by = inside_by - at.values * (self.squares[:, 1] + sigma * squares[:, 1]) * statically

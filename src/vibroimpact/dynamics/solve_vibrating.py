@@ -112,24 +112,38 @@ def _newton_step(now: Linearised, seen: Receptance, delta: Floats, force: Floats
     """
     missing = now.approach + seen.by_force @ force + seen.by_static @ now.static - seen.approach
     excess = force - (now.static + now.dissipative)
-    inward = np.linalg.inv(np.diag(now.slope) + seen.by_static * now.stiffness)  # of the indentations, by what is missing
-    taken = inward @ seen.by_force
-    push = (now.stiffness + now.dissipative_by_delta)[:, None]
-    damping = now.dissipative_by_rate
-    jacobian, right = _UNIT + damping[:, None] * seen.rate_by + push * taken, excess + push[:, 0] * (inward @ missing)
+    inward, taken, push, jacobian = eliminated(now, seen)
+    sunk = inward @ missing
+    right = excess + push * sunk
     if aim is None:
-        by_force, by_length = np.linalg.solve(jacobian, right), 0.0
-        return inward @ missing - taken @ by_force, by_force, by_length
+        by_force = np.linalg.solve(jacobian, right)
+        return sunk - taken @ by_force, by_force, 0.0
     approach, rate, closing = seen.by_length(force, now.static)
-    sunk = -(inward @ approach)  # how the indentations answer to the length, but for the sign
-    row, last, gone = _event_row(now, seen, delta, force, aim, inward @ missing, taken, sunk, closing)
-    unit = 1.0 / seen.length
-    whole = np.empty((NODES + 1, NODES + 1))
-    whole[:-1, :-1], whole[:-1, -1] = jacobian, (push[:, 0] * sunk - damping * rate) / unit
-    whole[-1, :-1], whole[-1, -1] = row, last / unit
+    by_length = -(inward @ approach)
+    row, last, gone = _event_row(now, seen, delta, force, aim, sunk, taken, by_length, closing)
+    whole = np.empty((NODES + 1, NODES + 1))  # the length as a part of itself
+    whole[:-1, :-1], whole[:-1, -1] = jacobian, (push * by_length - now.dissipative_by_rate * rate) * seen.length
+    whole[-1, :-1], whole[-1, -1] = row, last * seen.length
     found = np.linalg.solve(whole, np.append(right, gone))
-    by_force, by_length = found[:-1], float(found[-1] / unit)
-    return inward @ missing - taken @ by_force - sunk * by_length, by_force, by_length
+    by_force, shorter = found[:-1], float(found[-1] * seen.length)
+    return sunk - taken @ by_force - by_length * shorter, by_force, shorter
+
+
+def eliminated(now: Linearised, seen: Receptance) -> tuple[Floats, Floats, Floats, Floats]:
+    """Return what the indentations leave behind when they are eliminated from the linearised equations of a stretch.
+
+    Returns
+    -------
+    inward, taken : array, shape (N, N)
+        How the indentations answer to an approach that is missing [-], and by how much forces take them back [m/N].
+    push : array, shape (N,)
+        Derivative of the force by the indentation [N/m].
+    jacobian : array, shape (N, N)
+        Of the equations of the forces that are left [-].
+    """
+    inward = np.linalg.inv(np.diag(now.slope) + seen.by_static * now.stiffness)
+    taken, push = inward @ seen.by_force, now.stiffness + now.dissipative_by_delta
+    return inward, taken, push, _UNIT + now.dissipative_by_rate[:, None] * seen.rate_by + push[:, None] * taken
 
 
 def _event_row(
@@ -138,9 +152,9 @@ def _event_row(
     delta: Floats,
     force: Floats,
     aim: Aim,
-    missing: Floats,
-    taken: Floats,
     sunk: Floats,
+    taken: Floats,
+    by_length: Floats,
     closing_by_length: Floats,
 ) -> tuple[Floats, float, float]:
     """Return the row of an event in the Jacobian: by the forces, by the length; and what it leaves, in units of a force."""
@@ -149,9 +163,9 @@ def _event_row(
     if aim.name == "turn":
         inside = seen.closing_by_static[-1] * now.stiffness
         left = float(seen.closing[-1] - seen.rate_by[-1] @ force - seen.closing_by_static[-1] @ now.static)
-        row, last = inside @ taken - seen.rate_by[-1], float(closing_by_length[-1] + inside @ sunk)
+        row, last = inside @ taken - seen.rate_by[-1], float(closing_by_length[-1] + inside @ by_length)
         unit = 1.0 / max(float(np.abs(seen.rate_by[-1]).max()), 1e-300)
-        return unit * row, unit * last, unit * (left + float(inside @ missing))
+        return unit * row, unit * last, unit * (left + float(inside @ sunk))
     left = float(delta[-1] - aim.level)
     unit = 1.0 / max(float(np.abs(taken[-1]).max()), 1e-300)
-    return -unit * taken[-1], -unit * float(sunk[-1]), unit * (left - float(missing[-1]))
+    return -unit * taken[-1], -unit * float(by_length[-1]), unit * (left - float(sunk[-1]))

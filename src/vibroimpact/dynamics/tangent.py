@@ -14,9 +14,8 @@ import numpy as np
 from vibroimpact.dynamics.local import LocalContact
 from vibroimpact.dynamics.oscillators import State
 from vibroimpact.dynamics.receptance import NODES, Receptance
+from vibroimpact.dynamics.solve_vibrating import eliminated
 from vibroimpact.dynamics.vibrating_stretch import VibratingStretch
-
-_UNIT = np.eye(NODES)
 
 
 def difference_through(stretch: VibratingStretch, difference: State, asides: Iterable[tuple[LocalContact, float]] = ()) -> VibratingStretch:
@@ -34,10 +33,8 @@ def difference_through(stretch: VibratingStretch, difference: State, asides: Ite
     around, local = replace(stretch.around, gravity=0.0), stretch.local
     seen, delta, rates = Receptance(around, stretch.spectrum, stretch.length, difference), stretch.delta[1:], stretch.rate[1:]
     now = local.linearised(delta, rates)
-    push, damping = now.stiffness + now.dissipative_by_delta, now.dissipative_by_rate
-    inward = np.linalg.inv(np.diag(now.slope) + seen.by_static * now.stiffness)
-    taken = inward @ seen.by_force
-    missing, changed, known = seen.approach, damping * seen.rate, np.zeros(NODES)
+    inward, taken, push, jacobian = eliminated(now, seen)
+    missing, changed, known = seen.approach, now.dissipative_by_rate * seen.rate, np.zeros(NODES)
     for aside, times in asides:
         other = aside.linearised(delta, rates)
         static = times * (other.static - now.static)
@@ -45,7 +42,7 @@ def difference_through(stretch: VibratingStretch, difference: State, asides: Ite
         changed = changed + static + times * (other.dissipative - now.dissipative)
         known = known + static
     try:
-        force = np.linalg.solve(_UNIT + damping[:, None] * seen.rate_by + push[:, None] * taken, changed + push * (inward @ missing))
+        force = np.linalg.solve(jacobian, changed + push * (inward @ missing))
     except np.linalg.LinAlgError:
         force = np.full(NODES, np.nan)
     static = known + now.stiffness * (inward @ missing - taken @ force)
