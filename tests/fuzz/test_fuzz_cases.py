@@ -5,6 +5,8 @@ from __future__ import annotations
 from io import StringIO
 from pathlib import Path
 
+import pytest
+
 import vibroimpact as vi
 from attack import failures, number, seed
 from mutations import case_files
@@ -38,16 +40,18 @@ def check(data: bytes, folder: Path) -> vi.Case:
     return case
 
 
-def test_hostile_cases_are_explained_or_refused(tmp_path: Path) -> None:
-    told = failures(lambda data: check(data, tmp_path), list(case_files(number(120), seed(1))))
+@pytest.mark.parametrize("few", [60, pytest.param(240, marks=pytest.mark.slow)])
+def test_hostile_cases_are_explained_or_refused(few: int, tmp_path: Path) -> None:
+    told = failures(lambda data: check(data, tmp_path), list(case_files(number(few), seed(1))))
     assert not told, told
 
 
-def test_hostile_cases_that_are_accepted_run(tmp_path: Path) -> None:
+@pytest.mark.parametrize("few", [20, pytest.param(80, marks=pytest.mark.slow)])
+def test_hostile_cases_that_are_accepted_run(few: int, tmp_path: Path) -> None:
     def run(data: bytes) -> None:
         case = check(data, tmp_path)
         if not deforms(case):
             vi.simulate(case)
 
-    told = failures(run, list(case_files(number(40), seed(2))))
+    told = failures(run, list(case_files(number(few), seed(2))))
     assert not told, told

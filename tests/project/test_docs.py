@@ -9,6 +9,7 @@ import shlex
 import shutil
 import subprocess
 import sys
+from collections.abc import Callable
 from io import StringIO
 from pathlib import Path
 
@@ -36,17 +37,32 @@ def commands(pages: list[Path]) -> list[str]:
     ]
 
 
-@pytest.mark.parametrize("pages", [pytest.param(PAGES[:1], id="README"), pytest.param(PAGES[1:], id="docs", marks=pytest.mark.slow)])
+def deforms(command: str) -> bool:
+    """Are the bodies elastic? Their modes take longer than all that the other commands do."""
+    return any(case in command.split() for case in ("paper:type3", "elastic.toml"))
+
+
+# each command of a page is in one of these and no more
+@pytest.mark.parametrize(
+    ("pages", "chosen"),
+    [
+        pytest.param(PAGES[:1], lambda command: not deforms(command), id="README"),
+        pytest.param(PAGES[:1], deforms, id="README, elastic", marks=pytest.mark.slow),
+        pytest.param(PAGES[1:], lambda _: True, id="docs", marks=pytest.mark.slow),
+    ],
+)
 def test_documented_commands_run(
-    pages: list[Path], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+    pages: list[Path], chosen: Callable[[str], bool], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.chdir(tmp_path)
     assert len(commands(pages)) >= 8
+    asked = [command for command in commands(pages) if chosen(command)]
+    assert asked
     for block in blocks(ROOT / "docs" / "case-file.md", "toml"):
         name = re.match(r"# (\S+\.toml)\n", block)  # a block may say what its file is called
         (tmp_path / (name[1] if name else "case.toml")).write_text(block)
     made: dict[str, str] = {}
-    for command in dict.fromkeys(commands(pages)):
+    for command in dict.fromkeys(asked):
         words, _, folder = command.partition(" -o ")
         if folder and made.get(words):  # into another folder: nothing new is computed
             shutil.copytree(made[words], folder)
@@ -95,7 +111,16 @@ def test_links_lead_somewhere(page: Path) -> None:
         assert target.startswith("https://") or (page.parent / target).exists(), target
 
 
-@pytest.mark.parametrize("example", sorted((ROOT / "examples").glob("*.py")), ids=lambda path: path.stem)
+LONG_EXAMPLES = {"a_nanometre", "tolerances"}  # the modes of a plate, and a study with its report
+
+
+@pytest.mark.parametrize(
+    "example",
+    [
+        pytest.param(path, id=path.stem, marks=pytest.mark.slow if path.stem in LONG_EXAMPLES else ())
+        for path in sorted((ROOT / "examples").glob("*.py"))
+    ],
+)
 def test_examples_run(example: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     monkeypatch.chdir(tmp_path)
     runpy.run_path(str(example), run_name="__main__")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+from functools import cache
 from pathlib import Path
 
 import vibroimpact
@@ -34,12 +35,18 @@ LEVEL = {name: level for level, names in enumerate(LAYERS) for name in names}
 DOORS = {("dynamics/response.py", "vibroimpact")}
 
 
+@cache
+def statements(path: Path) -> list[ast.Import | ast.ImportFrom]:
+    """What a module imports, as it says it."""
+    return [node for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))) if isinstance(node, (ast.Import, ast.ImportFrom))]
+
+
 def imports_of(path: Path) -> set[str]:
     found = set()
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+    for node in statements(path):
         if isinstance(node, ast.Import):
             found |= {alias.name for alias in node.names}
-        elif isinstance(node, ast.ImportFrom):
+        else:
             assert node.level == 0, f"{path}: imports are absolute"
             found.add(node.module or "")
     return {name for name in found if name.split(".")[0] == "vibroimpact"}
@@ -88,7 +95,7 @@ def test_modules_do_not_import_in_circles() -> None:
 def modules_of(path: Path) -> set[str]:
     """What a module imports: modules, and what may be one in a package or a name in a module."""
     found = imports_of(path)
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+    for node in statements(path):
         if isinstance(node, ast.ImportFrom):
             found |= {f"{node.module}.{alias.name}" for alias in node.names}
     return found

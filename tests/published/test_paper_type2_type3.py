@@ -52,7 +52,7 @@ def shipped(name: str, **plate: Any) -> vi.Problem:
 
 
 @cache
-def identified(radius: str = "20 mm", modes: int = 60, element_size: float = 0.08) -> dict[str, float]:
+def identified(radius: str = "20 mm", modes: int = 40, element_size: float = 0.12) -> dict[str, float]:
     """What is predicted of Type 3: the largest magnitude of everything."""
     supports = {"type": "patches", "spacing": ["458.4 mm", "360 mm"], "radius": radius}
     response = vi.simulate(shipped("type3-identified", modes=modes, supports=supports, mesh={"element_size": element_size}))

@@ -124,6 +124,7 @@ def test_a_refusal_is_quick_and_says_what_would_do() -> None:
     assert "or exponent" in str(refused.value)
 
 
+@pytest.mark.usefixtures("few_pictures")
 def test_a_run_takes_no_notice(tmp_path: Path) -> None:
     """A case with the section runs, is saved with it, and reads back."""
     case = vi.load_case("paper:calibration")

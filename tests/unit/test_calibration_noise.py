@@ -63,8 +63,8 @@ def restitutions(random: np.random.Generator, *, known: bool, part: float = 0.02
 
 
 @cache  # several tests look at the same repetitions
-def repeated(measure: Callable[..., Observations], *, known: bool, confidence: float = 0.95) -> list[Calibration]:
-    seen = (measure(np.random.default_rng(seed), known=known) for seed in range(TIMES))
+def repeated(measure: Callable[..., Observations], *, known: bool, confidence: float = 0.95, times: int = TIMES) -> list[Calibration]:
+    seen = (measure(np.random.default_rng(seed), known=known) for seed in range(times))
     return [calibrate(drop(), one, bootstrap=0, confidence=confidence) for one in seen]
 
 
@@ -124,9 +124,10 @@ def test_unknown_deviations(measure: Callable[..., Observations]) -> None:
     assert sizes == pytest.approx(2e-3 if measure is heights else 0.02, rel=0.1)
 
 
-def test_a_reading_that_two_impacts_share_counts_once() -> None:
+@pytest.mark.parametrize("times", [120, pytest.param(TIMES, marks=pytest.mark.slow)])
+def test_a_reading_that_two_impacts_share_counts_once(times: int) -> None:
     """A height is what one impact leaves with and the next comes with: the errors of their restitutions are opposite."""
-    found = repeated(heights, known=True, confidence=0.95)
+    found = repeated(heights, known=True, confidence=0.95, times=times)
     values = np.array([one.values for one in found])
     assert np.all(np.array([np.corrcoef(values[:, row], values[:, row + 1])[0, 1] for row in range(4)]) < -0.3)
 

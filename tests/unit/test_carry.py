@@ -34,21 +34,31 @@ def folder(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Path:
     return tmp_path / "here"
 
 
+@pytest.fixture(scope="module")
+def computed(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, dict[str, bytes]]:
+    """A store with what a case needs, and what is carried of it."""
+    place = tmp_path_factory.mktemp("computed")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("VIBROIMPACT_STORE", str(place))
+        return place, carried_modes(vi.read_case(TABLE))
+
+
 @pytest.fixture
-def elsewhere(folder: Path, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> dict[str, bytes]:
+def elsewhere(computed: tuple[Path, dict[str, bytes]], folder: Path, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> dict[str, bytes]:
     """What a case needs, and a store that is empty."""
-    carried = carried_modes(vi.read_case(TABLE))
     monkeypatch.setenv("VIBROIMPACT_STORE", str(tmp_path / "there"))
-    return carried
+    return dict(computed[1])
 
 
-def test_who_receives_computes_nothing(elsewhere: dict[str, bytes], monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_who_receives_computes_nothing(
+    computed: tuple[Path, dict[str, bytes]], elsewhere: dict[str, bytes], monkeypatch: pytest.MonkeyPatch
+) -> None:
     assert sorted(name.partition(".")[2] for name in elsewhere) == ["compliance", "modes", "modes"]
     assert receive(elsewhere) == ""
     for name in ("recipe.computed_model", "static_compliance.computed_compliance"):
         monkeypatch.setattr(f"vibroimpact.structures.{name}", lambda *_: pytest.fail("computed again"))
     there = vi.read_case(TABLE).to_problem()
-    monkeypatch.setenv("VIBROIMPACT_STORE", str(tmp_path / "here"))
+    monkeypatch.setenv("VIBROIMPACT_STORE", str(computed[0]))
     here = vi.read_case(TABLE).to_problem()
     for name in ("sphere", "plate"):
         np.testing.assert_array_equal(getattr(there, name).modes.contact, getattr(here, name).modes.contact)

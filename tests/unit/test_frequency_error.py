@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import vibroimpact as vi
-from vibroimpact.bodies.elastic import plate_recipe, sphere_recipe
+from vibroimpact.bodies.elastic import plate_recipe
 from vibroimpact.materials import Material
 from vibroimpact.report.modes_folder import save_modes
 from vibroimpact.structures.frequency_error import from_coarser, main_cause
@@ -81,7 +81,7 @@ def _numbers() -> tuple[float, float, float]:
 def test_modes_that_stand_for_statics_have_no_error() -> None:
     place = (((0.0, 0.0), "upper"),)
     for reduction in (Reduction(modes=6, attachment=place), Reduction(modes=6, method="craig-bampton", interface=place)):
-        model = computed_model(plate_recipe(SIZE, STEEL, reduction, CLAMPED))
+        model = computed_model(plate_recipe(SIZE, STEEL, reduction, CLAMPED, element_size=0.1))
         assert len(model.frequencies) > 6
         assert np.isfinite(model.frequency_errors[:6]).all()
         assert np.isnan(model.frequency_errors[6:]).all()
@@ -101,7 +101,7 @@ def test_what_a_reduction_leaves_out_is_seen() -> None:
 
 
 def test_they_are_kept() -> None:
-    model = computed_model(sphere_recipe(1.0, STEEL, Reduction(modes=3)))
+    model = computed_model(Recipe(SphereOfSolids(1.0, 4), *_numbers(), (), Reduction(modes=3)))
     assert save_model("errors", model) == ""
     found, _ = load_model("errors")
     assert found is not None
@@ -121,7 +121,7 @@ def case(**plate: object) -> vi.Case:
 
 
 def test_they_are_written(tmp_path: Path) -> None:
-    asked = case()
+    asked = case(mesh={"element_size": 0.1})
     modes = vi.compute_modes(asked)
     save_modes(asked, modes, tmp_path / "out")
     with (tmp_path / "out" / "modes.csv").open(encoding="utf-8") as file:

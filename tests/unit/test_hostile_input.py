@@ -191,6 +191,7 @@ def test_arguments(arguments: tuple[str, ...], monkeypatch: pytest.MonkeyPatch, 
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.usefixtures("few_pictures")
 def test_a_case_of_a_long_name_gets_a_folder(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     monkeypatch.chdir(tmp_path)
     file = tmp_path / f"{'x' * 200}{ESCAPE}.toml"

@@ -60,7 +60,7 @@ def test_asked_and_achieved_are_shown() -> None:
     assert "achieved" not in printed(law_sheet("hertz"), 100)
 
 
-@pytest.mark.parametrize("name", one_in(4, LAWS))
+@pytest.mark.parametrize("name", one_in(8, LAWS))
 def test_every_law_is_drawn(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     assert run(monkeypatch, name, "-o", f"{name}.png") == 0

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from support import one_in
 from vibroimpact.dynamics.next_touch import next_touch
 from vibroimpact.dynamics.oscillators import FreeMotion, Oscillators, State
 
@@ -40,7 +41,7 @@ def first_meeting(free: FreeMotion, level: float, end: float, number: int = 1_00
     return np.inf
 
 
-@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize("seed", one_in(2, range(11, -1, -1)))
 def test_against_brute_force(seed: int) -> None:
     """Surfaces of one to twelve modes of 30 Hz to 5 kHz that nearly reach, or just do not reach, a sphere that comes and goes."""
     random = np.random.default_rng(seed)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
@@ -99,8 +100,19 @@ SLOWLY = {"speed": 1e-4, "gravity": 0.0}
 @example(case_of(0.001, 100.0, 1e10, {"height": 1.001}, DENT, impacts=2))
 @example(case_of(0.001, 100.0, 1e5, SLOWLY, STICKY))
 @example(case_of(0.01, 100.0, 1e5, SLOWLY, STICKY))
-@settings(max_examples=120, deadline=None, derandomize=True)
+@settings(max_examples=30, deadline=None, derandomize=True)
 def test_random_drops(case: dict) -> None:
+    check(case)
+
+
+@pytest.mark.slow
+@given(cases())
+@settings(max_examples=300, deadline=None, derandomize=True)
+def test_many_random_drops(case: dict) -> None:
+    check(case)
+
+
+def check(case: dict) -> None:
     response = vi.simulate(vi.read_case(case))
     rigid = case["contact"]["law"] in ("newton", "jackson-green-marghitu")
     row = response.impacts

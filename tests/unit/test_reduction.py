@@ -25,7 +25,14 @@ SIZE = (0.5, 0.4, 0.01)
 PLATE, BRICKS, BALL = PlateOfPlates(SIZE, 0.14), PlateOfSolids(SIZE, 0.1), SphereOfSolids(0.025, 4)
 PLACE = (0.11, -0.07)
 BALL_TOP = (0.001, 0.002)
-CASES = [(PLATE, EDGE, PLACE), (PLATE, (), PLACE), (PLATE, PATCH, PLACE), (BRICKS, EDGE, PLACE), (BRICKS, (), PLACE), (BALL, (), BALL_TOP)]
+CASES = [
+    (PLATE, EDGE, PLACE),
+    (PLATE, (), PLACE),
+    pytest.param(PLATE, PATCH, PLACE, marks=pytest.mark.slow),
+    (BRICKS, EDGE, PLACE),
+    (BRICKS, (), PLACE),
+    (BALL, (), BALL_TOP),
+]
 
 
 def held(shape: PlateOfPlates | PlateOfSolids | SphereOfSolids, supports: tuple[Support, ...]) -> HeldStructure:

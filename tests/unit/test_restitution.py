@@ -88,17 +88,31 @@ def test_a_pull_between_two_nodes_is_cut() -> None:
     assert np.abs(vi.integrated_restitution(law, 5.57e-4, 5.06) - exact).max() < 1e-9
 
 
-@settings(max_examples=50, deadline=None)
-@example(AdamsImpact, 0.9340729747981871, -3.2543028886997925, 0.7045442911229172, 7.095838841638937)
-@example(vi.find_contact_law("krijt"), 0.5, -5.0, -1.5, 7.0)
-@given(
+wishes = given(
     st.sampled_from(TUNABLE),
     st.floats(0.4, 0.98),
     st.floats(-5.0, 1.0),
     st.floats(-1.5, 1.5),
     st.floats(7.0, 11.0),
 )
+
+
+@settings(max_examples=15, deadline=None)
+@example(AdamsImpact, 0.9340729747981871, -3.2543028886997925, 0.7045442911229172, 7.095838841638937)
+@example(vi.find_contact_law("krijt"), 0.5, -5.0, -1.5, 7.0)
+@wishes
 def test_round_trip(law: type[vi.ContactLaw], wanted: float, mass: float, speed: float, modulus: float) -> None:
+    check_round_trip(law, wanted, mass, speed, modulus)
+
+
+@pytest.mark.slow
+@settings(max_examples=200, deadline=None)
+@wishes
+def test_many_round_trips(law: type[vi.ContactLaw], wanted: float, mass: float, speed: float, modulus: float) -> None:
+    check_round_trip(law, wanted, mass, speed, modulus)
+
+
+def check_round_trip(law: type[vi.ContactLaw], wanted: float, mass: float, speed: float, modulus: float) -> None:
     radius = (10**mass / 6000.0) ** (1 / 3)
     pair = ContactPair(10**modulus, radius, 10**mass, yield_strength=2e-3 * 10**modulus, poissons_ratio=0.3)
     try:

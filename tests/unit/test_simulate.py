@@ -33,10 +33,11 @@ def batch(size: int) -> vi.Problem:
     return problem(sphere=sphere, laws=(law,), height=radius + random.uniform(1e-5, 4.0, size))
 
 
-def test_drops_do_not_depend_on_their_batch() -> None:
+@pytest.mark.parametrize("every", [5, pytest.param(1, marks=pytest.mark.slow)])
+def test_drops_do_not_depend_on_their_batch(every: int) -> None:
     together = vi.simulate(batch(40))
     assert {vi.Outcome.IMPACTS, vi.Outcome.REST_SPEED} <= set(together.outcomes)
-    for index in range(40):
+    for index in range(0, 40, every):
         alone, among = vi.simulate(batch(40).take(index)), together.drop(index)
         assert alone.outcomes == among.outcomes
         # when a sphere that is captured is found to be depends on where its stretches end

@@ -63,6 +63,7 @@ def test_summary_has_rows_ledger_status_and_version(folder: Path, theory: vi.Res
     assert set(summary["energy"]) == {"input_J", *LEDGER, "closure_J", "closure_relative"}
 
 
+@pytest.mark.usefixtures("few_pictures")
 def test_values_that_do_not_exist_are_null_and_empty(tmp_path: Path) -> None:
     case = {
         "sphere": {"radius": 0.01, "material": "steel"},
@@ -97,6 +98,7 @@ def test_case_reads_back_as_the_same_run(folder: Path, theory: vi.Response) -> N
         np.testing.assert_array_equal(again.impacts[name], theory.impacts[name])
 
 
+@pytest.mark.usefixtures("few_pictures")
 def test_a_problem_made_in_python_keeps_its_inputs(tmp_path: Path) -> None:
     law = vi.find_contact_law("newton")(restitution=0.5)
     ball = vi.Body(mass=1.25, contact_offset=0.1)
@@ -106,6 +108,7 @@ def test_a_problem_made_in_python_keeps_its_inputs(tmp_path: Path) -> None:
     assert "mass=1.25" in (tmp_path / "out" / "report.html").read_text()
 
 
+@pytest.mark.usefixtures("few_pictures")
 def test_doubts_are_printed_and_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     case = {"sphere": {"radius": "5 mm", "material": "steel"}, "plate": {"material": "steel"}, "drop": {"height": "50 m"}}
     case["contact"] = {"law": "adams-impact", "damping_max": 10.0, "full_damping_penetration": "0.9 mm"}
@@ -131,8 +134,9 @@ def test_result_reads_back(folder: Path, theory: vi.Response) -> None:
     assert result.status == theory.status
 
 
-def test_report_is_remade_and_other_files_stay(tmp_path: Path, folder: Path) -> None:
-    shutil.copytree(folder, tmp_path / "out")
+@pytest.mark.usefixtures("few_pictures")
+def test_report_is_remade_and_other_files_stay(tmp_path: Path, theory: vi.Response) -> None:
+    theory.save(tmp_path / "out")
     page = (tmp_path / "out" / "report.html").read_bytes()
     (tmp_path / "out" / "my notes.txt").write_text("mine")
     (tmp_path / "out" / "report.html").unlink()
@@ -156,6 +160,7 @@ def test_existing_folder_is_kept(tmp_path: Path, theory: vi.Response) -> None:
         theory.save(tmp_path / "file" / "below")
 
 
+@pytest.mark.usefixtures("few_pictures")
 def test_force_replaces_a_result(tmp_path: Path, folder: Path, theory: vi.Response, variable: vi.Response) -> None:
     shutil.copytree(folder, tmp_path / "out")
     with pytest.raises(vi.InputError, match="--force"):

@@ -141,7 +141,7 @@ def test_mass_of_a_column() -> None:
     assert up @ mass @ up == pytest.approx(whole * (1 - 2 / 3 * step / 0.2), rel=1e-12)
 
 
-@pytest.mark.parametrize("shape", [PLATE, BRICKS])
+@pytest.mark.parametrize("shape", [pytest.param(PLATE, marks=pytest.mark.slow), BRICKS])
 def test_a_rigid_plate_on_slender_bars(shape: PlateOfPlates) -> None:
     radius, length = 0.002, 0.3
     supports = tuple(Bar(x, y, radius, length, WEIGHTLESS) for x, y in SPOTS)

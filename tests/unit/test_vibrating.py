@@ -28,7 +28,7 @@ def unbalanced(response: vi.Response) -> float:
     return float(np.abs(total / response.energy["input_J"] - 1.0).max())
 
 
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", one_in(3, (5, 4, 3, 2, 1, 0)))
 def test_energy_is_conserved_without_damping(seed: int) -> None:
     """Five impacts, plates from 1 to 40 modes and every second time a sphere of 6, to 1e-9 of the input; within stretches to 1e-8."""
     plate = random_modes(seed, (1, 3, 8, 15, 25, 40)[seed], 100.0, 2e4, 1.2)
@@ -42,7 +42,7 @@ def test_energy_is_conserved_without_damping(seed: int) -> None:
 
 
 @pytest.mark.parametrize("law", [LOSSY, AdamsImpact(stiffness=STIFFNESS, damping_max=180.0)], ids=lambda law: law.name)
-@pytest.mark.parametrize("local", [None, (1.2e6, 586.0)])
+@pytest.mark.parametrize("local", one_in(2, [((1.2e6, 586.0),), (None,)]))
 def test_the_ledger_closes_with_damping(law: LankaraniNikravesh | AdamsImpact, local: tuple[float, float] | None) -> None:
     plate, sphere = random_modes(1, 20, 100.0, 2e4, 1.2, 0.03), random_modes(2, 6, 12e3, 60e3, 2.0, 1.0)
     response = vi.simulate(drop_on(law, plate, sphere, height=0.5, impacts=5, local_element=local))
@@ -82,7 +82,7 @@ def check_order(response: vi.Response) -> None:
 
 
 @pytest.mark.parametrize("inside", [True, False])
-@pytest.mark.parametrize("law", one_in(2, LAWS, lambda law: law.name))
+@pytest.mark.parametrize("law", one_in(4, LAWS, lambda law: law.name))
 def test_every_law_goes_with_modes(law: type[CompliantLaw], inside: bool) -> None:
     """Three impacts of an elastic sphere on an elastic plate, on fresh surfaces and on the same: the ledger closes, nothing jumps."""
     plate, sphere = random_modes(5, 6, 200.0, 8e3, 1.0, 0.01), modes_of([13.4e3, 22e3], [2.0, -2.5], 0.05)
@@ -95,7 +95,7 @@ def test_every_law_goes_with_modes(law: type[CompliantLaw], inside: bool) -> Non
     assert lost.min() > -1e-8 * response.energy["input_J"]
 
 
-@pytest.mark.parametrize("seed", range(22))
+@pytest.mark.parametrize("seed", one_in(3, range(22)))
 def test_drops_at_random(seed: int) -> None:
     """Modes of 20 Hz to 200 kHz and any damping, any law, with and without gravity, stopped by number or by time."""
     random = np.random.default_rng(seed)

@@ -19,6 +19,7 @@ import vibroimpact as vi
 from oracles.adams import Bounce, Motion
 from oracles.adams_commands import read_commands
 from oracles.adams_dataset import read_dataset, read_solver_commands
+from support import one_in
 from vibroimpact.cases.build import resolved
 from vibroimpact.cli import main
 from vibroimpact.exchange.export_format import find_export_format
@@ -138,7 +139,7 @@ def test_so_it_is_where_the_contact_has_more_than_its_law(to: str, contact: dict
     assert re.search(words, " ".join(re.sub("(?m)^[#!]", "", text).split()))
 
 
-@pytest.mark.parametrize("to", PROGRAMS)
+@pytest.mark.parametrize("to", one_in(2, PROGRAMS))
 def test_the_program_is_told_of_rigid_bodies_and_people_are_too(
     to: str, place: Path, alone: dict[str, np.ndarray], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -181,7 +182,7 @@ def test_the_remedy_that_is_named_rebounds_as_the_run(place: Path, tmp_path: Pat
 
 
 @pytest.mark.parametrize("model", ["rigid", "elastic"])
-@pytest.mark.parametrize("to", ["adams", "adams-view"])
+@pytest.mark.parametrize("to", one_in(2, ["adams", "adams-view"]))
 def test_a_function_is_taken_at_the_speeds_of_rigid_bodies(to: str, model: str, place: Path) -> None:
     """Adams evaluates it as it runs; others are given its values at impacts, which must be those that Adams' run has."""
     case = vi.read_case(ELASTIC if model == "elastic" else rigid(ELASTIC))

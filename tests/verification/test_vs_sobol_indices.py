@@ -62,6 +62,7 @@ def test_product_of_two_axes_matters_only_together() -> None:
     assert found.total == pytest.approx([1.0, 1.0], abs=0.02)
 
 
+@pytest.mark.slow
 def test_width_of_the_interval_is_the_scatter_over_independent_draws() -> None:
     estimates, errors = [], []
     for draw in range(60):

@@ -41,7 +41,8 @@ def exact(thickness: float, x: float = 0.0, y: float = 0.0) -> float:
     return float(2 * (1 - NU**2) / MODULUS * ((shape / k * (layer - 1)).sum() + images))
 
 
-@pytest.mark.parametrize(("thickness", "place"), one_in(3, [(0.002, (0.17, 0.03)), (0.05, (0.17, 0.03)), (0.05, (0.0, 0.0))]))
+@pytest.mark.slow
+@pytest.mark.parametrize(("thickness", "place"), [(0.002, (0.17, 0.03)), (0.05, (0.17, 0.03)), (0.05, (0.0, 0.0))])
 def test_the_thin_theory_is_kirchhoffs(thickness: float, place: tuple[float, float]) -> None:
     """Navier's series, 0.011600 F a^2 / D in the middle (Timoshenko and Woinowsky-Krieger, table 23), however thick the plate is."""
     numbers = np.arange(1, 2000) * np.pi / SIDE
@@ -73,7 +74,7 @@ def test_what_thin_theory_would_miss() -> None:
     assert exact(0.05) * rigidity(0.05) / SIDE**2 != pytest.approx(0.0116, rel=0.015)
 
 
-@pytest.mark.parametrize(("thickness", "solid", "layers", "of_shear"), one_in(2, [(0.05, 0.025, 3, 0.06), (0.01, 0.02, 2, 0.005)]))
+@pytest.mark.parametrize(("thickness", "solid", "layers", "of_shear"), one_in(2, [(0.01, 0.02, 2, 0.005), (0.05, 0.025, 3, 0.06)]))
 def test_clamped_plates_of_either_elements(thickness: float, solid: float, layers: int, of_shear: float) -> None:
     """Within 1 %, which the bricks lack at the clamped edge; the thin theory lacks the shear that goes with the bending there."""
     plates = PlateOfPlates((SIDE, SIDE, thickness), SIDE / 8)

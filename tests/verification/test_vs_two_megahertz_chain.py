@@ -147,6 +147,7 @@ def thick() -> tuple[vi.Response, dict[str, dict[str, Floats]]]:
     return response, {name: {quantity: values[number] for quantity, values in found.items()} for number, name in enumerate(AWAY)}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", AWAY)
 @pytest.mark.parametrize("quantity", ["acceleration", "velocity", "displacement"])
 def test_the_face_of_a_thick_plate(thick: tuple[vi.Response, dict[str, dict[str, Floats]]], name: str, quantity: Any) -> None:
