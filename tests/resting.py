@@ -111,7 +111,8 @@ def at_rest(response: vi.Response) -> Ball:
     bodies = [(body.modes, sign) for body, sign in ((problem.sphere, -1.0), (problem.plate, 1.0)) if body.modes is not None]
     of = [(modes.angular_frequencies, modes.damping_ratios, sign * modes.contact) for modes, sign in bodies]
     modal = (np.concatenate(parts) for parts in zip(*of, strict=True))
-    centre = (float(np.ravel(part)[0]) for part in (state.approach, state.speed))
+    place, speed = np.ravel(state.displacement), np.ravel(state.velocity)
+    centre = (float(part[0]) * float(problem.sphere.mass) ** -0.5 for part in (place, speed))
     span = (float(delta[0]), float(delta[-1]))
     facts = (float(problem.sphere.mass), float(problem.gravity))
-    return Ball(*facts, *modal, span, force, sag, *centre, np.ravel(state.displacement), np.ravel(state.velocity))
+    return Ball(*facts, *modal, span, force, sag, *centre, place[1:], speed[1:])

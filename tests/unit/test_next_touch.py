@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from support import one_in
+from vibroimpact.dynamics.linear_system import FreeMotion, LinearSystem, State
 from vibroimpact.dynamics.next_touch import next_touch
-from vibroimpact.dynamics.oscillators import FreeMotion, Oscillators, State
 
 NONE = np.zeros(0)
 
@@ -26,16 +26,27 @@ def motion(
     """A sphere that leaves a surface that is the sum of its oscillators; `local`: how far an element is pressed in, and its rate."""
     omega, displacement, velocity = (np.atleast_1d(np.asarray(part, dtype=float)) for part in (omega, displacement, velocity))
     pressed, rate = (np.array([value]) for value in local) if local else (NONE, NONE)
-    none = np.zeros(len(omega), dtype=bool)
-    of = Oscillators(omega, np.full(len(omega), damping), np.ones(len(omega)), rate, np.ones(len(rate)), none, ~none)
-    return FreeMotion(of, State(np.array(approach), np.array(speed), displacement, velocity, pressed), gravity)
+    ground = np.arange(len(omega) + 1) > 0  # the first coordinate is the fall of the sphere, of 1 kg
+    of = LinearSystem(
+        np.append(0.0, omega),
+        np.append(0.0, np.full(len(omega), damping)),
+        np.ones((1, len(omega) + 1)),
+        np.zeros(1),
+        np.where(ground, 0.0, gravity),
+        ~ground & False,
+        ground,
+        rate,
+        np.ones(len(rate)),
+        np.zeros(len(rate), dtype=np.intp),
+    )
+    return FreeMotion(of, State(np.append(approach, displacement), np.append(speed, velocity), pressed))
 
 
 def first_meeting(free: FreeMotion, level: float, end: float, number: int = 1_000_001) -> float:
     """The first sample beyond the level, by brute force."""
     step = end / (number - 1)
     for block in np.array_split(np.arange(1, number), 100):
-        beyond = free.motion(block * step)[0] > level
+        beyond = free.motion(block * step)[0][:, 0] > level
         if beyond.any():
             return float(block[beyond.argmax()]) * step
     return np.inf
@@ -59,8 +70,8 @@ def test_against_brute_force(seed: int) -> None:
     found, step = next_touch(free, 0.0, np.inf), 0.1 / 1e6
     brute = first_meeting(free, 0.0, 0.1)
     assert found == pytest.approx(brute, abs=1.01 * step) if np.isfinite(brute) else found > 0.1
-    assert abs(float(free.motion(np.array(found))[0])) < 1e-12
-    assert float(free.motion(np.array(found))[1]) > 0.0
+    assert abs(float(free.motion(np.array(found))[0][0])) < 1e-12
+    assert float(free.motion(np.array(found))[1][0]) > 0.0
 
 
 def test_a_wave_that_grazes() -> None:

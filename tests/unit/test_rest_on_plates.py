@@ -20,11 +20,11 @@ from vibroimpact.contact.pair import ContactPair
 from vibroimpact.contact.quasi_static import QuasiStatic
 from vibroimpact.dynamics import visit
 from vibroimpact.dynamics.columns import LEDGER, VIBRATION_LEDGER
+from vibroimpact.dynamics.linear_system import LinearSystem, State
 from vibroimpact.dynamics.local import LocalContact
 from vibroimpact.dynamics.lying import lay_down
-from vibroimpact.dynamics.oscillators import Oscillators, State
-from vibroimpact.dynamics.receptance import Surroundings
 from vibroimpact.dynamics.riding import Riding
+from vibroimpact.dynamics.vibration import centre_of, system_of
 
 LOSSY = LankaraniNikravesh(stiffness=STIFFNESS, restitution=0.5)
 PAIR = ContactPair(2.4264724e9, 0.025, 0.09032078879, 8e7, 0.28)
@@ -97,7 +97,8 @@ def test_rest_is_the_motion_of_both_together() -> None:
         return np.concatenate([[y[1], 9.8 - force / 0.09032078879], velocity, push])
 
     times = np.linspace(0.0, 0.3, 400)
-    begins = np.concatenate([[start.approach, start.speed], start.displacement, start.velocity])
+    fall = [float(part) for part in centre_of(start, 0.09032078879)]
+    begins = np.concatenate([fall, start.displacement[1:], start.velocity[1:]])
     found = solve_ivp(slopes, (0.0, 0.3), begins, "Radau", times, rtol=1e-8, atol=1e-14).y
     history = response.at(begun + times)
     for seen, expected in ((history["position_m"], 0.025 - found[0]), (history["plate_deflection_m"], shape @ found[2:5])):
@@ -152,40 +153,39 @@ def test_a_contact_does_not_end_where_the_surfaces_do_not_part() -> None:
     assert response.energy["closure_relative"] < 1e-10
 
 
-def surroundings(modes: int, seed: int) -> Surroundings:
+def ball_on_modes(modes: int, seed: int) -> LinearSystem:
     random = np.random.default_rng(seed)
     omega = np.exp(random.uniform(3.0, 9.0, modes))
-    nothing, no = np.zeros(0), np.zeros(modes, dtype=bool)
-    of = Oscillators(omega, np.full(modes, 0.01), random.normal(size=modes), nothing, nothing, no, ~no)
-    return Surroundings(0.1, 9.81, of)
+    plate = modes_of(omega / (2.0 * np.pi), random.normal(size=modes), 0.01)
+    problem = vi.Problem(sphere=vi.Body(mass=0.1, contact_offset=0.01), plate=replace(vi.rigid_plate(), modes=plate), laws=LOSSY, speed=1.0)
+    return system_of(problem, 0.1, 9.81)
 
 
 @pytest.mark.parametrize("seed", range(5))
 def test_laying_down_makes_no_energy(seed: int) -> None:
     """Wherever everything is: far, fast, apart or deep."""
-    random, around = np.random.default_rng(seed), surroundings(5, seed)
+    random, system = np.random.default_rng(seed), ball_on_modes(5, seed)
     local = LocalContact(JKR.example(PAIR) if seed % 2 else Hertz(stiffness=1e9), QuasiStatic(), 1.0)
-    riding = Riding(around, local)
+    riding = Riding(system, local)
     for size in (1e-7, 1e-5, 1e-3):
         at = riding.equilibrium
-        moved = size * random.normal(size=(2, 5))
-        state = State(at.approach + size * random.normal(), size * random.normal(), at.displacement + moved[0], 100.0 * moved[1], at.local)
-        approach = float(around.oscillators.approach(state))
+        moved = size * random.normal(size=(2, 6))
+        moved[:, 0] *= 0.1**0.5
+        state = State(at.displacement + moved[0], [1.0, *[100.0] * 5] * moved[1], at.local)
+        approach = float(system.approach(state)[0])
         stored = float(local.elastic_energy(np.array([approach]))[0]) if approach > local.release_level else 0.0
         lying = lay_down(riding, state, stored)
         assert lying.written_off >= -1e-12 * riding.excess(state, stored)
         now = lying.state(np.zeros(1))
-        kept = riding.excess(State(*(part[0] for part in vars(now).values())), float(lying.stored(np.zeros(1))[0]))
+        kept = riding.excess(now.take(0), float(lying.stored(np.zeros(1))[0]))
         assert kept + lying.written_off == pytest.approx(riding.excess(state, stored), rel=1e-6)
 
 
 def test_the_bound_of_the_force_is_met_and_not_passed() -> None:
     """By the linear motion, over many periods."""
-    around = surroundings(4, 1)
-    around = replace(around, oscillators=replace(around.oscillators, damping_ratio=np.zeros(4)))
-    riding = Riding(around, LocalContact(Hertz(stiffness=1e9), QuasiStatic(), 1.0))
+    riding = Riding(replace(ball_on_modes(4, 1), damping_ratio=np.zeros(5)), LocalContact(Hertz(stiffness=1e9), QuasiStatic(), 1.0))
     at = riding.equilibrium
-    state = replace(at, displacement=at.displacement + 1e-8 * np.arange(1.0, 5.0), velocity=1e-5 * np.ones(4))
+    state = replace(at, displacement=at.displacement + 1e-8 * np.arange(5.0), velocity=1e-5 * np.array([0.0, 1.0, 1.0, 1.0, 1.0]))
     lying = lay_down(riding, state, riding.stored)
     bound = riding.force_bound(lying.state(np.zeros(1)[0]))
     seen = np.abs(lying.force(np.linspace(0.0, 200.0, 400_001)) - riding.weight).max()

@@ -64,7 +64,8 @@ def test_every_law(law: type[CompliantLaw]) -> None:
 )
 def test_all_that_vibrates(law: CompliantLaw, more: dict) -> None:
     problem = drop_on(law, RICH, impacts=2, tolerance=1e-12, **more)
-    np.testing.assert_allclose(vi.simulate(problem).impacts["sensitivity"], seen(problem), rtol=2e-3)
+    # ten times as far apart: two drops of which each is integrated to 1e-11 are told apart to 1e-3 and better
+    np.testing.assert_allclose(vi.simulate(problem).impacts["sensitivity"], seen(problem, 1e-7), rtol=2e-3)
 
 
 def test_micro_impacts() -> None:

@@ -152,8 +152,13 @@ def highest(values: Callable[[Array], Array]) -> float:
     0.4
     """
     low, high = 0.0, 1.0
-    for _ in range(4):
+    for _ in range(3):
         x = np.linspace(low, high, 33)
-        best = int(values(x).argmax())
+        found = values(x)
+        best = int(found.argmax())
         low, high = x[max(best - 1, 0)], x[min(best + 1, 32)]
+    if 0 < best < 32:  # the top of the parabola through three points, which rounding hardly moves
+        before, top, after = found[best - 1 : best + 2]
+        bend = 2.0 * top - before - after
+        return float(x[best] + 0.25 * (high - low) * (after - before) / bend) if bend > 0.0 else float(x[best])
     return float(x[best])

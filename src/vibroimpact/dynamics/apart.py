@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vibroimpact.dynamics.collocation import Floats
+from vibroimpact.dynamics.linear_system import FreeMotion, State
 from vibroimpact.dynamics.local import LocalContact
-from vibroimpact.dynamics.oscillators import FreeMotion, State
 
 
 @dataclass(frozen=True)
@@ -33,14 +33,14 @@ class Apart:
         return self
 
     def lost_by(self, time: Floats) -> Floats:
-        """Return what is lost since the start [J] at times since then [s], (T, n + 1): in each oscillator; last, in the contact."""
+        """Return what is lost since the start [J] at times since then [s], (T, n + 1): in each coordinate; last, in the contact."""
         return self.lost_at(self.free.state(time))
 
     def lost_at(self, state: State) -> Floats:
         """Return the same of states that the motion comes to."""
         lost = self.free.lost_at(state)
         if self.local is not None:
-            of, floor = self.free.oscillators, self.local.release_level
-            before, now = (np.maximum(of.approach(place), floor) for place in (self.free.start, state))
+            of, floor = self.free.system, self.local.release_level
+            before, now = (np.maximum(of.approach(place)[..., 0], floor) for place in (self.free.start, state))
             lost[..., -1] += self.local.elastic_energy(before) - self.local.elastic_energy(now)
         return lost

@@ -155,8 +155,8 @@ def _laid_down(segments: Sequence[VibratingSegment]) -> Floats:
     before, lying = segments[-2] if len(segments) > 1 else None, segments[-1].moving
     if before is None:
         return np.zeros(2)
-    of = segments[-1].oscillators
-    shape, velocity = of.shape[of.ground], before.state(np.array([before.end - before.start])).velocity[0, of.ground]
+    of = segments[-1].system
+    shape, velocity = of.shape[0, of.ground], before.state(np.array([before.end - before.start])).velocity[0, of.ground]
     change = lying.start.velocity[of.ground] - velocity
     return np.array([0.0, float(shape @ change) / float(shape @ shape) if shape.any() else 0.0])
 
@@ -169,7 +169,7 @@ def _samples(time: float, rate: float) -> int:
 def _place(segment: VibratingSegment) -> Floats:
     """Return displacements and velocities of the plate's modes at the start of a segment, (2, modes)."""
     moving = segment.moving
-    ground = segment.oscillators.ground
+    ground = segment.system.ground
     return np.stack([moving.start.displacement[ground], moving.start.velocity[ground]])
 
 
@@ -232,7 +232,7 @@ def _impulse_answers(of: Oscillators, time: Floats) -> Floats:
 def _in_contact(chain: MeasuringChain, stretch: VibratingStretch, own: Floats, times: Floats) -> Floats:
     """Return the outputs at times since the start of a stretch of contact, (S, T)."""
     times = np.clip(times, 0.0, stretch.length)
-    state, ground = stretch.state(times), stretch.around.oscillators.ground
+    state, ground = stretch.state(times), stretch.system.ground
     places = np.stack([state.displacement[:, ground], state.velocity[:, ground]])
     if own.shape[1]:
         of = chain.own

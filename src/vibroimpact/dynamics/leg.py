@@ -11,7 +11,7 @@ from vibroimpact.dynamics.collocation import Floats
 from vibroimpact.dynamics.contact import Contact
 from vibroimpact.dynamics.encounter import Encounter
 from vibroimpact.dynamics.flight import Flight
-from vibroimpact.dynamics.oscillators import FreeMotion
+from vibroimpact.dynamics.linear_system import FreeMotion
 
 
 @dataclass(frozen=True)

@@ -3,6 +3,7 @@ r"""The contact law of one impact as the bodies feel it: with the quasi-static c
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
@@ -191,3 +192,10 @@ class LocalContact:
         """Will the law remember an indentation of its own of `deepest` [m]?"""
         before, after = self.law.memories(), self.law.after_compression(deepest).memories()
         return not all(np.all(before[name] == after[name]) for name in before)
+
+
+def linearised(contacts: Sequence[LocalContact], delta: Array, rate: Array) -> Linearised:
+    """Return the same of several contacts, from their laws' indentations and rates (c, N), (c, N) each."""
+    if len(contacts) == 1:
+        return Linearised(*(part[None] for part in contacts[0].linearised(delta[0], rate[0])))
+    return Linearised(*map(np.stack, zip(*(one.linearised(*pair) for one, *pair in zip(contacts, delta, rate, strict=True)), strict=True)))

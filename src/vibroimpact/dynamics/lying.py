@@ -8,7 +8,8 @@ from functools import cached_property
 import numpy as np
 
 from vibroimpact.dynamics.collocation import Floats
-from vibroimpact.dynamics.oscillators import FreeMotion, Oscillators, State
+from vibroimpact.dynamics.linear_system import State
+from vibroimpact.dynamics.oscillators import Oscillators
 from vibroimpact.dynamics.riding import Riding, coupled_oscillators
 
 
@@ -29,44 +30,49 @@ class Lying:
     def _coupled(self) -> tuple[Oscillators, Floats]:
         return coupled_oscillators(self.riding)
 
+    @property
+    def coupled(self) -> Oscillators:
+        """Sphere and modes as oscillators that go on apart from each other."""
+        return self._coupled[0]
+
     @cached_property
-    def free(self) -> FreeMotion:
-        """The motion of both together, in the coordinates of their modes."""
-        coupled, _ = self._coupled
-        _, shapes = self.riding.modes
-        place, speed = (shapes.T @ part for part in self.riding.deviation(self.start))
-        return FreeMotion(coupled, State(np.zeros(()), np.zeros(()), place, speed, np.zeros(0)), 0.0)
+    def begun(self) -> Floats:
+        """Displacements and velocities of these at the start, (2, n)."""
+        return np.stack([self.riding.modes[1].T @ part for part in self.riding.deviation(self.start)])
+
+    def together(self, time: Floats) -> Floats:
+        """Return displacements and velocities of these at times since the sphere was laid down [s], (2, ..., n)."""
+        later = self.coupled.transition(time)
+        return np.asarray(later[:, 0] * self.begun[0] + later[:, 1] * self.begun[1])
 
     def state(self, time: Floats) -> State:
         """Return the state at times since the sphere was laid down [s] (...)."""
-        riding, together = self.riding, self.free.state(time)
-        root, at, (_, shapes) = np.sqrt(riding.around.mass), riding.equilibrium, riding.modes
-        place, speed = together.displacement @ shapes.T, together.velocity @ shapes.T
+        riding, at = self.riding, self.riding.equilibrium
+        place, speed = self.together(time) @ riding.modes[1].T
         force = riding.weight + riding.stiffness * (place @ riding.pull)
-        return State(
-            at.approach + place[..., 0] / root,
-            speed[..., 0] / root,
-            at.displacement + place[..., 1:],
-            speed[..., 1:],
-            -force[..., None] * riding.around.oscillators.local_compliance,
-        )
+        return State(at.displacement + place, speed, -force[..., None] * riding.system.local_compliance)
 
     def force(self, time: Floats) -> Floats:
         """Return the force of the contact [N] at times since then [s]: what the motion of the sphere takes."""
-        together, (coupled, _) = self.free.state(time), self._coupled
-        pull = coupled.damping * together.velocity + coupled.angular_frequency**2 * together.displacement
-        return np.asarray(self.riding.weight + np.sqrt(self.riding.around.mass) * (pull @ self.riding.modes[1][0]))
+        (place, speed), of = self.together(time), self.coupled
+        pull = of.damping * speed + of.angular_frequency**2 * place
+        return np.asarray(self.riding.weight + np.sqrt(self.riding.system.mass[0]) * (pull @ self.riding.modes[1][0]))
 
     def stored(self, time: Floats) -> Floats:
         """Return what the contact holds [J] at times since then [s], without the massless elements."""
         riding = self.riding
-        excess = riding.stiffness * (self.free.state(time).displacement @ (riding.modes[1].T @ riding.pull))
+        excess = riding.stiffness * (self.together(time)[0] @ (riding.modes[1].T @ riding.pull))
         deeper = excess / riding.contact[0]
         return np.asarray(riding.stored + (riding.weight + 0.5 * excess) * deeper)
 
     def lost_by(self, time: Floats) -> Floats:
-        """Return what is lost since then [J] at times (T,), (T, n + 1): in each oscillator; last, in the contact."""
-        return np.asarray(self.free.lost_by(time)[..., :-1] @ self._coupled[1])
+        """Return what is lost since then [J] at times (T,), (T, n + 1): in each coordinate; last, in the contact."""
+        stiffness = self.coupled.angular_frequency**2
+
+        def energies(moved: Floats) -> Floats:
+            return np.asarray(0.5 * (moved[1] ** 2 + stiffness * moved[0] ** 2))
+
+        return np.asarray((energies(self.begun) - energies(self.together(time))) @ self._coupled[1])
 
 
 def lay_down(riding: Riding, state: State, stored: float) -> Lying:
@@ -86,15 +92,15 @@ def lay_down(riding: Riding, state: State, stored: float) -> Lying:
     stored : float
         What the contact holds [J].
     """
-    root, pull, at = np.sqrt(riding.around.mass), riding.pull, riding.equilibrium
+    of, pull, at = riding.system, riding.pull, riding.equilibrium
     (place, speed), held = riding.deviation(state), riding.excess(state, stored)
-    behind, never = place[1:] @ pull[1:], (1.0 - riding.share) * stored
+    never = (1.0 - riding.share) * stored
+    alone = of.rigid / of.of_rigid[0].sum()  # what moves the sphere alone
     if riding.linear and riding.stays(state):
-        of_modes = (riding.around.oscillators.angular_frequency * place[1:]) ** 2
-        on_spring = held - 0.5 * (float(speed @ speed) + float(of_modes.sum()))
+        on_spring = held - 0.5 * float((speed**2 + (of.angular_frequency * place) ** 2).sum())
         deeper = np.copysign(np.sqrt(2.0 * max(on_spring, 0.0) / riding.stiffness), place @ pull)
-        return Lying(riding, replace(state, approach=np.asarray(at.approach + deeper - behind)), held, never)
+        return Lying(riding, replace(state, displacement=state.displacement + alone * (deeper - place @ pull)), held, never)
     speed -= pull * (speed @ pull) / (pull @ pull)
-    start = State(np.asarray(at.approach - behind), speed[0] / root, state.displacement, speed[1:], at.local)
+    start = State(state.displacement - alone * (place @ pull), speed, at.local)
     left = riding.excess(start, riding.stored / riding.share)
     return Lying(riding, start, left, never + held - left)

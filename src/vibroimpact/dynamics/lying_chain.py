@@ -58,12 +58,11 @@ def lying_chain(chain: MeasuringChain, lying: Lying, own: Floats) -> LyingChain:
     own : array, shape (2, pairs of poles)
         Where the pairs of poles of the chain itself are as that begins.
     """
-    riding, coupled = lying.riding, lying.free.oscillators
-    at, shapes, ground = PolePairs(coupled.angular_frequency**2, coupled.damping), riding.modes[1], riding.around.oscillators.ground
-    force = -math.sqrt(riding.around.mass) * shapes[0] * at.power(2)
-    moved = chain.shapes @ shapes[1:][ground] * at.power(0)[:, None] - chain.compliance[:, None] * force[:, None]  # (2, S, coupled)
+    riding, coupled = lying.riding, lying.coupled
+    at, shapes, ground = PolePairs(coupled.angular_frequency**2, coupled.damping), riding.modes[1], riding.system.ground
+    force = -math.sqrt(riding.system.mass[0]) * shapes[0] * at.power(2)
+    moved = chain.shapes @ shapes[ground] * at.power(0)[:, None] - chain.compliance[:, None] * force[:, None]  # (2, S, coupled)
     static = chain.shapes @ riding.equilibrium.displacement[ground] - chain.compliance * riding.weight
-    start = np.stack([lying.free.start.displacement, lying.free.start.velocity])
     poles = chain.own
     sections = list(zip((poles.angular_frequency**2).tolist(), poles.damping.tolist(), strict=True))
     passed = at.low_pass(sections)
@@ -72,10 +71,10 @@ def lying_chain(chain: MeasuringChain, lying: Lying, own: Floats) -> LyingChain:
             [at.product(one, at.product(at.power(order), passed)) for one, order in zip(moved.swapaxes(0, 1), chain.orders, strict=True)], 1
         )
     ]
-    places = [start]
+    places = [lying.begun]
     for number, section in enumerate(sections):
         driven = at.product(moved, at.inverse(at.quadratic(*section))[:, None])
-        now = np.stack([_value(driven, start), _value(at.product(driven, at.power(1)[:, None]), start)])
+        now = np.stack([_value(driven, lying.begun), _value(at.product(driven, at.power(1)[:, None]), lying.begun)])
         now[0] += static / section[0]
         places.append(_of_points(chain, section, lying, own[:, [number]]) - now)
         outputs.append(of_section(number, sections, chain.orders) * np.eye(len(static)))
@@ -86,7 +85,7 @@ def lying_chain(chain: MeasuringChain, lying: Lying, own: Floats) -> LyingChain:
 
 def _of_points(chain: MeasuringChain, section: Section, lying: Lying, own: Floats) -> Floats:
     """Return where a pair of poles driven by the motion of each point is, (2, S), from where it is under minus the force, (2, 1)."""
-    plate, ground = chain.plate, lying.riding.around.oscillators.ground
+    plate, ground = chain.plate, lying.riding.system.ground
     modes = np.stack([lying.start.displacement[ground], lying.start.velocity[ground]])
     found = []
     at_modes, at = PolePairs(plate.angular_frequency**2, plate.damping), PolePairs(np.array([section[0]]), np.array([section[1]]))
@@ -119,14 +118,14 @@ def lying_pulses(lying: Lying, fastest: float, length: float) -> tuple[Floats, F
     length : float
         Up to when it matters [s].
     """
-    riding, of, start = lying.riding, lying.free.oscillators, lying.free.start
-    share = -math.sqrt(riding.around.mass) * riding.modes[1][0]  # of an acceleration in the force
+    riding, of, (place, speed) = lying.riding, lying.coupled, lying.begun
+    share = -math.sqrt(riding.system.mass[0]) * riding.modes[1][0]  # of an acceleration in the force
     fast = (of.damping_ratio < 1.0) & (of.angular_frequency > _FAST * fastest)
-    at_once = -float(share[fast] @ start.velocity[fast])  # the whole impulse of a swing that dies, or averages, away
-    slow, share = of.pick(np.flatnonzero(~fast)), share[~fast]
+    at_once = -float(share[fast] @ speed[fast])  # the whole impulse of a swing that dies, or averages, away
+    slow, share = of.pick(~fast), share[~fast]
     times, weights = _graded_rule(length, fastest, slow)
     cosine, sine = slow.propagators(times)
-    stiffness, displacement, velocity = slow.angular_frequency**2, start.displacement[~fast], start.velocity[~fast]
+    stiffness, displacement, velocity = slow.angular_frequency**2, place[~fast], speed[~fast]
     place = cosine * displacement + sine * velocity
     speed = -stiffness * sine * displacement + (cosine - slow.damping * sine) * velocity
     force = riding.weight - (stiffness * place + slow.damping * speed) @ share
@@ -146,6 +145,9 @@ def _graded_rule(length: float, fastest: float, of: Oscillators) -> tuple[Floats
 
 
 def _beside(one: Oscillators, other: Oscillators) -> Oscillators:
-    """Return the oscillators of two systems side by side, without massless elements."""
-    parts = ("angular_frequency", "damping_ratio", "shape", "rate", "mobility", "inside", "ground")
-    return Oscillators(*(np.concatenate([getattr(one, part), getattr(other, part)]) for part in parts))
+    """Return oscillators side by side."""
+    return Oscillators(*(np.concatenate(pair) for pair in zip(_parts(one), _parts(other), strict=True)))
+
+
+def _parts(of: Oscillators) -> tuple[Floats, Floats, Floats]:
+    return of.angular_frequency, of.damping_ratio, of.shape

@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -159,12 +159,6 @@ def _with_sections(plate: Oscillators, sections: Sequence[Section]) -> Oscillato
         return plate
     omega = np.sqrt([stiffness for stiffness, _ in sections])
     ratio = np.array([damping for _, damping in sections]) / (2.0 * omega)
-    no = np.zeros(len(sections), dtype=bool)
-    return replace(
-        plate,
-        angular_frequency=np.append(plate.angular_frequency, omega),
-        damping_ratio=np.append(plate.damping_ratio, ratio),
-        shape=np.append(plate.shape, np.ones(len(sections))),
-        inside=np.append(plate.inside, no),
-        ground=np.append(plate.ground, ~no),
+    return Oscillators(
+        np.append(plate.angular_frequency, omega), np.append(plate.damping_ratio, ratio), np.append(plate.shape, np.ones(len(sections)))
     )

@@ -46,14 +46,14 @@ def pulses(stretch: VibratingStretch, fastest: float, until: Floats | None = Non
     """
     length, rule = stretch.length, stretch.rule
     if until is None and fastest * length < _SLOW:
-        return length * rule.time, length * rule.integral[-1] * stretch.force
+        return length * rule.time, length * rule.integral[-1] * stretch.force[0]
     ends = np.array([length]) if until is None else until
     begins = np.append(0.0, ends[:-1])
     longest = float((ends - begins).max(initial=0.0))
     nodes, weights = gauss_rule(rule.root * fastest * longest)  # the map of time is so many times steeper, at most
     begins, ends = rule.unmap_time(begins / length), rule.unmap_time(ends / length)
     x = begins[:, None] + (ends - begins)[:, None] * nodes
-    force = rule.interpolate(x.ravel(), stretch.force).reshape(x.shape)
+    force = rule.interpolate(x.ravel(), stretch.force[0]).reshape(x.shape)
     times = length * rule.map_time(x)
     impulses = length * _slope(stretch, x) * force * ((ends - begins)[:, None] * weights)
     return (times[0], impulses[0]) if until is None else (times, impulses)
@@ -65,7 +65,7 @@ def force_derivatives(stretch: VibratingStretch, times: Floats) -> Floats:
     At the touch itself the derivatives are those before it, zero: just after it that of a Hertzian force has no bound.
     """
     grid = 0.5 * (1.0 - np.cos(np.pi * (np.arange(_DEGREE + 1) + 0.5) / (_DEGREE + 1)))
-    coefficients = np.linalg.solve(legendre.legvander(2.0 * grid - 1.0, _DEGREE), stretch.force_at(grid))
+    coefficients = np.linalg.solve(legendre.legvander(2.0 * grid - 1.0, _DEGREE), stretch.contacts[0].force_at(grid))
     x = stretch.rule.unmap_time(times / stretch.length)
     value, first, second = (legendre.legval(2.0 * x - 1.0, legendre.legder(coefficients, order)) * 2.0**order for order in range(3))
     slope = stretch.length * _slope(stretch, x)

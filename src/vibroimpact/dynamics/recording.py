@@ -18,7 +18,6 @@ from vibroimpact.dynamics.oscillators import Oscillators
 from vibroimpact.dynamics.overload import finer_rate, overload, taken_away
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.sensor import Sensor, sample_count
-from vibroimpact.dynamics.vibration import oscillators_of
 from vibroimpact.errors import InputError
 
 if TYPE_CHECKING:
@@ -127,8 +126,9 @@ def _checked(problem: Problem, sensors: Sequence[Sensor], end: float) -> ModalBa
 
 
 def _plate(problem: Problem) -> Oscillators:
-    of = oscillators_of(problem)
-    return of.pick(np.flatnonzero(of.ground))
+    modes = problem.plate.modes
+    assert modes is not None  # which has been checked
+    return Oscillators(modes.angular_frequencies, modes.damping_ratios, modes.contact)
 
 
 def _resonance(sensor: Sensor) -> tuple[Section, ...]:

@@ -26,7 +26,7 @@ from vibroimpact.dynamics.timeline import Timeline, end_of, timeline_of
 from vibroimpact.dynamics.truncation import truncation_estimates
 from vibroimpact.dynamics.vibrating_history import vibrating_history
 from vibroimpact.dynamics.vibrating_segment import VibratingSegment, vibrating_timeline
-from vibroimpact.dynamics.vibration import modes_of
+from vibroimpact.dynamics.vibration import slices_of
 from vibroimpact.errors import InputError
 
 
@@ -209,13 +209,13 @@ class Response:
         flat = np.atleast_1d(np.asarray(times, dtype=float))
         starts = self._starts
         index = np.maximum(np.searchsorted(starts, flat, side="right") - 1, 0)
-        found = np.zeros((len(flat), modes_of(self.problem.sphere) + modes_of(self.problem.plate)))
+        sphere, plate = slices_of(self.problem)
+        found = np.zeros((len(flat), plate.stop))
         for number in np.unique(index):
             segment, here = self._segments[int(number)], index == number
             if isinstance(segment, VibratingSegment):
                 found[here] = segment.state(np.minimum(flat[here], segment.end) - segment.start).displacement
-        at = modes_of(self.problem.sphere)
-        return {"sphere": found[:, :at], "plate": found[:, at:]}
+        return {"sphere": found[:, sphere], "plate": found[:, plate]}
 
     def signals(self, *sensors: Sensor) -> dict[str, Signal]:
         """Return what sensors on the plate record over the whole run, by their names.

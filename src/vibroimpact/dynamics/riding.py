@@ -23,10 +23,9 @@ import numpy as np
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.static import static_indentation
 from vibroimpact.dynamics.collocation import Floats
+from vibroimpact.dynamics.linear_system import LinearSystem, State
 from vibroimpact.dynamics.local import LocalContact
-from vibroimpact.dynamics.oscillators import Oscillators, State
-from vibroimpact.dynamics.receptance import Surroundings
-from vibroimpact.dynamics.vibrating_stretch import mechanical_energy
+from vibroimpact.dynamics.oscillators import Oscillators
 
 _MARGIN = 0.5
 """Part of the weight by which the force may vary where a sphere stays: so near to the weight the spring of a contact is nearly
@@ -36,19 +35,24 @@ _NONE = 1e-300
 """What stands for no stiffness [N/m], as of Hertz's law where there is no weight."""
 
 
-def least_energy(around: Surroundings, approach: float, stored: float) -> float:
+def weight_on(system: LinearSystem) -> float:
+    """Return the weight on the contact of a system that has one [N]."""
+    return float(system.mass[0] * system.gravity[0])
+
+
+def least_energy(system: LinearSystem, approach: float, stored: float) -> float:
     """Return the least energy of a state with an approach of the surfaces [m] at which the contact holds `stored` [J]."""
-    weight = around.mass * around.gravity
-    return stored - weight * approach - 0.5 * around.oscillators.compliance * weight * weight
+    weight = weight_on(system)
+    return stored - weight * approach - 0.5 * float(system.compliance[0]) * weight * weight
 
 
-def stays_below(around: Surroundings, law: CompliantLaw, state: State, speed: float) -> bool:
+def stays_below(system: LinearSystem, law: CompliantLaw, state: State, speed: float) -> bool:
     """Tell whether a sphere that is apart from the surface can nowhere any more leave it at a speed [m/s], whatever still moves.
 
     Parameters
     ----------
-    around : Surroundings
-        Mass, gravity and what vibrates.
+    system : LinearSystem
+        The sphere and what vibrates.
     law : CompliantLaw
         The law of the next contact.
     state : State
@@ -56,23 +60,23 @@ def stays_below(around: Surroundings, law: CompliantLaw, state: State, speed: fl
     speed : float
         Speed of the sphere beside a surface at rest [m/s].
     """
-    least = least_energy(around, float(law.touch_level), 0.0)
-    return mechanical_energy(around, state) < least + 0.5 * around.mass * speed**2
+    least = least_energy(system, float(law.touch_level), 0.0)
+    return float(system.mechanical_energy(state)) < least + 0.5 * float(system.mass[0]) * speed**2
 
 
-def may_stay(around: Surroundings, state: State, force: float, indentation: float) -> bool:
+def may_stay(system: LinearSystem, state: State, force: float, indentation: float) -> bool:
     """Tell whether it is worth asking if a sphere that rides stays, which takes the modes of sphere and oscillators together.
 
     It is not where the force is far from the weight, nor where the speed is too high: the force takes it away and gives it back, at
     no lower an angular frequency than that by the trace of the flexibility, on a contact about as stiff as force over indentation.
     """
-    of, weight = around.oscillators, around.mass * around.gravity
+    weight, mass = weight_on(system), float(system.mass[0])
     most = _MARGIN * weight
     if not weight or abs(force - weight) > most:
         return False
-    on_springs = around.mass * (abs(indentation) / weight / _MARGIN + of.compliance)
-    slowest = float((on_springs + (1.0 / of.angular_frequency**2).sum()) ** -0.5)
-    return around.mass * abs(float(state.speed)) * slowest < most
+    on_springs = mass * (abs(indentation) / weight / _MARGIN + float(system.compliance[0]))
+    slowest = float((on_springs + system.flexibility.sum()) ** -0.5)
+    return mass * abs(float(system.rigid_motion(state)[1][0])) * slowest < most
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,19 +85,19 @@ class Riding:
 
     Parameters
     ----------
-    around : Surroundings
-        Mass, gravity, which is greater than 0, and what vibrates.
+    system : LinearSystem
+        The sphere, whose weight is greater than 0 and which is the first coordinate, and what vibrates.
     local : LocalContact
         The contact that carries the weight.
     """
 
-    around: Surroundings
+    system: LinearSystem
     local: LocalContact
 
     @property
     def weight(self) -> float:
         """Weight of the sphere [N]."""
-        return self.around.mass * self.around.gravity
+        return weight_on(self.system)
 
     @cached_property
     def share(self) -> float:
@@ -121,7 +125,7 @@ class Riding:
     @cached_property
     def contact(self) -> tuple[float, float]:
         """Stiffness [N/m] and damping [N s/m] of the contact at equilibrium."""
-        sag, slow = np.array([self.sag]), np.array([1e-3 * np.sqrt(self.around.gravity * abs(self.sag)) + 1e-12])
+        sag, slow = np.array([self.sag]), np.array([1e-3 * np.sqrt(self.system.gravity[0] * abs(self.sag)) + 1e-12])
         now = self.local.linearised(sag, slow)
         stiffness = self.share * float(now.stiffness[0] / now.slope[0])
         towards, away = (self.local.own_forces(sag, rate)[1] for rate in (slow, -slow))
@@ -130,44 +134,43 @@ class Riding:
     @cached_property
     def stiffness(self) -> float:
         """Stiffness of the contact and of the massless elements in series [N/m]."""
-        return 1.0 / (1.0 / self.contact[0] + float(self.around.oscillators.local_compliance.sum()))
+        return 1.0 / (1.0 / self.contact[0] + float(self.system.local_compliance.sum()))
 
     @cached_property
     def equilibrium(self) -> State:
         """The state of equilibrium."""
-        of, weight = self.around.oscillators, self.weight
-        displacement, local = -weight * of.shape / of.angular_frequency**2, -weight * of.local_compliance
-        approach = self.approach - displacement @ of.shape - local.sum()
-        return State(np.asarray(approach), np.zeros(()), displacement, np.zeros_like(displacement), local)
+        of, weight = self.system, self.weight
+        displacement, local = -weight * of.shape[0] * of.flexibility, -weight * of.local_compliance
+        apart = self.approach - displacement @ of.shape[0] - local.sum()
+        rigid = of.of_rigid[0]
+        return State(displacement + rigid * apart * float(of.mass[0]), np.zeros_like(displacement), local)
 
     @property
     def linear(self) -> bool:
         """Does the contact push, on a spring?"""
-        return bool(self.around.gravity > 0.0 and _NONE < self.contact[0] < np.inf)
+        return bool(self.system.gravity[0] > 0.0 and _NONE < self.contact[0] < np.inf)
 
-    @cached_property
+    @property
     def pull(self) -> Floats:
-        """By how much the sphere, its displacement times the root of its mass, and each oscillator add to the approach [kg^-1/2]."""
-        return np.append(1.0 / np.sqrt(self.around.mass), self.around.oscillators.shape)
+        """By how much each coordinate adds to the approach [kg^-1/2] (n,)."""
+        return np.asarray(self.system.shape[0])
 
     @cached_property
     def modes(self) -> tuple[Floats, Floats]:
-        """Angular frequencies [rad/s] and shapes (n + 1, n + 1), a column a mode, of sphere and oscillators together."""
-        stiffness = np.diag(np.append(0.0, self.around.oscillators.angular_frequency**2)) + self.stiffness * np.outer(self.pull, self.pull)
+        """Angular frequencies [rad/s] and shapes (n, n), a column a mode, of all coordinates together on the spring of the contact."""
+        stiffness = np.diag(self.system.angular_frequency**2) + self.stiffness * np.outer(self.pull, self.pull)
         squares, shapes = np.linalg.eigh(stiffness)
         return np.sqrt(np.maximum(squares, _NONE)), shapes
 
     def deviation(self, state: State) -> tuple[Floats, Floats]:
-        """Return how far from equilibrium a state is [kg^1/2 m], and its rate: of the sphere, then of the oscillators, (n + 1,)."""
-        root, at = np.sqrt(self.around.mass), self.equilibrium
-        displacement = np.append(root * (state.approach - at.approach), state.displacement - at.displacement)
-        return displacement, np.append(root * state.speed, state.velocity)
+        """Return how far from equilibrium the coordinates are [kg^1/2 m], and their rates (n,)."""
+        return state.displacement - self.equilibrium.displacement, state.velocity.copy()
 
     def force_bound(self, state: State) -> float:
         """Return by how much the force of the contact can ever differ from the weight [N], from a state on, however the modes meet."""
         (omega, shapes), (place, speed) = self.modes, self.deviation(state)
         swing = np.hypot(shapes.T @ place, (shapes.T @ speed) / omega)
-        lag = state.local + self.around.oscillators.local_compliance * (self.weight + self.stiffness * float(self.pull @ place))
+        lag = state.local + self.system.local_compliance * (self.weight + self.stiffness * float(self.pull @ place))
         return float(self.stiffness * np.abs(self.pull @ shapes) @ swing + self.contact[0] * np.abs(lag).sum())
 
     def stays(self, state: State) -> bool:
@@ -176,20 +179,19 @@ class Riding:
 
     def excess(self, state: State, stored: float) -> float:
         """Return what sphere, oscillators and contact, which holds `stored` [J], can give back down to their equilibrium [J]."""
-        return mechanical_energy(self.around, state) + self.share * stored - least_energy(self.around, self.approach, self.stored)
+        return float(self.system.mechanical_energy(state)) + self.share * stored - least_energy(self.system, self.approach, self.stored)
 
 
 def coupled_oscillators(riding: Riding) -> tuple[Oscillators, Floats]:
-    """Return sphere and oscillators as oscillators that go on apart from each other, and the parts that take what each loses.
+    """Return sphere and modes as oscillators that go on apart from each other, and the parts that take what each loses.
 
-    Damping is that of each coupled mode: what it hands from one to another is left out. The parts are (n + 1, n + 1): a row a coupled
-    mode; what each oscillator takes, and, last, the contact.
+    Damping is that of each coupled mode: what it hands from one to another is left out. The parts are (n, n + 1): a row a coupled
+    mode; what each coordinate takes, and, last, the contact.
     """
-    (omega, shapes), of, damping = riding.modes, riding.around.oscillators, riding.contact[1]
+    (omega, shapes), of, damping = riding.modes, riding.system, riding.contact[1]
     if of.rate.size:  # the dashpots of the massless elements follow the force that their springs carry
         damping = (riding.stiffness / riding.contact[0]) ** 2 * damping + riding.stiffness**2 * (of.local_compliance**2 / of.mobility).sum()
-    lost = np.concatenate([shapes[1:] ** 2 * of.damping[:, None], damping * (riding.pull @ shapes)[None] ** 2])
-    whole, nothing = lost.sum(axis=0), np.zeros(0)
-    no = np.zeros(len(omega), dtype=bool)
-    coupled = Oscillators(omega, 0.5 * whole / omega, riding.pull @ shapes, nothing, nothing, no, ~no)
+    lost = np.concatenate([shapes**2 * of.damping[:, None], damping * (riding.pull @ shapes)[None] ** 2])
+    whole = lost.sum(axis=0)
+    coupled = Oscillators(omega, 0.5 * whole / omega, riding.pull @ shapes)
     return coupled, np.where(whole > 0.0, lost / np.where(whole > 0.0, whole, 1.0), 0.0).T

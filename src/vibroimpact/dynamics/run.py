@@ -18,7 +18,7 @@ from vibroimpact.dynamics.energy import CLOSURE_LIMIT, WRITE_OFF_LIMIT, close_le
 from vibroimpact.dynamics.flight import Flight
 from vibroimpact.dynamics.impact_rows import ImpactRows
 from vibroimpact.dynamics.leg import Leg
-from vibroimpact.dynamics.oscillators import FreeMotion
+from vibroimpact.dynamics.linear_system import FreeMotion
 from vibroimpact.dynamics.outcome import OUTCOMES, Outcome
 from vibroimpact.dynamics.problem import MOST_IMPACTS, Problem
 from vibroimpact.dynamics.response import Response
@@ -48,8 +48,8 @@ class Run:
         self.end_time, self.rest_time = np.full(self.size, np.nan), np.full(self.size, np.nan)
         self.sag, self.stored, self.written_off = np.zeros(self.size), np.zeros(self.size), np.zeros(self.size)
         self.rest_speed = self.default_rest_speed() if problem.rest_speed is None else self.spread(problem.rest_speed)
-        self.vibration = Vibration(problem, self.size) if problem.vibrates else None
-        self.neighbours = None if self.vibration is None else Neighbours(problem, self.vibration.oscillators, self.size)
+        self.vibration = Vibration(problem, self.mass, self.gravity) if problem.vibrates else None
+        self.neighbours = None if self.vibration is None else Neighbours(problem, self.mass, self.vibration.system)
         self.columns = {**IMPACT_COLUMNS, **(VIBRATION_IMPACT_COLUMNS if self.vibration else {})}
         self.memories = {name: self.spread(value) for name, value in problem.laws[0].memories().items()}
         self.rows = ImpactRows(self.columns, self.size)
@@ -101,7 +101,7 @@ class Run:
         if self.vibration is None:
             touch, speed = flight.touch(-law.touch_level if isinstance(law, CompliantLaw) else np.zeros(1))
         else:
-            motions = self.vibration.flights(drops, -self.gap[drops], -self.velocity[drops], self.gravity[drops])
+            motions = self.vibration.flights(drops, -self.gap[drops], -self.velocity[drops])
             assert isinstance(law, CompliantLaw)  # the problem has seen to it
             touch = flight.start + np.asarray(self.vibration.touches(motions, law))
         end = np.inf if self.problem.duration is None else self.problem.duration

@@ -18,8 +18,8 @@ import numpy as np
 from vibroimpact.contact.roots import highest
 from vibroimpact.dynamics.apart import Apart
 from vibroimpact.dynamics.collocation import Floats
+from vibroimpact.dynamics.linear_system import FreeMotion, LinearSystem, State
 from vibroimpact.dynamics.local import LocalContact
-from vibroimpact.dynamics.oscillators import FreeMotion, Oscillators, State
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.tangent import difference_through
 from vibroimpact.dynamics.vibrating_stretch import VibratingStretch
@@ -38,10 +38,10 @@ _SLOW = 0.1  # of the speed at which the surfaces meet: what leaves more slowly 
 class Neighbours:
     """Second drops beside those of a run, carried along as it goes."""
 
-    def __init__(self, problem: Problem, oscillators: Oscillators, size: int) -> None:
+    def __init__(self, problem: Problem, mass: Floats, system: LinearSystem) -> None:
         by_height = problem.speed is None
-        changed = np.broadcast_to(np.asarray(problem.height if by_height else problem.speed, dtype=float), (size,))
-        self._drops = [_Neighbour(oscillators, float(value), by_height) for value in changed]
+        changed = np.broadcast_to(np.asarray(problem.height if by_height else problem.speed, dtype=float), mass.shape)
+        self._drops = [_Neighbour(system, value, by_height) for value in (np.sqrt(mass) * changed).tolist()]
 
     def follow(self, leg: Leg) -> Floats:
         r"""Return how a relative change of the drop has grown by the impact of a leg [-], one value a drop of its contact.
@@ -105,10 +105,12 @@ class _Neighbour:
     begins or ends, the second drop is compared when it begins or ends for that one.
     """
 
-    def __init__(self, of: Oscillators, value: float, by_height: bool) -> None:
-        nothing = (np.zeros(len(part)) for part in (of.shape, of.shape, of.rate))
-        centre = (-value, 0.0) if by_height else (0.0, value)  # height is up, approach is down
-        self.difference = State(*map(np.asarray, centre), *nothing)
+    def __init__(self, of: LinearSystem, value: float, by_height: bool) -> None:
+        self.difference = State(np.zeros(of.number), np.zeros(of.number), np.zeros(len(of.rate)))
+        if by_height:
+            self.difference.displacement[0] = -value  # height is up, approach is down
+        else:
+            self.difference.velocity[0] = value
         self.apart = True
         self.last: VibratingStretch | None = None  # which the drops have just left
         self.pressed = 0.0  # difference of the force at its end
@@ -120,20 +122,24 @@ class _Neighbour:
         """Go through free motion, `inside` the indentation or apart."""
         if not inside:
             self.part()
-        self.difference = FreeMotion(motion.oscillators, self.difference, 0.0).state(np.array(length))
+        of, before = motion.system, self.difference
+        cosine, sine = of.transition(np.array(length)).swapaxes(0, 1)
+        place, speed = cosine * before.displacement + sine * before.velocity
+        self.difference = State(place, speed, before.local * np.exp(-of.rate * length))
         self.apart, self.last = not inside, None
 
     def pass_through(self, stretch: VibratingStretch) -> None:
         """Go through a stretch of contact."""
         if self.apart:
             self.touch(stretch)
-        elif stretch.local is not self.local:
+        elif stretch.contacts[0].local is not self.local:
             self.turn(stretch)
-        through = difference_through(stretch, self.difference, _asides(stretch.local, self.knowledge))
-        self.difference, self.pressed, self.last = through.end, float(through.force[-1]), stretch
+        through = difference_through(stretch, self.difference, _asides(stretch.contacts[0].local, self.knowledge))
+        self.difference, self.pressed, self.last = through.end, float(through.force[0, -1]), stretch
         assert self.visit is not None  # it has touched
-        if stretch.force.max() > self.visit.force:
-            self.visit.force, self.visit.strongest = float(stretch.force.max()), (stretch, through.force)
+        force = float(stretch.force.max())
+        if force > self.visit.force:
+            self.visit.force, self.visit.strongest = force, (stretch, through.force[0])
 
     def leave(self, speed: float) -> float:
         """Leave at a speed upwards; return how the change has grown in the visit."""
@@ -142,21 +148,22 @@ class _Neighbour:
         if visit is None or visit.strongest is None:
             return float("nan")
         stretch, pressed = visit.strongest
-        top = np.array([highest(stretch.force_at)])
-        stronger = float(stretch.rule.interpolate(top, pressed)[0]) / float(stretch.force_at(top)[0])
-        slower = float(self.difference.speed) / max(abs(speed), _SLOW * visit.speed)
+        (contact,) = stretch.contacts
+        top = np.array([highest(contact.force_at)])
+        stronger = float(stretch.rule.interpolate(top, pressed)[0]) / float(contact.force_at(top)[0])
+        slower = float(stretch.system.rigid_motion(self.difference)[1][0]) / max(abs(speed), _SLOW * visit.speed)
         return max(abs(visit.closing) / visit.speed, abs(stronger), abs(slower))
 
     def touch(self, stretch: VibratingStretch) -> None:
         """Meet the surface with the stretch that begins there."""
-        of, start, local = stretch.around.oscillators, stretch.start, stretch.local
+        of, start, local = stretch.system, stretch.start, stretch.contacts[0].local
         same_surface = self.local is not None and self.local.law.memories() == local.law.memories()
         self.knowledge = {name: self.knowledge.get(name, 0.0) if same_surface else 0.0 for name in local.law.memories()}
         level = sum(times * (aside.touch_level - local.touch_level) for aside, times in _asides(local, self.knowledge))
-        rate = float(of.rates(start))
-        later = (level - float(of.approach(self.difference))) / rate
-        self.difference = _later(self.difference, _rates(stretch, start, 0.0, 0.0), later)
-        closing = float((of.outer_rates if of.outer_rates(start) >= rate else of.rates)(self.difference))
+        rate = float(of.rates(start)[0])
+        later = (level - float(of.approach(self.difference)[0])) / rate
+        self.difference = _later(self.difference, _rates(of, start, 0.0, 0.0), later)
+        closing = float((of.outer_rates if of.outer_rates(start)[0] >= rate else of.rates)(self.difference)[0])
         self.knowledge["approach_speed"] = closing
         self.local, self.apart = local, False
         self.visit = self.visit or _Visit(local.approach_speed, closing)
@@ -164,52 +171,52 @@ class _Neighbour:
     def part(self) -> None:
         """Compare the drops when their surfaces part, if they do."""
         if self.last is not None:
-            excess = float(self.last.around.oscillators.approach(self.difference))
-            self.synchronise(self.last, excess, float(self.last.closing[-1]))
+            excess = float(self.last.system.approach(self.difference)[0])
+            self.synchronise(self.last, excess, float(self.last.closing()[-1]))
         self.last = None
 
     def turn(self, stretch: VibratingStretch) -> None:
         """Let the law remember how deep the contact has been: the second drop deeper by the difference of the approach."""
         assert self.local is not None  # it is in contact
         assert self.last is not None
-        of, local = stretch.around.oscillators, self.local
-        deepest = max(float(of.approach(stretch.start)), local.release_level)
+        of, local, after = stretch.system, self.local, stretch.contacts[0].local
+        deepest = max(float(of.approach(stretch.start)[0]), local.release_level)
         if self.force_jumps(stretch):
             x = np.array([1.0 - _STEP, 1.0])
-            closing, time = self.last.rule.weights(x).T @ self.last.closing, self.last.length * self.last.rule.map_time(x)
-            faster = float(of.rates(self.difference)) - of.mobility.sum() * self.pressed
+            closing, time = self.last.rule.weights(x).T @ self.last.closing(), self.last.length * self.last.rule.map_time(x)
+            faster = float(of.rates(self.difference)[0]) - of.mobility.sum() * self.pressed
             self.synchronise(self.last, faster, float((closing[1] - closing[0]) / (time[1] - time[0])))
-        now = stretch.local.law.memories()
+        now = after.law.memories()
         step = _STEP * deepest
         found = dict.fromkeys(now, 0.0)
-        beside = [(local.after_compression(deepest + step), float(of.approach(self.difference)) / step)]
+        beside = [(local.after_compression(deepest + step), float(of.approach(self.difference)[0]) / step)]
         beside += [(aside.after_compression(deepest), times) for aside, times in _asides(local, self.knowledge)]
         for aside, times in beside:
             for name, value in aside.law.memories().items():
                 found[name] += times * float(value - now[name])
         self.knowledge.update(found)
-        self.local = stretch.local
+        self.local = after
 
     def force_jumps(self, stretch: VibratingStretch) -> bool:
         """Does the force jump where a stretch follows the last one?"""
         assert self.last is not None
-        before, after = self.last.force[-1], np.add(*stretch.local.own_forces(stretch.delta[:1], stretch.rate[:1]))
-        return bool(abs(float(after[0] - before)) > _JUMP * abs(before))
+        (contact,) = stretch.contacts
+        before, after = float(self.last.force[0, -1]), np.add(*contact.local.own_forces(contact.delta[:1], contact.rate[:1]))
+        return bool(abs(float(after[0]) - before) > _JUMP * abs(before))
 
     def synchronise(self, stretch: VibratingStretch, excess: float, rate: float) -> None:
         """Compare the drops at the end of a stretch, where what ends it exceeds by `excess` in the second drop and grows at a rate."""
-        rates = _rates(stretch, stretch.end, stretch.force[-1], stretch.static[-1])
+        (contact,) = stretch.contacts
+        rates = _rates(stretch.system, stretch.end, float(contact.force[-1]), float(contact.static[-1]))
         self.difference = _later(self.difference, rates, -excess / rate)
 
 
-def _rates(stretch: VibratingStretch, state: State, force: float, static: float) -> State:
-    """Return how a state changes under a force, and its static part [N]."""
-    around, of = stretch.around, stretch.around.oscillators
+def _rates(of: LinearSystem, state: State, force: float, static: float) -> State:
+    """Return how a state changes under a contact force, and its static part [N]."""
+    pushed = of.outer[0] * force + (of.shape[0] - of.outer[0]) * static
     return State(
-        state.speed,
-        np.asarray(around.gravity - force / around.mass),
         state.velocity,
-        -of.damping * state.velocity - of.angular_frequency**2 * state.displacement - of.outer * force - (of.shape - of.outer) * static,
+        of.load - of.damping * state.velocity - of.angular_frequency**2 * state.displacement - pushed,
         -of.rate * state.local - of.mobility * force,
     )
 

@@ -11,8 +11,8 @@ from dataclasses import replace
 
 import numpy as np
 
+from vibroimpact.dynamics.linear_system import State
 from vibroimpact.dynamics.local import LocalContact
-from vibroimpact.dynamics.oscillators import State
 from vibroimpact.dynamics.receptance import NODES, Receptance
 from vibroimpact.dynamics.solve_vibrating import eliminated
 from vibroimpact.dynamics.vibrating_stretch import VibratingStretch
@@ -24,26 +24,26 @@ def difference_through(stretch: VibratingStretch, difference: State, asides: Ite
     Parameters
     ----------
     stretch : VibratingStretch
-        A stretch that was solved.
+        A stretch of one contact that was solved.
     difference : State
         At its start, to first order.
     asides : iterable of (LocalContact, float)
         Contacts whose laws know something a little differently, as the second drop's does, and how many times their change of force counts.
     """
-    around, local = replace(stretch.around, gravity=0.0), stretch.local
-    seen, delta, rates = Receptance(around, stretch.spectrum, stretch.length, difference), stretch.delta[1:], stretch.rate[1:]
-    now = local.linearised(delta, rates)
-    inward, taken, push, jacobian = eliminated(now, seen)
-    missing, changed, known = seen.approach, now.dissipative_by_rate * seen.rate, np.zeros(NODES)
+    (contact,) = stretch.contacts
+    seen, delta, rates = stretch.seen.without_load, contact.delta[1:], contact.rate[1:]
+    here, now = Receptance(seen, stretch.spectrum, stretch.length, difference), contact.local.linearised(delta, rates)
+    left = eliminated(now, here)
+    missing, changed, known = here.approach[0], now.dissipative_by_rate * here.rate[0], np.zeros(NODES)
     for aside, times in asides:
         other = aside.linearised(delta, rates)
         static = times * (other.static - now.static)
-        missing = missing - times * (other.approach - now.approach) - seen.by_static @ static
+        missing = missing - times * (other.approach - now.approach) - here.by_static @ static
         changed = changed + static + times * (other.dissipative - now.dissipative)
         known = known + static
     try:
-        force = np.linalg.solve(jacobian, changed + push * (inward @ missing))
+        force = np.linalg.solve(left.jacobian, changed + left.push * (left.inward @ missing))
     except np.linalg.LinAlgError:
         force = np.full(NODES, np.nan)
-    static = known + now.stiffness * (inward @ missing - taken @ force)
-    return replace(stretch, around=around, start=difference, static=static, dissipative=force - static)
+    static = known + now.stiffness * (left.inward @ missing - left.taken @ force)
+    return replace(stretch, seen=seen, start=difference, contacts=(replace(contact, static=static, dissipative=force - static),))

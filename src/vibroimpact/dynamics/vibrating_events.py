@@ -1,4 +1,4 @@
-"""What may end a stretch of contact of bodies that vibrate: they part, the law stops pushing, its force has a kink, or they turn."""
+"""What may end a stretch of contact: surfaces part, a law stops pushing, its force has a kink, or an approach turns."""
 
 from __future__ import annotations
 
@@ -27,28 +27,34 @@ class Event:
 
 
 def first_event(stretch: VibratingStretch, speed: float, span: float) -> Event | None:
-    """Return the first event in a stretch of a contact of about a speed [m/s] and a duration [s]."""
-    local, law, least = stretch.local, stretch.local.law, stretch.local.least
+    """Return the first event in a stretch of contacts of about a speed [m/s] and a duration [s]."""
     weights = stretch.rule.weights(GRID).T
-    delta, rate = weights @ stretch.delta, weights @ stretch.rate
+    found = (event for place in range(len(stretch.contacts)) for event in _events(stretch, place, weights, speed, span))
+    return min(found, key=lambda event: event.x, default=None)
+
+
+def _events(stretch: VibratingStretch, place: int, weights: Floats, speed: float, span: float) -> list[Event]:
+    """Return the events of one contact, the first of each kind."""
+    contact = stretch.contacts[place]
+    local, law, least = contact.local, contact.local.law, contact.local.least
+    delta, rate = weights @ contact.delta, weights @ contact.rate
     # of each: what falls below zero there, and where it has
     events: list[tuple[Aim, Floats, NDArray[np.bool_]]] = []
     above = delta - least
-    events.append((Aim("parted", least), above, above < -ROUNDING * above.max()))
+    events.append((Aim("parted", least, place), above, above < -ROUNDING * above.max()))
     if law.tension != "kept":  # what recoils fast enough makes the others pull as well
         force = np.add(*local.own_forces(delta, rate))
-        slack = 1e-11 * (np.abs(stretch.force).max() + stretch.around.mass * speed / span)
-        events.append((Aim("no push"), force, force < -slack))
+        slack = 1e-11 * (np.abs(contact.force).max() + stretch.system.mass[contact.number] * speed / span)
+        events.append((Aim("no push", 0.0, place), force, force < -slack))
     for level in (float(part) for part in law.breakpoints):
         beyond = delta - level
         on_it = abs(beyond[0]) <= ROUNDING * max(abs(level), float(np.ptp(delta)))
         beyond = beyond * np.sign(beyond[1] if on_it else beyond[0])
-        events.append((Aim("breakpoint", level), beyond, beyond < 0.0))
+        events.append((Aim("breakpoint", level, place), beyond, beyond < 0.0))
     if local.learns(float(delta.max())):
-        closing = weights @ stretch.closing
-        events.append((Aim("turn"), closing, (closing < 0.0) & (np.maximum.accumulate(closing) > _STILL * speed)))
-    seen = [Event(aim, _crossing(values, there)) for aim, values, there in events if there[1:].any()]
-    return min(seen, key=lambda event: event.x, default=None)
+        closing = weights @ stretch.closing(place)
+        events.append((Aim("turn", 0.0, place), closing, (closing < 0.0) & (np.maximum.accumulate(closing) > _STILL * speed)))
+    return [Event(aim, _crossing(values, there)) for aim, values, there in events if there[1:].any()]
 
 
 def _crossing(values: Floats, there: NDArray[np.bool_]) -> float:

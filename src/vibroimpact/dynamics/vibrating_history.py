@@ -7,44 +7,45 @@ import numpy as np
 from vibroimpact.bodies.body import Body
 from vibroimpact.dynamics.apart import Apart
 from vibroimpact.dynamics.collocation import Floats
+from vibroimpact.dynamics.linear_system import LinearSystem, State
 from vibroimpact.dynamics.local import LocalContact
 from vibroimpact.dynamics.lying import Lying
-from vibroimpact.dynamics.oscillators import Oscillators, State
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.vibrating_segment import VibratingSegment
 from vibroimpact.dynamics.vibrating_stretch import VibratingStretch
-from vibroimpact.dynamics.vibration import modes_of
+from vibroimpact.dynamics.vibration import centre_of, slices_of
 
 
 def vibrating_history(problem: Problem, segment: VibratingSegment, time: Floats) -> dict[str, Floats]:
     """Return all columns at times since the start of a segment [s] (T,)."""
-    of, motion = segment.oscillators, segment.motion
+    of, motion = segment.system, segment.motion
     state, same = segment.state(time), np.ones_like(time)
     mass, gravity = float(problem.sphere.mass), float(problem.gravity)
     stored, plastic, force, lost = of.local_energy(state), 0.0 * same, 0.0 * same, segment.spent[:-1]
     if isinstance(motion, VibratingStretch):
-        force = motion.force_at(motion.rule.unmap_time(time / motion.length))
+        force = motion.contacts[0].force_at(motion.rule.unmap_time(time / motion.length))
         lost = lost + motion.lost_by(time)
         motion.forget()
     elif isinstance(motion, Lying):
         force, lost, stored = motion.force(time), lost + motion.lost_by(time), stored + motion.stored(time)
     else:
         lost = lost + motion.lost_at(state)
-    local = motion.local if isinstance(motion, (VibratingStretch, Apart)) else None
+    local = motion.local if isinstance(motion, Apart) else motion.contacts[0].local if isinstance(motion, VibratingStretch) else None
     if local is not None:
         held, plastic = _held(local, of, state)
         stored = stored + held
         if isinstance(motion, VibratingStretch):
-            plastic = plastic - local.plastic_work(max(float(motion.approach[0]), local.release_level))
+            plastic = plastic - local.plastic_work(max(float(motion.contacts[0].approach[0]), local.release_level))
+    depth, sinking = centre_of(state, mass)
     return {
         "time_s": segment.start + time,
-        "position_m": float(problem.sphere.contact_offset) - state.approach,
-        "velocity_m_s": -state.speed * same,
+        "position_m": float(problem.sphere.contact_offset) - depth,
+        "velocity_m_s": -sinking,
         "acceleration_m_s2": force / mass - gravity,
         "force_N": force,
-        "indentation_m": np.maximum(of.indentation(state), 0.0) if segment.in_contact else 0.0 * same,
-        "kinetic_J": 0.5 * mass * state.speed**2 * same,
-        "potential_J": -mass * gravity * state.approach * same,
+        "indentation_m": np.maximum(state.displacement @ of.of_bodies[0], 0.0) if segment.in_contact else 0.0 * same,
+        "kinetic_J": 0.5 * mass * sinking**2,
+        "potential_J": -mass * gravity * depth,
         "contact_elastic_J": stored,
         "contact_dissipated_J": lost[:, -1].copy(),  # else the history of every mode stays in memory
         "plastic_work_J": segment.spent[-1] + plastic,
@@ -53,34 +54,37 @@ def vibrating_history(problem: Problem, segment: VibratingSegment, time: Floats)
     }
 
 
-def _held(local: LocalContact, of: Oscillators, state: State) -> tuple[Floats, Floats]:
+def _held(local: LocalContact, of: LinearSystem, state: State) -> tuple[Floats, Floats]:
     """Return what the contact holds, and its plastic work since what the law remembers [J]."""
-    approach = np.maximum(of.approach(state), local.release_level)
+    approach = np.maximum(of.approach(state)[:, 0], local.release_level)
     plastic = local.plastic_work(approach) if local.law.yields else np.zeros_like(approach)
     return np.asarray(local.elastic_energy(approach)), np.asarray(plastic)
 
 
-def _of_bodies(problem: Problem, of: Oscillators, state: State, lost: Floats, force: Floats) -> dict[str, Floats]:
+def _of_bodies(problem: Problem, of: LinearSystem, state: State, lost: Floats, force: Floats) -> dict[str, Floats]:
     """Return the columns that only bodies that vibrate have."""
-    at, plate, gravity = modes_of(problem.sphere), problem.plate.modes, float(problem.gravity)
+    sphere, on_plate = slices_of(problem)
+    plate, gravity = problem.plate.modes, float(problem.gravity)
     kinetic, strain = of.energies(state)
-    displacement, velocity, acceleration = (part[:, at:] for part in (state.displacement, state.velocity, of.accelerations(state, force)))
+    displacement, velocity, acceleration = (
+        part[:, on_plate] for part in (state.displacement, state.velocity, of.accelerations(state, force[:, None]))
+    )
     whole = plate.participation[:, 2] if plate is not None else np.zeros(displacement.shape[1])
     mass = plate.mass if plate is not None else np.inf
     return {
-        "sphere_vibration_J": kinetic[:, :at].sum(axis=1),
-        "sphere_strain_J": strain[:, :at].sum(axis=1),
-        "sphere_damping_J": lost[:, :at].sum(axis=1),
-        "sphere_rotational_J": _rotational(problem.sphere, state.velocity[:, :at]),
-        "plate_kinetic_J": kinetic[:, at:].sum(axis=1),
-        "plate_strain_J": strain[:, at:].sum(axis=1),
-        "plate_damping_J": lost[:, at:-1].sum(axis=1),
+        "sphere_vibration_J": kinetic[:, sphere].sum(axis=1),
+        "sphere_strain_J": strain[:, sphere].sum(axis=1),
+        "sphere_damping_J": lost[:, sphere].sum(axis=1),
+        "sphere_rotational_J": _rotational(problem.sphere, state.velocity[:, sphere]),
+        "plate_kinetic_J": kinetic[:, on_plate].sum(axis=1),
+        "plate_strain_J": strain[:, on_plate].sum(axis=1),
+        "plate_damping_J": lost[:, on_plate].sum(axis=1),
         "plate_rotational_J": _rotational(problem.plate, velocity),
         "plate_potential_J": gravity * (displacement @ whole),
         "plate_displacement_m": displacement @ whole / mass,
         "plate_velocity_m_s": velocity @ whole / mass,
         "plate_acceleration_m_s2": acceleration @ whole / mass,
-        "plate_deflection_m": displacement @ of.shape[at:],
+        "plate_deflection_m": displacement @ of.shape[0, on_plate],
     }
 
 

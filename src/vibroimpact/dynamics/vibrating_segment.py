@@ -10,8 +10,8 @@ import numpy as np
 
 from vibroimpact.dynamics.apart import Apart
 from vibroimpact.dynamics.collocation import Floats
+from vibroimpact.dynamics.linear_system import FreeMotion, LinearSystem, State
 from vibroimpact.dynamics.lying import Lying
-from vibroimpact.dynamics.oscillators import FreeMotion, Oscillators, State
 from vibroimpact.dynamics.vibrating_stretch import VibratingStretch
 
 if TYPE_CHECKING:
@@ -26,7 +26,7 @@ _FREE_POINTS, _LATER_POINTS, _PERIODS = 2001, 1001, 10.0
 class VibratingSegment:
     """A part of the history of one drop: a flight, a stretch of contact, a gap between two, or rest.
 
-    `start`, `end` [s]. `spent`: energy lost before [J], (n + 2,): in each oscillator, in the contact, in plastic deformation.
+    `start`, `end` [s]. `spent`: energy lost before [J], (n + 2,): in each coordinate, in the contact, in plastic deformation.
     """
 
     start: float
@@ -40,12 +40,10 @@ class VibratingSegment:
         return self.motion.free if isinstance(self.motion, Apart) else self.motion
 
     @property
-    def oscillators(self) -> Oscillators:
-        """What vibrates."""
+    def system(self) -> LinearSystem:
+        """What moves."""
         moving = self.moving
-        if isinstance(moving, FreeMotion):
-            return moving.oscillators
-        return (moving.riding if isinstance(moving, Lying) else moving).around.oscillators
+        return (moving.riding if isinstance(moving, Lying) else moving).system
 
     @property
     def in_contact(self) -> bool:
@@ -59,7 +57,7 @@ class VibratingSegment:
             return np.asarray(span * self.motion.rule.map_time(np.linspace(0.0, 1.0, _STRETCH_POINTS)))
         if isinstance(self.motion, Apart):
             return np.linspace(0.0, span, _GAP_POINTS)
-        lowest = float(self.oscillators.angular_frequency.min(initial=np.inf))
+        lowest = float(self.system.angular_frequency[self.system.vibrating].min(initial=np.inf))
         early = min(span, _PERIODS * 2.0 * np.pi / lowest) if np.isfinite(lowest) else 0.0
         return np.concatenate([np.linspace(0.0, early, _FREE_POINTS)[:-1], np.linspace(early, span, _LATER_POINTS)])
 
@@ -67,10 +65,11 @@ class VibratingSegment:
     def spent_after(self) -> Floats:
         """Energy lost by its end [J], as in `spent`."""
         if isinstance(self.motion, VibratingStretch):
-            stretch = self.motion
-            before, now = np.maximum(stretch.approach[[0, -1]], stretch.local.release_level)
-            plastic = float(stretch.local.plastic_work(now) - stretch.local.plastic_work(before)) if stretch.local.law.yields else 0.0
-            return np.asarray(self.spent + np.append(stretch.lost, plastic))
+            (contact,), lost = self.motion.contacts, self.motion.lost
+            local = contact.local
+            before, now = np.maximum(contact.approach[[0, -1]], local.release_level)
+            plastic = float(local.plastic_work(now) - local.plastic_work(before)) if local.law.yields else 0.0
+            return np.asarray(self.spent + np.append(lost, plastic))
         return np.asarray(self.spent + np.append(self.motion.lost_by(np.array([self.end - self.start]))[0], 0.0))
 
     def state(self, time: Floats) -> State:
@@ -91,7 +90,7 @@ def vibrating_timeline(legs: Sequence[Leg], lying: Lying | None, end: float) -> 
         When the run ends [s].
     """
     segments: list[VibratingSegment] = []
-    spent = np.zeros(len(legs[0].motions[0].oscillators.shape) + 2)
+    spent = np.zeros(legs[0].motions[0].system.number + 2)
     for leg in legs:
         touch = float(leg.flight_end[0])
         segments.append(VibratingSegment(float(leg.flight.start[0]), touch, leg.motions[0], spent))

@@ -1,4 +1,4 @@
-"""A stretch of contact of bodies that vibrate, as it was solved on the nodes of Radau collocation: its motion, its force, what it takes."""
+"""A stretch of contact as it was solved on the nodes of Radau collocation: its motion, its forces, what it takes."""
 
 from __future__ import annotations
 
@@ -9,40 +9,32 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vibroimpact.dynamics.collocation import Floats, Rule
-from vibroimpact.dynamics.local import LocalContact
-from vibroimpact.dynamics.oscillators import State
-from vibroimpact.dynamics.receptance import Spectrum, Surroundings, impedance_of, own_drive
+from vibroimpact.dynamics.contact_history import ContactHistory
+from vibroimpact.dynamics.linear_system import LinearSystem, State
+from vibroimpact.dynamics.receptance import Seen, Spectrum, impedance_of, own_drive
 
-_ROUNDING = 2e-14  # of the energy of the oscillators, which may be much more than that of a soft touch
+_ROUNDING = 2e-14  # of the energy of the modes, which may be much more than that of a soft touch
 
 
 @dataclass(frozen=True)
 class VibratingStretch:
-    """A solved stretch of one drop.
+    """A solved stretch of one system.
 
-    `length`: how long it lasts [s]. `start`: the state then. `static`, `dissipative`: parts of the force at the nodes [N].
-    `approach`, `rate`: of the surfaces [m], and what the dashpot of the law feels [m/s], at its start and at the nodes
-    (N + 1,). `delta`: the law's own indentation there [m]. `solved`: whether Newton's method converged. `broken`: what is lost at
-    its end, as a sticking contact breaks [J].
+    `seen`: the system, as the contacts that push see it. `length`: how long it lasts [s]. `start`: the state then. `contacts`: what
+    those that push do. `solved`: whether Newton's method converged.
     """
 
-    around: Surroundings
-    local: LocalContact
+    seen: Seen
     spectrum: Spectrum
     length: float
     start: State
-    static: Floats
-    dissipative: Floats
-    approach: Floats
-    rate: Floats
-    delta: Floats
+    contacts: tuple[ContactHistory, ...]
     solved: bool
-    broken: float = 0.0
 
     @property
-    def force(self) -> Floats:
-        """The force at the nodes [N]."""
-        return self.static + self.dissipative
+    def system(self) -> LinearSystem:
+        """What moves."""
+        return self.seen.system
 
     @property
     def duration(self) -> Floats:
@@ -59,38 +51,45 @@ class VibratingStretch:
         return self.spectrum.rule
 
     @cached_property
+    def force(self) -> Floats:
+        """The forces at the nodes [N] (c, N)."""
+        return np.stack([contact.force for contact in self.contacts])
+
+    @cached_property
     def accelerations(self) -> tuple[Floats, Floats]:
-        """Accelerations of the oscillators (N, n), and rates of the massless elements (N, k), at the nodes."""
-        of, at, sigma = self.around.oscillators, self.spectrum, self.length * self.spectrum.values
-        force, static = ((at.inverse @ part)[:, None] for part in (self.force, self.static))
-        drive = own_drive(of, at, self.length, self.start) - of.outer * force - (of.shape - of.outer) * static
-        oscillators = at.vectors @ (drive / impedance_of(of, sigma))
-        massless = -of.mobility * force - at.constant[:, None] * (of.rate * self.start.local)
-        return np.asarray(oscillators.real), np.asarray((at.vectors @ (massless / (1.0 + of.rate * sigma[:, None]))).real)
+        """Accelerations of the coordinates (N, n), and rates of the massless elements (N, k), at the nodes."""
+        seen, at, sigma = self.seen, self.spectrum, self.length * self.spectrum.values
+        of, force, static = seen.system, self.force.T, np.stack([contact.static for contact in self.contacts]).T
+        found = of.load - force @ seen.whole_outer  # of rigid motions
+        pushed = at.inverse @ force
+        if len(seen.outer):
+            drive = own_drive(seen, at, self.length, self.start) - pushed @ seen.outer.T - (at.inverse @ static) @ seen.inner.T
+            found[:, seen.modes] = (at.vectors @ (drive / impedance_of(seen, sigma))).real
+        if not seen.local:
+            return found, np.zeros((len(sigma), 0))
+        massless = -pushed @ seen.local_mobility.T - at.constant[:, None] * (of.rate * self.start.local)
+        return found, np.asarray((at.vectors @ (massless / (1.0 + of.rate * sigma[:, None]))).real)
 
     @cached_property
     def velocities(self) -> Floats:
-        """Velocities of the oscillators at the nodes (N, n)."""
+        """Velocities of the coordinates at the nodes (N, n)."""
         return np.asarray(self.start.velocity + self.length * (self.rule.integral @ self.accelerations[0]))
 
-    @property
-    def closing(self) -> Floats:
-        """Rate of the approach of the surfaces, the oscillators inside the contact included, at the start and the nodes (N + 1,)."""
-        of = self.around.oscillators
-        if not of.inside.any():
-            return self.rate
-        return self.rate + np.concatenate([self.start.velocity[None], self.velocities]) @ (of.shape - of.outer)
+    def closing(self, contact: int = 0) -> Floats:
+        """Return the rate of the approach of the surfaces, coordinates inside the contact included, at the start and the nodes (N + 1,)."""
+        rate, inner = self.contacts[contact].rate, self.seen.whole_inner[contact]
+        if not inner.any():
+            return rate
+        return np.asarray(rate + np.concatenate([self.start.velocity[None], self.velocities]) @ inner)
 
     def state(self, time: Floats) -> State:
         """Return the state at times since the start [s] (T,)."""
-        start, h, across, gravity = self.start, self.length, np.asarray(time), self.around.gravity
+        start, h, across, load = self.start, self.length, np.asarray(time)[:, None], self.system.load
         integral, (accelerations, massless) = h * self.rule.integral_to(self._x(time)), self.accelerations
-        pull = -self.force / self.around.mass
+        driven = accelerations - load  # whose share is in closed form
         return State(
-            start.approach + across * (start.speed + 0.5 * gravity * across) + integral @ (h * (self.rule.integral @ pull)),
-            start.speed + gravity * across + integral @ pull,
-            start.displacement + integral @ self.velocities,
-            start.velocity + integral @ accelerations,
+            start.displacement + across * (start.velocity + 0.5 * across * load) + integral @ (h * (self.rule.integral @ driven)),
+            start.velocity + across * load + integral @ driven,
             start.local + integral @ massless,
         )
 
@@ -98,52 +97,34 @@ class VibratingStretch:
     def end(self) -> State:
         """The state at the end."""
         start, h, last = self.start, self.length, self.rule.integral[-1]
-        gained, (_, massless) = self.rule.integral @ self.force, self.accelerations
-        gravity, mass = self.around.gravity, self.around.mass
         return State(
-            start.approach + h * (start.speed + 0.5 * gravity * h) - h * h * (last @ gained) / mass,
-            start.speed + gravity * h - h * gained[-1] / mass,
-            start.displacement + h * (last @ self.velocities),
-            self.velocities[-1],
-            start.local + h * (last @ massless),
+            start.displacement + h * (last @ self.velocities), self.velocities[-1], start.local + h * (last @ self.accelerations[1])
         )
 
-    def law_force_at(self, x: Floats) -> Floats:
-        """Return the force that the law gives [N] at x in [0, 1], before any clip."""
-        weights = self.rule.weights(np.asarray(x, dtype=float)).T
-        static, dissipative = self.local.own_forces(weights @ self.delta, weights @ self.rate)
-        return np.asarray(static + dissipative)
-
-    def force_at(self, x: Floats) -> Floats:
-        """Return the contact force, clipped where the law may not pull [N], at x in [0, 1]."""
-        force = self.law_force_at(x)
-        return force if self.local.law.tension == "kept" else np.maximum(force, 0.0)
-
     def indentation_at(self, x: Floats) -> Floats:
-        """Return the approach of the sphere's centre to the surface of the body below [m] at x in [0, 1]."""
+        """Return how far the centre above has come to the surface below at the first contact [m], at x in [0, 1]."""
         return np.asarray(self.rule.weights(np.asarray(x, dtype=float)).T @ self._indentations)
 
     @cached_property
     def _indentations(self) -> Floats:
         """The same at the start and at the nodes, (N + 1,)."""
-        of, start, h, rule = self.around.oscillators, self.start, self.length, self.rule
-        velocity = start.speed - h / self.around.mass * (rule.integral @ self.force) + self.velocities @ of.below
-        gravity = 0.5 * self.around.gravity * (h * rule.time) ** 2
-        begun = float(of.indentation(start))
-        return np.append(begun, begun + h * (rule.integral @ velocity) + gravity)
+        shape = self.system.of_bodies[self.contacts[0].number]
+        begun = float(self.start.displacement @ shape)
+        return np.append(begun, begun + self.length * (self.rule.integral @ (self.velocities @ shape)))
 
     @cached_property
     def powers(self) -> Floats:
-        """What is lost at the nodes [W], (N, n + 1): in each oscillator; last, in the law and the massless elements."""
-        of = self.around.oscillators
-        contact = self.dissipative * self.rate[1:] + (self.accelerations[1] ** 2 / of.mobility).sum(axis=1)
-        return np.concatenate([of.damping * self.velocities**2, contact[:, None]], axis=1)
+        """What is lost at the nodes [W], (N, n + 1): in each coordinate; last, in the laws and the massless elements."""
+        of = self.system
+        in_laws = sum(contact.dissipative * contact.rate[1:] for contact in self.contacts)
+        lost = in_laws + (self.accelerations[1] ** 2 / of.mobility).sum(axis=1)
+        return np.concatenate([of.damping * self.velocities**2, lost[:, None]], axis=1)
 
     @cached_property
     def lost(self) -> Floats:
         """What is lost over the stretch, with what is at its end [J], (n + 1,) as in `powers`."""
         lost = self.length * (self.rule.integral[-1] @ self.powers)
-        lost[-1] += self.broken
+        lost[-1] += sum(contact.broken for contact in self.contacts)
         return np.asarray(lost)
 
     def lost_by(self, time: Floats) -> Floats:
@@ -151,8 +132,8 @@ class VibratingStretch:
         return np.asarray(self.length * self.rule.integrate(self._x(time), self.powers))
 
     def forget(self) -> None:
-        """Let go of the motion of the oscillators at the nodes, which is found again when it is asked for."""
-        for name in ("accelerations", "velocities", "powers", "_indentations"):
+        """Let go of the motion of the coordinates at the nodes, which is found again when it is asked for."""
+        for name in ("accelerations", "velocities", "powers", "_indentations", "force"):
             self.__dict__.pop(name, None)
 
     def _x(self, time: Floats) -> Floats:
@@ -160,26 +141,18 @@ class VibratingStretch:
 
     @property
     def roughness(self) -> float:
-        """The last Legendre coefficients of the force, beside what matters: with the square of it the error at the end goes."""
-        force = self.around.mass * np.abs(self.rate).max() / self.length
-        return float(self.rule.tail(self.force[:, None], np.array([force]))[0])
+        """The last Legendre coefficients of the forces, beside what matters: with the square of it the error at the end goes."""
+        rates = np.array([np.abs(contact.rate).max() for contact in self.contacts])
+        return float(self.rule.tail(self.force.T, self.system.mass[self.seen.contacts] * rates / self.length).max())
 
-    def resolved(self, tolerance: float, speed: float) -> bool:
-        """Is it solved, and its error within a relative tolerance, for motions of about a speed [m/s]?
+    def resolved(self, tolerance: float, energy: float) -> bool:
+        """Is it solved, and its error within a relative tolerance, for motions of about an energy [J]?
 
-        Two measures that know nothing of each other: the roughness of the force, and the balance of energy.
+        Two measures that know nothing of each other: the roughness of the forces, and the balance of energy.
         """
         if not (self.solved and self.roughness**2 <= 0.1 * tolerance):
             return False
-        lost = float(self.lost.sum())
-        begun, done = self.local.own_work(self.delta[[0, -1]])
-        gain = mechanical_energy(self.around, self.end) + done - mechanical_energy(self.around, self.start) - begun
-        rounding = _ROUNDING * float(sum(part.sum() for part in self.around.oscillators.energies(self.start)))
-        return bool(abs(gain + lost) <= 0.03 * tolerance * self.around.mass * speed**2 + rounding)
-
-
-def mechanical_energy(around: Surroundings, state: State) -> float:
-    """Return kinetic, potential and strain energy [J] of a state, without what the contact law holds."""
-    of = around.oscillators
-    sphere = around.mass * (0.5 * state.speed**2 - around.gravity * state.approach)
-    return float(sphere + sum(part.sum() for part in of.energies(state)) + of.local_energy(state))
+        of = self.system
+        gain = of.mechanical_energy(self.end) - of.mechanical_energy(self.start) + sum(contact.work for contact in self.contacts)
+        strained = float(sum(part[of.vibrating].sum() for part in of.energies(self.start)))
+        return bool(abs(gain + self.lost.sum()) <= 0.06 * tolerance * energy + _ROUNDING * strained)

@@ -10,33 +10,52 @@ from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.dynamics.collocation import Floats
 from vibroimpact.dynamics.contact import CAPTURED, RIDING, SETTLED, Contact, Drops, Piece
 from vibroimpact.dynamics.encounter import Encounter
+from vibroimpact.dynamics.linear_system import FreeMotion, LinearSystem, State
 from vibroimpact.dynamics.lying import Lying, lay_down
 from vibroimpact.dynamics.next_touch import next_touch
-from vibroimpact.dynamics.oscillators import FreeMotion, Oscillators, State
 from vibroimpact.dynamics.problem import Problem
-from vibroimpact.dynamics.receptance import Surroundings
+from vibroimpact.dynamics.receptance import Seen
 from vibroimpact.dynamics.riding import Riding
 from vibroimpact.dynamics.visit import Visit, visit
 
 
-def oscillators_of(problem: Problem) -> Oscillators:
-    """Return what vibrates in a problem: the modes of the sphere, then those of the plate; and the local element."""
-    bodies = [(body.modes, sign) for body, sign in ((problem.sphere, -1.0), (problem.plate, 1.0)) if body.modes is not None]
+def system_of(problem: Problem, mass: float, gravity: float) -> LinearSystem:
+    """Return the system of a drop: the fall of the sphere, its modes, then those of the plate; and the local element.
 
-    def of_all(parts: list[Floats]) -> Floats:
-        return np.concatenate([np.zeros(0), *parts])
-
+    Parameters
+    ----------
+    problem : Problem
+        What is simulated.
+    mass, gravity : float
+        Of this drop [kg, m/s^2].
+    """
+    sphere, plate = (body.modes for body in (problem.sphere, problem.plate))
+    parts = [(np.zeros(1), np.zeros(1), np.array([mass**-0.5]))]
+    parts += [
+        (modes.angular_frequencies, modes.damping_ratios, sign * modes.contact) for modes, sign in ((sphere, -1.0), (plate, 1.0)) if modes
+    ]
+    frequency, damping, shape = (np.concatenate(part) for part in zip(*parts, strict=True))
+    of_sphere, of_plate = slices_of(problem)
+    load, inside, ground = np.zeros(len(shape)), np.zeros(len(shape), dtype=bool), np.zeros(len(shape), dtype=bool)
+    load[0], inside[of_sphere], ground[of_plate] = gravity * mass**0.5, problem.sphere_inside, True
     local = [problem.local_element] if problem.local_element else []
-    of_sphere = np.arange(sum(len(modes.frequencies) for modes, _ in bodies)) < modes_of(problem.sphere)
-    return Oscillators(
-        of_all([modes.angular_frequencies for modes, _ in bodies]),
-        of_all([modes.damping_ratios for modes, _ in bodies]),
-        of_all([sign * modes.contact for modes, sign in bodies]),
-        np.array([stiffness / damping for stiffness, damping in local]),
-        np.array([1.0 / damping for _, damping in local]),
-        of_sphere & problem.sphere_inside,
-        ~of_sphere,
+    rate = np.array([stiffness / damping for stiffness, damping in local])
+    mobility = np.array([1.0 / damping for _, damping in local])
+    return LinearSystem(
+        frequency, damping, shape[None], np.zeros(1), load, inside, ground, rate, mobility, np.zeros(len(local), dtype=np.intp)
     )
+
+
+def slices_of(problem: Problem) -> tuple[slice, slice]:
+    """Return where the modes of the sphere, and of the plate, are among the coordinates of a drop; before them is its fall."""
+    first = 1 + modes_of(problem.sphere)
+    return slice(1, first), slice(first, first + modes_of(problem.plate))
+
+
+def centre_of(state: State, mass: Floats | float) -> tuple[Floats, Floats]:
+    """Return how far down the centre of the sphere of a drop is from where it touches [m], and how fast it comes down [m/s]."""
+    root = np.sqrt(mass)
+    return np.asarray(state.displacement[..., 0] / root), np.asarray(state.velocity[..., 0] / root)
 
 
 def modes_of(body: Body) -> int:
@@ -45,33 +64,38 @@ def modes_of(body: Body) -> int:
 
 
 class Vibration:
-    """The oscillators of B drops that share their bodies' modes.
+    """The systems of B drops that share their bodies' modes.
 
     `lying`: how those lie that have come to rest. `left`: what those that rest or ride, and what carries them, hold above their
     equilibrium [J] (B,), NaN for the others.
     """
 
-    def __init__(self, problem: Problem, size: int) -> None:
-        self.problem, self.oscillators = problem, oscillators_of(problem)
-        self.first_of_plate = modes_of(problem.sphere)
-        count, massless = len(self.oscillators.shape), len(self.oscillators.rate)
-        self.displacement, self.velocity = np.zeros((size, count)), np.zeros((size, count))
-        self.local = np.zeros((size, massless))
-        self.lost = np.zeros((size, count + 1))
+    def __init__(self, problem: Problem, mass: Floats, gravity: Floats) -> None:
+        self.problem, self.mass, size = problem, mass, len(mass)
+        alike: dict[tuple[float, float], Seen] = {}
+        for pair in zip(mass.tolist(), gravity.tolist(), strict=True):
+            if pair not in alike:
+                alike[pair] = Seen(system_of(problem, *pair), [0])
+        self.seen = [alike[pair] for pair in zip(mass.tolist(), gravity.tolist(), strict=True)]
+        self.system = self.seen[0].system
+        self.displacement, self.velocity = np.zeros((size, self.system.number)), np.zeros((size, self.system.number))
+        self.local = np.zeros((size, len(self.system.rate)))
+        self.lost = np.zeros((size, self.system.number + 1))
         self.lying: list[Lying | None] = [None] * size
         self.left = np.full(size, np.nan)
 
-    def flights(self, drops: Drops, approach: Floats, speed: Floats, gravity: Floats) -> tuple[FreeMotion, ...]:
+    def flights(self, drops: Drops, approach: Floats, speed: Floats) -> tuple[FreeMotion, ...]:
         """Return the free motions of drops: approach [m] and speed [m/s] are their centres', downwards."""
         return tuple(
-            FreeMotion(self.oscillators, self.state(drop, *centre), float(down))
-            for drop, down, *centre in zip(drops, gravity, approach, speed, strict=True)
+            FreeMotion(self.seen[drop].system, self.state(drop, *centre)) for drop, *centre in zip(drops, approach, speed, strict=True)
         )
 
     def state(self, drop: int, approach: float, speed: float) -> State:
         """Return the state of a drop."""
-        parts = (part[drop].copy() for part in (self.displacement, self.velocity, self.local))  # which go on changing
-        return State(np.asarray(approach), np.asarray(speed), *parts)
+        state = State(*(part[drop].copy() for part in (self.displacement, self.velocity, self.local)))  # which go on changing
+        root = self.mass[drop] ** 0.5
+        state.displacement[0], state.velocity[0] = root * approach, root * speed
+        return state
 
     def touches(self, motions: tuple[FreeMotion, ...], law: CompliantLaw) -> Floats:
         """Return when free drops next touch [s since their start]; the law is theirs."""
@@ -90,8 +114,9 @@ class Vibration:
 
     def closing_speed(self, drops: Drops, speed: Floats) -> Floats:
         """Return the speed at which the surfaces approach each other [m/s], where the centres come down at `speed`."""
-        state = State(np.zeros(len(drops)), speed, self.displacement[drops], self.velocity[drops], self.local[drops])
-        return self.oscillators.outer_rates(state)
+        return np.array(
+            [float(self.seen[drop].system.outer_rates(self.state(drop, 0.0, down))[0]) for drop, down in zip(drops, speed, strict=True)]
+        )
 
     def visit(
         self,
@@ -110,20 +135,20 @@ class Vibration:
         visits = []
         for number, drop in enumerate(drops):
             one = encounter.pick(np.array([number]))
-            around = Surroundings(float(one.mass[0]), float(one.gravity[0]), self.oscillators)
+            seen = self.seen[drop]
             pace = 3.0 * float(one.depth[0] / one.speed_scale[0])
             start = self.state(drop, approach[number], speed[number])
             problem = self.problem
             limits = (float(rest_speed[number]), float(until[number]))
-            found = visit(around, one.law.take(0), problem.quasi_static, start, problem.tolerance, pace, not problem.same_spot, *limits)
-            before, after = (float(np.sum(self.oscillators.energies(state))) for state in (start, found.state))
+            found = visit(seen, one.law.take(0), problem.quasi_static, start, problem.tolerance, pace, not problem.same_spot, *limits)
+            before, after = (float(np.sum(seen.system.energies(state), axis=0)[1:].sum()) for state in (start, found.state))
             row["closing_speed_m_s"][drop], row["contacts"][drop] = one.approach_speed[0], found.contacts
             row["energy_to_vibration_J"][drop] = after - before + found.lost[:-1].sum()
             self.lost[drop, :-1] += found.lost[:-1]
             self.place(drop, found.state)
             if found.outcome in (CAPTURED, SETTLED, RIDING):
                 assert found.local is not None  # it is in contact, or nearly so
-                riding = Riding(around, found.local)
+                riding = Riding(seen.system, found.local)
                 self.left[drop] = riding.excess(found.state, found.stored)
                 if found.outcome != RIDING:
                     self.lying[drop] = lying = lay_down(riding, found.state, found.stored)
@@ -145,24 +170,24 @@ class Vibration:
         """Let a drop lie for some time [s]; return its gap [m], its upward velocity [m/s] and what its contact holds then [J]."""
         lying, time = self.lying[drop], np.array([elapsed])
         assert lying is not None  # it has been laid down
-        state = lying.state(time)
+        state = lying.state(time).take(0)
         self.lost[drop] += lying.lost_by(time)[0]
-        self.place(drop, State(*(part[0] for part in vars(state).values())))
-        return -float(state.approach[0]), -float(state.speed[0]), float(lying.stored(time)[0])
+        self.place(drop, state)
+        depth, sinking = centre_of(state, self.mass[drop])
+        return -float(depth), -float(sinking), float(lying.stored(time)[0])
 
     def energies(self) -> dict[str, Floats]:
         """Return the entries of the ledger [J], (B,); what the local elements hold, and lost in flight, apart."""
-        state = State(np.zeros(1), np.zeros(1), self.displacement, self.velocity, self.local)
-        kinetic, strain = self.oscillators.energies(state)
-        at = self.first_of_plate
+        state = State(self.displacement, self.velocity, self.local)
+        (kinetic, strain), (sphere, plate) = self.system.energies(state), slices_of(self.problem)
         return {
-            "sphere_vibration_J": kinetic[:, :at].sum(axis=1),
-            "sphere_strain_J": strain[:, :at].sum(axis=1),
-            "sphere_damping_J": self.lost[:, :at].sum(axis=1),
-            "plate_kinetic_J": kinetic[:, at:].sum(axis=1),
-            "plate_strain_J": strain[:, at:].sum(axis=1),
-            "plate_damping_J": self.lost[:, at:-1].sum(axis=1),
-            "local_J": self.oscillators.local_energy(state),
+            "sphere_vibration_J": kinetic[:, sphere].sum(axis=1),
+            "sphere_strain_J": strain[:, sphere].sum(axis=1),
+            "sphere_damping_J": self.lost[:, sphere].sum(axis=1),
+            "plate_kinetic_J": kinetic[:, plate].sum(axis=1),
+            "plate_strain_J": strain[:, plate].sum(axis=1),
+            "plate_damping_J": self.lost[:, plate].sum(axis=1),
+            "local_J": self.system.local_energy(state),
             "local_damping_J": self.lost[:, -1],
         }
 
@@ -176,13 +201,14 @@ def contact_of(visits: list[Visit], law: CompliantLaw) -> Contact:
     pieces = [
         Piece(np.array([drop]), np.array([part.start]), part.motion, law) for drop, found in enumerate(visits) for part in found.parts
     ]
+    ends = np.array([[float(part[0]) for part in found.system.rigid_motion(found.state)] for found in visits])
     memories = {name: np.array([found.law.memories()[name] for found in visits], dtype=float) for name in law.memories()}
     return Contact(
         pieces,
         gathered("outcome").astype(np.int8),
         gathered("duration"),
-        np.array([float(found.state.approach) for found in visits]),
-        np.array([float(found.state.speed) for found in visits]),
+        ends[:, 0],
+        ends[:, 1],
         gathered("max_indentation"),
         gathered("time_of_max_indentation"),
         np.array([found.lost[-1] for found in visits]),

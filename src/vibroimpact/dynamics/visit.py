@@ -21,14 +21,15 @@ from vibroimpact.contact.static import static_indentation
 from vibroimpact.dynamics.apart import Apart
 from vibroimpact.dynamics.collocation import Floats, Map
 from vibroimpact.dynamics.contact import CAPTURED, FAILED, RELEASED, RIDING, SETTLED
+from vibroimpact.dynamics.ending import before_event, broken, end_at, growth
+from vibroimpact.dynamics.linear_system import FreeMotion, LinearSystem, State
 from vibroimpact.dynamics.local import LocalContact
 from vibroimpact.dynamics.next_touch import next_touch, time_to_part
-from vibroimpact.dynamics.oscillators import FreeMotion, State
-from vibroimpact.dynamics.receptance import NODES, Surroundings, spectrum
+from vibroimpact.dynamics.receptance import Seen
 from vibroimpact.dynamics.riding import Riding, least_energy, may_stay, stays_below
 from vibroimpact.dynamics.solve_vibrating import solve_vibrating
-from vibroimpact.dynamics.vibrating_events import GRID, ROUNDING, Event, first_event
-from vibroimpact.dynamics.vibrating_stretch import VibratingStretch, mechanical_energy
+from vibroimpact.dynamics.vibrating_events import ROUNDING, first_event
+from vibroimpact.dynamics.vibrating_stretch import VibratingStretch
 
 MOST_STEPS, MOST_STEPS_TO_A_TIME = 5_000, 20_000
 """How many stretches of contact a visit is followed for: some ten seconds' work; and where the run has an end in time."""
@@ -36,10 +37,6 @@ MOST_STEPS, MOST_STEPS_TO_A_TIME = 5_000, 20_000
 _FIRST = 0.125  # of the span of a contact: the first stretch
 _LONG = 10.0  # times the span of a contact: a sphere that long in touch rides
 _GLIDE_SAMPLES = 65
-_EASY = 0.01  # of the roughness that is allowed: what the next stretch should have
-_MOST_AIMS = 4  # until the first event of a stretch is found
-_BEFORE_END = 0.98  # of a stretch: what is seen later is its end
-_AT_END = 1e-12  # of a stretch: nearer to its end is at its end
 
 
 @dataclass(frozen=True)
@@ -60,6 +57,7 @@ class Visit:
     `local`: the contact that the sphere lies in, if it does.
     """
 
+    system: LinearSystem
     state: State
     law: CompliantLaw
     lost: Floats
@@ -77,7 +75,7 @@ class Visit:
 
 
 def visit(
-    around: Surroundings,
+    seen: Seen,
     law: CompliantLaw,
     series: QuasiStatic,
     state: State,
@@ -91,8 +89,8 @@ def visit(
 
     Parameters
     ----------
-    around : Surroundings
-        Mass, gravity and what vibrates.
+    seen : Seen
+        The system of one drop, as its contact sees it.
     law : CompliantLaw
         The law, of one drop.
     series : QuasiStatic
@@ -111,13 +109,13 @@ def visit(
         When to stop a sphere that rides [s since first touch]; a contact of usual length is finished.
     """
     with np.errstate(all="ignore"):  # guesses may be wild; what is not finite is found and tried again
-        return _Visit(around, law, series, state, tolerance, pace, forgets, rest_speed, until).run()
+        return _Visit(seen, law, series, state, tolerance, pace, forgets, rest_speed, until).run()
 
 
 class _Visit:
     def __init__(
         self,
-        around: Surroundings,
+        seen: Seen,
         law: CompliantLaw,
         series: QuasiStatic,
         state: State,
@@ -127,23 +125,24 @@ class _Visit:
         rest_speed: float,
         until: float,
     ) -> None:
-        self.around, self.series, self.state, self.tolerance = around, series, state, tolerance
+        self.seen, self.series, self.state, self.tolerance = seen, series, state, tolerance
+        self.of, self.mass, self.gravity = seen.system, float(seen.system.mass[0]), float(seen.system.gravity[0])
         self.time, self.left, self.span, self.pace = 0.0, 0.0, pace, _FIRST * pace
         self.touching, self.stretches, self.most = True, 0, MOST_STEPS if np.isinf(until) else MOST_STEPS_TO_A_TIME
         self.law, self.ends_without_force = law, law.contact_end == "zero-force"
         self.forgets, self.rest_speed, self.until = forgets or not law.lasting, rest_speed, until
-        self.found = Visit(state, law, np.zeros(len(around.oscillators.shape) + 1))
+        self.found = Visit(seen.system, state, law, np.zeros(self.of.number + 1))
         self.local = self.at_touch(law)
         self.delta = float(law.touch_level)  # the law's own indentation
         self.riding: Riding | None = None
-        self.speed = max(self.local.approach_speed, float(np.sqrt(around.gravity * _sag(around, law))))
+        self.speed = max(self.local.approach_speed, float(np.sqrt(self.gravity * self.sag(law))))
 
     # one contact after another ----------------------------------------------------------------------
 
     def at_touch(self, law: CompliantLaw) -> LocalContact:
-        of, state = self.around.oscillators, self.state
+        of, state = self.of, self.state
         # where the sphere's own vibration makes its surface meet the other, its centre may hardly come nearer
-        return LocalContact(law, self.series, max(float(of.outer_rates(state)), float(of.rates(state)), 1e-300))
+        return LocalContact(law, self.series, max(float(of.outer_rates(state)[0]), float(of.rates(state)[0]), 1e-300))
 
     def run(self) -> Visit:
         found = self.found
@@ -152,9 +151,9 @@ class _Visit:
             found.outcome = self.contact()
             if found.outcome != RELEASED:
                 break
-            rising = -float(self.state.speed)
-            slow = rising < self.rest_speed and self.around.gravity > 0.0
-            if slow and rising > 0.0 and stays_below(self.around, self.next_law, self.state, self.rest_speed):
+            rising = self.rising
+            slow = rising < self.rest_speed and self.gravity > 0.0
+            if slow and rising > 0.0 and stays_below(self.of, self.next_law, self.state, self.rest_speed):
                 found.outcome = SETTLED
                 break
             if not self.meets_again(slow) and rising >= 0.0:
@@ -162,7 +161,7 @@ class _Visit:
             found.contacts += 1
         found.law, found.state, found.duration = self.local.law, self.state, self.left
         found.local = self.local
-        if found.outcome == SETTLED and float(self.around.oscillators.approach(self.state)) <= float(self.next_law.touch_level):
+        if found.outcome == SETTLED and float(self.of.approach(self.state)[0]) <= float(self.next_law.touch_level):
             found.local = replace(self.local, law=self.next_law)  # the dent it has left is forgotten
         return found
 
@@ -173,7 +172,7 @@ class _Visit:
         self.touching, begun, self.pace = True, self.time, min(self.pace, _FIRST * self.span)
         self.delta = float(self.local.own(self.here()))
         while True:
-            if not self.touching and self.here() <= self.floor and self.around.oscillators.rates(self.state) < 0.0:
+            if not self.touching and self.here() <= self.floor and self.of.rates(self.state)[0] < 0.0:
                 self.left = self.time  # by less than rounding tells
                 self.break_off()
                 return RELEASED
@@ -186,22 +185,20 @@ class _Visit:
             stretch = self.solve("touch" if self.touching else "inside", min(self.pace, left) if rides else self.pace)
             event = first_event(stretch, self.speed, self.span) if stretch.solved else None
             if event is None:
-                if not stretch.resolved(self.tolerance, self.speed):
+                if not stretch.resolved(self.tolerance, self.energy):
                     self.pace *= 0.5
                     continue
                 self.accept(stretch)
-                self.pace = stretch.length * self.growth(stretch)
+                self.pace = stretch.length * growth(stretch, self.tolerance)
             else:  # which may be all that keeps the stretch from being resolved
-                found = self.end_at(stretch, event)
+                found = end_at(stretch, event, self.tolerance, self.energy, self.speed, self.span)
                 if found is None:
-                    # short of the event, if there is one: of what is not resolved, that is not certain
-                    near = max(event.x, GRID[1]) if stretch.resolved(self.tolerance, self.speed) else 1.0
-                    self.pace = 0.5 * min(self.pace, stretch.length * float(stretch.rule.map_time(np.array([near]))[0]))
+                    self.pace = 0.5 * min(self.pace, before_event(stretch, event, self.tolerance, self.energy))
                     continue
-                name, ended = found
+                name, ended = found[0].aim.name, found[1]
                 released = name == "parted" or (name == "no push" and self.ends_without_force and self.will_part(ended.end))
                 if released:  # what is still stored is lost, of a sticking contact that breaks or of a surface that lags behind
-                    ended = replace(ended, broken=self.held_at(float(ended.delta[-1])))
+                    ended = broken(ended, 0, self.held_at(float(ended.contacts[0].delta[-1])))
                 self.accept(ended)
                 if not released and name == "no push":
                     released = self.glide()
@@ -213,49 +210,20 @@ class _Visit:
             if self.held() or self.lies():
                 return self.stay(CAPTURED)
 
-    def growth(self, stretch: VibratingStretch) -> float:
-        """Return how many times as long the next stretch may be, by how fast the last coefficients of the force go with the length."""
-        return float(min(max((_EASY * self.tolerance**0.5 / max(stretch.roughness, 1e-300)) ** (1.0 / NODES), 0.7), 4.0))
-
     def stay(self, outcome: int) -> int:
         """End the visit in contact."""
         self.found.stored, self.left = float(self.local.own_energy(self.delta)), self.time
         return outcome
 
     def solve(self, time_map: Map, length: float) -> VibratingStretch:
-        return solve_vibrating(self.around, self.local, time_map, length, self.state, self.delta)
+        return solve_vibrating(self.seen, [self.local], time_map, length, self.state, [self.delta])
 
     @property
     def floor(self) -> float:
         return self.local.release_level
 
     def here(self) -> float:
-        return max(float(self.around.oscillators.approach(self.state)), self.floor)
-
-    def end_at(self, stretch: VibratingStretch, event: Event) -> tuple[str, VibratingStretch] | None:
-        """Return the name of the first event of a stretch, and the stretch that ends there; None if it is not found.
-
-        What was seen in a solution that is not resolved may not be there, or something else before it.
-        """
-        for _ in range(_MOST_AIMS):
-            ended = self.aimed(stretch, event)
-            if not ended.solved or not 0.0 < ended.length <= (1.0 + _AT_END) * stretch.length:
-                return None
-            before = first_event(ended, self.speed, self.span)
-            if before is None or before.x > _BEFORE_END:
-                return (event.aim.name, ended) if ended.resolved(self.tolerance, self.speed) else None
-            stretch, event = ended, before
-        return None
-
-    def aimed(self, stretch: VibratingStretch, event: Event) -> VibratingStretch:
-        """Solve a stretch again so that it ends at an event that was seen in it."""
-        time_map: Map = "touch" if self.touching else "release" if event.aim.name in ("parted", "no push") else "inside"
-        part = float(stretch.rule.map_time(np.array([event.x]))[0])
-        rule = spectrum(time_map, self.law.root).rule
-        weights = stretch.rule.weights(stretch.rule.unmap_time(part * rule.time)).T
-        delta = weights @ stretch.delta
-        guess = delta, np.add(*self.local.own_forces(delta, weights @ stretch.rate))
-        return solve_vibrating(self.around, self.local, time_map, part * stretch.length, self.state, self.delta, guess, event.aim)
+        return max(float(self.of.approach(self.state)[0]), self.floor)
 
     def accept(self, stretch: VibratingStretch) -> None:
         """Take a stretch into the history."""
@@ -263,7 +231,7 @@ class _Visit:
         found.parts.append(Part(self.time, stretch))
         self.note_peaks(stretch)
         self.time += stretch.length
-        self.state, self.delta = stretch.end, float(stretch.delta[-1])
+        self.state, self.delta = stretch.end, float(stretch.contacts[0].delta[-1])
         found.lost += stretch.lost
         self.touching = False
         stretch.forget()  # thousands of stretches would not fit into memory
@@ -271,13 +239,13 @@ class _Visit:
     def held_at(self, delta: float) -> float:
         """Return the energy stored in the contact at an indentation of the law [J], without what is rounding."""
         held = float(self.local.own_energy(delta))
-        return held if abs(held) > 1e-15 * self.around.mass * self.speed**2 else 0.0
+        return held if abs(held) > 2e-15 * self.energy else 0.0
 
     def break_off(self) -> None:
         """Lose what a contact still holds as it ends with a stretch that was taken already."""
         last, held = self.found.parts[-1], self.held_at(self.local.least)
         if held and isinstance(last.motion, VibratingStretch):
-            self.found.parts[-1] = replace(last, motion=replace(last.motion, broken=held))
+            self.found.parts[-1] = replace(last, motion=broken(last.motion, 0, held))
             self.found.lost[-1] += held
 
     def turn(self) -> None:
@@ -287,23 +255,24 @@ class _Visit:
 
     def held(self) -> bool:
         """Is there too little energy left to get out of the indentation?"""
-        around = self.around
-        energy = mechanical_energy(around, self.state) + float(self.local.own_work(self.delta))
-        out = least_energy(around, self.floor, float(self.local.own_energy(self.local.least)))
-        return energy < out + 0.5 * around.mass * (self.tolerance * self.speed) ** 2
+        energy = float(self.of.mechanical_energy(self.state)) + float(self.local.own_work(self.delta))
+        out = least_energy(self.of, self.floor, float(self.local.own_energy(self.local.least)))
+        return energy < out + self.tolerance**2 * self.energy
 
     def lies(self) -> bool:
         """Does the contact carry the weight, with too little left at the contact to lift the sphere off it?"""
-        around, last = self.around, self.found.parts[-1].motion
-        if not isinstance(last, VibratingStretch) or not may_stay(around, self.state, float(last.force[-1]), self.here() - self.floor):
+        last = self.found.parts[-1].motion
+        if not isinstance(last, VibratingStretch):
+            return False
+        if not may_stay(self.of, self.state, float(last.contacts[0].force[-1]), self.here() - self.floor):
             return False
         if self.riding is None or self.riding.local.law is not self.local.law:
-            self.riding = Riding(around, self.local)
+            self.riding = Riding(self.of, self.local)
         return self.riding.linear and self.riding.stays(self.state)
 
     def note_peaks(self, stretch: VibratingStretch) -> None:
         found = self.found
-        for name, values in (("indentation", stretch.indentation_at), ("force", stretch.force_at)):
+        for name, values in (("indentation", stretch.indentation_at), ("force", stretch.contacts[0].force_at)):
             if float(values(stretch.rule.nodes).max()) < 0.98 * getattr(found, f"max_{name}"):
                 continue
             x = highest(values)
@@ -314,25 +283,39 @@ class _Visit:
 
     def will_part(self, state: State) -> bool:
         """Will the surfaces part if nothing pushes any more? Else the sphere falls back into the indentation."""
-        return bool(np.isfinite(time_to_part(FreeMotion(self.around.oscillators, state, self.around.gravity), self.floor)))
+        return bool(np.isfinite(time_to_part(FreeMotion(self.of, state), self.floor)))
+
+    @property
+    def energy(self) -> float:
+        """About the energy of the motion [J]."""
+        return 0.5 * self.mass * self.speed**2
+
+    @property
+    def rising(self) -> float:
+        """How fast the centres move apart [m/s]."""
+        return -float(self.of.rigid_motion(self.state)[1][0])
+
+    def sag(self, law: CompliantLaw) -> float:
+        """Return the indentation of a law under the sphere's weight [m]."""
+        return float(static_indentation(law, np.array([self.mass * self.gravity]))[0])
 
     # apart -----------------------------------------------------------------------------------------
 
     def glide(self) -> bool:
         """Follow the free motion inside the indentation; return True if the surfaces part, False if the law pushes again."""
-        free, floor = FreeMotion(self.around.oscillators, self.state, self.around.gravity), self.floor
+        free, floor = FreeMotion(self.of, self.state), self.floor
 
         def push(time: Floats) -> Floats:
             state = free.state(time)
-            approach = of.approach(state)
-            static, dissipative = self.local.forces(np.maximum(approach, floor), of.outer_rates(state))
+            approach = of.approach(state)[..., 0]
+            static, dissipative = self.local.forces(np.maximum(approach, floor), of.outer_rates(state)[..., 0])
             return np.where(approach > floor, static + dissipative, 0.0)
 
-        of = free.oscillators
-        begun, step = 0.0, max((self.here() - floor) / max(-float(of.rates(self.state)), 1e-3 * self.speed), 1e-6 * self.span)
+        of = self.of
+        begun, step = 0.0, max((self.here() - floor) / max(-float(of.rates(self.state)[0]), 1e-3 * self.speed), 1e-6 * self.span)
         while True:
             times = begun + step * np.linspace(0.0, 1.0, _GLIDE_SAMPLES)[1:]
-            approach, _ = free.motion(times)
+            approach = free.motion(times)[0][:, 0]
             events = np.array([push(times) > 0.0, approach < floor])
             if events.any():
                 break
@@ -340,7 +323,7 @@ class _Visit:
         index = int(events.any(axis=0).argmax())
         early, late = times[index] - step / (_GLIDE_SAMPLES - 1), times[index]
         parted = bool(events[1, index])
-        rises = (lambda time: floor - free.motion(time)[0]) if parted else push
+        rises = (lambda time: floor - free.motion(time)[0][:, 0]) if parted else push
         length = float(find_root(rises, np.array([early]), np.array([late]))[0])
         self.pass_freely(free, length, self.local)
         self.delta = float(self.local.own(self.here()))
@@ -356,8 +339,7 @@ class _Visit:
 
         Where the next contact would begin with fresh surfaces, the visit goes on at least until these have parted.
         """
-        free = FreeMotion(self.around.oscillators, self.state, self.around.gravity)
-        rising, gravity = -float(self.state.speed), self.around.gravity
+        free, rising, gravity = FreeMotion(self.of, self.state), self.rising, self.gravity
         top = np.inf if rising <= 0.0 or gravity == 0.0 or however_late else rising / gravity
         law, fresh = self.local.law, self.next_law
         level = float(fresh.touch_level)
@@ -383,8 +365,3 @@ class _Visit:
         self.found.lost += apart.lost_by(np.array([length]))[0]
         self.state = free.state(np.array(length))
         self.time += length
-
-
-def _sag(around: Surroundings, law: CompliantLaw) -> float:
-    """Return the indentation of the law under the sphere's weight [m]."""
-    return float(static_indentation(law, np.array([around.mass * around.gravity]))[0])

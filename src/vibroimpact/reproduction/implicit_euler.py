@@ -1,7 +1,7 @@
 r"""One impact in steps that are too long: what the implicit Euler method gives where it does not resolve the contact.
 
 A demonstration of what an unresolved run gives, and no way to compute an impact. With the oscillators behind the contact as in
-`dynamics.oscillators`, a step h gives, all primed at its end,
+`dynamics.system`, a step h gives, all primed at its end,
 
 .. math:: v' = v + h (g - F'/m),\qquad s' = s + h v'
 
@@ -23,9 +23,9 @@ from vibroimpact.calibration.one_impact import first_speed
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.roots import find_root
 from vibroimpact.dynamics.collocation import Floats
-from vibroimpact.dynamics.oscillators import Oscillators, State
+from vibroimpact.dynamics.linear_system import LinearSystem, State
 from vibroimpact.dynamics.problem import Problem
-from vibroimpact.dynamics.vibration import modes_of, oscillators_of
+from vibroimpact.dynamics.vibration import centre_of, slices_of, system_of
 from vibroimpact.errors import ComputationError, InputError
 
 PEAKS = (
@@ -73,7 +73,7 @@ def unresolved_impact(problem: Problem, step: float, phases: Floats) -> dict[str
     ComputationError
         If the sphere does not leave the plate within 20,000 steps.
     """
-    way, plate, at = _method(problem, step), problem.plate.modes, modes_of(problem.sphere)
+    (way, plate), (on_sphere, on_plate) = (_method(problem, step), problem.plate.modes), slices_of(problem)
     whole = plate.participation[:, 2] / plate.mass if plate is not None else np.zeros(0)
     followed = np.pi / float(plate.angular_frequencies.min()) if plate is not None else 0.0
     state, lost = way.start(phases), np.zeros((3, len(phases)))
@@ -84,14 +84,15 @@ def unresolved_impact(problem: Problem, step: float, phases: Floats) -> dict[str
         before, (state, force) = state, way.advance(state)
         lost = lost + way.lost(before, state, force)
         kinetic, strain = way.of.energies(state)
-        of_bodies = (strain[:, :at].sum(axis=1), kinetic[:, at:].sum(axis=1), strain[:, at:].sum(axis=1))
+        of_bodies = (strain[:, on_sphere].sum(axis=1), kinetic[:, on_plate].sum(axis=1), strain[:, on_plate].sum(axis=1))
         acceleration = (state.velocity - before.velocity) / step
-        of_centre = (part[:, at:] @ whole for part in (state.displacement, state.velocity, acceleration))
-        for name, value in zip(PEAKS, (force, *of_bodies, *of_centre, np.maximum(state.approach, 0.0)), strict=True):
+        depth, sinking = centre_of(state, way.mass)
+        of_centre = (part[:, on_plate] @ whole for part in (state.displacement, state.velocity, acceleration))
+        for name, value in zip(PEAKS, (force, *of_bodies, *of_centre, np.maximum(depth, 0.0)), strict=True):
             peaks[name] = np.maximum(peaks[name], np.abs(value))
-        leaves = (way.of.approach(state) < 0.0) & (state.speed < 0.0)
-        of_sphere = 0.5 * way.mass * state.speed**2, -way.mass * way.gravity * state.approach
-        now = (-state.speed, *of_sphere, (kinetic + strain).sum(axis=1), *lost)
+        leaves = (way.approach(state) < 0.0) & (sinking < 0.0)
+        of_sphere = 0.5 * way.mass * sinking**2, -way.mass * way.gravity * depth
+        now = (-sinking, *of_sphere, (kinetic + strain)[:, 1:].sum(axis=1), *lost)
         for name, value in zip(parted, now, strict=True):
             parted[name] = np.where(leaves & ~apart, value, parted[name])
         apart = leaves
@@ -104,7 +105,7 @@ def unresolved_impact(problem: Problem, step: float, phases: Floats) -> dict[str
 class _Method:
     """The implicit Euler method for one impact: what stays the same from step to step, in SI."""
 
-    of: Oscillators
+    of: LinearSystem
     law: CompliantLaw
     mass: float
     gravity: float
@@ -119,28 +120,30 @@ class _Method:
     @cached_property
     def pliancy(self) -> float:
         """By how much a newton opens the contact within a step [m/N]."""
-        return float(self.step**2 * (1.0 / self.mass + (self.of.shape**2 * self.slowed).sum()))
+        return float(self.step**2 * (self.of.shape**2 * self.slowed).sum())
 
     def start(self, phases: Floats) -> State:
         """Return the states before the step in which the surfaces meet: in flight, nothing vibrates."""
         before = (1.0 - phases) * self.step
         approach, speed = -before * (self.touch_speed - 0.5 * self.gravity * before), self.touch_speed - self.gravity * before
-        at_rest = np.zeros((len(phases), len(self.of.shape)))
-        return State(approach, speed, at_rest, at_rest, np.zeros((len(phases), 0)))
+        displacement, velocity = (np.zeros((len(phases), self.of.number)) for _ in range(2))
+        displacement[:, 0], velocity[:, 0] = self.mass**0.5 * approach, self.mass**0.5 * speed
+        return State(displacement, velocity, np.zeros((len(phases), 0)))
+
+    def approach(self, state: State) -> Floats:
+        """Return the indentation [m]."""
+        return self.of.approach(state)[:, 0]
 
     def advance(self, state: State) -> tuple[State, Floats]:
         """Return the states after a step, and the forces then."""
         of, step = self.of, self.step
-        velocity = self.slowed * (state.velocity - step * of.angular_frequency**2 * state.displacement)
-        speed = state.speed + step * self.gravity
-        free = self._moved(state, speed, velocity)
-        force = self._force(of.approach(free), of.approach(state))
-        after = self._moved(state, speed - step * force / self.mass, velocity - step * force[:, None] * (self.slowed * of.shape))
-        return after, force
+        velocity = self.slowed * (state.velocity + step * (of.load - of.angular_frequency**2 * state.displacement))
+        force = self._force(self.approach(self._moved(state, velocity)), self.approach(state))
+        return self._moved(state, velocity - step * force[:, None] * (self.slowed * of.shape)), force
 
-    def _moved(self, state: State, speed: Floats, velocity: Floats) -> State:
+    def _moved(self, state: State, velocity: Floats) -> State:
         """Return where a step with these velocities leads."""
-        return State(state.approach + self.step * speed, speed, state.displacement + self.step * velocity, velocity, state.local)
+        return State(state.displacement + self.step * velocity, velocity, state.local)
 
     def _force(self, reach: Floats, start: Floats) -> Floats:
         """Return the forces at the end of a step, from the indentations that it would reach without them and those at its start."""
@@ -158,10 +161,10 @@ class _Method:
     def lost(self, before: State, after: State, force: Floats) -> Floats:
         """Return what a step loses in the damping of the contact, in that of the modes, and by the method [J] (3, P)."""
         of, law = self.of, self.law
-        start, end = of.approach(before), of.approach(after)
+        start, end = self.approach(before), self.approach(after)
         further, (deep, deeper) = end - start, (np.maximum(start, 0.0), np.maximum(end, 0.0))
         static, _ = law.forces(deeper, further / self.step, self.touch_speed)
-        in_motion = 0.5 * self.mass * (after.speed - before.speed) ** 2 + 0.5 * ((after.velocity - before.velocity) ** 2).sum(axis=1)
+        in_motion = 0.5 * ((after.velocity - before.velocity) ** 2).sum(axis=1)
         in_springs = 0.5 * ((of.angular_frequency * (after.displacement - before.displacement)) ** 2).sum(axis=1)
         in_contact = static * further - (law.elastic_energy(deeper) - law.elastic_energy(deep))
         of_modes = self.step * (of.damping * after.velocity**2).sum(axis=1)
@@ -179,4 +182,5 @@ def _method(problem: Problem, step: float) -> _Method:
     more = problem.local_element or problem.quasi_static or (problem.sphere_inside and problem.sphere.modes is not None)
     if problem.shape != () or more or not isinstance(law, CompliantLaw) or law.memories():
         raise InputError("the implicit Euler method is for one drop of the superposed model, under a law with a force and no memory")
-    return _Method(oscillators_of(problem), law, float(problem.sphere.mass), float(problem.gravity), first_speed(problem), step)
+    mass, gravity = float(problem.sphere.mass), float(problem.gravity)
+    return _Method(system_of(problem, mass, gravity), law, mass, gravity, first_speed(problem), step)
