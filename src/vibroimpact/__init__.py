@@ -57,6 +57,12 @@ if TYPE_CHECKING:
     from vibroimpact.dynamics.sensor import Accelerometer as Accelerometer
     from vibroimpact.dynamics.sensor import Sensor as Sensor
     from vibroimpact.dynamics.simulate import simulate as simulate
+    from vibroimpact.dynamics.simulate_system import BodyMotion as BodyMotion
+    from vibroimpact.dynamics.simulate_system import SystemResponse as SystemResponse
+    from vibroimpact.dynamics.simulate_system import simulate_system as simulate_system
+    from vibroimpact.dynamics.system import MovingBody as MovingBody
+    from vibroimpact.dynamics.system import PointContact as PointContact
+    from vibroimpact.dynamics.system import System as System
     from vibroimpact.dynamics.tabulate import ImpactTable as ImpactTable
     from vibroimpact.dynamics.tabulate import tabulate as tabulate
     from vibroimpact.errors import ComputationError as ComputationError
@@ -93,6 +99,7 @@ _HOME = {
     "Accelerometer": "dynamics.sensor",
     "Body": "bodies.body",
     "BodyModes": "cases.modes",
+    "BodyMotion": "dynamics.simulate_system",
     "Calibration": "calibration.calibration",
     "Case": "cases.case",
     "Comparison": "report.comparison",
@@ -103,8 +110,10 @@ _HOME = {
     "Material": "materials",
     "Mesh": "structures.mesh",
     "ModalBasis": "structures.modal_model",
+    "MovingBody": "dynamics.system",
     "Observations": "calibration.observations",
     "Outcome": "dynamics.outcome",
+    "PointContact": "dynamics.system",
     "Problem": "dynamics.problem",
     "QuasiStatic": "contact.quasi_static",
     "Response": "dynamics.response",
@@ -114,6 +123,8 @@ _HOME = {
     "SpeedFunction": "calibration.speed_function",
     "Study": "storage.study",
     "Sweep": "cases.sweep",
+    "System": "dynamics.system",
+    "SystemResponse": "dynamics.simulate_system",
     "VibroimpactError": "errors",
     "achieved_restitution": "dynamics.restitution",
     "calibrate": "calibration.calibrate",
@@ -137,8 +148,8 @@ _HOME = {
     "load_calibration": "cases.calibration",
     "load_case": "cases.reader",
     "load_sweep": "cases.sweep",
-    "material_library": "materials",
     "local_element_deviations": "calibration.local_element",
+    "material_library": "materials",
     "modal_damping": "calibration.tunables",
     "read_calibration": "cases.calibration",
     "read_case": "cases.reader",
@@ -157,6 +168,7 @@ _HOME = {
     "save_result": "report.save",
     "shipped_cases": "cases.reader",
     "simulate": "dynamics.simulate",
+    "simulate_system": "dynamics.simulate_system",
     "tabulate": "dynamics.tabulate",
     "to_si": "units",
     "write_abaqus": "exchange.write_abaqus",

@@ -31,6 +31,33 @@ def test_1_two_identical_glass_spheres() -> None:
     assert row["duration_s"][0] == pytest.approx(40.3395e-6, rel=1e-5)
 
 
+def test_1_as_it_is_meant() -> None:
+    """Two spheres that meet, as a system of two bodies."""
+    glass = vi.find_material("glass-chung-ooi")
+    mass, law = 4 / 3 * math.pi * 0.01**3 * glass.density, Hertz(stiffness=hertz_stiffness(effective_modulus(glass, glass), 0.005))
+    spheres = {"left": vi.MovingBody(mass=mass, velocity=(10.0, 0, 0)), "right": vi.MovingBody(mass=mass, velocity=(-10.0, 0, 0))}
+    contact = vi.PointContact(below="left", above="right", law=law, normal=(1.0, 0, 0))
+    response = vi.simulate_system(vi.System(bodies=spheres, contacts={"contact": contact}), duration=1e-4)
+    assert response.impacts["max_indentation_m"] == pytest.approx([274.113e-6], rel=1e-5)
+    assert response.impacts["max_force_N"] == pytest.approx([10696.9], rel=1e-5)
+    assert response.impacts["duration_s"] == pytest.approx([40.3395e-6], rel=1e-5)
+    for name, speed in (("left", -10.0), ("right", 10.0)):
+        assert response.at(1e-4)[name].velocity[0] == pytest.approx(speed, rel=1e-12)
+
+
+def test_2_as_it_is_meant() -> None:
+    """A sphere and a wall that is held, as a system."""
+    aluminium = vi.find_material("aluminium-chung-ooi")
+    law = Hertz(stiffness=hertz_stiffness(effective_modulus(aluminium, vi.find_material("rigid")), 0.1))
+    ball = vi.MovingBody(mass=4 / 3 * math.pi * 0.1**3 * aluminium.density, velocity=(0, 0, -0.2))
+    bodies = {"ball": ball, "wall": vi.MovingBody(mass=math.inf)}
+    contact = vi.PointContact(above="ball", below="wall", law=law)
+    response = vi.simulate_system(vi.System(bodies=bodies, contacts={"contact": contact}), duration=1e-3)
+    assert response.impacts["max_indentation_m"] == pytest.approx([49.7172e-6], rel=1e-5)
+    assert response.impacts["max_force_N"] == pytest.approx([11369.9], rel=1e-5)
+    assert response.impacts["duration_s"] == pytest.approx([731.657e-6], rel=1e-5)
+
+
 def test_2_aluminium_sphere_on_a_rigid_wall() -> None:
     case = vi.read_case(
         {

@@ -1,0 +1,235 @@
+"""Simulate a system of several bodies with several contacts, and what came of it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from numbers import Real
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vibroimpact.dynamics.collocation import Floats
+from vibroimpact.dynamics.linear_system import LinearSystem, State
+from vibroimpact.dynamics.march import Law, March
+from vibroimpact.dynamics.system import MovingBody, System
+from vibroimpact.dynamics.vibrating_stretch import VibratingStretch
+from vibroimpact.errors import ComputationError, InputError
+
+_ALIKE = 1e-12  # of gravity: what is accelerated by less differently falls alike
+_CLOSURE = 1e-6  # of the energy put in: more missing is an error
+
+
+@dataclass(frozen=True)
+class BodyMotion:
+    """How a body moves at some times: arrays have the shape of the times and a last axis.
+
+    Attributes
+    ----------
+    displacement, velocity : array, shape (..., 3)
+        Of its centre of mass since the start [m], [m/s].
+    rotation, angular_velocity : array, shape (..., 3)
+        Of the body since the start [rad], [rad/s].
+    modal : array, shape (..., modes)
+        Its modal coordinates [kg^1/2 m]; times the shape of a mode they are displacements.
+    """
+
+    displacement: Floats
+    velocity: Floats
+    rotation: Floats
+    angular_velocity: Floats
+    modal: Floats
+
+
+@dataclass(frozen=True, eq=False)
+class SystemResponse:
+    """The response of a system.
+
+    Attributes
+    ----------
+    system : System
+        What was simulated.
+    impacts : dict of str to array
+        One entry an impact of a contact, in the order in which they begin: `contact`, its name; `time_s`, when the surfaces touch;
+        `closing_speed_m_s`; `duration_s`, NaN of one that lasts at the end; `max_force_N`, `time_of_max_force_s`, `max_indentation_m`,
+        `impulse_N_s`.
+    energy : dict of str to float
+        At the end [J]: `kinetic_J` and `potential_J` of all coordinates, `strain_J` of the modes, `contact_elastic_J`,
+        `modal_damping_J`, `contact_dissipated_J`, `plastic_work_J`; `input_J` at the start; `closure_relative`, what is missing as a
+        part of what moved.
+    end_time : float
+        When the run ended [s].
+
+    See Also
+    --------
+    simulate_system : makes one.
+    """
+
+    system: System
+    impacts: dict[str, NDArray[Any]]
+    energy: dict[str, float]
+    end_time: float
+    _march: March
+
+    def __repr__(self) -> str:
+        return f"<SystemResponse: {len(self.impacts['time_s'])} impacts in {self.end_time:g} s>"
+
+    def at(self, times: Any) -> dict[str, BodyMotion]:
+        """Return how the bodies move at times.
+
+        Parameters
+        ----------
+        times : array_like
+            Times since the start [s], within the run.
+
+        Returns
+        -------
+        dict of str to BodyMotion
+            By the names of the bodies.
+
+        Raises
+        ------
+        InputError
+            If a time lies outside the run.
+        """
+        times = np.asarray(times, dtype=float)
+        state = self._states(times)
+        return {name: _motion(body, *self._parts(name, state, times.shape)) for name, body in self.system.bodies.items()}
+
+    def forces(self, times: Any) -> dict[str, Floats]:
+        """Return the forces of the contacts [N] at times since the start [s], by their names; positive where they push."""
+        times = np.asarray(times, dtype=float)
+        found = {name: np.zeros(times.shape) for name in self.system.contacts}
+        names = list(found)
+        for piece, here, since in self._pieces(times.ravel()):
+            if isinstance(piece.motion, VibratingStretch):
+                for contact in piece.motion.contacts:
+                    x = contact.rule.unmap_time(since / piece.length)
+                    found[names[contact.number]].ravel()[here] = contact.force_at(x)
+        return found
+
+    def gaps(self, times: Any) -> dict[str, Floats]:
+        """Return the gaps of the contacts [m] at times since the start [s], by their names; negative where the surfaces overlap."""
+        times = np.asarray(times, dtype=float)
+        approach = self._march.system.approach(self._states(times))
+        return {name: -approach[:, row].reshape(times.shape) for row, name in enumerate(self.system.contacts)}
+
+    def momentum(self, times: Any) -> Floats:
+        """Return the momentum of all free bodies [kg m/s] at times since the start [s], (..., 3)."""
+        moved = self.at(times)
+        free = {name: body.mass for name, body in self.system.bodies.items() if not body.held}
+        return np.asarray(sum(mass * moved[name].velocity for name, mass in free.items()))
+
+    @cached_property
+    def _starts(self) -> Floats:
+        return np.array([piece.start for piece in self._march.pieces])
+
+    def _pieces(self, times: Floats) -> Any:
+        """Yield each piece of the history with the times that lie in it: which, and since its start [s]."""
+        if not np.all((times >= 0.0) & (times <= self.end_time)):
+            raise InputError(f"times must lie within the run, 0 to {self.end_time:.6g} s")
+        index = np.maximum(np.searchsorted(self._starts, times, side="right") - 1, 0)
+        for number in np.unique(index):
+            piece, here = self._march.pieces[int(number)], index == number
+            yield piece, here, np.minimum(times[here] - piece.start, piece.length)
+
+    def _states(self, times: Floats) -> State:
+        """Return the states at times, along one axis."""
+        times, number = times.ravel(), self._march.system.number
+        displacement, velocity = np.empty((len(times), number)), np.empty((len(times), number))
+        for piece, here, since in self._pieces(times):
+            state = piece.motion.state(since)
+            displacement[here], velocity[here] = state.displacement, state.velocity
+            if isinstance(piece.motion, VibratingStretch):
+                piece.motion.forget()
+        return State(displacement, velocity, np.zeros((len(times), 0)))
+
+    def _parts(self, name: str, state: State, shape: tuple[int, ...]) -> tuple[Floats, Floats, Floats]:
+        """Return displacements and velocities of the rigid motions of a body, and its modal coordinates."""
+        rigid, modes = self.system.slices[name]
+        of_all = state.displacement[:, rigid], state.velocity[:, rigid], state.displacement[:, modes]
+        place, speed, modal = (part.reshape(*shape, part.shape[1]) for part in of_all)
+        return place, speed, modal
+
+
+def simulate_system(system: System, *, duration: float, progress: Callable[[float], None] | None = None) -> SystemResponse:
+    """Simulate several bodies with several contacts.
+
+    Between contacts all motion is in closed form; through them it is integrated to the tolerance of the system, with all contacts that
+    act at once as one system of equations.
+
+    Parameters
+    ----------
+    system : System
+        Bodies and contacts.
+    duration : float
+        When to stop [s], > 0.
+    progress : callable, optional
+        Called with a number from 0 to 1 as it goes on.
+
+    Raises
+    ------
+    InputError
+        If the duration is impossible, or no surfaces will ever touch.
+    ComputationError
+        If a contact can't be integrated to the tolerance, the energy ledger does not close, or contacts follow each other without end.
+
+    Examples
+    --------
+    >>> import vibroimpact as vi
+    >>> law = vi.find_contact_law("hertz")(stiffness=1e9)
+    >>> bodies = {"ball": vi.MovingBody(mass=0.1, velocity=(0, 0, -1.0)), "wall": vi.MovingBody(mass=float("inf"))}
+    >>> system = vi.System(bodies=bodies, contacts={"contact": vi.PointContact(above="ball", below="wall", law=law)})
+    >>> simulate_system(system, duration=1e-3).impacts["impulse_N_s"].round(9).tolist()
+    [0.2]
+    """
+    if isinstance(duration, bool) or not isinstance(duration, Real) or not 0.0 < duration < np.inf:
+        raise InputError(f"duration must be a number greater than 0 s and finite, not {duration!r}")
+    linear, start = system.linear()
+    if not (linear.rates(start) > 0.0).any() and not (linear.gravity > _ALIKE * np.linalg.norm(system.gravity)).any():
+        raise InputError(
+            "no surfaces will ever touch: none approach each other at the start, and gravity, if there is any, lets both bodies of each "
+            "contact fall alike; give a body a velocity, or hold one"
+        )
+    march = March(linear, [Law(one.law, one.series, not one.same_spot) for one in system.contacts.values()], start, system.tolerance)
+    march.run(duration, progress)
+    names = list(system.contacts)
+    columns = {
+        "contact": np.array([names[impact.contact] for impact in march.impacts]),
+        "time_s": np.array([impact.start for impact in march.impacts]),
+        "duration_s": np.array([impact.end - impact.start for impact in march.impacts]),
+        "closing_speed_m_s": np.array([impact.closing_speed for impact in march.impacts]),
+        "max_force_N": np.array([impact.max_force for impact in march.impacts]),
+        "time_of_max_force_s": np.array([impact.time_of_max_force for impact in march.impacts]),
+        "max_indentation_m": np.array([impact.max_indentation for impact in march.impacts]),
+        "impulse_N_s": np.array([impact.impulse for impact in march.impacts]),
+    }
+    energy = _ledger(linear, start, march)
+    if not energy["closure_relative"] <= _CLOSURE:
+        raise ComputationError(f"the energy ledger does not close: {energy['closure_relative']:.2g} of the energy that moved is missing")
+    return SystemResponse(system, columns, energy, duration, march)
+
+
+def _ledger(linear: LinearSystem, start: State, march: March) -> dict[str, float]:
+    """Return where the energy is at the end."""
+    kinetic, strain = (float(part.sum()) for part in linear.energies(march.state))
+    begun, potential = float(linear.energies(start)[0].sum()), -float(march.state.displacement @ linear.load)
+    energy = {
+        "kinetic_J": kinetic,
+        "potential_J": potential,
+        "strain_J": strain,
+        "contact_elastic_J": sum(float(touch.local.own_energy(touch.delta)) for touch in march.touching.values()),
+        "modal_damping_J": float(march.lost[:-1].sum()),
+        "contact_dissipated_J": float(march.lost[-1]),
+        "plastic_work_J": march.plastic,
+    }
+    moved = begun + max(abs(potential), kinetic)
+    return {**energy, "input_J": begun, "closure_relative": abs(sum(energy.values()) - begun) / moved if moved else 0.0}
+
+
+def _motion(body: MovingBody, place: Floats, speed: Floats, modal: Floats) -> BodyMotion:
+    """Return how a body moves, from its rigid motions and its modal coordinates."""
+    along, turning = body.coordinates()
+    return BodyMotion(place @ along, speed @ along, place @ turning, speed @ turning, modal)

@@ -1,0 +1,241 @@
+r"""Several bodies with several contacts: their statement.
+
+Each body that is free moves as a rigid body, in three translations and, if it has an inertia, three rotations, and vibrates in the modes
+that it has. A contact is a point, a direction and a law. Displacements are small: directions and places stay what they are at the start,
+as they do through impacts.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from numbers import Real
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from vibroimpact.contact.law import CompliantLaw
+from vibroimpact.contact.quasi_static import QuasiStatic
+from vibroimpact.dynamics.collocation import Floats
+from vibroimpact.dynamics.linear_system import LinearSystem, State
+from vibroimpact.errors import InputError, did_you_mean
+
+if TYPE_CHECKING:
+    from vibroimpact.structures.modal_model import ModalBasis  # which loads sparse matrices
+
+_UNIT = 1e-9  # by how much the length of a normal may differ from one
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class MovingBody:
+    """A body of a system: free to move, or held.
+
+    Parameters
+    ----------
+    mass : float
+        Mass [kg], > 0; infinite for a body that is held.
+    inertia : float or array, shape (3,) or (3, 3), optional
+        Moment of inertia about the centre of mass [kg m^2]. A body without one does not turn.
+    centre : array, shape (3,)
+        Where the centre of mass is at the start [m].
+    velocity, angular_velocity : array, shape (3,)
+        Of the centre [m/s], and about it [rad/s], at the start.
+    modes : ModalBasis, optional
+        How it vibrates. Its `points` tell how it moves at each contact, by the name of the contact.
+    """
+
+    mass: float
+    inertia: Any = None
+    centre: Any = (0.0, 0.0, 0.0)
+    velocity: Any = (0.0, 0.0, 0.0)
+    angular_velocity: Any = (0.0, 0.0, 0.0)
+    modes: ModalBasis | None = None
+
+    def __post_init__(self) -> None:
+        if not _number("mass", self.mass) > 0.0:
+            raise InputError(f"the mass of a body must be greater than 0 kg, not {self.mass!r}")
+        for name in ("centre", "velocity", "angular_velocity"):
+            object.__setattr__(self, name, _vector(name, getattr(self, name)))
+        if self.inertia is not None:
+            inertia = np.asarray(self.inertia, dtype=float)
+            inertia = inertia * np.eye(3) if inertia.ndim < 2 else inertia
+            if inertia.shape != (3, 3) or not np.allclose(inertia, inertia.T) or not (np.linalg.eigvalsh(inertia) > 0.0).all():
+                raise InputError("inertia must be a moment of inertia [kg m^2], > 0, three of them, or a symmetric matrix of 3 by 3")
+            object.__setattr__(self, "inertia", inertia)
+        moves = np.any(self.velocity) or np.any(self.angular_velocity)
+        if moves and np.isinf(self.mass):
+            raise InputError("a body that is held, of infinite mass, has no velocity")
+        if np.any(self.angular_velocity) and self.inertia is None:
+            raise InputError("a body without an inertia does not turn: give inertia [kg m^2], or no angular_velocity")
+
+    @property
+    def held(self) -> bool:
+        """Is it held?"""
+        return bool(np.isinf(self.mass))
+
+    def coordinates(self) -> tuple[Floats, Floats]:
+        """Return the rigid motions of unit mass: translation of the centre and rotation in each [kg^-1/2, rad/(kg^1/2 m)], (r, 3) each."""
+        if self.held:
+            return np.zeros((0, 3)), np.zeros((0, 3))
+        along, turning = np.eye(3) / np.sqrt(self.mass), np.zeros((3, 3))
+        if self.inertia is not None:
+            moments, axes = np.linalg.eigh(self.inertia)
+            along, turning = np.concatenate([along, np.zeros((3, 3))]), np.concatenate([turning, axes.T / np.sqrt(moments)[:, None]])
+        return along, turning
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class PointContact:
+    """A contact between two bodies of a system.
+
+    Parameters
+    ----------
+    above, below : str
+        Names of the bodies.
+    law : CompliantLaw
+        Its law.
+    point : array, shape (3,)
+        Where they touch [m].
+    normal : array, shape (3,)
+        Unit vector from the body below to that above.
+    gap : float, default 0
+        Between the surfaces at the start [m], >= 0.
+    series : QuasiStatic, optional
+        Quasi-static compliance in series with the law.
+    same_spot : bool, default True
+        Does each impact of this contact fall where the last one did? Else it finds fresh surfaces.
+    """
+
+    above: str
+    below: str
+    law: CompliantLaw
+    point: Any = (0.0, 0.0, 0.0)
+    normal: Any = (0.0, 0.0, 1.0)
+    gap: float = 0.0
+    series: QuasiStatic = QuasiStatic()
+    same_spot: bool = True
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.law, CompliantLaw):
+            raise InputError(f"the law of a contact of a system must give a force, which {self.law!r} does not")
+        for name in ("point", "normal"):
+            object.__setattr__(self, name, _vector(name, getattr(self, name)))
+        if abs(np.linalg.norm(self.normal) - 1.0) > _UNIT:
+            raise InputError(f"normal must be a vector of length 1, not {np.asarray(self.normal).tolist()}")
+        if not 0.0 <= _number("gap", self.gap) < np.inf:
+            raise InputError(f"gap must not be negative, and finite: at {self.gap:g} m the bodies overlap at the start")
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class System:
+    """Several bodies with several contacts.
+
+    Parameters
+    ----------
+    bodies : mapping of str to MovingBody
+        By their names.
+    contacts : mapping of str to PointContact
+        By their names; at least one.
+    gravity : array, shape (3,), default 0
+        Acceleration of gravity [m/s^2]. Modes are counted from where they rest under it.
+    tolerance : float, default 1e-9
+        Relative error allowed in the state at the end of each stretch of contact; 1e-13 to 1e-6.
+
+    Raises
+    ------
+    InputError
+        If a contact names no body or one twice, both its bodies are held, or a body with modes does not know how it moves there.
+
+    Examples
+    --------
+    Two equal balls: the one that is hit leaves with the speed of the other.
+
+    >>> import vibroimpact as vi
+    >>> law = vi.find_contact_law("hertz")(stiffness=1e9)
+    >>> balls = {"hit": vi.MovingBody(mass=0.1), "hitting": vi.MovingBody(mass=0.1, velocity=(0, 0, -1.0))}
+    >>> system = vi.System(bodies=balls, contacts={"contact": vi.PointContact(above="hitting", below="hit", law=law)})
+    >>> vi.simulate_system(system, duration=1e-3).at(1e-3)["hit"].velocity.round(9).tolist()
+    [0.0, 0.0, -1.0]
+    """
+
+    bodies: Mapping[str, MovingBody]
+    contacts: Mapping[str, PointContact]
+    gravity: Any = (0.0, 0.0, 0.0)
+    tolerance: float = 1e-9
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "gravity", _vector("gravity", self.gravity))
+        if not self.contacts:
+            raise InputError("the system has no contact: nothing can happen between its bodies", "contacts")
+        if not 1e-13 <= _number("tolerance", self.tolerance) <= 1e-6:
+            raise InputError("tolerance must lie between 1e-13 and 1e-6")
+        for name, contact in self.contacts.items():
+            key = f"contacts.{name}"
+            for body in (contact.above, contact.below):
+                if body not in self.bodies:
+                    raise InputError(f'there is no body "{body}"{did_you_mean(body, self.bodies)}', key)
+                modes = self.bodies[body].modes
+                if modes is not None and name not in modes.points:
+                    raise InputError(f'the modes of "{body}" do not tell how it moves there: add "{name}" to their points', key)
+            if contact.above == contact.below:
+                raise InputError(f'a body can not touch itself, as "{contact.above}" does here', key)
+            if all(self.bodies[body].held for body in (contact.above, contact.below)):
+                raise InputError(f'neither "{contact.above}" nor "{contact.below}" can move: both are held', key)
+
+    @cached_property
+    def slices(self) -> dict[str, tuple[slice, slice]]:
+        """Where the rigid motions of each body are among the coordinates, and where its modes; first come the former of all bodies."""
+        rigid = [len(body.coordinates()[0]) for body in self.bodies.values()]
+        modes = [0 if body.modes is None else len(body.modes.frequencies) for body in self.bodies.values()]
+        at = np.cumsum([0, *rigid, *modes])
+        number = len(rigid)
+        return {name: (slice(at[i], at[i + 1]), slice(at[number + i], at[number + i + 1])) for i, name in enumerate(self.bodies)}
+
+    def linear(self) -> tuple[LinearSystem, State]:
+        """Return the bodies as one linear system, and its state at the start."""
+        slices = self.slices
+        number = max(part.stop for pair in slices.values() for part in pair)
+        frequency, damping, load, start = (np.zeros(number) for _ in range(4))
+        shape = np.zeros((len(self.contacts), number))
+        for name, body in self.bodies.items():
+            rigid, vibrating = slices[name]
+            along, turning = body.coordinates()
+            if not body.held:
+                load[rigid] = body.mass * along @ self.gravity
+                start[rigid] = body.mass * along @ body.velocity
+            if body.inertia is not None and not body.held:
+                start[rigid] += turning @ body.inertia @ body.angular_velocity
+            if body.modes is not None:
+                frequency[vibrating], damping[vibrating] = body.modes.angular_frequencies, body.modes.damping_ratios
+            for row, (where, contact) in enumerate(self.contacts.items()):
+                sign = (contact.below == name) * 1.0 - (contact.above == name)
+                if not sign:
+                    continue
+                lever = np.cross(contact.point - body.centre, contact.normal)
+                shape[row, rigid] = sign * (along @ contact.normal + turning @ lever)
+                if body.modes is not None:
+                    shape[row, vibrating] = sign * (body.modes.points[where] @ contact.normal)
+        no, nothing = np.zeros(number, dtype=bool), np.zeros(0)
+        gaps = np.array([-contact.gap for contact in self.contacts.values()])
+        levels = np.array([float(contact.law.touch_level) for contact in self.contacts.values()])
+        system = LinearSystem(frequency, damping, shape, gaps + levels, load, no, no, nothing, nothing, np.zeros(0, dtype=np.intp))
+        return system, State(np.zeros(number), start, nothing)
+
+
+def _number(name: str, value: object) -> float:
+    """Return a number in SI."""
+    if isinstance(value, bool) or not isinstance(value, Real):
+        raise InputError(f"{name} must be a number in SI, not {value!r}")
+    return float(value)
+
+
+def _vector(name: str, value: object) -> Floats:
+    """Return a vector of three finite numbers."""
+    try:
+        found = np.asarray(value, dtype=float)
+    except (TypeError, ValueError):
+        found = np.zeros(0)
+    if found.shape != (3,) or not np.isfinite(found).all():
+        raise InputError(f"{name} must be three finite numbers: along x, y and z; not {value!r}")
+    return found

@@ -1,0 +1,179 @@
+"""Systems of bodies with several contacts against scipy's DOP853 (`oracles.moving_bodies`), closed forms, and the drop on a plate."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import vibroimpact as vi
+from moving import HERTZ, free_beam, modes_at, row_of_balls
+from oracles.moving_bodies import integrate
+from support import one_in
+from vibrating import drop_on
+from vibroimpact.contact.law import CompliantLaw, contact_laws
+from vibroimpact.contact.laws.kuwabara_kono import KuwabaraKono
+from vibroimpact.contact.laws.linear_spring_dashpot import LinearSpringDashpot
+from vibroimpact.contact.laws.tsuji import Tsuji
+from vibroimpact.contact.pair import ContactPair
+
+PAIR = ContactPair(2.4264724e9, 0.025, 0.09032078879, 8e7, 0.28)
+COMPLIANT = [law for law in contact_laws().values() if issubclass(law, CompliantLaw)]
+WALL = vi.MovingBody(mass=math.inf)
+STEEL = (7850.0, 210e9)
+LAWS = (
+    HERTZ,
+    LinearSpringDashpot(stiffness=1e7, damping=30.0),
+    Tsuji(stiffness=1e9, restitution=0.8, effective_mass=0.1),
+    KuwabaraKono.example(PAIR),
+)
+
+
+def energy_of(system: vi.System, moved: dict[str, vi.BodyMotion]) -> float:
+    """Kinetic energy of all rigid motions [J]."""
+    found = 0.0
+    for name, body in system.bodies.items():
+        if not body.held:
+            found += 0.5 * body.mass * float(moved[name].velocity @ moved[name].velocity)
+        if body.inertia is not None:
+            found += 0.5 * float(moved[name].angular_velocity @ body.inertia @ moved[name].angular_velocity)
+    return found
+
+
+@pytest.mark.parametrize("law", COMPLIANT, ids=lambda law: law.name)
+def test_a_ball_against_a_wall_is_the_drop(law: type[CompliantLaw]) -> None:
+    """Every law, cut, sticking and with a memory: the same as the solver of rigid bodies, which shares no line but the law's."""
+    made = law.example(PAIR)
+    row = vi.simulate(drop_on(made, gravity=0.0)).impacts
+    ball = vi.MovingBody(mass=0.09032078879, velocity=(0.0, 0.0, -3.0))
+    system = vi.System(bodies={"ball": ball, "wall": WALL}, contacts={"at": vi.PointContact(above="ball", below="wall", law=made)})
+    response = vi.simulate_system(system, duration=2.0 * float(row["duration_s"][0]))
+    assert response.impacts["max_force_N"] == pytest.approx(row["max_force_N"], rel=1e-8)
+    assert response.impacts["duration_s"] == pytest.approx(row["duration_s"], rel=1e-9)
+    assert response.at(response.end_time)["ball"].velocity[2] == pytest.approx(float(row["separation_speed_m_s"][0]), rel=1e-8)
+    assert response.energy["closure_relative"] < 1e-9
+
+
+@pytest.mark.parametrize(("number", "gap"), [(3, 0.0), (5, 0.0), (5, 1e-6), (5, 3e-5)])
+def test_newtons_cradle(number: int, gap: float) -> None:
+    """Balls that touch or nearly do: the last takes most of the momentum, the others the rest (Herrmann and Schmalzle 1981)."""
+    system = row_of_balls(number, gap=gap)
+    response, expected = vi.simulate_system(system, duration=1.5e-3), integrate(system, 1.5e-3, 5e-6)
+    moved = response.at(1.5e-3)
+    for name in system.bodies:
+        np.testing.assert_allclose(moved[name].velocity, expected.velocity[name], atol=2e-11)
+    assert response.momentum(1.5e-3)[2] == pytest.approx(0.1, rel=1e-12)
+    assert response.energy["closure_relative"] < 1e-10
+    assert gap or 0.98 < float(moved[f"{number - 1}"].velocity[2]) < 0.9999
+
+
+def random_system(seed: int) -> vi.System:
+    """Two or three balls that hit one body, free or held, that turns and vibrates, at random places and times."""
+    random = np.random.default_rng([19, seed])
+    number, free = int(random.integers(2, 4)), bool(random.integers(2))
+    names = [f"ball {ball}" for ball in range(number)]
+    modes = modes_at(
+        np.sort(np.exp(random.uniform(5.5, 9.0, 4))),
+        (0.0, 0.01, 0.1)[random.integers(3)],
+        **{name: random.normal(size=4) for name in names},
+    )
+    inertia = random.normal(size=(3, 3))
+    target = vi.MovingBody(
+        mass=float(random.uniform(0.3, 3.0)) if free else math.inf,
+        inertia=1e-3 * (inertia @ inertia.T + np.eye(3)) if free else None,
+        modes=modes,
+    )
+    law = LAWS[seed % 4]
+    bodies, contacts = {"target": target}, {}
+    for name in names:
+        normal = random.normal(size=3) * [0.2, 0.2, 0.0] + [0.0, 0.0, 1.0]
+        normal = normal / np.linalg.norm(normal)
+        bodies[name] = vi.MovingBody(mass=float(random.uniform(0.05, 0.3)), velocity=-normal * random.uniform(0.5, 2.0))
+        contacts[name] = vi.PointContact(
+            above=name, below="target", law=law, normal=normal, point=random.uniform(-0.1, 0.1, 3), gap=float(random.uniform(0.0, 2e-4))
+        )
+    return vi.System(bodies=bodies, contacts=contacts, tolerance=1e-10)
+
+
+@pytest.mark.parametrize("seed", one_in(5, range(25)))
+def test_contacts_that_overlap_at_random(seed: int) -> None:
+    system = random_system(seed)
+    response = vi.simulate_system(system, duration=1e-3)
+    begun, ended = response.impacts["time_s"], response.impacts["time_s"] + np.nan_to_num(response.impacts["duration_s"], nan=1.0)
+    assert (begun[1:, None] < ended[None, :-1]).any()  # or nothing would act together
+    expected, moved = integrate(system, 1e-3, 5e-6), response.at(1e-3)
+    for name in system.bodies:
+        np.testing.assert_allclose(moved[name].velocity, expected.velocity[name], atol=1e-8)
+        np.testing.assert_allclose(moved[name].angular_velocity, expected.angular_velocity[name], atol=1e-7)
+    assert response.energy["closure_relative"] < 1e-9
+
+
+def test_mirrored_balls_are_one_of_which_the_plate_feels_twice_the_force() -> None:
+    """By symmetry each sees the symmetric modes driven by both."""
+    frequencies, even, odd = np.array([260.0, 900.0, 2100.0, 5000.0]), np.array([2.5, 0.0, -1.5, 2.0]), np.array([0.0, 1.7, 0.0, 0.0])
+    plate = vi.MovingBody(mass=math.inf, modes=modes_at(frequencies, 0.01, left=even - odd, right=even + odd))
+    ball = vi.MovingBody(mass=0.09032078879, velocity=(0.0, 0.0, -3.0))
+    contacts = {side: vi.PointContact(above=side, below="plate", law=HERTZ) for side in ("left", "right")}
+    both = vi.simulate_system(vi.System(bodies={"plate": plate, "left": ball, "right": ball}, contacts=contacts), duration=5e-4)
+    alone = replace(plate, modes=modes_at(frequencies, 0.01, left=math.sqrt(2.0) * even))
+    one = vi.simulate_system(vi.System(bodies={"plate": alone, "left": ball}, contacts={"left": contacts["left"]}), duration=5e-4)
+    for name in ("max_force_N", "impulse_N_s", "max_indentation_m"):
+        first = len(one.impacts[name])
+        for side in ("left", "right"):
+            here = both.impacts[name][both.impacts["contact"] == side]
+            np.testing.assert_allclose(here, one.impacts[name], rtol=1e-9)
+        assert len(both.impacts[name]) == 2 * first
+    np.testing.assert_allclose(both.at(5e-4)["left"].velocity, one.at(5e-4)["left"].velocity, rtol=1e-9)
+
+
+def test_a_central_impact_on_a_free_plate_is_that_of_the_reduced_mass() -> None:
+    plate = free_beam(0.3, 0.05, 0.008, STEEL, 0, at=0.0)
+    ball = vi.MovingBody(mass=0.09032078879, velocity=(0.0, 0.0, -3.0))
+    contact = vi.PointContact(above="ball", below="plate", law=HERTZ)
+    response = vi.simulate_system(vi.System(bodies={"ball": ball, "plate": plate}, contacts={"at": contact}), duration=1e-3)
+    reduced = ball.mass * plate.mass / (ball.mass + plate.mass)
+    problem = drop_on(HERTZ, gravity=0.0)
+    row = vi.simulate(replace(problem, sphere=vi.Body(mass=reduced, contact_offset=0.025))).impacts
+    for name in ("max_force_N", "max_indentation_m", "duration_s"):
+        assert response.impacts[name] == pytest.approx(row[name], rel=1e-10)
+    assert response.impacts["impulse_N_s"][0] == pytest.approx(2.0 * reduced * 3.0, rel=1e-10)
+    assert response.momentum(1e-3)[2] == pytest.approx(-3.0 * ball.mass, rel=1e-12)
+    assert energy_of(response.system, response.at(1e-3)) == pytest.approx(4.5 * ball.mass, rel=1e-9)
+
+
+@pytest.mark.parametrize("place", [0.0, 0.05, 0.12, 0.15])
+def test_an_excentric_impact_on_a_free_beam(place: float) -> None:
+    """Rigid, with rotation: the impulse is (1 + e) v / (1/m + 1/M + x^2/I) (Goldsmith, Impact, 1960, section 2.3)."""
+    beam = free_beam(0.3, 0.05, 0.008, STEEL, 0, at=place)
+    ball = vi.MovingBody(mass=0.05, velocity=(0.0, 0.0, -2.0))
+    contact = vi.PointContact(above="ball", below="beam", law=HERTZ, point=(place, 0.0, 0.0))
+    response = vi.simulate_system(vi.System(bodies={"ball": ball, "beam": beam}, contacts={"at": contact}), duration=1e-3)
+    turning = float(np.asarray(beam.inertia)[1, 1])
+    impulse = 2.0 * 2.0 / (1.0 / ball.mass + 1.0 / beam.mass + place**2 / turning)
+    moved = response.at(1e-3)
+    assert response.impacts["impulse_N_s"] == pytest.approx([impulse], rel=1e-9)
+    np.testing.assert_allclose(moved["beam"].velocity, [0.0, 0.0, -impulse / beam.mass], atol=1e-10)
+    np.testing.assert_allclose(moved["beam"].angular_velocity, [0.0, impulse * place / turning, 0.0], atol=1e-8)
+    np.testing.assert_allclose(moved["ball"].velocity, [0.0, 0.0, -2.0 + impulse / ball.mass], atol=1e-10)
+
+
+@pytest.mark.parametrize("place", [0.0, 0.05, 0.12])
+def test_an_excentric_impact_on_a_free_beam_that_bends(place: float) -> None:
+    """Several contacts: the beam comes back to the ball. Momentum, angular momentum and energy hold, and DOP853 finds the same."""
+    beam = free_beam(0.3, 0.05, 0.008, STEEL, 6, at=place)
+    ball = vi.MovingBody(mass=0.05, velocity=(0.0, 0.0, -2.0))
+    contact = vi.PointContact(above="ball", below="beam", law=HERTZ, point=(place, 0.0, 0.0))
+    system = vi.System(bodies={"ball": ball, "beam": beam}, contacts={"at": contact}, tolerance=1e-10)
+    response, expected = vi.simulate_system(system, duration=1e-3), integrate(system, 1e-3, 5e-6)
+    moved = response.at(np.linspace(0.0, 1e-3, 101))
+    for name in ("ball", "beam"):
+        np.testing.assert_allclose(moved[name].velocity[-1], expected.velocity[name], atol=1e-8)
+        np.testing.assert_allclose(moved[name].angular_velocity[-1], expected.angular_velocity[name], atol=1e-7)
+    np.testing.assert_allclose(response.momentum(np.linspace(0.0, 1e-3, 101))[:, 2], -0.1, rtol=1e-9)
+    turned = moved["beam"].angular_velocity @ np.asarray(beam.inertia)
+    np.testing.assert_allclose(
+        turned[:, 1] - ball.mass * place * moved["ball"].velocity[:, 2], 2.0 * ball.mass * place, atol=1e-9 * 2.0 * ball.mass
+    )
+    assert response.energy["closure_relative"] < 1e-9
