@@ -16,7 +16,7 @@ On the nodes :math:`x_i` of Radau's right-hand rule, :math:`\dot y = f` becomes
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, cached_property
 from typing import Literal
 
 import numpy as np
@@ -85,6 +85,12 @@ class Rule:
         if self.time_map == "release":
             return 1.0 - (1.0 - fraction) ** (1.0 / self.root)
         return fraction
+
+    @cached_property
+    def end_slope(self) -> Floats:
+        """From values at the nodes to the time derivative of the polynomial at the end, times the duration (N,); not after a release."""
+        order = np.arange(len(self.nodes))
+        return np.asarray((order * (order + 1.0)) @ self.coefficients / self.slope[-1])
 
     def interpolate(self, x: Floats, values: Floats) -> Floats:
         """Return the polynomial through `values` (N,) or (N, B) at the nodes, at x (T,): (T,) or (T, B)."""

@@ -66,7 +66,11 @@ class Impact:
 
 @dataclass
 class Touching:
-    """A contact whose surfaces overlap; `delta`: its law's own indentation [m]. `pushes`: else it recoils without a force."""
+    """A contact whose surfaces overlap.
+
+    `delta`: its law's own indentation [m]. `span`: about how long it lasts [s]. `pushes`: else it recoils without a force. `fresh`: it
+    has just met. `trend`: how fast its force changes [N/s].
+    """
 
     number: int
     local: LocalContact
@@ -75,6 +79,7 @@ class Touching:
     impact: Impact
     pushes: bool = True
     fresh: bool = True
+    trend: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -298,13 +303,14 @@ class March:
         if numbers not in self._seen:
             self._seen[numbers] = Seen(self.system, numbers)
         locals_, begun = [touch.local for touch in pushing], [touch.delta for touch in pushing]
-        return solve_vibrating(self._seen[numbers], locals_, time_map, length, self.state, begun)
+        trend = np.array([touch.trend for touch in pushing])
+        return solve_vibrating(self._seen[numbers], locals_, time_map, length, self.state, begun, trend=trend)
 
     def accept(self, pushing: list[Touching], stretch: VibratingStretch) -> None:
         """Take a stretch into the history."""
-        for touch, contact in zip(pushing, stretch.contacts, strict=True):
+        for touch, contact, trend in zip(pushing, stretch.contacts, stretch.trend.tolist(), strict=True):
             note_peaks(touch.impact, contact, self.time, stretch.length)
-            touch.delta, touch.fresh = float(contact.delta[-1]), False
+            touch.delta, touch.fresh, touch.trend = float(contact.delta[-1]), False, trend
         recoiling = tuple(touch.number for touch in self.touching.values() if not touch.pushes)
         self.take(Piece(self.time, stretch.length, stretch, recoiling), stretch.end, stretch.lost)
         stretch.forget()  # thousands of stretches would not fit into memory

@@ -22,6 +22,7 @@ from vibroimpact.dynamics.vibrating_stretch import VibratingStretch
 _SWEEPS = 25
 _LONGER = 3.0  # times: by no more does a sweep change the length that is sought
 _CONVERGED, _STALLED = 1e-13, 1e-11
+_INEXACT = 1e-6  # of a step of Newton's method: what the next one is at least, as derivatives are differences
 
 
 @dataclass(frozen=True)
@@ -45,6 +46,7 @@ def solve_vibrating(
     begun: Sequence[float],
     guess: tuple[Floats, Floats] | None = None,
     aim: Aim | None = None,
+    trend: Floats | None = None,
 ) -> VibratingStretch:
     """Solve the motion through a stretch of contact by Newton's method.
 
@@ -66,13 +68,15 @@ def solve_vibrating(
         Those indentations [m] and the forces [N] at the nodes, nearly.
     aim : Aim, optional
         What ends the stretch; its length is found.
+    trend : array, shape (c,), optional
+        About how fast the forces change at the start [N/s], where there is no guess.
     """
     of, at = seen.system, spectrum(time_map, max(local.law.root for local in locals_))
     met, begun_rate = (part[seen.contacts] for part in (of.approach(start), of.outer_rates(start)))
     met = np.maximum(met, [local.release_level for local in locals_])
     own = np.array([local.near(*pair) for local, *pair in zip(locals_, begun, met.tolist(), strict=True)])
     here = Receptance(seen, at, length, start)
-    delta, force = _first_guess(locals_, here, own, begun_rate) if guess is None else guess
+    delta, force = _first_guess(locals_, here, own, begun_rate, trend) if guess is None else guess
     static = np.zeros_like(force)
     scale = float((of.mass[seen.contacts] * (np.abs(here.rate).max(axis=1) / length + np.abs(seen.gravity))).max())
     solved, before = False, np.inf
@@ -91,7 +95,9 @@ def solve_vibrating(
             here = Receptance(seen, at, length, start)
         most = max(float(np.abs(by_force).max()), float(np.abs(now.stiffness * by_delta).max())) / (scale + float(np.abs(force).max()))
         size = max(most, abs(by_length) / length)
-        solved = size < _CONVERGED or (size < _STALLED and size > 0.3 * before)
+        # what the next step would be: of a method that converges quadratically, but for its derivatives
+        following = size * max((size / before) ** 2, _INEXACT) if size < before else size
+        solved = min(size, following) < _CONVERGED or (size < _STALLED and size > 0.3 * before)
         if solved or not np.isfinite(size):
             break
         before = size
@@ -111,10 +117,15 @@ def taken(matrix: Floats, force: Floats) -> Floats:
     return np.asarray((matrix @ force.ravel()).reshape(force.shape))
 
 
-def _first_guess(locals_: Sequence[LocalContact], here: Receptance, begun: Floats, begun_rate: Floats) -> tuple[Floats, Floats]:
+def _first_guess(
+    locals_: Sequence[LocalContact], here: Receptance, begun: Floats, begun_rate: Floats, trend: Floats | None
+) -> tuple[Floats, Floats]:
     """Return what the forces at the start, going on, make of indentations and forces at the nodes (c, N)."""
     parts = np.array([local.own_forces(delta, rate) for local, delta, rate in zip(locals_, begun, begun_rate, strict=True)])
     static, force = (np.repeat(part[:, None], NODES, axis=1) for part in (parts[:, 0], parts.sum(axis=1)))
+    if trend is not None:
+        later = trend[:, None] * (here.length * here.at.rule.time)
+        static, force = static + later, force + later
     approach = here.approach - taken(here.by_force, force) - taken(here.by_static, static)
     delta = np.array([local.about(np.maximum(row, local.release_level)) for local, row in zip(locals_, approach, strict=True)])
     rates = here.rate - taken(here.rate_by, force)

@@ -131,6 +131,13 @@ class VibratingStretch:
         """Return what is lost since the start [J] at times since then [s], (T, n + 1) as in `powers`."""
         return np.asarray(self.length * self.rule.integrate(self._x(time), self.powers))
 
+    @property
+    def trend(self) -> Floats:
+        """How fast the forces change at the end [N/s] (c,), where they are smooth in time there; else zero."""
+        if self.rule.time_map == "release":
+            return np.zeros(len(self.contacts))
+        return np.asarray(self.force @ self.rule.end_slope / self.length)
+
     def forget(self) -> None:
         """Let go of the motion of the coordinates at the nodes, which is found again when it is asked for."""
         for name in ("accelerations", "velocities", "powers", "_indentations", "force"):

@@ -135,6 +135,7 @@ class _Visit:
         self.local = self.at_touch(law)
         self.delta = float(law.touch_level)  # the law's own indentation
         self.riding: Riding | None = None
+        self.trend: Floats | None = None  # how fast the force changes [N/s]
         self.speed = max(self.local.approach_speed, float(np.sqrt(self.gravity * self.sag(law))))
 
     # one contact after another ----------------------------------------------------------------------
@@ -170,7 +171,7 @@ class _Visit:
     def contact(self) -> int:
         """March through one contact; return how it ended."""
         self.touching, begun, self.pace = True, self.time, min(self.pace, _FIRST * self.span)
-        self.delta = float(self.local.own(self.here()))
+        self.delta, self.trend = float(self.local.own(self.here())), None
         while True:
             if not self.touching and self.here() <= self.floor and self.of.rates(self.state)[0] < 0.0:
                 self.left = self.time  # by less than rounding tells
@@ -216,7 +217,7 @@ class _Visit:
         return outcome
 
     def solve(self, time_map: Map, length: float) -> VibratingStretch:
-        return solve_vibrating(self.seen, [self.local], time_map, length, self.state, [self.delta])
+        return solve_vibrating(self.seen, [self.local], time_map, length, self.state, [self.delta], trend=self.trend)
 
     @property
     def floor(self) -> float:
@@ -233,7 +234,7 @@ class _Visit:
         self.time += stretch.length
         self.state, self.delta = stretch.end, float(stretch.contacts[0].delta[-1])
         found.lost += stretch.lost
-        self.touching = False
+        self.touching, self.trend = False, stretch.trend
         stretch.forget()  # thousands of stretches would not fit into memory
 
     def held_at(self, delta: float) -> float:
