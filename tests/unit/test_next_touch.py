@@ -34,7 +34,7 @@ def motion(
         np.zeros(1),
         np.where(ground, 0.0, gravity),
         ~ground & False,
-        ground,
+        ground[None],
         rate,
         np.ones(len(rate)),
         np.zeros(len(rate), dtype=np.intp),

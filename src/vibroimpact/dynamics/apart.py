@@ -1,4 +1,4 @@
-"""Free motion between two contacts of one visit, or inside an indentation once the law has stopped pushing."""
+"""Free motion between two contacts, or inside an indentation once the law has stopped pushing."""
 
 from __future__ import annotations
 
@@ -16,12 +16,18 @@ from vibroimpact.dynamics.local import LocalContact
 class Apart:
     """Free motion between two contacts, or inside an indentation once the law has stopped pushing.
 
-    `length` [s]. `local` holds in its indentation what is lost as it recovers; None once the surfaces have parted.
+    `length` [s]. `recoiling`: contacts, by their numbers, that hold in their indentation what is lost as it recovers; where none is, all
+    surfaces are apart.
     """
 
     free: FreeMotion
     length: float
-    local: LocalContact | None = None
+    recoiling: tuple[tuple[int, LocalContact], ...] = ()
+
+    @property
+    def local(self) -> LocalContact | None:
+        """The first contact that recoils, if one does."""
+        return self.recoiling[0][1] if self.recoiling else None
 
     @property
     def duration(self) -> Floats:
@@ -32,15 +38,18 @@ class Apart:
         """Return itself: it is of one drop."""
         return self
 
+    def state(self, time: Floats) -> State:
+        """Return the state at times since the start [s] (...)."""
+        return self.free.state(time)
+
     def lost_by(self, time: Floats) -> Floats:
-        """Return what is lost since the start [J] at times since then [s], (T, n + 1): in each coordinate; last, in the contact."""
+        """Return what is lost since the start [J] at times since then [s], (..., n + 1): in each coordinate; last, in the contacts."""
         return self.lost_at(self.free.state(time))
 
     def lost_at(self, state: State) -> Floats:
         """Return the same of states that the motion comes to."""
-        lost = self.free.lost_at(state)
-        if self.local is not None:
-            of, floor = self.free.system, self.local.release_level
-            before, now = (np.maximum(of.approach(place)[..., 0], floor) for place in (self.free.start, state))
-            lost[..., -1] += self.local.elastic_energy(before) - self.local.elastic_energy(now)
+        lost, of = self.free.lost_at(state), self.free.system
+        for number, local in self.recoiling:
+            before, now = (np.maximum(of.approach(place)[..., number], local.release_level) for place in (self.free.start, state))
+            lost[..., -1] += local.elastic_energy(before) - local.elastic_energy(now)
         return lost

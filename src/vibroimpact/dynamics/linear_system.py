@@ -17,6 +17,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -57,8 +58,8 @@ class LinearSystem(Oscillators):
         What gravity does to each [kg^1/2 m/s^2]. What vibrates is counted from where it rests under its own weight: zero.
     inside : array of bool, shape (n,)
         Which lie inside the contacts.
-    ground : array of bool, shape (n,)
-        Which are of the body below.
+    below : array of bool, shape (contacts, n)
+        Which are of the body below each contact.
     rate, mobility : array, shape (k,)
         Of the massless elements: stiffness over damping [1/s], and one over damping [m/(N s)].
     at : array of int, shape (k,)
@@ -68,15 +69,25 @@ class LinearSystem(Oscillators):
     offset: Floats
     load: Floats
     inside: NDArray[np.bool_]
-    ground: NDArray[np.bool_]
+    below: NDArray[np.bool_]
     rate: Floats
     mobility: Floats
     at: NDArray[np.intp]
 
     @cached_property
+    def views(self) -> dict[tuple[int, ...], Any]:
+        """What is kept of how some contacts see it, by their numbers (`receptance`)."""
+        return {}
+
+    @cached_property
     def rigid(self) -> NDArray[np.bool_]:
         """Which coordinates are motions as a rigid body (n,)."""
         return np.asarray(self.angular_frequency == 0.0)
+
+    @property
+    def ground(self) -> NDArray[np.bool_]:
+        """Which are of the body below the first contact (n,)."""
+        return np.asarray(self.below[0])
 
     @cached_property
     def vibrating(self) -> NDArray[np.bool_]:
@@ -96,7 +107,7 @@ class LinearSystem(Oscillators):
     @cached_property
     def of_bodies(self) -> Floats:
         """The shapes of rigid motions and of the body below (contacts, n): of its centre, a body above has no vibration."""
-        return np.where(self.ground | self.rigid, self.shape, 0.0)
+        return np.where(self.below | self.rigid, self.shape, 0.0)
 
     @cached_property
     def of_rigid(self) -> Floats:

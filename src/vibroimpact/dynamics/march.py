@@ -16,14 +16,14 @@ import numpy as np
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.quasi_static import QuasiStatic
 from vibroimpact.contact.roots import find_root, highest
-from vibroimpact.contact.static import free_depth
+from vibroimpact.contact.static import free_depth, static_indentation
+from vibroimpact.dynamics.apart import Apart
 from vibroimpact.dynamics.collocation import Floats, Map
-from vibroimpact.dynamics.contact_history import ContactHistory
 from vibroimpact.dynamics.ending import before_event, broken, end_at, growth
 from vibroimpact.dynamics.linear_system import FreeMotion, LinearSystem, State
 from vibroimpact.dynamics.local import LocalContact
 from vibroimpact.dynamics.next_touch import next_touch, time_to_part
-from vibroimpact.dynamics.receptance import Seen
+from vibroimpact.dynamics.receptance import seen_by
 from vibroimpact.dynamics.solve_vibrating import solve_vibrating
 from vibroimpact.dynamics.vibrating_events import GRID, Event, first_event
 from vibroimpact.dynamics.vibrating_stretch import VibratingStretch
@@ -32,8 +32,14 @@ from vibroimpact.errors import ComputationError
 _FIRST = 0.125  # of the span of a contact: the first stretch
 _SLACK = 1e-12  # of the deepest indentation: by less surfaces have not touched while other contacts push
 _MOST_STRETCHES = 200_000
-_GLIDE_SAMPLES = 65
+_RECOIL_SAMPLES = 65
 _POLISHES = 8
+_ROUNDING = 1e-14  # of the deepest indentation
+_NOTHING = 2e-15  # of the energy of the motion
+
+
+class NotIntegrable(ComputationError):
+    """A contact can't be integrated to the tolerance."""
 
 
 @dataclass(frozen=True)
@@ -49,8 +55,8 @@ class Law:
 class Impact:
     """One impact of a contact, from touch to release.
 
-    `start`, `end` [s]; NaN while it lasts. `closing_speed` [m/s]. `max_force` [N], `max_indentation` [m] and when they are reached [s].
-    `impulse` [N s].
+    `start`, `end` [s]; the latter NaN while it lasts. `closing_speed` [m/s]. `max_force` [N], `max_indentation` [m] and when they are
+    reached [s]. `impulse` [N s].
     """
 
     contact: int
@@ -58,9 +64,9 @@ class Impact:
     closing_speed: float
     end: float = np.nan
     max_force: float = 0.0
-    time_of_max_force: float = np.nan
+    time_of_max_force: float = 0.0
     max_indentation: float = 0.0
-    time_of_max_indentation: float = np.nan
+    time_of_max_indentation: float = 0.0
     impulse: float = 0.0
 
 
@@ -68,13 +74,14 @@ class Impact:
 class Touching:
     """A contact whose surfaces overlap.
 
-    `delta`: its law's own indentation [m]. `span`: about how long it lasts [s]. `pushes`: else it recoils without a force. `fresh`: it
-    has just met. `trend`: how fast its force changes [N/s].
+    `delta`: its law's own indentation [m]. `speed`, `span`: of its motion [m/s], and about how long it lasts [s]. `pushes`: else it
+    recoils without a force. `fresh`: it has just met. `trend`: how fast its force changes [N/s].
     """
 
     number: int
     local: LocalContact
     delta: float
+    speed: float
     span: float
     impact: Impact
     pushes: bool = True
@@ -83,31 +90,44 @@ class Touching:
 
 
 @dataclass(frozen=True)
-class Piece:
-    """A part of a march: when it begins [s], how long it lasts [s], its motion, and what recoils in it."""
+class Part:
+    """A part of a march: when it begins [s], and its motion."""
 
     start: float
-    length: float
-    motion: VibratingStretch | FreeMotion
-    recoiling: tuple[int, ...] = ()
+    motion: VibratingStretch | Apart
 
 
 class March:
     """A system on its way through contacts.
 
-    `time` [s], `state`: where it is. `touching`: the contacts whose surfaces overlap, by number. `pieces`: its history. `impacts`: what
-    came of each contact. `lost` [J], (n + 1,): in each coordinate, and in the contacts; `plastic` [J].
+    `time` [s], `state`: where it is. `touching`: the contacts whose surfaces overlap, by number. `known`: the laws of the next contacts,
+    with what they remember. `parts`: its history. `impacts`: what came of each contact. `lost` [J], (n + 1,): in each coordinate, and in
+    the contacts; `plastic` [J].
+
+    Parameters
+    ----------
+    system : LinearSystem
+        What moves.
+    laws : sequence of Law
+        Of its contacts.
+    state : State
+        At the start.
+    tolerance : float
+        Relative error allowed at the end of each stretch.
+    scale : tuple of two floats, optional
+        Speed of the motion [m/s], and about how long a contact lasts [s]; else each contact has its own.
     """
 
-    def __init__(self, system: LinearSystem, laws: Sequence[Law], state: State, tolerance: float) -> None:
-        self.system, self.laws, self.state, self.tolerance = system, laws, state, tolerance
-        self.known = [law.law for law in laws]  # with what they remember
-        self.time, self.pace, self.stretches = 0.0, np.inf, 0
+    def __init__(
+        self, system: LinearSystem, laws: Sequence[Law], state: State, tolerance: float, scale: tuple[float, float] | None = None
+    ) -> None:
+        self.system, self.laws, self.state, self.tolerance, self.scale = system, laws, state, tolerance, scale
+        self.known = [law.law for law in laws]
+        self.time, self.pace = 0.0, np.inf
         self.touching: dict[int, Touching] = {}
-        self.pieces: list[Piece] = []
+        self.parts: list[Part] = []
         self.impacts: list[Impact] = []
         self.lost, self.plastic = np.zeros(system.number + 1), 0.0
-        self._seen: dict[tuple[int, ...], Seen] = {}
 
     def run(self, end: float, progress: Callable[[float], None] | None = None) -> None:
         """Go on until a time [s]; a contact under way then is cut short.
@@ -117,56 +137,62 @@ class March:
         ComputationError
             If a contact can not be integrated to the tolerance, or contacts follow each other without end.
         """
+        stretches = 0
         with np.errstate(all="ignore"):  # guesses may be wild; what is not finite is found and tried again
             while self.time < end:
-                self.stretches += 1
-                if self.stretches > _MOST_STRETCHES:
+                stretches += 1
+                if stretches > _MOST_STRETCHES:
                     raise ComputationError(
                         f"after {_MOST_STRETCHES} stretches of contact the system is at {self.time:g} s: contacts follow each other ever "
                         "faster, as where a body comes to rest; ask for a shorter duration"
                     )
-                pushing = [touch for touch in self.touching.values() if touch.pushes]
-                if pushing:
-                    self.press(pushing, end - self.time)
-                else:
-                    self.fly(end - self.time)
+                self.step(end - self.time)
                 if progress is not None:
                     progress(self.time / end)
+
+    def step(self, longest: float) -> bool:
+        """Take one part of the history, no longer than asked for [s]; return whether it was taken, and need not be tried with less."""
+        pushing = [touch for touch in self.touching.values() if touch.pushes]
+        if pushing:
+            return self.press(pushing, longest)
+        self.fly(longest)
+        return True
 
     # without contact forces -------------------------------------------------------------------------
 
     def fly(self, longest: float) -> None:
         """Move freely to the next touch, or to where a law that recoils pushes again or its surfaces part."""
-        free, length = FreeMotion(self.system, self.state), longest
-        times = {number: self.next_touch(free, number, longest) for number in range(len(self.laws)) if number not in self.touching}
+        free = FreeMotion(self.system, self.state)
+        apart = [number for number in range(len(self.laws)) if number not in self.touching]
+        times = {number: next_touch(free, self.touch_level(number), longest, number) for number in apart}
         length = min([longest, *times.values()])
-        recoils = self.recoil_ends(free, length)
-        if recoils is not None:
-            length, number, parts = recoils
-        self.take(Piece(self.time, length, free, tuple(self.touching)), free.state(np.array(length)), free.lost_by(np.array(length)))
-        if recoils is not None:
-            self.recoiled(self.touching[number], parts)
+        recoil = self.end_of_recoil(free, length)
+        if recoil is not None:
+            length = recoil[0]
+        self.pass_freely(free, length)
+        if recoil is not None:
+            self.recoiled(self.touching[recoil[1]], parts=recoil[2])
             return
         for number, time in times.items():
             if time <= length + 1e-13 * (self.time + length):
-                self.touch(number)
+                self.meet(number)
 
-    def next_touch(self, free: FreeMotion, number: int, longest: float) -> float:
-        """Return when a contact touches in free motion [s from here]."""
-        return next_touch(free, self.touch_level(number), longest, number)
+    def pass_freely(self, free: FreeMotion, length: float) -> None:
+        """Take a free motion of a length [s] into the history."""
+        motion = Apart(free, length, tuple((number, touch.local) for number, touch in self.touching.items()))
+        self.take(motion, free.state(np.array(length)), motion.lost_by(np.array(length)))
 
-    def recoil_ends(self, free: FreeMotion, longest: float) -> tuple[float, int, bool] | None:
+    def end_of_recoil(self, free: FreeMotion, longest: float) -> tuple[float, int, bool] | None:
         """Return when the first contact that recoils parts or pushes again [s from here], which, and whether it parts."""
         found = None
         for touch in self.touching.values():
-            begun, step = 0.0, 0.25 * touch.span
+            begun, step = 0.0, self.time_to_recoil(touch)
             while begun < longest:
-                times = np.minimum(begun + step * np.linspace(0.0, 1.0, _GLIDE_SAMPLES), longest)
-                gone = self.watched(touch, free.state(times))
-                crossed = (gone[:, 1:] > 0.0) & (gone[:, :-1] <= 0.0)
-                if crossed.any():
-                    index = int(crossed.any(axis=0).argmax())
-                    kind = int(crossed[:, index].argmax())
+                times = np.minimum(begun + step * np.linspace(0.0, 1.0, _RECOIL_SAMPLES), longest)
+                ended = self.recoil(touch, free.state(times)) > 0.0
+                if ended[:, 1:].any():
+                    index = int(ended[:, 1:].any(axis=0).argmax())
+                    kind = int(ended[::-1, index + 1].argmin())  # parted (0), if both
                     value = after(free, partial(self.recoil_of, touch, kind))
                     longest = float(find_root(value, times[index : index + 1], times[index + 1 : index + 2])[0])
                     found = longest, touch.number, kind == 0
@@ -174,55 +200,66 @@ class March:
                 begun, step = begun + step, 2.0 * step
         return found
 
-    def watched(self, touch: Touching, states: State) -> Floats:
-        """Return what becomes positive where a contact that recoils parts, and where its law pushes again, (2, T)."""
+    def time_to_recoil(self, touch: Touching) -> float:
+        """Return about how long a contact takes to recoil [s]."""
+        above = self.overlap(touch)
+        return max(above / max(-float(self.system.rates(self.state)[touch.number]), 1e-3 * touch.speed), 1e-6 * touch.span)
+
+    def recoil(self, touch: Touching, states: State) -> Floats:
+        """Return what is positive where a contact that recoils has parted, and where its law pushes again, (2, T)."""
         approach, floor = self.system.approach(states)[..., touch.number], touch.local.release_level
         static, dissipative = touch.local.forces(np.maximum(approach, floor), self.system.outer_rates(states)[..., touch.number])
         return np.stack([floor - approach, np.where(approach > floor, static + dissipative, -1.0)])
 
     def recoil_of(self, touch: Touching, kind: int, states: State) -> Floats:
-        """Return what becomes positive where a contact that recoils parts (0), or where its law pushes again (1)."""
-        return np.asarray(self.watched(touch, states)[kind])
+        """Return the one (0) or the other (1) of these."""
+        return np.asarray(self.recoil(touch, states)[kind])
 
-    def recoiled(self, touch: Touching, parts: bool) -> None:
+    def recoiled(self, touch: Touching, *, parts: bool) -> None:
         """Go on with a contact that has parted, or pushes again."""
         if parts:
             self.part(touch)
         else:
             touch.pushes, touch.delta = True, self.own(touch)
 
-    def touch(self, number: int, slack: float = 0.0) -> None:
-        """Let surfaces meet, and all others that do at the same time."""
-        self.meet(number)
-        for other in range(len(self.laws)):
-            if other not in self.touching and slack and float(self.beyond(other, self.touch_level(other) + 0.5 * slack, self.state)) > 0.0:
-                self.meet(other)
+    # from touch to release --------------------------------------------------------------------------
 
     def touch_level(self, number: int) -> float:
         """Return the approach at which a contact touches [m]."""
         return float(self.known[number].touch_level)
 
-    def meet(self, number: int) -> None:
-        """Begin a contact."""
-        law, of, state = self.laws[number], self.system, self.state
-        closing = max(float(of.outer_rates(state)[number]), float(of.rates(state)[number]))
+    def meet(self, number: int, law: CompliantLaw | None = None) -> Touching:
+        """Let surfaces touch, under the law that is known or another."""
+        of, state, law = self.system, self.state, self.known[number] if law is None else law
+        # where a body's own vibration makes its surface meet the other, its centre may hardly come nearer
+        closing = max(float(of.outer_rates(state)[number]), float(of.rates(state)[number]), 1e-300)
         under_way = [touch.impact.closing_speed for touch in self.touching.values()]
         if under_way and closing < 1e-3 * max(under_way):
             closing = max(under_way)  # surfaces that lay against each other, and others push together
-        closing = max(closing, 1e-300)
-        local = LocalContact(self.known[number], law.series, closing)
-        mass = float(of.mass[number])
-        depth = float(free_depth(local.law, np.array([0.5 * mass * closing**2]), np.zeros(1))[0] - local.law.touch_level)
-        span = 3.0 * depth / closing
+        local = LocalContact(law, self.laws[number].series, closing)
         impact = Impact(number, self.time, closing)
         self.impacts.append(impact)
-        self.touching[number] = touch = Touching(number, local, float(local.law.touch_level), span, impact)
+        speed, span = self.scale or self._scale(number, law, closing)
+        self.touching[number] = touch = Touching(number, local, float(law.touch_level), speed, span, impact)
         touch.delta = self.own(touch)
-        self.pace = min(self.pace if len(self.touching) > 1 else np.inf, _FIRST * span)
+        self.pace = min(self.pace, _FIRST * span)
+        return touch
+
+    def _scale(self, number: int, law: CompliantLaw, closing: float) -> tuple[float, float]:
+        """Return the speed of the motion in a contact [m/s], that of its touch or what gravity adds, and about how long it lasts [s]."""
+        mass, gravity = float(self.system.mass[number]), max(float(self.system.gravity[number]), 0.0)
+        sag = float(static_indentation(law, np.array([mass * gravity]))[0]) if gravity else 0.0
+        speed = max(closing, np.sqrt(gravity * sag))
+        depth = float(free_depth(law, np.array([0.5 * mass * speed**2]), np.zeros(1))[0] - law.touch_level)
+        return speed, 3.0 * depth / speed
+
+    def overlap(self, touch: Touching) -> float:
+        """Return by how much surfaces overlap beyond where they part [m], not less than zero."""
+        return max(float(self.system.approach(self.state)[touch.number]) - touch.local.release_level, 0.0)
 
     def own(self, touch: Touching) -> float:
         """Return the own indentation of the law of a contact now [m]."""
-        return float(touch.local.own(max(float(self.system.approach(self.state)[touch.number]), touch.local.release_level)))
+        return float(touch.local.own(self.overlap(touch) + touch.local.release_level))
 
     def part(self, touch: Touching) -> None:
         """Let surfaces part; the law goes on with what it remembers, if that outlasts the contact."""
@@ -234,96 +271,108 @@ class March:
 
     # under contact forces ---------------------------------------------------------------------------
 
-    def press(self, pushing: list[Touching], longest: float) -> None:
-        """Take one stretch, up to its first event."""
+    def press(self, pushing: list[Touching], longest: float) -> bool:
+        """Take one stretch, up to its first event; return False if it has to be tried again with less."""
         of, state = self.system, self.state
-        for touch in pushing:
-            rounding = 1e-14 * touch.impact.max_indentation
-            overlap = float(of.approach(state)[touch.number]) - touch.local.release_level
-            if not touch.fresh and overlap <= rounding and of.rates(state)[touch.number] < 0.0:
-                self.lost[-1] += touch.local.own_energy(touch.local.least)
+        for touch in pushing:  # what has parted by less than rounding tells
+            rounding = _ROUNDING * touch.impact.max_indentation
+            if not touch.fresh and self.overlap(touch) <= rounding and float(of.rates(state)[touch.number]) < 0.0:
+                self.break_off(touch)
                 self.part(touch)
-                return
-        span = min(touch.span for touch in pushing)
+                return True
+        span, speed = min(touch.span for touch in pushing), max(touch.speed for touch in self.touching.values())
+        energy = max(self.energy(touch) for touch in pushing)
         if self.pace < 1e-12 * span:
-            raise ComputationError(f"the contact at {self.time:g} s can not be integrated to the tolerance")
+            raise NotIntegrable(f"the contact at {self.time:g} s can not be integrated to the tolerance")
         stretch = self.solve(pushing, "touch" if any(touch.fresh for touch in pushing) else "inside", min(self.pace, longest))
-        speed = max(touch.impact.closing_speed for touch in self.touching.values())
-        energy = max(0.5 * float(of.mass[touch.number]) * touch.impact.closing_speed**2 for touch in pushing)
         event = first_event(stretch, speed, span) if stretch.solved else None
         other = self.others(stretch) if stretch.solved else None
-        if event is not None and (other is None or event.x <= other.x):
+        if event is not None and (other is None or event.x <= other.x):  # which may be all that keeps the stretch from being resolved
             found = end_at(stretch, event, self.tolerance, energy, speed, span)
             if found is None:
                 self.pace = 0.5 * min(self.pace, before_event(stretch, event, self.tolerance, energy))
-                return
-            self.ends(pushing, *found)
-            return
+                return False
+            self.end(pushing, *found)
+            return True
         if not stretch.resolved(self.tolerance, energy):
-            self.pace = 0.5 * min(self.pace, stretch.length)
-            return
-        tried = stretch.length
-        if other is not None:
-            polished = self.polished(pushing, stretch, other)
-            if polished is None or first_event(polished, speed, span) is not None:
-                self.pace = 0.5 * stretch.length
-                return
-            stretch = polished
-        self.accept(pushing, stretch)
-        self.pace = tried if other is not None else stretch.length * growth(stretch, self.tolerance)
-        if other is not None:
-            other.act()
+            self.pace *= 0.5
+            return False
+        if other is None:
+            self.accept(pushing, stretch)
+            self.pace = stretch.length * growth(stretch, self.tolerance)
+            return True
+        ended = self.polished(pushing, stretch, other)
+        if ended is None or first_event(ended, speed, span) is not None:
+            self.pace = 0.5 * stretch.length
+            return False
+        self.accept(pushing, ended)
+        other.act()
+        return True
 
-    def ends(self, pushing: list[Touching], event: Event, stretch: VibratingStretch) -> None:
+    def end(self, pushing: list[Touching], event: Event, stretch: VibratingStretch) -> None:
         """Accept a stretch that ends with an event of one of its contacts."""
         name, place = event.aim.name, event.aim.contact
         touch = pushing[place]
-        parts = name == "parted" or (
-            name == "no push" and touch.local.law.contact_end == "zero-force" and self.will_part(touch, stretch.end)
-        )
+        without_force = name == "no push" and touch.local.law.contact_end == "zero-force"
+        parts = name == "parted" or (without_force and self.will_part(touch, stretch.end))
         if parts:  # what is still stored is lost, of a sticking contact that breaks or of a surface that lags behind
-            held = float(touch.local.own_energy(float(stretch.contacts[place].delta[-1])))
-            stretch = broken(stretch, place, held)
+            stretch = broken(stretch, place, self.held_at(touch, float(stretch.contacts[place].delta[-1])))
         self.accept(pushing, stretch)
         if parts:
             self.part(touch)
         elif name == "no push":
             touch.pushes = False
-        elif name == "turn":
+        elif name == "turn":  # the law remembers how deep it has been
             self.plastic += float(touch.local.law.plastic_work(touch.delta))
             touch.local = touch.local.after_own(touch.delta)
 
+    def energy(self, touch: Touching) -> float:
+        """Return about the energy of the motion of a contact [J]."""
+        return 0.5 * float(self.system.mass[touch.number]) * touch.speed**2
+
+    def held_at(self, touch: Touching, delta: float) -> float:
+        """Return the energy stored in a contact at an indentation of its law [J], without what is rounding."""
+        held = float(touch.local.own_energy(delta))
+        return held if abs(held) > _NOTHING * self.energy(touch) else 0.0
+
+    def break_off(self, touch: Touching) -> None:
+        """Lose what a contact still holds as it ends with a stretch that was taken already."""
+        last, held = self.parts[-1], self.held_at(touch, touch.local.least)
+        if held and isinstance(last.motion, VibratingStretch) and touch.number in last.motion.seen.contacts:
+            place = last.motion.seen.contacts.index(touch.number)
+            self.parts[-1] = replace(last, motion=broken(last.motion, place, held))
+        self.lost[-1] += held
+
     def will_part(self, touch: Touching, state: State) -> bool:
-        """Will surfaces part if nothing pushes any more?"""
+        """Will surfaces part if nothing pushes any more? Else they come back into the indentation."""
         return bool(np.isfinite(time_to_part(FreeMotion(self.system, state), touch.local.release_level, touch.number)))
 
     def solve(self, pushing: list[Touching], time_map: Map, length: float) -> VibratingStretch:
         """Solve a stretch of a length [s] from here."""
-        numbers = tuple(touch.number for touch in pushing)
-        if numbers not in self._seen:
-            self._seen[numbers] = Seen(self.system, numbers)
         locals_, begun = [touch.local for touch in pushing], [touch.delta for touch in pushing]
         trend = np.array([touch.trend for touch in pushing])
-        return solve_vibrating(self._seen[numbers], locals_, time_map, length, self.state, begun, trend=trend)
+        return solve_vibrating(
+            seen_by(self.system, (touch.number for touch in pushing)), locals_, time_map, length, self.state, begun, trend=trend
+        )
 
     def accept(self, pushing: list[Touching], stretch: VibratingStretch) -> None:
         """Take a stretch into the history."""
-        for touch, contact, trend in zip(pushing, stretch.contacts, stretch.trend.tolist(), strict=True):
-            note_peaks(touch.impact, contact, self.time, stretch.length)
-            touch.delta, touch.fresh, touch.trend = float(contact.delta[-1]), False, trend
-        recoiling = tuple(touch.number for touch in self.touching.values() if not touch.pushes)
-        self.take(Piece(self.time, stretch.length, stretch, recoiling), stretch.end, stretch.lost)
+        for place, (touch, contact) in enumerate(zip(pushing, stretch.contacts, strict=True)):
+            note_peaks(touch.impact, stretch, place, self.time)
+            touch.delta, touch.trend, touch.fresh = float(contact.delta[-1]), float(stretch.trend[place]), False
+        end, lost = stretch.end, stretch.lost
+        for touch in self.touching.values():
+            if not touch.pushes:  # what recoils beside it gives up what it holds
+                before, now = (max(float(self.system.approach(at)[touch.number]), touch.local.release_level) for at in (self.state, end))
+                self.lost[-1] += float(touch.local.elastic_energy(before) - touch.local.elastic_energy(now))
+        self.take(stretch, end, lost)
         stretch.forget()  # thousands of stretches would not fit into memory
 
-    def take(self, piece: Piece, state: State, lost: Floats) -> None:
-        """Go on to the end of a piece of the history; what recoils in it gives up what it holds."""
-        for number in piece.recoiling:
-            touch, floor = self.touching[number], self.touching[number].local.release_level
-            before, now = (max(float(self.system.approach(at)[number]), floor) for at in (self.state, state))
-            self.lost[-1] += float(touch.local.elastic_energy(before) - touch.local.elastic_energy(now))
-        self.pieces.append(piece)
+    def take(self, motion: VibratingStretch | Apart, state: State, lost: Floats) -> None:
+        """Go on to the end of a part of the history."""
+        self.parts.append(Part(self.time, motion))
         self.lost += lost
-        self.time, self.state = piece.start + piece.length, state
+        self.time, self.state = self.time + motion.length, state
 
     # what ends a stretch besides its own contacts ----------------------------------------------------
 
@@ -336,18 +385,23 @@ class March:
         slack = _SLACK * max(float(contact.delta.max()) for contact in stretch.contacts)
         found = []
         for number in numbers:
-            touch = self.touching.get(number)
-            if touch is None:
-                found.append(Other(partial(self.beyond, number, self.touch_level(number) + slack), partial(self.touch, number, slack)))
-            else:
-                for kind in (0, 1):
-                    found.append(Other(partial(self.recoil_of, touch, kind), partial(self.recoiled, touch, kind == 0)))
+            if number not in self.touching:
+                found.append(Other(partial(self.beyond, number, slack), partial(self.touch, slack)))
+                continue
+            touch = self.touching[number]
+            found += [Other(partial(self.recoil_of, touch, kind), partial(self.recoiled, touch, parts=kind == 0)) for kind in (0, 1)]
         seen = [replace(other, x=x) for other in found if (x := _first_crossing(other.value(states))) is not None]
         return min(seen, key=lambda other: other.x, default=None)
 
-    def beyond(self, number: int, level: float, states: State) -> Floats:
-        """Return by how much surfaces overlap beyond a level [m]."""
-        return np.asarray(self.system.approach(states)[..., number] - level)
+    def beyond(self, number: int, slack: float, states: State) -> Floats:
+        """Return by how much surfaces overlap beyond a slack [m]."""
+        return np.asarray(self.system.approach(states)[..., number] - self.touch_level(number) - slack)
+
+    def touch(self, slack: float) -> None:
+        """Let all surfaces touch that overlap by half a slack [m] now."""
+        for number in range(len(self.laws)):
+            if number not in self.touching and float(self.beyond(number, 0.5 * slack, self.state)) > 0.0:
+                self.meet(number)
 
     def polished(self, pushing: list[Touching], stretch: VibratingStretch, other: Other) -> VibratingStretch | None:
         """Solve a stretch again so that it ends where another contact touches or its recoil ends; None if that is not found."""
@@ -389,18 +443,14 @@ def _first_crossing(values: Floats) -> float | None:
     return float(GRID[1:][crossed][0]) if crossed.any() else None
 
 
-def note_peaks(impact: Impact, contact: ContactHistory, start: float, length: float) -> None:
-    """Note the largest force and indentation of a contact within a stretch that starts at a time [s]."""
-    rule = contact.rule
-
-    def indentation(x: Floats) -> Floats:
-        return np.asarray(rule.weights(x).T @ contact.approach)
-
-    for name, values in (("force", contact.force_at), ("indentation", indentation)):
+def note_peaks(impact: Impact, stretch: VibratingStretch, place: int, start: float) -> None:
+    """Note the largest force and indentation of one of its contacts within a stretch that starts at a time [s], and its impulse."""
+    rule, contact = stretch.rule, stretch.contacts[place]
+    for name, values in (("force", contact.force_at), ("indentation", partial(stretch.indentation_at, contact=place))):
         if float(values(rule.nodes).max()) < 0.98 * getattr(impact, f"max_{name}"):
             continue
         x = np.array([highest(values)])
         if (value := float(values(x)[0])) > getattr(impact, f"max_{name}"):
             setattr(impact, f"max_{name}", value)
-            setattr(impact, f"time_of_max_{name}", start + length * float(rule.map_time(x)[0]))
-    impact.impulse += length * float(rule.integral[-1] @ contact.force)
+            setattr(impact, f"time_of_max_{name}", start + stretch.length * float(rule.map_time(x)[0]))
+    impact.impulse += stretch.length * float(rule.integral[-1] @ contact.force)

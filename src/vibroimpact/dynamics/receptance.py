@@ -11,7 +11,7 @@ follows the force, and one that is not is integrated with order 2 N - 1. Of rigi
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import cache, cached_property
 
@@ -77,6 +77,15 @@ class Seen:
         """The same without gravity and gaps, as differences between two motions feel it."""
         system = self.system
         return Seen(replace(system, offset=np.zeros_like(system.offset), load=np.zeros_like(system.load)), self.contacts)
+
+
+def seen_by(system: LinearSystem, contacts: Iterable[int]) -> Seen:
+    """Return a system as some of its contacts see it; made once."""
+    numbers = tuple(contacts)
+    if numbers not in system.views:
+        system.views[numbers] = Seen(system, numbers)
+    found: Seen = system.views[numbers]
+    return found
 
 
 class Receptance:

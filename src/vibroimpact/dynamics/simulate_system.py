@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from numbers import Real
@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from vibroimpact.dynamics.apart import Apart
 from vibroimpact.dynamics.collocation import Floats
 from vibroimpact.dynamics.linear_system import LinearSystem, State
 from vibroimpact.dynamics.march import Law, March
@@ -103,10 +104,10 @@ class SystemResponse:
         times = np.asarray(times, dtype=float)
         found = {name: np.zeros(times.shape) for name in self.system.contacts}
         names = list(found)
-        for piece, here, since in self._pieces(times.ravel()):
-            if isinstance(piece.motion, VibratingStretch):
-                for contact in piece.motion.contacts:
-                    x = contact.rule.unmap_time(since / piece.length)
+        for motion, here, since in self._parts_at(times.ravel()):
+            if isinstance(motion, VibratingStretch):
+                for contact in motion.contacts:
+                    x = contact.rule.unmap_time(since / motion.length)
                     found[names[contact.number]].ravel()[here] = contact.force_at(x)
         return found
 
@@ -124,26 +125,26 @@ class SystemResponse:
 
     @cached_property
     def _starts(self) -> Floats:
-        return np.array([piece.start for piece in self._march.pieces])
+        return np.array([part.start for part in self._march.parts])
 
-    def _pieces(self, times: Floats) -> Any:
-        """Yield each piece of the history with the times that lie in it: which, and since its start [s]."""
+    def _parts_at(self, times: Floats) -> Iterator[tuple[VibratingStretch | Apart, NDArray[np.bool_], Floats]]:
+        """Yield each motion of the history with the times that lie in it: which, and since its start [s]."""
         if not np.all((times >= 0.0) & (times <= self.end_time)):
             raise InputError(f"times must lie within the run, 0 to {self.end_time:.6g} s")
         index = np.maximum(np.searchsorted(self._starts, times, side="right") - 1, 0)
         for number in np.unique(index):
-            piece, here = self._march.pieces[int(number)], index == number
-            yield piece, here, np.minimum(times[here] - piece.start, piece.length)
+            part, here = self._march.parts[int(number)], index == number
+            yield part.motion, here, np.minimum(times[here] - part.start, part.motion.length)
 
     def _states(self, times: Floats) -> State:
         """Return the states at times, along one axis."""
         times, number = times.ravel(), self._march.system.number
         displacement, velocity = np.empty((len(times), number)), np.empty((len(times), number))
-        for piece, here, since in self._pieces(times):
-            state = piece.motion.state(since)
+        for motion, here, since in self._parts_at(times):
+            state = motion.state(since)
             displacement[here], velocity[here] = state.displacement, state.velocity
-            if isinstance(piece.motion, VibratingStretch):
-                piece.motion.forget()
+            if isinstance(motion, VibratingStretch):
+                motion.forget()
         return State(displacement, velocity, np.zeros((len(times), 0)))
 
     def _parts(self, name: str, state: State, shape: tuple[int, ...]) -> tuple[Floats, Floats, Floats]:

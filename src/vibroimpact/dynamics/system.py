@@ -216,10 +216,12 @@ class System:
                 shape[row, rigid] = sign * (along @ contact.normal + turning @ lever)
                 if body.modes is not None:
                     shape[row, vibrating] = sign * (body.modes.points[where] @ contact.normal)
-        no, nothing = np.zeros(number, dtype=bool), np.zeros(0)
+        no, nothing, below = np.zeros(number, dtype=bool), np.zeros(0), np.zeros(shape.shape, dtype=bool)
+        for row, contact in enumerate(self.contacts.values()):
+            below[row, slices[contact.below][1]] = True
         gaps = np.array([-contact.gap for contact in self.contacts.values()])
         levels = np.array([float(contact.law.touch_level) for contact in self.contacts.values()])
-        system = LinearSystem(frequency, damping, shape, gaps + levels, load, no, no, nothing, nothing, np.zeros(0, dtype=np.intp))
+        system = LinearSystem(frequency, damping, shape, gaps + levels, load, no, below, nothing, nothing, np.zeros(0, dtype=np.intp))
         return system, State(np.zeros(number), start, nothing)
 
 

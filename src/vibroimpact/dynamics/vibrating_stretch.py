@@ -101,16 +101,13 @@ class VibratingStretch:
             start.displacement + h * (last @ self.velocities), self.velocities[-1], start.local + h * (last @ self.accelerations[1])
         )
 
-    def indentation_at(self, x: Floats) -> Floats:
-        """Return how far the centre above has come to the surface below at the first contact [m], at x in [0, 1]."""
-        return np.asarray(self.rule.weights(np.asarray(x, dtype=float)).T @ self._indentations)
-
-    @cached_property
-    def _indentations(self) -> Floats:
-        """The same at the start and at the nodes, (N + 1,)."""
-        shape = self.system.of_bodies[self.contacts[0].number]
-        begun = float(self.start.displacement @ shape)
-        return np.append(begun, begun + self.length * (self.rule.integral @ (self.velocities @ shape)))
+    def indentation_at(self, x: Floats, contact: int = 0) -> Floats:
+        """Return how far the centre above has come to the surface below at a contact [m], at x in [0, 1]."""
+        number = self.contacts[contact].number
+        shape = self.system.of_bodies[number]
+        begun = float(self.system.offset[number] + self.start.displacement @ shape)
+        nodes = np.append(begun, begun + self.length * (self.rule.integral @ (self.velocities @ shape)))
+        return np.asarray(self.rule.weights(np.asarray(x, dtype=float)).T @ nodes)
 
     @cached_property
     def powers(self) -> Floats:
@@ -140,7 +137,7 @@ class VibratingStretch:
 
     def forget(self) -> None:
         """Let go of the motion of the coordinates at the nodes, which is found again when it is asked for."""
-        for name in ("accelerations", "velocities", "powers", "_indentations", "force"):
+        for name in ("accelerations", "velocities", "powers", "force"):
             self.__dict__.pop(name, None)
 
     def _x(self, time: Floats) -> Floats:

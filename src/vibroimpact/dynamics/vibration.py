@@ -14,7 +14,6 @@ from vibroimpact.dynamics.linear_system import FreeMotion, LinearSystem, State
 from vibroimpact.dynamics.lying import Lying, lay_down
 from vibroimpact.dynamics.next_touch import next_touch
 from vibroimpact.dynamics.problem import Problem
-from vibroimpact.dynamics.receptance import Seen
 from vibroimpact.dynamics.riding import Riding
 from vibroimpact.dynamics.visit import Visit, visit
 
@@ -42,7 +41,7 @@ def system_of(problem: Problem, mass: float, gravity: float) -> LinearSystem:
     rate = np.array([stiffness / damping for stiffness, damping in local])
     mobility = np.array([1.0 / damping for _, damping in local])
     return LinearSystem(
-        frequency, damping, shape[None], np.zeros(1), load, inside, ground, rate, mobility, np.zeros(len(local), dtype=np.intp)
+        frequency, damping, shape[None], np.zeros(1), load, inside, ground[None], rate, mobility, np.zeros(len(local), dtype=np.intp)
     )
 
 
@@ -72,12 +71,10 @@ class Vibration:
 
     def __init__(self, problem: Problem, mass: Floats, gravity: Floats) -> None:
         self.problem, self.mass, size = problem, mass, len(mass)
-        alike: dict[tuple[float, float], Seen] = {}
-        for pair in zip(mass.tolist(), gravity.tolist(), strict=True):
-            if pair not in alike:
-                alike[pair] = Seen(system_of(problem, *pair), [0])
-        self.seen = [alike[pair] for pair in zip(mass.tolist(), gravity.tolist(), strict=True)]
-        self.system = self.seen[0].system
+        pairs = list(zip(mass.tolist(), gravity.tolist(), strict=True))
+        alike = {pair: system_of(problem, *pair) for pair in set(pairs)}
+        self.systems = [alike[pair] for pair in pairs]
+        self.system = self.systems[0]
         self.displacement, self.velocity = np.zeros((size, self.system.number)), np.zeros((size, self.system.number))
         self.local = np.zeros((size, len(self.system.rate)))
         self.lost = np.zeros((size, self.system.number + 1))
@@ -87,7 +84,7 @@ class Vibration:
     def flights(self, drops: Drops, approach: Floats, speed: Floats) -> tuple[FreeMotion, ...]:
         """Return the free motions of drops: approach [m] and speed [m/s] are their centres', downwards."""
         return tuple(
-            FreeMotion(self.seen[drop].system, self.state(drop, *centre)) for drop, *centre in zip(drops, approach, speed, strict=True)
+            FreeMotion(self.systems[drop], self.state(drop, *centre)) for drop, *centre in zip(drops, approach, speed, strict=True)
         )
 
     def state(self, drop: int, approach: float, speed: float) -> State:
@@ -115,7 +112,7 @@ class Vibration:
     def closing_speed(self, drops: Drops, speed: Floats) -> Floats:
         """Return the speed at which the surfaces approach each other [m/s], where the centres come down at `speed`."""
         return np.array(
-            [float(self.seen[drop].system.outer_rates(self.state(drop, 0.0, down))[0]) for drop, down in zip(drops, speed, strict=True)]
+            [float(self.systems[drop].outer_rates(self.state(drop, 0.0, down))[0]) for drop, down in zip(drops, speed, strict=True)]
         )
 
     def visit(
@@ -134,21 +131,17 @@ class Vibration:
         """
         visits = []
         for number, drop in enumerate(drops):
-            one = encounter.pick(np.array([number]))
-            seen = self.seen[drop]
-            pace = 3.0 * float(one.depth[0] / one.speed_scale[0])
-            start = self.state(drop, approach[number], speed[number])
-            problem = self.problem
-            limits = (float(rest_speed[number]), float(until[number]))
-            found = visit(seen, one.law.take(0), problem.quasi_static, start, problem.tolerance, pace, not problem.same_spot, *limits)
-            before, after = (float(np.sum(seen.system.energies(state), axis=0)[1:].sum()) for state in (start, found.state))
+            one, system, problem = encounter.pick(np.array([number])), self.systems[drop], self.problem
+            start, pace = self.state(drop, approach[number], speed[number]), 3.0 * float(one.depth[0] / one.speed_scale[0])
+            rules = (problem.tolerance, pace, not problem.same_spot, float(rest_speed[number]), float(until[number]))
+            found = visit(system, one.law.take(0), problem.quasi_static, start, *rules)
+            before, after = (float(np.sum(system.energies(state), axis=0)[1:].sum()) for state in (start, found.state))
             row["closing_speed_m_s"][drop], row["contacts"][drop] = one.approach_speed[0], found.contacts
             row["energy_to_vibration_J"][drop] = after - before + found.lost[:-1].sum()
             self.lost[drop, :-1] += found.lost[:-1]
             self.place(drop, found.state)
             if found.outcome in (CAPTURED, SETTLED, RIDING):
-                assert found.local is not None  # it is in contact, or nearly so
-                riding = Riding(seen.system, found.local)
+                riding = Riding(system, found.local)
                 self.left[drop] = riding.excess(found.state, found.stored)
                 if found.outcome != RIDING:
                     self.lying[drop] = lying = lay_down(riding, found.state, found.stored)
