@@ -14,6 +14,7 @@ import pytest
 import vibroimpact as vi
 from moving import row_of_balls
 from oracles.moving_bodies import integrate
+from support import one_in
 from vibroimpact.contact.laws.hertz import Hertz
 
 MODULUS, RATIO, DENSITY, RADIUS = 210e9, 0.3, 7850.0, 2.38e-3
@@ -51,3 +52,12 @@ def test_every_bead_moves_as_dop853_moves_it() -> None:
     expected, moved = integrate(system, 1e-4, 1e-6), vi.simulate_system(system, duration=1e-4).at(1e-4)
     for name in system.bodies:
         np.testing.assert_allclose(moved[name].velocity, expected.velocity[name], atol=1e-9)
+
+
+@pytest.mark.parametrize("number", one_in(4, range(8, 17)))
+def test_rows_against_a_wall(number: int) -> None:
+    """The wave comes back from the wall, and contacts part and touch in any order: no touch is missed."""
+    row = row_of_balls(number, 0.5, mass=MASS, law=Hertz(stiffness=STIFFNESS))
+    last = vi.PointContact(below=f"{number - 1}", above="wall", law=Hertz(stiffness=STIFFNESS))
+    bodies, contacts = {**row.bodies, "wall": vi.MovingBody(mass=np.inf)}, {**row.contacts, "wall": last}
+    assert vi.simulate_system(vi.System(bodies=bodies, contacts=contacts), duration=3e-4).energy["closure_relative"] < 1e-9

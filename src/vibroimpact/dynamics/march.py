@@ -292,6 +292,10 @@ class March:
             if found is None:
                 self.pace = 0.5 * min(self.pace, before_event(stretch, event, self.tolerance, energy))
                 return False
+            missed = self.others(found[1])
+            if missed is not None:  # it lies between what was seen of the event and where it is
+                self.pace = 0.5 * found[1].length * float(found[1].rule.map_time(np.array([missed.x]))[0])
+                return False
             self.end(pushing, *found)
             return True
         if not stretch.resolved(self.tolerance, energy):
