@@ -15,6 +15,7 @@ from numpy.polynomial import legendre
 from scipy.special import betaincinv
 
 import vibroimpact as vi
+from vibroimpact.dynamics.apart import Apart
 from vibroimpact.dynamics.march import Law, March
 from vibroimpact.dynamics.vibrating_stretch import VibratingStretch
 from vibroimpact.structures.modal_model import ModalBasis
@@ -126,22 +127,22 @@ def draw_root() -> None:
 
 def event_after(march: March, index: int) -> str:
     """Return the event that ended a piece of the run of one contact; "" if none did."""
-    piece, follows = march.pieces[index], [*march.pieces, None][index + 1]
+    piece, follows = march.parts[index], [*march.parts, None][index + 1]
     pushes = follows is not None and isinstance(follows.motion, VibratingStretch)
     if not isinstance(piece.motion, VibratingStretch):
-        return ("pushes again" if pushes else "parted") if piece.recoiling else ""
+        return ("pushes again" if pushes else "parted") if piece.motion.recoiling else ""
     contact = piece.motion.contacts[0]
     if abs(contact.delta[-1] / contact.local.law.breakpoints[0] - 1.0) < 1e-9:
         return "breakpoint"
-    return "" if pushes or follows is None else "no push" if follows.recoiling else "parted"
+    return "" if pushes or follows is None else "no push" if isinstance(follows.motion, Apart) and follows.motion.recoiling else "parted"
 
 
 def draw_contact(march: March) -> None:
     """Draw the force of the contact with its stretches, nodes and events."""
     figure, axis = plt.subplots(figsize=(8.2, 3.6), layout="constrained")
     count, last = 0, 0.0
-    for index, piece in enumerate(march.pieces):
-        begin, end, event = 1e6 * piece.start, 1e6 * (piece.start + piece.length), event_after(march, index)
+    for index, piece in enumerate(march.parts):
+        begin, end, event = 1e6 * piece.start, 1e6 * (piece.start + piece.motion.length), event_after(march, index)
         if isinstance(piece.motion, VibratingStretch):
             axis.axvspan(begin, end, color="#f1f5f9" if count % 2 else "#ffffff", zorder=0)
             count += 1
@@ -151,7 +152,7 @@ def draw_contact(march: March) -> None:
             nodes = begin + (end - begin) * rule.time
             axis.plot(nodes, contact.force, "o", color=BLUE, markersize=3.5, markerfacecolor="white")
             print(f"stretch {count}: {begin:6.2f} to {end:6.2f} us, time map {rule.time_map!r}, ends with {event or 'its length'}")
-        elif piece.recoiling:
+        elif piece.motion.recoiling:
             axis.axvspan(begin, end, color=PALE_GREY, zorder=0)
             axis.plot([begin, end], [0.0, 0.0], color=BLUE)
         if event:
@@ -165,14 +166,12 @@ def draw_contact(march: March) -> None:
 def draw_ledger(march: March) -> None:
     """Draw where the energy is over time."""
     of, times, rows, gone = march.system, [], [], 0.0
-    elastic = next(piece.motion.contacts[0].local for piece in march.pieces if isinstance(piece.motion, VibratingStretch)).elastic_energy
-    for piece in march.pieces:
-        since = piece.length * np.linspace(0.0, 1.0, 41)
+    elastic = next(piece.motion.contacts[0].local for piece in march.parts if isinstance(piece.motion, VibratingStretch)).elastic_energy
+    for piece in march.parts:
+        since = piece.motion.length * np.linspace(0.0, 1.0, 41)
         state = piece.motion.state(since)
         lost = piece.motion.lost_by(since).sum(axis=1)
         stored = elastic(np.maximum(of.approach(state)[:, 0], 0.0))
-        if piece.recoiling:
-            lost = lost + stored[0] - stored
         kinetic, strain = of.energies(state)
         plate_has = (kinetic + strain)[:, of.vibrating].sum(axis=1)
         times.append(piece.start + since)
@@ -225,7 +224,7 @@ for modes in (5, 50, 500, 5000):
     system = ball_on_plate(modes)
     begun = process_time()
     found = marched(system, 1.5e-4)
-    stretches = sum(isinstance(piece.motion, VibratingStretch) for piece in found.pieces)
+    stretches = sum(isinstance(piece.motion, VibratingStretch) for piece in found.parts)
     force = max(impact.max_force for impact in found.impacts)
     took, highest = 1e3 * (process_time() - begun), system.linear()[0].angular_frequency.max() / 2e3 / np.pi
     print(f"{modes:4d} modes to {highest:.1f} kHz: largest force {force:6.1f} N, {stretches} stretches, {took:.0f} ms")
