@@ -16,7 +16,8 @@ from scipy.special import betaincinv
 
 import vibroimpact as vi
 from vibroimpact.dynamics.apart import Apart
-from vibroimpact.dynamics.march import Law, March
+from vibroimpact.dynamics.march import March
+from vibroimpact.dynamics.touching import Law
 from vibroimpact.dynamics.vibrating_stretch import VibratingStretch
 from vibroimpact.structures.modal_model import ModalBasis
 

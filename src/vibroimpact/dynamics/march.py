@@ -14,8 +14,7 @@ from functools import partial
 import numpy as np
 
 from vibroimpact.contact.law import CompliantLaw
-from vibroimpact.contact.quasi_static import QuasiStatic
-from vibroimpact.contact.roots import find_root, highest
+from vibroimpact.contact.roots import find_root
 from vibroimpact.contact.static import free_depth, static_indentation
 from vibroimpact.dynamics.apart import Apart
 from vibroimpact.dynamics.collocation import Floats, Map
@@ -24,7 +23,9 @@ from vibroimpact.dynamics.linear_system import FreeMotion, LinearSystem, State
 from vibroimpact.dynamics.local import LocalContact
 from vibroimpact.dynamics.next_touch import next_touch, time_to_part
 from vibroimpact.dynamics.receptance import seen_by
+from vibroimpact.dynamics.recoil import after, end_of_recoil, recoil_of
 from vibroimpact.dynamics.solve_vibrating import solve_vibrating
+from vibroimpact.dynamics.touching import Impact, Law, Touching, note_peaks
 from vibroimpact.dynamics.vibrating_events import GRID, Event, first_event
 from vibroimpact.dynamics.vibrating_stretch import VibratingStretch
 from vibroimpact.errors import ComputationError
@@ -32,61 +33,12 @@ from vibroimpact.errors import ComputationError
 _FIRST = 0.125  # of the span of a contact: the first stretch
 _SLACK = 1e-12  # of the deepest indentation: by less surfaces have not touched while other contacts push
 _MOST_STRETCHES = 200_000
-_RECOIL_SAMPLES = 65
 _POLISHES = 8
 _ROUNDING = 1e-14  # of the deepest indentation
-_NOTHING = 2e-15  # of the energy of the motion
 
 
 class NotIntegrable(ComputationError):
     """A contact can't be integrated to the tolerance."""
-
-
-@dataclass(frozen=True)
-class Law:
-    """The law of a contact of a march and what is in series with it; `forgets`: does each impact find fresh surfaces?"""
-
-    law: CompliantLaw
-    series: QuasiStatic
-    forgets: bool
-
-
-@dataclass
-class Impact:
-    """One impact of a contact, from touch to release.
-
-    `start`, `end` [s]; the latter NaN while it lasts. `closing_speed` [m/s]. `max_force` [N], `max_indentation` [m] and when they are
-    reached [s]. `impulse` [N s].
-    """
-
-    contact: int
-    start: float
-    closing_speed: float
-    end: float = np.nan
-    max_force: float = 0.0
-    time_of_max_force: float = 0.0
-    max_indentation: float = 0.0
-    time_of_max_indentation: float = 0.0
-    impulse: float = 0.0
-
-
-@dataclass
-class Touching:
-    """A contact whose surfaces overlap.
-
-    `delta`: its law's own indentation [m]. `speed`, `span`: of its motion [m/s], and about how long it lasts [s]. `pushes`: else it
-    recoils without a force. `fresh`: it has just met. `trend`: how fast its force changes [N/s].
-    """
-
-    number: int
-    local: LocalContact
-    delta: float
-    speed: float
-    span: float
-    impact: Impact
-    pushes: bool = True
-    fresh: bool = True
-    trend: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -166,7 +118,7 @@ class March:
         apart = [number for number in range(len(self.laws)) if number not in self.touching]
         times = {number: next_touch(free, self.touch_level(number), longest, number) for number in apart}
         length = min([longest, *times.values()])
-        recoil = self.end_of_recoil(free, length)
+        recoil = end_of_recoil(free, list(self.touching.values()), length)
         if recoil is not None:
             length = recoil[0]
         self.pass_freely(free, length)
@@ -182,45 +134,12 @@ class March:
         motion = Apart(free, length, tuple((number, touch.local) for number, touch in self.touching.items()))
         self.take(motion, free.state(np.array(length)), motion.lost_by(np.array(length)))
 
-    def end_of_recoil(self, free: FreeMotion, longest: float) -> tuple[float, int, bool] | None:
-        """Return when the first contact that recoils parts or pushes again [s from here], which, and whether it parts."""
-        found = None
-        for touch in self.touching.values():
-            begun, step = 0.0, self.time_to_recoil(touch)
-            while begun < longest:
-                times = np.minimum(begun + step * np.linspace(0.0, 1.0, _RECOIL_SAMPLES), longest)
-                ended = self.recoil(touch, free.state(times)) > 0.0
-                if ended[:, 1:].any():
-                    index = int(ended[:, 1:].any(axis=0).argmax())
-                    kind = int(ended[::-1, index + 1].argmin())  # parted (0), if both
-                    value = after(free, partial(self.recoil_of, touch, kind))
-                    longest = float(find_root(value, times[index : index + 1], times[index + 1 : index + 2])[0])
-                    found = longest, touch.number, kind == 0
-                    break
-                begun, step = begun + step, 2.0 * step
-        return found
-
-    def time_to_recoil(self, touch: Touching) -> float:
-        """Return about how long a contact takes to recoil [s]."""
-        above = self.overlap(touch)
-        return max(above / max(-float(self.system.rates(self.state)[touch.number]), 1e-3 * touch.speed), 1e-6 * touch.span)
-
-    def recoil(self, touch: Touching, states: State) -> Floats:
-        """Return what is positive where a contact that recoils has parted, and where its law pushes again, (2, T)."""
-        approach, floor = self.system.approach(states)[..., touch.number], touch.local.release_level
-        static, dissipative = touch.local.forces(np.maximum(approach, floor), self.system.outer_rates(states)[..., touch.number])
-        return np.stack([floor - approach, np.where(approach > floor, static + dissipative, -1.0)])
-
-    def recoil_of(self, touch: Touching, kind: int, states: State) -> Floats:
-        """Return the one (0) or the other (1) of these."""
-        return np.asarray(self.recoil(touch, states)[kind])
-
     def recoiled(self, touch: Touching, *, parts: bool) -> None:
         """Go on with a contact that has parted, or pushes again."""
         if parts:
             self.part(touch)
         else:
-            touch.pushes, touch.delta = True, self.own(touch)
+            touch.pushes, touch.delta = True, touch.own(self.system, self.state)
 
     # from touch to release --------------------------------------------------------------------------
 
@@ -240,8 +159,9 @@ class March:
         impact = Impact(number, self.time, closing)
         self.impacts.append(impact)
         speed, span = self.scale or self._scale(number, law, closing)
-        self.touching[number] = touch = Touching(number, local, float(law.touch_level), speed, span, impact)
-        touch.delta = self.own(touch)
+        mass = float(of.mass[number])
+        self.touching[number] = touch = Touching(number, local, mass, float(law.touch_level), speed, span, impact)
+        touch.delta = touch.own(self.system, self.state)
         self.pace = min(self.pace, _FIRST * span)
         return touch
 
@@ -252,14 +172,6 @@ class March:
         speed = max(closing, np.sqrt(gravity * sag))
         depth = float(free_depth(law, np.array([0.5 * mass * speed**2]), np.zeros(1))[0] - law.touch_level)
         return speed, 3.0 * depth / speed
-
-    def overlap(self, touch: Touching) -> float:
-        """Return by how much surfaces overlap beyond where they part [m], not less than zero."""
-        return max(float(self.system.approach(self.state)[touch.number]) - touch.local.release_level, 0.0)
-
-    def own(self, touch: Touching) -> float:
-        """Return the own indentation of the law of a contact now [m]."""
-        return float(touch.local.own(self.overlap(touch) + touch.local.release_level))
 
     def part(self, touch: Touching) -> None:
         """Let surfaces part; the law goes on with what it remembers, if that outlasts the contact."""
@@ -276,12 +188,12 @@ class March:
         of, state = self.system, self.state
         for touch in pushing:  # what has parted by less than rounding tells
             rounding = _ROUNDING * touch.impact.max_indentation
-            if not touch.fresh and self.overlap(touch) <= rounding and float(of.rates(state)[touch.number]) < 0.0:
+            if not touch.fresh and touch.overlap(of, state) <= rounding and float(of.rates(state)[touch.number]) < 0.0:
                 self.break_off(touch)
                 self.part(touch)
                 return True
         span, speed = min(touch.span for touch in pushing), max(touch.speed for touch in self.touching.values())
-        energy = max(self.energy(touch) for touch in pushing)
+        energy = max(touch.energy for touch in pushing)
         if self.pace < 1e-12 * span:
             raise NotIntegrable(f"the contact at {self.time:g} s can not be integrated to the tolerance")
         stretch = self.solve(pushing, "touch" if any(touch.fresh for touch in pushing) else "inside", min(self.pace, longest))
@@ -320,7 +232,7 @@ class March:
         without_force = name == "no push" and touch.local.law.contact_end == "zero-force"
         parts = name == "parted" or (without_force and self.will_part(touch, stretch.end))
         if parts:  # what is still stored is lost, of a sticking contact that breaks or of a surface that lags behind
-            stretch = broken(stretch, place, self.held_at(touch, float(stretch.contacts[place].delta[-1])))
+            stretch = broken(stretch, place, touch.held_at(float(stretch.contacts[place].delta[-1])))
         self.accept(pushing, stretch)
         if parts:
             self.part(touch)
@@ -330,18 +242,9 @@ class March:
             self.plastic += float(touch.local.law.plastic_work(touch.delta))
             touch.local = touch.local.after_own(touch.delta)
 
-    def energy(self, touch: Touching) -> float:
-        """Return about the energy of the motion of a contact [J]."""
-        return 0.5 * float(self.system.mass[touch.number]) * touch.speed**2
-
-    def held_at(self, touch: Touching, delta: float) -> float:
-        """Return the energy stored in a contact at an indentation of its law [J], without what is rounding."""
-        held = float(touch.local.own_energy(delta))
-        return held if abs(held) > _NOTHING * self.energy(touch) else 0.0
-
     def break_off(self, touch: Touching) -> None:
         """Lose what a contact still holds as it ends with a stretch that was taken already."""
-        last, held = self.parts[-1], self.held_at(touch, touch.local.least)
+        last, held = self.parts[-1], touch.held_at(touch.local.least)
         if held and isinstance(last.motion, VibratingStretch) and touch.number in last.motion.seen.contacts:
             place = last.motion.seen.contacts.index(touch.number)
             self.parts[-1] = replace(last, motion=broken(last.motion, place, held))
@@ -393,7 +296,8 @@ class March:
                 found.append(Other(partial(self.beyond, number, slack), partial(self.touch, slack)))
                 continue
             touch = self.touching[number]
-            found += [Other(partial(self.recoil_of, touch, kind), partial(self.recoiled, touch, parts=kind == 0)) for kind in (0, 1)]
+            for kind in (0, 1):
+                found.append(Other(partial(recoil_of, self.system, touch, kind), partial(self.recoiled, touch, parts=kind == 0)))
         seen = [replace(other, x=x) for other in found if (x := _first_crossing(other.value(states))) is not None]
         return min(seen, key=lambda other: other.x, default=None)
 
@@ -436,25 +340,7 @@ class Other:
     x: float = np.inf
 
 
-def after(motion: FreeMotion | VibratingStretch, value: Callable[[State], Floats]) -> Callable[[Floats], Floats]:
-    """Return a function of the state as one of the time since the start of a motion [s]."""
-    return lambda time: value(motion.state(time))
-
-
 def _first_crossing(values: Floats) -> float | None:
     """Return the x of the first point of the grid at which values have become positive."""
     crossed = (values[1:] > 0.0) & (values[:-1] <= 0.0)
     return float(GRID[1:][crossed][0]) if crossed.any() else None
-
-
-def note_peaks(impact: Impact, stretch: VibratingStretch, place: int, start: float) -> None:
-    """Note the largest force and indentation of one of its contacts within a stretch that starts at a time [s], and its impulse."""
-    rule, contact = stretch.rule, stretch.contacts[place]
-    for name, values in (("force", contact.force_at), ("indentation", partial(stretch.indentation_at, contact=place))):
-        if float(values(rule.nodes).max()) < 0.98 * getattr(impact, f"max_{name}"):
-            continue
-        x = np.array([highest(values)])
-        if (value := float(values(x)[0])) > getattr(impact, f"max_{name}"):
-            setattr(impact, f"max_{name}", value)
-            setattr(impact, f"time_of_max_{name}", start + stretch.length * float(rule.map_time(x)[0]))
-    impact.impulse += stretch.length * float(rule.integral[-1] @ contact.force)

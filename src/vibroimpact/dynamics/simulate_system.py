@@ -14,8 +14,9 @@ from numpy.typing import NDArray
 from vibroimpact.dynamics.apart import Apart
 from vibroimpact.dynamics.collocation import Floats
 from vibroimpact.dynamics.linear_system import LinearSystem, State
-from vibroimpact.dynamics.march import Law, March
+from vibroimpact.dynamics.march import March
 from vibroimpact.dynamics.system import MovingBody, System
+from vibroimpact.dynamics.touching import Law
 from vibroimpact.dynamics.vibrating_stretch import VibratingStretch
 from vibroimpact.errors import ComputationError, InputError
 

@@ -21,9 +21,10 @@ from vibroimpact.dynamics.collocation import Floats
 from vibroimpact.dynamics.contact import CAPTURED, FAILED, RELEASED, RIDING, SETTLED
 from vibroimpact.dynamics.linear_system import FreeMotion, LinearSystem, State
 from vibroimpact.dynamics.local import LocalContact
-from vibroimpact.dynamics.march import Law, March, NotIntegrable, Part
+from vibroimpact.dynamics.march import March, NotIntegrable, Part
 from vibroimpact.dynamics.next_touch import next_touch, time_to_part
 from vibroimpact.dynamics.riding import Riding, least_energy, may_stay, stays_below
+from vibroimpact.dynamics.touching import Law
 from vibroimpact.dynamics.vibrating_events import ROUNDING
 from vibroimpact.dynamics.vibrating_stretch import VibratingStretch
 
@@ -180,14 +181,14 @@ class _Visit:
         touch, local = self.touch, self.touch.local
         energy = float(self.of.mechanical_energy(self.march.state)) + float(local.own_work(touch.delta))
         out = least_energy(self.of, local.release_level, float(local.own_energy(local.least)))
-        return energy < out + self.march.tolerance**2 * self.march.energy(touch)
+        return energy < out + self.march.tolerance**2 * touch.energy
 
     def lies(self) -> bool:
         """Does the contact carry the weight, with too little left at the contact to lift the sphere off it?"""
         last, local = self.march.parts[-1].motion, self.touch.local
         if not isinstance(last, VibratingStretch):
             return False
-        if not may_stay(self.of, self.march.state, float(last.contacts[0].force[-1]), self.march.overlap(self.touch)):
+        if not may_stay(self.of, self.march.state, float(last.contacts[0].force[-1]), self.touch.overlap(self.of, self.march.state)):
             return False
         if self.riding is None or self.riding.local.law is not local.law:
             self.riding = Riding(self.of, local)

@@ -1,0 +1,96 @@
+"""A contact while its surfaces overlap, and what comes of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+
+from vibroimpact.contact.law import CompliantLaw
+from vibroimpact.contact.quasi_static import QuasiStatic
+from vibroimpact.contact.roots import highest
+from vibroimpact.dynamics.linear_system import LinearSystem, State
+from vibroimpact.dynamics.local import LocalContact
+from vibroimpact.dynamics.vibrating_stretch import VibratingStretch
+
+_NOTHING = 2e-15  # of the energy of the motion
+
+
+@dataclass(frozen=True)
+class Law:
+    """The law of a contact of a march and what is in series with it; `forgets`: does each impact find fresh surfaces?"""
+
+    law: CompliantLaw
+    series: QuasiStatic
+    forgets: bool
+
+
+@dataclass
+class Impact:
+    """One impact of a contact, from touch to release.
+
+    `start`, `end` [s]; the latter NaN while it lasts. `closing_speed` [m/s]. `max_force` [N], `max_indentation` [m] and when they are
+    reached [s]. `impulse` [N s].
+    """
+
+    contact: int
+    start: float
+    closing_speed: float
+    end: float = np.nan
+    max_force: float = 0.0
+    time_of_max_force: float = 0.0
+    max_indentation: float = 0.0
+    time_of_max_indentation: float = 0.0
+    impulse: float = 0.0
+
+
+@dataclass
+class Touching:
+    """A contact whose surfaces overlap.
+
+    `mass`: that it moves [kg]. `delta`: its law's own indentation [m]. `speed`, `span`: of its motion [m/s], and about how long it lasts
+    [s]. `pushes`: else it recoils without a force. `fresh`: it has just met. `trend`: how fast its force changes [N/s].
+    """
+
+    number: int
+    local: LocalContact
+    mass: float
+    delta: float
+    speed: float
+    span: float
+    impact: Impact
+    pushes: bool = True
+    fresh: bool = True
+    trend: float = 0.0
+
+    @property
+    def energy(self) -> float:
+        """About the energy of its motion [J]."""
+        return 0.5 * self.mass * self.speed**2
+
+    def overlap(self, system: LinearSystem, state: State) -> float:
+        """Return by how much the surfaces overlap beyond where they part [m], not less than zero."""
+        return max(float(system.approach(state)[self.number]) - self.local.release_level, 0.0)
+
+    def own(self, system: LinearSystem, state: State) -> float:
+        """Return the own indentation of its law in a state [m]."""
+        return float(self.local.own(self.overlap(system, state) + self.local.release_level))
+
+    def held_at(self, delta: float) -> float:
+        """Return the energy stored at an indentation of its law [J], without what is rounding."""
+        held = float(self.local.own_energy(delta))
+        return held if abs(held) > _NOTHING * self.energy else 0.0
+
+
+def note_peaks(impact: Impact, stretch: VibratingStretch, place: int, start: float) -> None:
+    """Note the largest force and indentation of one of its contacts within a stretch that starts at a time [s], and its impulse."""
+    rule, contact = stretch.rule, stretch.contacts[place]
+    for name, values in (("force", contact.force_at), ("indentation", partial(stretch.indentation_at, contact=place))):
+        if float(values(rule.nodes).max()) < 0.98 * getattr(impact, f"max_{name}"):
+            continue
+        x = np.array([highest(values)])
+        if (value := float(values(x)[0])) > getattr(impact, f"max_{name}"):
+            setattr(impact, f"max_{name}", value)
+            setattr(impact, f"time_of_max_{name}", start + stretch.length * float(rule.map_time(x)[0]))
+    impact.impulse += stretch.length * float(rule.integral[-1] @ contact.force)
