@@ -26,11 +26,14 @@ class Body:
         Distance of the point of contact from the centre of mass [m], >= 0.
     modes : ModalBasis, optional
         How it vibrates; a body without modes is rigid.
+    rigid : ModalBasis, optional
+        Of a plate that nothing holds: its motions as a rigid body, modes of frequency zero.
     """
 
     mass: Array
     contact_offset: Array
     modes: ModalBasis | None = None
+    rigid: ModalBasis | None = None
 
     def __post_init__(self) -> None:
         for name in ("mass", "contact_offset"):

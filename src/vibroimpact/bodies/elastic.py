@@ -12,7 +12,7 @@ import numpy as np
 from vibroimpact.errors import InputError
 from vibroimpact.materials import Material
 from vibroimpact.structures.damping import ConstantRatio, Damping
-from vibroimpact.structures.modal_model import ModalBasis, ModalModel, modal_basis
+from vibroimpact.structures.modal_model import ModalBasis, ModalModel, modal_basis, rigid_basis
 from vibroimpact.structures.plate_waves import wave_numbers
 from vibroimpact.structures.recipe import PlateOfPlates, PlateOfSolids, Recipe, Reduction, Shape, SphereOfSolids
 from vibroimpact.structures.supports.edge import Edge
@@ -64,6 +64,10 @@ class ElasticBody:
             If a point is not on the body, or a set is not in its mesh.
         """
         return modal_basis(model, self.damping, self.contact, self.side, self.watched)
+
+    def rigid_motions(self, model: ModalModel) -> ModalBasis | None:
+        """Return the rigid motions that the supports leave it, seen at the same points, as modes of frequency zero; None if none."""
+        return rigid_basis(model, (self.contact, self.side), self.watched)
 
 
 def sphere_recipe(radius: float, material: Material, reduction: Reduction, **mesh: Any) -> Recipe:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from vibroimpact.cases.calibrate_section import calibrate_table
 from vibroimpact.cases.material_field import material_table
-from vibroimpact.cases.rigid import contact_laws_of, deforms, elastic_names, impacts_of, rigid_problem
+from vibroimpact.cases.rigid import FALLS, contact_laws_of, deforms, elastic_names, impacts_of, rigid_problem
 from vibroimpact.contact.law import CompliantLaw, loses_nothing
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.errors import InputError
@@ -54,6 +54,18 @@ def check_case(case: CaseTable) -> None:
         elastic_bodies(case)
 
 
+def check_drop(case: CaseTable) -> None:
+    """Raise unless a case can be run as a drop, as far as is known without computing anything; modes of it may be had.
+
+    Raises
+    ------
+    InputError
+        If nothing holds the plate, and gravity would let it fall.
+    """
+    if case.plate.model == "elastic" and case.plate.supports == "free" and case.drop.gravity:
+        raise InputError(FALLS, "plate.supports")
+
+
 def problem_of(case: CaseTable, progress: Callable[[float], None] | None = None, tell: Callable[[str], None] | None = None) -> Problem:
     """Return the problem that a case states.
 
@@ -69,10 +81,11 @@ def problem_of(case: CaseTable, progress: Callable[[float], None] | None = None,
     Raises
     ------
     InputError
-        What `check_case` raises; and if elastic bodies do not fit the treatment of local compliance, or no local element fits
-        what was measured.
+        What `check_case` and `check_drop` raise; and if elastic bodies do not fit the treatment of local compliance, or no local element
+        fits what was measured.
     """
     check_case(case)
+    check_drop(case)
     problem = replace(rigid_problem(case), source=resolved(case))
     if not deforms(case):
         return problem

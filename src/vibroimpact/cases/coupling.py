@@ -13,7 +13,7 @@ from vibroimpact.calibration.local_element import identify_local_element, local_
 from vibroimpact.cases.local_section import MeasuredImpact
 from vibroimpact.cases.modes import BodyModes, compute_modes
 from vibroimpact.cases.residuals import residual_key, with_residuals
-from vibroimpact.cases.rigid import contact_laws_of, contact_pair, elastic_names, first_speed
+from vibroimpact.cases.rigid import FALLS, contact_laws_of, contact_pair, elastic_names, first_speed
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.quasi_static import QuasiStatic
 from vibroimpact.dynamics.encounter import encounter_of
@@ -46,6 +46,8 @@ class Coupling:
     ----------
     modes : mapping of str to ModalBasis
         By the name of the body.
+    rigid : ModalBasis or None
+        The rigid motions of a plate that its supports leave free to move vertically.
     quasi_static : QuasiStatic
         What is in series with the law.
     facts : mapping of str to float or str
@@ -55,6 +57,7 @@ class Coupling:
     """
 
     modes: Mapping[str, ModalBasis]
+    rigid: ModalBasis | None
     quasi_static: QuasiStatic
     facts: Mapping[str, float | str]
     models: Mapping[str, ModalModel]
@@ -79,10 +82,12 @@ def coupling_of(case: CaseTable, progress: Callable[[float], None] | None = None
     facts: dict[str, float | str] = {"treatment": treatment} if bodies or treatment == "identified" else {}
     if told := [doubt for body in bodies.values() for doubt in body.doubts]:
         facts["doubts"] = "\n".join(told)
-    linear, finite = 0.0, QuasiStatic()
+    linear, finite, rigid = 0.0, QuasiStatic(), None
     if "plate" in bodies:
+        if not bodies["plate"].model.is_held_vertically and case.drop.gravity:
+            raise InputError(FALLS, "plate.supports")
         if not bodies["plate"].model.is_held_vertically:
-            raise InputError("the supports let the plate fall or tilt; hold it vertically, or leave it rigid", "plate.supports")
+            rigid = bodies["plate"].body.rigid_motions(bodies["plate"].model)
         if treatment != "superposed":  # which is to be what a multibody program has: the motion of a node
             modes["plate"], beyond = _at_its_face(bodies["plate"])
             if beyond:
@@ -108,7 +113,7 @@ def coupling_of(case: CaseTable, progress: Callable[[float], None] | None = None
         facts["series_compliance_m_N"] = linear
     if series:
         _refuse_ill_posed(case, series, facts)
-    return Coupling(modes, series, facts, {name: body.model for name, body in bodies.items()})
+    return Coupling(modes, rigid, series, facts, {name: body.model for name, body in bodies.items()})
 
 
 def carried_modes(
@@ -251,6 +256,8 @@ def coupled(
     """
     coupling = coupling_of(case, progress, tell)
     bodies = {name: replace(getattr(problem, name), modes=basis) for name, basis in coupling.modes.items()}
+    if coupling.rigid is not None:
+        bodies["plate"] = replace(bodies["plate"], rigid=coupling.rigid)
     found = replace(
         problem,
         **bodies,

@@ -102,8 +102,8 @@ def compute_modes(
 
 def _doubts(case: CaseTable, name: str, body: ElasticBody, model: ModalModel, basis: ModalBasis) -> Iterator[str]:
     """Say where a plate would fall, and where a mesh or a damping does not look like what was meant."""
-    if name == "plate" and not model.is_held_vertically:
-        yield "the plate is not held: its supports let it fall or tilt, and a drop needs a plate that is held"
+    if name == "plate" and not model.is_held_vertically and case.drop.gravity:
+        yield "the plate is not held: its supports let it fall or tilt, and a drop under gravity needs a plate that is held"
     yield from _doubts_of_mass(case, name, body, model)
     yield from _doubts_of_frequencies(name, body, model)
     if any(block.element.order == 1 for block in model.mesh.blocks):

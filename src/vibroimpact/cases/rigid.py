@@ -18,6 +18,12 @@ if TYPE_CHECKING:
 
 _DEFAULT_IMPACTS = 5
 
+FALLS = (
+    "the supports let the plate fall or tilt: under gravity it falls away from under the sphere; hold it vertically, leave it rigid, or "
+    "hit it in free space, with drop.gravity = 0 and drop.speed"
+)
+"""Of a plate that its supports do not hold, as far as is known without its modes, and with them."""
+
 
 def contact_pair(case: CaseTable) -> ContactPair:
     """Return the facts of the touching pair of a case: effective modulus, radius and mass."""

@@ -40,6 +40,7 @@ def run(
 @app.command()
 def check(case: CaseArgument) -> None:
     """Validate a case or a study and explain it; run nothing."""
+    from vibroimpact.cases.build import check_drop
     from vibroimpact.cases.calibrate_section import check_target
     from vibroimpact.cases.reader import load_case, load_table, named
     from vibroimpact.cases.sweep import read_sweep
@@ -49,6 +50,7 @@ def check(case: CaseArgument) -> None:
     table = named(case, lambda: load_table(case))
     if "sweep" not in table:
         found = load_case(case)
+        named(case, lambda: check_drop(found))
         named(case, lambda: check_target(found.calibrate))
         console().print(named(case, lambda: case_explained(found)))
         return

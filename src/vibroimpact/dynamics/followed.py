@@ -300,6 +300,8 @@ class _Blocks:
 
     def bound(self, swing: Floats) -> Floats:
         """Return what the outputs can become at most (S,)."""
+        if not self.of.angular_frequency.all():  # what moves as a rigid body goes on for ever
+            return np.full(self.outputs.shape[1], np.inf)
         return np.asarray((np.abs(self.outputs[0]) / self.of.angular_frequency + np.abs(self.outputs[1])) @ swing)
 
 

@@ -34,7 +34,8 @@ class Problem:
     Parameters
     ----------
     sphere, plate : Body
-        The bodies. The plate is held fixed: its mass is infinite. They vibrate in the modes that they have.
+        The bodies. The plate is held fixed: its mass is infinite; or it moves as a rigid body, without gravity, as its `rigid` says. They
+        vibrate in the modes that they have.
     laws : tuple of ContactLaw
         The contact law of the first impact, the second, ...; the last one goes on. All of one kind.
     height : float or array, optional
@@ -143,6 +144,8 @@ class Problem:
             raise InputError("tolerance must lie between 1e-13 and 1e-6")
         if self.local_element is not None and not all(0.0 < value < np.inf for value in self.local_element):
             raise InputError("stiffness and damping of the local element must be greater than 0 and finite")
+        if self.plate.rigid is not None and np.any(np.asarray(self.gravity) > 0):
+            raise InputError("nothing holds the plate, so that it falls away from under the sphere: set gravity to 0, and give speed")
         if self.vibrates and isinstance(self.laws[0], InstantaneousLaw):
             raise InputError(f"{self.laws[0].name} gives no force, and bodies that deform need one; take another law")
         try:
@@ -155,7 +158,7 @@ class Problem:
     @property
     def vibrates(self) -> bool:
         """Does anything but the contact itself deform?"""
-        modes = (self.sphere.modes, self.plate.modes, self.local_element)
+        modes = (self.sphere.modes, self.plate.modes, self.plate.rigid, self.local_element)
         return any(part is not None for part in modes) or bool(self.quasi_static)
 
     @cached_property

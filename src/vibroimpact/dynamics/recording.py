@@ -18,6 +18,7 @@ from vibroimpact.dynamics.oscillators import Oscillators
 from vibroimpact.dynamics.overload import finer_rate, overload, taken_away
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.sensor import Sensor, sample_count
+from vibroimpact.dynamics.vibration import bases_of_plate
 from vibroimpact.errors import InputError
 
 if TYPE_CHECKING:
@@ -104,7 +105,7 @@ def record(problem: Problem, segments: Sequence[VibratingSegment], sensors: Sequ
         groups.setdefault((sensor.rate, sensor.filter, sensor.corner, _resonance(sensor)), []).append(sensor)
     signals: dict[str, Signal] = {}
     for group in groups.values():
-        signals |= _recorded(_plate(problem), modes, segments, group, end)
+        signals |= _recorded(problem, modes, segments, group, end)
     return {sensor.name: signals[sensor.name] for sensor in sensors}
 
 
@@ -126,9 +127,8 @@ def _checked(problem: Problem, sensors: Sequence[Sensor], end: float) -> ModalBa
 
 
 def _plate(problem: Problem) -> Oscillators:
-    modes = problem.plate.modes
-    assert modes is not None  # which has been checked
-    return Oscillators(modes.angular_frequencies, modes.damping_ratios, modes.contact)
+    parts = ((basis.angular_frequencies, basis.damping_ratios, basis.contact) for basis in bases_of_plate(problem))
+    return Oscillators(*(np.concatenate(part) for part in zip(*parts, strict=True)))
 
 
 def _resonance(sensor: Sensor) -> tuple[Section, ...]:
@@ -141,12 +141,13 @@ def _resonance(sensor: Sensor) -> tuple[Section, ...]:
 
 
 def _recorded(
-    plate: Oscillators, modes: ModalBasis, segments: Sequence[VibratingSegment], group: Sequence[Sensor], end: float
+    problem: Problem, modes: ModalBasis, segments: Sequence[VibratingSegment], group: Sequence[Sensor], end: float
 ) -> dict[str, Signal]:
     """Return the signals of sensors of one rate, resonance and filter."""
-    sensor = group[0]
+    sensor, plate = group[0], _plate(problem)
     through, resonance, count = antialias_of(sensor), _resonance(sensor), sample_count(end, sensor.rate)
-    shapes = np.stack([modes.points[one.name] @ np.asarray(one.direction) for one in group])
+    bases = bases_of_plate(problem)
+    shapes = np.stack([np.concatenate([basis.points[one.name] for basis in bases]) @ np.asarray(one.direction) for one in group])
     compliance = np.array([modes.residuals.get(one.name, _NONE) @ np.asarray(one.direction) for one in group])
     orders = [one.order for one in group]
     bare = measuring_chain(plate, shapes, compliance, orders, resonance)

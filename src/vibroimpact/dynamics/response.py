@@ -209,7 +209,7 @@ class Response:
         flat = np.atleast_1d(np.asarray(times, dtype=float))
         starts = self._starts
         index = np.maximum(np.searchsorted(starts, flat, side="right") - 1, 0)
-        sphere, plate = slices_of(self.problem)
+        _, sphere, plate = slices_of(self.problem)
         found = np.zeros((len(flat), plate.stop))
         for number in np.unique(index):
             segment, here = self._segments[int(number)], index == number

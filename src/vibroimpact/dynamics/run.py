@@ -119,7 +119,7 @@ class Run:
         leg = Leg(drops, flight, np.where(gone, flight.start, np.where(stops, last, touch)), drops[~stops], motions=motions)
         if self.vibration is not None:
             gap, velocity = flight.at(leg.flight_end)
-            speed = -velocity
+            speed = self.vibration.rigid_speed(drops, -velocity)
             self.gap[drops[~stops]], self.velocity[drops[~stops]] = gap[~stops], velocity[~stops]
             self.vibration.pass_freely(drops, motions, leg.flight_end - flight.start)
         if not stops.all():
@@ -141,7 +141,7 @@ class Run:
             lost = 0.5 * self.mass[drops] * (speed**2 - self.velocity[drops] ** 2)
         else:
             assert isinstance(law, CompliantLaw)
-            closing = speed if self.vibration is None else self.vibration.closing_speed(drops, speed)
+            closing = speed if self.vibration is None else self.vibration.closing_speed(drops, -self.velocity[drops])
             leg, lost = self.deform(leg, encounter_of(law, self.mass[drops], self.gravity[drops], closing), touch, row)
             lost += row["plastic_work_J"][drops]
             law = self.law().take(drops)  # with what it remembers of this impact
@@ -177,10 +177,11 @@ class Run:
         row["max_acceleration_m_s2"][drops] = np.maximum(force / encounter.mass - encounter.gravity, encounter.gravity)
         for name, values in contact.law.memories().items():
             self.memories[name][drops] = values
+        leaving = -contact.final_rate if self.vibration is None else -self.vibration.rigid_speed(drops, contact.final_rate)
         failed, captured, riding = (contact.outcome == outcome for outcome in (FAILED, CAPTURED, RIDING))
         if self.vibration is None:
             captured |= ~failed & (contact.final_rate**2 < 2.0 * self.gravity[drops] * self.overlap(contact, drops))
-        row["separation_speed_m_s"][drops] = np.where(failed | riding, np.nan, np.where(captured, 0.0, -contact.final_rate))
+        row["separation_speed_m_s"][drops] = np.where(failed | riding, np.nan, np.where(captured, 0.0, leaving))
         stored = contact.stored
         sticks = captured & (contact.law.elastic_energy(contact.law.release_level + np.zeros(len(drops))) > 0.0)
         at_end = riding & (self.time[drops] >= (np.inf if self.problem.duration is None else self.problem.duration))

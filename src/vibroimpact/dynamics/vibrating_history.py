@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
 import numpy as np
 
-from vibroimpact.bodies.body import Body
 from vibroimpact.dynamics.apart import Apart
 from vibroimpact.dynamics.collocation import Floats
 from vibroimpact.dynamics.linear_system import LinearSystem, State
@@ -13,7 +15,10 @@ from vibroimpact.dynamics.lying import Lying
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.vibrating_segment import VibratingSegment
 from vibroimpact.dynamics.vibrating_stretch import VibratingStretch
-from vibroimpact.dynamics.vibration import centre_of, slices_of
+from vibroimpact.dynamics.vibration import bases_of_plate, centre_of, slices_of
+
+if TYPE_CHECKING:
+    from vibroimpact.structures.modal_model import ModalBasis  # which loads sparse matrices
 
 
 def vibrating_history(problem: Problem, segment: VibratingSegment, time: Floats) -> dict[str, Floats]:
@@ -63,33 +68,33 @@ def _held(local: LocalContact, of: LinearSystem, state: State) -> tuple[Floats, 
 
 def _of_bodies(problem: Problem, of: LinearSystem, state: State, lost: Floats, force: Floats) -> dict[str, Floats]:
     """Return the columns that only bodies that vibrate have."""
-    sphere, on_plate = slices_of(problem)
-    plate, gravity = problem.plate.modes, float(problem.gravity)
+    (_, sphere, _), bases, gravity = slices_of(problem), bases_of_plate(problem), float(problem.gravity)
     kinetic, strain = of.energies(state)
     displacement, velocity, acceleration = (
-        part[:, on_plate] for part in (state.displacement, state.velocity, of.accelerations(state, force[:, None]))
+        part[:, of.ground] for part in (state.displacement, state.velocity, of.accelerations(state, force[:, None]))
     )
-    whole = plate.participation[:, 2] if plate is not None else np.zeros(displacement.shape[1])
-    mass = plate.mass if plate is not None else np.inf
+    whole = np.concatenate([np.zeros(0), *(basis.participation[:, 2] for basis in bases)])
+    mass = bases[0].mass if bases else np.inf
     return {
         "sphere_vibration_J": kinetic[:, sphere].sum(axis=1),
         "sphere_strain_J": strain[:, sphere].sum(axis=1),
         "sphere_damping_J": lost[:, sphere].sum(axis=1),
-        "sphere_rotational_J": _rotational(problem.sphere, state.velocity[:, sphere]),
-        "plate_kinetic_J": kinetic[:, on_plate].sum(axis=1),
-        "plate_strain_J": strain[:, on_plate].sum(axis=1),
-        "plate_damping_J": lost[:, on_plate].sum(axis=1),
-        "plate_rotational_J": _rotational(problem.plate, velocity),
+        "sphere_rotational_J": _rotational([problem.sphere.modes], state.velocity[:, sphere]),
+        "plate_kinetic_J": kinetic[:, of.ground].sum(axis=1),
+        "plate_strain_J": strain[:, of.ground].sum(axis=1),
+        "plate_damping_J": lost[:, :-1][:, of.ground].sum(axis=1),
+        "plate_rotational_J": _rotational(bases, velocity),
         "plate_potential_J": gravity * (displacement @ whole),
         "plate_displacement_m": displacement @ whole / mass,
         "plate_velocity_m_s": velocity @ whole / mass,
         "plate_acceleration_m_s2": acceleration @ whole / mass,
-        "plate_deflection_m": displacement @ of.shape[0, on_plate],
+        "plate_deflection_m": displacement @ of.shape[0, of.ground],
     }
 
 
-def _rotational(body: Body, velocity: Floats) -> Floats:
-    """Return the energy of turning as a whole [J], from modal velocities (T, modes)."""
-    if body.modes is None or body.modes.rotation is None:
+def _rotational(bases: Sequence[ModalBasis | None], velocity: Floats) -> Floats:
+    """Return the energy of turning as a whole [J], from the velocities of the coordinates of a body (T, n)."""
+    turning = [basis.rotation for basis in bases if basis is not None and basis.rotation is not None]
+    if sum(map(len, turning)) != velocity.shape[1] or not turning:
         return np.zeros(len(velocity))
-    return np.asarray(0.5 * ((velocity @ body.modes.rotation) ** 2).sum(axis=1))
+    return np.asarray(0.5 * ((velocity @ np.concatenate(turning)) ** 2).sum(axis=1))

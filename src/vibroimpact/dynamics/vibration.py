@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -17,9 +19,12 @@ from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.riding import Riding
 from vibroimpact.dynamics.visit import Visit, visit
 
+if TYPE_CHECKING:
+    from vibroimpact.structures.modal_model import ModalBasis  # which loads sparse matrices
+
 
 def system_of(problem: Problem, mass: float, gravity: float) -> LinearSystem:
-    """Return the system of a drop: the fall of the sphere, its modes, then those of the plate; and the local element.
+    """Return the system of a drop: the fall of the sphere, the rigid motions of the plate, then the modes of both; and the local element.
 
     Parameters
     ----------
@@ -28,15 +33,13 @@ def system_of(problem: Problem, mass: float, gravity: float) -> LinearSystem:
     mass, gravity : float
         Of this drop [kg, m/s^2].
     """
-    sphere, plate = (body.modes for body in (problem.sphere, problem.plate))
     parts = [(np.zeros(1), np.zeros(1), np.array([mass**-0.5]))]
-    parts += [
-        (modes.angular_frequencies, modes.damping_ratios, sign * modes.contact) for modes, sign in ((sphere, -1.0), (plate, 1.0)) if modes
-    ]
+    of_bodies = ((problem.plate.rigid, 1.0), (problem.sphere.modes, -1.0), (problem.plate.modes, 1.0))
+    parts += [(basis.angular_frequencies, basis.damping_ratios, sign * basis.contact) for basis, sign in of_bodies if basis]
     frequency, damping, shape = (np.concatenate(part) for part in zip(*parts, strict=True))
-    of_sphere, of_plate = slices_of(problem)
+    of_rigid, of_sphere, of_plate = slices_of(problem)
     load, inside, ground = np.zeros(len(shape)), np.zeros(len(shape), dtype=bool), np.zeros(len(shape), dtype=bool)
-    load[0], inside[of_sphere], ground[of_plate] = gravity * mass**0.5, problem.sphere_inside, True
+    load[0], inside[of_sphere], ground[of_rigid], ground[of_plate] = gravity * mass**0.5, problem.sphere_inside, True, True
     local = [problem.local_element] if problem.local_element else []
     rate = np.array([stiffness / damping for stiffness, damping in local])
     mobility = np.array([1.0 / damping for _, damping in local])
@@ -45,10 +48,19 @@ def system_of(problem: Problem, mass: float, gravity: float) -> LinearSystem:
     )
 
 
-def slices_of(problem: Problem) -> tuple[slice, slice]:
-    """Return where the modes of the sphere, and of the plate, are among the coordinates of a drop; before them is its fall."""
-    first = 1 + modes_of(problem.sphere)
-    return slice(1, first), slice(first, first + modes_of(problem.plate))
+def slices_of(problem: Problem) -> tuple[slice, slice, slice]:
+    """Return where among the coordinates of a drop the rigid motions of the plate are, the modes of the sphere, and those of the plate.
+
+    Before them is the fall of the sphere.
+    """
+    rigid = 0 if problem.plate.rigid is None else len(problem.plate.rigid.frequencies)
+    ends = np.cumsum([1, rigid, modes_of(problem.sphere), modes_of(problem.plate)]).tolist()
+    return slice(ends[0], ends[1]), slice(ends[1], ends[2]), slice(ends[2], ends[3])
+
+
+def bases_of_plate(problem: Problem) -> list[ModalBasis]:
+    """Return the rigid motions of a plate that nothing holds, and its modes: what its `ground` coordinates are."""
+    return [basis for basis in (problem.plate.rigid, problem.plate.modes) if basis is not None]
 
 
 def centre_of(state: State, mass: Floats | float) -> tuple[Floats, Floats]:
@@ -115,6 +127,11 @@ class Vibration:
             [float(self.systems[drop].outer_rates(self.state(drop, 0.0, down))[0]) for drop, down in zip(drops, speed, strict=True)]
         )
 
+    def rigid_speed(self, drops: Drops, speed: Floats) -> Floats:
+        """Return the speed at which the bodies approach each other as rigid bodies [m/s], where the centres come down at `speed`."""
+        states = (self.state(drop, 0.0, down) for drop, down in zip(drops, speed, strict=True))
+        return np.array([float(self.systems[drop].rigid_motion(state)[1][0]) for drop, state in zip(drops, states, strict=True)])
+
     def visit(
         self,
         drops: Drops,
@@ -135,7 +152,7 @@ class Vibration:
             start, pace = self.state(drop, approach[number], speed[number]), 3.0 * float(one.depth[0] / one.speed_scale[0])
             rules = (problem.tolerance, pace, not problem.same_spot, float(rest_speed[number]), float(until[number]))
             found = visit(system, one.law.take(0), problem.quasi_static, start, *rules)
-            before, after = (float(np.sum(system.energies(state), axis=0)[1:].sum()) for state in (start, found.state))
+            before, after = (float(np.sum(system.energies(state), axis=0)[system.vibrating].sum()) for state in (start, found.state))
             row["closing_speed_m_s"][drop], row["contacts"][drop] = one.approach_speed[0], found.contacts
             row["energy_to_vibration_J"][drop] = after - before + found.lost[:-1].sum()
             self.lost[drop, :-1] += found.lost[:-1]
@@ -172,12 +189,12 @@ class Vibration:
     def energies(self) -> dict[str, Floats]:
         """Return the entries of the ledger [J], (B,); what the local elements hold, and lost in flight, apart."""
         state = State(self.displacement, self.velocity, self.local)
-        (kinetic, strain), (sphere, plate) = self.system.energies(state), slices_of(self.problem)
+        (kinetic, strain), (rigid, sphere, plate) = self.system.energies(state), slices_of(self.problem)
         return {
             "sphere_vibration_J": kinetic[:, sphere].sum(axis=1),
             "sphere_strain_J": strain[:, sphere].sum(axis=1),
             "sphere_damping_J": self.lost[:, sphere].sum(axis=1),
-            "plate_kinetic_J": kinetic[:, plate].sum(axis=1),
+            "plate_kinetic_J": kinetic[:, rigid].sum(axis=1) + kinetic[:, plate].sum(axis=1),
             "plate_strain_J": strain[:, plate].sum(axis=1),
             "plate_damping_J": self.lost[:, plate].sum(axis=1),
             "local_J": self.system.local_energy(state),
@@ -194,7 +211,7 @@ def contact_of(visits: list[Visit], law: CompliantLaw) -> Contact:
     pieces = [
         Piece(np.array([drop]), np.array([part.start]), part.motion, law) for drop, found in enumerate(visits) for part in found.parts
     ]
-    ends = np.array([[float(part[0]) for part in found.system.rigid_motion(found.state)] for found in visits])
+    ends = np.array([centre_of(found.state, float(found.system.shape[0, 0]) ** -2) for found in visits], dtype=float)
     memories = {name: np.array([found.law.memories()[name] for found in visits], dtype=float) for name in law.memories()}
     return Contact(
         pieces,

@@ -73,7 +73,7 @@ def unresolved_impact(problem: Problem, step: float, phases: Floats) -> dict[str
     ComputationError
         If the sphere does not leave the plate within 20,000 steps.
     """
-    (way, plate), (on_sphere, on_plate) = (_method(problem, step), problem.plate.modes), slices_of(problem)
+    (way, plate), (_, on_sphere, on_plate) = (_method(problem, step), problem.plate.modes), slices_of(problem)
     whole = plate.participation[:, 2] / plate.mass if plate is not None else np.zeros(0)
     followed = np.pi / float(plate.angular_frequencies.min()) if plate is not None else 0.0
     state, lost = way.start(phases), np.zeros((3, len(phases)))

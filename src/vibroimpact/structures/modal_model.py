@@ -269,6 +269,42 @@ def modal_basis(
     )
 
 
+def rigid_basis(model: ModalModel, contact: tuple[Spot, Side], points: Mapping[str, tuple[Spot, Side]]) -> ModalBasis | None:
+    """Return the rigid motions that the supports leave a body, as modes of frequency zero; None if they leave none.
+
+    Parameters
+    ----------
+    model : ModalModel
+        The body.
+    contact : (spot, side)
+        The contact point.
+    points : mapping of str to (spot, side)
+        The points watched.
+    """
+    if not len(model.left):
+        return None
+    properties = model.properties
+    weights = np.zeros((6, 6))
+    weights[:3, :3], weights[3:, 3:] = properties.mass * np.eye(3), properties.inertia
+    motions = np.linalg.solve(np.linalg.cholesky(model.left @ weights @ model.left.T), model.left)  # of unit modal mass
+    along, turning = motions[:, :3], motions[:, 3:]
+
+    def seen(spot: Spot, side: Side) -> Floats:
+        place = surface_motion(model.mesh, np.array([place_of(model.mesh, spot, side)]), side, model.thickness)[1][0]
+        return np.asarray(along + np.cross(turning, place - properties.centre))
+
+    moments, axes = np.linalg.eigh(properties.inertia)
+    return ModalBasis(
+        np.zeros(len(motions)),
+        np.zeros(len(motions)),
+        seen(*contact)[:, 2],
+        properties.mass * along,
+        {name: seen(*point) for name, point in points.items()},
+        properties.mass,
+        turning @ properties.inertia @ axes / np.sqrt(moments),
+    )
+
+
 def _rotation(model: ModalModel) -> Floats:
     """Return the angular momentum of each mode in the root of the inertia: half its square is energy of rotation."""
     moments, axes = np.linalg.eigh(model.properties.inertia)

@@ -23,7 +23,7 @@ from vibroimpact.structures.plate_compliance import (
 )
 from vibroimpact.structures.plate_element import shear_factor
 from vibroimpact.structures.recent import Recent
-from vibroimpact.structures.recipe import Recipe, Reduction, is_thin
+from vibroimpact.structures.recipe import Recipe, Reduction, SphereOfSolids, is_thin
 from vibroimpact.structures.store import key_of, load_entry, save_entry
 from vibroimpact.structures.structure import Structure
 from vibroimpact.structures.supports.constraints import HeldStructure
@@ -33,12 +33,11 @@ from vibroimpact.structures.surface import Side, surface_motion
 _KIND = "compliance"
 _FACES: tuple[Side, Side] = ("upper", "lower")
 _RADIUS = 0.75  # of the disc, thicknesses: elements of that size suffice
-_STILL = 1e-6
 _LAST = Recent[tuple[HeldStructure, Elastic]](most=500e6)
 
 
 def static_compliance(recipe: Recipe, place: tuple[float, float], side: Side = "upper", tell: Callable[[str], None] | None = None) -> float:
-    """Return the structural compliance of a held plate where it is met [m/N], from the store if it is there.
+    """Return the structural compliance of a plate where it is met [m/N], from the store if it is there.
 
     It is the displacement of a point under a unit normal force, less that of the half space, which a contact law carries.
 
@@ -56,12 +55,14 @@ def static_compliance(recipe: Recipe, place: tuple[float, float], side: Side = "
     Raises
     ------
     InputError
-        If the place is not on the body, the supports let it move vertically, or the mesh or a support is wrong.
+        If the place is not on the body, the body is a sphere, or the mesh or a support is wrong.
     ComputationError
         If the stiffness is singular.
 
     Notes
     -----
+    Of a plate that its supports leave free it is without the rigid motion: under the force and the inertia that balances it.
+
     By Kirchhoff's theory (`theory = "thin"`) a point force has a finite deflection at its own place, and that is what is returned: the
     thin theory has neither shear nor a half space.
 
@@ -99,6 +100,8 @@ def compliance_key(recipe: Recipe, place: tuple[float, float], side: Side = "upp
 
 def computed_compliance(recipe: Recipe, place: tuple[float, float], side: Side = "upper") -> float:
     """Compute the structural compliance of a held plate; takes and raises what `static_compliance` does."""
+    if isinstance(recipe.shape, SphereOfSolids):
+        raise InputError("a structural compliance is that of a plate, whose two faces are told apart; a sphere has none")
     held, elastic = _factorised(recipe)
     structure, material = held.structure, _material(recipe)
     thickness = _thickness(structure, place)
@@ -144,8 +147,6 @@ def _factorised(recipe: Recipe) -> tuple[HeldStructure, Elastic]:
         _LAST.clear()  # before the memory is needed
         structure = recipe.shape.structure(recipe.shape.mesh(recipe.supports), _material(recipe))
         held = held_by(structure, recipe.supports)
-        if np.abs(held.left[:, 2:5]).max(initial=0.0) > _STILL * np.abs(held.left).max(initial=0.0):
-            raise InputError("the supports let the body move vertically; a static compliance needs supports that stop it")
         found = held, Elastic(held.stiffness, held.mass, held.rigid, held.order)
         _LAST.keep(key, found, found[1].size)
     return found
