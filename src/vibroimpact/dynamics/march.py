@@ -293,7 +293,7 @@ class March:
         found = []
         for number in numbers:
             if number not in self.touching:
-                found.append(Other(partial(self.beyond, number, slack), partial(self.touch, slack)))
+                found.append(Other(partial(self.beyond, number, slack), partial(self.touch, slack, stretch.start)))
                 continue
             touch = self.touching[number]
             for kind in (0, 1):
@@ -305,10 +305,11 @@ class March:
         """Return by how much surfaces overlap beyond a slack [m]."""
         return np.asarray(self.system.approach(states)[..., number] - self.touch_level(number) - slack)
 
-    def touch(self, slack: float) -> None:
-        """Let all surfaces touch that overlap by half a slack [m] now."""
+    def touch(self, slack: float, before: State) -> None:
+        """Let all surfaces touch that overlap by half a slack [m] now, and did not before."""
         for number in range(len(self.laws)):
-            if number not in self.touching and float(self.beyond(number, 0.5 * slack, self.state)) > 0.0:
+            apart = number not in self.touching and float(self.beyond(number, slack, before)) <= 0.0
+            if apart and float(self.beyond(number, 0.5 * slack, self.state)) > 0.0:
                 self.meet(number)
 
     def polished(self, pushing: list[Touching], stretch: VibratingStretch, other: Other) -> VibratingStretch | None:
