@@ -11,6 +11,7 @@ import pytest
 
 import vibroimpact as vi
 from moving import HERTZ, free_beam, modes_at, row_of_balls
+from vibroimpact.contact.laws.hertz import Hertz
 from vibroimpact.contact.laws.lankarani_nikravesh import LankaraniNikravesh
 from vibroimpact.contact.laws.newton import Newton
 from vibroimpact.contact.laws.thornton import Thornton
@@ -44,9 +45,30 @@ def ball_and_wall(**more: Any) -> vi.System:
         (lambda: vi.MovingBody(mass=math.inf, velocity=(0.0, 0.0, 1.0)), "held, of infinite mass, has no velocity"),
         (lambda: vi.MovingBody(mass=1.0, angular_velocity=(0.0, 0.0, 1.0)), "does not turn: give inertia"),
         (lambda: vi.MovingBody(mass=1.0, inertia=-1.0), "inertia must be"),
+        (lambda: vi.MovingBody(mass=1.0, inertia="1"), "inertia must be"),
+        (lambda: vi.MovingBody(mass=1.0, inertia=[1.0, 2.0]), "inertia must be"),
+        (lambda: vi.MovingBody(mass=1.0, inertia=(1.0, 1.0, 100.0)), "more than the sum of the others"),
+        (lambda: vi.MovingBody(mass=10**400), "beyond all numbers"),
+        (lambda: vi.MovingBody(mass=1.0, centre=(1e100, 0.0, 0.0)), "centre must be three finite numbers"),
+        (lambda: vi.MovingBody(mass=1.0, velocity=(1j, 0.0, 0.0)), "velocity must be three finite numbers"),
+        (lambda: vi.MovingBody(mass=1.0, modes="a"), "modes must be a ModalBasis"),
+        (lambda: vi.MovingBody(mass=1.0, modes=modes_at(np.array([1.0, np.nan]), 0.0)), "frequencies greater than 0 Hz"),
+        (lambda: vi.MovingBody(mass=1.0, modes=modes_at(np.array([1.0]), -0.1)), "damping ratios, not negative"),
+        (lambda: vi.MovingBody(mass=1.0, modes=modes_at(np.array([1.0]), 0.1, at=np.ones(2))), 'shapes of the point "at" must be'),
+        (lambda: ball_and_wall(above=None), "above must be the name of a body"),
+        (lambda: ball_and_wall(series=3), "series must be a QuasiStatic"),
+        (lambda: ball_and_wall(same_spot=np.array([1, 2])), "same_spot must be True or False"),
+        (lambda: ball_and_wall(law=Hertz(stiffness=np.array([1e9, 2e9]))), "a system is one, and no batch"),
+        (lambda: vi.System(bodies=None, contacts={}), "bodies: bodies must be a mapping"),
+        (lambda: vi.System(bodies={"ball": 3}, contacts={}), "bodies: bodies must be a mapping"),
+        (lambda: vi.System(bodies={"ball": BALL}, contacts=["a"]), "contacts: contacts must be a mapping"),
+        (lambda: vi.simulate_system(None, duration=1.0), "system must be a System"),
+        (lambda: vi.simulate_system(ball_and_wall(), duration=1e300), "less than 1e+09 s"),
+        (lambda: vi.simulate_system(ball_and_wall(), duration=1e-3, progress="x"), "progress must be a function"),
+        (lambda: vi.simulate_system(ball_and_wall(), duration=1e-3).forces("a"), "times must be numbers within the run"),
         (lambda: vi.simulate_system(ball_and_wall(), duration=0.0), "duration must be a number greater than 0 s"),
         (lambda: vi.simulate_system(ball_and_wall(), duration="1 ms"), "duration must be a number greater than 0 s"),
-        (lambda: vi.simulate_system(ball_and_wall(), duration=1e-3).at(1.0), "times must lie within the run"),
+        (lambda: vi.simulate_system(ball_and_wall(), duration=1e-3).at(1.0), "times must be numbers within the run"),
     ],
 )
 def test_faults_have_one_sentence(made: Callable[[], object], words: str) -> None:
@@ -156,3 +178,69 @@ def test_a_body_without_a_contact_goes_its_way() -> None:
     other = vi.simulate_system(system, duration=1e-3).at(1e-3)["other"]
     np.testing.assert_allclose(other.rotation, [0.0, 1e-3, 0.0], atol=1e-15)
     np.testing.assert_allclose(other.angular_velocity, [0.0, 1.0, 0.0], atol=1e-15)
+
+
+def test_contacts_that_turn_or_part_at_once() -> None:
+    """Two balls beside one another on a wall do as each alone: their laws remember, part and stop pushing at the same instant."""
+    for name, more in (
+        ("walton-braun", {"stiffness": 1e7, "restitution": 0.8}),
+        ("thornton", {"stiffness": 5e8, "yield_pressure": 1e8, "effective_radius": 0.025}),
+        ("adams-poisson", {"penalty": 1e7, "restitution": 0.8}),
+        ("adams-impact", {"stiffness": 1.92e6, "damping_max": 43.9, "full_damping_penetration": 3.66e-6}),
+    ):
+        kind = vi.find_contact_law(name)
+        law = kind(**more) if set(more) <= set(kind.__dataclass_fields__) else kind.example(PAIR)
+        names, ball = ("x", "y"), vi.MovingBody(mass=0.0112, velocity=(0.0, 0.0, -1.0))
+        contacts = {one: vi.PointContact(above=one, below="wall", law=law) for one in names}
+        both = vi.simulate_system(vi.System(bodies={"wall": WALL, "x": ball, "y": ball}, contacts=contacts), duration=2e-2)
+        alone = vi.simulate_system(vi.System(bodies={"wall": WALL, "x": ball}, contacts={"x": contacts["x"]}), duration=2e-2)
+        for one in names:
+            np.testing.assert_allclose(both.at(2e-2)[one].velocity, alone.at(2e-2)["x"].velocity, rtol=1e-9)
+
+
+def test_a_ball_does_not_fall_through_its_dent() -> None:
+    """Which the next impact does not find again: it parts within it, and comes back into it."""
+    law = vi.find_contact_law("walton-braun")(stiffness=1e6, restitution=0.3)
+    ball = vi.MovingBody(mass=0.1, velocity=(0.0, 0.0, -0.1))
+    contact = vi.PointContact(above="ball", below="wall", law=law)
+    response = vi.simulate_system(
+        vi.System(bodies={"ball": ball, "wall": WALL}, contacts={"at": contact}, gravity=(0.0, 0.0, -9.81)), duration=0.2
+    )
+    assert -1e-4 < response.gaps(0.2)["at"] < 1e-3
+
+
+@pytest.mark.parametrize(("speed", "gap"), [(0.1, 1e-2), (1.0, 0.5), (0.01, 1e-4)])
+def test_bodies_that_fall_alike_meet_as_in_free_space(speed: float, gap: float) -> None:
+    bodies = {"below": vi.MovingBody(mass=0.3), "above": vi.MovingBody(mass=0.3, velocity=(0.0, 0.0, -speed))}
+    contact = vi.PointContact(above="above", below="below", law=HERTZ, gap=gap)
+    response = vi.simulate_system(vi.System(bodies=bodies, contacts={"at": contact}, gravity=(0, 0, -9.81)), duration=1.5 * gap / speed)
+    assert response.impacts["time_s"] == pytest.approx([gap / speed], rel=1e-12)
+
+
+@pytest.mark.parametrize("name", ["thornton", "walton-braun", "adams-impact"])
+@pytest.mark.parametrize("part", [0.3, 0.6, 0.95])
+def test_a_run_may_end_within_a_contact(name: str, part: float) -> None:
+    """While it loads, unloads or recoils without a force."""
+    law = vi.find_contact_law(name).example(PAIR)
+    ball = vi.MovingBody(mass=0.09, velocity=(0.0, 0.0, -3.0))
+    system = vi.System(bodies={"ball": ball, "wall": WALL}, contacts={"at": vi.PointContact(above="ball", below="wall", law=law)})
+    whole = float(vi.simulate_system(system, duration=0.05).impacts["duration_s"][0])
+    assert vi.simulate_system(system, duration=part * whole).energy["closure_relative"] < 1e-9
+
+
+@pytest.mark.parametrize(("tolerance", "speed"), [(1e-13, 10.0), (1e-9, 1e4)])
+def test_what_goes_on_elsewhere_does_not_matter(tolerance: float, speed: float) -> None:
+    bodies = {"a": vi.MovingBody(mass=0.1), "b": BALL, "bystander": vi.MovingBody(mass=1.0, velocity=(speed, 0.0, 0.0))}
+    contacts = {"at": vi.PointContact(above="b", below="a", law=HERTZ)}
+    moved = vi.simulate_system(vi.System(bodies=bodies, contacts=contacts, tolerance=tolerance), duration=1e-3).at(1e-3)
+    assert moved["a"].velocity[2] == pytest.approx(-1.0, abs=1e-9)
+
+
+def test_the_indentation_does_not_depend_on_which_body_is_called_above() -> None:
+    plate = vi.MovingBody(mass=0.5, modes=modes_at(np.array([800.0]), 0.0, at=np.array([4.0])))
+    found = []
+    for above, below, up in (("ball", "plate", 1.0), ("plate", "ball", -1.0)):
+        contact = vi.PointContact(above=above, below=below, law=HERTZ, normal=(0.0, 0.0, up))
+        system = vi.System(bodies={"plate": plate, "ball": BALL}, contacts={"at": contact})
+        found.append(vi.simulate_system(system, duration=3e-3).impacts["max_indentation_m"])
+    np.testing.assert_allclose(found[0], found[1], rtol=1e-9)

@@ -79,10 +79,11 @@ def random_system(seed: int) -> vi.System:
         (0.0, 0.01, 0.1)[random.integers(3)],
         **{name: random.normal(size=4) for name in names},
     )
-    inertia = random.normal(size=(3, 3))
+    spread = random.normal(size=(3, 3))
+    spread = spread @ spread.T + np.eye(3)  # of the mass along the axes, so that the inertia is one that a body can have
     target = vi.MovingBody(
         mass=float(random.uniform(0.3, 3.0)) if free else math.inf,
-        inertia=1e-3 * (inertia @ inertia.T + np.eye(3)) if free else None,
+        inertia=1e-3 * (np.trace(spread) * np.eye(3) - spread) if free else None,
         modes=modes,
     )
     law = LAWS[seed % 4]

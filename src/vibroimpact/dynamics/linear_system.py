@@ -25,6 +25,8 @@ from numpy.typing import NDArray
 from vibroimpact.dynamics.collocation import Floats
 from vibroimpact.dynamics.oscillators import Oscillators
 
+_ALIKE = 1e-12  # of the parts of an acceleration: what is less is rounding
+
 
 @dataclass(frozen=True)
 class State:
@@ -121,8 +123,10 @@ class LinearSystem(Oscillators):
 
     @cached_property
     def gravity(self) -> Floats:
-        """The acceleration at which gravity makes the surfaces approach each other [m/s^2] (contacts,)."""
-        return np.asarray(self.shape @ self.load)
+        """The acceleration at which gravity makes the surfaces approach each other [m/s^2] (contacts,); zero where both fall alike."""
+        parts = self.shape * self.load
+        found = parts.sum(axis=1)
+        return np.where(np.abs(found) > _ALIKE * np.abs(parts).sum(axis=1), found, 0.0)
 
     @cached_property
     def with_local(self) -> Floats:

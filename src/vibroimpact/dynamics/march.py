@@ -26,7 +26,7 @@ from vibroimpact.dynamics.receptance import seen_by
 from vibroimpact.dynamics.recoil import after, end_of_recoil, recoil_of
 from vibroimpact.dynamics.solve_vibrating import solve_vibrating
 from vibroimpact.dynamics.touching import Impact, Law, Touching, note_peaks
-from vibroimpact.dynamics.vibrating_events import GRID, Event, first_event
+from vibroimpact.dynamics.vibrating_events import GRID, STILL, Event, first_event
 from vibroimpact.dynamics.vibrating_stretch import VibratingStretch
 from vibroimpact.errors import ComputationError
 
@@ -35,6 +35,7 @@ _SLACK = 1e-12  # of the deepest indentation: by less surfaces have not touched 
 _MOST_STRETCHES = 200_000
 _POLISHES = 8
 _ROUNDING = 1e-14  # of the deepest indentation
+_NO_FORCE = 1e-10  # of the largest force
 
 
 class NotIntegrable(ComputationError):
@@ -53,8 +54,9 @@ class March:
     """A system on its way through contacts.
 
     `time` [s], `state`: where it is. `touching`: the contacts whose surfaces overlap, by number. `known`: the laws of the next contacts,
-    with what they remember. `parts`: its history. `impacts`: what came of each contact. `lost` [J], (n + 1,): in each coordinate, and in
-    the contacts; `plastic` [J].
+    with what they remember. `dents`: the laws of the last, where the next one does not find its dent again and surfaces may still be in
+    it. `parts`: its history. `impacts`: what came of each contact. `lost` [J], (n + 1,): in each coordinate, and in the contacts;
+    `plastic` [J].
 
     Parameters
     ----------
@@ -77,6 +79,7 @@ class March:
         self.known = [law.law for law in laws]
         self.time, self.pace = 0.0, np.inf
         self.touching: dict[int, Touching] = {}
+        self.dents: dict[int, CompliantLaw] = {}
         self.parts: list[Part] = []
         self.impacts: list[Impact] = []
         self.lost, self.plastic = np.zeros(system.number + 1), 0.0
@@ -116,8 +119,8 @@ class March:
         """Move freely to the next touch, or to where a law that recoils pushes again or its surfaces part."""
         free = FreeMotion(self.system, self.state)
         apart = [number for number in range(len(self.laws)) if number not in self.touching]
-        times = {number: next_touch(free, self.touch_level(number), longest, number) for number in apart}
-        length = min([longest, *times.values()])
+        touches = {number: self.next_touch(free, number, longest) for number in apart}
+        length = min([longest, *(time for time, _ in touches.values())])
         recoil = end_of_recoil(free, list(self.touching.values()), length)
         if recoil is not None:
             length = recoil[0]
@@ -125,9 +128,19 @@ class March:
         if recoil is not None:
             self.recoiled(self.touching[recoil[1]], parts=recoil[2])
             return
-        for number, time in times.items():
+        for number, (time, law) in touches.items():
             if time <= length + 1e-13 * (self.time + length):
-                self.meet(number)
+                self.meet(number, law)
+
+    def next_touch(self, free: FreeMotion, number: int, longest: float) -> tuple[float, CompliantLaw]:
+        """Return when a contact touches in free motion [s from here], and under which law."""
+        law, dent = self.known[number], self.dents.get(number)
+        if dent is not None:
+            parted = time_to_part(free, float(law.touch_level), number)
+            again = next_touch(free, float(dent.release_level), min(parted, longest), number)
+            if again < parted:  # back into the dent before they had parted from it
+                return again, dent
+        return next_touch(free, float(law.touch_level), longest, number), law
 
     def pass_freely(self, free: FreeMotion, length: float) -> None:
         """Take a free motion of a length [s] into the history."""
@@ -139,13 +152,9 @@ class March:
         if parts:
             self.part(touch)
         else:
-            touch.pushes, touch.delta = True, touch.own(self.system, self.state)
+            touch.pushes, touch.delta, touch.trend = True, touch.own(self.system, self.state), 0.0
 
     # from touch to release --------------------------------------------------------------------------
-
-    def touch_level(self, number: int) -> float:
-        """Return the approach at which a contact touches [m]."""
-        return float(self.known[number].touch_level)
 
     def meet(self, number: int, law: CompliantLaw | None = None) -> Touching:
         """Let surfaces touch, under the law that is known or another."""
@@ -160,6 +169,7 @@ class March:
         self.impacts.append(impact)
         speed, span = self.scale or self._scale(number, law, closing)
         mass = float(of.mass[number])
+        self.dents.pop(number, None)
         self.touching[number] = touch = Touching(number, local, mass, float(law.touch_level), speed, span, impact)
         touch.delta = touch.own(self.system, self.state)
         self.pace = min(self.pace, _FIRST * span)
@@ -179,6 +189,8 @@ class March:
         law = self.laws[touch.number]
         if not law.forgets and law.law.lasting:
             self.known[touch.number] = touch.local.law
+        elif float(touch.local.law.release_level) > float(law.law.touch_level):
+            self.dents[touch.number] = touch.local.law
         del self.touching[touch.number]
 
     # under contact forces ---------------------------------------------------------------------------
@@ -186,12 +198,20 @@ class March:
     def press(self, pushing: list[Touching], longest: float) -> bool:
         """Take one stretch, up to its first event; return False if it has to be tried again with less."""
         of, state = self.system, self.state
-        for touch in pushing:  # what has parted by less than rounding tells
+        for touch in pushing:
+            if touch.fresh:
+                continue
+            # what ends with a stretch as another contact does, or by less than rounding tells
             rounding = _ROUNDING * touch.impact.max_indentation
-            if not touch.fresh and touch.overlap(of, state) <= rounding and float(of.rates(state)[touch.number]) < 0.0:
+            if touch.overlap(of, state) <= rounding and float(of.rates(state)[touch.number]) < 0.0:
                 self.break_off(touch)
                 self.part(touch)
                 return True
+            if touch.local.law.tension == "cut" and touch.force <= _NO_FORCE * touch.impact.max_force and touch.trend < 0.0:
+                self.push_no_more(touch)
+                return True
+            if touch.closing <= STILL * touch.speed and touch.local.learns(touch.delta):
+                self.turn(touch)
         span, speed = min(touch.span for touch in pushing), max(touch.speed for touch in self.touching.values())
         energy = max(touch.energy for touch in pushing)
         if self.pace < 1e-12 * span:
@@ -229,8 +249,7 @@ class March:
         """Accept a stretch that ends with an event of one of its contacts."""
         name, place = event.aim.name, event.aim.contact
         touch = pushing[place]
-        without_force = name == "no push" and touch.local.law.contact_end == "zero-force"
-        parts = name == "parted" or (without_force and self.will_part(touch, stretch.end))
+        parts = name == "parted" or (name == "no push" and self.ends_without_force(touch, stretch.end))
         if parts:  # what is still stored is lost, of a sticking contact that breaks or of a surface that lags behind
             stretch = broken(stretch, place, touch.held_at(float(stretch.contacts[place].delta[-1])))
         self.accept(pushing, stretch)
@@ -238,20 +257,34 @@ class March:
             self.part(touch)
         elif name == "no push":
             touch.pushes = False
-        elif name == "turn":  # the law remembers how deep it has been
-            self.plastic += float(touch.local.law.plastic_work(touch.delta))
-            touch.local = touch.local.after_own(touch.delta)
+        elif name == "turn":
+            self.turn(touch)
 
-    def break_off(self, touch: Touching) -> None:
-        """Lose what a contact still holds as it ends with a stretch that was taken already."""
-        last, held = self.parts[-1], touch.held_at(touch.local.least)
+    def turn(self, touch: Touching) -> None:
+        """Let a law remember how deep it has been."""
+        self.plastic += float(touch.local.law.plastic_work(touch.delta))
+        touch.local = touch.local.after_own(touch.delta)
+
+    def push_no_more(self, touch: Touching) -> None:
+        """Let a contact recoil, or part if it ends with its force, where its last stretch ended."""
+        if self.ends_without_force(touch, self.state):
+            self.break_off(touch, touch.delta)
+            self.part(touch)
+        else:
+            touch.pushes = False
+
+    def break_off(self, touch: Touching, delta: float | None = None) -> None:
+        """Lose what a contact still holds as it ends with a stretch that was taken already, where it parts or at an indentation [m]."""
+        last, held = self.parts[-1], touch.held_at(touch.local.least if delta is None else delta)
         if held and isinstance(last.motion, VibratingStretch) and touch.number in last.motion.seen.contacts:
             place = last.motion.seen.contacts.index(touch.number)
             self.parts[-1] = replace(last, motion=broken(last.motion, place, held))
         self.lost[-1] += held
 
-    def will_part(self, touch: Touching, state: State) -> bool:
-        """Will surfaces part if nothing pushes any more? Else they come back into the indentation."""
+    def ends_without_force(self, touch: Touching, state: State) -> bool:
+        """Does a contact end as its force does? If its law does, and its surfaces will part; else they come back into the indentation."""
+        if touch.local.law.contact_end != "zero-force":
+            return False
         return bool(np.isfinite(time_to_part(FreeMotion(self.system, state), touch.local.release_level, touch.number)))
 
     def solve(self, pushing: list[Touching], time_map: Map, length: float) -> VibratingStretch:
@@ -266,7 +299,8 @@ class March:
         """Take a stretch into the history."""
         for place, (touch, contact) in enumerate(zip(pushing, stretch.contacts, strict=True)):
             note_peaks(touch.impact, stretch, place, self.time)
-            touch.delta, touch.trend, touch.fresh = float(contact.delta[-1]), float(stretch.trend[place]), False
+            touch.delta, touch.force, touch.trend = float(contact.delta[-1]), float(contact.force[-1]), float(stretch.trend[place])
+            touch.fresh, touch.closing = False, float(stretch.closing(place)[-1]) if touch.local.law.memories() else np.inf
         end, lost = stretch.end, stretch.lost
         for touch in self.touching.values():
             if not touch.pushes:  # what recoils beside it gives up what it holds
@@ -293,7 +327,9 @@ class March:
         found = []
         for number in numbers:
             if number not in self.touching:
-                found.append(Other(partial(self.beyond, number, slack), partial(self.touch, slack, stretch.start)))
+                found.append(Other(partial(self.beyond, number, slack), partial(self.touch, number, slack, stretch.start)))
+                if dent := self.dents.get(number):
+                    found.append(Other(partial(self.beyond, number, slack, law=dent), partial(self.meet, number, dent)))
                 continue
             touch = self.touching[number]
             for kind in (0, 1):
@@ -301,16 +337,18 @@ class March:
         seen = [replace(other, x=x) for other in found if (x := _first_crossing(other.value(states))) is not None]
         return min(seen, key=lambda other: other.x, default=None)
 
-    def beyond(self, number: int, slack: float, states: State) -> Floats:
-        """Return by how much surfaces overlap beyond a slack [m]."""
-        return np.asarray(self.system.approach(states)[..., number] - self.touch_level(number) - slack)
+    def beyond(self, number: int, slack: float, states: State, law: CompliantLaw | None = None) -> Floats:
+        """Return by how much surfaces overlap beyond a slack [m], under the law that is known, or beyond the dent of another."""
+        level = self.known[number].touch_level if law is None else law.release_level
+        return np.asarray(self.system.approach(states)[..., number] - float(level) - slack)
 
-    def touch(self, slack: float, before: State) -> None:
-        """Let all surfaces touch that overlap by half a slack [m] now, and did not before."""
-        for number in range(len(self.laws)):
-            apart = number not in self.touching and float(self.beyond(number, slack, before)) <= 0.0
-            if apart and float(self.beyond(number, 0.5 * slack, self.state)) > 0.0:
-                self.meet(number)
+    def touch(self, number: int, slack: float, before: State) -> None:
+        """Let a contact touch, and all others that overlap by half a slack [m] now and did not before."""
+        self.meet(number)
+        for other in range(len(self.laws)):
+            apart = other not in self.touching and float(self.beyond(other, slack, before)) <= 0.0
+            if apart and float(self.beyond(other, 0.5 * slack, self.state)) > 0.0:
+                self.meet(other)
 
     def polished(self, pushing: list[Touching], stretch: VibratingStretch, other: Other) -> VibratingStretch | None:
         """Solve a stretch again so that it ends where another contact touches or its recoil ends; None if that is not found."""
@@ -337,7 +375,7 @@ class Other:
     """What may end a stretch besides its own contacts: where a value of the state becomes positive, and what is done then."""
 
     value: Callable[[State], Floats]
-    act: Callable[[], None]
+    act: Callable[[], object]
     x: float = np.inf
 
 

@@ -52,7 +52,8 @@ def next_touch(motion: FreeMotion, level: float, until: float, contact: int = 0)
             + abs(gravity)
         )
         if most > 0.0:
-            near = (opening + np.sqrt(opening * opening + 2.0 * most * max(gap, 0.0))) / most
+            root = np.sqrt(opening * opening + 2.0 * most * max(gap, 0.0))
+            near = (opening + root) / most if opening >= 0.0 else 2.0 * max(gap, 0.0) / (root - opening)
         else:  # nothing turns it back: without gravity, and nothing vibrates
             near = gap / -opening if opening < 0.0 else np.inf
         step = max(far, near)

@@ -20,7 +20,7 @@ from vibroimpact.dynamics.touching import Law
 from vibroimpact.dynamics.vibrating_stretch import VibratingStretch
 from vibroimpact.errors import ComputationError, InputError
 
-_ALIKE = 1e-12  # of gravity: what is accelerated by less differently falls alike
+_LONGEST = 1e9  # seconds
 _CLOSURE = 1e-6  # of the energy put in: more missing is an error
 
 
@@ -96,13 +96,13 @@ class SystemResponse:
         InputError
             If a time lies outside the run.
         """
-        times = np.asarray(times, dtype=float)
+        times = self._times(times)
         state = self._states(times)
         return {name: _motion(body, *self._parts(name, state, times.shape)) for name, body in self.system.bodies.items()}
 
     def forces(self, times: Any) -> dict[str, Floats]:
         """Return the forces of the contacts [N] at times since the start [s], by their names; positive where they push."""
-        times = np.asarray(times, dtype=float)
+        times = self._times(times)
         found = {name: np.zeros(times.shape) for name in self.system.contacts}
         names = list(found)
         for motion, here, since in self._parts_at(times.ravel()):
@@ -114,7 +114,7 @@ class SystemResponse:
 
     def gaps(self, times: Any) -> dict[str, Floats]:
         """Return the gaps of the contacts [m] at times since the start [s], by their names; negative where the surfaces overlap."""
-        times = np.asarray(times, dtype=float)
+        times = self._times(times)
         approach = self._march.system.approach(self._states(times))
         return {name: -approach[:, row].reshape(times.shape) for row, name in enumerate(self.system.contacts)}
 
@@ -124,14 +124,23 @@ class SystemResponse:
         free = {name: body.mass for name, body in self.system.bodies.items() if not body.held}
         return np.asarray(sum(mass * moved[name].velocity for name, mass in free.items()))
 
+    def _times(self, times: Any) -> Floats:
+        """Return times within the run."""
+        try:
+            found = np.asarray(times)
+            found = found.astype(float) if found.dtype.kind in "iuf" else np.full(1, np.nan)
+        except (TypeError, ValueError, OverflowError):
+            found = np.full(1, np.nan)
+        if not np.all((found >= 0.0) & (found <= self.end_time)):
+            raise InputError(f"times must be numbers within the run, 0 to {self.end_time:.6g} s")
+        return found
+
     @cached_property
     def _starts(self) -> Floats:
         return np.array([part.start for part in self._march.parts])
 
     def _parts_at(self, times: Floats) -> Iterator[tuple[VibratingStretch | Apart, NDArray[np.bool_], Floats]]:
         """Yield each motion of the history with the times that lie in it: which, and since its start [s]."""
-        if not np.all((times >= 0.0) & (times <= self.end_time)):
-            raise InputError(f"times must lie within the run, 0 to {self.end_time:.6g} s")
         index = np.maximum(np.searchsorted(self._starts, times, side="right") - 1, 0)
         for number in np.unique(index):
             part, here = self._march.parts[int(number)], index == number
@@ -187,10 +196,14 @@ def simulate_system(system: System, *, duration: float, progress: Callable[[floa
     >>> simulate_system(system, duration=1e-3).impacts["impulse_N_s"].round(9).tolist()
     [0.2]
     """
-    if isinstance(duration, bool) or not isinstance(duration, Real) or not 0.0 < duration < np.inf:
-        raise InputError(f"duration must be a number greater than 0 s and finite, not {duration!r}")
+    if not isinstance(system, System):
+        raise InputError(f"system must be a System, not {type(system).__name__}")
+    if isinstance(duration, bool) or not isinstance(duration, Real) or not 0.0 < duration < _LONGEST:
+        raise InputError(f"duration must be a number greater than 0 s and less than {_LONGEST:g} s, not {duration!r}")
+    if progress is not None and not callable(progress):
+        raise InputError(f"progress must be a function of a number, not {progress!r}")
     linear, start = system.linear()
-    if not (linear.rates(start) > 0.0).any() and not (linear.gravity > _ALIKE * np.linalg.norm(system.gravity)).any():
+    if not (linear.rates(start) > 0.0).any() and not (linear.gravity > 0.0).any():
         raise InputError(
             "no surfaces will ever touch: none approach each other at the start, and gravity, if there is any, lets both bodies of each "
             "contact fall alike; give a body a velocity, or hold one"
@@ -222,10 +235,10 @@ def _ledger(linear: LinearSystem, start: State, march: March) -> dict[str, float
         "kinetic_J": kinetic,
         "potential_J": potential,
         "strain_J": strain,
-        "contact_elastic_J": sum(float(touch.local.own_energy(touch.delta)) for touch in march.touching.values()),
+        "contact_elastic_J": sum(float(touch.local.own_energy(touch.own(linear, march.state))) for touch in march.touching.values()),
         "modal_damping_J": float(march.lost[:-1].sum()),
         "contact_dissipated_J": float(march.lost[-1]),
-        "plastic_work_J": march.plastic,
+        "plastic_work_J": march.plastic + sum(touch.plastic(linear, march.state) for touch in march.touching.values()),
     }
     moved = begun + max(abs(potential), kinetic)
     return {**energy, "input_J": begun, "closure_relative": abs(sum(energy.values()) - begun) / moved if moved else 0.0}

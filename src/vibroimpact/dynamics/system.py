@@ -8,7 +8,7 @@ as they do through impacts.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import cached_property
 from numbers import Real
 from typing import TYPE_CHECKING, Any
@@ -24,6 +24,7 @@ from vibroimpact.errors import InputError, did_you_mean
 if TYPE_CHECKING:
     from vibroimpact.structures.modal_model import ModalBasis  # which loads sparse matrices
 
+_LARGEST = 1e15  # in SI: what is larger is no length, speed or acceleration of a body
 _UNIT = 1e-9  # by how much the length of a normal may differ from one
 
 
@@ -58,11 +59,9 @@ class MovingBody:
         for name in ("centre", "velocity", "angular_velocity"):
             object.__setattr__(self, name, _vector(name, getattr(self, name)))
         if self.inertia is not None:
-            inertia = np.asarray(self.inertia, dtype=float)
-            inertia = inertia * np.eye(3) if inertia.ndim < 2 else inertia
-            if inertia.shape != (3, 3) or not np.allclose(inertia, inertia.T) or not (np.linalg.eigvalsh(inertia) > 0.0).all():
-                raise InputError("inertia must be a moment of inertia [kg m^2], > 0, three of them, or a symmetric matrix of 3 by 3")
-            object.__setattr__(self, "inertia", inertia)
+            object.__setattr__(self, "inertia", _inertia(self.inertia))
+        if self.modes is not None:
+            _check_modes(self.modes)
         moves = np.any(self.velocity) or np.any(self.angular_velocity)
         if moves and np.isinf(self.mass):
             raise InputError("a body that is held, of infinite mass, has no velocity")
@@ -117,8 +116,17 @@ class PointContact:
     same_spot: bool = True
 
     def __post_init__(self) -> None:
+        for name in ("above", "below"):
+            if not isinstance(getattr(self, name), str):
+                raise InputError(f"{name} must be the name of a body, not {getattr(self, name)!r}")
         if not isinstance(self.law, CompliantLaw):
             raise InputError(f"the law of a contact of a system must give a force, which {self.law!r} does not")
+        if any(np.ndim(getattr(self.law, item.name)) for item in fields(self.law)):
+            raise InputError("the parameters of the law of a contact must be numbers: a system is one, and no batch")
+        if not isinstance(self.series, QuasiStatic):
+            raise InputError(f"series must be a QuasiStatic, not {self.series!r}")
+        if not isinstance(self.same_spot, bool):
+            raise InputError(f"same_spot must be True or False, not {self.same_spot!r}")
         for name in ("point", "normal"):
             object.__setattr__(self, name, _vector(name, getattr(self, name)))
         if abs(np.linalg.norm(self.normal) - 1.0) > _UNIT:
@@ -166,6 +174,10 @@ class System:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "gravity", _vector("gravity", self.gravity))
+        for name, kind in (("bodies", MovingBody), ("contacts", PointContact)):
+            given = getattr(self, name)
+            if not isinstance(given, Mapping) or not all(isinstance(key, str) and isinstance(one, kind) for key, one in given.items()):
+                raise InputError(f'{name} must be a mapping of names to {kind.__name__}, as {{"name": vi.{kind.__name__}(...)}}', name)
         if not self.contacts:
             raise InputError("the system has no contact: nothing can happen between its bodies", "contacts")
         if not 1e-13 <= _number("tolerance", self.tolerance) <= 1e-6:
@@ -216,12 +228,10 @@ class System:
                 shape[row, rigid] = sign * (along @ contact.normal + turning @ lever)
                 if body.modes is not None:
                     shape[row, vibrating] = sign * (body.modes.points[where] @ contact.normal)
-        no, nothing, below = np.zeros(number, dtype=bool), np.zeros(0), np.zeros(shape.shape, dtype=bool)
-        for row, contact in enumerate(self.contacts.values()):
-            below[row, slices[contact.below][1]] = True
+        no, nothing, all_count = np.zeros(number, dtype=bool), np.zeros(0), np.ones(shape.shape, dtype=bool)
         gaps = np.array([-contact.gap for contact in self.contacts.values()])
         levels = np.array([float(contact.law.touch_level) for contact in self.contacts.values()])
-        system = LinearSystem(frequency, damping, shape, gaps + levels, load, no, below, nothing, nothing, np.zeros(0, dtype=np.intp))
+        system = LinearSystem(frequency, damping, shape, gaps + levels, load, no, all_count, nothing, nothing, np.zeros(0, dtype=np.intp))
         return system, State(np.zeros(number), start, nothing)
 
 
@@ -229,15 +239,53 @@ def _number(name: str, value: object) -> float:
     """Return a number in SI."""
     if isinstance(value, bool) or not isinstance(value, Real):
         raise InputError(f"{name} must be a number in SI, not {value!r}")
-    return float(value)
+    try:
+        return float(value)
+    except OverflowError:
+        raise InputError(f"{name} is beyond all numbers that are computed with") from None
+
+
+def _array(value: object) -> Floats:
+    """Return numbers that are finite, and not absurdly large; none, if they are not."""
+    try:
+        found = np.asarray(value)
+        found = found.astype(float) if found.dtype.kind in "iuf" else np.zeros(0)
+    except (TypeError, ValueError, OverflowError):
+        return np.zeros(0)
+    return found if found.size and np.all(np.abs(found) < _LARGEST) else np.zeros(0)
 
 
 def _vector(name: str, value: object) -> Floats:
     """Return a vector of three finite numbers."""
-    try:
-        found = np.asarray(value, dtype=float)
-    except (TypeError, ValueError):
-        found = np.zeros(0)
-    if found.shape != (3,) or not np.isfinite(found).all():
-        raise InputError(f"{name} must be three finite numbers: along x, y and z; not {value!r}")
+    found = _array(value)
+    if found.shape != (3,):
+        raise InputError(f"{name} must be three finite numbers, along x, y and z, below {_LARGEST:g}; not {value!r}")
     return found
+
+
+def _inertia(value: object) -> Floats:
+    """Return a tensor of inertia (3, 3)."""
+    found = _array(value)
+    if found.shape in ((), (3,)):
+        found = found * np.eye(3)
+    if found.shape == (3, 3) and np.allclose(found, found.T):
+        moments = np.linalg.eigvalsh(found)
+        if moments[0] > 0.0 and moments[2] <= (1.0 + 1e-9) * (moments[0] + moments[1]):
+            return found
+    raise InputError(
+        "inertia must be a moment of inertia [kg m^2], > 0, three of them, or a symmetric matrix of 3 by 3, none of whose principal "
+        f"moments is more than the sum of the others; not {value!r}"
+    )
+
+
+def _check_modes(modes: ModalBasis) -> None:
+    """Raise unless modes can vibrate."""
+    names = ("frequencies", "damping_ratios", "points")
+    if not all(hasattr(modes, name) for name in names) or not isinstance(modes.points, Mapping):
+        raise InputError(f"modes must be a ModalBasis, not {type(modes).__name__}", "modes")
+    frequencies, ratios = _array(modes.frequencies), _array(modes.damping_ratios)
+    if frequencies.ndim != 1 or not (frequencies > 0.0).all() or ratios.shape != frequencies.shape or not (ratios >= 0.0).all():
+        raise InputError("modes need frequencies greater than 0 Hz and as many damping ratios, not negative, all finite", "modes")
+    for name, shapes in modes.points.items():
+        if _array(shapes).shape != (len(frequencies), 3):
+            raise InputError(f'the shapes of the point "{name}" must be finite, three for each of the {len(frequencies)} modes', "modes")

@@ -50,7 +50,8 @@ class Touching:
     """A contact whose surfaces overlap.
 
     `mass`: that it moves [kg]. `delta`: its law's own indentation [m]. `speed`, `span`: of its motion [m/s], and about how long it lasts
-    [s]. `pushes`: else it recoils without a force. `fresh`: it has just met. `trend`: how fast its force changes [N/s].
+    [s]. `pushes`: else it recoils without a force. `fresh`: it has just met. `force` [N] at the end of its last
+    stretch, `trend`: how fast it changes [N/s], and `closing`: how fast the surfaces approach each other [m/s].
     """
 
     number: int
@@ -63,6 +64,8 @@ class Touching:
     pushes: bool = True
     fresh: bool = True
     trend: float = 0.0
+    force: float = np.inf
+    closing: float = np.inf
 
     @property
     def energy(self) -> float:
@@ -76,6 +79,10 @@ class Touching:
     def own(self, system: LinearSystem, state: State) -> float:
         """Return the own indentation of its law in a state [m]."""
         return float(self.local.own(self.overlap(system, state) + self.local.release_level))
+
+    def plastic(self, system: LinearSystem, state: State) -> float:
+        """Return the plastic work since what its law remembers [J], in a state."""
+        return float(self.local.law.plastic_work(np.asarray(max(self.own(system, state), self.local.least))))
 
     def held_at(self, delta: float) -> float:
         """Return the energy stored at an indentation of its law [J], without what is rounding."""

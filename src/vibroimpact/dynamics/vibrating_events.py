@@ -15,7 +15,7 @@ GRID = np.linspace(0.0, 1.0, 33)
 """Where in a stretch events are looked for."""
 
 ROUNDING = 1e-11
-_STILL = 1e-9  # of the speed of the motion: what turns more slowly has turned before
+STILL = 1e-9  # of the speed of the motion: what turns more slowly has turned before
 
 
 @dataclass(frozen=True)
@@ -53,7 +53,7 @@ def _events(stretch: VibratingStretch, place: int, weights: Floats, speed: float
         events.append((Aim("breakpoint", level, place), beyond, beyond < 0.0))
     if local.learns(float(delta.max())):
         closing = weights @ stretch.closing(place)
-        events.append((Aim("turn", 0.0, place), closing, (closing < 0.0) & (np.maximum.accumulate(closing) > _STILL * speed)))
+        events.append((Aim("turn", 0.0, place), closing, (closing < 0.0) & (np.maximum.accumulate(closing) > STILL * speed)))
     return [Event(aim, _crossing(values, there)) for aim, values, there in events if there[1:].any()]
 
 
