@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vibroimpact.dynamics.collocation import Floats
-from vibroimpact.dynamics.linear_system import FreeMotion, State
+from vibroimpact.dynamics.linear_system import FreeMotion, LinearSystem, State
 from vibroimpact.dynamics.local import LocalContact
 
 
@@ -50,6 +50,11 @@ class Apart:
         """Return the same of states that the motion comes to."""
         lost, of = self.free.lost_at(state), self.free.system
         for number, local in self.recoiling:
-            before, now = (np.maximum(of.approach(place)[..., number], local.release_level) for place in (self.free.start, state))
-            lost[..., -1] += local.elastic_energy(before) - local.elastic_energy(now)
+            lost[..., -1] += given_up(of, number, local, self.free.start, state)
         return lost
+
+
+def given_up(system: LinearSystem, number: int, local: LocalContact, before: State, now: State) -> Floats:
+    """Return what a contact that recoils without a force loses of the energy in its indentation from a state to others [J]."""
+    begun, left = (local.elastic_energy(np.maximum(system.approach(at)[..., number], local.release_level)) for at in (before, now))
+    return np.asarray(begun - left)

@@ -61,7 +61,7 @@ class LinearSystem(Oscillators):
     inside : array of bool, shape (n,)
         Which lie inside the contacts.
     below : array of bool, shape (contacts, n)
-        Which are of the body below each contact.
+        Which modes count in the indentation of each contact: of a drop those of the body below, of a system all.
     rate, mobility : array, shape (k,)
         Of the massless elements: stiffness over damping [1/s], and one over damping [m/(N s)].
     at : array of int, shape (k,)
@@ -108,7 +108,7 @@ class LinearSystem(Oscillators):
 
     @cached_property
     def of_bodies(self) -> Floats:
-        """The shapes of rigid motions and of the body below (contacts, n): of its centre, a body above has no vibration."""
+        """The shapes of rigid motions and of the modes that count in the indentation (contacts, n)."""
         return np.where(self.below | self.rigid, self.shape, 0.0)
 
     @cached_property

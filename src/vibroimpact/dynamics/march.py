@@ -15,8 +15,8 @@ import numpy as np
 
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.roots import find_root
-from vibroimpact.contact.static import free_depth, static_indentation
-from vibroimpact.dynamics.apart import Apart
+from vibroimpact.contact.static import free_depth
+from vibroimpact.dynamics.apart import Apart, given_up
 from vibroimpact.dynamics.collocation import Floats, Map
 from vibroimpact.dynamics.ending import before_event, broken, end_at, growth
 from vibroimpact.dynamics.linear_system import FreeMotion, LinearSystem, State
@@ -25,7 +25,7 @@ from vibroimpact.dynamics.next_touch import next_touch, time_to_part
 from vibroimpact.dynamics.receptance import seen_by
 from vibroimpact.dynamics.recoil import after, end_of_recoil, recoil_of
 from vibroimpact.dynamics.solve_vibrating import solve_vibrating
-from vibroimpact.dynamics.touching import Impact, Law, Touching, note_peaks
+from vibroimpact.dynamics.touching import Impact, Law, Touching, closing_speed, motion_speed, note_peaks
 from vibroimpact.dynamics.vibrating_events import GRID, STILL, Event, first_event
 from vibroimpact.dynamics.vibrating_stretch import VibratingStretch
 from vibroimpact.errors import ComputationError
@@ -159,8 +159,7 @@ class March:
     def meet(self, number: int, law: CompliantLaw | None = None) -> Touching:
         """Let surfaces touch, under the law that is known or another."""
         of, state, law = self.system, self.state, self.known[number] if law is None else law
-        # where a body's own vibration makes its surface meet the other, its centre may hardly come nearer
-        closing = max(float(of.outer_rates(state)[number]), float(of.rates(state)[number]), 1e-300)
+        closing = closing_speed(of, state, number)
         under_way = [touch.impact.closing_speed for touch in self.touching.values()]
         if under_way and closing < 1e-3 * max(under_way):
             closing = max(under_way)  # surfaces that lay against each other, and others push together
@@ -176,10 +175,8 @@ class March:
         return touch
 
     def _scale(self, number: int, law: CompliantLaw, closing: float) -> tuple[float, float]:
-        """Return the speed of the motion in a contact [m/s], that of its touch or what gravity adds, and about how long it lasts [s]."""
-        mass, gravity = float(self.system.mass[number]), max(float(self.system.gravity[number]), 0.0)
-        sag = float(static_indentation(law, np.array([mass * gravity]))[0]) if gravity else 0.0
-        speed = max(closing, np.sqrt(gravity * sag))
+        """Return the speed of the motion in a contact [m/s], and about how long it lasts [s]."""
+        mass, speed = float(self.system.mass[number]), motion_speed(self.system, number, law, closing)
         depth = float(free_depth(law, np.array([0.5 * mass * speed**2]), np.zeros(1))[0] - law.touch_level)
         return speed, 3.0 * depth / speed
 
@@ -297,15 +294,14 @@ class March:
 
     def accept(self, pushing: list[Touching], stretch: VibratingStretch) -> None:
         """Take a stretch into the history."""
-        for place, (touch, contact) in enumerate(zip(pushing, stretch.contacts, strict=True)):
+        for place, (touch, contact, trend) in enumerate(zip(pushing, stretch.contacts, stretch.trend.tolist(), strict=True)):
             note_peaks(touch.impact, stretch, place, self.time)
-            touch.delta, touch.force, touch.trend = float(contact.delta[-1]), float(contact.force[-1]), float(stretch.trend[place])
+            touch.delta, touch.force, touch.trend = float(contact.delta[-1]), float(contact.force[-1]), trend
             touch.fresh, touch.closing = False, float(stretch.closing(place)[-1]) if touch.local.law.memories() else np.inf
         end, lost = stretch.end, stretch.lost
         for touch in self.touching.values():
-            if not touch.pushes:  # what recoils beside it gives up what it holds
-                before, now = (max(float(self.system.approach(at)[touch.number]), touch.local.release_level) for at in (self.state, end))
-                self.lost[-1] += float(touch.local.elastic_energy(before) - touch.local.elastic_energy(now))
+            if not touch.pushes:  # what recoils beside it
+                self.lost[-1] += float(given_up(self.system, touch.number, touch.local, self.state, end))
         self.take(stretch, end, lost)
         stretch.forget()  # thousands of stretches would not fit into memory
 

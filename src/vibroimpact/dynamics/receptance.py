@@ -52,8 +52,8 @@ class Seen:
     """A system as some of its contacts see it: the modes apart from the rigid motions, and products of shapes.
 
     `modes`: where they are among the coordinates. `outer`, `inner`: their shapes outside and inside the contacts (modes, c), and
-    `outer_pairs`, `inner_pairs`: the products of these for each two contacts (modes, c c). `rigid_pairs`: the sums of those of the rigid
-    motions [1/kg] (c, c). `local_mobility`: of the massless elements (k, c).
+    `outer_pairs`, `inner_pairs`: the products of these for each two contacts (modes, c c). `rigid`: which rigid motions move the contacts
+    (n,), and `rigid_pairs`: the sums of the products of theirs [1/kg] (c, c). `local_mobility`: of the massless elements (k, c).
     """
 
     def __init__(self, system: LinearSystem, contacts: Sequence[int]) -> None:
@@ -67,6 +67,7 @@ class Seen:
             (part[:, :, None] * part[:, None, :]).reshape(len(part), len(rows) ** 2) for part in (self.outer, self.inner)
         )
         rigid = system.of_rigid[rows]
+        self.rigid = rigid.any(axis=0)
         self.rigid_pairs, self.gravity, self.offset = rigid @ rigid.T, system.gravity[rows], system.offset[rows]
         self.with_local = system.with_local[rows].T
         self.local_mobility = self.with_local * system.mobility[:, None]

@@ -20,6 +20,13 @@ from vibroimpact.dynamics.touching import Law
 from vibroimpact.dynamics.vibrating_stretch import VibratingStretch
 from vibroimpact.errors import ComputationError, InputError
 
+_COLUMNS = {
+    "closing_speed_m_s": "closing_speed",
+    "max_force_N": "max_force",
+    "time_of_max_force_s": "time_of_max_force",
+    "max_indentation_m": "max_indentation",
+    "impulse_N_s": "impulse",
+}
 _LONGEST = 1e9  # seconds
 _CLOSURE = 1e-6  # of the energy put in: more missing is an error
 
@@ -215,11 +222,7 @@ def simulate_system(system: System, *, duration: float, progress: Callable[[floa
         "contact": np.array([names[impact.contact] for impact in march.impacts]),
         "time_s": np.array([impact.start for impact in march.impacts]),
         "duration_s": np.array([impact.end - impact.start for impact in march.impacts]),
-        "closing_speed_m_s": np.array([impact.closing_speed for impact in march.impacts]),
-        "max_force_N": np.array([impact.max_force for impact in march.impacts]),
-        "time_of_max_force_s": np.array([impact.time_of_max_force for impact in march.impacts]),
-        "max_indentation_m": np.array([impact.max_indentation for impact in march.impacts]),
-        "impulse_N_s": np.array([impact.impulse for impact in march.impacts]),
+        **{column: np.array([getattr(impact, name) for impact in march.impacts]) for column, name in _COLUMNS.items()},
     }
     energy = _ledger(linear, start, march)
     if not energy["closure_relative"] <= _CLOSURE:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, Literal, NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 
@@ -149,8 +149,7 @@ def _newton_step(now: Linearised, here: Receptance, delta: Floats, force: Floats
         return (sunk - left.taken @ by_force).reshape(shape), by_force.reshape(shape), 0.0
     approach, rate, closing = here.by_length(force, now.static)
     by_length = -(left.inward @ approach.ravel())
-    last = (aim.contact + 1) * NODES - 1  # the last node of the contact with the event
-    row, slope, gone = _event_row(now, here, left, delta, force, aim, last, closing.ravel()[last] + 0.0, by_length, sunk)
+    row, slope, gone = _event_row(now, here, left, delta, force, aim, closing, by_length, sunk)
     whole = np.empty((len(right) + 1, len(right) + 1))  # the length as a part of itself
     whole[:-1, :-1] = left.jacobian
     whole[:-1, -1] = (left.push * by_length - (now.dissipative_by_rate * rate).ravel()) * here.length
@@ -186,10 +185,18 @@ def eliminated(now: Linearised, here: Receptance) -> Eliminated:
 
 
 def _event_row(
-    now: Linearised, here: Receptance, left: Eliminated, delta: Floats, force: Floats, aim: Aim, last: int, *change: Any
+    now: Linearised,
+    here: Receptance,
+    left: Eliminated,
+    delta: Floats,
+    force: Floats,
+    aim: Aim,
+    closing_by_length: Floats,
+    by_length: Floats,
+    sunk: Floats,
 ) -> tuple[Floats, float, float]:
     """Return the row of an event in the Jacobian: by the forces, by the length; and what it leaves, in units of a force."""
-    closing_by_length, by_length, sunk = change
+    last = (aim.contact + 1) * NODES - 1  # the last node of the contact with the event
     if aim.name == "no push":
         row = np.zeros(force.size)
         row[last] = 1.0
@@ -197,7 +204,7 @@ def _event_row(
     if aim.name == "turn":
         inside = here.closing_by_static[last] * now.stiffness.ravel()
         still = here.closing.flat[last] - here.rate_by[last] @ force.ravel() - here.closing_by_static[last] @ now.static.ravel()
-        row, slope = inside @ left.taken - here.rate_by[last], float(closing_by_length + inside @ by_length)
+        row, slope = inside @ left.taken - here.rate_by[last], float(closing_by_length.flat[last] + inside @ by_length)
         unit = 1.0 / max(float(np.abs(here.rate_by[last]).max()), 1e-300)
         return unit * row, unit * slope, unit * float(still + inside @ sunk)
     unit = 1.0 / max(float(np.abs(left.taken[last]).max()), 1e-300)

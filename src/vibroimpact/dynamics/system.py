@@ -228,10 +228,10 @@ class System:
                 shape[row, rigid] = sign * (along @ contact.normal + turning @ lever)
                 if body.modes is not None:
                     shape[row, vibrating] = sign * (body.modes.points[where] @ contact.normal)
-        no, nothing, all_count = np.zeros(number, dtype=bool), np.zeros(0), np.ones(shape.shape, dtype=bool)
+        no, nothing, counted = np.zeros(number, dtype=bool), np.zeros(0), np.ones(shape.shape, dtype=bool)
         gaps = np.array([-contact.gap for contact in self.contacts.values()])
         levels = np.array([float(contact.law.touch_level) for contact in self.contacts.values()])
-        system = LinearSystem(frequency, damping, shape, gaps + levels, load, no, all_count, nothing, nothing, np.zeros(0, dtype=np.intp))
+        system = LinearSystem(frequency, damping, shape, gaps + levels, load, no, counted, nothing, nothing, np.zeros(0, dtype=np.intp))
         return system, State(np.zeros(number), start, nothing)
 
 

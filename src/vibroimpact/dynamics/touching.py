@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import partial
 
 import numpy as np
 
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.quasi_static import QuasiStatic
 from vibroimpact.contact.roots import highest
+from vibroimpact.contact.static import static_indentation
+from vibroimpact.dynamics.collocation import Floats
 from vibroimpact.dynamics.linear_system import LinearSystem, State
 from vibroimpact.dynamics.local import LocalContact
 from vibroimpact.dynamics.vibrating_stretch import VibratingStretch
@@ -90,10 +91,30 @@ class Touching:
         return held if abs(held) > _NOTHING * self.energy else 0.0
 
 
+def closing_speed(system: LinearSystem, state: State, number: int) -> float:
+    """Return the speed at which the surfaces of a contact approach each other [m/s], > 0.
+
+    Where a body's own vibration makes its surface meet the other, its centre may hardly come nearer.
+    """
+    return max(float(system.outer_rates(state)[number]), float(system.rates(state)[number]), 1e-300)
+
+
+def motion_speed(system: LinearSystem, number: int, law: CompliantLaw, closing: float) -> float:
+    """Return the speed of the motion in a contact [m/s]: that at which its surfaces meet, or what gravity adds to a soft touch."""
+    mass, gravity = float(system.mass[number]), max(float(system.gravity[number]), 0.0)
+    sag = float(static_indentation(law, np.array([mass * gravity]))[0]) if gravity else 0.0
+    return max(closing, float(np.sqrt(gravity * sag)))
+
+
 def note_peaks(impact: Impact, stretch: VibratingStretch, place: int, start: float) -> None:
     """Note the largest force and indentation of one of its contacts within a stretch that starts at a time [s], and its impulse."""
     rule, contact = stretch.rule, stretch.contacts[place]
-    for name, values in (("force", contact.force_at), ("indentation", partial(stretch.indentation_at, contact=place))):
+    indentations = stretch.indentations(place)
+
+    def indentation_at(x: Floats) -> Floats:
+        return np.asarray(rule.weights(x).T @ indentations)
+
+    for name, values in (("force", contact.force_at), ("indentation", indentation_at)):
         if float(values(rule.nodes).max()) < 0.98 * getattr(impact, f"max_{name}"):
             continue
         x = np.array([highest(values)])

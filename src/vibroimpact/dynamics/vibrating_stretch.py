@@ -102,13 +102,12 @@ class VibratingStretch:
             start.displacement + h * (last @ self.velocities), self.velocities[-1], start.local + h * (last @ self.accelerations[1])
         )
 
-    def indentation_at(self, x: Floats, contact: int = 0) -> Floats:
-        """Return how far the centre above has come to the surface below at a contact [m], at x in [0, 1]."""
+    def indentations(self, contact: int = 0) -> Floats:
+        """Return how far the centre above has come to the surface below at a contact [m], at the start and the nodes (N + 1,)."""
         number = self.contacts[contact].number
         shape = self.system.of_bodies[number]
         begun = float(self.system.offset[number] + self.start.displacement @ shape)
-        nodes = np.append(begun, begun + self.length * (self.rule.integral @ (self.velocities @ shape)))
-        return np.asarray(self.rule.weights(np.asarray(x, dtype=float)).T @ nodes)
+        return np.append(begun, begun + self.length * (self.rule.integral @ (self.velocities @ shape)))
 
     @cached_property
     def powers(self) -> Floats:
@@ -163,7 +162,6 @@ class VibratingStretch:
         strains = of.angular_frequency**2 * (end.displacement - start.displacement)
         gain += 0.5 * strains @ (end.displacement + start.displacement) + of.local_energy(end) - of.local_energy(start)
         gain += sum(contact.work for contact in self.contacts)
-        moved = self.seen.shape.any(axis=0)
         of_all = np.add(*of.energies(start))
-        rounding = _ROUNDING * float(of_all[of.vibrating].sum()) + _RIGID_ROUNDING * float(of_all[of.rigid & moved].sum())
+        rounding = _ROUNDING * float(of_all[of.vibrating].sum()) + _RIGID_ROUNDING * float(of_all[self.seen.rigid].sum())
         return bool(abs(gain + self.lost.sum()) <= 0.06 * tolerance * energy + rounding)

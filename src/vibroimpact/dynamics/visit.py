@@ -16,7 +16,6 @@ import numpy as np
 
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.quasi_static import QuasiStatic
-from vibroimpact.contact.static import static_indentation
 from vibroimpact.dynamics.collocation import Floats
 from vibroimpact.dynamics.contact import CAPTURED, FAILED, RELEASED, RIDING, SETTLED
 from vibroimpact.dynamics.linear_system import FreeMotion, LinearSystem, State
@@ -24,7 +23,7 @@ from vibroimpact.dynamics.local import LocalContact
 from vibroimpact.dynamics.march import March, NotIntegrable, Part
 from vibroimpact.dynamics.next_touch import next_touch, time_to_part
 from vibroimpact.dynamics.riding import Riding, least_energy, may_stay, stays_below
-from vibroimpact.dynamics.touching import Law
+from vibroimpact.dynamics.touching import Law, closing_speed, motion_speed
 from vibroimpact.dynamics.vibrating_events import ROUNDING
 from vibroimpact.dynamics.vibrating_stretch import VibratingStretch
 
@@ -95,9 +94,7 @@ def visit(
     until : float, default infinite
         When to stop a sphere that rides [s since first touch]; a contact of usual length is finished.
     """
-    closing = max(float(system.outer_rates(state)[0]), float(system.rates(state)[0]), 1e-300)
-    sag = float(static_indentation(law, np.array([system.mass[0] * system.gravity[0]]))[0])
-    speed = max(closing, float(np.sqrt(system.gravity[0] * sag)))
+    speed = motion_speed(system, 0, law, closing_speed(system, state, 0))
     march = March(system, [Law(law, series, forgets)], state, tolerance, (speed, pace))
     with np.errstate(all="ignore"):  # guesses may be wild; what is not finite is found and tried again
         return _Visit(march, rest_speed, until).run()

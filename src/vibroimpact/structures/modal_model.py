@@ -264,7 +264,7 @@ def modal_basis(
         model.participation[:, :3],
         {name: seen(*point, f'sensor "{name}"') for name, point in (points or {}).items()},
         model.properties.mass,
-        _rotation(model),
+        _rotation(model.properties, model.participation[:, 3:]),
         model.frequency_errors,
     )
 
@@ -293,7 +293,6 @@ def rigid_basis(model: ModalModel, contact: tuple[Spot, Side], points: Mapping[s
         place = surface_motion(model.mesh, np.array([place_of(model.mesh, spot, side)]), side, model.thickness)[1][0]
         return np.asarray(along + np.cross(turning, place - properties.centre))
 
-    moments, axes = np.linalg.eigh(properties.inertia)
     return ModalBasis(
         np.zeros(len(motions)),
         np.zeros(len(motions)),
@@ -301,11 +300,11 @@ def rigid_basis(model: ModalModel, contact: tuple[Spot, Side], points: Mapping[s
         properties.mass * along,
         {name: seen(*point) for name, point in points.items()},
         properties.mass,
-        turning @ properties.inertia @ axes / np.sqrt(moments),
+        _rotation(properties, turning @ properties.inertia),
     )
 
 
-def _rotation(model: ModalModel) -> Floats:
-    """Return the angular momentum of each mode in the root of the inertia: half its square is energy of rotation."""
-    moments, axes = np.linalg.eigh(model.properties.inertia)
-    return np.asarray(model.participation[:, 3:] @ axes / np.sqrt(moments))
+def _rotation(properties: MassProperties, momentum: Floats) -> Floats:
+    """Return angular momenta of modes in the root of the inertia: half their squares are energy of rotation."""
+    moments, axes = np.linalg.eigh(properties.inertia)
+    return np.asarray(momentum @ axes / np.sqrt(moments))
