@@ -16,7 +16,8 @@ class ContactHistory:
 
     `number`: which contact of the system. `static`, `dissipative`: parts of its force at the nodes [N] (N,). `approach`, `rate`: of
     the surfaces [m], and what the dashpot of the law feels [m/s], at the start and at the nodes (N + 1,). `delta`: the law's own
-    indentation there [m]. `broken`: what is lost at the end, as a sticking contact breaks [J].
+    indentation there [m]. `work`: by how much the energy that it stores, and has spent on plastic deformation, grows [J]. `dissipated`:
+    what its law takes [J]. `broken`: what is lost at the end, as a sticking contact breaks [J].
     """
 
     number: int
@@ -27,12 +28,19 @@ class ContactHistory:
     approach: Floats
     rate: Floats
     delta: Floats
+    work: float
+    dissipated: float
     broken: float = 0.0
 
     @property
     def force(self) -> Floats:
         """The force at the nodes [N]."""
         return self.static + self.dissipative
+
+    @property
+    def power(self) -> Floats:
+        """What its law takes at the nodes [W]."""
+        return self.dissipative * self.rate[1:]
 
     def law_force_at(self, x: Floats) -> Floats:
         """Return the force that the law gives [N] at x in [0, 1], before any clip."""
@@ -44,9 +52,3 @@ class ContactHistory:
         """Return the contact force, clipped where the law may not pull [N], at x in [0, 1]."""
         force = self.law_force_at(x)
         return force if self.local.law.tension == "kept" else np.maximum(force, 0.0)
-
-    @property
-    def work(self) -> float:
-        """By how much the energy stored in the contact, and spent on its plastic deformation, grows [J]."""
-        begun, done = self.local.own_work(self.delta[[0, -1]])
-        return float(done - begun)

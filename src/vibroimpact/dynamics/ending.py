@@ -8,7 +8,7 @@ import numpy as np
 
 from vibroimpact.dynamics.collocation import Map
 from vibroimpact.dynamics.receptance import NODES, spectrum
-from vibroimpact.dynamics.solve_vibrating import solve_vibrating
+from vibroimpact.dynamics.solve_vibrating import Course, StretchProblem
 from vibroimpact.dynamics.vibrating_events import GRID, Event, first_event
 from vibroimpact.dynamics.vibrating_stretch import VibratingStretch
 
@@ -20,7 +20,7 @@ _AT_END = 1e-12  # of a stretch: nearer to its end is at its end
 
 def end_at(
     stretch: VibratingStretch, event: Event, tolerance: float, energy: float, speed: float, span: float
-) -> tuple[Event, VibratingStretch] | None:
+) -> Course[tuple[Event, VibratingStretch] | None]:
     """Return the first event of a stretch, and the stretch that ends there; None if it is not found.
 
     What was seen in a solution that is not resolved may not be there, or something else before it.
@@ -37,7 +37,7 @@ def end_at(
         Energy [J] and speed [m/s] of the motion, and about how long a contact lasts [s].
     """
     for _ in range(_MOST_AIMS):
-        ended = _aimed(stretch, event)
+        ended = yield _aimed(stretch, event)
         if not ended.solved or not 0.0 < ended.length <= (1.0 + _AT_END) * stretch.length:
             return None
         before = first_event(ended, speed, span)
@@ -68,8 +68,8 @@ def broken(stretch: VibratingStretch, place: int, held: float) -> VibratingStret
     return replace(stretch, contacts=tuple(contacts))
 
 
-def _aimed(stretch: VibratingStretch, event: Event) -> VibratingStretch:
-    """Solve a stretch again so that it ends at an event that was seen in it."""
+def _aimed(stretch: VibratingStretch, event: Event) -> StretchProblem:
+    """Return what is to be solved for a stretch that ends at an event that was seen in another."""
     rule, contacts = stretch.rule, stretch.contacts
     time_map: Map = "touch" if rule.time_map == "touch" else "release" if event.aim.name in ("parted", "no push") else "inside"
     part = float(rule.map_time(np.array([event.x]))[0])
@@ -78,4 +78,5 @@ def _aimed(stretch: VibratingStretch, event: Event) -> VibratingStretch:
     delta = np.stack([weights @ contact.delta for contact in contacts])
     force = np.stack([np.add(*contact.local.own_forces(row, weights @ contact.rate)) for contact, row in zip(contacts, delta, strict=True)])
     locals_, begun = [contact.local for contact in contacts], [float(contact.delta[0]) for contact in contacts]
-    return solve_vibrating(stretch.seen, locals_, time_map, part * stretch.length, stretch.start, begun, (delta, force), event.aim)
+    length = part * stretch.length
+    return StretchProblem(stretch.seen, locals_, time_map, length, stretch.start, begun, guess=(delta, force), aim=event.aim)

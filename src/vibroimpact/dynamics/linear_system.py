@@ -15,7 +15,7 @@ others :math:`F_{ci} = F_c`.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -80,6 +80,19 @@ class LinearSystem(Oscillators):
     def views(self) -> dict[tuple[int, ...], Any]:
         """What is kept of how some contacts see it, by their numbers (`receptance`)."""
         return {}
+
+    @cached_property
+    def shared(self) -> dict[tuple[int, ...], Any]:
+        """What is kept of how some contacts see its modes, by their numbers; systems with the same modes have it in common."""
+        return {}
+
+    def falling(self, shape: float, load: float) -> LinearSystem:
+        """Return the system with another first motion as a rigid body, its only one at the contacts with a load: of another sphere."""
+        shapes, loads = self.shape.copy(), self.load.copy()
+        shapes[:, 0], loads[0] = shape, load
+        found = replace(self, shape=shapes, load=loads)
+        found.__dict__["shared"] = self.shared
+        return found
 
     @cached_property
     def rigid(self) -> NDArray[np.bool_]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from typing import NamedTuple
 
@@ -19,7 +19,7 @@ _STEP = 1e-7
 _NEAR = 1e-8
 _ROWS = 200
 _PULLED, _TORN = 2000, 0.5
-_ASIDE = np.array([[[0.0], [1.0], [0.0]], [[0.0], [0.0], [1.0]]])
+_ASIDE = np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
 """What is added to indentation and rate for the force, and for its two derivatives."""
 
 
@@ -53,13 +53,13 @@ class LocalContact:
         The law, of one drop.
     series : QuasiStatic
         What is in series with it.
-    approach_speed : float
-        Closing speed of the surfaces at this touch [m/s].
+    approach_speed : float or array
+        Closing speed of the surfaces at this touch [m/s]; an array of several contacts that are `stacked`.
     """
 
     law: CompliantLaw
     series: QuasiStatic
-    approach_speed: float
+    approach_speed: Array
 
     def forces(self, approach: Array, rate: Array) -> tuple[Array, Array]:
         """Return the static and the dissipative force [N], before any clip, at the approach y [m] and its rate [m/s]."""
@@ -74,8 +74,9 @@ class LocalContact:
     def linearised(self, delta: Array, rate: Array) -> Linearised:
         """Return the same with what Newton's method needs; the derivatives are differences. Beyond release, nothing changes any more."""
         held, reached = delta > self.least, np.maximum(delta, self.least)
-        step, faster = _STEP * (np.abs(reached).max() + 1e-300), _STEP * (np.abs(rate).max() + 1e-300)
-        static, dissipative = self.law.forces(reached + step * _ASIDE[0], rate + faster * _ASIDE[1], self.approach_speed)
+        step, faster = _STEP * (np.abs(reached).max(axis=0) + 1e-300), _STEP * (np.abs(rate).max(axis=0) + 1e-300)
+        aside = _ASIDE.reshape(2, 3, *(1,) * delta.ndim)
+        static, dissipative = self.law.forces(reached + step * aside[0], rate + faster * aside[1], self.approach_speed)
         stiffness = (static[1] - static[0]) * (held / step)
         approach, slope = delta, np.ones_like(delta)
         if self.series:
@@ -83,12 +84,12 @@ class LocalContact:
         by_delta, by_rate = (dissipative[1] - dissipative[0]) * (held / step), (dissipative[2] - dissipative[0]) / faster
         return Linearised(static[0], dissipative[0], approach, slope, stiffness, by_delta, by_rate)
 
-    def near(self, delta: float, approach: float) -> float:
-        """Return the law's own indentation at an approach [m], from one that is as near as rounding leaves it."""
+    def near(self, delta: Array, approach: Array) -> Array:
+        """Return the law's own indentation at an approach [m], from one that is as near as rounding leaves it; (B,) of B contacts."""
         if not self.series:
             return approach
-        now = self.linearised(np.array([delta]), np.zeros(1))
-        return max(delta + (approach - float(now.approach[0])) / float(now.slope[0]), self.least)
+        now = self.linearised(delta[None], np.zeros((1, len(delta))))
+        return np.maximum(delta + ((approach - now.approach) / now.slope)[0], self.least)
 
     def about(self, approach: Array) -> Array:
         """Return the law's own indentation at an approach [m], roughly."""
@@ -194,8 +195,23 @@ class LocalContact:
         return not all(np.all(before[name] == after[name]) for name in before)
 
 
+def stacked(contacts: Sequence[LocalContact]) -> LocalContact:
+    """Return contacts of one law and with the same in series as one of them all: where it takes indentations, the last axis is theirs."""
+    first, *others = contacts
+    if not others:
+        return first
+    parameters = {}
+    for item in fields(first.law):
+        values = [getattr(contact.law, item.name) for contact in contacts]
+        parameters[item.name] = values[0] if all(value == values[0] for value in values) else np.array(values, dtype=float)
+    both = replace(first, law=first.law.changed(parameters), approach_speed=np.array([contact.approach_speed for contact in contacts]))
+    both.__dict__["least"] = np.array([contact.least for contact in contacts])
+    return both
+
+
 def linearised(contacts: Sequence[LocalContact], delta: Array, rate: Array) -> Linearised:
-    """Return the same of several contacts, from their laws' indentations and rates (c, N), (c, N) each."""
-    if len(contacts) == 1:
-        return Linearised(*(part[None] for part in contacts[0].linearised(delta[0], rate[0])))
-    return Linearised(*map(np.stack, zip(*(one.linearised(*pair) for one, *pair in zip(contacts, delta, rate, strict=True)), strict=True)))
+    """Return the same of c contacts of B systems, from their laws' indentations and rates at N nodes (B, c N), (B, c N) each."""
+    size = delta.shape[1] // len(contacts)
+    ranges = [slice(begin, begin + size) for begin in range(0, delta.shape[1], size)]
+    found = [one.linearised(delta[:, part].T, rate[:, part].T) for one, part in zip(contacts, ranges, strict=True)]
+    return Linearised(*(parts[0].T if len(parts) == 1 else np.concatenate(parts).T for parts in zip(*found, strict=True)))

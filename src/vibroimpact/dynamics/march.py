@@ -24,7 +24,7 @@ from vibroimpact.dynamics.local import LocalContact
 from vibroimpact.dynamics.next_touch import next_touch, time_to_part
 from vibroimpact.dynamics.receptance import seen_by
 from vibroimpact.dynamics.recoil import after, end_of_recoil, recoil_of
-from vibroimpact.dynamics.solve_vibrating import solve_vibrating
+from vibroimpact.dynamics.solve_vibrating import Course, StretchProblem
 from vibroimpact.dynamics.touching import Impact, Law, Touching, closing_speed, motion_speed, note_peaks
 from vibroimpact.dynamics.vibrating_events import GRID, STILL, Event, first_event
 from vibroimpact.dynamics.vibrating_stretch import VibratingStretch
@@ -84,7 +84,7 @@ class March:
         self.impacts: list[Impact] = []
         self.lost, self.plastic = np.zeros(system.number + 1), 0.0
 
-    def run(self, end: float, progress: Callable[[float], None] | None = None) -> None:
+    def course(self, end: float, progress: Callable[[float], None] | None = None) -> Course[None]:
         """Go on until a time [s]; a contact under way then is cut short.
 
         Raises
@@ -93,23 +93,22 @@ class March:
             If a contact can not be integrated to the tolerance, or contacts follow each other without end.
         """
         stretches = 0
-        with np.errstate(all="ignore"):  # guesses may be wild; what is not finite is found and tried again
-            while self.time < end:
-                stretches += 1
-                if stretches > _MOST_STRETCHES:
-                    raise ComputationError(
-                        f"after {_MOST_STRETCHES} stretches of contact the system is at {self.time:g} s: contacts follow each other ever "
-                        "faster, as where a body comes to rest; ask for a shorter duration"
-                    )
-                self.step(end - self.time)
-                if progress is not None:
-                    progress(self.time / end)
+        while self.time < end:
+            stretches += 1
+            if stretches > _MOST_STRETCHES:
+                raise ComputationError(
+                    f"after {_MOST_STRETCHES} stretches of contact the system is at {self.time:g} s: contacts follow each other ever "
+                    "faster, as where a body comes to rest; ask for a shorter duration"
+                )
+            yield from self.step(end - self.time)
+            if progress is not None:
+                progress(self.time / end)
 
-    def step(self, longest: float) -> bool:
+    def step(self, longest: float) -> Course[bool]:
         """Take one part of the history, no longer than asked for [s]; return whether it was taken, and need not be tried with less."""
         pushing = [touch for touch in self.touching.values() if touch.pushes]
         if pushing:
-            return self.press(pushing, longest)
+            return (yield from self.press(pushing, longest))
         self.fly(longest)
         return True
 
@@ -192,19 +191,19 @@ class March:
 
     # under contact forces ---------------------------------------------------------------------------
 
-    def press(self, pushing: list[Touching], longest: float) -> bool:
+    def press(self, pushing: list[Touching], longest: float) -> Course[bool]:
         """Take one stretch, up to its first event; return False if it has to be tried again with less."""
         of, state = self.system, self.state
         for touch in pushing:
             if touch.fresh:
                 continue
             # what ends with a stretch as another contact does, or by less than rounding tells
-            rounding = _ROUNDING * touch.impact.max_indentation
+            rounding = _ROUNDING * touch.impact.indentation.near
             if touch.overlap(of, state) <= rounding and float(of.rates(state)[touch.number]) < 0.0:
                 self.break_off(touch)
                 self.part(touch)
                 return True
-            if touch.local.law.tension == "cut" and touch.force <= _NO_FORCE * touch.impact.max_force and touch.trend < 0.0:
+            if touch.local.law.tension == "cut" and touch.force <= _NO_FORCE * touch.impact.force.near and touch.trend < 0.0:
                 self.push_no_more(touch)
                 return True
             if touch.closing <= STILL * touch.speed and touch.local.learns(touch.delta):
@@ -213,11 +212,11 @@ class March:
         energy = max(touch.energy for touch in pushing)
         if self.pace < 1e-12 * span:
             raise NotIntegrable(f"the contact at {self.time:g} s can not be integrated to the tolerance")
-        stretch = self.solve(pushing, "touch" if any(touch.fresh for touch in pushing) else "inside", min(self.pace, longest))
+        stretch = yield self.problem(pushing, "touch" if any(touch.fresh for touch in pushing) else "inside", min(self.pace, longest))
         event = first_event(stretch, speed, span) if stretch.solved else None
         other = self.others(stretch) if stretch.solved else None
         if event is not None and (other is None or event.x <= other.x):  # which may be all that keeps the stretch from being resolved
-            found = end_at(stretch, event, self.tolerance, energy, speed, span)
+            found = yield from end_at(stretch, event, self.tolerance, energy, speed, span)
             if found is None:
                 self.pace = 0.5 * min(self.pace, before_event(stretch, event, self.tolerance, energy))
                 return False
@@ -234,7 +233,7 @@ class March:
             self.accept(pushing, stretch)
             self.pace = stretch.length * growth(stretch, self.tolerance)
             return True
-        ended = self.polished(pushing, stretch, other)
+        ended = yield from self.polished(pushing, stretch, other)
         if ended is None or first_event(ended, speed, span) is not None:
             self.pace = 0.5 * stretch.length
             return False
@@ -284,12 +283,11 @@ class March:
             return False
         return bool(np.isfinite(time_to_part(FreeMotion(self.system, state), touch.local.release_level, touch.number)))
 
-    def solve(self, pushing: list[Touching], time_map: Map, length: float) -> VibratingStretch:
-        """Solve a stretch of a length [s] from here."""
-        locals_, begun = [touch.local for touch in pushing], [touch.delta for touch in pushing]
-        trend = np.array([touch.trend for touch in pushing])
-        return solve_vibrating(
-            seen_by(self.system, (touch.number for touch in pushing)), locals_, time_map, length, self.state, begun, trend=trend
+    def problem(self, pushing: list[Touching], time_map: Map, length: float) -> StretchProblem:
+        """Return what is to be solved for a stretch of a length [s] from here."""
+        locals_, begun, trend = zip(*((touch.local, touch.delta, touch.trend) for touch in pushing), strict=True)
+        return StretchProblem(
+            seen_by(self.system, (touch.number for touch in pushing)), locals_, time_map, length, self.state, begun, trend
         )
 
     def accept(self, pushing: list[Touching], stretch: VibratingStretch) -> None:
@@ -346,13 +344,13 @@ class March:
             if apart and float(self.beyond(other, 0.5 * slack, self.state)) > 0.0:
                 self.meet(other)
 
-    def polished(self, pushing: list[Touching], stretch: VibratingStretch, other: Other) -> VibratingStretch | None:
+    def polished(self, pushing: list[Touching], stretch: VibratingStretch, other: Other) -> Course[VibratingStretch | None]:
         """Solve a stretch again so that it ends where another contact touches or its recoil ends; None if that is not found."""
         rule, whole = stretch.rule, stretch.length
         low, high = (whole * float(rule.map_time(np.array([x]))[0]) for x in (max(other.x - GRID[1], 0.0), other.x))
         length = float(find_root(after(stretch, other.value), np.array([low]), np.array([high]))[0])
         for _ in range(_POLISHES):
-            ended = self.solve(pushing, rule.time_map, length)
+            ended = yield self.problem(pushing, rule.time_map, length)
             if not ended.solved:
                 return None
             step = 1e-6 * length

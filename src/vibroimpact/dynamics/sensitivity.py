@@ -9,7 +9,7 @@ before and after (P. C. Mueller, Chaos, Solitons & Fractals 5:1671, 1995).
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Generator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -20,8 +20,9 @@ from vibroimpact.dynamics.apart import Apart
 from vibroimpact.dynamics.collocation import Floats
 from vibroimpact.dynamics.linear_system import FreeMotion, LinearSystem, State
 from vibroimpact.dynamics.local import LocalContact
+from vibroimpact.dynamics.lockstep import in_lockstep
 from vibroimpact.dynamics.problem import Problem
-from vibroimpact.dynamics.tangent import difference_through
+from vibroimpact.dynamics.tangent import Beside, differences_through
 from vibroimpact.dynamics.vibrating_stretch import VibratingStretch
 
 if TYPE_CHECKING:
@@ -60,13 +61,11 @@ class Neighbours:
                 self._drops[drop].fly(flight, float(length))
             if leg.contact is None:
                 return np.zeros(0)
+            motions: dict[int, list[VibratingStretch | Apart]] = {drop: [] for drop in leg.contact_drops.tolist()}
             for piece in leg.contact.pieces:
-                neighbour, motion = self._drops[leg.contact_drops[piece.drops[0]]], piece.motion
-                if isinstance(motion, Apart):
-                    neighbour.fly(motion.free, motion.length, inside=motion.local is not None)
-                else:
-                    assert isinstance(motion, VibratingStretch)  # of bodies that vibrate
-                    neighbour.pass_through(motion)
+                assert isinstance(piece.motion, (VibratingStretch, Apart))  # of bodies that vibrate
+                motions[int(leg.contact_drops[piece.drops[0]])].append(piece.motion)
+            in_lockstep((self._drops[drop].go_through(parts) for drop, parts in motions.items()), differences_through)
             ends = zip(leg.contact_drops, leg.contact.final_rate, strict=True)
             return np.array([self._drops[drop].leave(-float(speed)) for drop, speed in ends])
 
@@ -128,18 +127,26 @@ class _Neighbour:
         self.difference = State(place, speed, before.local * np.exp(-of.rate * length))
         self.apart, self.last = not inside, None
 
-    def pass_through(self, stretch: VibratingStretch) -> None:
+    def go_through(self, motions: Sequence[VibratingStretch | Apart]) -> Generator[Beside, tuple[State, Floats], None]:
+        """Go through the parts of a visit."""
+        for motion in motions:
+            if isinstance(motion, Apart):
+                self.fly(motion.free, motion.length, inside=motion.local is not None)
+            else:
+                yield from self.pass_through(motion)
+
+    def pass_through(self, stretch: VibratingStretch) -> Generator[Beside, tuple[State, Floats], None]:
         """Go through a stretch of contact."""
         if self.apart:
             self.touch(stretch)
         elif stretch.contacts[0].local is not self.local:
             self.turn(stretch)
-        through = difference_through(stretch, self.difference, _asides(stretch.contacts[0].local, self.knowledge))
-        self.difference, self.pressed, self.last = through.end, float(through.force[0, -1]), stretch
+        self.difference, pressed = yield Beside(stretch, self.difference, _asides(stretch.contacts[0].local, self.knowledge))
+        self.pressed, self.last = float(pressed[-1]), stretch
         assert self.visit is not None  # it has touched
         force = float(stretch.force.max())
         if force > self.visit.force:
-            self.visit.force, self.visit.strongest = force, (stretch, through.force[0])
+            self.visit.force, self.visit.strongest = force, (stretch, pressed)
 
     def leave(self, speed: float) -> float:
         """Leave at a speed upwards; return how the change has grown in the visit."""

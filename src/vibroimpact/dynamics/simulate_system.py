@@ -14,19 +14,14 @@ from numpy.typing import NDArray
 from vibroimpact.dynamics.apart import Apart
 from vibroimpact.dynamics.collocation import Floats
 from vibroimpact.dynamics.linear_system import LinearSystem, State
+from vibroimpact.dynamics.lockstep import in_lockstep
 from vibroimpact.dynamics.march import March
+from vibroimpact.dynamics.solve_vibrating import solve_stretches
 from vibroimpact.dynamics.system import MovingBody, System
 from vibroimpact.dynamics.touching import Law
 from vibroimpact.dynamics.vibrating_stretch import VibratingStretch
 from vibroimpact.errors import ComputationError, InputError
 
-_COLUMNS = {
-    "closing_speed_m_s": "closing_speed",
-    "max_force_N": "max_force",
-    "time_of_max_force_s": "time_of_max_force",
-    "max_indentation_m": "max_indentation",
-    "impulse_N_s": "impulse",
-}
 _LONGEST = 1e9  # seconds
 _CLOSURE = 1e-6  # of the energy put in: more missing is an error
 
@@ -216,13 +211,18 @@ def simulate_system(system: System, *, duration: float, progress: Callable[[floa
             "contact fall alike; give a body a velocity, or hold one"
         )
     march = March(linear, [Law(one.law, one.series, not one.same_spot) for one in system.contacts.values()], start, system.tolerance)
-    march.run(duration, progress)
+    in_lockstep([march.course(duration, progress)], solve_stretches)
     names = list(system.contacts)
+    forces = np.array([impact.force.top() for impact in march.impacts]).reshape(-1, 2)
     columns = {
         "contact": np.array([names[impact.contact] for impact in march.impacts]),
         "time_s": np.array([impact.start for impact in march.impacts]),
         "duration_s": np.array([impact.end - impact.start for impact in march.impacts]),
-        **{column: np.array([getattr(impact, name) for impact in march.impacts]) for column, name in _COLUMNS.items()},
+        "closing_speed_m_s": np.array([impact.closing_speed for impact in march.impacts]),
+        "max_force_N": forces[:, 0],
+        "time_of_max_force_s": forces[:, 1],
+        "max_indentation_m": np.array([impact.indentation.top()[0] for impact in march.impacts]),
+        "impulse_N_s": np.array([impact.impulse for impact in march.impacts]),
     }
     energy = _ledger(linear, start, march)
     if not energy["closure_relative"] <= _CLOSURE:

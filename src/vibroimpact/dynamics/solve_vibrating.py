@@ -1,23 +1,28 @@
-r"""Solve a stretch of contact at once on the nodes of Radau collocation, up to an event where one ends it.
+r"""Solve stretches of contact on the nodes of Radau collocation, each up to an event where one ends it.
 
 The unknowns are the contact forces and the laws' own indentations at the nodes and, where an event ends the stretch, how long it
-lasts. All else is linear in the forces (`receptance`).
+lasts. All else is linear in the forces (`receptance`). Stretches of several systems are solved together where these have the same modes,
+the same contacts push, and the same law acts there.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Generator, Sequence
 from dataclasses import dataclass
-from typing import Literal, NamedTuple
+from typing import Literal, NamedTuple, TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from vibroimpact.dynamics.collocation import Floats, Map
 from vibroimpact.dynamics.contact_history import ContactHistory
+from vibroimpact.dynamics.linear_equations import inverses, solutions, times
 from vibroimpact.dynamics.linear_system import State
-from vibroimpact.dynamics.local import Linearised, LocalContact, linearised
-from vibroimpact.dynamics.receptance import NODES, Receptance, Seen, spectrum
-from vibroimpact.dynamics.vibrating_stretch import VibratingStretch
+from vibroimpact.dynamics.local import Linearised, LocalContact, linearised, stacked
+from vibroimpact.dynamics.receptance import NODES, Receptance, Seen, Together, spectrum
+from vibroimpact.dynamics.vibrating_stretch import VibratingStretch, motions_of
+
+Result = TypeVar("Result")
 
 _SWEEPS = 25
 _LONGER = 3.0  # times: by no more does a sweep change the length that is sought
@@ -37,24 +42,15 @@ class Aim:
     contact: int = 0
 
 
-def solve_vibrating(
-    seen: Seen,
-    locals_: Sequence[LocalContact],
-    time_map: Map,
-    length: float,
-    start: State,
-    begun: Sequence[float],
-    guess: tuple[Floats, Floats] | None = None,
-    aim: Aim | None = None,
-    trend: Floats | None = None,
-) -> VibratingStretch:
-    """Solve the motion through a stretch of contact by Newton's method.
+@dataclass(frozen=True)
+class StretchProblem:
+    """A stretch of contact to be solved.
 
     Parameters
     ----------
     seen : Seen
         The system, as the contacts that push see it.
-    locals_ : sequence of LocalContact
+    locals : sequence of LocalContact
         The law of each, and what is in series with it.
     time_map : {"touch", "inside", "release"}
         In which root of time the forces are smooth.
@@ -64,107 +60,227 @@ def solve_vibrating(
         Where it begins.
     begun : sequence of float
         The laws' own indentations there [m], nearly.
+    trend : sequence of float
+        About how fast the forces change at the start [N/s], where there is no guess.
     guess : tuple of two arrays, shape (c, N), optional
         Those indentations [m] and the forces [N] at the nodes, nearly.
     aim : Aim, optional
         What ends the stretch; its length is found.
-    trend : array, shape (c,), optional
-        About how fast the forces change at the start [N/s], where there is no guess.
     """
-    of, at = seen.system, spectrum(time_map, max(local.law.root for local in locals_))
-    met, begun_rate = (part[seen.contacts] for part in (of.approach(start), of.outer_rates(start)))
-    met = np.maximum(met, [local.release_level for local in locals_])
-    own = np.array([local.near(*pair) for local, *pair in zip(locals_, begun, met.tolist(), strict=True)])
-    here = Receptance(seen, at, length, start)
-    delta, force = _first_guess(locals_, here, own, begun_rate, trend) if guess is None else guess
-    static = np.zeros_like(force)
-    scale = float((of.mass[seen.contacts] * (np.abs(here.rate).max(axis=1) / length + np.abs(seen.gravity))).max())
-    solved, before = False, np.inf
+
+    seen: Seen
+    locals: Sequence[LocalContact]
+    time_map: Map
+    length: float
+    start: State
+    begun: Sequence[float]
+    trend: Sequence[float] = ()
+    guess: tuple[Floats, Floats] | None = None
+    aim: Aim | None = None
+
+    @property
+    def kind(self) -> tuple[object, ...]:
+        """What has to be the same for stretches that are solved together."""
+        laws = tuple((type(local.law), id(local.series)) for local in self.locals)
+        aim = None if self.aim is None else "level" if self.aim.name in ("parted", "breakpoint") else self.aim.name
+        return id(self.seen.of), self.time_map, aim, self.guess is None, laws
+
+
+Course = Generator[StretchProblem, VibratingStretch, Result]
+"""What goes on by stretches of contact: it yields each as a problem, gets it back solved, and returns what came of it."""
+
+
+def solve_stretches(problems: Sequence[StretchProblem]) -> list[VibratingStretch]:
+    """Return the motion through stretches of contact of one kind, by Newton's method."""
+    first, number = problems[0], len(problems)
+    at = spectrum(first.time_map, max(local.law.root for local in first.locals))
+    systems = Together([problem.seen for problem in problems], [problem.start for problem in problems])
+    locals_ = [stacked(of_one) for of_one in zip(*(problem.locals for problem in problems), strict=True)]
+    length, event = np.array([problem.length for problem in problems]), _event_of(problems)
+    met = np.maximum(systems.approach, [[local.release_level for local in problem.locals] for problem in problems])
+    begun = np.array([problem.begun for problem in problems])
+    own = np.array([local.near(begun[:, place], met[:, place]) for place, local in enumerate(locals_)]).T
+    here = Receptance(systems, at, length)
+    delta, force = _first_guess(problems, locals_, here, own) if first.guess is None else _guesses(problems)
+    largest = np.abs(here.rate).reshape(number, -1, NODES).max(axis=2) / length[:, None]
+    scale = (np.array([problem.seen.mass for problem in problems]) * (largest + np.abs(systems.gravity))).max(axis=1)
+    static, size = np.zeros_like(force), np.full(number, np.inf)
+    solved, going = np.zeros(number, dtype=bool), np.ones(number, dtype=bool)
     for _ in range(_SWEEPS):
-        now = linearised(locals_, delta, here.rate - taken(here.rate_by, force))
-        if not (now.slope > 0.0).all():  # what is taken out in series outweighs the law: there is no such contact
+        now = linearised(locals_, delta, here.rate - times(here.rate_by, force))
+        going = going & (now.slope.min(axis=1) > 0.0)  # else what is taken out in series outweighs the law: there is no such contact
+        if not going.any():
             break
-        try:
-            by_delta, by_force, by_length = _newton_step(now, here, delta, force, aim)
-        except np.linalg.LinAlgError:
-            break
-        limit = _LONGER * length
-        by_length = min(max(by_length, -limit), limit / (1.0 + _LONGER))
-        static, delta, force, length = now.static - now.stiffness * by_delta, delta - by_delta, force - by_force, length - by_length
-        if aim is not None:
-            here = Receptance(seen, at, length, start)
-        most = max(float(np.abs(by_force).max()), float(np.abs(now.stiffness * by_delta).max())) / (scale + float(np.abs(force).max()))
-        size = max(most, abs(by_length) / length)
+        by_delta, by_force, by_length = _newton_step(now, here, delta, force, event)
+        by_length = np.maximum(np.minimum(by_length, _LONGER / (1.0 + _LONGER) * length), -_LONGER * length)
+        by_static = now.stiffness * by_delta
+        parts = ((now.static - by_static, static), (delta - by_delta, delta), (force - by_force, force))
+        if going.all():
+            static, delta, force = (new for new, _ in parts)
+            length = length - by_length
+        else:  # some are where they have come to
+            static, delta, force = (np.where(going[:, None], new, old) for new, old in parts)
+            length = np.where(going, length - by_length, length)
+        if event is not None:
+            here = Receptance(systems, at, length)
+        most = np.maximum(np.abs(by_force).max(axis=1), np.abs(by_static).max(axis=1)) / (scale + np.abs(force).max(axis=1))
+        before, size = size, np.maximum(most, np.abs(by_length) / length)
         # what the next step would be: of a method that converges quadratically, but for its derivatives
-        following = size * max((size / before) ** 2, _INEXACT) if size < before else size
-        solved = min(size, following) < _CONVERGED or (size < _STALLED and size > 0.3 * before)
-        if solved or not np.isfinite(size):
+        following = np.where(size < before, size * np.maximum((size / before) ** 2, _INEXACT), size)
+        done = (np.minimum(size, following) < _CONVERGED) | ((size < _STALLED) & (size > 0.3 * before))
+        solved |= going & done
+        going = going & ~done & np.isfinite(size)
+        if not going.any():
             break
-        before = size
-    approach = here.approach - taken(here.by_force, force) - taken(here.by_static, static)
-    rate = here.rate - taken(here.rate_by, force)
-    if of.mobility.size:  # a dashpot takes up a jump of the force at once
-        jumps = seen.with_local.any(axis=0)
-        begun_rate = np.where(jumps, at.rule.interpolate(np.zeros(1), rate.T)[0], begun_rate)
-    histories = (np.column_stack(pair) for pair in ((met, approach), (begun_rate, rate), (own, delta)))
-    parts = zip(seen.contacts, locals_, static, force - static, *histories, strict=True)
-    contacts = tuple(ContactHistory(number, local, at.rule, *rest) for number, local, *rest in parts)
-    return VibratingStretch(seen, at, length, start, contacts, bool(solved))
+    return _stretches(problems, locals_, here, length, (met, own), (static, delta, force), solved)
 
 
-def taken(matrix: Floats, force: Floats) -> Floats:
-    """Return what forces at the nodes of contacts (c, N) do by a matrix (c N, c N), (c, N)."""
-    return np.asarray((matrix @ force.ravel()).reshape(force.shape))
+def _stretches(
+    problems: Sequence[StretchProblem],
+    locals_: Sequence[LocalContact],
+    here: Receptance,
+    length: Floats,
+    begun: tuple[Floats, Floats],
+    found: tuple[Floats, Floats, Floats],
+    solved: NDArray[np.bool_],
+) -> list[VibratingStretch]:
+    """Return stretches as they were solved.
+
+    Parameters
+    ----------
+    problems : sequence of StretchProblem
+        What was solved.
+    locals_ : sequence of LocalContact
+        The contacts of all of them, `stacked`.
+    here : Receptance
+        How their surfaces move.
+    length : array, shape (B,)
+        How long they last [s].
+    begun : tuple of two arrays, shape (B, c)
+        Approaches of the surfaces and the laws' own indentations at the start [m].
+    found : tuple of three arrays, shape (B, M)
+        Static forces [N], own indentations [m] and forces [N] at the nodes.
+    solved : array of bool, shape (B,)
+        Whether Newton's method converged.
+    """
+    systems, at, (met, own), (static, delta, force) = here.systems, here.at, begun, found
+    approach, rate = here.approach - times(here.by_force, force), here.rate - times(here.rate_by, force)
+    if here.by_static is not None:
+        approach -= times(here.by_static, static)
+    begun_rate, shape = systems.begun_rate, (*met.shape, NODES)
+    if len(systems.of.rate):  # a dashpot takes up a jump of the force at once
+        at_start = at.rule.interpolate(np.zeros(1), rate.reshape(-1, NODES).T).reshape(met.shape)
+        begun_rate = np.where(systems.of.with_local.any(axis=0), at_start, begun_rate)
+    static, force = static.reshape(shape), force.reshape(shape)
+    approaches, rates, indentations = (
+        np.concatenate([begin[:, :, None], rest.reshape(shape)], axis=2)
+        for begin, rest in ((met, approach), (begun_rate, rate), (own, delta))
+    )
+    dissipative, lengths = force - static, length.tolist()
+    works = np.array([np.subtract(*local.own_work(indentations[:, place, [-1, 0]].T)) for place, local in enumerate(locals_)]).T
+    dissipated = (dissipative * rates[:, :, 1:]) @ at.rule.integral[-1] * length[:, None]
+    needed = np.array([problem.seen.mass for problem in problems]) * np.abs(rates).max(axis=2) / length[:, None]
+    roughness = at.rule.tail(force.reshape(-1, NODES).T, needed.ravel()).reshape(needed.shape).max(axis=1).tolist()
+    motions = motions_of(systems, at, length, (here.admittance, here.responses), force, static)
+    stretches = []
+    for number, problem in enumerate(problems):
+        contacts = tuple(
+            ContactHistory(
+                problem.seen.contacts[place],
+                local,
+                at.rule,
+                static[number, place],
+                dissipative[number, place],
+                approaches[number, place],
+                rates[number, place],
+                indentations[number, place],
+                work=float(works[number, place]),
+                dissipated=float(dissipated[number, place]),
+            )
+            for place, local in enumerate(problem.locals)
+        )
+        stretch = VibratingStretch(problem.seen, at, lengths[number], problem.start, contacts, bool(solved[number]), roughness[number])
+        stretch.__dict__["motion"] = motions[number]
+        stretches.append(stretch)
+    return stretches
+
+
+def _guesses(problems: Sequence[StretchProblem]) -> tuple[Floats, Floats]:
+    """Return the guesses of indentations and forces at the nodes (B, M)."""
+    delta, force = (np.array(parts) for parts in zip(*(problem.guess for problem in problems if problem.guess), strict=True))
+    return delta.reshape(len(problems), -1), force.reshape(len(problems), -1)
 
 
 def _first_guess(
-    locals_: Sequence[LocalContact], here: Receptance, begun: Floats, begun_rate: Floats, trend: Floats | None
+    problems: Sequence[StretchProblem], locals_: Sequence[LocalContact], here: Receptance, begun: Floats
 ) -> tuple[Floats, Floats]:
-    """Return what the forces at the start, going on, make of indentations and forces at the nodes (c, N)."""
-    parts = np.array([local.own_forces(delta, rate) for local, delta, rate in zip(locals_, begun, begun_rate, strict=True)])
-    static, force = (np.repeat(part[:, None], NODES, axis=1) for part in (parts[:, 0], parts.sum(axis=1)))
-    if trend is not None:
-        later = trend[:, None] * (here.length * here.at.rule.time)
-        static, force = static + later, force + later
-    approach = here.approach - taken(here.by_force, force) - taken(here.by_static, static)
-    delta = np.array([local.about(np.maximum(row, local.release_level)) for local, row in zip(locals_, approach, strict=True)])
-    rates = here.rate - taken(here.rate_by, force)
-    return delta, np.array([np.add(*local.own_forces(*pair)) for local, *pair in zip(locals_, delta, rates, strict=True)])
+    """Return what the forces at the start, going on, make of indentations and forces at the nodes (B, M)."""
+    rates, shape = here.systems.begun_rate, (*begun.shape, NODES)
+    parts = np.array([local.own_forces(begun[:, place], rates[:, place]) for place, local in enumerate(locals_)])
+    trend = np.array([problem.trend for problem in problems])
+    later = trend[:, :, None] * (here.length[:, None] * here.at.rule.time)[:, None]
+    static, force = (np.add(part.T[:, :, None], later).reshape(len(problems), -1) for part in (parts[:, 0], parts.sum(axis=1)))
+    approach, rate = here.approach - times(here.by_force, force), (here.rate - times(here.rate_by, force)).reshape(shape)
+    if here.by_static is not None:
+        approach -= times(here.by_static, static)
+    delta = approach.reshape(shape)
+    for number, problem in enumerate(problems):
+        for place, local in enumerate(problem.locals):
+            delta[number, place] = local.about(np.maximum(delta[number, place], local.release_level))
+    forces = [np.add(*local.own_forces(delta[:, place].T, rate[:, place].T)).T for place, local in enumerate(locals_)]
+    return delta.reshape(len(problems), -1), np.concatenate(forces, axis=1)
 
 
-def _newton_step(now: Linearised, here: Receptance, delta: Floats, force: Floats, aim: Aim | None) -> tuple[Floats, Floats, float]:
-    r"""Return by how much Newton's method takes back the indentations, the forces, and the length.
+class _Events(NamedTuple):
+    """What ends stretches: its name, the levels of indentations [m] (B,), and the last node of the contact in which it happens (B,)."""
+
+    name: str
+    levels: Floats
+    last: NDArray[np.intp]
+
+
+def _event_of(problems: Sequence[StretchProblem]) -> _Events | None:
+    """Return what ends stretches, or None if their lengths are given."""
+    aims = [problem.aim for problem in problems if problem.aim is not None]
+    if not aims:
+        return None
+    return _Events(aims[0].name, np.array([aim.level for aim in aims]), np.array([(aim.contact + 1) * NODES - 1 for aim in aims]))
+
+
+def _newton_step(now: Linearised, here: Receptance, delta: Floats, force: Floats, event: _Events | None) -> tuple[Floats, Floats, Floats]:
+    r"""Return by how much Newton's method takes back the indentations, the forces (B, M), and the lengths (B,).
 
     The equations are, with the approach y that goes with an indentation, :math:`y(\delta) = y_0(h) - G(h) F - G_s(h) F_s(\delta)` and
     :math:`F = F_{law}(\delta, \dot y_0(h) - R(h) F)`. Their indentations are eliminated.
     """
-    shape = force.shape
-    missing = (now.approach - here.approach).ravel() + here.by_force @ force.ravel() + here.by_static @ now.static.ravel()
-    excess = (force - (now.static + now.dissipative)).ravel()
     left = eliminated(now, here)
-    sunk = left.inward @ missing
-    right = excess + left.push * sunk
-    if aim is None:
-        by_force = np.linalg.solve(left.jacobian, right)
-        return (sunk - left.taken @ by_force).reshape(shape), by_force.reshape(shape), 0.0
+    missing = now.approach - here.approach + times(here.by_force, force)
+    if here.by_static is not None:
+        missing = missing + times(here.by_static, now.static)
+    sunk = left.answer(missing)
+    right = force - (now.static + now.dissipative) + left.push * sunk
+    if event is None:
+        by_force = solutions(left.jacobian, right)
+        return sunk - times(left.taken, by_force), by_force, np.zeros(len(force))
     approach, rate, closing = here.by_length(force, now.static)
-    by_length = -(left.inward @ approach.ravel())
-    row, slope, gone = _event_row(now, here, left, delta, force, aim, closing, by_length, sunk)
-    whole = np.empty((len(right) + 1, len(right) + 1))  # the length as a part of itself
-    whole[:-1, :-1] = left.jacobian
-    whole[:-1, -1] = (left.push * by_length - (now.dissipative_by_rate * rate).ravel()) * here.length
-    whole[-1, :-1], whole[-1, -1] = row, slope * here.length
-    found = np.linalg.solve(whole, np.append(right, gone))
-    by_force, shorter = found[:-1], float(found[-1] * here.length)
-    return (sunk - left.taken @ by_force - by_length * shorter).reshape(shape), by_force.reshape(shape), shorter
+    by_length = -left.answer(approach)
+    row, slope, gone = _event_row(now, here, left, (delta, force), event, closing, by_length, sunk)
+    number, size = force.shape
+    whole = np.empty((number, size + 1, size + 1))  # the length as a part of itself
+    whole[:, :-1, :-1] = left.jacobian
+    whole[:, :-1, -1] = (left.push * by_length - now.dissipative_by_rate * rate) * here.length[:, None]
+    whole[:, -1, :-1], whole[:, -1, -1] = row, slope * here.length
+    found = solutions(whole, np.concatenate([right, gone[:, None]], axis=1))
+    by_force, shorter = found[:, :-1], found[:, -1] * here.length
+    return sunk - times(left.taken, by_force) - by_length * shorter[:, None], by_force, shorter
 
 
 class Eliminated(NamedTuple):
-    """What the indentations leave behind when they are eliminated from the linearised equations of a stretch; M = c N.
+    """What the indentations leave behind when they are eliminated from the linearised equations of B stretches; M = c N.
 
-    `inward`, `taken`: how the indentations answer to an approach that is missing [-], and by how much forces take them back [m/N]
-    (M, M). `push`: derivative of the force by the indentation [N/m] (M,). `jacobian`: of the equations of the forces that are left [-]
-    (M, M).
+    `inward`: how the indentations answer to an approach that is missing [-] (B, M, M), or (B, M) where each answers to its own alone.
+    `taken`: by how much forces take them back [m/N] (B, M, M). `push`: derivative of the force by the indentation [N/m] (B, M).
+    `jacobian`: of the equations of the forces that are left [-] (B, M, M).
     """
 
     inward: Floats
@@ -172,15 +288,26 @@ class Eliminated(NamedTuple):
     push: Floats
     jacobian: Floats
 
+    def answer(self, missing: Floats) -> Floats:
+        """Return the indentations for an approach that is missing [m] (B, M)."""
+        return self.inward * missing if self.inward.ndim == 2 else times(self.inward, missing)
+
 
 def eliminated(now: Linearised, here: Receptance) -> Eliminated:
-    """Return the linearised equations of a stretch without their indentations."""
-    inward = here.by_static * now.stiffness.ravel()
-    inward.flat[:: len(inward) + 1] += now.slope.ravel()
-    inward = np.linalg.inv(inward)
-    reached, push = inward @ here.by_force, (now.stiffness + now.dissipative_by_delta).ravel()
-    jacobian = now.dissipative_by_rate.reshape(-1, 1) * here.rate_by + push[:, None] * reached
-    jacobian.flat[:: len(jacobian) + 1] += 1.0
+    """Return the linearised equations of stretches without their indentations."""
+    diagonal = np.arange(now.slope.shape[1])
+    if here.by_static is None:
+        inward = 1.0 / now.slope
+        reached = inward[:, :, None] * here.by_force
+    else:
+        matrix = here.by_static * now.stiffness[:, None]
+        matrix[:, diagonal, diagonal] += now.slope
+        inward = inverses(matrix)
+        reached = inward @ here.by_force
+    push = now.stiffness + now.dissipative_by_delta
+    jacobian = now.dissipative_by_rate[:, :, None] * here.rate_by
+    jacobian += push[:, :, None] * reached
+    jacobian[:, diagonal, diagonal] += 1.0
     return Eliminated(inward, reached, push, jacobian)
 
 
@@ -188,24 +315,29 @@ def _event_row(
     now: Linearised,
     here: Receptance,
     left: Eliminated,
-    delta: Floats,
-    force: Floats,
-    aim: Aim,
+    at: tuple[Floats, Floats],
+    event: _Events,
     closing_by_length: Floats,
     by_length: Floats,
     sunk: Floats,
-) -> tuple[Floats, float, float]:
-    """Return the row of an event in the Jacobian: by the forces, by the length; and what it leaves, in units of a force."""
-    last = (aim.contact + 1) * NODES - 1  # the last node of the contact with the event
-    if aim.name == "no push":
-        row = np.zeros(force.size)
-        row[last] = 1.0
-        return row, 0.0, float(force.flat[last])
-    if aim.name == "turn":
-        inside = here.closing_by_static[last] * now.stiffness.ravel()
-        still = here.closing.flat[last] - here.rate_by[last] @ force.ravel() - here.closing_by_static[last] @ now.static.ravel()
-        row, slope = inside @ left.taken - here.rate_by[last], float(closing_by_length.flat[last] + inside @ by_length)
-        unit = 1.0 / max(float(np.abs(here.rate_by[last]).max()), 1e-300)
-        return unit * row, unit * slope, unit * float(still + inside @ sunk)
-    unit = 1.0 / max(float(np.abs(left.taken[last]).max()), 1e-300)
-    return -unit * left.taken[last], -unit * float(by_length[last]), unit * float(delta.flat[last] - aim.level - sunk[last])
+) -> tuple[Floats, Floats, Floats]:
+    """Return the rows of events in the Jacobians (B, M): by the forces, by the length; and what they leave, in units of a force (B,)."""
+    (name, levels, last), (delta, force), every = event, at, np.arange(len(sunk))
+    if name == "no push":
+        row = np.zeros_like(force)
+        row[every, last] = 1.0
+        return row, np.zeros(len(force)), force[every, last]
+    if name == "turn":
+        rate_by = here.rate_by[every, last]
+        row, slope = -rate_by, closing_by_length[every, last]
+        still = here.closing[every, last] - (rate_by * force).sum(axis=1)
+        if here.closing_by_static is not None:
+            by_static = here.closing_by_static[every, last]
+            inside = by_static * now.stiffness
+            row, slope = row + times(left.taken.swapaxes(1, 2), inside), slope + (inside * by_length).sum(axis=1)
+            still = still - (by_static * now.static).sum(axis=1) + (inside * sunk).sum(axis=1)
+        unit = 1.0 / np.maximum(np.abs(rate_by).max(axis=1), 1e-300)
+        return unit[:, None] * row, unit * slope, unit * still
+    reached = left.taken[every, last]
+    unit = 1.0 / np.maximum(np.abs(reached).max(axis=1), 1e-300)
+    return -unit[:, None] * reached, -unit * by_length[every, last], unit * (delta[every, last] - levels - sunk[every, last])

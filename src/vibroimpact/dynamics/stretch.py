@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from vibroimpact.dynamics.collocation import Floats, Rule
 from vibroimpact.dynamics.encounter import Encounter
+from vibroimpact.dynamics.linear_equations import inverses
 
 Aim = Literal["duration", "turn", "indentation", "force"]
 """What ends a stretch: its duration is given, or it ends where the indentation rate is zero, where the
@@ -199,7 +200,7 @@ class _Newton:
         for _ in range(_SHARED_SWEEPS):
             residual, *motion = self.residual(unknowns)
             if start.inverse is None:
-                start.inverse = _inverse(self.jacobian(np.array([middle]), unknowns, *motion))[0]
+                start.inverse = inverses(self.jacobian(np.array([middle]), unknowns, *motion))[0]
             before, change = change, self.apply(unknowns, start.inverse @ residual) / scale
             worst = change.max()
             stalled = worst > 0.3 * before.max() and bool((change < self.settled).all())
@@ -220,7 +221,7 @@ class _Newton:
         change = np.full(unknowns.shape[1], np.inf)
         for _ in range(_OWN_SWEEPS):
             residual, *motion = self.residual(unknowns)
-            inverse = _inverse(self.jacobian(everyone, unknowns, *motion))
+            inverse = inverses(self.jacobian(everyone, unknowns, *motion))
             change = self.apply(unknowns, np.einsum("bij,jb->ib", inverse, residual)) / (1.0 + np.abs(unknowns).max(axis=0))
             if not (change >= _CONVERGED).any():
                 break
@@ -272,14 +273,3 @@ class _Newton:
 def _rounding(encounter: Encounter) -> Floats:
     """Return what rounding takes from indentations in a dent [m], which is much if it is deep and touched softly."""
     return np.asarray(16.0 * np.finfo(float).eps * np.abs(encounter.floor))
-
-
-def _inverse(matrices: Floats) -> Floats:
-    """Invert each matrix; one that is singular becomes NaN, and its drop unsolved."""
-    try:
-        return np.asarray(np.linalg.inv(matrices))
-    except np.linalg.LinAlgError:  # NumPy gives up the whole stack for one of them
-        if len(matrices) == 1:
-            return np.full_like(matrices, np.nan)
-        half = len(matrices) // 2
-        return np.concatenate([_inverse(matrices[:half]), _inverse(matrices[half:])])

@@ -6,44 +6,66 @@ state at the start gives that at the end by one more linear solve. Differences a
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import replace
+from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
+from vibroimpact.dynamics.collocation import Floats
+from vibroimpact.dynamics.linear_equations import solutions, times
 from vibroimpact.dynamics.linear_system import State
-from vibroimpact.dynamics.local import LocalContact
-from vibroimpact.dynamics.receptance import NODES, Receptance
+from vibroimpact.dynamics.local import LocalContact, linearised, stacked
+from vibroimpact.dynamics.receptance import Receptance, Together
 from vibroimpact.dynamics.solve_vibrating import eliminated
-from vibroimpact.dynamics.vibrating_stretch import VibratingStretch
+from vibroimpact.dynamics.vibrating_stretch import VibratingStretch, motions_of
 
 
-def difference_through(stretch: VibratingStretch, difference: State, asides: Iterable[tuple[LocalContact, float]] = ()) -> VibratingStretch:
-    """Return the difference of two drops through a stretch from that at its start, as a stretch whose states and forces are it.
+@dataclass(frozen=True)
+class Beside:
+    """A second drop beside one that goes through a stretch of contact.
 
     Parameters
     ----------
     stretch : VibratingStretch
         A stretch of one contact that was solved.
     difference : State
-        At its start, to first order.
-    asides : iterable of (LocalContact, float)
+        That of the second drop at its start, to first order.
+    asides : sequence of (LocalContact, float)
         Contacts whose laws know something a little differently, as the second drop's does, and how many times their change of force counts.
     """
-    (contact,) = stretch.contacts
-    seen, delta, rates = stretch.seen.without_load, contact.delta[1:], contact.rate[1:]
-    here, now = Receptance(seen, stretch.spectrum, stretch.length, difference), contact.local.linearised(delta, rates)
+
+    stretch: VibratingStretch
+    difference: State
+    asides: Sequence[tuple[LocalContact, float]]
+
+    @property
+    def kind(self) -> tuple[object, ...]:
+        """What has to be the same for differences that go through their stretches together."""
+        local = self.stretch.contacts[0].local
+        return id(self.stretch.seen.of), self.stretch.rule.time_map, type(local.law), id(local.series), len(self.asides)
+
+
+def differences_through(besides: Sequence[Beside]) -> list[tuple[State, Floats]]:
+    """Return the differences of second drops at the ends of stretches, and those of their contact forces at the nodes [N] (N,)."""
+    stretches, (first, *_) = [beside.stretch for beside in besides], besides
+    contacts, at = [stretch.contacts[0] for stretch in stretches], first.stretch.spectrum
+    systems = Together([stretch.seen.without_load for stretch in stretches], [beside.difference for beside in besides])
+    delta, rates = (np.array([part[1:] for part in parts]) for parts in zip(*((one.delta, one.rate) for one in contacts), strict=True))
+    here = Receptance(systems, at, np.array([stretch.length for stretch in stretches]))
+    now = linearised([stacked([contact.local for contact in contacts])], delta, rates)
     left = eliminated(now, here)
-    missing, changed, known = here.approach[0], now.dissipative_by_rate * here.rate[0], np.zeros(NODES)
-    for aside, times in asides:
-        other = aside.linearised(delta, rates)
-        static = times * (other.static - now.static)
-        missing = missing - times * (other.approach - now.approach) - here.by_static @ static
-        changed = changed + static + times * (other.dissipative - now.dissipative)
-        known = known + static
-    try:
-        force = np.linalg.solve(left.jacobian, changed + left.push * (left.inward @ missing))
-    except np.linalg.LinAlgError:
-        force = np.full(NODES, np.nan)
-    static = known + now.stiffness * (left.inward @ missing - left.taken @ force)
-    return replace(stretch, seen=seen, start=difference, contacts=(replace(contact, static=static, dissipative=force - static),))
+    missing, changed, known = here.approach.copy(), now.dissipative_by_rate * here.rate, np.zeros_like(here.rate)
+    for of_all in zip(*(beside.asides for beside in besides), strict=True):
+        other = linearised([stacked([aside for aside, _ in of_all])], delta, rates)
+        often = np.array([often for _, often in of_all])[:, None]
+        static = often * (other.static - now.static)
+        missing -= often * (other.approach - now.approach)
+        if here.by_static is not None:
+            missing -= times(here.by_static, static)
+        changed += static + often * (other.dissipative - now.dissipative)
+        known += static
+    sunk = left.answer(missing)
+    force = solutions(left.jacobian, changed + left.push * sunk)
+    static = known + now.stiffness * (sunk - times(left.taken, force))
+    motions = motions_of(systems, at, here.length, (here.admittance, here.responses), force[:, None], static[:, None])
+    return [(motion.end, one) for motion, one in zip(motions, force, strict=True)]

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -15,6 +16,7 @@ from vibroimpact.dynamics.linear_system import LinearSystem, State
 from vibroimpact.dynamics.local import LocalContact
 from vibroimpact.dynamics.vibrating_stretch import VibratingStretch
 
+_PEAK = 0.98  # of the largest value at a node: where that is less, the largest is not between
 _NOTHING = 2e-15  # of the energy of the motion
 
 
@@ -27,23 +29,53 @@ class Law:
     forgets: bool
 
 
+class Peak:
+    """The largest value of a quantity in a contact, which is sought only once it is asked for.
+
+    `near`: the largest at a node so far.
+    """
+
+    def __init__(self) -> None:
+        self.near = 0.0
+        self._candidates: list[tuple[float, float, VibratingStretch, Callable[[Floats], Floats]]] = []
+
+    def note(self, near: float, start: float, stretch: VibratingStretch, values: Callable[[Floats], Floats]) -> None:
+        """Note a stretch that starts at a time [s], the largest value at its nodes, and its values at x in [0, 1]."""
+        if near >= _PEAK * self.near:
+            self._candidates.append((near, start, stretch, values))
+            self.near = max(self.near, near)
+
+    def top(self) -> tuple[float, float]:
+        """Return the largest value, and when it is reached [s]; zeros if there is none."""
+        found = (0.0, 0.0)
+        for near, start, stretch, values in self._candidates:
+            if near >= _PEAK * self.near:
+                x = np.array([highest(values)])
+                if (value := float(values(x)[0])) > found[0]:
+                    found = value, start + stretch.length * float(stretch.rule.map_time(x)[0])
+        return found
+
+
 @dataclass
 class Impact:
     """One impact of a contact, from touch to release.
 
-    `start`, `end` [s]; the latter NaN while it lasts. `closing_speed` [m/s]. `max_force` [N], `max_indentation` [m] and when they are
-    reached [s]. `impulse` [N s].
+    `start`, `end` [s]; the latter NaN while it lasts. `closing_speed` [m/s]. `force` [N], `indentation` [m]: the largest. `impulse` [N s].
     """
 
     contact: int
     start: float
     closing_speed: float
     end: float = np.nan
-    max_force: float = 0.0
-    time_of_max_force: float = 0.0
-    max_indentation: float = 0.0
-    time_of_max_indentation: float = 0.0
+    force: Peak = field(default_factory=Peak)
+    indentation: Peak = field(default_factory=Peak)
     impulse: float = 0.0
+
+
+def highest_peak(peaks: Sequence[Peak]) -> tuple[float, float]:
+    """Return the largest value of several peaks, and when it is reached [s]."""
+    near = _PEAK * max(peak.near for peak in peaks)
+    return max((peak.top() for peak in peaks if peak.near >= near), key=lambda top: top[0])
 
 
 @dataclass
@@ -107,18 +139,9 @@ def motion_speed(system: LinearSystem, number: int, law: CompliantLaw, closing: 
 
 
 def note_peaks(impact: Impact, stretch: VibratingStretch, place: int, start: float) -> None:
-    """Note the largest force and indentation of one of its contacts within a stretch that starts at a time [s], and its impulse."""
-    rule, contact = stretch.rule, stretch.contacts[place]
-    indentations = stretch.indentations(place)
-
-    def indentation_at(x: Floats) -> Floats:
-        return np.asarray(rule.weights(x).T @ indentations)
-
-    for name, values in (("force", contact.force_at), ("indentation", indentation_at)):
-        if float(values(rule.nodes).max()) < 0.98 * getattr(impact, f"max_{name}"):
-            continue
-        x = np.array([highest(values)])
-        if (value := float(values(x)[0])) > getattr(impact, f"max_{name}"):
-            setattr(impact, f"max_{name}", value)
-            setattr(impact, f"time_of_max_{name}", start + stretch.length * float(rule.map_time(x)[0]))
+    """Note the forces and indentations of one of its contacts within a stretch that starts at a time [s], and its impulse."""
+    rule, contact, indentations = stretch.rule, stretch.contacts[place], stretch.indentations(place)
+    force = float(contact.force.max()) if contact.local.law.tension == "kept" else max(float(contact.force.max()), 0.0)
+    impact.force.note(force, start, stretch, contact.force_at)
+    impact.indentation.note(float(indentations[1:].max()), start, stretch, lambda x: np.asarray(rule.weights(x).T @ indentations))
     impact.impulse += stretch.length * float(rule.integral[-1] @ contact.force)

@@ -13,10 +13,12 @@ from vibroimpact.dynamics.collocation import Floats
 from vibroimpact.dynamics.contact import CAPTURED, RIDING, SETTLED, Contact, Drops, Piece
 from vibroimpact.dynamics.encounter import Encounter
 from vibroimpact.dynamics.linear_system import FreeMotion, LinearSystem, State
+from vibroimpact.dynamics.lockstep import in_lockstep
 from vibroimpact.dynamics.lying import Lying, lay_down
 from vibroimpact.dynamics.next_touch import next_touch
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.riding import Riding
+from vibroimpact.dynamics.solve_vibrating import solve_stretches
 from vibroimpact.dynamics.visit import Visit, visit
 
 if TYPE_CHECKING:
@@ -84,9 +86,9 @@ class Vibration:
     def __init__(self, problem: Problem, mass: Floats, gravity: Floats) -> None:
         self.problem, self.mass, size = problem, mass, len(mass)
         pairs = list(zip(mass.tolist(), gravity.tolist(), strict=True))
-        alike = {pair: system_of(problem, *pair) for pair in set(pairs)}
+        self.system = system_of(problem, *pairs[0])
+        alike = {(mass, gravity): self.system.falling(mass**-0.5, gravity * mass**0.5) for mass, gravity in set(pairs)}
         self.systems = [alike[pair] for pair in pairs]
-        self.system = self.systems[0]
         self.displacement, self.velocity = np.zeros((size, self.system.number)), np.zeros((size, self.system.number))
         self.local = np.zeros((size, len(self.system.rate)))
         self.lost = np.zeros((size, self.system.number + 1))
@@ -146,14 +148,18 @@ class Vibration:
 
         Those that ride are followed for a time since first touch, `until` [s].
         """
-        visits = []
+        starts, courses = [], []
         for number, drop in enumerate(drops):
-            one, system, problem = encounter.pick(np.array([number])), self.systems[drop], self.problem
+            one, problem = encounter.pick(np.array([number])), self.problem
             start, pace = self.state(drop, approach[number], speed[number]), 3.0 * float(one.depth[0] / one.speed_scale[0])
             rules = (problem.tolerance, pace, not problem.same_spot, float(rest_speed[number]), float(until[number]))
-            found = visit(system, one.law.take(0), problem.quasi_static, start, *rules)
+            courses.append(visit(self.systems[drop], one.law.take(0), problem.quasi_static, start, *rules))
+            starts.append(start)
+        visits = in_lockstep(courses, solve_stretches)
+        for number, (drop, start, found) in enumerate(zip(drops, starts, visits, strict=True)):
+            system = self.systems[drop]
             before, after = (float(np.sum(system.energies(state), axis=0)[system.vibrating].sum()) for state in (start, found.state))
-            row["closing_speed_m_s"][drop], row["contacts"][drop] = one.approach_speed[0], found.contacts
+            row["closing_speed_m_s"][drop], row["contacts"][drop] = encounter.approach_speed[number], found.contacts
             row["energy_to_vibration_J"][drop] = after - before + found.lost[:-1].sum()
             self.lost[drop, :-1] += found.lost[:-1]
             self.place(drop, found.state)
@@ -163,7 +169,6 @@ class Vibration:
                 if found.outcome != RIDING:
                     self.lying[drop] = lying = lay_down(riding, found.state, found.stored)
                     self.left[drop] = lying.left
-            visits.append(found)
         return visits
 
     def lies(self, drops: Drops) -> NDArray[np.bool_]:

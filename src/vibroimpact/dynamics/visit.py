@@ -23,7 +23,8 @@ from vibroimpact.dynamics.local import LocalContact
 from vibroimpact.dynamics.march import March, NotIntegrable, Part
 from vibroimpact.dynamics.next_touch import next_touch, time_to_part
 from vibroimpact.dynamics.riding import Riding, least_energy, may_stay, stays_below
-from vibroimpact.dynamics.touching import Law, closing_speed, motion_speed
+from vibroimpact.dynamics.solve_vibrating import Course
+from vibroimpact.dynamics.touching import Law, closing_speed, highest_peak, motion_speed
 from vibroimpact.dynamics.vibrating_events import ROUNDING
 from vibroimpact.dynamics.vibrating_stretch import VibratingStretch
 
@@ -70,7 +71,7 @@ def visit(
     forgets: bool = False,
     rest_speed: float = 0.0,
     until: float = np.inf,
-) -> Visit:
+) -> Course[Visit]:
     """Follow one drop from first touch to its last release, or to rest.
 
     Parameters
@@ -96,8 +97,7 @@ def visit(
     """
     speed = motion_speed(system, 0, law, closing_speed(system, state, 0))
     march = March(system, [Law(law, series, forgets)], state, tolerance, (speed, pace))
-    with np.errstate(all="ignore"):  # guesses may be wild; what is not finite is found and tried again
-        return _Visit(march, rest_speed, until).run()
+    return (yield from _Visit(march, rest_speed, until).run())
 
 
 class _Visit:
@@ -113,10 +113,10 @@ class _Visit:
 
     # one contact after another ----------------------------------------------------------------------
 
-    def run(self) -> Visit:
+    def run(self) -> Course[Visit]:
         march, contacts = self.march, 1
         while True:
-            outcome = self.contact()
+            outcome = yield from self.contact()
             self.left = march.time
             if outcome != RELEASED:
                 break
@@ -131,7 +131,7 @@ class _Visit:
         local = self.touch.local
         if outcome == SETTLED and float(self.of.approach(march.state)[0]) <= float(self.next_law.touch_level):
             local = replace(local, law=self.next_law)  # the dent it has left is forgotten
-        hardest, deepest = (max(march.impacts, key=lambda impact: getattr(impact, name)) for name in ("max_force", "max_indentation"))
+        deepest, hardest = (highest_peak([getattr(impact, name) for impact in march.impacts]) for name in ("indentation", "force"))
         return Visit(
             self.of,
             march.state,
@@ -141,10 +141,8 @@ class _Visit:
             self.left,
             contacts,
             march.parts,
-            deepest.max_indentation,
-            deepest.time_of_max_indentation,
-            hardest.max_force,
-            hardest.time_of_max_force,
+            *deepest,
+            *hardest,
             march.plastic,
             self.stored,
             local,
@@ -152,7 +150,7 @@ class _Visit:
 
     # one contact -----------------------------------------------------------------------------------
 
-    def contact(self) -> int:
+    def contact(self) -> Course[int]:
         """March through one contact; return how it ended."""
         march, begun = self.march, self.march.time
         while 0 in march.touching:
@@ -161,7 +159,7 @@ class _Visit:
             if self.stretches > self.most or (rides and left <= ROUNDING * self.touch.span):
                 return self.stay(RIDING)
             try:
-                taken = march.step(left if rides and self.touch.pushes else np.inf)
+                taken = yield from march.step(left if rides and self.touch.pushes else np.inf)
             except NotIntegrable:
                 return self.stay(FAILED)
             if taken and 0 in march.touching and self.touch.pushes and (self.held() or self.lies()):
