@@ -16,7 +16,7 @@ from scipy.integrate import solve_ivp
 import vibroimpact as vi
 from vibroimpact.dynamics.recording import Signal
 from vibroimpact.dynamics.sensor import Sensor
-from vibroimpact.dynamics.vibration import system_of
+from vibroimpact.dynamics.vibrating_bodies import system_of
 
 REPEATS = 3
 

@@ -18,7 +18,7 @@ from vibroimpact.dynamics.oscillators import Oscillators
 from vibroimpact.dynamics.overload import finer_rate, overload, taken_away
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.sensor import Sensor, sample_count
-from vibroimpact.dynamics.vibration import bases_of_plate
+from vibroimpact.dynamics.vibrating_bodies import bases_of_plate
 from vibroimpact.errors import InputError
 
 if TYPE_CHECKING:

@@ -24,9 +24,9 @@ from vibroimpact.dynamics.sensor import Sensor, sample_count
 from vibroimpact.dynamics.status import Ended, status_of
 from vibroimpact.dynamics.timeline import Timeline, end_of, timeline_of
 from vibroimpact.dynamics.truncation import truncation_estimates
+from vibroimpact.dynamics.vibrating_bodies import slices_of
 from vibroimpact.dynamics.vibrating_history import vibrating_history
 from vibroimpact.dynamics.vibrating_segment import VibratingSegment, vibrating_timeline
-from vibroimpact.dynamics.vibration import slices_of
 from vibroimpact.errors import InputError
 
 

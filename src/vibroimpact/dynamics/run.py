@@ -6,30 +6,27 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from vibroimpact.contact.law import CompliantLaw, ContactLaw, InstantaneousLaw
 from vibroimpact.contact.static import static_indentation
 from vibroimpact.dynamics.collocation import Floats
-from vibroimpact.dynamics.columns import IMPACT_COLUMNS, VIBRATION_IMPACT_COLUMNS
-from vibroimpact.dynamics.contact import CAPTURED, FAILED, RIDING, Contact, Drops
+from vibroimpact.dynamics.contact import CAPTURED, FAILED, RIDING, Drops
 from vibroimpact.dynamics.encounter import Encounter, encounter_of
 from vibroimpact.dynamics.energy import CLOSURE_LIMIT, WRITE_OFF_LIMIT, close_ledger
 from vibroimpact.dynamics.flight import Flight
 from vibroimpact.dynamics.impact_rows import ImpactRows
 from vibroimpact.dynamics.leg import Leg
-from vibroimpact.dynamics.linear_system import FreeMotion
 from vibroimpact.dynamics.outcome import OUTCOMES, Outcome
 from vibroimpact.dynamics.problem import MOST_IMPACTS, Problem
 from vibroimpact.dynamics.response import Response
 from vibroimpact.dynamics.rest import Rest
-from vibroimpact.dynamics.sensitivity import Neighbours
+from vibroimpact.dynamics.rigid_bodies import RigidBodies
 from vibroimpact.dynamics.solve_contact import SolvesContact
-from vibroimpact.dynamics.vibration import Vibration, contact_of
+from vibroimpact.dynamics.vibrating_bodies import VibratingBodies
 
 
 class Run:
-    """A batch of B drops between impacts; arrays are (B,). Where nothing vibrates, `solve_contact` takes them through one."""
+    """A batch of B drops between impacts; arrays are (B,). Where nothing vibrates, `solve_contact` takes them through a contact."""
 
     def __init__(self, problem: Problem, solve_contact: SolvesContact) -> None:
         self.problem, self.solve_contact = problem, solve_contact
@@ -48,11 +45,9 @@ class Run:
         self.end_time, self.rest_time = np.full(self.size, np.nan), np.full(self.size, np.nan)
         self.sag, self.stored, self.written_off = np.zeros(self.size), np.zeros(self.size), np.zeros(self.size)
         self.rest_speed = self.default_rest_speed() if problem.rest_speed is None else self.spread(problem.rest_speed)
-        self.vibration = Vibration(problem, self.mass, self.gravity) if problem.vibrates else None
-        self.neighbours = None if self.vibration is None else Neighbours(problem, self.mass, self.vibration.system)
-        self.columns = {**IMPACT_COLUMNS, **(VIBRATION_IMPACT_COLUMNS if self.vibration else {})}
+        self.bodies = VibratingBodies(problem, self.mass, self.gravity) if problem.vibrates else RigidBodies(self.size, solve_contact)
         self.memories = {name: self.spread(value) for name, value in problem.laws[0].memories().items()}
-        self.rows = ImpactRows(self.columns, self.size)
+        self.rows = ImpactRows(self.bodies.columns, self.size)
 
     def spread(self, value: object) -> Floats:
         """Return a value of the problem with one entry a drop."""
@@ -97,13 +92,7 @@ class Run:
         drops = np.flatnonzero(self.moving)
         flight = Flight(self.time[drops], self.gap[drops], self.velocity[drops], self.gravity[drops])
         law = self.law().take(drops)
-        motions: tuple[FreeMotion, ...] = ()
-        if self.vibration is None:
-            touch, speed = flight.touch(-law.touch_level if isinstance(law, CompliantLaw) else np.zeros(1))
-        else:
-            motions = self.vibration.flights(drops, -self.gap[drops], -self.velocity[drops])
-            assert isinstance(law, CompliantLaw)  # the problem has seen to it
-            touch = flight.start + np.asarray(self.vibration.touches(motions, law))
+        touch, speed, motions = self.bodies.next_touch(drops, flight, law)
         end = np.inf if self.problem.duration is None else self.problem.duration
         last, outcome = np.full(len(drops), end), Outcome.IMPACTS
         if len(self.rows) in (self.problem.impacts, MOST_IMPACTS):
@@ -117,15 +106,13 @@ class Run:
         self.stop(drops[stops & by_time], Outcome.DURATION, last[stops & by_time])
         self.stop(drops[gone], Outcome.LEFT, flight.start[gone])
         leg = Leg(drops, flight, np.where(gone, flight.start, np.where(stops, last, touch)), drops[~stops], motions=motions)
-        if self.vibration is not None:
-            gap, velocity = flight.at(leg.flight_end)
-            speed = self.vibration.rigid_speed(drops, -velocity)
-            self.gap[drops[~stops]], self.velocity[drops[~stops]] = gap[~stops], velocity[~stops]
-            self.vibration.pass_freely(drops, motions, leg.flight_end - flight.start)
+        self.bodies.pass_flight(drops, motions, leg.flight_end - flight.start)
         if not stops.all():
+            gap, velocity = flight.at(leg.flight_end)
+            self.gap[drops[~stops]], self.velocity[drops[~stops]] = gap[~stops], velocity[~stops]
             leg = self.collide(leg, touch[~stops], speed[~stops])
-        if self.neighbours is not None and (grown := self.neighbours.follow(leg)).size:
-            self.rows.last["sensitivity"][leg.contact_drops] = grown
+        if (growth := self.bodies.growth(leg)).size:
+            self.rows.last["sensitivity"][leg.contact_drops] = growth
         return leg
 
     def collide(self, leg: Leg, touch: Floats, speed: Floats) -> Leg:
@@ -141,7 +128,7 @@ class Run:
             lost = 0.5 * self.mass[drops] * (speed**2 - self.velocity[drops] ** 2)
         else:
             assert isinstance(law, CompliantLaw)
-            closing = speed if self.vibration is None else self.vibration.closing_speed(drops, -self.velocity[drops])
+            closing = self.bodies.closing_speed(drops, speed, self.velocity[drops])
             leg, lost = self.deform(leg, encounter_of(law, self.mass[drops], self.gravity[drops], closing), touch, row)
             lost += row["plastic_work_J"][drops]
             law = self.law().take(drops)  # with what it remembers of this impact
@@ -160,14 +147,9 @@ class Run:
     def deform(self, leg: Leg, encounter: Encounter, touch: Floats, row: dict[str, Floats]) -> tuple[Leg, Floats]:
         """Integrate a contact; return the leg with it, and the energy lost [J]."""
         drops = leg.contact_drops
-        if self.vibration is None:
-            contact, force, when = self.solve_contact(encounter, drops)
-        else:
-            until = (np.inf if self.problem.duration is None else self.problem.duration) - touch
-            limits = (self.rest_speed[drops], until)
-            visits = self.vibration.visit(drops, -self.gap[drops], -self.velocity[drops], encounter, *limits, row)
-            contact = contact_of(visits, encounter.law)
-            force, when = (np.array([getattr(found, name) for found in visits]) for name in ("max_force", "time_of_max_force"))
+        until = (np.inf if self.problem.duration is None else self.problem.duration) - touch
+        place, limits = (self.gap[drops], self.velocity[drops]), (self.rest_speed[drops], until)
+        contact, force, when = self.bodies.collide(drops, encounter, place, limits, row)
         self.deepest[drops] = np.maximum(self.deepest[drops], contact.max_delta)
         self.time[drops] = touch + contact.duration
         self.gap[drops], self.velocity[drops] = -contact.final_delta, -contact.final_rate
@@ -177,10 +159,9 @@ class Run:
         row["max_acceleration_m_s2"][drops] = np.maximum(force / encounter.mass - encounter.gravity, encounter.gravity)
         for name, values in contact.law.memories().items():
             self.memories[name][drops] = values
-        leaving = -contact.final_rate if self.vibration is None else -self.vibration.rigid_speed(drops, contact.final_rate)
+        leaving = self.bodies.rigid_speed(drops, -contact.final_rate)
         failed, captured, riding = (contact.outcome == outcome for outcome in (FAILED, CAPTURED, RIDING))
-        if self.vibration is None:
-            captured |= ~failed & (contact.final_rate**2 < 2.0 * self.gravity[drops] * self.overlap(contact, drops))
+        captured |= self.bodies.falls_back(contact, self.next_law(drops), self.gravity[drops])
         row["separation_speed_m_s"][drops] = np.where(failed | riding, np.nan, np.where(captured, 0.0, leaving))
         stored = contact.stored
         sticks = captured & (contact.law.elastic_energy(contact.law.release_level + np.zeros(len(drops))) > 0.0)
@@ -193,18 +174,15 @@ class Run:
         self.stored[drops[riding]] = stored[riding]
         return replace(leg, contact=contact, encounter=encounter), contact.dissipated + np.where(captured | riding, 0.0, stored)
 
-    def overlap(self, contact: Contact, drops: Drops) -> Floats:
-        """Return how far drops that have parted must still rise until the next touch is a new one [m]."""
+    def next_law(self, drops: Drops) -> CompliantLaw:
+        """Return the law of the next impact of drops that touch by one."""
         law = self.law().take(drops)
         assert isinstance(law, CompliantLaw)
-        return np.asarray(np.maximum(contact.final_delta - law.touch_level, 0.0))
+        return law
 
     def judge(self, drops: Drops, law: ContactLaw, row: dict[str, Floats]) -> None:
         """Stop the drops that leave more slowly than the rest speed, or not at all, and that nothing can lift again."""
-        if self.vibration is None:
-            resting = (self.velocity[drops] < self.rest_speed[drops]) | (self.velocity[drops] == 0.0)
-        else:
-            resting = self.vibration.lies(drops)
+        resting = self.bodies.rests(drops, self.velocity[drops], self.rest_speed[drops])
         slow = drops[resting]
         if not slow.size:
             return
@@ -217,16 +195,10 @@ class Run:
 
     def lie_down(self, drops: Drops, law: ContactLaw, time: Floats, stored: Floats) -> None:
         """Lay drops that have come to rest, with energy `stored` in the contact [J], into their static indentation."""
-        weight = self.mass[drops] * self.gravity[drops]
+        weight, energy = self.mass[drops] * self.gravity[drops], self.mechanical_energy()[drops] + stored
         self.rest_time[drops] = time
-        if self.vibration is not None:
-            for name, values in self.vibration.laid(drops).items():
-                getattr(self, name)[drops] = values
-            return
-        if isinstance(law, CompliantLaw):
-            self.sag[drops] = static_indentation(law, weight)
-            self.stored[drops] = law.elastic_energy(self.sag[drops])
-        self.written_off[drops] = self.mechanical_energy()[drops] + stored - (self.stored[drops] - weight * self.sag[drops])
+        for name, values in self.bodies.laid(drops, law, weight, energy).items():
+            getattr(self, name)[drops] = values
 
     def stop(self, drops: Drops, outcome: Outcome, time: Floats) -> None:
         """End the run of drops."""
@@ -244,12 +216,8 @@ class Run:
         at_rest = np.array([outcome.at_rest for outcome in OUTCOMES])[self.outcomes]
         if self.problem.duration is not None:
             self.end_time[at_rest] = np.maximum(self.end_time, self.problem.duration)[at_rest]
-        final_gap, final_velocity = self.final_motion(at_rest)
-        if self.vibration is not None:
-            for drop in np.flatnonzero(at_rest).tolist():  # what they lie on moves on, and they with it
-                elapsed = max(float(self.end_time[drop] - self.time[drop]), 0.0)
-                final_gap[drop], final_velocity[drop], self.stored[drop] = self.vibration.follow(drop, elapsed)
-        vibration = {} if self.vibration is None else self.vibration.energies()
+        final_gap, final_velocity = self.final_motion(np.flatnonzero(at_rest))
+        vibration = self.bodies.energies()
         added = self.mass * self.gravity * self.deepest + np.maximum(-self.stored, 0.0)  # less than nothing is stored where it sticks
         energy = close_ledger(
             self.energy_in,
@@ -266,23 +234,23 @@ class Run:
         )
         closes = energy["closure_relative"] <= CLOSURE_LIMIT
         self.outcomes[~(closes & (self.written_off >= -WRITE_OFF_LIMIT * (self.energy_in + added)))] = Outcome.FAILED.code
-        nothing = (np.full(self.size, np.nan), (None,) * self.size)
-        left, lying = nothing if self.vibration is None else (self.vibration.left, tuple(self.vibration.lying))
         return Response(
             self.problem,
             self.rows.table(),
             energy,
             tuple(OUTCOMES[code] for code in self.outcomes.tolist()),
             self.end_time,
-            Rest(self.rest_speed, self.rest_time, self.sag, self.stored, self.written_off, left, lying),
+            Rest(self.rest_speed, self.rest_time, self.sag, self.stored, self.written_off, self.bodies.left, tuple(self.bodies.lying)),
             (),
         )
 
-    def final_motion(self, at_rest: NDArray[np.bool_]) -> tuple[Floats, Floats]:
-        """Return gap [m] and upward velocity [m/s] at the end of the run."""
-        elapsed = np.where(at_rest, 0.0, self.end_time - self.time)
+    def final_motion(self, at_rest: Drops) -> tuple[Floats, Floats]:
+        """Return gap [m] and upward velocity [m/s] at the end of the run, up to which those at rest lie."""
+        elapsed = self.end_time - self.time
         gap, velocity = Flight(np.zeros(self.size), self.gap, self.velocity, self.gravity).at(elapsed)
-        return np.where(at_rest, -self.sag, gap), np.where(at_rest, 0.0, velocity)
+        lain, parts = np.maximum(elapsed[at_rest], 0.0), (self.sag[at_rest], self.stored[at_rest])
+        gap[at_rest], velocity[at_rest], self.stored[at_rest] = self.bodies.follow(at_rest, lain, *parts)
+        return gap, velocity
 
 
 def _asked(law: ContactLaw) -> Floats | float:

@@ -13,9 +13,9 @@ from vibroimpact.dynamics.linear_system import LinearSystem, State
 from vibroimpact.dynamics.local import LocalContact
 from vibroimpact.dynamics.lying import Lying
 from vibroimpact.dynamics.problem import Problem
+from vibroimpact.dynamics.vibrating_bodies import bases_of_plate, centre_of, slices_of
 from vibroimpact.dynamics.vibrating_segment import VibratingSegment
 from vibroimpact.dynamics.vibrating_stretch import VibratingStretch
-from vibroimpact.dynamics.vibration import bases_of_plate, centre_of, slices_of
 
 if TYPE_CHECKING:
     from vibroimpact.structures.modal_model import ModalBasis  # which loads sparse matrices

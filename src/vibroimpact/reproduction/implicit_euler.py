@@ -25,7 +25,7 @@ from vibroimpact.contact.roots import find_root
 from vibroimpact.dynamics.collocation import Floats
 from vibroimpact.dynamics.linear_system import LinearSystem, State
 from vibroimpact.dynamics.problem import Problem
-from vibroimpact.dynamics.vibration import centre_of, slices_of, system_of
+from vibroimpact.dynamics.vibrating_bodies import centre_of, slices_of, system_of
 from vibroimpact.errors import ComputationError, InputError
 
 PEAKS = (

@@ -1,4 +1,4 @@
-"""The vibration of the bodies of a run: where the oscillators are, and what their damping takes."""
+"""How B drops of bodies that vibrate fly, meet and lie: their systems, where their coordinates are, and what damping takes."""
 
 from __future__ import annotations
 
@@ -8,16 +8,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vibroimpact.bodies.body import Body
-from vibroimpact.contact.law import CompliantLaw
+from vibroimpact.contact.law import CompliantLaw, ContactLaw
 from vibroimpact.dynamics.collocation import Floats
+from vibroimpact.dynamics.columns import IMPACT_COLUMNS, VIBRATION_IMPACT_COLUMNS
 from vibroimpact.dynamics.contact import CAPTURED, RIDING, SETTLED, Contact, Drops, Piece
 from vibroimpact.dynamics.encounter import Encounter
+from vibroimpact.dynamics.flight import Flight
+from vibroimpact.dynamics.leg import Leg
 from vibroimpact.dynamics.linear_system import FreeMotion, LinearSystem, State
 from vibroimpact.dynamics.lockstep import in_lockstep
 from vibroimpact.dynamics.lying import Lying, lay_down
 from vibroimpact.dynamics.next_touch import next_touch
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.riding import Riding
+from vibroimpact.dynamics.rigid_bodies import Motions, RigidBodies
+from vibroimpact.dynamics.sensitivity import Neighbours
 from vibroimpact.dynamics.solve_vibrating import solve_stretches
 from vibroimpact.dynamics.visit import Visit, visit
 
@@ -76,15 +81,12 @@ def modes_of(body: Body) -> int:
     return 0 if body.modes is None else len(body.modes.frequencies)
 
 
-class Vibration:
-    """The systems of B drops that share their bodies' modes.
-
-    `lying`: how those lie that have come to rest. `left`: what those that rest or ride, and what carries them, hold above their
-    equilibrium [J] (B,), NaN for the others.
-    """
+class VibratingBodies(RigidBodies):
+    """The bodies of B drops of which some vibrate: a system a drop, which have their modes in common."""
 
     def __init__(self, problem: Problem, mass: Floats, gravity: Floats) -> None:
         self.problem, self.mass, size = problem, mass, len(mass)
+        self.columns = {**IMPACT_COLUMNS, **VIBRATION_IMPACT_COLUMNS}
         pairs = list(zip(mass.tolist(), gravity.tolist(), strict=True))
         self.system = system_of(problem, *pairs[0])
         alike = {(mass, gravity): self.system.falling(mass**-0.5, gravity * mass**0.5) for mass, gravity in set(pairs)}
@@ -94,64 +96,54 @@ class Vibration:
         self.lost = np.zeros((size, self.system.number + 1))
         self.lying: list[Lying | None] = [None] * size
         self.left = np.full(size, np.nan)
+        self.neighbours = Neighbours(problem, mass, self.system)
 
-    def flights(self, drops: Drops, approach: Floats, speed: Floats) -> tuple[FreeMotion, ...]:
-        """Return the free motions of drops: approach [m] and speed [m/s] are their centres', downwards."""
-        return tuple(
-            FreeMotion(self.systems[drop], self.state(drop, *centre)) for drop, *centre in zip(drops, approach, speed, strict=True)
-        )
-
-    def state(self, drop: int, approach: float, speed: float) -> State:
-        """Return the state of a drop."""
+    def state(self, drop: int, gap: float, velocity: float) -> State:
+        """Return the state of a drop whose sphere has a gap [m] and a velocity upwards [m/s]."""
         state = State(*(part[drop].copy() for part in (self.displacement, self.velocity, self.local)))  # which go on changing
         root = self.mass[drop] ** 0.5
-        state.displacement[0], state.velocity[0] = root * approach, root * speed
+        state.displacement[0], state.velocity[0] = -root * gap, -root * velocity
         return state
 
-    def touches(self, motions: tuple[FreeMotion, ...], law: CompliantLaw) -> Floats:
-        """Return when free drops next touch [s since their start]; the law is theirs."""
-        level = law.touch_level + np.zeros(len(motions))
-        return np.array([next_touch(motion, float(at), np.inf) for motion, at in zip(motions, level, strict=True)])
+    def place(self, drop: int, state: State) -> None:
+        """Note where the coordinates of a drop are."""
+        self.displacement[drop], self.velocity[drop], self.local[drop] = state.displacement, state.velocity, state.local
 
-    def pass_freely(self, drops: Drops, motions: tuple[FreeMotion, ...], elapsed: Floats) -> None:
-        """Let the oscillators of drops move freely for some time [s]."""
+    def next_touch(self, drops: Drops, flight: Flight, law: ContactLaw) -> tuple[Floats, Floats, Motions]:
+        """Return the same, where the surfaces move."""
+        assert isinstance(law, CompliantLaw)  # the problem has seen to it
+        starts = zip(drops, flight.gap, flight.velocity, strict=True)
+        motions = tuple(FreeMotion(self.systems[drop], self.state(drop, *sphere)) for drop, *sphere in starts)
+        level = law.touch_level + np.zeros(len(motions))
+        touch = flight.start + np.array([next_touch(motion, float(at), np.inf) for motion, at in zip(motions, level, strict=True)])
+        met = np.isfinite(touch)
+        return touch, -self.rigid_speed(drops, flight.at(np.where(met, touch, flight.start))[1]), motions
+
+    def pass_flight(self, drops: Drops, motions: Motions, elapsed: Floats) -> None:
+        """Let the coordinates of drops move freely."""
         for drop, motion, time in zip(drops, motions, elapsed, strict=True):
             self.lost[drop] += motion.lost_by(time)
             self.place(drop, motion.state(time))
 
-    def place(self, drop: int, state: State) -> None:
-        """Note where the oscillators of a drop are."""
-        self.displacement[drop], self.velocity[drop], self.local[drop] = state.displacement, state.velocity, state.local
+    def closing_speed(self, drops: Drops, speed: Floats, velocity: Floats) -> Floats:
+        """Return the speed at which the surfaces approach each other, with what vibrates outside the contact."""
+        states = (self.state(drop, 0.0, up) for drop, up in zip(drops, velocity, strict=True))
+        return np.array([float(self.systems[drop].outer_rates(state)[0]) for drop, state in zip(drops, states, strict=True)])
 
-    def closing_speed(self, drops: Drops, speed: Floats) -> Floats:
-        """Return the speed at which the surfaces approach each other [m/s], where the centres come down at `speed`."""
-        return np.array(
-            [float(self.systems[drop].outer_rates(self.state(drop, 0.0, down))[0]) for drop, down in zip(drops, speed, strict=True)]
-        )
+    def rigid_speed(self, drops: Drops, velocity: Floats) -> Floats:
+        """Return the same, where the plate may move as well."""
+        states = (self.state(drop, 0.0, up) for drop, up in zip(drops, velocity, strict=True))
+        return np.array([-float(self.systems[drop].rigid_motion(state)[1][0]) for drop, state in zip(drops, states, strict=True)])
 
-    def rigid_speed(self, drops: Drops, speed: Floats) -> Floats:
-        """Return the speed at which the bodies approach each other as rigid bodies [m/s], where the centres come down at `speed`."""
-        states = (self.state(drop, 0.0, down) for drop, down in zip(drops, speed, strict=True))
-        return np.array([float(self.systems[drop].rigid_motion(state)[1][0]) for drop, state in zip(drops, states, strict=True)])
-
-    def visit(
-        self,
-        drops: Drops,
-        approach: Floats,
-        speed: Floats,
-        encounter: Encounter,
-        rest_speed: Floats,
-        until: Floats,
-        row: dict[str, Floats],
-    ) -> list[Visit]:
-        """Take drops through their visits; write what only vibrating bodies have into the row of the impact.
-
-        Those that ride are followed for a time since first touch, `until` [s].
-        """
+    def collide(
+        self, drops: Drops, encounter: Encounter, place: tuple[Floats, Floats], limits: tuple[Floats, Floats], row: dict[str, Floats]
+    ) -> tuple[Contact, Floats, Floats]:
+        """Take drops through their visits, side by side."""
+        (gaps, velocities), (rest_speed, until) = place, limits
         starts, courses = [], []
         for number, drop in enumerate(drops):
             one, problem = encounter.pick(np.array([number])), self.problem
-            start, pace = self.state(drop, approach[number], speed[number]), 3.0 * float(one.depth[0] / one.speed_scale[0])
+            start, pace = self.state(drop, gaps[number], velocities[number]), 3.0 * float(one.depth[0] / one.speed_scale[0])
             rules = (problem.tolerance, pace, not problem.same_spot, float(rest_speed[number]), float(until[number]))
             courses.append(visit(self.systems[drop], one.law.take(0), problem.quasi_static, start, *rules))
             starts.append(start)
@@ -169,27 +161,39 @@ class Vibration:
                 if found.outcome != RIDING:
                     self.lying[drop] = lying = lay_down(riding, found.state, found.stored)
                     self.left[drop] = lying.left
-        return visits
+        force, when = (np.array([getattr(found, name) for found in visits]) for name in ("max_force", "time_of_max_force"))
+        return contact_of(visits, encounter.law), force, when
 
-    def lies(self, drops: Drops) -> NDArray[np.bool_]:
-        """Tell which drops have been laid down."""
+    def falls_back(self, contact: Contact, law: CompliantLaw, gravity: Floats) -> NDArray[np.bool_]:
+        """Tell that none does: a visit has followed those that do."""
+        return np.zeros(len(gravity), dtype=bool)
+
+    def rests(self, drops: Drops, velocity: Floats, rest_speed: Floats) -> NDArray[np.bool_]:
+        """Tell which have been laid down."""
         return np.array([self.lying[drop] is not None for drop in drops], dtype=bool)
 
-    def laid(self, drops: Drops) -> dict[str, Floats]:
-        """Return how drops lie: the indentation [m], what it holds, and what was written off [J]."""
+    def laid(self, drops: Drops, law: ContactLaw, weight: Floats, energy: Floats) -> dict[str, Floats]:
+        """Return how they were laid down."""
         lying = [found for drop in drops if (found := self.lying[drop]) is not None]
         told = [(found.riding.sag, found.riding.stored, found.written_off) for found in lying]
         return dict(zip(("sag", "stored", "written_off"), np.array(told).reshape(-1, 3).T, strict=True))
 
-    def follow(self, drop: int, elapsed: float) -> tuple[float, float, float]:
-        """Let a drop lie for some time [s]; return its gap [m], its upward velocity [m/s] and what its contact holds then [J]."""
-        lying, time = self.lying[drop], np.array([elapsed])
-        assert lying is not None  # it has been laid down
-        state = lying.state(time).take(0)
-        self.lost[drop] += lying.lost_by(time)[0]
-        self.place(drop, state)
-        depth, sinking = centre_of(state, self.mass[drop])
-        return -float(depth), -float(sinking), float(lying.stored(time)[0])
+    def follow(self, drops: Drops, elapsed: Floats, sag: Floats, stored: Floats) -> tuple[Floats, Floats, Floats]:
+        """Let drops lie on what vibrates, and move with it."""
+        ends = np.zeros((len(drops), 3))
+        for number, drop in enumerate(drops):
+            lying, time = self.lying[drop], elapsed[number : number + 1]
+            assert lying is not None  # it has been laid down
+            state = lying.state(time).take(0)
+            self.lost[drop] += lying.lost_by(time)[0]
+            self.place(drop, state)
+            depth, sinking = centre_of(state, self.mass[drop])
+            ends[number] = -float(depth), -float(sinking), float(lying.stored(time)[0])
+        return ends[:, 0], ends[:, 1], ends[:, 2]
+
+    def growth(self, leg: Leg) -> Floats:
+        """Return the growth that a second drop beside each shows."""
+        return self.neighbours.follow(leg)
 
     def energies(self) -> dict[str, Floats]:
         """Return the entries of the ledger [J], (B,); what the local elements hold, and lost in flight, apart."""
