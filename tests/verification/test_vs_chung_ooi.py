@@ -45,6 +45,26 @@ def test_1_as_it_is_meant() -> None:
         assert response.at(1e-4)[name].velocity[0] == pytest.approx(speed, rel=1e-12)
 
 
+def test_1_from_a_case() -> None:
+    """A sphere that comes at 20 m/s on one that flies free: the same seen from that one, which is the plate's place."""
+    case = vi.read_case(
+        {
+            "sphere": {"radius": 0.01, "material": "glass-chung-ooi"},
+            "plate": {"radius": 0.01, "material": "glass-chung-ooi", "supports": "free"},
+            "drop": {"speed": 20.0, "gravity": 0.0},
+            "contact": {"law": "hertz"},
+            "run": {"impacts": 1},
+        }
+    )
+    response = vi.simulate(case)
+    assert response.impacts["max_indentation_m"] == pytest.approx([274.113e-6], rel=1e-5)
+    assert response.impacts["max_force_N"] == pytest.approx([10696.9], rel=1e-5)
+    assert response.impacts["duration_s"] == pytest.approx([40.3395e-6], rel=1e-5)
+    end = response.at(response.end_time)  # equal spheres exchange their velocities
+    assert end["velocity_m_s"] == pytest.approx([0.0], abs=1e-9)
+    assert end["plate_velocity_m_s"] == pytest.approx([-20.0], rel=1e-12)
+
+
 def test_2_as_it_is_meant() -> None:
     """A sphere and a wall that is held, as a system."""
     aluminium = vi.find_material("aluminium-chung-ooi")

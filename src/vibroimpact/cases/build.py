@@ -8,13 +8,16 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from vibroimpact.cases.calibrate_section import calibrate_table
 from vibroimpact.cases.material_field import material_table
-from vibroimpact.cases.rigid import FALLS, contact_laws_of, deforms, elastic_names, impacts_of, rigid_problem
+from vibroimpact.cases.rigid import FALLS, contact_laws_of, deforms, elastic_names, impacts_of, is_free_sphere, rigid_problem
 from vibroimpact.contact.law import CompliantLaw, loses_nothing
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.errors import InputError
 
 if TYPE_CHECKING:
     from vibroimpact.cases.schema import CaseTable, PlateSection, SphereSection
+
+
+_BALL_FALLS = "under gravity a sphere that is free falls away from under the other; hold it, or give drop.gravity = 0 and drop.speed"
 
 
 def check_case(case: CaseTable) -> None:
@@ -62,8 +65,8 @@ def check_drop(case: CaseTable) -> None:
     InputError
         If nothing holds the plate, and gravity would let it fall.
     """
-    if case.plate.model == "elastic" and case.plate.supports == "free" and case.drop.gravity:
-        raise InputError(FALLS, "plate.supports")
+    if case.plate.supports == "free" and case.drop.gravity:
+        raise InputError(FALLS if case.plate.radius is None else _BALL_FALLS, "plate.supports")
 
 
 def problem_of(case: CaseTable, progress: Callable[[float], None] | None = None, tell: Callable[[str], None] | None = None) -> Problem:
@@ -123,6 +126,7 @@ def _body(case: CaseTable, name: Literal["sphere", "plate"]) -> dict[str, Any]:
     found = section.model_dump(exclude_none=True, exclude={"material", "supports", "damping", "mesh"})
     if section.model == "rigid":
         found = {key: found[key] for key in ("radius", "size", "model") if key in found}
+        found |= {"supports": "free"} if name == "plate" and is_free_sphere(case) else {}
     else:
         from vibroimpact.cases.build_elastic import elastic_table  # which loads sparse matrices
 

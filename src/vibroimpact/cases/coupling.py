@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
+from vibroimpact.bodies.sphere import rigid_sphere
 from vibroimpact.calibration.local_element import identify_local_element, local_element_deviations
 from vibroimpact.cases.local_section import MeasuredImpact
 from vibroimpact.cases.modes import BodyModes, compute_modes
 from vibroimpact.cases.residuals import residual_key, with_residuals
-from vibroimpact.cases.rigid import FALLS, contact_laws_of, contact_pair, elastic_names, first_speed
+from vibroimpact.cases.rigid import FALLS, contact_laws_of, contact_pair, elastic_names, first_speed, is_free_sphere
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.quasi_static import QuasiStatic
 from vibroimpact.dynamics.encounter import encounter_of
@@ -47,7 +48,7 @@ class Coupling:
     modes : mapping of str to ModalBasis
         By the name of the body.
     rigid : ModalBasis or None
-        The rigid motions of a plate that its supports leave free to move vertically.
+        The rigid motions of a plate that its supports leave free to move vertically, or of a sphere in its place.
     quasi_static : QuasiStatic
         What is in series with the law.
     facts : mapping of str to float or str
@@ -99,6 +100,8 @@ def coupling_of(case: CaseTable, progress: Callable[[float], None] | None = None
             facts["plate_static_compliance_m_N"] = static
             linear += static - carried
             modes["plate"] = with_residuals(bodies["plate"], modes["plate"], tell)
+    if is_free_sphere(case):
+        rigid = _free_sphere(case)
     if case.contact.local.finite_sphere or ("sphere" in bodies and treatment == "consistent"):
         patch = min(_contact_radius(case), FITTED[1] * case.sphere.radius)
         finite, facts["finite_sphere_factor"] = _finite_size(case, patch)
@@ -114,6 +117,14 @@ def coupling_of(case: CaseTable, progress: Callable[[float], None] | None = None
     if series:
         _refuse_ill_posed(case, series, facts)
     return Coupling(modes, rigid, series, facts, {name: body.model for name, body in bodies.items()})
+
+
+def _free_sphere(case: CaseTable) -> ModalBasis:
+    """Return how a sphere below moves that nothing holds: along the line of impact, which goes through its centre."""
+    assert case.plate.radius is not None  # it is a sphere
+    mass = float(rigid_sphere(case.plate.radius, case.plate.material).mass)
+    along, up = np.zeros(1), np.array([[0.0, 0.0, math.sqrt(mass)]])
+    return ModalBasis(along, along, np.array([mass**-0.5]), up, mass=mass, rotation=np.zeros((1, 3)))
 
 
 def carried_modes(
@@ -257,7 +268,7 @@ def coupled(
     coupling = coupling_of(case, progress, tell)
     bodies = {name: replace(getattr(problem, name), modes=basis) for name, basis in coupling.modes.items()}
     if coupling.rigid is not None:
-        bodies["plate"] = replace(bodies["plate"], rigid=coupling.rigid)
+        bodies["plate"] = replace(bodies.get("plate", problem.plate), rigid=coupling.rigid)
     found = replace(
         problem,
         **bodies,

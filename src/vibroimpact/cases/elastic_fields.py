@@ -139,7 +139,9 @@ def check_elastic(section: Any) -> None:
     """
     if section.model == "rigid":
         for key in _ELASTIC_KEYS:
-            if getattr(section, key, None) not in (None, False):
+            value = getattr(section, key, None)
+            flies_off = value == "free" and section.radius is not None  # a sphere in the place of the plate
+            if value not in (None, False) and not flies_off:
                 raise InputError(f'a rigid body does not take it; add model = "elastic", or leave out {key}', key)
         return
     if section.modes is not None and section.max_frequency is not None:
@@ -151,13 +153,21 @@ def check_elastic(section: Any) -> None:
 
 
 def check_plate(section: Any) -> None:
-    """Raise unless an elastic plate has a size, and a mesh that fits its element.
+    """Raise unless an elastic plate has a size, and a mesh that fits its element; and a sphere in its place what one has.
 
     Raises
     ------
     InputError
         With the key that is wrong.
     """
+    if section.radius is not None:
+        if section.size is not None:
+            raise InputError("a sphere takes the place of the plate, and has no size; leave out size, or radius", "size")
+        if section.model == "elastic":
+            words = "a sphere in the place of the plate is rigid but for its contact"
+            raise InputError(f"{words}; leave out model, or take a System in Python, whose bodies may all vibrate", "model")
+        if section.supports is not None and section.material.name == "rigid":
+            raise InputError('"rigid" has no density, and a sphere that is free needs a mass', "material")
     if section.model == "rigid":
         return
     mesh = section.mesh
@@ -173,6 +183,23 @@ def check_plate(section: Any) -> None:
         for key in ("theory", "margin") if solid else ("elements", "layers", "kind", "splits", "lower_splits"):
             if getattr(mesh, key) is not None:
                 raise InputError(f'element = "{section.element or "plate"}" does not take it', f"mesh.{key}")
+
+
+def check_below(case: Any) -> None:
+    """Raise unless a sphere in the place of the plate of a case is met as one can be.
+
+    Raises
+    ------
+    InputError
+        With the key that is wrong.
+    """
+    local = case.contact.local
+    if any(case.drop.position):
+        words = "beside the top of a sphere the impact is oblique, and spheres meet head on here"
+        raise InputError(f"{words}; leave it out", "drop.position")
+    if case.sphere.model == "elastic" or local.local_compliance is not None or local.finite_sphere:
+        words = "two spheres are rigid but for their contact"
+        raise InputError(f"{words}; leave this out", "sphere.model" if case.sphere.model == "elastic" else "contact")
 
 
 def reduction_of(body: Literal["sphere", "plate"], section: Any, place: Place) -> Reduction:

@@ -17,7 +17,7 @@ from vibroimpact.cases.calibrate_section import FileTarget
 from vibroimpact.cases.case import Case
 from vibroimpact.cases.in_air import Measurement, speed_at_touch
 from vibroimpact.cases.measured_case import check_restitutions, of_heights
-from vibroimpact.cases.rigid import contact_pair
+from vibroimpact.cases.rigid import contact_pair, mass_of_sphere
 from vibroimpact.errors import InputError
 from vibroimpact.exchange.record_file import SPHERE_ACCELERATION, is_universal, read_universal_record
 from vibroimpact.exchange.table_file import TableFile, read_table_file, rising
@@ -110,7 +110,7 @@ def _of_record(case: Case, record: Recorded, by_rebound: bool) -> Measurement:
 
         return Measurement(in_position, float(position.max()) - radius)
     mass = float(contact_pair(case).effective_mass)
-    force = values["force"] if "force" in values else mass * values["sphere_acceleration"]
+    force = values["force"] if "force" in values else mass_of_sphere(case) * values["sphere_acceleration"]
 
     def in_force(flights: Flights | None) -> Observations:
         given = {"mass": mass, "gravity": case.drop.gravity, "first_speed": speed_at_touch(case, flights)}

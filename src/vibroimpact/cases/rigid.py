@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from vibroimpact.bodies.body import Body
 from vibroimpact.bodies.plate import rigid_plate
 from vibroimpact.bodies.sphere import rigid_sphere
 from vibroimpact.contact.law import ContactLaw, find_contact_law
@@ -27,8 +28,13 @@ FALLS = (
 
 def contact_pair(case: CaseTable) -> ContactPair:
     """Return the facts of the touching pair of a case: effective modulus, radius and mass."""
-    modulus = effective_modulus(case.sphere.material, case.plate.material)
-    mass = rigid_sphere(case.sphere.radius, case.sphere.material).mass
+    modulus, below = effective_modulus(case.sphere.material, case.plate.material), case.plate.radius
+    mass, radius = rigid_sphere(case.sphere.radius, case.sphere.material).mass, case.sphere.radius
+    if below is not None:
+        radius = radius * below / (radius + below)
+    if is_free_sphere(case):
+        mass_below = rigid_sphere(below, case.plate.material).mass
+        mass = mass * mass_below / (mass + mass_below)
     strength: Array | None = None
     ratio: Array = case.sphere.material.poissons_ratio
     for material in (case.sphere.material, case.plate.material):
@@ -37,7 +43,17 @@ def contact_pair(case: CaseTable) -> ContactPair:
         weaker = np.less(material.yield_strength, np.inf if strength is None else strength)
         strength = np.where(weaker, material.yield_strength, np.inf if strength is None else strength)[()]
         ratio = np.where(weaker, material.poissons_ratio, ratio)[()]
-    return ContactPair(modulus, case.sphere.radius, mass, strength, ratio)
+    return ContactPair(modulus, radius, mass, strength, ratio)
+
+
+def mass_of_sphere(case: CaseTable) -> float:
+    """Return the mass of the sphere that falls [kg]."""
+    return float(rigid_sphere(case.sphere.radius, case.sphere.material).mass)
+
+
+def is_free_sphere(case: CaseTable) -> bool:
+    """Is the body below a sphere that nothing holds?"""
+    return case.plate.radius is not None and case.plate.supports == "free"
 
 
 def contact_laws_of(case: CaseTable) -> tuple[ContactLaw, ...]:
@@ -68,16 +84,16 @@ def elastic_names(case: CaseTable) -> list[Literal["sphere", "plate"]]:
 
 
 def deforms(case: CaseTable) -> bool:
-    """Does anything of a case but the contact itself deform?"""
+    """Does anything of a case but the contact itself deform, or move but the sphere that falls?"""
     local = case.contact.local
-    return bool(elastic_names(case)) or local.local_compliance == "identified" or local.finite_sphere
+    return bool(elastic_names(case)) or local.local_compliance == "identified" or local.finite_sphere or is_free_sphere(case)
 
 
 def rigid_problem(case: CaseTable) -> Problem:
     """Return the problem of a case as if its bodies were rigid; the numbers of the case may be arrays, one value a drop."""
     return Problem(
         sphere=rigid_sphere(case.sphere.radius, case.sphere.material),
-        plate=rigid_plate(case.plate.size[2] if case.plate.size else 0.0),
+        plate=_rigid_below(case),
         laws=contact_laws_of(case),
         height=case.drop.height,
         speed=case.drop.speed,
@@ -88,6 +104,13 @@ def rigid_problem(case: CaseTable) -> Problem:
         same_spot=case.drop.same_spot,
         tolerance=case.run.tolerance,
     )
+
+
+def _rigid_below(case: CaseTable) -> Body:
+    """Return what a sphere falls on, held fixed: a plate, or another sphere."""
+    if case.plate.radius is not None:
+        return Body(mass=np.inf, contact_offset=case.plate.radius)
+    return rigid_plate(case.plate.size[2] if case.plate.size else 0.0)
 
 
 def first_speed(case: CaseTable) -> float:

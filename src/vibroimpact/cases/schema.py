@@ -19,6 +19,7 @@ from vibroimpact.cases.elastic_fields import (
     ModesField,
     PlateMeshField,
     SphereMeshField,
+    check_below,
     check_elastic,
     check_plate,
 )
@@ -58,9 +59,10 @@ class SphereSection(Section):
 
 
 class PlateSection(Section):
-    """The plate, held fixed."""
+    """What the sphere falls on: a plate, or another sphere; held fixed, or free."""
 
     material: MaterialField
+    radius: Annotated[float, Quantity("m", "radius of a sphere that takes the place of the plate", Range(above=0))] | None = None
     size: (
         tuple[
             Annotated[float, Quantity("m", "length", Range(above=0))],
@@ -210,6 +212,8 @@ class CaseTable(Section):
             )
         if height is not None and self.drop.gravity == 0:
             raise InputError("without gravity a sphere does not fall; give drop.speed instead of drop.height", "drop.gravity")
+        if self.plate.radius is not None:
+            check_below(self)
         in_own_coordinates = isinstance(self.plate.mesh, BroughtMeshTable)
         reach = [0.5 * length for length in size[:2]] if size and not in_own_coordinates else [math.inf, math.inf]
         if any(abs(at) > end for at, end in zip(self.drop.position, reach, strict=True)):

@@ -15,7 +15,7 @@ from vibroimpact.cases.case import Case
 from vibroimpact.cases.costs import costs_told
 from vibroimpact.cases.doubts import doubts
 from vibroimpact.cases.expected import expected_of
-from vibroimpact.cases.rigid import contact_laws_of, contact_pair, deforms, elastic_names, first_speed, impacts_of
+from vibroimpact.cases.rigid import contact_laws_of, contact_pair, deforms, elastic_names, first_speed, impacts_of, mass_of_sphere
 from vibroimpact.cases.schema import SensorSection
 from vibroimpact.contact.law import CompliantLaw, ContactLaw, unit_of
 from vibroimpact.dynamics.problem import STANDARD_GRAVITY
@@ -116,17 +116,22 @@ def _deformation(result: Result) -> list[RenderableType]:
     return [Text(), *([Text(sentence)] if sentence else []), *([facts(rows, indent=1)] if rows else [])] if rows or sentence else []
 
 
+def _below(case: Case) -> str:
+    """Return what the sphere falls on, in words."""
+    plate = case.plate
+    if plate.radius is not None:
+        return f"in its place a sphere, radius {plate.radius:g} m, {'free' if plate.supports == 'free' else 'rigid, held fixed'}"
+    size = f", {' x '.join(f'{side:g}' for side in plate.size)} m" if plate.size else ""
+    return f"{'rigid, held fixed' if plate.model == 'rigid' else 'elastic'}{size}"
+
+
 def case_explained(case: Case, aside: Container[str] = ()) -> RenderableType:
     """Return what a case means: the resolved numbers, what to expect, and what to doubt; but slips of units at keys told elsewhere."""
     laws, pair, speed = contact_laws_of(case), contact_pair(case), first_speed(case)
-    mass, radius, gravity = float(pair.effective_mass), case.sphere.radius, case.drop.gravity
+    mass, radius, gravity = mass_of_sphere(case), case.sphere.radius, case.drop.gravity
     rows: list[tuple[str, str]] = [
         ("sphere", f"radius {radius:g} m, mass {mass:.6g} kg, {case.sphere.model}, of {_stuff(case.sphere.material)}"),
-        (
-            "plate",
-            f"{'rigid, held fixed' if case.plate.model == 'rigid' else 'elastic'}, of {_stuff(case.plate.material)}"
-            + (f", {' x '.join(f'{side:g}' for side in case.plate.size)} m" if case.plate.size else ""),
-        ),
+        ("plate", f"{_below(case)}, of {_stuff(case.plate.material)}"),
         *_elastic_rows(case),
         *_coupling_rows(case),
         ("effective modulus", f"{pair.effective_modulus:.6g} Pa"),
@@ -186,7 +191,7 @@ def _coupling_rows(case: Case) -> list[tuple[str, str]]:
     if local.measured is not None:
         where = "on a rigid plate" if local.measured.plate == "rigid" else "on this plate"
         words.append(f"local element found from a largest force of {local.measured.max_force:.6g} N {where}")
-    rows = [("local compliance", "; ".join(words))]
+    rows = [("local compliance", "; ".join(words))] if words else []
     for sensor in case.sensors:
         place = sensor.position if isinstance(sensor.position, str) else f"({sensor.position[0]:g}, {sensor.position[1]:g}) m"
         words = [f"{sensor.quantity} at {place}, {sensor.face} face", *_accelerometer(sensor), f"{sensor.rate:g} Hz", _filter(sensor)]

@@ -42,7 +42,7 @@ BANDS: dict[str, tuple[str, str, str]] = {
     "written_off_at_rest_J": ("written off at rest", "#ffffff", "xx"),
     "contact_elastic_J": ("stored in the contact", "#f7cd6b", "////"),
     "sphere_motion_J": ("vibration of the sphere", "#e8a0a0", "...."),
-    "plate_motion_J": ("vibration of the plate", "#c9e3b4", "----"),
+    "plate_motion_J": ("motion of the plate", "#c9e3b4", "----"),
     "potential_J": ("potential", "#d6e6f4", ""),
     "kinetic_J": ("kinetic", "#4a8cc7", "\\\\"),
 }

@@ -9,7 +9,7 @@ from typing import Any
 from vibroimpact.calibration.speed_function import SpeedFunction
 from vibroimpact.cases.case import Case
 from vibroimpact.cases.reader import load_case, read_case
-from vibroimpact.cases.rigid import contact_laws_of, contact_pair, deforms, elastic_names, rigid_problem
+from vibroimpact.cases.rigid import contact_laws_of, deforms, elastic_names, mass_of_sphere, rigid_problem
 from vibroimpact.errors import InputError
 from vibroimpact.exchange.drop import Drop
 from vibroimpact.storage.calibration_file import CALIBRATION
@@ -58,6 +58,8 @@ def drop_of_result(result: Result, case: Case, function: tuple[str, SpeedFunctio
     function : tuple of str and SpeedFunction, optional
         A parameter of the contact law as a function of the approach speed.
     """
+    if case.plate.radius is not None:
+        raise InputError("what is exported falls on a flat plate, and this sphere falls on another", "plate.radius")
     found, dropped = result.deflection, case.drop
     surface = {} if found is None else {"time": found.time, "x": found.x, "y": found.y, "height": found.height.astype(float)}
     if found is not None:
@@ -65,7 +67,7 @@ def drop_of_result(result: Result, case: Case, function: tuple[str, SpeedFunctio
     return Drop(
         name=result.name,
         radius=case.sphere.radius,
-        mass=float(contact_pair(case).effective_mass),
+        mass=mass_of_sphere(case),
         sphere_material=case.sphere.material,
         plate_material=case.plate.material,
         plate_size=case.plate.size,

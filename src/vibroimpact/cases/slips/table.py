@@ -37,6 +37,7 @@ PLACES: tuple[Place, ...] = (
     *_material("sphere.material"),
     *_material("plate.material"),
     *(Place(f"plate.size.{side}", "m", _LENGTHS, between(high=60.0, above="is longer than any plate")) for side in ("length", "width")),
+    Place("plate.radius", "m", _LENGTHS, rules.radius),
     Place("plate.size.thickness", "m", _LENGTHS, rules.thickness),
     Place("sphere.radius", "m", _LENGTHS, rules.radius),
     Place("drop.height", "m", _LENGTHS, between(high=300.0, above="is higher than a tower")),
