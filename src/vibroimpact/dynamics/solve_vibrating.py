@@ -112,24 +112,21 @@ def solve_stretches(problems: Sequence[StretchProblem]) -> list[VibratingStretch
         if not going.any():
             break
         by_delta, by_force, by_length = _newton_step(now, here, delta, force, event)
-        by_length = np.maximum(np.minimum(by_length, _LONGER / (1.0 + _LONGER) * length), -_LONGER * length)
+        if not going.all():  # some are where they have come to
+            by_delta, by_force = np.where(going[:, None], by_delta, 0.0), np.where(going[:, None], by_force, 0.0)
         by_static = now.stiffness * by_delta
-        parts = ((now.static - by_static, static), (delta - by_delta, delta), (force - by_force, force))
-        if going.all():
-            static, delta, force = (new for new, _ in parts)
-            length = length - by_length
-        else:  # some are where they have come to
-            static, delta, force = (np.where(going[:, None], new, old) for new, old in parts)
-            length = np.where(going, length - by_length, length)
+        static, delta, force = now.static - by_static, delta - by_delta, force - by_force
+        most = np.maximum(np.abs(by_force), np.abs(by_static)).max(axis=1) / (scale + np.abs(force).max(axis=1))
         if event is not None:
-            here = Receptance(systems, at, length)
-        most = np.maximum(np.abs(by_force).max(axis=1), np.abs(by_static).max(axis=1)) / (scale + np.abs(force).max(axis=1))
-        before, size = size, np.maximum(most, np.abs(by_length) / length)
+            by_length = np.where(going, np.clip(by_length, -_LONGER * length, _LONGER / (1.0 + _LONGER) * length), 0.0)
+            length = length - by_length
+            here, most = Receptance(systems, at, length), np.maximum(most, np.abs(by_length) / length)
+        before, size = size, most
         # what the next step would be: of a method that converges quadratically, but for its derivatives
-        following = np.where(size < before, size * np.maximum((size / before) ** 2, _INEXACT), size)
-        done = (np.minimum(size, following) < _CONVERGED) | ((size < _STALLED) & (size > 0.3 * before))
+        following = size * np.minimum(np.maximum((size / before) ** 2, _INEXACT), 1.0)
+        done = (following < _CONVERGED) | ((size < _STALLED) & (size > 0.3 * before))
         solved |= going & done
-        going = going & ~done & np.isfinite(size)
+        going &= ~done & np.isfinite(size)
         if not going.any():
             break
     return _stretches(problems, locals_, here, length, (met, own), (static, delta, force), solved)
