@@ -10,6 +10,7 @@ import pytest
 
 import vibroimpact as vi
 from vibroimpact.cases.build import resolved
+from vibroimpact.cases.conditions import Conditions, Seen
 from vibroimpact.cases.rigid import contact_pair
 from vibroimpact.storage.compute_study import compute_study
 from vibroimpact.storage.exported import drop_of
@@ -81,6 +82,29 @@ def test_a_heavy_one_stays_where_it_is() -> None:
     assert heavy.impacts["max_force_N"] == pytest.approx(held.impacts["max_force_N"], rel=1e-7)
 
 
+def test_two_that_stick_fly_on_together() -> None:
+    case = {
+        "sphere": {"radius": 1e-5, "material": GLASS},
+        "plate": {"radius": 1e-5, "material": GLASS, "supports": "free"},
+        "drop": {"speed": 0.005, "gravity": 0.0},
+        "contact": {"law": "jkr", "work_of_adhesion": 0.1},
+    }
+    response = vi.simulate(vi.read_case(case))
+    assert response.outcomes == (vi.Outcome.STUCK,)
+    mass = mass_of(1e-5, GLASS)
+    for entry in ("kinetic_J", "plate_kinetic_J"):  # at half of the speed, each
+        assert float(response.energy[entry]) == pytest.approx(0.5 * mass * 0.0025**2, rel=1e-9)
+
+
+def test_doubts_know_both_curvatures() -> None:
+    """The peak pressure of two equal spheres is that of a flat under the same force, times 2^(2/3)."""
+    case = case_of({"radius": 0.01})
+    conditions = Conditions(resolved(case), Seen(force=1000.0))
+    flat = Conditions(resolved(case_of({})), Seen(force=1000.0))
+    assert conditions.peak_pressure == pytest.approx(2.0 ** (2.0 / 3.0) * flat.peak_pressure)
+    assert conditions.effective_mass == pytest.approx(mass_of(0.01, STEEL))
+
+
 def test_the_case_reads_back() -> None:
     for plate in ({"radius": 0.03}, {"radius": 0.03, "supports": "free"}):
         case = case_of(plate)
@@ -111,7 +135,7 @@ def test_it_is_not_exported(tmp_path: Path) -> None:
     [
         ({"radius": 0.02, "size": [1.0, 1.0, 0.01]}, {}, "plate.size: a sphere takes the place of the plate, and has no size"),
         ({"radius": 0.02, "model": "elastic", "supports": "free"}, {}, "plate.model: a sphere in the place of the plate is rigid but for"),
-        ({"radius": 0.02, "supports": "clamped"}, {}, "plate.supports: a rigid body does not take it"),
+        ({"radius": 0.02, "supports": "clamped"}, {}, 'plate.supports: a sphere in the place of the plate is held fixed, or "free"'),
         (
             {"radius": 0.02, "supports": "free"},
             {"drop": {"gravity": 9.8}},

@@ -27,7 +27,7 @@ class Body:
     modes : ModalBasis, optional
         How it vibrates; a body without modes is rigid.
     rigid : ModalBasis, optional
-        Of a plate that nothing holds: its motions as a rigid body, modes of frequency zero.
+        Of a plate that nothing holds, or a sphere in its place: its motions as a rigid body, modes of frequency zero.
     """
 
     mass: Array

@@ -172,6 +172,7 @@ def of_the_whole(
             f"the drop has impacts at {beyond.min():.4g} to {beyond.max():.4g} m/s, and the polynomial was fitted over "
             f"{function.slowest:.4g} to {function.fastest:.4g} m/s: what it says there is a guess"
         )
-    if problem.vibrates and impacts_of(problem) > 1:
+    rings = problem.sphere.modes is not None or problem.plate.modes is not None or problem.local_element is not None
+    if rings and impacts_of(problem) > 1:
         told.append(f"{tunable.name} is matched on bodies at rest; at later impacts they still ring, and the rebound differs")
     return told

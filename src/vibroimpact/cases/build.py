@@ -38,9 +38,8 @@ def check_case(case: CaseTable) -> None:
             words = f"and {law.name} loses none on a dent that it has made"
             raise InputError(f'"all" needs a law that loses energy, {words}; {remedy}, or drop.same_spot = false', "run.impacts")
     if case.sensors and case.plate.model == "rigid":
-        raise InputError(
-            'the plate is rigid, so that its points do not move; give it model = "elastic", or leave out the sensors', "sensors"
-        )
+        remedy = 'give it model = "elastic", or leave out the sensors' if case.plate.radius is None else "leave out the sensors"
+        raise InputError(f"the plate is rigid, so that its points do not move; {remedy}", "sensors")
     local = case.contact.local
     if local.local_compliance == "identified" and case.sphere.model == "elastic":
         raise InputError('the local element of "identified" stands for the deformation of the sphere; leave it "rigid"', "sphere.model")

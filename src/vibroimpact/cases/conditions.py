@@ -80,6 +80,21 @@ class Conditions:
         return 4.0 / 3.0 * math.pi * np.power(self.radius, 3) * self.materials["sphere"].density
 
     @cached_property
+    def effective_radius(self) -> Array:
+        """Effective radius of the pair [m]: the sphere's, or where it falls on another sphere that of two curvatures."""
+        below = self.case["plate"].get("radius")
+        return self.radius if below is None else self.radius * below / (self.radius + below)
+
+    @cached_property
+    def effective_mass(self) -> Array:
+        """Effective mass of the pair [kg]: the sphere's, or where it falls on a sphere that is free the reduced one."""
+        plate = self.case["plate"]
+        if "radius" not in plate or plate.get("supports") != "free":
+            return self.mass
+        below = 4.0 / 3.0 * math.pi * np.power(plate["radius"], 3) * self.materials["plate"].density
+        return self.mass * below / (self.mass + below)
+
+    @cached_property
     def modulus(self) -> Array:
         """Effective modulus of the pair [Pa]."""
         return effective_modulus(self.materials["sphere"], self.materials["plate"])
@@ -87,7 +102,7 @@ class Conditions:
     @cached_property
     def contact_radius(self) -> Array:
         """Hertz's contact radius at the largest force [m]."""
-        return np.cbrt(0.75 * self.seen.force * self.radius / self.modulus)
+        return np.cbrt(0.75 * self.seen.force * self.effective_radius / self.modulus)
 
     @cached_property
     def peak_pressure(self) -> Array:
@@ -121,7 +136,7 @@ class Conditions:
             "exponent" not in contact and "1.5" not in self.law.__dataclass_fields__["stiffness"].metadata["unit"]
         ):
             return False
-        ratio = self.of_law("stiffness") / hertz_stiffness(self.modulus, self.radius)
+        ratio = self.of_law("stiffness") / hertz_stiffness(self.modulus, self.effective_radius)
         return (abs(ratio - 1.0) < _LIKE_HERTZ) & (self.of_law("exponent", 1.5) == 1.5)
 
     def model(self, body: str) -> str:

@@ -140,9 +140,13 @@ def check_elastic(section: Any) -> None:
     if section.model == "rigid":
         for key in _ELASTIC_KEYS:
             value = getattr(section, key, None)
-            flies_off = value == "free" and section.radius is not None  # a sphere in the place of the plate
-            if value not in (None, False) and not flies_off:
-                raise InputError(f'a rigid body does not take it; add model = "elastic", or leave out {key}', key)
+            if value in (None, False):
+                continue
+            if key == "supports" and section.radius is not None:
+                if value == "free":
+                    continue  # a sphere in the place of the plate, which flies off
+                raise InputError('a sphere in the place of the plate is held fixed, or "free"', key)
+            raise InputError(f'a rigid body does not take it; add model = "elastic", or leave out {key}', key)
         return
     if section.modes is not None and section.max_frequency is not None:
         raise InputError("give either modes or max_frequency; both are given", "modes")
@@ -153,7 +157,7 @@ def check_elastic(section: Any) -> None:
 
 
 def check_plate(section: Any) -> None:
-    """Raise unless an elastic plate has a size, and a mesh that fits its element; and a sphere in its place what one has.
+    """Check the keys of an elastic plate, or of a sphere that takes the plate's place.
 
     Raises
     ------
@@ -186,7 +190,7 @@ def check_plate(section: Any) -> None:
 
 
 def check_below(case: Any) -> None:
-    """Raise unless a sphere in the place of the plate of a case is met as one can be.
+    """Check how a sphere that takes the place of the plate is met.
 
     Raises
     ------

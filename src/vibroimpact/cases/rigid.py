@@ -84,7 +84,7 @@ def elastic_names(case: CaseTable) -> list[Literal["sphere", "plate"]]:
 
 
 def deforms(case: CaseTable) -> bool:
-    """Does anything of a case but the contact itself deform, or move but the sphere that falls?"""
+    """Does anything of a case but the contact itself deform, or the body below move?"""
     local = case.contact.local
     return bool(elastic_names(case)) or local.local_compliance == "identified" or local.finite_sphere or is_free_sphere(case)
 

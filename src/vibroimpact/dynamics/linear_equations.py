@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from vibroimpact.dynamics.collocation import Floats
@@ -14,21 +16,20 @@ def times(matrices: Floats, values: Floats) -> Floats:
 
 def solutions(matrices: Floats, right: Floats) -> Floats:
     """Return the solutions of B systems of linear equations, (B, M); NaN where a matrix (B, M, M) is singular."""
-    try:
-        return np.asarray(np.linalg.solve(matrices, right[:, :, None])[:, :, 0])
-    except np.linalg.LinAlgError:  # NumPy gives up all for one of them
-        if len(matrices) == 1:
-            return np.full_like(right, np.nan)
-        half = len(matrices) // 2
-        return np.concatenate([solutions(matrices[:half], right[:half]), solutions(matrices[half:], right[half:])])
+    return _each(np.linalg.solve, matrices, right[:, :, None])[:, :, 0]
 
 
 def inverses(matrices: Floats) -> Floats:
     """Return the inverse of each matrix (B, M, M); NaN where it is singular."""
+    return _each(np.linalg.inv, matrices)
+
+
+def _each(function: Callable[..., Floats], *stacks: Floats) -> Floats:
+    """Return a function of each of several matrices, with a NaN result where it is singular: NumPy gives up all for one of them."""
     try:
-        return np.asarray(np.linalg.inv(matrices))
+        return np.asarray(function(*stacks))
     except np.linalg.LinAlgError:
-        if len(matrices) == 1:
-            return np.full_like(matrices, np.nan)
-        half = len(matrices) // 2
-        return np.concatenate([inverses(matrices[:half]), inverses(matrices[half:])])
+        if len(stacks[0]) == 1:
+            return np.full_like(stacks[-1], np.nan)
+        half = len(stacks[0]) // 2
+        return np.concatenate([_each(function, *(stack[part] for stack in stacks)) for part in (slice(half), slice(half, None))])

@@ -87,7 +87,7 @@ class LinearSystem(Oscillators):
         return {}
 
     def falling(self, shape: float, load: float) -> LinearSystem:
-        """Return the system with another first motion as a rigid body, its only one at the contacts with a load: of another sphere."""
+        """Return the same system with a sphere of another mass and weight: its fall is the first coordinate."""
         shapes, loads = self.shape.copy(), self.load.copy()
         shapes[:, 0], loads[0] = shape, load
         found = replace(self, shape=shapes, load=loads)
@@ -173,6 +173,13 @@ class LinearSystem(Oscillators):
         """Return kinetic, potential and strain energy [J], without what the contact laws hold."""
         of_all = sum(part.sum(axis=-1) for part in self.energies(state))
         return np.asarray(of_all - state.displacement @ self.load + self.local_energy(state))
+
+    def common_energy(self, state: State) -> Floats:
+        """Return the kinetic energy of rigid motions that leave the first approach as it is [J]: of two free bodies flying on."""
+        if np.count_nonzero(self.rigid) == 1:
+            return np.zeros(state.velocity.shape[:-1])
+        along = state.velocity @ self.of_rigid[0]
+        return np.asarray(0.5 * ((state.velocity[..., self.rigid] ** 2).sum(axis=-1) - self.mass[0] * along**2))
 
     def approach(self, state: State) -> Floats:
         """Return the approach of the surfaces [m], negative where there is a gap (..., contacts)."""

@@ -196,7 +196,10 @@ class LocalContact:
 
 
 def stacked(contacts: Sequence[LocalContact]) -> LocalContact:
-    """Return contacts of one law and with the same in series as one of them all: where it takes indentations, the last axis is theirs."""
+    """Return contacts of one law as one contact whose parameters are arrays, one value a system.
+
+    It serves for `linearised`, `near`, `own_forces` and `own_work` alone.
+    """
     first, *others = contacts
     if not others:
         return first
@@ -210,7 +213,7 @@ def stacked(contacts: Sequence[LocalContact]) -> LocalContact:
 
 
 def linearised(contacts: Sequence[LocalContact], delta: Array, rate: Array) -> Linearised:
-    """Return the same of c contacts of B systems, from their laws' indentations and rates at N nodes (B, c N), (B, c N) each."""
+    """Return forces and derivatives of c contacts of B systems, at indentations and rates at N nodes (B, c N): (B, c N) each."""
     size = delta.shape[1] // len(contacts)
     ranges = [slice(begin, begin + size) for begin in range(0, delta.shape[1], size)]
     found = [one.linearised(delta[:, part].T, rate[:, part].T) for one, part in zip(contacts, ranges, strict=True)]

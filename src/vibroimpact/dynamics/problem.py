@@ -157,7 +157,7 @@ class Problem:
 
     @property
     def vibrates(self) -> bool:
-        """Does anything but the contact itself deform?"""
+        """Does anything but the contact itself deform, or anything but the sphere move?"""
         modes = (self.sphere.modes, self.plate.modes, self.plate.rigid, self.local_element)
         return any(part is not None for part in modes) or bool(self.quasi_static)
 

@@ -179,7 +179,8 @@ class Riding:
 
     def excess(self, state: State, stored: float) -> float:
         """Return what sphere, oscillators and contact, which holds `stored` [J], can give back down to their equilibrium [J]."""
-        return float(self.system.mechanical_energy(state)) + self.share * stored - least_energy(self.system, self.approach, self.stored)
+        energy = float(self.system.mechanical_energy(state) - self.system.common_energy(state))
+        return energy + self.share * stored - least_energy(self.system, self.approach, self.stored)
 
 
 def coupled_oscillators(riding: Riding) -> tuple[Oscillators, Floats]:

@@ -22,7 +22,7 @@ Motions = tuple[FreeMotion, ...]
 
 
 class RigidBodies:
-    """The bodies of B drops, as rigid ones: a sphere falls on a plate that lies still. Bodies that vibrate do the same otherwise.
+    """The bodies of B drops, as rigid ones: a sphere falls on a plate that lies still; see `VibratingBodies` for those that vibrate.
 
     In methods `drops` says which of the run are meant, and the other arrays belong to these. `columns`: of the impact table. `left`: what
     those that rest or ride, and what carries them, hold above their equilibrium [J] (B,), NaN for the others. `lying`: how those lie that

@@ -26,10 +26,10 @@ from vibroimpact.dynamics.vibrating_bodies import VibratingBodies
 
 
 class Run:
-    """A batch of B drops between impacts; arrays are (B,). Where nothing vibrates, `solve_contact` takes them through a contact."""
+    """A batch of B drops between impacts; arrays are (B,). `solve_contact` takes those of rigid bodies through a contact."""
 
     def __init__(self, problem: Problem, solve_contact: SolvesContact) -> None:
-        self.problem, self.solve_contact = problem, solve_contact
+        self.problem = problem
         self.size = int(np.prod(problem.shape))
         self.mass, self.radius = self.spread(problem.sphere.mass), self.spread(problem.sphere.contact_offset)
         self.gravity = self.spread(problem.gravity)

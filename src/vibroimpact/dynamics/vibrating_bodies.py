@@ -110,7 +110,7 @@ class VibratingBodies(RigidBodies):
         self.displacement[drop], self.velocity[drop], self.local[drop] = state.displacement, state.velocity, state.local
 
     def next_touch(self, drops: Drops, flight: Flight, law: ContactLaw) -> tuple[Floats, Floats, Motions]:
-        """Return the same, where the surfaces move."""
+        """Return when the surfaces next meet as they move [s], the speed of the bodies then [m/s], and their free motions."""
         assert isinstance(law, CompliantLaw)  # the problem has seen to it
         starts = zip(drops, flight.gap, flight.velocity, strict=True)
         motions = tuple(FreeMotion(self.systems[drop], self.state(drop, *sphere)) for drop, *sphere in starts)
@@ -131,7 +131,7 @@ class VibratingBodies(RigidBodies):
         return np.array([float(self.systems[drop].outer_rates(state)[0]) for drop, state in zip(drops, states, strict=True)])
 
     def rigid_speed(self, drops: Drops, velocity: Floats) -> Floats:
-        """Return the same, where the plate may move as well."""
+        """Return the speed at which the bodies part as rigid bodies [m/s], of which the plate may move as well."""
         states = (self.state(drop, 0.0, up) for drop, up in zip(drops, velocity, strict=True))
         return np.array([-float(self.systems[drop].rigid_motion(state)[1][0]) for drop, state in zip(drops, states, strict=True)])
 
@@ -143,7 +143,9 @@ class VibratingBodies(RigidBodies):
         starts, courses = [], []
         for number, drop in enumerate(drops):
             one, problem = encounter.pick(np.array([number])), self.problem
-            start, pace = self.state(drop, gaps[number], velocities[number]), 3.0 * float(one.depth[0] / one.speed_scale[0])
+            # as Hertz's contact takes longer with a larger mass: where the plate is free, the two have a smaller one
+            lighter = float(self.systems[drop].mass[0] / one.mass[0]) ** 0.4
+            start, pace = self.state(drop, gaps[number], velocities[number]), 3.0 * lighter * float(one.depth[0] / one.speed_scale[0])
             rules = (problem.tolerance, pace, not problem.same_spot, float(rest_speed[number]), float(until[number]))
             courses.append(visit(self.systems[drop], one.law.take(0), problem.quasi_static, start, *rules))
             starts.append(start)
@@ -173,7 +175,7 @@ class VibratingBodies(RigidBodies):
         return np.array([self.lying[drop] is not None for drop in drops], dtype=bool)
 
     def laid(self, drops: Drops, law: ContactLaw, weight: Floats, energy: Floats) -> dict[str, Floats]:
-        """Return how they were laid down."""
+        """Return how drops lie that have been laid down: `sag` [m], `stored` and `written_off` [J]."""
         lying = [found for drop in drops if (found := self.lying[drop]) is not None]
         told = [(found.riding.sag, found.riding.stored, found.written_off) for found in lying]
         return dict(zip(("sag", "stored", "written_off"), np.array(told).reshape(-1, 3).T, strict=True))

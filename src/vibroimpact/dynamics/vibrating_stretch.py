@@ -95,7 +95,7 @@ class VibratingStretch:
         """Velocities of the coordinates at the nodes (N, n)."""
         return self.motion.velocities
 
-    @property
+    @cached_property
     def end(self) -> State:
         """The state at the end."""
         return self.motion.end
@@ -133,7 +133,7 @@ class VibratingStretch:
         lost = in_laws + (self.motion.massless**2 / of.mobility).sum(axis=1)
         return np.concatenate([of.damping * self.velocities**2, lost[:, None]], axis=1)
 
-    @property
+    @cached_property
     def lost(self) -> Floats:
         """What is lost over the stretch, with what is at its end [J], (n + 1,) as in `powers`."""
         lost = self.motion.lost.copy()
@@ -152,7 +152,9 @@ class VibratingStretch:
         return np.asarray(self.force @ self.rule.end_slope / self.length)
 
     def forget(self) -> None:
-        """Let go of the motion of the coordinates at the nodes, which is found again when it is asked for."""
+        """Let go of the motion of the coordinates at the nodes, which is found again when it is asked for; what is at the end is kept."""
+        if "motion" in self.__dict__:
+            _ = self.end, self.lost
         for name in ("motion", "powers", "force"):
             self.__dict__.pop(name, None)
 

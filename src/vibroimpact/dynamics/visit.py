@@ -174,7 +174,8 @@ class _Visit:
     def held(self) -> bool:
         """Is there too little energy left to get out of the indentation?"""
         touch, local = self.touch, self.touch.local
-        energy = float(self.of.mechanical_energy(self.march.state)) + float(local.own_work(touch.delta))
+        state = self.march.state
+        energy = float(self.of.mechanical_energy(state) - self.of.common_energy(state)) + float(local.own_work(touch.delta))
         out = least_energy(self.of, local.release_level, float(local.own_energy(local.least)))
         return energy < out + self.march.tolerance**2 * touch.energy
 

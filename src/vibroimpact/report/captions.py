@@ -115,7 +115,7 @@ def _vibration(result: Result) -> str:
     """Tell where the energy of vibration went: what is left of it, and what its damping took."""
     damped = energy_text(result, "sphere_damping_J", "plate_damping_J")
     left = energy_text(result, "sphere_vibration_J", "sphere_strain_J", "plate_kinetic_J", "plate_strain_J")
-    return f" The damping of the bodies took {damped}, and {left} are still in their vibration."
+    return f" The damping of the bodies took {damped}, and {left} are still in their motion."
 
 
 def _enlarged(result: Result) -> str:

@@ -15,7 +15,16 @@ from vibroimpact.cases.case import Case
 from vibroimpact.cases.costs import costs_told
 from vibroimpact.cases.doubts import doubts
 from vibroimpact.cases.expected import expected_of
-from vibroimpact.cases.rigid import contact_laws_of, contact_pair, deforms, elastic_names, first_speed, impacts_of, mass_of_sphere
+from vibroimpact.cases.rigid import (
+    contact_laws_of,
+    contact_pair,
+    deforms,
+    elastic_names,
+    first_speed,
+    impacts_of,
+    is_free_sphere,
+    mass_of_sphere,
+)
 from vibroimpact.cases.schema import SensorSection
 from vibroimpact.contact.law import CompliantLaw, ContactLaw, unit_of
 from vibroimpact.dynamics.problem import STANDARD_GRAVITY
@@ -156,9 +165,9 @@ def case_explained(case: Case, aside: Container[str] = ()) -> RenderableType:
     if isinstance(laws[0], CompliantLaw) and laws[0].lasting:
         where = "on the same spot: the dent of the last one lasts" if case.drop.same_spot else "on fresh surfaces"
         rows.append(("each impact", f"{where} (drop.same_spot = {str(case.drop.same_spot).lower()})"))
-    rigid = not deforms(case)
+    rigid = not deforms(case) or is_free_sphere(case)
     label = "restitution" if rigid else "restitution if rigid"
-    rows += [("" if number else label, line) for number, line in enumerate(_restitution_lines(laws[0], mass, speed))]
+    rows += [("" if number else label, line) for number, line in enumerate(_restitution_lines(laws[0], pair.effective_mass, speed))]
     expected = expected_of(case)
     if not math.isnan(expected.force):
         numbers = f"indentation {expected.depth:.4g} m, force {expected.force:.4g} N"

@@ -58,8 +58,7 @@ def drop_of_result(result: Result, case: Case, function: tuple[str, SpeedFunctio
     function : tuple of str and SpeedFunction, optional
         A parameter of the contact law as a function of the approach speed.
     """
-    if case.plate.radius is not None:
-        raise InputError("what is exported falls on a flat plate, and this sphere falls on another", "plate.radius")
+    _check_flat(case)
     found, dropped = result.deflection, case.drop
     surface = {} if found is None else {"time": found.time, "x": found.x, "y": found.y, "height": found.height.astype(float)}
     if found is not None:
@@ -89,6 +88,12 @@ def drop_of_result(result: Result, case: Case, function: tuple[str, SpeedFunctio
     )
 
 
+def _check_flat(case: Case) -> None:
+    """Raise if a sphere falls on another one, which no format here holds."""
+    if case.plate.radius is not None:
+        raise InputError("what is exported falls on a flat plate, and this sphere falls on another", "plate.radius")
+
+
 def _of_calibration(folder: Path) -> Drop:
     """Return the drop of a calibration: its case, simulated, and the function that was fitted."""
     from vibroimpact.dynamics.simulate import simulate
@@ -106,6 +111,7 @@ def _of_calibration(folder: Path) -> Drop:
     except (OSError, ValueError, TypeError, AttributeError) as error:
         raise InputError(f"{folder / name}: the file is missing or damaged: {why(error)}; make the calibration anew") from None
     case = load_case(folder / name)
+    _check_flat(case)
     return drop_of_result(result_of(simulate(case.to_problem())), case, function)
 
 

@@ -42,12 +42,13 @@ def sticking_speed(radius: Array, modulus: Array, mass: Array, work_of_adhesion:
 def _number(drops: Conditions) -> Array:
     if "work_of_adhesion" in drops.case["contact"]:
         return np.nan
-    ratio = sticking_speed(drops.radius, drops.modulus, drops.mass) / drops.seen.speed
+    ratio = sticking_speed(drops.effective_radius, drops.modulus, drops.effective_mass) / drops.seen.speed
     return 1.0 - np.sqrt(1.0 - np.minimum(ratio, 1.0) ** 2)
 
 
 def _sentence(drop: Conditions, lost: float) -> str:
-    speed, pull = float(sticking_speed(drop.radius, drop.modulus, drop.mass)), 1.5 * np.pi * WORK_OF_ADHESION * drop.radius
+    radius = drop.effective_radius
+    speed, pull = float(sticking_speed(radius, drop.modulus, drop.effective_mass)), 1.5 * np.pi * WORK_OF_ADHESION * radius
     told = "the sphere would stick" if lost >= 1.0 else f"the first restitution would fall by {percent_less(lost).removeprefix('-')}"
     return (
         f"with a work of adhesion of {WORK_OF_ADHESION:g} J/m^2, of clean and dry bodies, {told}: they stick below {speed:.2g} m/s, and "

@@ -69,6 +69,8 @@ def _table() -> Array:
 
 def _number(drops: Conditions) -> Array:
     contact = drops.case["contact"]
+    if "radius" in drops.case["plate"]:
+        return np.nan  # what is lacking of a half space is known of a sphere on a flat
     if drops.model("sphere") == "elastic" or contact.get("finite_sphere") or contact.get("local_compliance") == "identified":
         return np.nan  # they have it, or count what is local twice
     sphere = drops.materials["sphere"]

@@ -10,7 +10,7 @@ from vibroimpact.contact.pair import Array
 
 
 def _number(drops: Conditions) -> Array:
-    return np.sqrt(drops.seen.depth / drops.radius)
+    return np.sqrt(drops.seen.depth / drops.effective_radius)
 
 
 def _sentence(drop: Conditions, part: float) -> str:

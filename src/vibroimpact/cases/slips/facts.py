@@ -74,13 +74,13 @@ class Facts:
     @cached_property
     def stiffness(self) -> float:
         """Hertz's stiffness of the two bodies [N/m^1.5]."""
-        found = float(hertz_stiffness(self._conditions.modulus, self.radius))
+        found = float(hertz_stiffness(self._conditions.modulus, self._conditions.effective_radius))
         return found if math.isfinite(found) else math.nan
 
     @cached_property
     def depth(self) -> float:
         """Largest indentation [m]."""
-        return math.pow(1.25 * self.mass * self.speed**2 / self.stiffness, 0.4)
+        return math.pow(1.25 * float(self._conditions.effective_mass) * self.speed**2 / self.stiffness, 0.4)
 
     @property
     def force(self) -> float:
@@ -113,8 +113,8 @@ class Facts:
         given = {
             "stiffness": [self.stiffness],
             "effective_modulus": [float(self._conditions.modulus)],
-            "effective_mass": [self.mass],
-            "effective_radius": [self.radius],
+            "effective_mass": [float(self._conditions.effective_mass)],
+            "effective_radius": [float(self._conditions.effective_radius)],
             "yield_strength": strengths,
             "yield_pressure": [1.6 * strength for strength in strengths],
         }
