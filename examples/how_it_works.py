@@ -16,9 +16,8 @@ from scipy.special import betaincinv
 
 import vibroimpact as vi
 from vibroimpact.dynamics.apart import Apart
-from vibroimpact.dynamics.lockstep import in_lockstep
+from vibroimpact.dynamics.lockstep import computed
 from vibroimpact.dynamics.march import March
-from vibroimpact.dynamics.solve_vibrating import solve_stretches
 from vibroimpact.dynamics.touching import Law
 from vibroimpact.dynamics.vibrating_stretch import VibratingStretch
 from vibroimpact.structures.modal_model import ModalBasis
@@ -49,7 +48,7 @@ def marched(system: vi.System, duration: float) -> March:
     """Return what `vi.simulate_system` keeps of a run: its stretches and flights, one after another."""
     linear, start = system.linear()
     march = March(linear, [Law(one.law, one.series, not one.same_spot) for one in system.contacts.values()], start, system.tolerance)
-    in_lockstep([march.course(duration)], solve_stretches)
+    computed(march.course(duration))
     return march
 
 

@@ -1,4 +1,4 @@
-"""The work of a study: the drops at some of its points, those with rigid bodies as arrays, the others one by one."""
+"""The work of a study: the drops at some of its points, those with rigid bodies as arrays, the others side by side."""
 
 from __future__ import annotations
 
@@ -17,12 +17,15 @@ from vibroimpact.cases.swept_keys import case_at
 from vibroimpact.dynamics.outcome import Outcome
 from vibroimpact.dynamics.response import Response
 from vibroimpact.dynamics.sensor import Sensor, sample_count
-from vibroimpact.dynamics.simulate import simulate
+from vibroimpact.dynamics.simulate import simulate_together
 from vibroimpact.dynamics.tabulate import ImpactTable, tabulate
 from vibroimpact.errors import ComputationError, InputError, lines_of
 from vibroimpact.studies.axes import Values
 from vibroimpact.studies.chunk_file import ChunkResult
 from vibroimpact.studies.columns import FIRST, LARGEST, OUTCOME, SENSOR_PEAK, SIGNAL
+
+_TOGETHER = 16
+"""Drops with bodies of their own that are computed at once: enough to pay, and few enough for their histories to lie in memory."""
 
 
 class _Study(NamedTuple):
@@ -33,7 +36,7 @@ class _Study(NamedTuple):
     first: int
     points: Mapping[str, Values]
 
-    def case(self, place: np.intp) -> Case:
+    def case(self, place: np.intp | int) -> Case:
         """Return the case of the drop at a place in the chunk."""
         return case_at(self.table, {key: column[place] for key, column in self.points.items()})
 
@@ -109,7 +112,7 @@ def _parts(study: _Study, places: NDArray[np.intp]) -> Iterator[_Part]:
         return
     arrays = {key: values[places] for key, values in study.points.items() if is_array_key(key, values)}
     if deforms(case) or not arrays:
-        yield from (_alone(study, place) for place in places)
+        yield from _side_by_side(study, places)
         return
     height: Any = arrays.get("drop.height", case.drop.height)
     if height is not None:  # those that would begin inside the plate fail by themselves
@@ -135,13 +138,35 @@ def _parts(study: _Study, places: NDArray[np.intp]) -> Iterator[_Part]:
 
 def _alone(study: _Study, place: np.intp) -> _Part:
     """Compute one drop by itself."""
-    try:
-        problem = study.case(place).to_problem()
-        response = simulate(replace(problem, sensors=tuple(_noise(sensor, study.first + int(place)) for sensor in problem.sensors)))
-    except Exception as error:  # whatever it is, it is the reason of this drop, and the others go on
-        name = "" if isinstance(error, (InputError, ComputationError)) else f"{type(error).__name__}: "
-        return _Part(np.array([place]), {}, {int(place): "; ".join(lines_of(f"{name}{error}".split("\n")))})
-    signals = {}
+    return next(_side_by_side(study, np.array([place])))
+
+
+def _side_by_side(study: _Study, places: NDArray[np.intp]) -> Iterator[_Part]:
+    """Compute drops that each have bodies of their own, some at once; whatever fails one of them is its reason, and the others go on."""
+    for begin in range(0, len(places), _TOGETHER):
+        some, problems = places[begin : begin + _TOGETHER], {}
+        for place in some.tolist():
+            try:
+                problem = study.case(place).to_problem()
+                noisy = tuple(_noise(sensor, study.first + place) for sensor in problem.sensors)
+                problems[place] = replace(problem, sensors=noisy)
+            except Exception as error:
+                yield _failed(place, error)
+        for place, response in zip(problems, simulate_together(list(problems.values())), strict=True):
+            try:
+                yield _failed(place, response) if isinstance(response, Exception) else _part_of(study, place, response)
+            except Exception as error:
+                yield _failed(place, error)
+
+
+def _failed(place: int, error: Exception) -> _Part:
+    name = "" if isinstance(error, (InputError, ComputationError)) else f"{type(error).__name__}: "
+    return _Part(np.array([place]), {}, {place: "; ".join(lines_of(f"{name}{error}".split("\n")))})
+
+
+def _part_of(study: _Study, place: int, response: Response) -> _Part:
+    """Return what is kept of one drop."""
+    problem, signals = response.problem, {}
     if "signals" in study.keep:
         duration = problem.duration or 0.0  # the study has seen to it; a contact under way at its end was finished
         for name, signal in response.signals().items():

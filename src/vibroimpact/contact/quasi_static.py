@@ -20,13 +20,13 @@ class QuasiStatic:
 
     Parameters
     ----------
-    linear : float
+    linear : float or array
         C [m/N], of either sign.
-    unit : float
+    unit : float or array
         1/(E R) of the sphere [m/N]; zero for a rigid one.
-    factors : tuple of four floats
+    factors : tuple of four floats or arrays
         c0, c1, c2 and c3 [-].
-    force : float
+    force : float or array
         F_R, at which Hertz's contact radius would be the sphere's [N], > 0.
 
     Examples
@@ -35,14 +35,14 @@ class QuasiStatic:
     '1e-06 m'
     """
 
-    linear: float = 0.0
-    unit: float = 0.0
-    factors: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
-    force: float = 1.0
+    linear: Array = 0.0
+    unit: Array = 0.0
+    factors: tuple[Array, Array, Array, Array] = (0.0, 0.0, 0.0, 0.0)
+    force: Array = 1.0
 
     def __bool__(self) -> bool:
         """Is there any?"""
-        return bool(self.linear or self.unit)
+        return bool(np.any(self.linear) or np.any(self.unit))
 
     def indentation(self, force: Array) -> Array:
         """Return s [m] at a force [N]."""

@@ -207,7 +207,14 @@ def stacked(contacts: Sequence[LocalContact]) -> LocalContact:
     for item in fields(first.law):
         values = [getattr(contact.law, item.name) for contact in contacts]
         parameters[item.name] = values[0] if all(value == values[0] for value in values) else np.array(values, dtype=float)
-    both = replace(first, law=first.law.changed(parameters), approach_speed=np.array([contact.approach_speed for contact in contacts]))
+    series = first.series
+    if any(contact.series is not series for contact in others):
+        parts = [contact.series for contact in contacts]
+        linear, unit, force = (np.array([getattr(part, name) for part in parts]) for name in ("linear", "unit", "force"))
+        series = QuasiStatic(linear, unit, tuple(np.array([part.factors for part in parts]).T), force)
+    both = replace(
+        first, series=series, law=first.law.changed(parameters), approach_speed=np.array([contact.approach_speed for contact in contacts])
+    )
     both.__dict__["least"] = np.array([contact.least for contact in contacts])
     return both
 

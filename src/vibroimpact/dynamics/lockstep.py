@@ -1,11 +1,13 @@
-"""What goes on by steps that are solved together with those of others: the stretches of contact of several systems, round by round."""
+"""Runs several generators round by round, and solves what they ask for in groups: many drops at once."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Generator, Iterable, Sequence
-from typing import Any, Protocol, TypeVar
+from collections.abc import Generator, Iterable, Sequence
+from typing import Any, Protocol, Self, TypeVar
 
 import numpy as np
+
+_TOGETHER = 30_000  # coordinates that are computed at once: their arrays stay in the cache
 
 
 class Problem(Protocol):
@@ -15,41 +17,66 @@ class Problem(Protocol):
     def kind(self) -> object:
         """What has to be the same for problems that are solved together."""
 
+    @property
+    def size(self) -> int:
+        """How many coordinates it has."""
 
-Asked = TypeVar("Asked", bound=Problem)
-Solved = TypeVar("Solved")
+    @classmethod
+    def solved(cls, problems: Sequence[Self]) -> Sequence[Any]:
+        """Return the solutions of problems of one kind."""
+
+
 Result = TypeVar("Result")
+Course = Generator[list[Any], list[Any], Result]
+"""A computation that yields lists of problems, gets back their solutions, and returns what came of it."""
 
 
-def in_lockstep(courses: Iterable[Generator[Asked, Solved, Result]], solve: Callable[[Sequence[Asked]], Sequence[Solved]]) -> list[Result]:
-    """Return what comes of courses: each yields problems, gets them back solved, and returns what came of it.
-
-    Parameters
-    ----------
-    courses : iterable of generator
-        They go on round by round.
-    solve : callable
-        Solves problems of one kind together.
-    """
-    running = dict(enumerate(courses))
+def side_by_side(courses: Iterable[Course[Result]]) -> Course[list[Result]]:
+    """Return what comes of courses, as one course: in each round all that go on ask for what they need next."""
+    running = list(courses)
     found: dict[int, Result] = {}
-    alike: dict[object, list[tuple[int, Asked]]] = {}
+    asked: dict[int, list[Any]] = {}
 
-    def go_on(number: int, solved: Any) -> None:
+    def go_on(number: int, solutions: list[Any] | None) -> None:
         try:
-            problem = running[number].send(solved)
+            asked[number] = running[number].send(solutions)  # type: ignore[arg-type]
         except StopIteration as end:
+            asked.pop(number, None)
             found[number] = end.value
-        else:
-            alike.setdefault(problem.kind, []).append((number, problem))
 
+    for number in range(len(running)):
+        go_on(number, None)
+    while asked:
+        counts = [(number, len(problems)) for number, problems in asked.items()]
+        solutions = iter((yield [problem for problems in asked.values() for problem in problems]))
+        for number, count in counts:
+            go_on(number, [next(solutions) for _ in range(count)])
+    return [found[number] for number in range(len(running))]
+
+
+def computed(course: Course[Result]) -> Result:
+    """Return what comes of a course, whose problems are solved in groups of a kind."""
     with np.errstate(all="ignore"):  # guesses may be wild; what is not finite is found and tried again
-        for number in running:
-            go_on(number, None)
-        while alike:
-            groups = list(alike.values())
-            alike.clear()
-            for group in groups:
-                for (number, _), solved in zip(group, solve([problem for _, problem in group]), strict=True):
-                    go_on(number, solved)
-    return [found[number] for number in running]
+        try:
+            problems = next(course)
+            while True:
+                problems = course.send(_solved(problems))
+        except StopIteration as end:
+            found: Result = end.value
+            return found
+
+
+def _solved(problems: list[Any]) -> list[Any]:
+    if len(problems) == 1:
+        return list(problems[0].solved(problems))
+    groups: dict[object, list[int]] = {}
+    for number, problem in enumerate(problems):
+        groups.setdefault((type(problem), problem.kind), []).append(number)
+    found: dict[int, Any] = {}
+    for numbers in groups.values():
+        first = problems[numbers[0]]
+        most = max(_TOGETHER // max(first.size, 1), 1)
+        for begin in range(0, len(numbers), most):
+            some = numbers[begin : begin + most]
+            found.update(zip(some, first.solved([problems[number] for number in some]), strict=True))
+    return [found[number] for number in range(len(problems))]

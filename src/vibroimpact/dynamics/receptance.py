@@ -8,8 +8,8 @@ between contacts at the complex frequencies :math:`1/\sigma_k`, :math:`\sigma_k 
 so that their number hardly counts. Radau collocation is stable however stiff a mode is: one that is much faster than the stretch
 follows the force, and one that is not is integrated with order 2 N - 1. Of rigid motions it is :math:`h^2 Q^2 \sum \chi_c \chi_d`.
 
-All is done for B systems at once that have the same modes. Arrays of the nodes of all c contacts are (B, M), M = c N, those of the modes
-(m, B, H), where H counts the eigenvalues, of each conjugate pair one.
+All is done for B systems at once that have as many modes. Arrays of the nodes of all c contacts are (B, M), M = c N, those of the modes
+(B, m, H), where H counts the eigenvalues, of each conjugate pair one.
 """
 
 from __future__ import annotations
@@ -35,8 +35,8 @@ NODES = 12
 class Spectrum:
     """A collocation rule with the eigenvalues of its integration matrix, of each conjugate pair one (H,).
 
-    `constant`, `time`: these in its eigenvectors (H,). `inward` (N, 2 H): to the eigenvectors, real and imaginary parts side by side;
-    `outward` (2 H, N) and `filters` (2 H, N N): from there back to the nodes, of values and of what is diagonal there.
+    `constant`, `time`: a constant of one, and time, in the eigenvectors (H,). `inward` (N, 2 H): to the eigenvectors, real and imaginary
+    parts side by side; `outward` (2 H, N) and `filters` (2 H, N N): from there back to the nodes, of values and of what is diagonal there.
     """
 
     rule: Rule
@@ -88,54 +88,32 @@ def spectrum(time_map: Map, root: int) -> Spectrum:
 class ModesSeen:
     """The modes and massless elements of a system as some of its contacts see them.
 
-    `modes`, `rigid`: where the modes and the rigid motions are among the coordinates. `outer`, `inner`: shapes of the modes outside and
-    inside the contacts (m, c); `inside`: whether any of the latter is not zero. `shapes`: of both, or of the former alone if no mode is
-    inside (1 or 2, c, m), and `pairs`: the products of these for each two contacts (1 or 2, c, c, m). `with_local`: which massless
-    elements are in series with which contacts (k, c), and `local_mobility`: the mobilities of these [m/(N s)] (k, c).
+    `modes`, `rigid`: where the modes and the rigid motions are among the coordinates. `shapes`: of the modes outside the contacts and, if
+    any is inside, of those inside (1 or 2, c, m), and `pairs`: the products of these for each two contacts (1 or 2, c, c, m).
+    `with_local`: which massless elements are in series with which contacts (c, k), and `local_mobility`: their mobilities there
+    [m/(N s)]. `kind`: what has to be the same for systems that are computed together.
     """
 
     def __init__(self, system: LinearSystem, contacts: Sequence[int]) -> None:
         rows, first = list(contacts), int(system.rigid.sum())
-        parted = bool(system.rigid[:first].all())  # slices are quicker
-        self.modes = slice(first, None) if parted else system.vibrating
-        self.rigid = slice(0, first) if parted else system.rigid
-        self.frequency_squared, self.damping = (part[self.modes, None] for part in (system.angular_frequency**2, system.damping))
-        self.outer, self.inner = (np.ascontiguousarray(part[rows][:, self.modes].T) for part in (system.outer, system.inner))
-        self.inside = bool(self.inner.any())
-        both = np.stack([self.outer, self.inner] if self.inside else [self.outer])
-        self.shapes = np.ascontiguousarray(both.swapaxes(1, 2))
-        self.pairs = np.ascontiguousarray((both[:, :, :, None] * both[:, :, None, :]).transpose(0, 2, 3, 1))
-        self.rate = system.rate[:, None]
-        self.with_local = system.with_local[rows].T
-        self.local_mobility = self.with_local * system.mobility[:, None]
-
-    def impedance(self, sigma: Complex) -> Complex:
-        """Return 1 + 2 zeta omega sigma + omega^2 sigma^2 of each mode, for sigma (B, H): (m, B, H)."""
-        found = self.frequency_squared[:, :, None] * sigma
-        found += self.damping[:, :, None]
-        found *= sigma
-        found += 1.0
-        return np.asarray(found)
-
-    def drive(self, at: Spectrum, length: Floats, displacement: Floats, velocity: Floats) -> Complex:
-        """Return what drives each mode without contact forces, its motion at the start (m, B) going on: (m, B, H)."""
-        stiffness = self.frequency_squared * velocity
-        pull = self.damping * velocity + self.frequency_squared * displacement
-        return np.asarray(pull[:, :, None] * -at.constant - stiffness[:, :, None] * (length[:, None] * at.time))
-
-    @staticmethod
-    def summed(shapes: Floats, values: Complex) -> Complex:
-        """Return sums of values (m, B, H) by shapes (..., m): (..., B, H)."""
-        number, *shape = values.shape
-        flat = values.view(np.float64).reshape(number, 2 * math.prod(shape))
-        return (shapes.reshape(math.prod(shapes.shape[:-1]), number) @ flat).view(np.complex128).reshape(*shapes.shape[:-1], *shape)
+        assert system.rigid[:first].all()  # rigid motions come first
+        self.rigid, self.modes = slice(0, first), slice(first, None)
+        self.frequency_squared, self.damping = system.angular_frequency[self.modes] ** 2, system.damping[self.modes]
+        outer, inner = (part[rows][:, self.modes] for part in (system.outer, system.inner))
+        self.inside = bool(inner.any())
+        self.shapes = np.stack([outer, inner] if self.inside else [outer])
+        self.pairs = np.ascontiguousarray(self.shapes[:, :, None] * self.shapes[:, None])
+        self.rate, self.with_local = system.rate, system.with_local[rows]
+        self.local_mobility = self.with_local * system.mobility
+        self.kind = (system.number, first, len(rows), len(self.rate), self.inside)
 
 
 class Seen:
     """A system as some of its contacts see it.
 
     `of`: its modes, which several systems may share. `rigid`: shapes of its rigid motions (c, r), and `rigid_pairs`: the sums of their
-    products [1/kg] (c, c). `gravity` [m/s^2], `offset` [m] (c,): as those of the system.
+    products [1/kg] (c, c). `gravity` [m/s^2], `offset` [m] and `mass` [kg] (c,): as those of the system. `touched`: which rigid motions
+    move the contacts (n,).
     """
 
     def __init__(self, system: LinearSystem, contacts: Sequence[int], of: ModesSeen) -> None:
@@ -165,27 +143,50 @@ def seen_by(system: LinearSystem, contacts: Iterable[int]) -> Seen:
 
 
 class Together:
-    """B systems with the same modes, as the same of their contacts see them, and their states at the start of a stretch.
+    """B systems of one kind, as c of their contacts see them, and their states at the start of a stretch.
 
-    `rigid_pairs` [1/kg] (B, c, c), `gravity` [m/s^2] and `offset` [m] (B, c). `start`: with a leading axis of B.
+    `rigid_pairs` [1/kg] (B, c, c), `gravity` [m/s^2] (B, c). `start`: with a leading axis of B. `displacement`, `velocity`: of the modes
+    (B, m). `outer_rate`, `inner_rate`: rates of the surfaces there, outside and inside the contacts, without those of massless elements,
+    which are in `begun_rate` [m/s], and `approach` [m] (B, c). What belongs to the modes has a leading axis of B, or of one if they are
+    the same.
     """
 
     def __init__(self, seen: Sequence[Seen], start: Sequence[State]) -> None:
-        of = seen[0].of
-        self.of, self.seen = of, seen
-        self.rigid_pairs = np.array([one.rigid_pairs for one in seen])
-        self.gravity, self.offset = np.array([one.gravity for one in seen]), np.array([one.offset for one in seen])
+        first, self.seen = seen[0].of, seen
+        self.modes, self.rigid, self.inside = first.modes, first.rigid, first.inside
+        distinct = seen[:1] if all(one.of is first for one in seen) else seen
+
+        def of_modes(name: str) -> Floats:
+            return np.array([getattr(one.of, name) for one in distinct])
+
+        self.frequency_squared, self.damping = of_modes("frequency_squared"), of_modes("damping")
+        self.shapes, self.pairs = of_modes("shapes"), of_modes("pairs")
+        self.rate, self.with_local, self.local_mobility = of_modes("rate"), of_modes("with_local"), of_modes("local_mobility")
+        self.massless = bool(len(first.rate))
+        self.rigid_pairs, self.gravity = np.array([one.rigid_pairs for one in seen]), np.array([one.gravity for one in seen])
         place, speed = np.array([one.displacement for one in start]), np.array([one.velocity for one in start])
         self.start = State(place, speed, np.array([one.local for one in start]))
+        self.displacement, self.velocity = place[:, self.modes], speed[:, self.modes]
         rigid = np.array([one.rigid for one in seen])
-        of_rigid = rigid @ np.array([place[:, of.rigid].T, speed[:, of.rigid].T]).transpose(2, 1, 0)  # (B, c, 2)
-        self.displacement, self.velocity = place[:, of.modes].T, speed[:, of.modes].T  # of the modes (m, B)
-        pulled = self.start.local @ of.with_local
-        yielding = (self.start.local * of.rate[:, 0]) @ of.with_local
-        self.outer_rate = of_rigid[:, :, 1] + self.velocity.T @ of.outer  # of the surfaces, without contact force [m/s] (B, c)
-        self.inner_rate = self.velocity.T @ of.inner
-        self.begun_rate = self.outer_rate - yielding
-        self.approach = self.offset + of_rigid[:, :, 0] + self.displacement.T @ (of.outer + of.inner) + pulled
+        self.outer_rate = _times(rigid, speed[:, self.rigid]) + _times(self.shapes[:, 0], self.velocity)
+        self.inner_rate = _times(self.shapes[:, -1], self.velocity) if self.inside else np.zeros_like(self.outer_rate)
+        self.begun_rate = self.outer_rate - _times(self.with_local, self.start.local * self.rate)
+        sunk = _times(rigid, place[:, self.rigid]) + _times(self.shapes.sum(axis=1), self.displacement)
+        self.approach = np.array([one.offset for one in seen]) + sunk + _times(self.with_local, self.start.local)
+
+    def impedance(self, sigma: Complex) -> Complex:
+        """Return 1 + 2 zeta omega sigma + omega^2 sigma^2 of each mode, for sigma (B, H): (B, m, H)."""
+        found = self.frequency_squared[:, :, None] * sigma[:, None]
+        found += self.damping[:, :, None]
+        found *= sigma[:, None]
+        found += 1.0
+        return np.asarray(found)
+
+    def drive(self, at: Spectrum, length: Floats) -> Complex:
+        """Return what drives each mode without contact forces, its motion at the start going on: (B, m, H)."""
+        stiffness = self.frequency_squared * self.velocity
+        pull = self.damping * self.velocity + self.frequency_squared * self.displacement
+        return np.asarray(pull[:, :, None] * -at.constant - stiffness[:, :, None] * (length[:, None] * at.time)[:, None])
 
 
 class Receptance:
@@ -198,34 +199,38 @@ class Receptance:
 
     def __init__(self, systems: Together, at: Spectrum, length: Floats) -> None:
         self.systems, self.at, self.length = systems, at, length
-        of, rule, start = systems.of, at.rule, systems.start
-        self.sigma = sigma = length[:, None] * at.values
-        self.admittance = 1.0 / of.impedance(sigma)
-        self.responses = of.drive(at, length, systems.displacement, systems.velocity)
+        of, rule = systems, at.rule
+        self.sigma = length[:, None] * at.values
+        sigma = self.sigma[:, None, None]  # (B, 1, 1, H)
+        self.admittance = 1.0 / of.impedance(self.sigma)
+        self.responses = of.drive(at, length)
         self.responses *= self.admittance
-        self.driven = of.summed(of.shapes, self.responses)  # (1 or 2, c, B, H)
+        self.driven = summed(of.shapes, self.responses)  # (B, 1 or 2, c, H)
         self.moved = sigma * self.driven
-        self.massless = 1.0 / (1.0 + of.rate[:, :, None] * sigma)
-        if len(of.rate):
-            pulled = self.massless * (of.rate * start.local.T)[:, :, None]
-            self.moved[0] -= at.constant * of.summed(of.with_local.T, pulled)
-        by_modes = at.to_nodes(np.concatenate([self.moved, [sigma * self.moved.sum(axis=0)]])).swapaxes(1, 2)  # (2 or 3, B, c, N)
+        self.massless = 1.0 / (1.0 + of.rate[:, :, None] * self.sigma[:, None])
+        if of.massless:
+            pulled = self.massless * (of.rate * of.start.local)[:, :, None]
+            self.moved[:, 0] -= at.constant * summed(of.with_local, pulled)
+        whole_moved = sigma[:, 0] * self.moved.sum(axis=1)
+        by_modes = at.to_nodes(np.concatenate([self.moved, whole_moved[:, None]], axis=1))  # (B, 2 or 3, c, N)
         time = (length[:, None] * rule.time)[:, None]
-        gravity = systems.gravity[:, :, None] * time
-        rate = closing = systems.outer_rate[:, :, None] + gravity + by_modes[0]
+        gravity = of.gravity[:, :, None] * time
+        rate = closing = of.outer_rate[:, :, None] + gravity + by_modes[:, 0]
         if of.inside:
-            closing = rate + (systems.inner_rate[:, :, None] + by_modes[1])
-        whole = (systems.outer_rate + systems.inner_rate)[:, :, None] + 0.5 * gravity
-        approach = systems.approach[:, :, None] + time * whole + by_modes[-1]
-        size = systems.gravity.shape[1] * NODES
+            closing = rate + (of.inner_rate[:, :, None] + by_modes[:, 1])
+        whole = (of.outer_rate + of.inner_rate)[:, :, None] + 0.5 * gravity
+        approach = of.approach[:, :, None] + time * whole + by_modes[:, -1]
+        size = of.gravity.shape[1] * NODES
         self.rate, self.closing, self.approach = rate.reshape(-1, size), closing.reshape(-1, size), approach.reshape(-1, size)
-        self.squares = of.summed(of.pairs, self.admittance)  # (1 or 2, c, c, B, H)
-        self.rates = sigma * self.squares
-        if len(of.rate):
-            self.rates[0] += _on_diagonal(of.summed(of.local_mobility.T, self.massless))
-        self.rates[1:] *= sigma
-        found = at.matrices(np.concatenate([sigma * self.rates[:1], self.rates, sigma * self.squares[1:]])).transpose(0, 3, 1, 4, 2, 5)
-        rigid, across = systems.rigid_pairs[:, :, None, :, None], length[:, None, None, None, None]  # (..., B, c, N, c, N)
+        self.squares = summed(of.pairs, self.admittance)  # (B, 1 or 2, c, c, H)
+        rates, wide = sigma[:, None] * self.squares, sigma[:, None]
+        if of.massless:
+            rates[:, 0] += _on_diagonal(summed(of.local_mobility, self.massless))
+        self.rates = rates[:, 0]
+        rates[:, 1:] *= wide
+        parts = np.concatenate([wide * rates[:, :1], rates, wide * self.squares[:, 1:]], axis=1)
+        found = at.matrices(parts).transpose(1, 0, 2, 4, 3, 5)  # (2 or 4, B, c, N, c, N)
+        rigid, across = of.rigid_pairs[:, :, None, :, None], length[:, None, None, None, None]
         found[0] += rigid * (across * across) * rule.integral_twice[:, None]
         found[1] += rigid * across * rule.integral[:, None]
         matrices = found.reshape(len(found), -1, size, size)
@@ -235,37 +240,44 @@ class Receptance:
 
     def by_length(self, force: Floats, static: Floats) -> tuple[Floats, Floats, Floats]:
         """Return how approach, rate and closing rate at the nodes change with the length, under forces there [N]: (B, M) each."""
-        systems, at, sigma, rule = self.systems, self.at, self.sigma, self.at.rule
-        shape, of_each = force.shape, (len(force), -1, NODES)
-        of, values, start = systems.of, at.values, systems.start
-        pushed = at.to_eigenvectors(force.reshape(of_each)).swapaxes(0, 1)  # (c, B, H)
-        growth = 2.0 * of.frequency_squared[:, :, None] * sigma + of.damping[:, :, None]  # of the impedance with sigma
+        of, at, rule, values = self.systems, self.at, self.at.rule, self.at.values
+        shape, of_each, sigma = force.shape, (len(force), -1, NODES), self.sigma[:, None, None]
+        pushed = at.to_eigenvectors(force.reshape(of_each))  # (B, c, H)
+        growth = 2.0 * of.frequency_squared[:, :, None] * self.sigma[:, None] + of.damping[:, :, None]  # of the impedance with sigma
         softer = growth * self.admittance
         drive = values * softer * self.responses
         softer *= -self.admittance
-        drive += (of.frequency_squared * systems.velocity)[:, :, None] * at.time * self.admittance
-        driven, squares = -of.summed(of.shapes, drive), of.summed(of.pairs, softer)
-        rates = self.squares[0] + sigma * squares[0]
+        drive += (of.frequency_squared * of.velocity)[:, :, None] * at.time * self.admittance
+        driven, squares = -summed(of.shapes, drive), summed(of.pairs, softer)
+        rates = self.squares[:, 0] + sigma * squares[:, 0]
         moved = values * self.driven + sigma * driven
-        if len(of.rate):
+        if of.massless:
             slower = self.massless**2
-            pulled = slower * (of.rate**2 * start.local.T)[:, :, None]
-            moved[0] += at.constant * values * of.summed(of.with_local.T, pulled)
-            rates -= _on_diagonal(of.summed(of.local_mobility.T, slower * of.rate[:, :, None]))
-        whole = values * self.moved.sum(axis=0) + sigma * moved.sum(axis=0) - values * _met(self.rates[0] + sigma * rates, pushed)
-        moved[0] -= values * _met(rates, pushed)
+            pulled = slower * (of.rate**2 * of.start.local)[:, :, None]
+            moved[:, 0] += at.constant * values * summed(of.with_local, pulled)
+            rates -= _on_diagonal(summed(of.local_mobility, slower * of.rate[:, :, None]))
+        across = sigma[:, 0]
+        whole = values * self.moved.sum(axis=1) + across * moved.sum(axis=1) - values * _met(self.rates + sigma * rates, pushed)
+        moved[:, 0] -= values * _met(rates, pushed)
         if of.inside:
-            statically = at.to_eigenvectors(static.reshape(of_each)).swapaxes(0, 1)
-            whole -= values * _met(2.0 * sigma * self.squares[1] + sigma * sigma * squares[1], statically)
-            moved[1] -= values * _met(self.squares[1] + sigma * squares[1], statically)
-        by_modes = at.to_nodes(np.concatenate([moved, [whole]])).swapaxes(1, 2)
-        gravity, across = systems.gravity[:, :, None], self.length[:, None, None]
-        speed = (systems.outer_rate + systems.inner_rate)[:, :, None]
-        heavy = systems.rigid_pairs @ force.reshape(of_each)
-        rate = gravity * rule.time + by_modes[0] - heavy @ rule.integral.T
-        approach = rule.time * (speed + gravity * across * rule.time) + by_modes[-1] - 2.0 * across * (heavy @ rule.integral_twice.T)
-        closing = rate + by_modes[1] if of.inside else rate
+            statically = at.to_eigenvectors(static.reshape(of_each))
+            whole -= values * _met(2.0 * sigma * self.squares[:, 1] + sigma * sigma * squares[:, 1], statically)
+            moved[:, 1] -= values * _met(self.squares[:, 1] + sigma * squares[:, 1], statically)
+        by_modes = at.to_nodes(np.concatenate([moved, whole[:, None]], axis=1))
+        gravity, long = of.gravity[:, :, None], self.length[:, None, None]
+        speed = (of.outer_rate + of.inner_rate)[:, :, None]
+        heavy = of.rigid_pairs @ force.reshape(of_each)
+        rate = gravity * rule.time + by_modes[:, 0] - heavy @ rule.integral.T
+        approach = rule.time * (speed + gravity * long * rule.time) + by_modes[:, -1] - 2.0 * long * (heavy @ rule.integral_twice.T)
+        closing = rate + by_modes[:, 1] if of.inside else rate
         return approach.reshape(shape), rate.reshape(shape), closing.reshape(shape)
+
+
+def summed(shapes: Floats, values: Complex) -> Complex:
+    """Return modal values (B, m, H) summed with shapes (B or 1, ..., m) as weights, (B, ..., H)."""
+    size, number = values.shape[0], values.shape[1]
+    rows = shapes.reshape(len(shapes), math.prod(shapes.shape[1:-1]), number)
+    return (rows @ values.view(np.float64)).view(np.complex128).reshape(size, *shapes.shape[1:-1], values.shape[2])
 
 
 def _rows_times(values: Floats, matrix: Floats) -> Floats:
@@ -273,11 +285,16 @@ def _rows_times(values: Floats, matrix: Floats) -> Floats:
     return (values.reshape(-1, len(matrix)) @ matrix).reshape(*values.shape[:-1], matrix.shape[1])
 
 
+def _times(matrices: Floats, values: Floats) -> Floats:
+    """Return matrices (B or 1, c, m) times values (B, m), (B, c)."""
+    return np.asarray((matrices @ values[:, :, None])[:, :, 0])
+
+
 def _on_diagonal(values: Complex) -> Complex:
-    """Return matrices (c, c, ...) of values on their diagonals (c, ...)."""
-    return np.asarray(values[:, None] * np.eye(len(values))[:, :, None, None])
+    """Return matrices (B, c, c, H) of values on their diagonals (B, c, H)."""
+    return np.asarray(values[:, None] * np.eye(values.shape[1])[:, :, None])
 
 
 def _met(matrices: Complex, values: Complex) -> Complex:
-    """Return matrices (c, c, B, H) times values (c, B, H)."""
-    return np.asarray((matrices * values).sum(axis=1))
+    """Return matrices (B, c, c, H) times values (B, c, H)."""
+    return np.asarray((matrices * values[:, None]).sum(axis=2))

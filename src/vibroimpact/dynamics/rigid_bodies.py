@@ -14,6 +14,7 @@ from vibroimpact.dynamics.encounter import Encounter
 from vibroimpact.dynamics.flight import Flight
 from vibroimpact.dynamics.leg import Leg
 from vibroimpact.dynamics.linear_system import FreeMotion
+from vibroimpact.dynamics.lockstep import Course
 from vibroimpact.dynamics.lying import Lying
 from vibroimpact.dynamics.solve_contact import SolvesContact
 
@@ -61,7 +62,7 @@ class RigidBodies:
 
     def collide(
         self, drops: Drops, encounter: Encounter, place: tuple[Floats, Floats], limits: tuple[Floats, Floats], row: dict[str, Floats]
-    ) -> tuple[Contact, Floats, Floats]:
+    ) -> Course[tuple[Contact, Floats, Floats]]:
         """Take drops through a contact; return it, the largest force [N], and when that is reached since first touch [s].
 
         Parameters
@@ -77,6 +78,7 @@ class RigidBodies:
         row : dict of str to array
             The row of the impact, which gets what only bodies that vibrate have.
         """
+        yield from ()
         return self.solve_contact(encounter, drops)
 
     def falls_back(self, contact: Contact, law: CompliantLaw, gravity: Floats) -> NDArray[np.bool_]:
@@ -104,6 +106,7 @@ class RigidBodies:
         """Return further entries of the ledger [J], (B,); `local_J` and `local_damping_J` belong to those of the contact."""
         return {}
 
-    def growth(self, leg: Leg) -> Floats:
+    def growth(self, leg: Leg) -> Course[Floats]:
         """Return how a relative change of the drop has grown by the impact of a leg [-], one value a drop of its contact; or none."""
+        yield from ()
         return np.zeros(0)

@@ -16,6 +16,7 @@ from vibroimpact.dynamics.energy import CLOSURE_LIMIT, WRITE_OFF_LIMIT, close_le
 from vibroimpact.dynamics.flight import Flight
 from vibroimpact.dynamics.impact_rows import ImpactRows
 from vibroimpact.dynamics.leg import Leg
+from vibroimpact.dynamics.lockstep import Course
 from vibroimpact.dynamics.outcome import OUTCOMES, Outcome
 from vibroimpact.dynamics.problem import MOST_IMPACTS, Problem
 from vibroimpact.dynamics.response import Response
@@ -87,7 +88,7 @@ class Run:
 
     # one flight and one contact --------------------------------------------------------------------
 
-    def advance(self) -> Leg:
+    def advance(self) -> Course[Leg]:
         """Fly all moving drops to their next touch, take them through one contact, and return both."""
         drops = np.flatnonzero(self.moving)
         flight = Flight(self.time[drops], self.gap[drops], self.velocity[drops], self.gravity[drops])
@@ -110,12 +111,13 @@ class Run:
         if not stops.all():
             gap, velocity = flight.at(leg.flight_end)
             self.gap[drops[~stops]], self.velocity[drops[~stops]] = gap[~stops], velocity[~stops]
-            leg = self.collide(leg, touch[~stops], speed[~stops])
-        if (growth := self.bodies.growth(leg)).size:
+            leg = yield from self.collide(leg, touch[~stops], speed[~stops])
+        growth = yield from self.bodies.growth(leg)
+        if growth.size:
             self.rows.last["sensitivity"][leg.contact_drops] = growth
         return leg
 
-    def collide(self, leg: Leg, touch: Floats, speed: Floats) -> Leg:
+    def collide(self, leg: Leg, touch: Floats, speed: Floats) -> Course[Leg]:
         """Take drops through a contact: write the row of the impact, return the leg with its contact."""
         drops, law = leg.contact_drops, self.law().take(leg.contact_drops)
         row = self.rows.add()
@@ -129,7 +131,7 @@ class Run:
         else:
             assert isinstance(law, CompliantLaw)
             closing = self.bodies.closing_speed(drops, speed, self.velocity[drops])
-            leg, lost = self.deform(leg, encounter_of(law, self.mass[drops], self.gravity[drops], closing), touch, row)
+            leg, lost = yield from self.deform(leg, encounter_of(law, self.mass[drops], self.gravity[drops], closing), touch, row)
             lost += row["plastic_work_J"][drops]
             law = self.law().take(drops)  # with what it remembers of this impact
         self.dissipated[drops] += lost - row["plastic_work_J"][drops]
@@ -144,12 +146,12 @@ class Run:
         self.judge(drops[moving], law.take(np.flatnonzero(moving)), row)
         return leg
 
-    def deform(self, leg: Leg, encounter: Encounter, touch: Floats, row: dict[str, Floats]) -> tuple[Leg, Floats]:
+    def deform(self, leg: Leg, encounter: Encounter, touch: Floats, row: dict[str, Floats]) -> Course[tuple[Leg, Floats]]:
         """Integrate a contact; return the leg with it, and the energy lost [J]."""
         drops = leg.contact_drops
         until = (np.inf if self.problem.duration is None else self.problem.duration) - touch
         place, limits = (self.gap[drops], self.velocity[drops]), (self.rest_speed[drops], until)
-        contact, force, when = self.bodies.collide(drops, encounter, place, limits, row)
+        contact, force, when = yield from self.bodies.collide(drops, encounter, place, limits, row)
         self.deepest[drops] = np.maximum(self.deepest[drops], contact.max_delta)
         self.time[drops] = touch + contact.duration
         self.gap[drops], self.velocity[drops] = -contact.final_delta, -contact.final_rate

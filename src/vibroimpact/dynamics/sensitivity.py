@@ -9,7 +9,7 @@ before and after (P. C. Mueller, Chaos, Solitons & Fractals 5:1671, 1995).
 
 from __future__ import annotations
 
-from collections.abc import Generator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -20,9 +20,9 @@ from vibroimpact.dynamics.apart import Apart
 from vibroimpact.dynamics.collocation import Floats
 from vibroimpact.dynamics.linear_system import FreeMotion, LinearSystem, State
 from vibroimpact.dynamics.local import LocalContact
-from vibroimpact.dynamics.lockstep import in_lockstep
+from vibroimpact.dynamics.lockstep import Course, side_by_side
 from vibroimpact.dynamics.problem import Problem
-from vibroimpact.dynamics.tangent import Beside, differences_through
+from vibroimpact.dynamics.tangent import Beside
 from vibroimpact.dynamics.vibrating_stretch import VibratingStretch
 
 if TYPE_CHECKING:
@@ -44,7 +44,7 @@ class Neighbours:
         changed = np.broadcast_to(np.asarray(problem.height if by_height else problem.speed, dtype=float), mass.shape)
         self._drops = [_Neighbour(system, value, by_height) for value in (np.sqrt(mass) * changed).tolist()]
 
-    def follow(self, leg: Leg) -> Floats:
+    def follow(self, leg: Leg) -> Course[Floats]:
         r"""Return how a relative change of the drop has grown by the impact of a leg [-], one value a drop of its contact.
 
         The drop is changed in its height, or in its speed where that is given. The growth is the largest of the relative changes of the
@@ -56,18 +56,17 @@ class Neighbours:
         leg : Leg
             The next flight and contact of the drops; something in them vibrates.
         """
-        with np.errstate(all="ignore"):  # it may grow beyond all numbers
-            for drop, flight, length in zip(leg.drops, leg.motions, leg.flight_end - leg.flight.start, strict=True):
-                self._drops[drop].fly(flight, float(length))
-            if leg.contact is None:
-                return np.zeros(0)
-            motions: dict[int, list[VibratingStretch | Apart]] = {drop: [] for drop in leg.contact_drops.tolist()}
-            for piece in leg.contact.pieces:
-                assert isinstance(piece.motion, (VibratingStretch, Apart))  # of bodies that vibrate
-                motions[int(leg.contact_drops[piece.drops[0]])].append(piece.motion)
-            in_lockstep((self._drops[drop].go_through(parts) for drop, parts in motions.items()), differences_through)
-            ends = zip(leg.contact_drops, leg.contact.final_rate, strict=True)
-            return np.array([self._drops[drop].leave(-float(speed)) for drop, speed in ends])
+        for drop, flight, length in zip(leg.drops, leg.motions, leg.flight_end - leg.flight.start, strict=True):
+            self._drops[drop].fly(flight, float(length))
+        if leg.contact is None:
+            return np.zeros(0)
+        motions: dict[int, list[VibratingStretch | Apart]] = {drop: [] for drop in leg.contact_drops.tolist()}
+        for piece in leg.contact.pieces:
+            assert isinstance(piece.motion, (VibratingStretch, Apart))  # of bodies that vibrate
+            motions[int(leg.contact_drops[piece.drops[0]])].append(piece.motion)
+        yield from side_by_side(self._drops[drop].go_through(parts) for drop, parts in motions.items())
+        ends = zip(leg.contact_drops, leg.contact.final_rate, strict=True)
+        return np.array([self._drops[drop].leave(-float(speed)) for drop, speed in ends])
 
 
 def change_by_impact(impacts: Mapping[str, Floats], tolerance: float) -> Floats:
@@ -127,7 +126,7 @@ class _Neighbour:
         self.difference = State(place, speed, before.local * np.exp(-of.rate * length))
         self.apart, self.last = not inside, None
 
-    def go_through(self, motions: Sequence[VibratingStretch | Apart]) -> Generator[Beside, tuple[State, Floats], None]:
+    def go_through(self, motions: Sequence[VibratingStretch | Apart]) -> Course[None]:
         """Go through the parts of a visit."""
         for motion in motions:
             if isinstance(motion, Apart):
@@ -135,13 +134,13 @@ class _Neighbour:
             else:
                 yield from self.pass_through(motion)
 
-    def pass_through(self, stretch: VibratingStretch) -> Generator[Beside, tuple[State, Floats], None]:
+    def pass_through(self, stretch: VibratingStretch) -> Course[None]:
         """Go through a stretch of contact."""
         if self.apart:
             self.touch(stretch)
         elif stretch.contacts[0].local is not self.local:
             self.turn(stretch)
-        self.difference, pressed = yield Beside(stretch, self.difference, _asides(stretch.contacts[0].local, self.knowledge))
+        ((self.difference, pressed),) = yield [Beside(stretch, self.difference, _asides(stretch.contacts[0].local, self.knowledge))]
         self.pressed, self.last = float(pressed[-1]), stretch
         assert self.visit is not None  # it has touched
         force = float(stretch.force.max())

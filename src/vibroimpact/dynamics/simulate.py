@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 from vibroimpact.dynamics.collocation import Rule
 from vibroimpact.dynamics.leg import Leg
+from vibroimpact.dynamics.lockstep import Course, computed, side_by_side
 from vibroimpact.dynamics.outcome import Outcome
 from vibroimpact.dynamics.packed_list import PackedList
 from vibroimpact.dynamics.problem import StatesProblem
@@ -53,13 +54,42 @@ def simulate(problem: StatesProblem, progress: Callable[[float], None] | None = 
     >>> simulate(problem).impacts["rebound_height_m"].round(6).tolist()
     [0.35, 0.1625, 0.115625]
     """
+    return computed(_simulated(problem, progress))
+
+
+def simulate_together(problems: Sequence[StatesProblem]) -> list[Response | Exception]:
+    """Return the responses to several drops, one each, of which those on elastic bodies are computed side by side.
+
+    Parameters
+    ----------
+    problems : sequence of Problem or Case
+        Of single drops or of batches, whatever their bodies.
+
+    Returns
+    -------
+    list of Response or Exception
+        In place of the response of one that failed, what it raised: the others go on.
+    """
+    return computed(side_by_side(_guarded(_simulated(problem)) for problem in problems))
+
+
+def _guarded(course: Course[Response]) -> Course[Response | Exception]:
+    """Return what comes of a course, or what it raises."""
+    try:
+        return (yield from course)
+    except Exception as error:
+        return error
+
+
+def _simulated(problem: StatesProblem, progress: Callable[[float], None] | None = None) -> Course[Response]:
+    """Return the response to a drop."""
     if not hasattr(problem, "to_problem"):
         raise InputError(f"simulate takes a Problem, or a case as vi.load_case(...) reads it, not {problem!r}")
     stated = problem.to_problem()
     run = Run(stated, collocated(stated.tolerance, math.prod(stated.shape)))
     legs: PackedList[Leg] | list[Leg] = PackedList[Leg](Rule) if stated.shape == () and not stated.vibrates else []
     while run.moving.any():
-        legs.append(run.advance())
+        legs.append((yield from run.advance()))
         if progress is not None:
             progress(run.fraction_done())
     response = run.response(legs)

@@ -14,9 +14,8 @@ from numpy.typing import NDArray
 from vibroimpact.dynamics.apart import Apart
 from vibroimpact.dynamics.collocation import Floats
 from vibroimpact.dynamics.linear_system import LinearSystem, State
-from vibroimpact.dynamics.lockstep import in_lockstep
+from vibroimpact.dynamics.lockstep import computed
 from vibroimpact.dynamics.march import March
-from vibroimpact.dynamics.solve_vibrating import solve_stretches
 from vibroimpact.dynamics.system import MovingBody, System
 from vibroimpact.dynamics.touching import Law
 from vibroimpact.dynamics.vibrating_stretch import VibratingStretch
@@ -211,7 +210,7 @@ def simulate_system(system: System, *, duration: float, progress: Callable[[floa
             "contact fall alike; give a body a velocity, or hold one"
         )
     march = March(linear, [Law(one.law, one.series, not one.same_spot) for one in system.contacts.values()], start, system.tolerance)
-    in_lockstep([march.course(duration, progress)], solve_stretches)
+    computed(march.course(duration, progress))
     names = list(system.contacts)
     forces = np.array([impact.force.top() for impact in march.impacts]).reshape(-1, 2)
     columns = {

@@ -7,9 +7,9 @@ the same contacts push, and the same law acts there.
 
 from __future__ import annotations
 
-from collections.abc import Generator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Literal, NamedTuple, TypeVar
+from typing import Literal, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,8 +21,6 @@ from vibroimpact.dynamics.linear_system import State
 from vibroimpact.dynamics.local import Linearised, LocalContact, linearised, stacked
 from vibroimpact.dynamics.receptance import NODES, Receptance, Seen, Together, spectrum
 from vibroimpact.dynamics.vibrating_stretch import VibratingStretch, motions_of
-
-Result = TypeVar("Result")
 
 _SWEEPS = 25
 _LONGER = 3.0  # times: by no more does a sweep change the length that is sought
@@ -81,13 +79,19 @@ class StretchProblem:
     @property
     def kind(self) -> tuple[object, ...]:
         """What has to be the same for stretches that are solved together."""
-        laws = tuple((type(local.law), id(local.series)) for local in self.locals)
+        laws = tuple((type(local.law), bool(local.series)) for local in self.locals)
         aim = None if self.aim is None else "level" if self.aim.name in ("parted", "breakpoint") else self.aim.name
-        return id(self.seen.of), self.time_map, aim, self.guess is None, laws
+        return self.seen.of.kind, self.time_map, aim, self.guess is None, laws
 
+    @property
+    def size(self) -> int:
+        """How many coordinates the system has."""
+        return self.seen.system.number
 
-Course = Generator[StretchProblem, VibratingStretch, Result]
-"""What goes on by stretches of contact: it yields each as a problem, gets it back solved, and returns what came of it."""
+    @classmethod
+    def solved(cls, problems: Sequence[Self]) -> list[VibratingStretch]:
+        """Return the motion through stretches of one kind."""
+        return solve_stretches(problems)
 
 
 def solve_stretches(problems: Sequence[StretchProblem]) -> list[VibratingStretch]:
@@ -165,9 +169,9 @@ def _stretches(
     if here.by_static is not None:
         approach -= times(here.by_static, static)
     begun_rate, shape = systems.begun_rate, (*met.shape, NODES)
-    if len(systems.of.rate):  # a dashpot takes up a jump of the force at once
+    if systems.massless:  # a dashpot takes up a jump of the force at once
         at_start = at.rule.interpolate(np.zeros(1), rate.reshape(-1, NODES).T).reshape(met.shape)
-        begun_rate = np.where(systems.of.with_local.any(axis=0), at_start, begun_rate)
+        begun_rate = np.where(systems.with_local.any(axis=2), at_start, begun_rate)
     static, force = static.reshape(shape), force.reshape(shape)
     approaches, rates, indentations = (
         np.concatenate([begin[:, :, None], rest.reshape(shape)], axis=2)

@@ -10,6 +10,7 @@ import numpy as np
 
 from vibroimpact.dynamics.collocation import Floats
 from vibroimpact.dynamics.energy import why_failed
+from vibroimpact.dynamics.lockstep import computed
 from vibroimpact.dynamics.outcome import Outcome
 from vibroimpact.dynamics.problem import Problem, StatesProblem
 from vibroimpact.dynamics.quick_contact import quick
@@ -131,7 +132,7 @@ def _table_of(problem: Problem) -> Response:
     """Return the response of a block of drops, with arrays of a batch, and without its history."""
     run = Run(problem, quick(problem.laws[0], problem.tolerance, math.prod(problem.shape)))
     while run.moving.any():
-        run.advance()
+        computed(run.advance())
     return run.batch()
 
 

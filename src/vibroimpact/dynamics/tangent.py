@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Self
 
 import numpy as np
 
@@ -42,7 +43,17 @@ class Beside:
     def kind(self) -> tuple[object, ...]:
         """What has to be the same for differences that go through their stretches together."""
         local = self.stretch.contacts[0].local
-        return id(self.stretch.seen.of), self.stretch.rule.time_map, type(local.law), id(local.series), len(self.asides)
+        return self.stretch.seen.of.kind, self.stretch.rule.time_map, type(local.law), bool(local.series), len(self.asides)
+
+    @property
+    def size(self) -> int:
+        """How many coordinates the system has."""
+        return self.stretch.system.number
+
+    @classmethod
+    def solved(cls, problems: Sequence[Self]) -> list[tuple[State, Floats]]:
+        """Return what `differences_through` does."""
+        return differences_through(problems)
 
 
 def differences_through(besides: Sequence[Beside]) -> list[tuple[State, Floats]]:

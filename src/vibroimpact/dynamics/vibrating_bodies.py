@@ -16,14 +16,13 @@ from vibroimpact.dynamics.encounter import Encounter
 from vibroimpact.dynamics.flight import Flight
 from vibroimpact.dynamics.leg import Leg
 from vibroimpact.dynamics.linear_system import FreeMotion, LinearSystem, State
-from vibroimpact.dynamics.lockstep import in_lockstep
+from vibroimpact.dynamics.lockstep import Course, side_by_side
 from vibroimpact.dynamics.lying import Lying, lay_down
 from vibroimpact.dynamics.next_touch import next_touch
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.riding import Riding
 from vibroimpact.dynamics.rigid_bodies import Motions, RigidBodies
 from vibroimpact.dynamics.sensitivity import Neighbours
-from vibroimpact.dynamics.solve_vibrating import solve_stretches
 from vibroimpact.dynamics.visit import Visit, visit
 
 if TYPE_CHECKING:
@@ -137,7 +136,7 @@ class VibratingBodies(RigidBodies):
 
     def collide(
         self, drops: Drops, encounter: Encounter, place: tuple[Floats, Floats], limits: tuple[Floats, Floats], row: dict[str, Floats]
-    ) -> tuple[Contact, Floats, Floats]:
+    ) -> Course[tuple[Contact, Floats, Floats]]:
         """Take drops through their visits, side by side."""
         (gaps, velocities), (rest_speed, until) = place, limits
         starts, courses = [], []
@@ -149,7 +148,7 @@ class VibratingBodies(RigidBodies):
             rules = (problem.tolerance, pace, not problem.same_spot, float(rest_speed[number]), float(until[number]))
             courses.append(visit(self.systems[drop], one.law.take(0), problem.quasi_static, start, *rules))
             starts.append(start)
-        visits = in_lockstep(courses, solve_stretches)
+        visits = yield from side_by_side(courses)
         for number, (drop, start, found) in enumerate(zip(drops, starts, visits, strict=True)):
             system = self.systems[drop]
             before, after = (float(np.sum(system.energies(state), axis=0)[system.vibrating].sum()) for state in (start, found.state))
@@ -193,9 +192,9 @@ class VibratingBodies(RigidBodies):
             ends[number] = -float(depth), -float(sinking), float(lying.stored(time)[0])
         return ends[:, 0], ends[:, 1], ends[:, 2]
 
-    def growth(self, leg: Leg) -> Floats:
+    def growth(self, leg: Leg) -> Course[Floats]:
         """Return the growth that a second drop beside each shows."""
-        return self.neighbours.follow(leg)
+        return (yield from self.neighbours.follow(leg))
 
     def energies(self) -> dict[str, Floats]:
         """Return the entries of the ledger [J], (B,); what the local elements hold, and lost in flight, apart."""

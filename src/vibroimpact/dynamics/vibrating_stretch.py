@@ -80,8 +80,8 @@ class VibratingStretch:
     def motion(self) -> Motion:
         """The motion of the coordinates."""
         systems, length = Together([self.seen], [self.start]), np.array([self.length])
-        admittance = 1.0 / systems.of.impedance(length[:, None] * self.spectrum.values)
-        responses = systems.of.drive(self.spectrum, length, systems.displacement, systems.velocity) * admittance
+        admittance = 1.0 / systems.impedance(length[:, None] * self.spectrum.values)
+        responses = systems.drive(self.spectrum, length) * admittance
         static = np.array([[contact.static for contact in self.contacts]])
         return motions_of(systems, self.spectrum, length, (admittance, responses), self.force[None], static)[0]
 
@@ -185,61 +185,50 @@ def motions_of(
         The rule of the stretches.
     length : array, shape (B,)
         How long they last [s].
-    modes : tuple of two arrays, shape (m, B, H)
+    modes : tuple of two arrays, shape (B, m, H)
         Admittances of the modes, and what becomes of their motion at the start without contact forces.
     force, static : array, shape (B, c, N)
         The contact forces at the nodes, and their static part [N].
     """
-    of, rule, (admittance, responses), start = systems.of, at.rule, modes, systems.start
-    pushed = at.to_eigenvectors(force).swapaxes(0, 1).copy()  # (c, B, H)
-    driven = of.summed(of.outer, pushed)
-    if of.inside:
-        driven += of.summed(of.inner, at.to_eigenvectors(static).swapaxes(0, 1).copy())
-    driven *= admittance
-    accelerations = np.empty((start.displacement.shape[1], *force.shape[::2]))
-    accelerations[of.modes] = at.to_nodes(responses - driven)
-    for number, seen in enumerate(systems.seen):
-        accelerations[of.rigid, number] = seen.system.load[of.rigid, None] - seen.rigid.T @ force[number]
-    across = length[:, None]
+    rule, (admittance, responses), start, across = at.rule, modes, systems.start, length[:, None]
+    pushed = at.to_eigenvectors(force)  # (B, c, H)
+    parts = [pushed, at.to_eigenvectors(static)] if systems.inside else [pushed]
+    driven = sum(_pulled(systems.shapes[:, number], part) for number, part in enumerate(parts))
+    accelerations = np.empty((*start.displacement.shape, len(rule.nodes)))
+    accelerations[:, systems.modes] = at.to_nodes(responses - driven * admittance)
+    load = np.array([seen.system.load for seen in systems.seen])
+    rigid = np.array([seen.rigid for seen in systems.seen])
+    accelerations[:, systems.rigid] = load[:, systems.rigid, None] - rigid.swapaxes(1, 2) @ force
     in_rows = (-1, len(rule.nodes))  # one product of all is quicker
     velocities = (accelerations.reshape(in_rows) @ rule.integral.T).reshape(accelerations.shape)
-    velocities *= across
-    velocities += start.velocity.T[:, :, None]
-    moved = (velocities.reshape(in_rows) @ rule.integral[-1]).reshape(velocities.shape[:2])
-    displacement = start.displacement + moved.T * across
-    local, massless = start.local, np.zeros((len(of.rate), *force.shape[::2]))
-    if len(of.rate):
-        yielding = of.summed(of.local_mobility, pushed) + (of.rate * local.T)[:, :, None] * at.constant
-        massless = at.to_nodes(-yielding / (1.0 + of.rate[:, :, None] * (across * at.values)))
-        local = local + (massless @ rule.integral[-1]).T * across
-    velocity, system = velocities[:, :, -1].T.copy(), systems.seen[0].system
-    gain, rounding = _balances(systems, State(displacement, velocity, local))
-    lost = np.empty((len(force), len(accelerations) + 1))
-    lost[:, :-1] = system.damping * (velocities.reshape(in_rows) ** 2 @ rule.integral[-1]).reshape(velocities.shape[:2]).T * across
-    lost[:, -1] = (massless**2 @ rule.integral[-1]).T @ (1.0 / system.mobility) * length
-    ends = zip(displacement, velocity, local, strict=True)
+    velocities *= across[:, :, None]
+    velocities += start.velocity[:, :, None]
+    displacement = start.displacement + (velocities.reshape(in_rows) @ rule.integral[-1]).reshape(start.displacement.shape) * across
+    local, massless = start.local, np.zeros((*start.local.shape, len(rule.nodes)))
+    if systems.massless:
+        yielding = _pulled(systems.local_mobility, pushed) + (systems.rate * local)[:, :, None] * at.constant
+        massless = at.to_nodes(-yielding / (1.0 + systems.rate[:, :, None] * (across * at.values)[:, None]))
+        local = local + massless @ rule.integral[-1] * across
+    end = State(displacement, velocities[:, :, -1].copy(), local)
+    frequency, damping, springs, mobility = (
+        np.array([getattr(seen.system, name) for seen in systems.seen]) for name in ("angular_frequency", "damping", "rate", "mobility")
+    )
+    lost = np.empty((len(force), accelerations.shape[1] + 1))
+    lost[:, :-1] = damping * (velocities.reshape(in_rows) ** 2 @ rule.integral[-1]).reshape(start.displacement.shape) * across
+    lost[:, -1] = (massless**2 @ rule.integral[-1] / mobility).sum(axis=1) * length
+    # by differences, so that what goes on beside the contacts, however fast, does not count
+    gain = 0.5 * (end.velocity - start.velocity) * (end.velocity + start.velocity)
+    gain += (end.displacement - start.displacement) * (0.5 * frequency**2 * (end.displacement + start.displacement) - load)
+    in_springs = 0.5 * (end.local - start.local) * (end.local + start.local) * springs / mobility
+    grown = (gain.sum(axis=1) + in_springs.sum(axis=1)).tolist()
+    begun, touched = 0.5 * (start.velocity**2 + (frequency * start.displacement) ** 2), np.array([seen.touched for seen in systems.seen])
+    rounding = (begun * np.where(frequency > 0.0, _ROUNDING, _RIGID_ROUNDING * touched)).sum(axis=1).tolist()
     return [
-        Motion(
-            accelerations[:, number].T,
-            velocities[:, number].T,
-            massless[:, number].T,
-            State(*end),
-            float(gain[number]),
-            float(rounding[number]),
-            lost[number],
-        )
-        for number, end in enumerate(ends)
+        Motion(accelerations[one].T, velocities[one].T, massless[one].T, end.take(one), grown[one], rounding[one], lost[one])
+        for one in range(len(force))
     ]
 
 
-def _balances(systems: Together, end: State) -> tuple[Floats, Floats]:
-    """Return by how much energy grows from the start to an end, without that of contact laws, and what rounding may make of it [J] (B,)."""
-    start, system = systems.start, systems.seen[0].system
-    # by differences, so that what goes on beside the contacts, however fast, does not count
-    gain = 0.5 * (end.velocity - start.velocity) * (end.velocity + start.velocity)
-    strains = 0.5 * system.angular_frequency**2 * (end.displacement + start.displacement)
-    gain += (end.displacement - start.displacement) * (strains - np.array([seen.system.load for seen in systems.seen]))
-    springs = 0.5 * (end.local - start.local) * (end.local + start.local) @ (system.rate / system.mobility)
-    begun, touched = np.add(*system.energies(start)), np.array([seen.touched for seen in systems.seen])
-    rounding = _ROUNDING * begun @ system.vibrating + _RIGID_ROUNDING * (begun * touched).sum(axis=1)
-    return gain.sum(axis=1) + springs, rounding
+def _pulled(shapes: Floats, forces: Complex) -> Complex:
+    """Return what forces at contacts (B, c, H) do to modes of shapes (B or 1, c, m), (B, m, H)."""
+    return np.asarray((shapes.swapaxes(1, 2) @ forces.view(np.float64)).view(np.complex128))

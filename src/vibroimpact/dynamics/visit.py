@@ -20,10 +20,10 @@ from vibroimpact.dynamics.collocation import Floats
 from vibroimpact.dynamics.contact import CAPTURED, FAILED, RELEASED, RIDING, SETTLED
 from vibroimpact.dynamics.linear_system import FreeMotion, LinearSystem, State
 from vibroimpact.dynamics.local import LocalContact
+from vibroimpact.dynamics.lockstep import Course
 from vibroimpact.dynamics.march import March, NotIntegrable, Part
 from vibroimpact.dynamics.next_touch import next_touch, time_to_part
 from vibroimpact.dynamics.riding import Riding, least_energy, may_stay, stays_below
-from vibroimpact.dynamics.solve_vibrating import Course
 from vibroimpact.dynamics.touching import Law, closing_speed, highest_peak, motion_speed
 from vibroimpact.dynamics.vibrating_events import ROUNDING
 from vibroimpact.dynamics.vibrating_stretch import VibratingStretch
