@@ -92,6 +92,11 @@ class Rule:
         order = np.arange(len(self.nodes))
         return np.asarray((order * (order + 1.0)) @ self.coefficients / self.slope[-1])
 
+    @cached_property
+    def weights_at_start(self) -> Floats:
+        """From values at the nodes to the polynomial through them at 0, (N, 1)."""
+        return np.asarray(legendre.legvander(-np.ones(1), len(self.nodes) - 1) @ self.coefficients).T.copy()
+
     def interpolate(self, x: Floats, values: Floats) -> Floats:
         """Return the polynomial through `values` (N,) or (N, B) at the nodes, at x (T,): (T,) or (T, B)."""
         return np.asarray(legendre.legvander(2.0 * x - 1.0, len(self.nodes) - 1) @ (self.coefficients @ values))
@@ -119,8 +124,12 @@ class Rule:
 
         Relative to the largest coefficient, or to `scale` (B,) where that is larger.
         """
-        spectrum = np.abs(self.coefficients @ (self.slope[:, None] * values))
-        return np.asarray(spectrum[-2:].max(axis=0) / np.maximum(spectrum.max(axis=0), scale))
+        return self.tail_of_each(values.T, scale)
+
+    def tail_of_each(self, values: Floats, scale: Floats) -> Floats:
+        """Return the same of values (..., N), with scales (...)."""
+        spectrum = np.abs((self.slope * values)[..., None, :] @ self.coefficients.T)[..., 0, :]
+        return np.asarray(spectrum[..., -2:].max(axis=-1) / np.maximum(spectrum.max(axis=-1), scale))
 
 
 @cache

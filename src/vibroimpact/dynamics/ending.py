@@ -66,7 +66,9 @@ def broken(stretch: VibratingStretch, place: int, held: float) -> VibratingStret
     """Return a stretch at whose end a contact breaks, with what it held [J]."""
     contacts = list(stretch.contacts)
     contacts[place] = replace(contacts[place], broken=held)
-    return replace(stretch, contacts=tuple(contacts))
+    found = replace(stretch, contacts=tuple(contacts))
+    found.__dict__["motion"] = stretch.motion  # which is the same
+    return found
 
 
 def _aimed(stretch: VibratingStretch, event: Event) -> StretchProblem:

@@ -11,7 +11,9 @@ the filter is narrow, however fast the modes and however sharp the contact, so t
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
@@ -26,6 +28,8 @@ _ROWS = 64
 """Points of the table that are made at once."""
 _MOST_RADIANS = 5000.0
 """Of a mode between two points of the table that is followed: what is faster is far above the band, and hardly moves."""
+_KEPT = 2_000_000
+"""Numbers of a table of states that are kept for the next drop on the same plate: 16 MB."""
 _WIDE = 1000
 """Points of impulses from which on transforms are quicker than sums."""
 _LAGRANGE = np.arange(-2, 4)
@@ -82,40 +86,64 @@ def filtered_chain(chain: MeasuringChain, rate: float, beyond: float) -> Filtere
     beyond : float
         How long after the filter's reach the answer to an impulse is asked for [s].
     """
-    of, pairs, step = chain.of, chain.pairs, 1.0 / (FINENESS * rate)
+    of, pairs = chain.of, chain.pairs
     derivatives = kernel_derivatives()
-    points, more = derivatives.shape[1], math.ceil(beyond / step) + len(_LAGRANGE)
+    points, more = derivatives.shape[1], math.ceil(beyond * FINENESS * rate) + len(_LAGRANGE)
     weights = np.concatenate(list(chain.outputs * of.shape), axis=-1).T  # (2 n, S)
-    states = np.empty((_ROWS, 2 * len(of.shape)))
     answers = np.zeros((len(chain.direct), points + more))
-    later = of.transition(np.array(step))
-    state, gains = np.zeros((2, len(of.shape))), np.zeros((2, len(of.shape)))
-    drives = _drives(of, rate, step, points - 1)
-    for begin in range(0, points + more, _ROWS):
-        rows = min(_ROWS, points + more - begin)
-        for row in range(rows):
+    parts = (of.angular_frequency.tobytes(), of.damping_ratio.tobytes(), rate)
+    kept = 2 * len(of.shape) * (points + more) <= _KEPT
+    for begin, states in _kept_states(*parts, points + _rounded(more)) if kept else _states(*parts, points + more):
+        rows = min(len(states), points + more - begin)
+        if rows > 0:
+            answers[:, begin : begin + rows] = (states[:rows] @ weights).T
+    scaled = derivatives * rate ** np.arange(1.0, 4.0)[:, None]
+    answers[:, :points] += chain.direct @ scaled
+    return FilteredChain(chain, rate, pairs.product(chain.outputs, filter_gains(of, rate)), answers)
+
+
+def _states(frequencies: bytes, ratios: bytes, rate: float, count: int) -> Iterator[tuple[int, Floats]]:
+    """Yield displacements and velocities of oscillators of shape one, one after another (rows, 2 n), that a converter's kernel pushes.
+
+    They are told at `FINENESS` points a sample, from the beginning of the kernel on; with the number of the first of each block.
+    """
+    of = Oscillators(np.frombuffer(frequencies), np.frombuffer(ratios), np.ones(len(frequencies) // 8))
+    step, pushed = 1.0 / (FINENESS * rate), 2 * REACH * FINENESS
+    later, drives = of.transition(np.array(step)), _drives(of, rate, step, pushed)
+    state = np.zeros((2, len(of.shape)))
+    for begin in range(0, count, _ROWS):
+        states = np.empty((min(_ROWS, count - begin), 2 * len(of.shape)))
+        for row in range(len(states)):
             cell = begin + row - 1
             if cell >= 0:
                 state = later[:, 0] * state[0] + later[:, 1] * state[1]
-                if cell < points - 1:
+                if cell < pushed:
                     state += drives[cell]
-            if cell == points - 2:
-                gains = np.stack([state[1] + pairs.damping * state[0], state[0]])
             states[row] = state.ravel()
-        answers[:, begin : begin + rows] = (states[:rows] @ weights).T
-    scaled = derivatives * rate ** np.arange(1.0, 4.0)[:, None]
-    answers[:, :points] += chain.direct @ scaled
-    return FilteredChain(chain, rate, pairs.product(chain.outputs, gains), answers)
+        yield begin, states
+
+
+@lru_cache(maxsize=8)
+def _kept_states(frequencies: bytes, ratios: bytes, rate: float, count: int) -> tuple[tuple[int, Floats], ...]:
+    """Return the same, which drops on the same plate have in common."""
+    return tuple(_states(frequencies, ratios, rate, count))
+
+
+def _rounded(number: int) -> int:
+    """Return the next power of two, so that few lengths are kept."""
+    return 1 << (number - 1).bit_length()
 
 
 def filter_gains(of: Oscillators, rate: float) -> Floats:
     """Return what a converter's filter makes of the free motion of oscillators `REACH` samples later, (2, n) as in `pole_pairs`."""
-    step = 1.0 / (FINENESS * rate)
-    later = of.transition(np.array(step))
-    state = np.zeros((2, len(of.shape)))
-    for drive in _drives(of, rate, step, 2 * REACH * FINENESS):
-        state = later[:, 0] * state[0] + later[:, 1] * state[1] + drive
-    return np.stack([state[1] + of.damping * state[0], state[0]])
+    return _gains(of.angular_frequency.tobytes(), of.damping_ratio.tobytes(), rate)
+
+
+@lru_cache(maxsize=64)
+def _gains(frequencies: bytes, ratios: bytes, rate: float) -> Floats:
+    *_, (_, states) = _states(frequencies, ratios, rate, 2 * REACH * FINENESS + 1)
+    displacement, velocity = np.split(states[-1], 2)
+    return np.stack([velocity + 2.0 * np.frombuffer(ratios) * np.frombuffer(frequencies) * displacement, displacement])
 
 
 def _met(answers: Floats, weights: Floats) -> Floats:

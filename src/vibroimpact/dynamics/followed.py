@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -26,6 +27,8 @@ if TYPE_CHECKING:
 
 _BLOCK, _ROWS = 512, 128
 """Samples for which propagators are kept, the next block starting from where the last one ended; and blocks done at once, at most."""
+_KEPT = 2000
+"""Oscillators, at most, whose propagators are kept for the next drop on the same plate: 16 MB."""
 _NEGLIGIBLE = 1e-20
 """Of the fastest mode: what moves less is left out."""
 _WORTH = 0.9
@@ -308,8 +311,15 @@ class _Blocks:
 
 
 def _blocks(of: Oscillators, outputs: Floats, rate: float) -> _Blocks:
-    cosine, sine = of.propagators(np.arange(_BLOCK + 1) / rate)
-    return _Blocks(of, outputs, cosine, sine, of.transition(np.array(_BLOCK / rate)))
+    propagators = _kept_propagators if len(of.angular_frequency) <= _KEPT else _kept_propagators.__wrapped__
+    return _Blocks(of, outputs, *propagators(of.angular_frequency.tobytes(), of.damping_ratio.tobytes(), rate))
+
+
+@lru_cache(maxsize=8)
+def _kept_propagators(frequencies: bytes, ratios: bytes, rate: float) -> tuple[Floats, Floats, Floats]:
+    """Return the propagators of a block of samples, and the transition over it, which drops on the same plate have in common."""
+    of = Oscillators(np.frombuffer(frequencies), np.frombuffer(ratios), np.zeros(len(frequencies) // 8))
+    return *of.propagators(np.arange(_BLOCK + 1) / rate), of.transition(np.array(_BLOCK / rate))
 
 
 def _swing(of: Oscillators, place: Floats) -> Floats:

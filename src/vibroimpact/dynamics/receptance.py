@@ -9,7 +9,8 @@ so that their number hardly counts. Radau collocation is stable however stiff a 
 follows the force, and one that is not is integrated with order 2 N - 1. Of rigid motions it is :math:`h^2 Q^2 \sum \chi_c \chi_d`.
 
 All is done for B systems at once that have as many modes. Arrays of the nodes of all c contacts are (B, M), M = c N, those of the modes
-(B, m, H), where H counts the eigenvalues, of each conjugate pair one.
+(B, m, H), where H counts the eigenvalues, of each conjugate pair one. Products are taken system by system, so that the digits of one do not
+depend on which others it is computed with.
 """
 
 from __future__ import annotations
@@ -281,8 +282,8 @@ def summed(shapes: Floats, values: Complex) -> Complex:
 
 
 def _rows_times(values: Floats, matrix: Floats) -> Floats:
-    """Return values (..., I) times a matrix (I, J) in one product, (..., J)."""
-    return (values.reshape(-1, len(matrix)) @ matrix).reshape(*values.shape[:-1], matrix.shape[1])
+    """Return values (B, ..., I) times a matrix (I, J), in one product a system, (B, ..., J)."""
+    return (values.reshape(len(values), -1, len(matrix)) @ matrix).reshape(*values.shape[:-1], matrix.shape[1])
 
 
 def _times(matrices: Floats, values: Floats) -> Floats:

@@ -116,10 +116,12 @@ def solve_stretches(problems: Sequence[StretchProblem]) -> list[VibratingStretch
         if not going.any():
             break
         by_delta, by_force, by_length = _newton_step(now, here, delta, force, event)
-        if not going.all():  # some are where they have come to
-            by_delta, by_force = np.where(going[:, None], by_delta, 0.0), np.where(going[:, None], by_force, 0.0)
         by_static = now.stiffness * by_delta
+        before_it = static, delta, force
         static, delta, force = now.static - by_static, delta - by_delta, force - by_force
+        if not going.all():  # some are where they have come to
+            pairs = zip((static, delta, force), before_it, strict=True)
+            static, delta, force = (np.where(going[:, None], *pair) for pair in pairs)
         most = np.maximum(np.abs(by_force), np.abs(by_static)).max(axis=1) / (scale + np.abs(force).max(axis=1))
         if event is not None:
             by_length = np.where(going, np.clip(by_length, -_LONGER * length, _LONGER / (1.0 + _LONGER) * length), 0.0)
@@ -170,7 +172,7 @@ def _stretches(
         approach -= times(here.by_static, static)
     begun_rate, shape = systems.begun_rate, (*met.shape, NODES)
     if systems.massless:  # a dashpot takes up a jump of the force at once
-        at_start = at.rule.interpolate(np.zeros(1), rate.reshape(-1, NODES).T).reshape(met.shape)
+        at_start = (rate.reshape(shape) @ at.rule.weights_at_start)[..., 0]
         begun_rate = np.where(systems.with_local.any(axis=2), at_start, begun_rate)
     static, force = static.reshape(shape), force.reshape(shape)
     approaches, rates, indentations = (
@@ -181,7 +183,7 @@ def _stretches(
     works = np.array([np.subtract(*local.own_work(indentations[:, place, [-1, 0]].T)) for place, local in enumerate(locals_)]).T
     dissipated = (dissipative * rates[:, :, 1:]) @ at.rule.integral[-1] * length[:, None]
     needed = np.array([problem.seen.mass for problem in problems]) * np.abs(rates).max(axis=2) / length[:, None]
-    roughness = at.rule.tail(force.reshape(-1, NODES).T, needed.ravel()).reshape(needed.shape).max(axis=1).tolist()
+    roughness = at.rule.tail_of_each(force, needed).max(axis=1).tolist()
     motions = motions_of(systems, at, length, (here.admittance, here.responses), force, static)
     stretches = []
     for number, problem in enumerate(problems):

@@ -40,8 +40,8 @@ class VibratingStretch:
     """A solved stretch of one system.
 
     `seen`: the system, as the contacts that push see it. `length`: how long it lasts [s]. `start`: the state then. `contacts`: what
-    those that push do. `solved`: whether Newton's method converged. `roughness`: the last Legendre coefficients of the forces, beside what
-    matters: with the square of it the error at the end goes.
+    those that push do. `solved`: whether Newton's method converged. `roughness`: the last Legendre coefficients of the forces, relative to
+    the size that matters; the error at the end goes with its square.
     """
 
     seen: Seen
@@ -127,7 +127,7 @@ class VibratingStretch:
 
     @cached_property
     def powers(self) -> Floats:
-        """What is lost at the nodes [W], (N, n + 1): in each coordinate; last, in the laws and the massless elements."""
+        """What is lost at the nodes [W], (N, n + 1), for histories: in each coordinate; last, in the laws and the massless elements."""
         of = self.system
         in_laws = sum(contact.power for contact in self.contacts)
         lost = in_laws + (self.motion.massless**2 / of.mobility).sum(axis=1)
@@ -199,11 +199,10 @@ def motions_of(
     load = np.array([seen.system.load for seen in systems.seen])
     rigid = np.array([seen.rigid for seen in systems.seen])
     accelerations[:, systems.rigid] = load[:, systems.rigid, None] - rigid.swapaxes(1, 2) @ force
-    in_rows = (-1, len(rule.nodes))  # one product of all is quicker
-    velocities = (accelerations.reshape(in_rows) @ rule.integral.T).reshape(accelerations.shape)
+    velocities = accelerations @ rule.integral.T
     velocities *= across[:, :, None]
     velocities += start.velocity[:, :, None]
-    displacement = start.displacement + (velocities.reshape(in_rows) @ rule.integral[-1]).reshape(start.displacement.shape) * across
+    displacement = start.displacement + velocities @ rule.integral[-1] * across
     local, massless = start.local, np.zeros((*start.local.shape, len(rule.nodes)))
     if systems.massless:
         yielding = _pulled(systems.local_mobility, pushed) + (systems.rate * local)[:, :, None] * at.constant
@@ -214,7 +213,7 @@ def motions_of(
         np.array([getattr(seen.system, name) for seen in systems.seen]) for name in ("angular_frequency", "damping", "rate", "mobility")
     )
     lost = np.empty((len(force), accelerations.shape[1] + 1))
-    lost[:, :-1] = damping * (velocities.reshape(in_rows) ** 2 @ rule.integral[-1]).reshape(start.displacement.shape) * across
+    lost[:, :-1] = damping * (velocities**2 @ rule.integral[-1]) * across
     lost[:, -1] = (massless**2 @ rule.integral[-1] / mobility).sum(axis=1) * length
     # by differences, so that what goes on beside the contacts, however fast, does not count
     gain = 0.5 * (end.velocity - start.velocity) * (end.velocity + start.velocity)

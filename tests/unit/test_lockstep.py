@@ -1,0 +1,73 @@
+"""Drops on elastic bodies that are computed side by side."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import vibroimpact as vi
+from vibrating import drop_on
+from vibroimpact.contact.laws.adams_impact import AdamsImpact
+from vibroimpact.contact.laws.hunt_crossley import HuntCrossley
+from vibroimpact.contact.quasi_static import QuasiStatic
+from vibroimpact.dynamics.lockstep import computed, side_by_side
+from vibroimpact.dynamics.simulate import simulate_together
+from vibroimpact.structures.modal_model import ModalBasis
+
+HUNT, ADAMS = HuntCrossley(stiffness=1e9, restitution=0.7), AdamsImpact(stiffness=2e9, damping_max=100.0, full_damping_penetration=1e-4)
+
+
+def plate_of(modes: int, seed: int) -> ModalBasis:
+    random = np.random.default_rng(seed)
+    return ModalBasis(np.sort(random.uniform(50.0, 2e4, modes)), np.full(modes, 0.01), random.normal(size=modes), np.zeros((modes, 3)))
+
+
+def test_digits_do_not_depend_on_the_others() -> None:
+    """Other plates, numbers of modes, laws, heights and series: some can be solved together, some can't."""
+    drops = [(HUNT, 8, 1.0, 0.0), (HUNT, 8, 2.0, 1e-10), (ADAMS, 8, 1.5, 0.0)]
+    drops += [(HUNT, 5, 1.0, 0.0), (HUNT, 8, 3.0, -1e-10), (ADAMS, 8, 0.7, 0.0)]
+    problems = [
+        replace(drop_on(law, plate_of(modes, seed), speed=speed), impacts=2, quasi_static=QuasiStatic(linear=linear))
+        for seed, (law, modes, speed, linear) in enumerate(drops)
+    ]
+    for one, together in zip(map(vi.simulate, problems), simulate_together(problems), strict=True):
+        assert isinstance(together, vi.Response)
+        for column, values in one.impacts.items():
+            np.testing.assert_array_equal(together.impacts[column], values, err_msg=column)
+
+
+def test_one_that_fails_leaves_the_others_alone() -> None:
+    good = replace(drop_on(HUNT, plate_of(4, 1)), impacts=1)
+    found = simulate_together([good, object(), good])  # type: ignore[list-item]
+    assert isinstance(found[1], vi.InputError)
+    for response in (found[0], found[2]):
+        assert isinstance(response, vi.Response)
+        np.testing.assert_array_equal(response.impacts["max_force_N"], vi.simulate(good).impacts["max_force_N"])
+
+
+@pytest.mark.parametrize("sizes", [[], [3], [0, 2, 1], [1, 1, 5]])
+def test_each_course_gets_its_own_solutions(sizes: list[int]) -> None:
+    class Asked:
+        kind, size = 0, 40_000  # so many coordinates that each is solved alone
+
+        def __init__(self, value: int) -> None:
+            self.value = value
+
+        @classmethod
+        def solved(cls, problems: list[Asked]) -> list[int]:
+            assert len(problems) == 1
+            return [10 * problem.value for problem in problems]
+
+    def course(rounds: int, name: int):  # type: ignore[no-untyped-def]
+        found = []
+        for number in range(rounds):
+            found += yield [Asked(name + number), Asked(name - number)]
+        return found
+
+    told = computed(side_by_side(course(rounds, 100 * place) for place, rounds in enumerate(sizes)))
+    assert told == [
+        [10 * value for number in range(rounds) for value in (100 * place + number, 100 * place - number)]
+        for place, rounds in enumerate(sizes)
+    ]
