@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
@@ -45,6 +45,21 @@ def test_one_that_fails_leaves_the_others_alone() -> None:
     for response in (found[0], found[2]):
         assert isinstance(response, vi.Response)
         np.testing.assert_array_equal(response.impacts["max_force_N"], vi.simulate(good).impacts["max_force_N"])
+
+
+def test_what_a_law_raises_ends_its_drop_alone() -> None:
+    @dataclass(frozen=True, kw_only=True)
+    class Fragile(HuntCrossley):
+        def forces(self, delta, delta_dot, approach_speed):  # type: ignore[no-untyped-def]
+            if np.any(np.asarray(approach_speed) > 2.0):
+                raise ZeroDivisionError("too fast for me")
+            return super().forces(delta, delta_dot, approach_speed)
+
+    law = Fragile(stiffness=1e9, restitution=0.7)
+    found = simulate_together([replace(drop_on(law, plate_of(4, 1), speed=speed), impacts=1) for speed in (1.0, 3.0, 1.5)])
+    assert isinstance(found[1], ZeroDivisionError)
+    assert isinstance(found[0], vi.Response)
+    assert isinstance(found[2], vi.Response)
 
 
 @pytest.mark.parametrize("sizes", [[], [3], [0, 2, 1], [1, 1, 5]])

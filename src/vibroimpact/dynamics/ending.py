@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from vibroimpact.dynamics.collocation import Map
-from vibroimpact.dynamics.lockstep import Course
+from vibroimpact.dynamics.lockstep import Course, asked
 from vibroimpact.dynamics.receptance import NODES, spectrum
 from vibroimpact.dynamics.solve_vibrating import StretchProblem
 from vibroimpact.dynamics.vibrating_events import GRID, Event, first_event
@@ -38,7 +38,7 @@ def end_at(
         Energy [J] and speed [m/s] of the motion, and about how long a contact lasts [s].
     """
     for _ in range(_MOST_AIMS):
-        (ended,) = yield [_aimed(stretch, event)]
+        ended = yield from asked(_aimed(stretch, event))
         if not ended.solved or not 0.0 < ended.length <= (1.0 + _AT_END) * stretch.length:
             return None
         before = first_event(ended, speed, span)

@@ -31,6 +31,14 @@ Course = Generator[list[Any], list[Any], Result]
 """A computation that yields lists of problems, gets back their solutions, and returns what came of it."""
 
 
+def asked(problem: Problem) -> Course[Any]:
+    """Return the solution of a problem, or raise what kept it from being solved."""
+    (found,) = yield [problem]
+    if isinstance(found, Exception):
+        raise found
+    return found
+
+
 def side_by_side(courses: Iterable[Course[Result]]) -> Course[list[Result]]:
     """Return what comes of courses, as one course: in each round all that go on ask for what they need next."""
     running = list(courses)
@@ -67,8 +75,6 @@ def computed(course: Course[Result]) -> Result:
 
 
 def _solved(problems: list[Any]) -> list[Any]:
-    if len(problems) == 1:
-        return list(problems[0].solved(problems))
     groups: dict[object, list[int]] = {}
     for number, problem in enumerate(problems):
         groups.setdefault((type(problem), problem.kind), []).append(number)
@@ -78,5 +84,15 @@ def _solved(problems: list[Any]) -> list[Any]:
         most = max(_TOGETHER // max(first.size, 1), 1)
         for begin in range(0, len(numbers), most):
             some = numbers[begin : begin + most]
-            found.update(zip(some, first.solved([problems[number] for number in some]), strict=True))
+            found.update(zip(some, _solved_alike([problems[number] for number in some]), strict=True))
     return [found[number] for number in range(len(problems))]
+
+
+def _solved_alike(problems: list[Any]) -> list[Any]:
+    """Return the solutions of problems of one kind; in place of one, what it raises."""
+    try:
+        return list(problems[0].solved(problems))
+    except Exception as error:  # as of a law of another package, which must not end the others
+        if len(problems) == 1:
+            return [error]
+        return [found for problem in problems for found in _solved_alike([problem])]

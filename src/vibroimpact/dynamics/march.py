@@ -21,7 +21,7 @@ from vibroimpact.dynamics.collocation import Floats, Map
 from vibroimpact.dynamics.ending import before_event, broken, end_at, growth
 from vibroimpact.dynamics.linear_system import FreeMotion, LinearSystem, State
 from vibroimpact.dynamics.local import LocalContact
-from vibroimpact.dynamics.lockstep import Course
+from vibroimpact.dynamics.lockstep import Course, asked
 from vibroimpact.dynamics.next_touch import next_touch, time_to_part
 from vibroimpact.dynamics.receptance import seen_by
 from vibroimpact.dynamics.recoil import after, end_of_recoil, recoil_of
@@ -213,7 +213,9 @@ class March:
         energy = max(touch.energy for touch in pushing)
         if self.pace < 1e-12 * span:
             raise NotIntegrable(f"the contact at {self.time:g} s can not be integrated to the tolerance")
-        (stretch,) = yield [self.problem(pushing, "touch" if any(touch.fresh for touch in pushing) else "inside", min(self.pace, longest))]
+        stretch = yield from asked(
+            self.problem(pushing, "touch" if any(touch.fresh for touch in pushing) else "inside", min(self.pace, longest))
+        )
         event = first_event(stretch, speed, span) if stretch.solved else None
         other = self.others(stretch) if stretch.solved else None
         if event is not None and (other is None or event.x <= other.x):  # which may be all that keeps the stretch from being resolved
@@ -351,8 +353,7 @@ class March:
         low, high = (whole * float(rule.map_time(np.array([x]))[0]) for x in (max(other.x - GRID[1], 0.0), other.x))
         length = float(find_root(after(stretch, other.value), np.array([low]), np.array([high]))[0])
         for _ in range(_POLISHES):
-            ended: VibratingStretch
-            (ended,) = yield [self.problem(pushing, rule.time_map, length)]
+            ended: VibratingStretch = yield from asked(self.problem(pushing, rule.time_map, length))
             if not ended.solved:
                 return None
             step = 1e-6 * length

@@ -20,7 +20,7 @@ from vibroimpact.dynamics.apart import Apart
 from vibroimpact.dynamics.collocation import Floats
 from vibroimpact.dynamics.linear_system import FreeMotion, LinearSystem, State
 from vibroimpact.dynamics.local import LocalContact
-from vibroimpact.dynamics.lockstep import Course, side_by_side
+from vibroimpact.dynamics.lockstep import Course, asked, side_by_side
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.tangent import Beside
 from vibroimpact.dynamics.vibrating_stretch import VibratingStretch
@@ -140,7 +140,8 @@ class _Neighbour:
             self.touch(stretch)
         elif stretch.contacts[0].local is not self.local:
             self.turn(stretch)
-        ((self.difference, pressed),) = yield [Beside(stretch, self.difference, _asides(stretch.contacts[0].local, self.knowledge))]
+        beside = Beside(stretch, self.difference, _asides(stretch.contacts[0].local, self.knowledge))
+        self.difference, pressed = yield from asked(beside)
         self.pressed, self.last = float(pressed[-1]), stretch
         assert self.visit is not None  # it has touched
         force = float(stretch.force.max())
