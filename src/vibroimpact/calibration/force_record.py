@@ -45,7 +45,7 @@ def impacts_in_force(
     time, force : array
         Time [s] and contact force [N], positive where it pushes.
     mass, gravity : float
-        Of the sphere [kg], and acceleration [m/s^2], >= 0.
+        Effective mass of the pair [kg], the sphere's if the plate is held, and acceleration [m/s^2], >= 0.
     first_speed : float
         Of the first touch [m/s].
     lines : sequence of int, optional

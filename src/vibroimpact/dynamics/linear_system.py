@@ -61,7 +61,7 @@ class LinearSystem(Oscillators):
     inside : array of bool, shape (n,)
         Which lie inside the contacts.
     below : array of bool, shape (contacts, n)
-        Which modes count in the indentation of each contact: of a drop those of the body below, of a system all.
+        Which coordinates count in the indentation of each contact: of a drop those of the body below, of a system all.
     rate, mobility : array, shape (k,)
         Of the massless elements: stiffness over damping [1/s], and one over damping [m/(N s)].
     at : array of int, shape (k,)
@@ -101,7 +101,7 @@ class LinearSystem(Oscillators):
 
     @property
     def ground(self) -> NDArray[np.bool_]:
-        """Which are of the body below the first contact (n,)."""
+        """Of a drop: which are of the body below (n,)."""
         return np.asarray(self.below[0])
 
     @cached_property
