@@ -12,9 +12,9 @@ import pytest
 import vibroimpact as vi
 from vibroimpact.contact.laws.lankarani_nikravesh import LankaraniNikravesh
 from vibroimpact.contact.laws.walton_braun import WaltonBraun
-from vibroimpact.dynamics.collocation import Rule
 from vibroimpact.dynamics.impact_rows import ImpactRows
 from vibroimpact.dynamics.packed_list import PackedList
+from vibroimpact.dynamics.plane_rule import PlaneRule
 from vibroimpact.storage import fine_history as kept
 
 BALL = vi.Body(mass=0.09, contact_offset=0.025)
@@ -64,14 +64,14 @@ def test_legs_are_the_same_when_they_come_back() -> None:
     problem = drop(4, WaltonBraun(stiffness=4e5, restitution=0.6))
     response = vi.simulate(problem)
     assert isinstance(response.legs, PackedList)
-    again, many = PackedList(Rule), [*response.legs] * 10  # the last ones are not packed
+    again, many = PackedList(PlaneRule), [*response.legs] * 10  # the last ones are not packed
     for leg in many:
         again.append(leg)
     for one, other in zip(many, again, strict=True):
         _same(one, other)
     stretch = again[0].contact.pieces[0].motion
     assert again[0] is not again[0]
-    assert stretch.rule is again[1].contact.pieces[0].motion.rule  # shared by all
+    assert stretch.way.rule is again[1].contact.pieces[0].motion.way.rule  # shared by all
     law = again[0].contact.pieces[-1].law
     assert isinstance(law, WaltonBraun)
     assert law.memories() == again[0].contact.law.memories()
@@ -86,7 +86,7 @@ def _same(one: object, other: object) -> None:
         assert len(one) == len(other)
         for a, b in zip(one, other, strict=True):
             _same(a, b)
-    elif isinstance(one, Rule) or not hasattr(one, "__dict__"):
+    elif isinstance(one, PlaneRule) or not hasattr(one, "__dict__"):
         assert one is other or one == other
     else:
         for name, value in vars(one).items():

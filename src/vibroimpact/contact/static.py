@@ -58,7 +58,7 @@ def _force(law: CompliantLaw, delta: Array) -> Array:
 
 def static_work(law: CompliantLaw, delta: Array) -> Array:
     """Return the integral of the static force from `touch_level` [J]: the elastic energy and the plastic work."""
-    return law.elastic_energy(delta) + law.plastic_work(delta)
+    return law.elastic_energy(delta) + law.plastic_work(delta) if law.yields else law.elastic_energy(delta)
 
 
 def _solve(function: Callable[[Array], tuple[Array, Array]], wanted: Callable[[Array], Array], least: Array, within: float) -> Array:
@@ -81,7 +81,9 @@ def _solve(function: Callable[[Array], tuple[Array, Array]], wanted: Callable[[A
             settled = np.abs(step - 1.0) < within
             if np.all(settled | idle | ~np.isfinite(delta)):
                 break
-        lost = ~(settled & (delta > least)) & (~idle | (excess(least) < 0.0))
+        lost = ~(settled & (delta > least))
+        if np.any(lost):
+            lost &= ~idle | (excess(least) < 0.0)
         if np.any(lost):
             low, high = least, least + 1e-9
             for _ in range(60):

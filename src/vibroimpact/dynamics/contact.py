@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.dynamics.collocation import Floats
 from vibroimpact.dynamics.glide import Glide
+from vibroimpact.dynamics.plane_motion import PlaneMotion
 from vibroimpact.dynamics.stretch import Stretch
 
 Drops = NDArray[np.intp]
@@ -40,7 +41,7 @@ class Piece:
     drops: Drops
     start: Floats
     """Time since first touch at which it begins [s], (b,)."""
-    motion: Stretch | Glide | PartOfVisit
+    motion: Stretch | PlaneMotion | Glide | PartOfVisit
     law: CompliantLaw
     """The law with its memories then, of all B drops of the contact."""
 
@@ -68,6 +69,15 @@ class Contact:
     stored: Floats
     law: CompliantLaw
 
+    def put(self, drops: Drops, other: Contact) -> None:
+        """Take over the contacts of some drops."""
+        for name, values in vars(other).items():
+            if isinstance(values, np.ndarray):
+                getattr(self, name)[drops] = values
+        self.law = _remembering(self.law, drops, other.law)
+        for piece in other.pieces:
+            self.pieces.append(Piece(drops[piece.drops], piece.start, piece.motion, _remembering(self.law, drops, piece.law)))
+
     def of(self, index: int) -> Contact:
         """Return the contact of one drop."""
         pieces = []
@@ -78,3 +88,12 @@ class Contact:
                 pieces.append(Piece(np.zeros(1, dtype=np.intp), piece.start[here], piece.motion.take(here), law))
         arrays = {name: value[index : index + 1] for name, value in vars(self).items() if isinstance(value, np.ndarray)}
         return replace(self, pieces=pieces, law=self.law.take(np.array([index])), **arrays)
+
+
+def _remembering(law: CompliantLaw, drops: Drops, other: CompliantLaw) -> CompliantLaw:
+    """Return a law of B drops, of which some remember what another law, of these alone, does."""
+    memories = {name: values + np.zeros(len(drops)) for name, values in other.memories().items()}
+    whole = {name: np.array(getattr(law, name)) for name in memories}
+    for name, values in memories.items():
+        whole[name][drops] = values
+    return law.changed(whole)

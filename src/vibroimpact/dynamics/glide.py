@@ -7,11 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from vibroimpact.contact.roots import find_root
 from vibroimpact.dynamics.collocation import Floats
 from vibroimpact.dynamics.encounter import Encounter
 
 _SAMPLES = 33
+_STEPS = 4
 
 
 @dataclass(frozen=True)
@@ -74,8 +74,11 @@ def glide_until_push(encounter: Encounter, delta: Floats, velocity: Floats) -> t
     index = positive.argmax(axis=0)
     column = np.arange(len(delta))
     late = times[index, column]
-    if (pushes & (index > 0)).any():
-        with np.errstate(all="ignore"):
-            root = find_root(push, times[np.maximum(index - 1, 0), column], late)
-        late = np.where(index > 0, root, late)
+    if (pushes & (index > 0)).any():  # the force is zero there, so that what the motion is off by goes with the square
+        low, high = times[np.maximum(index - 1, 0), column], late
+        aside, late = 1e-6 * (high - low), np.where(index > 0, 0.5 * (low + high), late)
+        for _ in range(_STEPS):
+            with np.errstate(all="ignore"):
+                here, there = push(np.array([late, late + aside]))
+                late = np.where(index > 0, np.clip(late - aside * here / (there - here), low, high), late)
     return Glide(np.where(pushes, late, out), delta, velocity, gravity, encounter.floor), np.asarray(pushes), stays & ~pushes

@@ -7,41 +7,40 @@ import numpy as np
 from vibroimpact.contact.pair import Array
 from vibroimpact.dynamics.collocation import Floats
 from vibroimpact.dynamics.encounter import Encounter
-from vibroimpact.dynamics.half_contact import HalfContact
-from vibroimpact.dynamics.plane_rule import PlaneRule
+from vibroimpact.dynamics.plane_way import PlaneWay
 
-_NEAR = 2e-3  # from the top, in y: where a cubic through it is exact to 1e-11
+_STEPS = 4
+_NEAR = 1e-6  # the last step, in y: the error is its square
 
 
-def plane_peak(encounter: Encounter, rule: PlaneRule, coming: HalfContact) -> tuple[Floats, Floats]:
+def plane_peak(encounter: Encounter, coming: PlaneWay) -> tuple[Floats, Floats]:
     """Return the largest force [N] of each drop, and when it is reached, since first touch [s], NaN where it was not located.
 
-    Damping pushes on the way in and pulls on the way out, so the largest force is never on the way out. It is first touch,
-    the deepest point, or where the derivative of the force is zero: near the node with the largest force, by Taylor's series
-    about it, and then by one step of Newton's method, the force there being that of the law.
+    Damping pushes on the way in and pulls on the way out, so the largest force is never on the way out. It is at an end of a segment,
+    or where the derivative of the force is zero, which is found by Newton's method from the node with the largest; the force there is
+    that of the law.
     """
-    force, column, nothing = coming.force, np.arange(coming.force.shape[1]), np.zeros(coming.force.shape[1])
-    speed, depth = encounter.approach_speed, coming.depth
-    node = force.argmax(axis=0)
-    slopes = [derivative @ force for derivative in rule.derivatives]
-    first, second, third = (slope[node, column] for slope in slopes)
-    step = -first / second
-    step = -first / (second + 0.5 * third * step)
-    near = rule.nodes[node, 0]
-    y = np.clip(near + step, 0.0, 1.0)
-    weights = rule.weights_at(y)
-    slope, curvature, square = (np.einsum("nb,nb->b", weights, values) for values in (slopes[0], slopes[1], coming.squares))
-    located = (curvature < 0.0) & (np.abs(slope) < _NEAR * np.abs(curvature))
-    indentation = depth * (1.0 - y * y) ** encounter.law.root
-    top = _sum(encounter.law.forces(indentation, y * np.sqrt(square), speed))
-    top -= slope**2 / curvature * (0.5 + third * slope / (6.0 * curvature**2))
-    pace = -depth * rule.slope / np.sqrt(coming.squares)
-    until = np.einsum("nb,nb->b", weights, (rule.integral @ pace)[:-1])
-    ends = (_sum(encounter.law.forces(depth, nothing, speed)), _sum(encounter.law.forces(nothing, speed, speed)))
-    candidates = np.stack([np.where(located, top, force[node, column]), *ends])
-    best = candidates.argmax(axis=0)
-    when = np.stack([np.where(located, coming.duration - until, np.nan), coming.duration, nothing])
-    return candidates[best, column], when[best, column]
+    rule, column, nothing = coming.rule, np.arange(len(encounter.mass)), np.zeros(len(encounter.mass))
+    speed, duration = encounter.approach_speed, coming.duration
+    segment, node = np.divmod(coming.force.argmax(axis=0), rule.number)
+    force = coming.of(coming.force, segment)
+    slopes = rule.derivatives @ force
+    y = rule.nodes[node, 0]
+    for _ in range(_STEPS):
+        slope, curvature = (rule.weights_at(y) * slopes).sum(axis=1)
+        step = np.where(curvature < 0.0, slope / curvature, 0.0)
+        y = np.clip(y - step, 0.0, 1.0)
+    located = (curvature < 0.0) & (np.abs(step) < _NEAR)
+    indentation, square = coming.at(segment, y)
+    top = _sum(encounter.law.forces(indentation, np.sqrt(square), speed))
+    candidates = [np.where(located, top, force[node, column]), _sum(encounter.law.forces(coming.levels[0], nothing, speed))]
+    when = [np.where(located, duration - coming.grown(coming.pace, segment, y), np.nan), duration]
+    for number, level in enumerate(coming.levels[1:]):
+        velocity = speed if number == rule.segments - 1 else np.sqrt(coming.ends[number])
+        candidates.append(_sum(encounter.law.forces(level, velocity, speed)))
+        when.append(coming.durations[number + 1 :].sum(axis=0))
+    best = np.argmax(candidates, axis=0)
+    return np.asarray(candidates)[best, column], np.asarray(when)[best, column]
 
 
 def _sum(forces: tuple[Array, Array]) -> Floats:

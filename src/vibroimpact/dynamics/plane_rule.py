@@ -1,13 +1,20 @@
 r"""Collocation in the phase plane: the speed over the indentation, which knows its ends.
 
-Half a contact runs between first touch or release and the deepest point. With :math:`\delta = \delta_m (1 - y^2)^p`, p the
-`root` of the law, y goes from 0, where it is deepest, to 1, where the surfaces meet, and the square of the speed,
-:math:`w = y^2 u`, is smooth in y throughout:
+A way through the indentation, in or out, is a row of segments between levels where the force is not smooth, from its deep end to its
+shallow one. In each, y goes from 0, where it is deeper, to 1, and :math:`\delta = \delta_1 + (\delta_0 - \delta_1)\, s(y)`, with
 
-.. math:: \frac{dw}{dy} = 2 a(\delta, \pm\sqrt w)\, \frac{d\delta}{dy} = y\, G(y),\qquad u(y) = \frac1{y^2} \int_0^y z\, G(z)\, dz
+* :math:`s = 1 - y^2` where the motion turns at the deep end of the way: so the speed is smooth in y, in the next segments as well, which
+  may begin just beyond that; on a way that begins with a speed :math:`s = 1 - y`,
+* to the power p, the `root` of the law, where the surfaces meet at the shallow end.
 
-G is collocated at N Gauss nodes, which is of order 2N - 1 at y = 1 (Hairer, Lubich and Wanner 2006, section II.1), and so
-are the integrals over the half contact of the work and of the time, :math:`dt = d\delta/\sqrt w`.
+The square of the speed, :math:`w = f^2 u` with f = y in a segment where the motion turns and f = 1 else, is smooth in y throughout, and
+collocated at N Gauss nodes, with the acceleration a:
+
+.. math:: \frac{dw}{dy} = 2 a(\delta, \pm\sqrt w)\, \frac{d\delta}{dy} = f\, G(y),
+          \qquad u(y) = \frac1{f^2} \left(w(0) + \int_0^y f\, G(z)\, dz\right)
+
+which is of order 2N - 1 at y = 1 (Hairer, Lubich and Wanner 2006, section II.1), and so are the integrals over the segment of the work and
+of the time, :math:`dt = d\delta/\sqrt w`.
 """
 
 from __future__ import annotations
@@ -17,39 +24,58 @@ from functools import cache
 
 import numpy as np
 from numpy.polynomial import legendre
+from numpy.typing import NDArray
 
 from vibroimpact.dynamics.collocation import Floats
+
+DENSE = 33
 
 
 @dataclass(frozen=True)
 class PlaneRule:
-    """Nodes and matrices for N nodes and a power p; columns are (N, 1).
+    """Nodes and matrices of a way of S segments with N nodes each; columns are (N, 1), or (S N, 1) for all segments.
 
     Parameters
     ----------
+    segments, number, root : int
+        S, N and p.
+    turns : bool
+        Does the motion turn at the deep end of the first segment?
+    touches : bool
+        Do the surfaces meet at the shallow end of the last?
     nodes : array, shape (N, 1)
         Nodes y in (0, 1).
-    per_node : array, shape (N, 1)
-        One over them.
-    shape : array, shape (N, 1)
-        Indentation as a part of the deepest.
-    slope : array, shape (N, 1)
-        Its derivative, over y: negative.
-    mean : array, shape (N + 1, N)
-        From G at the nodes to u at the nodes and at 1.
+    factor, per_node : array, shape (S N, 1)
+        f there, and one over it.
+    shape : array, shape (S N, 1)
+        s there.
+    slope : array, shape (S N, 1)
+        Its derivative, over f: negative.
+    mean : array, shape (S, N + 1, N)
+        From G at the nodes to what it adds to u within the segment, at the nodes and at 1.
     integral : array, shape (N + 1, N)
         From values at the nodes to their integrals from 0 to the nodes and to 1.
     weights : array, shape (N,)
         Of the integral from 0 to 1.
     last : array, shape (2, N)
         From values at the nodes to their last two Legendre coefficients.
-    derivatives : tuple of three arrays, shape (N, N)
-        From values at the nodes to the first, second and third derivative there.
+    derivatives : array, shape (2, N, N)
+        From values at the nodes to the first and the second derivative there.
+    coefficients : array, shape (N, N)
+        From values at the nodes to Legendre coefficients in 2 y - 1.
+    dense : array, shape (33, N)
+        From values at the nodes to values at evenly spaced y.
     barycentric : array, shape (N, 1)
         Barycentric weights of the nodes.
     """
 
+    segments: int
+    number: int
+    root: int
+    turns: bool
+    touches: bool
     nodes: Floats
+    factor: Floats
     per_node: Floats
     shape: Floats
     slope: Floats
@@ -57,28 +83,53 @@ class PlaneRule:
     integral: Floats
     weights: Floats
     last: Floats
-    derivatives: tuple[Floats, Floats, Floats]
+    derivatives: Floats
+    coefficients: Floats
+    dense: Floats
     barycentric: Floats
 
+    def split(self, values: Floats) -> Floats:
+        """Return values at all nodes (S N, B) segment by segment (S, N, B)."""
+        return values.reshape(self.segments, self.number, values.shape[-1])
+
+    def grown(self, values: Floats) -> Floats:
+        """Return the integrals from the deep end of the way to all nodes and ends (S, N + 1, B), of values at the nodes (S N, B)."""
+        return self._along(self.integral @ self.split(values))
+
+    def summed(self, values: Floats) -> Floats:
+        """Return what G (S N, B) adds to u from the deep end of the way (S, N + 1, B)."""
+        return self._along(self.mean @ self.split(values))
+
+    def _along(self, found: Floats) -> Floats:
+        for segment in range(1, self.segments):
+            found[segment] += found[segment - 1, -1]
+        return found
+
     def weights_at(self, y: Floats) -> Floats:
-        """Return the weights of the values at the nodes for their polynomials at y (B,): (N, B)."""
+        """Return the weights of the values at the nodes of a segment for their polynomials at y (B,): (N, B)."""
         distance = y - self.nodes
         distance[distance == 0.0] = 1e-300  # at a node, its weight outweighs all others
         weights = self.barycentric / distance
         weights /= weights.sum(axis=0)
         return np.asarray(weights)
 
+    def shape_at(self, segment: NDArray[np.intp], y: Floats) -> tuple[Floats, Floats]:
+        """Return s and f at y (B,) of segments (B,)."""
+        inside = 1.0 - y * y if self.turns else 1.0 - y
+        touching = (segment == self.segments - 1) & self.touches
+        return np.where(touching, inside**self.root, inside), np.where((segment == 0) & self.turns, y, 1.0)
+
 
 @cache
-def plane_rule(number: int, root: int) -> PlaneRule:
-    """Return the rule with `number` nodes for a law that is smooth in that root of the indentation.
+def plane_rule(number: int, root: int, segments: int = 1, *, turns: bool = True, touches: bool = True) -> PlaneRule:
+    """Return the rule of a way of some segments with `number` nodes each, for a law that is smooth in that root of the indentation.
 
     Examples
     --------
     Undamped Hertz without gravity, where G is a multiple of the slope times the shape to the power 3/2, has w = 1 at touch:
 
     >>> rule = plane_rule(10, 2)
-    >>> bool(abs((rule.mean @ (-2.5 * rule.slope * rule.shape**1.5))[-1, 0] - 1) < 1e-14)
+    >>> bool(abs(rule.summed(-2.5 * rule.slope * rule.shape**1.5)[0, -1, 0] - 1) < 1e-14)
     True
     """
     z, weights = legendre.leggauss(number)
@@ -92,17 +143,32 @@ def plane_rule(number: int, root: int) -> PlaneRule:
     def slopes(order: int) -> Floats:
         return np.asarray(legendre.legvander(z, number - 1 - order) @ (2.0**order * legendre.legder(coefficients, order, axis=0)))
 
-    inside = 1.0 - nodes * nodes
-    barycentric = 1.0 / np.prod(4.0 * (nodes[:, None] - nodes) + np.eye(number), axis=1)  # 4: against underflow
+    integral = integrals(coefficients)
+    factor, shape, slope, mean = [], [], [], []
+    for segment in range(segments):
+        turning, power = turns and segment == 0, root if touches and segment == segments - 1 else 1
+        inside, falls = (1.0 - nodes * nodes, 2.0 * nodes) if turns else (1.0 - nodes, np.ones(number))
+        factor.append(nodes if turning else np.ones(number))
+        shape.append(inside**power)
+        slope.append(-falls / factor[-1] * power * inside ** (power - 1))
+        mean.append(np.ascontiguousarray(integrals(times_y) / (ends * ends)[:, None]) if turning else integral)
     return PlaneRule(
+        segments,
+        number,
+        root,
+        turns,
+        touches,
         nodes[:, None],
-        1.0 / nodes[:, None],
-        (inside**root)[:, None],
-        (-2.0 * root * inside ** (root - 1))[:, None],
-        np.ascontiguousarray(integrals(times_y) / (ends * ends)[:, None]),
-        integrals(coefficients),
+        np.concatenate(factor)[:, None],
+        1.0 / np.concatenate(factor)[:, None],
+        np.concatenate(shape)[:, None],
+        np.concatenate(slope)[:, None],
+        np.stack(mean),
+        integral,
         weights / 2.0,
         coefficients[-2:],
-        (slopes(1), slopes(2), slopes(3)),
-        barycentric[:, None],
+        np.stack([slopes(1), slopes(2)]),
+        coefficients,
+        legendre.legvander(np.linspace(-1.0, 1.0, DENSE), number - 1) @ coefficients,
+        (1.0 / np.prod(4.0 * (nodes[:, None] - nodes) + np.eye(number), axis=1))[:, None],  # 4: against underflow
     )

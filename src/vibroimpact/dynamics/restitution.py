@@ -15,9 +15,8 @@ from vibroimpact.contact.pair import Array
 from vibroimpact.contact.roots import solve_monotonic
 from vibroimpact.dynamics.collocation import Floats
 from vibroimpact.dynamics.contact import CAPTURED, FAILED
-from vibroimpact.dynamics.contact_phase import contact_phase
 from vibroimpact.dynamics.encounter import Encounter, encounter_of
-from vibroimpact.dynamics.warm_starts import WarmStarts
+from vibroimpact.dynamics.plane_contact import contact_solver
 from vibroimpact.errors import ComputationError, InputError
 from vibroimpact.ranges import Range
 
@@ -113,10 +112,10 @@ def _by_integration(law: ContactLaw, mass: Array, speed: Array, tolerance: float
     arrays = {item.name: value for item in fields(law) if np.ndim(value := getattr(law, item.name))}
     flat = law.changed({name: np.broadcast_to(value, shape).ravel() for name, value in arrays.items()})
     encounter = encounter_of(flat, masses, np.zeros(len(masses)), speeds)
-    found, starts, order = np.empty(len(masses)), WarmStarts(_CHUNK), np.argsort(_loss(encounter))
+    found, solve, order = np.empty(len(masses)), contact_solver(flat, tolerance, _CHUNK), np.argsort(_loss(encounter))
     for begin in range(0, len(order), _CHUNK):
         drops = order[begin : begin + _CHUNK]
-        contact = contact_phase(encounter.pick(drops), tolerance, starts, np.arange(len(drops)))
+        contact, *_ = solve(encounter.pick(drops), np.arange(len(drops)))
         found[drops] = np.where(contact.outcome == CAPTURED, 0.0, -contact.final_rate / speeds[drops])
         found[drops[contact.outcome == FAILED]] = np.nan
     return found.reshape(shape)[()]

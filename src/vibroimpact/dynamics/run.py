@@ -80,11 +80,12 @@ class Run:
             done = max(done, float(np.nanmin(np.clip(slowed, 0.0, 1.0), initial=1.0)))
         return done
 
-    def law(self) -> ContactLaw:
-        """Return the law of the next impact of all drops, with what they remember of the last."""
+    def law(self, drops: Drops) -> ContactLaw:
+        """Return the law of the next impact of drops, with what they remember of the last."""
         law = self.problem.law_of(len(self.rows))
-        lasting = self.problem.same_spot and isinstance(law, CompliantLaw) and law.lasting
-        return law.changed(self.memories) if lasting else law
+        if self.problem.same_spot and isinstance(law, CompliantLaw) and law.lasting:
+            law = law.changed(self.memories)
+        return law if len(drops) == self.size else law.take(drops)
 
     # one flight and one contact --------------------------------------------------------------------
 
@@ -92,7 +93,7 @@ class Run:
         """Fly all moving drops to their next touch, take them through one contact, and return both."""
         drops = np.flatnonzero(self.moving)
         flight = Flight(self.time[drops], self.gap[drops], self.velocity[drops], self.gravity[drops])
-        law = self.law().take(drops)
+        law = self.law(drops)
         touch, speed, motions = self.bodies.next_touch(drops, flight, law)
         end = np.inf if self.problem.duration is None else self.problem.duration
         last, outcome = np.full(len(drops), end), Outcome.IMPACTS
@@ -119,7 +120,7 @@ class Run:
 
     def collide(self, leg: Leg, touch: Floats, speed: Floats) -> Course[Leg]:
         """Take drops through a contact: write the row of the impact, return the leg with its contact."""
-        drops, law = leg.contact_drops, self.law().take(leg.contact_drops)
+        drops, law = leg.contact_drops, self.law(leg.contact_drops)
         row = self.rows.add()
         row["impact"][drops], row["time_s"][drops], row["approach_speed_m_s"][drops] = len(self.rows), touch, speed
         row["restitution_asked"][drops] = _asked(law)
@@ -133,7 +134,7 @@ class Run:
             closing = self.bodies.closing_speed(drops, speed, self.velocity[drops])
             leg, lost = yield from self.deform(leg, encounter_of(law, self.mass[drops], self.gravity[drops], closing), touch, row)
             lost += row["plastic_work_J"][drops]
-            law = self.law().take(drops)  # with what it remembers of this impact
+            law = self.law(drops)  # with what it remembers of this impact
         self.dissipated[drops] += lost - row["plastic_work_J"][drops]
         self.plastic[drops] += row["plastic_work_J"][drops]
         separation = row["separation_speed_m_s"][drops]
@@ -143,7 +144,7 @@ class Run:
             rise = np.where(self.gravity[drops] > 0.0, 0.5 * separation**2 / self.gravity[drops], np.nan)
         row["rebound_height_m"][drops] = self.radius[drops] + self.gap[drops] + rise
         moving = self.moving[drops]
-        self.judge(drops[moving], law.take(np.flatnonzero(moving)), row)
+        self.judge(drops[moving], law if moving.all() else law.take(np.flatnonzero(moving)), row)
         return leg
 
     def deform(self, leg: Leg, encounter: Encounter, touch: Floats, row: dict[str, Floats]) -> Course[tuple[Leg, Floats]]:
@@ -160,6 +161,7 @@ class Run:
         row["max_force_N"][drops], row["time_of_max_force_s"][drops] = force, touch + when
         row["max_acceleration_m_s2"][drops] = np.maximum(force / encounter.mass - encounter.gravity, encounter.gravity)
         for name, values in contact.law.memories().items():
+            self.memories[name] = self.memories[name].copy()  # contacts of the past keep their laws
             self.memories[name][drops] = values
         leaving = self.bodies.rigid_speed(drops, -contact.final_rate)
         failed, captured, riding = (contact.outcome == outcome for outcome in (FAILED, CAPTURED, RIDING))
@@ -178,7 +180,7 @@ class Run:
 
     def next_law(self, drops: Drops) -> CompliantLaw:
         """Return the law of the next impact of drops that touch by one."""
-        law = self.law().take(drops)
+        law = self.law(drops)
         assert isinstance(law, CompliantLaw)
         return law
 
@@ -204,6 +206,8 @@ class Run:
 
     def stop(self, drops: Drops, outcome: Outcome, time: Floats) -> None:
         """End the run of drops."""
+        if not drops.size:
+            return
         self.moving[drops], self.end_time[drops], self.outcomes[drops] = False, time, outcome.code
 
     # the end of the run ----------------------------------------------------------------------------

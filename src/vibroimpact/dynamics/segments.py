@@ -14,6 +14,7 @@ from vibroimpact.dynamics.collocation import Floats, collocation_rule
 from vibroimpact.dynamics.encounter import Encounter
 from vibroimpact.dynamics.flight import Flight
 from vibroimpact.dynamics.glide import Glide
+from vibroimpact.dynamics.plane_motion import PlaneMotion
 from vibroimpact.dynamics.stretch import Stretch
 
 Motion = tuple[Floats, Floats, Floats, Floats, Floats, Floats]
@@ -63,16 +64,12 @@ class StretchSegment:
         stretch, rule, law = self.stretch, self.stretch.rule, self.encounter.law
         x = rule.unmap_time(time / stretch.duration[0])
         delta, velocity = self.motion(x)
-        elastic, dissipative = law.forces(delta, velocity, self.encounter.approach_speed)
-        force = elastic + dissipative
-        if law.tension == "cut":
-            force = np.maximum(force, 0.0)
         # the power is a product of two that N nodes resolve: it takes 2 N
         finer = collocation_rule(2 * len(rule.nodes), rule.time_map, rule.root)
         node_delta, node_velocity = self.motion(finer.nodes)
         _, at_nodes = law.forces(node_delta, node_velocity, self.encounter.approach_speed)
         lost = stretch.duration[0] * finer.integrate(x, at_nodes * node_velocity)
-        return -delta, -velocity, force, law.elastic_energy(delta), lost, law.plastic_work(delta) - law.plastic_work(stretch.delta)
+        return _in_contact(self.encounter, float(stretch.delta[0]), delta, velocity, lost)
 
     def motion(self, x: Floats) -> tuple[Floats, Floats]:
         """Return the indentation [m] and its rate [m/s] at places x of the rule."""
@@ -80,6 +77,40 @@ class StretchSegment:
         delta = stretch.delta[0] + duration * rule.integrate(x, stretch.node_velocity[:, 0])
         velocity = stretch.velocity[0] + duration * rule.integrate(x, stretch.node_acceleration[:, 0])
         return np.maximum(delta, self.encounter.floor), velocity
+
+
+@dataclass(frozen=True)
+class PlaneSegment:
+    """A way through the indentation of one drop that was solved in the phase plane: a `PlaneMotion` and an `Encounter` of one."""
+
+    start: float
+    end: float
+    motion: PlaneMotion
+    encounter: Encounter
+
+    @property
+    def duration(self) -> Floats:
+        """How long it lasts [s], (1,)."""
+        return self.motion.duration
+
+    def grid(self) -> Floats:
+        """Times since its start that draw the segment well [s]."""
+        return self.motion.grid()
+
+    def at(self, time: Floats) -> Motion:
+        """Return the motion at times [s] since the start of the segment."""
+        delta, velocity, lost = self.motion.at(time, self.encounter)
+        return _in_contact(self.encounter, self.motion.start, delta, velocity, lost)
+
+
+def _in_contact(encounter: Encounter, start: float, delta: Floats, velocity: Floats, lost: Floats) -> Motion:
+    """Return the motion of one drop in contact, that began at an indentation [m], from its indentation, its rate and what is lost."""
+    law = encounter.law
+    elastic, dissipative = law.forces(delta, velocity, encounter.approach_speed)
+    force = elastic + dissipative
+    if law.tension == "cut":
+        force = np.maximum(force, 0.0)
+    return -delta, -velocity, force, law.elastic_energy(delta), lost, law.plastic_work(delta) - law.plastic_work(np.array([start]))
 
 
 @dataclass(frozen=True)
@@ -128,4 +159,4 @@ class RestSegment:
         return -self.sag * same, 0.0 * same, self.weight * same, self.stored * same, 0.0 * same, 0.0 * same
 
 
-Segment = FlightSegment | StretchSegment | GlideSegment | RestSegment
+Segment = FlightSegment | StretchSegment | PlaneSegment | GlideSegment | RestSegment

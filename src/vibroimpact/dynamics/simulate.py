@@ -10,11 +10,14 @@ from vibroimpact.dynamics.leg import Leg
 from vibroimpact.dynamics.lockstep import Course, computed, side_by_side
 from vibroimpact.dynamics.outcome import Outcome
 from vibroimpact.dynamics.packed_list import PackedList
+from vibroimpact.dynamics.plane_contact import contact_solver
+from vibroimpact.dynamics.plane_rule import PlaneRule
 from vibroimpact.dynamics.problem import StatesProblem
 from vibroimpact.dynamics.response import Response
 from vibroimpact.dynamics.run import Run
-from vibroimpact.dynamics.solve_contact import collocated
 from vibroimpact.errors import ComputationError, InputError
+
+_HISTORY = 100.0  # times: by so much what a history is read from is more exact than what the impacts are asked for
 
 
 def simulate(problem: StatesProblem, progress: Callable[[float], None] | None = None) -> Response:
@@ -86,8 +89,8 @@ def _simulated(problem: StatesProblem, progress: Callable[[float], None] | None 
     if not hasattr(problem, "to_problem"):
         raise InputError(f"simulate takes a Problem, or a case as vi.load_case(...) reads it, not {problem!r}")
     stated = problem.to_problem()
-    run = Run(stated, collocated(stated.tolerance, math.prod(stated.shape)))
-    legs: PackedList[Leg] | list[Leg] = PackedList[Leg](Rule) if stated.shape == () and not stated.vibrates else []
+    run = Run(stated, contact_solver(stated.laws[0], stated.tolerance, math.prod(stated.shape), finer=_HISTORY))
+    legs: PackedList[Leg] | list[Leg] = PackedList[Leg](Rule, PlaneRule) if stated.shape == () and not stated.vibrates else []
     while run.moving.any():
         legs.append((yield from run.advance()))
         if progress is not None:

@@ -12,8 +12,8 @@ from vibroimpact.dynamics.collocation import Floats
 from vibroimpact.dynamics.energy import why_failed
 from vibroimpact.dynamics.lockstep import computed
 from vibroimpact.dynamics.outcome import Outcome
+from vibroimpact.dynamics.plane_contact import contact_solver
 from vibroimpact.dynamics.problem import Problem, StatesProblem
-from vibroimpact.dynamics.quick_contact import quick
 from vibroimpact.dynamics.response import Response
 from vibroimpact.dynamics.run import Run
 from vibroimpact.errors import InputError
@@ -130,7 +130,7 @@ def tabulate(problem: StatesProblem, progress: Callable[[float], None] | None = 
 
 def _table_of(problem: Problem) -> Response:
     """Return the response of a block of drops, with arrays of a batch, and without its history."""
-    run = Run(problem, quick(problem.laws[0], problem.tolerance, math.prod(problem.shape)))
+    run = Run(problem, contact_solver(problem.laws[0], problem.tolerance, math.prod(problem.shape)))
     while run.moving.any():
         computed(run.advance())
     return run.batch()
