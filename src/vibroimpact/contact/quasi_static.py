@@ -3,6 +3,7 @@ r"""What a contact law does not carry of the quasi-static indentation, in series
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -42,6 +43,10 @@ class QuasiStatic:
 
     def __bool__(self) -> bool:
         """Is there any?"""
+        return self._some
+
+    @cached_property
+    def _some(self) -> bool:
         return bool(np.any(self.linear) or np.any(self.unit))
 
     def indentation(self, force: Array) -> Array:

@@ -272,7 +272,8 @@ class _Exit:
     def cut_short(self, encounter: Encounter, tolerance: float) -> None:
         """End the push of a law that may not pull where its force becomes zero, and with it the contact, or let drops glide."""
         law, way = encounter.law, self.way
-        pulling = pulls(way)
+        pulling, unseen = pulls(way)
+        self.good &= ~unseen
         ends = np.asarray(pulling.any(axis=0))
         if law.contact_end == "zero-force":
             self.good &= ends  # or it is too small to be seen
@@ -307,7 +308,8 @@ class _Exit:
         levels = _levels(here.law, usual, self.delta[drops], here.floor)
         rule = plane_rule(rule.number, rule.root, len(levels) - 1, turns=False)
         way = solve_way(here, rule, "out", levels, _undamped(here, rule, levels, begun=begun), tolerance, _SWEEPS, begun)
-        self.good[drops] &= way.solved & ~pulls(way).any(axis=0) & (passed == usual)
+        pulling, unseen = pulls(way)
+        self.good[drops] &= way.solved & ~(pulling.any(axis=0) | unseen) & (passed == usual)
         self.parts.append((drops, self.time[drops], PlaneMotion(way, way.duration)))
         self.time[drops] += way.duration
         self.delta[drops], self.rate[drops] = here.floor, -np.sqrt(way.ends[-1])

@@ -15,11 +15,25 @@ _ROUNDING = 1e-11  # of the largest force
 _STEPS = 3
 
 
-def pulls(way: PlaneWay) -> NDArray[np.bool_]:
-    """Tell at which of evenly spaced y of all segments the formula of the force pulls before the surfaces part, (S times DENSE, B)."""
-    found = way.rule.dense @ way.rule.split(way.force) < -_ROUNDING * np.abs(way.force).max(axis=0)
-    found[0, 0] = found[-1, -1] = False  # where it is zero but for rounding
-    return np.asarray(found.reshape(-1, found.shape[-1]))
+def pulls(way: PlaneWay) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+    """Tell where on a way the formula of the force pulls before the surfaces part.
+
+    Returns
+    -------
+    at : array of bool, shape (S times DENSE, B)
+        At which of evenly spaced y of all segments.
+    between : array of bool, shape (B,)
+        Whether it does so between two of these before, as parabolas tell.
+    """
+    force = way.rule.dense @ way.rule.split(way.force)
+    slack = _ROUNDING * np.abs(way.force).max(axis=0)
+    at = force < -slack
+    at[0, 0] = at[-1, -1] = False  # where it is zero but for rounding
+    left, middle, right = force[:, :-2], force[:, 1:-1], force[:, 2:]
+    least = middle - 0.125 * (right - left) ** 2 / (left - 2.0 * middle + right)
+    dips = (middle < left) & (middle <= right) & (least < -slack)
+    seen, dipped = (np.maximum.accumulate(part.reshape(-1, part.shape[-1])) for part in (at[:, 1:-1], dips))
+    return at.reshape(-1, at.shape[-1]), np.asarray((dipped & ~seen).any(axis=0))
 
 
 def end_of_push(encounter: Encounter, way: PlaneWay, pulling: NDArray[np.bool_]) -> tuple[Drops, Floats]:

@@ -23,8 +23,8 @@ _HISTORY = 100.0  # times: by so much what a history is read from is more exact 
 def simulate(problem: StatesProblem, progress: Callable[[float], None] | None = None) -> Response:
     """Let the sphere fall and bounce until a stop rule.
 
-    Flight is exact. Touch and release are located as roots; between them the contact is integrated by
-    Radau collocation, of order 39 at the default tolerance, in a time in which the force is smooth. A batch
+    Flight is exact. A contact is solved by Gauss collocation in the phase plane, speed over indentation, of order 39 at the
+    default tolerance, or where that does not come out by Radau collocation in a time in which the force is smooth. A batch
     runs as arrays; one drop is a batch of one. Bodies that have modes vibrate: between contacts exactly, and the
     next touch is the first meeting with the surface as it moves.
 

@@ -66,10 +66,8 @@ class ImpactTable:
 def tabulate(problem: StatesProblem, progress: Callable[[float], None] | None = None) -> ImpactTable:
     """Let the sphere fall and bounce until a stop rule, and keep the table of impacts alone.
 
-    The numbers are those of `simulate` to the tolerance, for every problem. It keeps no histories, runs a large batch in
-    blocks that stay in the cache, and takes a contact whose force is smooth from first touch to release through the phase
-    plane: two scalar integrals between known ends, of order 27 at a tolerance of 1e-8, of which each checks itself by its
-    last terms and by its static work; what does not pass is integrated as `simulate` does.
+    The numbers are those of `simulate` to the tolerance, for every problem. It keeps no histories, which are read within the
+    contacts and need more nodes, and runs a large batch in blocks that stay in the cache.
 
     Parameters
     ----------
