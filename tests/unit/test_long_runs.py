@@ -71,7 +71,7 @@ def test_legs_are_the_same_when_they_come_back() -> None:
         _same(one, other)
     stretch = again[0].contact.pieces[0].motion
     assert again[0] is not again[0]
-    assert stretch.way.rule is again[1].contact.pieces[0].motion.way.rule  # shared by all
+    assert stretch.rule is again[1].contact.pieces[0].motion.rule  # shared by all
     law = again[0].contact.pieces[-1].law
     assert isinstance(law, WaltonBraun)
     assert law.memories() == again[0].contact.law.memories()

@@ -8,7 +8,7 @@ import numpy as np
 
 from vibroimpact.dynamics.collocation import Map
 from vibroimpact.dynamics.lockstep import Course, asked
-from vibroimpact.dynamics.receptance import spectrum
+from vibroimpact.dynamics.receptance import NODES, spectrum
 from vibroimpact.dynamics.solve_vibrating import StretchProblem
 from vibroimpact.dynamics.vibrating_events import GRID, Event, first_event
 from vibroimpact.dynamics.vibrating_stretch import VibratingStretch
@@ -59,7 +59,7 @@ def before_event(stretch: VibratingStretch, event: Event, tolerance: float, ener
 
 def growth(stretch: VibratingStretch, tolerance: float) -> float:
     """Return how many times as long the next stretch may be, by how fast the last coefficients of the force go with the length."""
-    return float(min(max((_EASY * tolerance**0.5 / max(stretch.roughness, 1e-300)) ** (1.0 / len(stretch.rule.nodes)), 0.7), 4.0))
+    return float(min(max((_EASY * tolerance**0.5 / max(stretch.roughness, 1e-300)) ** (1.0 / NODES), 0.7), 4.0))
 
 
 def broken(stretch: VibratingStretch, place: int, held: float) -> VibratingStretch:
@@ -76,12 +76,10 @@ def _aimed(stretch: VibratingStretch, event: Event) -> StretchProblem:
     rule, contacts = stretch.rule, stretch.contacts
     time_map: Map = "touch" if rule.time_map == "touch" else "release" if event.aim.name in ("parted", "no push") else "inside"
     part = float(rule.map_time(np.array([event.x]))[0])
-    to = spectrum(len(rule.nodes), time_map, rule.root).rule
+    to = spectrum(time_map, rule.root).rule
     weights = rule.weights(rule.unmap_time(part * to.time)).T
     delta = np.stack([weights @ contact.delta for contact in contacts])
     force = np.stack([np.add(*contact.local.own_forces(row, weights @ contact.rate)) for contact, row in zip(contacts, delta, strict=True)])
     locals_, begun = [contact.local for contact in contacts], [float(contact.delta[0]) for contact in contacts]
     length = part * stretch.length
-    return StretchProblem(
-        stretch.seen, locals_, len(rule.nodes), time_map, length, stretch.start, begun, guess=(delta, force), aim=event.aim
-    )
+    return StretchProblem(stretch.seen, locals_, time_map, length, stretch.start, begun, guess=(delta, force), aim=event.aim)

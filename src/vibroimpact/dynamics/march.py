@@ -23,7 +23,7 @@ from vibroimpact.dynamics.linear_system import FreeMotion, LinearSystem, State
 from vibroimpact.dynamics.local import LocalContact
 from vibroimpact.dynamics.lockstep import Course, asked
 from vibroimpact.dynamics.next_touch import next_touch, time_to_part
-from vibroimpact.dynamics.receptance import nodes_for, seen_by
+from vibroimpact.dynamics.receptance import seen_by
 from vibroimpact.dynamics.recoil import after, end_of_recoil, recoil_of
 from vibroimpact.dynamics.solve_vibrating import StretchProblem
 from vibroimpact.dynamics.touching import Impact, Law, Touching, closing_speed, motion_speed, note_peaks
@@ -289,8 +289,9 @@ class March:
     def problem(self, pushing: list[Touching], time_map: Map, length: float) -> StretchProblem:
         """Return what is to be solved for a stretch of a length [s] from here."""
         locals_, begun, trend = zip(*((touch.local, touch.delta, touch.trend) for touch in pushing), strict=True)
-        seen = seen_by(self.system, (touch.number for touch in pushing))
-        return StretchProblem(seen, locals_, nodes_for(self.tolerance), time_map, length, self.state, begun, trend)
+        return StretchProblem(
+            seen_by(self.system, (touch.number for touch in pushing)), locals_, time_map, length, self.state, begun, trend
+        )
 
     def accept(self, pushing: list[Touching], stretch: VibratingStretch) -> None:
         """Take a stretch into the history."""

@@ -237,7 +237,7 @@ def _through(encounter: Encounter, found: _Found, places: Drops, ids: Drops, sta
     for name, value in values.items():
         getattr(found, name)[places] = value
     everyone, parts = np.arange(len(places)), [(drops, time_in[drops] + since, motion, True) for drops, since, motion in left.parts]
-    for drops, since, motion, outward in [(everyone, 0.0 * time_in, PlaneMotion(coming, time_in), False), *parts]:
+    for drops, since, motion, outward in [(everyone, 0.0 * time_in, PlaneMotion.of(coming, time_in), False), *parts]:
         if (kept := good[drops]).any():
             found.pieces.append((places[drops[kept]], since[kept], motion.take(kept), outward))
 
@@ -267,7 +267,7 @@ class _Exit:
         size = len(floor)
         self.way, self.good, self.time, self.delta = way, np.ones(size, dtype=bool), way.duration, floor.copy()
         self.rate, self.lost = -np.sqrt(way.ends[-1]), way.dissipated.copy()
-        self.parts: list[tuple[Drops, Floats, PlaneMotion | Glide]] = [(np.arange(size), np.zeros(size), PlaneMotion(way, self.time))]
+        self.parts: list[tuple[Drops, Floats, PlaneMotion | Glide]] = [(np.arange(size), np.zeros(size), PlaneMotion.of(way, self.time))]
 
     def cut_short(self, encounter: Encounter, tolerance: float) -> None:
         """End the push of a law that may not pull where its force becomes zero, and with it the contact, or let drops glide."""
@@ -286,7 +286,7 @@ class _Exit:
         self.delta, self.rate = np.where(ends, delta, self.delta), np.where(ends, -np.sqrt(square), self.rate)
         self.time = np.where(ends, way.grown(way.pace, segment, y), self.time)
         self.lost = np.where(ends, way.grown(way.loss, segment, y), self.lost)
-        self.parts = [(np.arange(len(ends)), np.zeros(len(ends)), PlaneMotion(way, self.time.copy()))]
+        self.parts = [(np.arange(len(ends)), np.zeros(len(ends)), PlaneMotion.of(way, self.time.copy()))]
         if law.contact_end == "zero-force":
             return
         here = encounter.take(some)
@@ -310,7 +310,7 @@ class _Exit:
         way = solve_way(here, rule, "out", levels, _undamped(here, rule, levels, begun=begun), tolerance, _SWEEPS, begun)
         pulling, unseen = pulls(way)
         self.good[drops] &= way.solved & ~(pulling.any(axis=0) | unseen) & (passed == usual)
-        self.parts.append((drops, self.time[drops], PlaneMotion(way, way.duration)))
+        self.parts.append((drops, self.time[drops], PlaneMotion.of(way, way.duration)))
         self.time[drops] += way.duration
         self.delta[drops], self.rate[drops] = here.floor, -np.sqrt(way.ends[-1])
         self.lost[drops] += way.dissipated

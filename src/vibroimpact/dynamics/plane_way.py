@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from typing import Any, Literal
+from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -75,11 +75,6 @@ class PlaneWay:
         for name, values in vars(self).items():
             if isinstance(values, np.ndarray):
                 values[..., drops] = getattr(other, name)
-
-    def pick(self, drops: NDArray[np.intp]) -> PlaneWay:
-        """Return the ways of some drops."""
-        arrays: dict[str, Any] = {name: values[..., drops] for name, values in vars(self).items() if isinstance(values, np.ndarray)}
-        return replace(self, **arrays)
 
 
 def solve_way(

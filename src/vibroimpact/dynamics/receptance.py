@@ -28,7 +28,8 @@ from vibroimpact.dynamics.linear_system import LinearSystem, State
 
 Complex = NDArray[np.complex128]
 
-_TIGHT = 1e-10  # tolerance
+NODES = 12
+"""More would make the eigenvectors of the integration matrix too ill-conditioned, fewer the stretches too short."""
 
 
 @dataclass(frozen=True)
@@ -57,29 +58,20 @@ class Spectrum:
 
     def matrices(self, values: Complex) -> Floats:
         """Return the matrices from nodes to nodes (..., N, N) of what is diagonal in the eigenvectors (..., H)."""
-        return _rows_times(values.view(np.float64), self.filters).reshape(*values.shape[:-1], len(self.rule.nodes), len(self.rule.nodes))
-
-
-def nodes_for(tolerance: float) -> int:
-    """Return the number of nodes of a stretch.
-
-    More make stretches longer and fewer; but the eigenvectors of the integration matrix become ill-conditioned, fourfold with each node,
-    and rounding grows with that.
-    """
-    return 14 if tolerance >= _TIGHT else 12
+        return _rows_times(values.view(np.float64), self.filters).reshape(*values.shape[:-1], NODES, NODES)
 
 
 @cache
-def spectrum(number: int, time_map: Map, root: int) -> Spectrum:
-    """Return the spectrum of a rule with a number of nodes."""
-    rule = collocation_rule(number, time_map, root)
+def spectrum(time_map: Map, root: int) -> Spectrum:
+    """Return the spectrum of a rule."""
+    rule = collocation_rule(NODES, time_map, root)
     values, vectors = np.linalg.eig(rule.integral)
     half = np.flatnonzero(values.imag >= 0.0)
     values, paired = values[half].astype(np.complex128), values[half].imag > 0.0
     vectors = np.where(paired, 2.0, 1.0) * vectors[:, half]  # a pair is twice the real part of one
     parts = np.stack([vectors.real, -vectors.imag], axis=2)  # (N, H, 2)
     there = np.stack([np.ones_like(paired), paired], axis=1)
-    back = np.zeros((len(half), 2, number))
+    back = np.zeros((len(half), 2, NODES))
     back[there] = np.linalg.inv(parts[:, there])  # of the real matrix, so that there and back is nothing but rounding
     inverse = back[:, 0] + 1j * back[:, 1]
     filters = (vectors.T[:, :, None] * inverse[:, None, :]).reshape(len(half), -1)
@@ -88,8 +80,8 @@ def spectrum(number: int, time_map: Map, root: int) -> Spectrum:
         values,
         np.asarray(inverse.sum(axis=1), dtype=np.complex128),
         np.asarray(inverse @ rule.time, dtype=np.complex128),
-        back.reshape(-1, number).T.copy(),
-        parts.reshape(number, -1).T.copy(),
+        back.reshape(-1, NODES).T.copy(),
+        parts.reshape(NODES, -1).T.copy(),
         np.stack([filters.real, -filters.imag], axis=1).reshape(2 * len(half), -1),
     )
 
@@ -229,7 +221,7 @@ class Receptance:
             closing = rate + (of.inner_rate[:, :, None] + by_modes[:, 1])
         whole = (of.outer_rate + of.inner_rate)[:, :, None] + 0.5 * gravity
         approach = of.approach[:, :, None] + time * whole + by_modes[:, -1]
-        size = of.gravity.shape[1] * len(rule.nodes)
+        size = of.gravity.shape[1] * NODES
         self.rate, self.closing, self.approach = rate.reshape(-1, size), closing.reshape(-1, size), approach.reshape(-1, size)
         self.squares = summed(of.pairs, self.admittance)  # (B, 1 or 2, c, c, H)
         rates, wide = sigma[:, None] * self.squares, sigma[:, None]
@@ -250,7 +242,7 @@ class Receptance:
     def by_length(self, force: Floats, static: Floats) -> tuple[Floats, Floats, Floats]:
         """Return how approach, rate and closing rate at the nodes change with the length, under forces there [N]: (B, M) each."""
         of, at, rule, values = self.systems, self.at, self.at.rule, self.at.values
-        shape, of_each, sigma = force.shape, (len(force), -1, len(rule.nodes)), self.sigma[:, None, None]
+        shape, of_each, sigma = force.shape, (len(force), -1, NODES), self.sigma[:, None, None]
         pushed = at.to_eigenvectors(force.reshape(of_each))  # (B, c, H)
         growth = 2.0 * of.frequency_squared[:, :, None] * self.sigma[:, None] + of.damping[:, :, None]  # of the impedance with sigma
         softer = growth * self.admittance

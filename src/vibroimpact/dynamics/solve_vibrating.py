@@ -19,7 +19,7 @@ from vibroimpact.dynamics.contact_history import ContactHistory
 from vibroimpact.dynamics.linear_equations import inverses, solutions, times
 from vibroimpact.dynamics.linear_system import State
 from vibroimpact.dynamics.local import Linearised, LocalContact, linearised, stacked
-from vibroimpact.dynamics.receptance import Receptance, Seen, Together, spectrum
+from vibroimpact.dynamics.receptance import NODES, Receptance, Seen, Together, spectrum
 from vibroimpact.dynamics.vibrating_stretch import VibratingStretch, motions_of
 
 _SWEEPS = 25
@@ -50,8 +50,6 @@ class StretchProblem:
         The system, as the contacts that push see it.
     locals : sequence of LocalContact
         The law of each, and what is in series with it.
-    nodes : int
-        How many, N.
     time_map : {"touch", "inside", "release"}
         In which root of time the forces are smooth.
     length : float
@@ -70,7 +68,6 @@ class StretchProblem:
 
     seen: Seen
     locals: Sequence[LocalContact]
-    nodes: int
     time_map: Map
     length: float
     start: State
@@ -84,7 +81,7 @@ class StretchProblem:
         """What has to be the same for stretches that are solved together."""
         laws = tuple((type(local.law), bool(local.series)) for local in self.locals)
         aim = None if self.aim is None else "level" if self.aim.name in ("parted", "breakpoint") else self.aim.name
-        return self.seen.of.kind, self.nodes, self.time_map, aim, self.guess is None, laws
+        return self.seen.of.kind, self.time_map, aim, self.guess is None, laws
 
     @property
     def size(self) -> int:
@@ -100,7 +97,7 @@ class StretchProblem:
 def solve_stretches(problems: Sequence[StretchProblem]) -> list[VibratingStretch]:
     """Return the motion through stretches of contact of one kind, by Newton's method."""
     first, number = problems[0], len(problems)
-    at = spectrum(first.nodes, first.time_map, max(local.law.root for local in first.locals))
+    at = spectrum(first.time_map, max(local.law.root for local in first.locals))
     systems = Together([problem.seen for problem in problems], [problem.start for problem in problems])
     locals_ = [stacked(of_one) for of_one in zip(*(problem.locals for problem in problems), strict=True)]
     length, event = np.array([problem.length for problem in problems]), _event_of(problems)
@@ -109,7 +106,7 @@ def solve_stretches(problems: Sequence[StretchProblem]) -> list[VibratingStretch
     own = np.array([local.near(begun[:, place], met[:, place]) for place, local in enumerate(locals_)]).T
     here = Receptance(systems, at, length)
     delta, force = _first_guess(problems, locals_, here, own) if first.guess is None else _guesses(problems)
-    largest = np.abs(here.rate).reshape(number, -1, first.nodes).max(axis=2) / length[:, None]
+    largest = np.abs(here.rate).reshape(number, -1, NODES).max(axis=2) / length[:, None]
     scale = (np.array([problem.seen.mass for problem in problems]) * (largest + np.abs(systems.gravity))).max(axis=1)
     static, size = np.zeros_like(force), np.full(number, np.inf)
     solved, going = np.zeros(number, dtype=bool), np.ones(number, dtype=bool)
@@ -173,7 +170,7 @@ def _stretches(
     approach, rate = here.approach - times(here.by_force, force), here.rate - times(here.rate_by, force)
     if here.by_static is not None:
         approach -= times(here.by_static, static)
-    begun_rate, shape = systems.begun_rate, (*met.shape, len(at.rule.nodes))
+    begun_rate, shape = systems.begun_rate, (*met.shape, NODES)
     if systems.massless:  # a dashpot takes up a jump of the force at once
         at_start = (rate.reshape(shape) @ at.rule.weights_at_start)[..., 0]
         begun_rate = np.where(systems.with_local.any(axis=2), at_start, begun_rate)
@@ -221,7 +218,7 @@ def _first_guess(
     problems: Sequence[StretchProblem], locals_: Sequence[LocalContact], here: Receptance, begun: Floats
 ) -> tuple[Floats, Floats]:
     """Return what the forces at the start, going on, make of indentations and forces at the nodes (B, M)."""
-    rates, shape = here.systems.begun_rate, (*begun.shape, len(here.at.rule.nodes))
+    rates, shape = here.systems.begun_rate, (*begun.shape, NODES)
     parts = np.array([local.own_forces(begun[:, place], rates[:, place]) for place, local in enumerate(locals_)])
     trend = np.array([problem.trend for problem in problems])
     later = trend[:, :, None] * (here.length[:, None] * here.at.rule.time)[:, None]
@@ -250,9 +247,7 @@ def _event_of(problems: Sequence[StretchProblem]) -> _Events | None:
     aims = [problem.aim for problem in problems if problem.aim is not None]
     if not aims:
         return None
-    return _Events(
-        aims[0].name, np.array([aim.level for aim in aims]), np.array([(aim.contact + 1) * problems[0].nodes - 1 for aim in aims])
-    )
+    return _Events(aims[0].name, np.array([aim.level for aim in aims]), np.array([(aim.contact + 1) * NODES - 1 for aim in aims]))
 
 
 def _newton_step(now: Linearised, here: Receptance, delta: Floats, force: Floats, event: _Events | None) -> tuple[Floats, Floats, Floats]:

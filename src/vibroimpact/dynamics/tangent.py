@@ -43,14 +43,7 @@ class Beside:
     def kind(self) -> tuple[object, ...]:
         """What has to be the same for differences that go through their stretches together."""
         local = self.stretch.contacts[0].local
-        return (
-            self.stretch.seen.of.kind,
-            len(self.stretch.rule.nodes),
-            self.stretch.rule.time_map,
-            type(local.law),
-            bool(local.series),
-            len(self.asides),
-        )
+        return self.stretch.seen.of.kind, self.stretch.rule.time_map, type(local.law), bool(local.series), len(self.asides)
 
     @property
     def size(self) -> int:
