@@ -142,6 +142,24 @@ def test_histories_are_those_of_integration_in_time(name: str, height: float) ->
             np.testing.assert_allclose(one[column] / scale, other[column] / scale, rtol=0, atol=2e-7, err_msg=column)
 
 
+@pytest.mark.parametrize("name", ["adams-impact", "flores", "jankowski", "kuwabara-kono", "thornton"])
+def test_a_drop_has_its_history_in_a_batch_of_which_some_are_integrated_in_time(name: str) -> None:
+    ball, pair = balls(12, 6)
+    law = vi.find_contact_law(name).example(pair)
+    if name == "flores":
+        law = law.changed({"restitution": np.linspace(0.02, 1.0, 12)})
+    if name == "adams-impact":
+        law = law.changed({"damping_max": law.damping_max * np.geomspace(0.1, 30.0, 12)})
+    stated = problem(sphere=ball, laws=(law,), height=ball.contact_offset + np.geomspace(1e-4, 2.0, 12), impacts=3)
+    together = vi.simulate(stated)
+    for number in range(12):
+        one, alone = together.drop(number), vi.simulate(stated.take(np.array([number]))).drop(0)
+        times = np.linspace(0.0, alone.end_time, 2000)[:-1]
+        for column in ("velocity_m_s", "contact_elastic_J", "contact_dissipated_J", "plastic_work_J"):
+            scale = float(alone.energy["input_J"]) if column.endswith("_J") else np.abs(alone.at(times)[column]).max()
+            np.testing.assert_allclose(one.at(times)[column] / scale, alone.at(times)[column] / scale, rtol=0, atol=1e-6, err_msg=column)
+
+
 @pytest.mark.usefixtures("plane_only")
 @pytest.mark.parametrize("name", sorted(SMOOTH - {"linear-spring-dashpot"}))
 def test_restitution_is_that_of_the_closed_form(name: str) -> None:

@@ -12,7 +12,8 @@ from vibroimpact.dynamics.plane_rule import DENSE
 from vibroimpact.dynamics.plane_way import PlaneWay
 
 _ROUNDING = 1e-11  # of the largest force
-_STEPS = 3
+_STEPS = 12
+_NEAR = 1e-6  # in y
 
 
 def pulls(way: PlaneWay) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
@@ -46,11 +47,13 @@ def end_of_push(encounter: Encounter, way: PlaneWay, pulling: NDArray[np.bool_])
     force = way.of(way.force, segment)
     slopes = rule.derivatives[0] @ force
     high, low = point / (DENSE - 1.0), np.maximum(point - 1.0, 0.0) / (DENSE - 1.0)
-    y = 0.5 * (low + high)
+    y, some = 0.5 * (low + high), pulling.any(axis=0)
     for _ in range(_STEPS):
         weights = rule.weights_at(y)
         slope = (weights * slopes).sum(axis=0)
-        y = np.clip(y - (weights * force).sum(axis=0) / slope, low, high)
+        before, y = y, np.clip(y - (weights * force).sum(axis=0) / slope, low, high)
+        if not (np.abs(y - before)[some] > _NEAR).any():  # and the next step is its square
+            break
     delta, square = way.at(segment, y)
     exact = np.add(*encounter.law.forces(delta, -np.sqrt(square), encounter.approach_speed))
     return segment, np.clip(y - exact / slope, low, high)
