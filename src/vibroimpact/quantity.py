@@ -7,7 +7,9 @@ import re
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
+
+from vibroimpact.arrays import Indices
 
 
 class Multiple(NamedTuple):
@@ -129,7 +131,7 @@ ALL_FIGURES = 17
 """Significant figures of a number that nothing takes digits from."""
 
 
-def certain_figures(change: ArrayLike) -> NDArray[np.intp]:
+def certain_figures(change: ArrayLike) -> Indices:
     """Return how many significant figures of numbers are certain, given their relative changes; the last may be off by three.
 
     Parameters

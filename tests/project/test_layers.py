@@ -13,7 +13,7 @@ PACKAGE = Path(vibroimpact.__file__).parent
 # from the ground up; a module may import its own layer's package and what is below
 LAYERS = [
     {"shown", "_version"},
-    {"errors"},
+    {"errors", "arrays"},
     {"ranges", "registry", "writing", "files", "unit_grammar"},
     {"units", "materials", "quantity"},
     {"contact"},

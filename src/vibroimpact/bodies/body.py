@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vibroimpact.contact.pair import Array
+from vibroimpact.arrays import Array
 from vibroimpact.errors import InputError
 
 if TYPE_CHECKING:

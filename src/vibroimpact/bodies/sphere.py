@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from vibroimpact.arrays import Array
 from vibroimpact.bodies.body import Body
-from vibroimpact.contact.pair import Array
 from vibroimpact.errors import InputError
 from vibroimpact.materials import Material
 

@@ -8,7 +8,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from vibroimpact.calibration.flights import Floats, Flown, Lasted
+from vibroimpact.arrays import Floats
+from vibroimpact.calibration.flights import Flown, Lasted
 from vibroimpact.dynamics.air import drag
 from vibroimpact.errors import InputError
 

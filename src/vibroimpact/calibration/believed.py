@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from vibroimpact.calibration.flights import Floats
+from vibroimpact.arrays import Floats
 from vibroimpact.calibration.observations import Observations
 
 _DEVIATIONS = 3.0

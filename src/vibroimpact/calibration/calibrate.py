@@ -6,12 +6,13 @@ from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
+from vibroimpact.arrays import Floats
 from vibroimpact.calibration.calibration import Calibration
 from vibroimpact.calibration.drops import by_function, drops_with, shortened
 from vibroimpact.calibration.match_drop import match_drop
 from vibroimpact.calibration.match_measurement import match_measurement
 from vibroimpact.calibration.matching import Tunable
-from vibroimpact.calibration.observations import Floats, Observations
+from vibroimpact.calibration.observations import Observations
 from vibroimpact.calibration.outcomes import REBOUND, REBOUNDS, check_weights
 from vibroimpact.calibration.overlay import overlays
 from vibroimpact.calibration.reach import other_parameters

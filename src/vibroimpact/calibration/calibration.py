@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from vibroimpact.arrays import Floats
 from vibroimpact.calibration.fitting import Fit
-from vibroimpact.calibration.observations import Floats, Observations
+from vibroimpact.calibration.observations import Observations
 from vibroimpact.calibration.overlay import Overlay
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.ranges import Range

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from vibroimpact.arrays import Floats
 from vibroimpact.calibration.calibration import Calibration
-from vibroimpact.calibration.observations import Floats
 from vibroimpact.calibration.outcomes import OUTCOMES
 
 COMPARED = {

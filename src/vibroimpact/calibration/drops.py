@@ -7,9 +7,10 @@ from dataclasses import replace
 
 import numpy as np
 
+from vibroimpact.arrays import Floats
 from vibroimpact.calibration.flights import Flights
 from vibroimpact.calibration.matching import Tunable
-from vibroimpact.calibration.observations import Floats, Observations
+from vibroimpact.calibration.observations import Observations
 from vibroimpact.calibration.one_impact import first_speed
 from vibroimpact.calibration.outcomes import OUTCOMES
 from vibroimpact.calibration.speed_function import SpeedFunction

@@ -8,8 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.polynomial import polynomial
 
+from vibroimpact.arrays import Floats
 from vibroimpact.calibration.matching import Tunable, scale_of, slopes
-from vibroimpact.calibration.observations import Floats, Observations
+from vibroimpact.calibration.observations import Observations
 from vibroimpact.calibration.speed_function import SpeedFunction
 from vibroimpact.errors import ComputationError, InputError
 

@@ -6,9 +6,8 @@ import itertools
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from vibroimpact.calibration.flights import Floats
+from vibroimpact.arrays import Bools, Floats, Indices
 from vibroimpact.calibration.force_rest import level_of_record, level_under_impact
 from vibroimpact.calibration.record_noise import ABOVE_NOISE, record_noise
 from vibroimpact.errors import InputError
@@ -34,7 +33,7 @@ class Pushes(NamedTuple):
 
     force: Floats
     noise: float
-    quiet: NDArray[np.bool_]
+    quiet: Bools
     runs: list[tuple[int, int]]
 
 
@@ -120,7 +119,7 @@ def _pulse(time: Floats, seen: Pushes, run: tuple[int, int], room: tuple[int, in
     )
 
 
-def _largest(number: NDArray[np.intp], force: Floats) -> float:
+def _largest(number: Indices, force: Floats) -> float:
     """Return the top of a parabola through the largest samples; the largest of them if they are few."""
     largest = float(force.max())
     top = np.flatnonzero(force > _TOP * largest)
@@ -146,7 +145,7 @@ def _joined(runs: list[tuple[int, int]]) -> list[tuple[int, int]]:
     return joined
 
 
-def _runs(above: NDArray[np.bool_]) -> list[tuple[int, int]]:
+def _runs(above: Bools) -> list[tuple[int, int]]:
     """Return where samples in a row are above, as first and behind the last."""
     edges = np.flatnonzero(np.diff(np.concatenate([[False], above, [False]]).astype(int)))
     return [(int(begin), int(end)) for begin, end in edges.reshape(-1, 2)]

@@ -7,7 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from vibroimpact.calibration.flights import Flights, Floats, Lasted, VacuumFlights
+from vibroimpact.arrays import Floats
+from vibroimpact.calibration.flights import Flights, Lasted, VacuumFlights
 from vibroimpact.calibration.force_pulses import Pulse, pulses_of, pushes
 from vibroimpact.calibration.observations import Observations, Record
 from vibroimpact.calibration.record_noise import named_samples

@@ -5,9 +5,8 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from vibroimpact.calibration.flights import Floats
+from vibroimpact.arrays import Bools, Floats
 
 _BLOCKS, _IN_BLOCK = 20, 25
 """Pieces of a record of which each has a level, at most, and the samples of one, at least."""
@@ -33,7 +32,7 @@ class Level(NamedTuple):
     wanders: float
 
 
-def level_of_record(time: Floats, force: Floats, quiet: NDArray[np.bool_]) -> Floats:
+def level_of_record(time: Floats, force: Floats, quiet: Bools) -> Floats:
     """Return the level of a record at each of its times: straight between the medians of pieces of what is quiet.
 
     Examples
@@ -55,9 +54,7 @@ def level_of_record(time: Floats, force: Floats, quiet: NDArray[np.bool_]) -> Fl
     return found
 
 
-def level_under_impact(
-    time: Floats, force: Floats, quiet: NDArray[np.bool_], part: slice, room: tuple[int, int], length: int, noise: float
-) -> Level:
+def level_under_impact(time: Floats, force: Floats, quiet: Bools, part: slice, room: tuple[int, int], length: int, noise: float) -> Level:
     """Return the level under an impact, from what is quiet on either side: a parabola, or a line where there is little time.
 
     As much is taken on one side as on the other. So what a charge amplifier makes of the impact itself, a lower level after it than
@@ -93,7 +90,7 @@ def level_under_impact(
 def _level(
     time: Floats,
     force: Floats,
-    quiet: NDArray[np.bool_],
+    quiet: Bools,
     part: slice,
     room: tuple[int, int],
     length: int,

@@ -7,11 +7,12 @@ from dataclasses import fields
 
 import numpy as np
 
+from vibroimpact.arrays import Floats
 from vibroimpact.calibration.drops import impacts_of, shortened
 from vibroimpact.calibration.fitting import fit_values
 from vibroimpact.calibration.matched import Matched, degree_of
 from vibroimpact.calibration.matching import Tunable, match
-from vibroimpact.calibration.observations import Floats, Observations
+from vibroimpact.calibration.observations import Observations
 from vibroimpact.calibration.one_impact import one_impact, stacked
 from vibroimpact.calibration.outcomes import OUTCOMES
 from vibroimpact.calibration.reach import check_reached

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import NamedTuple
 
+from vibroimpact.arrays import Floats
 from vibroimpact.calibration.fitting import Fit, distinct
-from vibroimpact.calibration.observations import Floats, Observations
+from vibroimpact.calibration.observations import Observations
 
 
 class Matched(NamedTuple):

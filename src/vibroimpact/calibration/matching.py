@@ -6,9 +6,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from vibroimpact.calibration.observations import Floats
+from vibroimpact.arrays import Floats, Indices
 from vibroimpact.calibration.outcomes import REBOUNDS
 from vibroimpact.contact.roots import find_root, solve_monotonic
 from vibroimpact.dynamics.problem import Problem
@@ -50,7 +49,7 @@ class Tunable:
     allowed: Range
     start: float
     given: Floats
-    respond: Callable[[Floats, Floats, NDArray[np.intp]], dict[str, Floats]]
+    respond: Callable[[Floats, Floats, Indices], dict[str, Floats]]
     drop: Callable[[Floats], Problem]
     damps: bool = False
 
@@ -69,7 +68,7 @@ def match(
     speeds: Floats,
     wanted: Mapping[str, Floats],
     weights: Mapping[str, float],
-    which: NDArray[np.intp],
+    which: Indices,
     farthest: int = 20,
 ) -> Match:
     """Return the value with which each impact comes out as wanted, or as near to that as can be.
@@ -161,7 +160,7 @@ class Slopes:
     by_speed: dict[str, Floats]
 
 
-def slopes(tunable: Tunable, speeds: Floats, values: Floats, which: NDArray[np.intp]) -> Slopes:
+def slopes(tunable: Tunable, speeds: Floats, values: Floats, which: Indices) -> Slopes:
     """Return outcomes of impacts and their derivatives, by central differences inside the range of the parameter."""
     step = _STEP * np.maximum(np.abs(values), 1e-3 * tunable.start)
     high, low = tunable.allowed.clip(values + step), tunable.allowed.clip(values - step)

@@ -7,11 +7,9 @@ from dataclasses import dataclass, field, replace
 from typing import Literal, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from vibroimpact.arrays import Floats, Indices
 from vibroimpact.calibration.flights import Flights, VacuumFlights, as_in_vacuum
-
-Floats = NDArray[np.float64]
 
 
 class Record(NamedTuple):
@@ -79,7 +77,7 @@ class Observations:
         return bool(self.noise)
 
     @property
-    def which(self) -> NDArray[np.intp]:
+    def which(self) -> Indices:
         """Which impact of the drop each stands for; those that were measured apart from it for the first, (n,)."""
         return np.arange(len(self.speeds)) if self.of_the_drop else np.zeros(len(self.speeds), dtype=np.intp)
 

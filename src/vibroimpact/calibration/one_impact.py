@@ -7,7 +7,7 @@ from dataclasses import fields, replace
 
 import numpy as np
 
-from vibroimpact.calibration.observations import Floats
+from vibroimpact.arrays import Floats
 from vibroimpact.calibration.outcomes import OUTCOMES
 from vibroimpact.contact.law import ContactLaw
 from vibroimpact.dynamics.outcome import Outcome

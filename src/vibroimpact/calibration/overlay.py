@@ -8,9 +8,10 @@ from typing import Literal
 
 import numpy as np
 
+from vibroimpact.arrays import Floats
 from vibroimpact.calibration.flights import VacuumFlights
 from vibroimpact.calibration.matching import Tunable
-from vibroimpact.calibration.observations import Floats, Observations
+from vibroimpact.calibration.observations import Observations
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.simulate import simulate
 

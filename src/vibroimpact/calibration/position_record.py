@@ -8,10 +8,10 @@ from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from vibroimpact.arrays import Floats, Indices
 from vibroimpact.calibration.flights import Flights, VacuumFlights, as_in_vacuum
-from vibroimpact.calibration.observations import Floats, Observations, Record
+from vibroimpact.calibration.observations import Observations, Record
 from vibroimpact.calibration.record_noise import ABOVE_NOISE, named_samples, record_noise
 from vibroimpact.contact.roots import find_root
 from vibroimpact.errors import InputError
@@ -191,7 +191,7 @@ def _where_they_meet(one: _Flight, other: _Flight, flying: Flights) -> float:
     return float(one.top - flying.fallen(find_root(apart, *ends) - one.when)[0][0])
 
 
-def _lowest(position: Floats, noise: float) -> NDArray[np.intp]:
+def _lowest(position: Floats, noise: float) -> Indices:
     """Return the samples at which the sphere is lowest between two flights."""
     from scipy.signal import find_peaks
 

@@ -7,9 +7,10 @@ from dataclasses import fields
 
 import numpy as np
 
+from vibroimpact.arrays import Floats
 from vibroimpact.calibration.believed import believed, restitutions
 from vibroimpact.calibration.matching import Match, Tunable, match, slopes
-from vibroimpact.calibration.observations import Floats, Observations
+from vibroimpact.calibration.observations import Observations
 from vibroimpact.calibration.outcomes import OUTCOMES, REBOUNDS
 from vibroimpact.calibration.tunables import law_parameter
 from vibroimpact.contact.law import CompliantLaw

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from vibroimpact.calibration.observations import Floats
+from vibroimpact.arrays import Floats
 
 ABOVE_NOISE = 6.0
 """Standard deviations that tell something from noise."""

@@ -6,10 +6,9 @@ from dataclasses import fields, replace
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
+from vibroimpact.arrays import Floats, Indices
 from vibroimpact.calibration.matching import Tunable
-from vibroimpact.calibration.observations import Floats
 from vibroimpact.calibration.one_impact import one_impact, stacked
 from vibroimpact.contact.law import ContactLaw, unit_of
 from vibroimpact.dynamics.problem import Problem
@@ -51,7 +50,7 @@ def law_parameter(problem: Problem, name: str | None = None) -> Tunable:
     given = np.array([float(getattr(law, chosen)) for law in laws])
     start = next((value for value in (given[0], told["example"]) if value), 1.0)
 
-    def respond(speeds: Floats, values: Floats, which: NDArray[np.intp]) -> dict[str, Floats]:
+    def respond(speeds: Floats, values: Floats, which: Indices) -> dict[str, Floats]:
         law = stacked(laws, int(which.max()) + 1)
         return one_impact(problem, law.take(which).changed({chosen: values}), speeds)
 
@@ -88,7 +87,7 @@ def modal_damping(problem: Problem, body: Literal["sphere", "plate"]) -> Tunable
         ratios = np.where(modes.frequencies > 0.0, ratio, 0.0)
         return replace(problem, **{body: replace(getattr(problem, body), modes=replace(modes, damping_ratios=ratios))})
 
-    def respond(speeds: Floats, values: Floats, which: NDArray[np.intp]) -> dict[str, Floats]:
+    def respond(speeds: Floats, values: Floats, which: Indices) -> dict[str, Floats]:
         each = [
             one_impact(damped(float(value)), _law(problem.laws, int(impact)), np.array([speed]))
             for speed, value, impact in zip(speeds, values, which, strict=True)

@@ -7,12 +7,12 @@ from dataclasses import replace
 
 import numpy as np
 from numpy.polynomial import polynomial
-from numpy.typing import NDArray
 
+from vibroimpact.arrays import Floats, Indices
 from vibroimpact.calibration.drops import impacts_of
 from vibroimpact.calibration.fitting import Fit
 from vibroimpact.calibration.matching import Tunable, match
-from vibroimpact.calibration.observations import Floats, Observations
+from vibroimpact.calibration.observations import Observations
 from vibroimpact.dynamics.problem import Problem
 
 _DRAWN_VALUES = 2000  # that a bootstrap finds unless more is asked for, so that it takes seconds
@@ -104,7 +104,7 @@ def with_nearest_end(
     speeds: Floats,
     wanted: Mapping[str, Floats],
     weights: Mapping[str, float],
-    which: NDArray[np.intp],
+    which: Indices,
 ) -> Floats:
     """Return values, with the end of the range that comes nearest to what is wanted where nothing meets it."""
     missing = np.flatnonzero(np.isnan(values))

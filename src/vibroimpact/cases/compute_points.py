@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from vibroimpact.arrays import Indices
 from vibroimpact.cases.case import Case
 from vibroimpact.cases.rigid import deforms, rigid_problem
 from vibroimpact.cases.study_limits import batch_conditions, drop_conditions, limit_columns
@@ -44,7 +45,7 @@ class _Study(NamedTuple):
 class _Part(NamedTuple):
     """What came of the drops at some places of a chunk."""
 
-    places: NDArray[np.intp]
+    places: Indices
     arrays: dict[str, NDArray[Any]]
     failures: dict[int, str]
 
@@ -86,7 +87,7 @@ def compute_points(table: Mapping[str, Any], keep: tuple[str, ...], first: int, 
     return ChunkResult(_gathered(parts, count), dict(sorted(failures.items())))
 
 
-def _alike(points: Mapping[str, Values]) -> Iterator[NDArray[np.intp]]:
+def _alike(points: Mapping[str, Values]) -> Iterator[Indices]:
     """Yield the places of drops that differ in nothing but numbers that may run as arrays."""
     others = [values for key, values in points.items() if not is_array_key(key, values)]
     count = len(next(iter(points.values())))
@@ -99,7 +100,7 @@ def _alike(points: Mapping[str, Values]) -> Iterator[NDArray[np.intp]]:
     yield from (np.array(places) for places in groups.values())
 
 
-def _parts(study: _Study, places: NDArray[np.intp]) -> Iterator[_Part]:
+def _parts(study: _Study, places: Indices) -> Iterator[_Part]:
     """Compute the drops at places that are alike."""
     while places.size:
         try:
@@ -141,7 +142,7 @@ def _alone(study: _Study, place: np.intp) -> _Part:
     return next(_side_by_side(study, np.array([place])))
 
 
-def _side_by_side(study: _Study, places: NDArray[np.intp]) -> Iterator[_Part]:
+def _side_by_side(study: _Study, places: Indices) -> Iterator[_Part]:
     """Compute drops that each have bodies of their own, some at once; whatever fails one of them is its reason, and the others go on."""
     for begin in range(0, len(places), _TOGETHER):
         some, problems = places[begin : begin + _TOGETHER], {}

@@ -10,9 +10,10 @@ from typing import Any
 
 import numpy as np
 
+from vibroimpact.arrays import Array
 from vibroimpact.contact.elastic_plastic import ElasticPlasticLaw
 from vibroimpact.contact.law import ContactLaw, InstantaneousLaw, find_contact_law
-from vibroimpact.contact.pair import Array, effective_modulus, hertz_stiffness
+from vibroimpact.contact.pair import effective_modulus, hertz_stiffness
 from vibroimpact.materials import RIGID, Material
 
 _LIKE_HERTZ = 0.01  # a stiffness that is off by more was measured, or fitted, and holds what Hertz's lacks

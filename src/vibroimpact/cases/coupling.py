@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
+from vibroimpact.arrays import Floats
 from vibroimpact.bodies.sphere import rigid_sphere
 from vibroimpact.calibration.local_element import identify_local_element, local_element_deviations
 from vibroimpact.cases.local_section import MeasuredImpact
@@ -23,7 +24,6 @@ from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.simulate import simulate
 from vibroimpact.errors import InputError
 from vibroimpact.materials import Material
-from vibroimpact.structures.mesh import Floats
 from vibroimpact.structures.modal_model import ModalBasis, ModalModel
 from vibroimpact.structures.plate_face import face_shapes
 from vibroimpact.structures.plate_waves import inertia_beyond_bending

@@ -8,8 +8,8 @@ from functools import cache
 
 import numpy as np
 
+from vibroimpact.arrays import Array
 from vibroimpact.cases.conditions import Conditions
-from vibroimpact.contact.pair import Array
 from vibroimpact.registry import modules_in
 
 

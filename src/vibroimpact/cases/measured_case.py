@@ -6,8 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from vibroimpact.arrays import Floats
 from vibroimpact.calibration.believed import Believed, believed, restitutions
-from vibroimpact.calibration.flights import Flights, Floats, VacuumFlights, as_in_vacuum
+from vibroimpact.calibration.flights import Flights, VacuumFlights, as_in_vacuum
 from vibroimpact.calibration.observations import Observations, from_heights, from_table
 from vibroimpact.calibration.outcomes import OUTCOMES
 from vibroimpact.cases.calibrate_section import ImpactTarget, RestitutionTarget

@@ -8,7 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from vibroimpact.calibration.flights import Flights, Floats, VacuumFlights, as_in_vacuum
+from vibroimpact.arrays import Floats
+from vibroimpact.calibration.flights import Flights, VacuumFlights, as_in_vacuum
 from vibroimpact.calibration.force_record import impacts_in_force
 from vibroimpact.calibration.observations import Observations, from_table
 from vibroimpact.calibration.outcomes import OUTCOMES

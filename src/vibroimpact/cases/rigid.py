@@ -6,11 +6,12 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from vibroimpact.arrays import Array
 from vibroimpact.bodies.body import Body
 from vibroimpact.bodies.plate import rigid_plate
 from vibroimpact.bodies.sphere import rigid_sphere
 from vibroimpact.contact.law import ContactLaw, find_contact_law
-from vibroimpact.contact.pair import Array, ContactPair, effective_modulus
+from vibroimpact.contact.pair import ContactPair, effective_modulus
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.errors import InputError
 

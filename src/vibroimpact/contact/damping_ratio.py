@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from vibroimpact.contact.pair import Array
+from vibroimpact.arrays import Array
 
 
 def damping_ratio_of(restitution: Array) -> Array:

@@ -7,8 +7,8 @@ from typing import ClassVar, Self
 
 import numpy as np
 
+from vibroimpact.arrays import Array
 from vibroimpact.contact.law import CompliantLaw, memory
-from vibroimpact.contact.pair import Array
 from vibroimpact.contact.power_law import power
 
 

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from vibroimpact.arrays import Array
 from vibroimpact.contact.damping_ratio import restitution_of
 from vibroimpact.contact.law import CompliantLaw, parameter
-from vibroimpact.contact.pair import Array
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -20,7 +20,8 @@ from typing import Any, ClassVar, Literal, Self, cast
 
 import numpy as np
 
-from vibroimpact.contact.pair import Array, ContactPair
+from vibroimpact.arrays import Array
+from vibroimpact.contact.pair import ContactPair
 from vibroimpact.errors import InputError, did_you_mean
 from vibroimpact.ranges import Range
 from vibroimpact.registry import find_named, modules_in

@@ -7,8 +7,8 @@ from typing import Self
 
 import numpy as np
 
+from vibroimpact.arrays import Array
 from vibroimpact.contact.law import CompliantLaw, memory
-from vibroimpact.contact.pair import Array
 
 
 @dataclass(frozen=True, kw_only=True)

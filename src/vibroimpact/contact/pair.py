@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
+from vibroimpact.arrays import Array
 from vibroimpact.materials import Material
-
-Array = Any  # a float, or an array of any library that follows NumPy's operators and ufuncs
 
 
 def effective_modulus(first: Material, second: Material) -> Array:

@@ -7,7 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
-from vibroimpact.contact.pair import Array
+from vibroimpact.arrays import Array
 
 
 @dataclass(frozen=True)

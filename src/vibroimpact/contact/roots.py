@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from vibroimpact.contact.pair import Array
+from vibroimpact.arrays import Array
 from vibroimpact.ranges import Range
 
 _FARTHEST = 20  # steps of four from its start in which a value is looked for

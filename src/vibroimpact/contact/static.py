@@ -6,8 +6,8 @@ from collections.abc import Callable
 
 import numpy as np
 
+from vibroimpact.arrays import Array
 from vibroimpact.contact.law import CompliantLaw
-from vibroimpact.contact.pair import Array
 from vibroimpact.contact.roots import find_root
 
 

@@ -6,9 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from vibroimpact.arrays import Array
 from vibroimpact.contact.elastic_plastic import ElasticPlasticLaw
 from vibroimpact.contact.law import parameter
-from vibroimpact.contact.pair import Array, hertz_stiffness
+from vibroimpact.contact.pair import hertz_stiffness
 
 
 @dataclass(frozen=True, kw_only=True)

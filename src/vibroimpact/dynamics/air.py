@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from vibroimpact.contact.pair import Array
+from vibroimpact.arrays import Array
 
 AIR_DENSITY, AIR_VISCOSITY = 1.2, 1.81e-5
 """Density [kg/m^3] and viscosity [Pa s] of air at 20 C and sea level."""

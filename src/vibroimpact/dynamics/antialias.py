@@ -15,7 +15,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from vibroimpact.dynamics.collocation import Floats
+from vibroimpact.arrays import Floats
 from vibroimpact.dynamics.pole_pairs import PolePairs
 from vibroimpact.dynamics.sensor import CORNER, Sensor
 

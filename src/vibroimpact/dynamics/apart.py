@@ -5,9 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from vibroimpact.dynamics.collocation import Floats
+from vibroimpact.arrays import Bools, Floats
 from vibroimpact.dynamics.linear_system import FreeMotion, LinearSystem, State
 from vibroimpact.dynamics.local import LocalContact
 
@@ -34,7 +33,7 @@ class Apart:
         """How long it lasts [s], as an array of one."""
         return np.array([self.length])
 
-    def take(self, drops: NDArray[np.bool_]) -> Apart:
+    def take(self, drops: Bools) -> Apart:
         """Return itself: it is of one drop."""
         return self
 

@@ -21,9 +21,9 @@ from typing import Literal
 
 import numpy as np
 from numpy.polynomial import legendre
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from vibroimpact.arrays import Floats
+
 Map = Literal["touch", "inside", "release"]
 
 

@@ -8,13 +8,11 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from vibroimpact.arrays import Bools, Drops, Floats
 from vibroimpact.contact.law import CompliantLaw
-from vibroimpact.dynamics.collocation import Floats
 from vibroimpact.dynamics.glide import Glide
 from vibroimpact.dynamics.plane_motion import PlaneMotion
 from vibroimpact.dynamics.stretch import Stretch
-
-Drops = NDArray[np.intp]
 
 COMPRESSION, RESTITUTION, GLIDE, RELEASED, CAPTURED, FAILED, SETTLED, RIDING = range(8)
 """Where a drop is in its contact; from RELEASED on it is over.
@@ -30,7 +28,7 @@ class PartOfVisit(Protocol):
     def duration(self) -> Floats:
         """How long it lasts [s], (1,)."""
 
-    def take(self, drops: NDArray[np.bool_]) -> PartOfVisit:
+    def take(self, drops: Bools) -> PartOfVisit:
         """Return itself."""
 
 

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from vibroimpact.dynamics.collocation import Floats, Rule
+from vibroimpact.arrays import Floats
+from vibroimpact.dynamics.collocation import Rule
 from vibroimpact.dynamics.local import LocalContact
 
 

@@ -12,12 +12,12 @@ the drop advances by stretches of a given, adapted duration until the end comes 
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from vibroimpact.arrays import Bools, Drops, Floats, Indices
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.static import static_indentation, static_work
-from vibroimpact.dynamics.collocation import Floats, Map, Rule, collocation_rule
-from vibroimpact.dynamics.contact import CAPTURED, COMPRESSION, FAILED, GLIDE, RELEASED, RESTITUTION, Contact, Drops, Piece
+from vibroimpact.dynamics.collocation import Map, Rule, collocation_rule
+from vibroimpact.dynamics.contact import CAPTURED, COMPRESSION, FAILED, GLIDE, RELEASED, RESTITUTION, Contact, Piece
 from vibroimpact.dynamics.encounter import Encounter
 from vibroimpact.dynamics.glide import glide_until_push
 from vibroimpact.dynamics.guess import first_guess, time_scale
@@ -111,8 +111,8 @@ class _Phase:
             ahead = (levels[drops] > self.delta[drops]) & (levels[drops] < self.depth[drops]) & sought
             level[ahead] = levels[drops][ahead]
         touching, turning = self.time[drops] == 0.0, np.isinf(level)
-        maps: tuple[tuple[NDArray[np.bool_], Map], ...] = ((touching, "touch"), (~touching, "inside"))
-        aims: tuple[tuple[NDArray[np.bool_], Aim], ...] = ((turning, "turn"), (~turning, "indentation"))
+        maps: tuple[tuple[Bools, Map], ...] = ((touching, "touch"), (~touching, "inside"))
+        aims: tuple[tuple[Bools, Aim], ...] = ((turning, "turn"), (~turning, "indentation"))
         for here, time_map in maps:
             for there, aim in aims:
                 if (both := here & there).any():
@@ -125,7 +125,7 @@ class _Phase:
             ahead = (levels[drops] < self.delta[drops]) & (levels[drops] > level)
             level[ahead] = levels[drops][ahead]
         last = level == self.encounter.floor[drops]
-        maps: tuple[tuple[NDArray[np.bool_], Map], ...] = ((last, "release"), (~last, "inside"))
+        maps: tuple[tuple[Bools, Map], ...] = ((last, "release"), (~last, "inside"))
         for here, time_map in maps:
             if here.any():
                 self.advance(drops[here], time_map, "indentation", level[here])
@@ -204,7 +204,7 @@ class _Phase:
         if good.any():
             self.accept(drops[good], stretch.take(good), aim, level[good])
 
-    def good(self, drops: Drops, stretch: Stretch) -> NDArray[np.bool_]:
+    def good(self, drops: Drops, stretch: Stretch) -> Bools:
         """Is the stretch resolved, does the rate keep its sign, and does the indentation stay positive?"""
         slack = 1e-12 * self.encounter.approach_speed[drops]
         down = self.outcome[drops] == COMPRESSION
@@ -212,10 +212,10 @@ class _Phase:
         above = stretch.node_delta[:-1].min(axis=0) >= self.encounter.floor[drops]
         return np.asarray(self.resolved(drops, stretch) & one_way & above)
 
-    def resolved(self, drops: Drops, stretch: Stretch) -> NDArray[np.bool_]:
+    def resolved(self, drops: Drops, stretch: Stretch) -> Bools:
         return stretch.resolved(self.encounter.take(drops), self.tolerance)
 
-    def pushes_no_more(self, drops: Drops) -> NDArray[np.bool_]:
+    def pushes_no_more(self, drops: Drops) -> Bools:
         """Does the law pull already where the drops are, or not push?"""
         here = self.encounter.take(drops)
         return np.asarray(here.acceleration(self.delta[drops], self.velocity[drops]) >= here.gravity)
@@ -349,7 +349,7 @@ class _Phase:
             self.accept(drops[clear], stretch.take(clear), "duration", level[clear])
         first_turn, first_cross = (np.where(seen.any(axis=0), seen.argmax(axis=0), self.number) for seen in (turned, crossed))
         turns = first_turn < first_cross
-        events: tuple[tuple[NDArray[np.bool_], NDArray[np.intp], Aim], ...] = (
+        events: tuple[tuple[Bools, Indices, Aim], ...] = (
             (turns, first_turn, "turn"),
             (~turns, first_cross, "indentation"),
         )

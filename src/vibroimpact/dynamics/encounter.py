@@ -5,11 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from vibroimpact.arrays import Floats, Indices
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.static import free_depth, static_indentation
-from vibroimpact.dynamics.collocation import Floats
 
 
 @dataclass(frozen=True)
@@ -29,11 +28,11 @@ class Encounter:
     speed_scale: Floats
     floor: Floats
 
-    def take(self, drops: NDArray[np.intp]) -> Encounter:
+    def take(self, drops: Indices) -> Encounter:
         """Return the encounter of some of the drops, in rising order."""
         return self if len(drops) == len(self.mass) else self.pick(drops)
 
-    def pick(self, drops: NDArray[np.intp]) -> Encounter:
+    def pick(self, drops: Indices) -> Encounter:
         """Return the encounter of some drops in any order."""
         arrays = (self.mass, self.gravity, self.approach_speed, self.depth, self.speed_scale, self.floor)
         return Encounter(self.law.take(drops), *(array[drops] for array in arrays))

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from vibroimpact.dynamics.collocation import Floats
+from vibroimpact.arrays import Floats
 
 CLOSURE_LIMIT = 1e-6
 """The part of the energy put in that may be missing; above it a run has failed."""

@@ -18,8 +18,8 @@ from functools import lru_cache
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
+from vibroimpact.arrays import Floats
 from vibroimpact.dynamics.antialias import FINENESS, REACH, kernel, kernel_derivatives
-from vibroimpact.dynamics.collocation import Floats
 from vibroimpact.dynamics.measuring_chain import MeasuringChain
 from vibroimpact.dynamics.oscillators import Oscillators
 from vibroimpact.dynamics.pulses import gauss_rule

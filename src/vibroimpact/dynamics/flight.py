@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from vibroimpact.dynamics.collocation import Floats
+from vibroimpact.arrays import Floats
 
 
 @dataclass(frozen=True)

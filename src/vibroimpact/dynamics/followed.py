@@ -9,10 +9,9 @@ from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from vibroimpact.arrays import Bools, Floats
 from vibroimpact.dynamics.antialias import FINENESS, REACH, kernel
-from vibroimpact.dynamics.collocation import Floats
 from vibroimpact.dynamics.filtered_chain import FilteredChain, filter_gains, filtered_chain
 from vibroimpact.dynamics.lying import Lying
 from vibroimpact.dynamics.lying_chain import lying_chain, lying_pulses
@@ -265,7 +264,7 @@ class _Blocks:
     sine: Floats
     later: Floats
 
-    def pick(self, which: NDArray[np.bool_]) -> _Blocks:
+    def pick(self, which: Bools) -> _Blocks:
         """Return some of the oscillators."""
         of = self.of.pick(np.flatnonzero(which))
         return _Blocks(of, self.outputs[..., which], self.cosine[:, which], self.sine[:, which], self.later[..., which])

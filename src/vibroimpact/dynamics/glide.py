@@ -5,9 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from vibroimpact.dynamics.collocation import Floats
+from vibroimpact.arrays import Bools, Floats
 from vibroimpact.dynamics.encounter import Encounter
 
 _SAMPLES = 33
@@ -32,7 +31,7 @@ class Glide:
         delta = self.delta + time * (self.velocity + 0.5 * self.gravity * time)
         return np.maximum(delta, self.floor), self.velocity + self.gravity * time
 
-    def take(self, drops: NDArray[np.bool_]) -> Glide:
+    def take(self, drops: Bools) -> Glide:
         """Return the glide of the drops under a mask."""
         return Glide(self.duration[drops], self.delta[drops], self.velocity[drops], self.gravity[drops], self.floor[drops])
 
@@ -42,7 +41,7 @@ class Glide:
         return np.where(delta - self.floor < 1e-14 * (self.delta - self.floor), self.floor, delta), velocity
 
 
-def glide_until_push(encounter: Encounter, delta: Floats, velocity: Floats) -> tuple[Glide, NDArray[np.bool_], NDArray[np.bool_]]:
+def glide_until_push(encounter: Encounter, delta: Floats, velocity: Floats) -> tuple[Glide, Bools, Bools]:
     """Follow drops freely until the law's force becomes positive again, or they are out.
 
     Returns

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from vibroimpact.dynamics.collocation import Floats, Rule
+from vibroimpact.arrays import Floats
+from vibroimpact.dynamics.collocation import Rule
 from vibroimpact.dynamics.encounter import Encounter
 from vibroimpact.dynamics.stretch import Aim
 

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-from vibroimpact.dynamics.collocation import Floats
+from vibroimpact.arrays import Floats, Indices
 
 MOST_POINTS = 1_000_000
 """Of a history that is kept in a file: a hundred million bytes of it."""
@@ -14,7 +13,7 @@ _WHOLE = 0.25  # of those points: what the first segments get, so that they are 
 _LEAST = 3  # points of a segment: both of its ends, which are events, and its middle
 
 
-def points_kept(points: NDArray[np.intp], most: int) -> NDArray[np.intp]:
+def points_kept(points: Indices, most: int) -> Indices:
     """Return how many points each segment of a history keeps, so that they are about `most` in all.
 
     If it is too long the first segments keep all of theirs, up to a quarter of `most`; each of the others keeps equally many.

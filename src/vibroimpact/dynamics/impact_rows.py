@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from vibroimpact.dynamics.collocation import Floats
+from vibroimpact.arrays import Floats
 
 _FIRST = 4  # rows; each block of memory has as many as all before it
 

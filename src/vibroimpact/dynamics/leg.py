@@ -5,9 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from vibroimpact.dynamics.collocation import Floats
+from vibroimpact.arrays import Floats, Indices
 from vibroimpact.dynamics.contact import Contact
 from vibroimpact.dynamics.encounter import Encounter
 from vibroimpact.dynamics.flight import Flight
@@ -22,10 +21,10 @@ class Leg:
     None for a flight that ends the run and for an instantaneous law.
     """
 
-    drops: NDArray[np.intp]
+    drops: Indices
     flight: Flight
     flight_end: Floats
-    contact_drops: NDArray[np.intp]
+    contact_drops: Indices
     contact: Contact | None = None
     encounter: Encounter | None = None
     motions: tuple[FreeMotion, ...] = ()

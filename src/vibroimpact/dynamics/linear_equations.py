@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from vibroimpact.dynamics.collocation import Floats
+from vibroimpact.arrays import Floats
 
 
 def times(matrices: Floats, values: Floats) -> Floats:

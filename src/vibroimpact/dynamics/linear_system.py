@@ -20,9 +20,8 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from vibroimpact.dynamics.collocation import Floats
+from vibroimpact.arrays import Bools, Floats, Indices
 from vibroimpact.dynamics.oscillators import Oscillators
 
 _ALIKE = 1e-12  # of the parts of an acceleration: what is less is rounding
@@ -70,11 +69,11 @@ class LinearSystem(Oscillators):
 
     offset: Floats
     load: Floats
-    inside: NDArray[np.bool_]
-    below: NDArray[np.bool_]
+    inside: Bools
+    below: Bools
     rate: Floats
     mobility: Floats
-    at: NDArray[np.intp]
+    at: Indices
 
     @cached_property
     def views(self) -> dict[tuple[int, ...], Any]:
@@ -95,17 +94,17 @@ class LinearSystem(Oscillators):
         return found
 
     @cached_property
-    def rigid(self) -> NDArray[np.bool_]:
+    def rigid(self) -> Bools:
         """Which coordinates are motions as a rigid body (n,)."""
         return np.asarray(self.angular_frequency == 0.0)
 
     @property
-    def ground(self) -> NDArray[np.bool_]:
+    def ground(self) -> Bools:
         """Of a drop: which are of the body below (n,)."""
         return np.asarray(self.below[0])
 
     @cached_property
-    def vibrating(self) -> NDArray[np.bool_]:
+    def vibrating(self) -> Bools:
         """Which are modes of vibration (n,)."""
         return ~self.rigid
 

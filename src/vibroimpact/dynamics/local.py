@@ -10,8 +10,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from vibroimpact.arrays import Array
 from vibroimpact.contact.law import CompliantLaw
-from vibroimpact.contact.pair import Array
 from vibroimpact.contact.quasi_static import QuasiStatic
 
 _SWEEPS = 40

@@ -7,7 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
-from vibroimpact.dynamics.collocation import Floats
+from vibroimpact.arrays import Floats
 from vibroimpact.dynamics.linear_system import State
 from vibroimpact.dynamics.oscillators import Oscillators
 from vibroimpact.dynamics.riding import Riding, coupled_oscillators

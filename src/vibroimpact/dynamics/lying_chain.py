@@ -18,8 +18,8 @@ from functools import reduce
 
 import numpy as np
 
+from vibroimpact.arrays import Floats
 from vibroimpact.dynamics.antialias import Section
-from vibroimpact.dynamics.collocation import Floats
 from vibroimpact.dynamics.lying import Lying
 from vibroimpact.dynamics.measuring_chain import MeasuringChain, of_section, point_at
 from vibroimpact.dynamics.oscillators import Oscillators

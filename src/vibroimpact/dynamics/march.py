@@ -13,11 +13,12 @@ from functools import partial
 
 import numpy as np
 
+from vibroimpact.arrays import Floats
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.roots import find_root
 from vibroimpact.contact.static import free_depth
 from vibroimpact.dynamics.apart import Apart, given_up
-from vibroimpact.dynamics.collocation import Floats, Map
+from vibroimpact.dynamics.collocation import Map
 from vibroimpact.dynamics.ending import before_event, broken, end_at, growth
 from vibroimpact.dynamics.linear_system import FreeMotion, LinearSystem, State
 from vibroimpact.dynamics.local import LocalContact

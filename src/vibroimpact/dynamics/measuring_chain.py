@@ -18,8 +18,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from vibroimpact.arrays import Floats
 from vibroimpact.dynamics.antialias import Section
-from vibroimpact.dynamics.collocation import Floats
 from vibroimpact.dynamics.oscillators import Oscillators
 from vibroimpact.dynamics.pole_pairs import PolePairs
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from vibroimpact.dynamics.collocation import Floats
+from vibroimpact.arrays import Floats
 from vibroimpact.dynamics.linear_system import FreeMotion, LinearSystem, State
 
 _MOST_STEPS = 100_000

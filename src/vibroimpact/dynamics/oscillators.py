@@ -6,9 +6,8 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
-from vibroimpact.dynamics.collocation import Floats
+from vibroimpact.arrays import Bools, Floats, Indices
 
 
 @dataclass(frozen=True)
@@ -37,7 +36,7 @@ class Oscillators:
         """Twice the damping ratio times the angular frequency [1/s] (n,)."""
         return 2.0 * self.damping_ratio * self.angular_frequency
 
-    def pick(self, which: NDArray[np.intp] | NDArray[np.bool_]) -> Oscillators:
+    def pick(self, which: Indices | Bools) -> Oscillators:
         """Return some of them."""
         return Oscillators(self.angular_frequency[which], self.damping_ratio[which], self.shape[..., which])
 

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from vibroimpact.arrays import Floats
 from vibroimpact.dynamics.antialias import REACH, AntiAlias, kernel, parallel
-from vibroimpact.dynamics.collocation import Floats
 from vibroimpact.dynamics.followed import follow_filtered_chain
 from vibroimpact.dynamics.measuring_chain import MeasuringChain
 from vibroimpact.dynamics.sensor import sample_count

@@ -9,7 +9,8 @@ from functools import cache
 from typing import Any, Generic, NamedTuple, TypeVar, overload
 
 import numpy as np
-from numpy.typing import NDArray
+
+from vibroimpact.arrays import Floats
 
 Item = TypeVar("Item")
 
@@ -125,7 +126,7 @@ _Form = _Array | _Row | _Record | _Same
 class _Reader:
     """Makes values of their forms and of numbers, in the order in which they were split."""
 
-    def __init__(self, numbers: NDArray[np.float64]) -> None:
+    def __init__(self, numbers: Floats) -> None:
         self.numbers, self.at = numbers, 0
 
     def joined(self, form: _Form) -> Any:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from vibroimpact.dynamics.collocation import Floats, collocation_rule
-from vibroimpact.dynamics.contact import Contact, Drops
+from vibroimpact.arrays import Drops, Floats
+from vibroimpact.dynamics.collocation import collocation_rule
+from vibroimpact.dynamics.contact import Contact
 from vibroimpact.dynamics.encounter import Encounter
 from vibroimpact.dynamics.stretch import Stretch, WarmStart, acceleration_unit, solve_stretch
 

@@ -12,13 +12,11 @@ from dataclasses import dataclass, field
 from typing import Self
 
 import numpy as np
-from numpy.typing import NDArray
 
+from vibroimpact.arrays import Array, Bools, Drops, Floats, Indices
 from vibroimpact.contact.law import CompliantLaw, ContactLaw
-from vibroimpact.contact.pair import Array
 from vibroimpact.contact.static import static_work
-from vibroimpact.dynamics.collocation import Floats
-from vibroimpact.dynamics.contact import RELEASED, Contact, Drops, Piece
+from vibroimpact.dynamics.contact import RELEASED, Contact, Piece
 from vibroimpact.dynamics.encounter import Encounter
 from vibroimpact.dynamics.glide import Glide, glide_until_push
 from vibroimpact.dynamics.plane_cut import end_of_push, pulls
@@ -110,7 +108,7 @@ class _Starts:
             found[:, unknown] = undamped()[:, unknown]
         return found
 
-    def keep(self, ids: Drops, good: NDArray[np.bool_], way: PlaneWay, square: Floats) -> None:
+    def keep(self, ids: Drops, good: Bools, way: PlaneWay, square: Floats) -> None:
         """Remember a way, of the drops for which it is good."""
         kind = way.direction, way.rule.segments
         if kind not in self.squares:
@@ -127,7 +125,7 @@ class _Found:
     `Contact`.
     """
 
-    good: NDArray[np.bool_]
+    good: Bools
     max_delta: Floats
     time_of_max_delta: Floats
     duration: Floats
@@ -176,7 +174,7 @@ def _solve(encounter: Encounter, found: _Found, places: Drops, ids: Drops, start
         _through(here.take(some), found, places[some], ids[some], starts, depth[some], int(which))
 
 
-def _passed(law: CompliantLaw, low: Floats, high: Floats, margin: float) -> NDArray[np.intp]:
+def _passed(law: CompliantLaw, low: Floats, high: Floats, margin: float) -> Indices:
     """Return which breakpoints lie between two indentations (B,), as the bits of a number; below the higher by a part of the depth."""
     found, high = np.zeros(len(low), dtype=np.intp), high - margin * (high - low)
     for bit, level in enumerate(law.breakpoints):

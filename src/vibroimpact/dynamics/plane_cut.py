@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-from vibroimpact.dynamics.collocation import Floats
-from vibroimpact.dynamics.contact import Drops
+from vibroimpact.arrays import Bools, Drops, Floats
 from vibroimpact.dynamics.encounter import Encounter
 from vibroimpact.dynamics.plane_rule import DENSE
 from vibroimpact.dynamics.plane_way import PlaneWay
@@ -16,7 +14,7 @@ _STEPS = 12
 _NEAR = 1e-6  # in y
 
 
-def pulls(way: PlaneWay) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+def pulls(way: PlaneWay) -> tuple[Bools, Bools]:
     """Tell where on a way the formula of the force pulls before the surfaces part.
 
     Returns
@@ -37,7 +35,7 @@ def pulls(way: PlaneWay) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
     return at.reshape(-1, at.shape[-1]), np.asarray((dipped & ~seen).any(axis=0))
 
 
-def end_of_push(encounter: Encounter, way: PlaneWay, pulling: NDArray[np.bool_]) -> tuple[Drops, Floats]:
+def end_of_push(encounter: Encounter, way: PlaneWay, pulling: Bools) -> tuple[Drops, Floats]:
     """Return in which segment and at which y the force becomes zero first, (B,), of drops that pull somewhere.
 
     The force at the nodes is smooth, and its interpolant says where to look; then the law says what it is.

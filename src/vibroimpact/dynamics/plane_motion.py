@@ -7,9 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.polynomial import legendre
-from numpy.typing import NDArray
 
-from vibroimpact.dynamics.collocation import Floats
+from vibroimpact.arrays import Bools, Floats
 from vibroimpact.dynamics.encounter import Encounter
 from vibroimpact.dynamics.plane_rule import PlaneRule
 from vibroimpact.dynamics.plane_way import Direction, PlaneWay
@@ -37,7 +36,7 @@ class PlaneMotion:
         """Return the motion on a way that lasts some time [s]."""
         return cls(way.rule, way.direction, way.levels, way.begun, way.squares, way.ends, duration)
 
-    def take(self, drops: NDArray[np.bool_]) -> PlaneMotion:
+    def take(self, drops: Bools) -> PlaneMotion:
         """Return the motion of the drops under a mask."""
         if drops.all():
             return self

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from vibroimpact.contact.pair import Array
-from vibroimpact.dynamics.collocation import Floats
+from vibroimpact.arrays import Array, Floats
 from vibroimpact.dynamics.encounter import Encounter
 from vibroimpact.dynamics.plane_way import PlaneWay
 

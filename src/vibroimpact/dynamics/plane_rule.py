@@ -24,9 +24,8 @@ from functools import cache
 
 import numpy as np
 from numpy.polynomial import legendre
-from numpy.typing import NDArray
 
-from vibroimpact.dynamics.collocation import Floats
+from vibroimpact.arrays import Floats, Indices
 
 DENSE = 33
 
@@ -113,7 +112,7 @@ class PlaneRule:
         weights /= weights.sum(axis=0)
         return np.asarray(weights)
 
-    def shape_at(self, segment: NDArray[np.intp], y: Floats) -> tuple[Floats, Floats]:
+    def shape_at(self, segment: Indices, y: Floats) -> tuple[Floats, Floats]:
         """Return s and f at y (B,) of segments (B,)."""
         inside = 1.0 - y * y if self.turns else 1.0 - y
         touching = (segment == self.segments - 1) & self.touches

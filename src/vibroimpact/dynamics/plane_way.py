@@ -6,9 +6,8 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
-from vibroimpact.dynamics.collocation import Floats
+from vibroimpact.arrays import Bools, Floats, Indices
 from vibroimpact.dynamics.encounter import Encounter
 from vibroimpact.dynamics.plane_rule import PlaneRule
 
@@ -40,7 +39,7 @@ class PlaneWay:
     durations: Floats
     dissipated: Floats
     tail: Floats
-    solved: NDArray[np.bool_]
+    solved: Bools
 
     @property
     def duration(self) -> Floats:
@@ -54,23 +53,23 @@ class PlaneWay:
         stretch = (self.levels[:-1] - self.levels[1:])[:, None] * rule.split(rule.slope)
         return np.asarray(self.dissipative * (sign * rule.factor * stretch.reshape(self.dissipative.shape)))
 
-    def of(self, values: Floats, segment: NDArray[np.intp]) -> Floats:
+    def of(self, values: Floats, segment: Indices) -> Floats:
         """Return values at the nodes (S N, B) of one segment a drop, (N, B)."""
         return values if self.rule.segments == 1 else self.rule.split(values)[segment, :, np.arange(values.shape[-1])].T
 
-    def at(self, segment: NDArray[np.intp], y: Floats) -> tuple[Floats, Floats]:
+    def at(self, segment: Indices, y: Floats) -> tuple[Floats, Floats]:
         """Return indentation [m] and w [m^2/s^2] at y (B,) of one segment a drop."""
         column, (shape, factor) = np.arange(len(y)), self.rule.shape_at(segment, y)
         low = self.levels[segment + 1, column]
         square = (self.rule.weights_at(y) * self.of(self.squares, segment)).sum(axis=0)
         return low + (self.levels[segment, column] - low) * shape, factor * factor * square
 
-    def grown(self, values: Floats, segment: NDArray[np.intp], y: Floats) -> Floats:
+    def grown(self, values: Floats, segment: Indices, y: Floats) -> Floats:
         """Return what values by y at the nodes (S N, B) make between the deep end and y (B,) of one segment a drop."""
         found = self.rule.grown(values)
         return np.asarray((self.rule.weights_at(y) * found[segment, :-1, np.arange(len(y))].T).sum(axis=0))
 
-    def put(self, drops: NDArray[np.intp], other: PlaneWay) -> None:
+    def put(self, drops: Indices, other: PlaneWay) -> None:
         """Take over the ways of some drops."""
         for name, values in vars(self).items():
             if isinstance(values, np.ndarray):

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
+from vibroimpact.arrays import Array
 from vibroimpact.bodies.body import Body
 from vibroimpact.contact.law import ContactLaw, InstantaneousLaw
-from vibroimpact.contact.pair import Array
 from vibroimpact.contact.quasi_static import QuasiStatic
 from vibroimpact.dynamics.sensor import Sensor
 from vibroimpact.errors import InputError

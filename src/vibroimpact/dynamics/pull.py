@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-from vibroimpact.dynamics.collocation import Floats
+from vibroimpact.arrays import Bools, Floats
 from vibroimpact.dynamics.encounter import Encounter
 from vibroimpact.dynamics.stretch import Stretch
 
@@ -23,12 +22,12 @@ def first_pull(encounter: Encounter, stretch: Stretch, *, on_the_way_out: bool =
     return np.asarray(np.minimum(at_node, _between_nodes(encounter, stretch)))
 
 
-def pulls_before_end(encounter: Encounter, stretch: Stretch) -> NDArray[np.bool_]:
+def pulls_before_end(encounter: Encounter, stretch: Stretch) -> Bools:
     """Does the law pull before the end of the stretch?"""
     return np.asarray(_at_nodes(encounter, stretch)[:-1].any(axis=0) | np.isfinite(_between_nodes(encounter, stretch)))
 
 
-def _at_nodes(encounter: Encounter, stretch: Stretch) -> NDArray[np.bool_]:
+def _at_nodes(encounter: Encounter, stretch: Stretch) -> Bools:
     return np.asarray(stretch.node_acceleration > encounter.gravity + _rounding(encounter, stretch))
 
 

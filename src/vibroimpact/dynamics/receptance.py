@@ -21,12 +21,10 @@ from dataclasses import dataclass, replace
 from functools import cache, cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
-from vibroimpact.dynamics.collocation import Floats, Map, Rule, collocation_rule
+from vibroimpact.arrays import Complex, Floats
+from vibroimpact.dynamics.collocation import Map, Rule, collocation_rule
 from vibroimpact.dynamics.linear_system import LinearSystem, State
-
-Complex = NDArray[np.complex128]
 
 NODES = 12
 """More would make the eigenvectors of the integration matrix too ill-conditioned, fewer the stretches too short."""

@@ -7,8 +7,8 @@ from functools import partial
 
 import numpy as np
 
+from vibroimpact.arrays import Floats
 from vibroimpact.contact.roots import find_root
-from vibroimpact.dynamics.collocation import Floats
 from vibroimpact.dynamics.linear_system import FreeMotion, LinearSystem, State
 from vibroimpact.dynamics.touching import Touching
 from vibroimpact.dynamics.vibrating_stretch import VibratingStretch

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from vibroimpact.arrays import Floats
 from vibroimpact.dynamics.antialias import Section, antialias_of
-from vibroimpact.dynamics.collocation import Floats
 from vibroimpact.dynamics.filtered_chain import filtered_chain
 from vibroimpact.dynamics.followed import around_first_contact, follow_at_instants, follow_filtered, longest_span
 from vibroimpact.dynamics.measuring_chain import MeasuringChain, measuring_chain

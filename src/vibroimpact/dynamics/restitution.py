@@ -10,10 +10,9 @@ from typing import TypeVar
 
 import numpy as np
 
+from vibroimpact.arrays import Array, Floats
 from vibroimpact.contact.law import CompliantLaw, ContactLaw, InstantaneousLaw
-from vibroimpact.contact.pair import Array
 from vibroimpact.contact.roots import solve_monotonic
-from vibroimpact.dynamics.collocation import Floats
 from vibroimpact.dynamics.contact import CAPTURED, FAILED
 from vibroimpact.dynamics.encounter import Encounter, encounter_of
 from vibroimpact.dynamics.plane_contact import contact_solver

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from vibroimpact.arrays import Bools, Drops, Floats
 from vibroimpact.contact.law import CompliantLaw, ContactLaw
 from vibroimpact.contact.static import static_indentation
-from vibroimpact.dynamics.collocation import Floats
 from vibroimpact.dynamics.columns import IMPACT_COLUMNS
-from vibroimpact.dynamics.contact import FAILED, Contact, Drops
+from vibroimpact.dynamics.contact import FAILED, Contact
 from vibroimpact.dynamics.encounter import Encounter
 from vibroimpact.dynamics.flight import Flight
 from vibroimpact.dynamics.leg import Leg
@@ -81,12 +80,12 @@ class RigidBodies:
         yield from ()
         return self.solve_contact(encounter, drops)
 
-    def falls_back(self, contact: Contact, law: CompliantLaw, gravity: Floats) -> NDArray[np.bool_]:
+    def falls_back(self, contact: Contact, law: CompliantLaw, gravity: Floats) -> Bools:
         """Tell which drops fall back into the indentation they have left, before a next touch under a law would be a new one."""
         overlap = np.maximum(contact.final_delta - law.touch_level, 0.0)
         return np.asarray((contact.outcome != FAILED) & (contact.final_rate**2 < 2.0 * gravity * overlap))
 
-    def rests(self, drops: Drops, velocity: Floats, rest_speed: Floats) -> NDArray[np.bool_]:
+    def rests(self, drops: Drops, velocity: Floats, rest_speed: Floats) -> Bools:
         """Tell which drops that have left at a velocity upwards [m/s] are at rest."""
         return np.asarray((velocity < rest_speed) | (velocity == 0.0))
 

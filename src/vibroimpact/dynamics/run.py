@@ -7,10 +7,10 @@ from dataclasses import replace
 
 import numpy as np
 
+from vibroimpact.arrays import Drops, Floats
 from vibroimpact.contact.law import CompliantLaw, ContactLaw, InstantaneousLaw
 from vibroimpact.contact.static import static_indentation
-from vibroimpact.dynamics.collocation import Floats
-from vibroimpact.dynamics.contact import CAPTURED, FAILED, RIDING, Drops
+from vibroimpact.dynamics.contact import CAPTURED, FAILED, RIDING
 from vibroimpact.dynamics.encounter import Encounter, encounter_of
 from vibroimpact.dynamics.energy import CLOSURE_LIMIT, WRITE_OFF_LIMIT, close_ledger
 from vibroimpact.dynamics.flight import Flight

@@ -9,8 +9,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from vibroimpact.arrays import Floats
 from vibroimpact.contact.law import CompliantLaw
-from vibroimpact.dynamics.collocation import Floats, collocation_rule
+from vibroimpact.dynamics.collocation import collocation_rule
 from vibroimpact.dynamics.encounter import Encounter
 from vibroimpact.dynamics.flight import Flight
 from vibroimpact.dynamics.glide import Glide

@@ -15,9 +15,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from vibroimpact.arrays import Floats
 from vibroimpact.contact.roots import highest
 from vibroimpact.dynamics.apart import Apart
-from vibroimpact.dynamics.collocation import Floats
 from vibroimpact.dynamics.linear_system import FreeMotion, LinearSystem, State
 from vibroimpact.dynamics.local import LocalContact
 from vibroimpact.dynamics.lockstep import Course, asked, side_by_side

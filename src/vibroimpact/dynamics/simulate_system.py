@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from vibroimpact.arrays import Bools, Floats
 from vibroimpact.dynamics.apart import Apart
-from vibroimpact.dynamics.collocation import Floats
 from vibroimpact.dynamics.linear_system import LinearSystem, State
 from vibroimpact.dynamics.lockstep import computed
 from vibroimpact.dynamics.march import March
@@ -140,7 +140,7 @@ class SystemResponse:
     def _starts(self) -> Floats:
         return np.array([part.start for part in self._march.parts])
 
-    def _parts_at(self, times: Floats) -> Iterator[tuple[VibratingStretch | Apart, NDArray[np.bool_], Floats]]:
+    def _parts_at(self, times: Floats) -> Iterator[tuple[VibratingStretch | Apart, Bools, Floats]]:
         """Yield each motion of the history with the times that lie in it: which, and since its start [s]."""
         index = np.maximum(np.searchsorted(self._starts, times, side="right") - 1, 0)
         for number in np.unique(index):

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Protocol
 
-from vibroimpact.dynamics.collocation import Floats
-from vibroimpact.dynamics.contact import Contact, Drops
+from vibroimpact.arrays import Drops, Floats
+from vibroimpact.dynamics.contact import Contact
 from vibroimpact.dynamics.contact_phase import contact_phase
 from vibroimpact.dynamics.encounter import Encounter
 from vibroimpact.dynamics.peaks import force_peak

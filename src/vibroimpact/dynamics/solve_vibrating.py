@@ -12,9 +12,9 @@ from dataclasses import dataclass
 from typing import Literal, NamedTuple, Self
 
 import numpy as np
-from numpy.typing import NDArray
 
-from vibroimpact.dynamics.collocation import Floats, Map
+from vibroimpact.arrays import Bools, Floats, Indices
+from vibroimpact.dynamics.collocation import Map
 from vibroimpact.dynamics.contact_history import ContactHistory
 from vibroimpact.dynamics.linear_equations import inverses, solutions, times
 from vibroimpact.dynamics.linear_system import State
@@ -145,7 +145,7 @@ def _stretches(
     length: Floats,
     begun: tuple[Floats, Floats],
     found: tuple[Floats, Floats, Floats],
-    solved: NDArray[np.bool_],
+    solved: Bools,
 ) -> list[VibratingStretch]:
     """Return stretches as they were solved.
 
@@ -239,7 +239,7 @@ class _Events(NamedTuple):
 
     name: str
     levels: Floats
-    last: NDArray[np.intp]
+    last: Indices
 
 
 def _event_of(problems: Sequence[StretchProblem]) -> _Events | None:

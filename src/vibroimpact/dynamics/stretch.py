@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
-from vibroimpact.dynamics.collocation import Floats, Rule
+from vibroimpact.arrays import Bools, Floats, Indices
+from vibroimpact.dynamics.collocation import Rule
 from vibroimpact.dynamics.encounter import Encounter
 from vibroimpact.dynamics.linear_equations import inverses
 
@@ -40,9 +40,9 @@ class Stretch:
     node_velocity: Floats
     node_acceleration: Floats
     dissipated: Floats
-    solved: NDArray[np.bool_]
+    solved: Bools
 
-    def resolved(self, encounter: Encounter, tolerance: float) -> NDArray[np.bool_]:
+    def resolved(self, encounter: Encounter, tolerance: float) -> Bools:
         """Is the stretch solved, and its error within a relative tolerance?
 
         Two measures that know nothing of each other: the last Legendre coefficients of the acceleration, with
@@ -61,7 +61,7 @@ class Stretch:
         smooth = self.rule.tail(self.node_acceleration, needed) ** 2 <= tolerance
         return np.asarray(self.solved & (self.duration > 0.0) & closes & smooth)
 
-    def take(self, drops: NDArray[np.bool_]) -> Stretch:
+    def take(self, drops: Bools) -> Stretch:
         """Return the stretch of the drops under a mask."""
         if drops.all():
             return self
@@ -191,7 +191,7 @@ class _Newton:
             residual[-1] = 0.0
         return residual, delta, velocity, acceleration
 
-    def improve_together(self, unknowns: Floats, start: WarmStart) -> NDArray[np.bool_]:
+    def improve_together(self, unknowns: Floats, start: WarmStart) -> Bools:
         """Improve `unknowns` in place with one Jacobian for all; return which drops got there."""
         middle = unknowns.shape[1] // 2
         scale = 1.0 + np.abs(unknowns).max()
@@ -215,7 +215,7 @@ class _Newton:
             start.inverse = None
         return np.asarray(change < self.settled)
 
-    def improve_each(self, unknowns: Floats) -> NDArray[np.bool_]:
+    def improve_each(self, unknowns: Floats) -> Bools:
         """Improve `unknowns` in place with a Jacobian a drop; return which drops got there."""
         everyone = np.arange(unknowns.shape[1])
         change = np.full(unknowns.shape[1], np.inf)
@@ -237,7 +237,7 @@ class _Newton:
         unknowns -= step
         return np.asarray(size)
 
-    def jacobian(self, drops: NDArray[np.intp], unknowns: Floats, delta: Floats, velocity: Floats, acceleration: Floats) -> Floats:
+    def jacobian(self, drops: Indices, unknowns: Floats, delta: Floats, velocity: Floats, acceleration: Floats) -> Floats:
         """Return the Jacobian of the residual for some drops, (b, N + 1, N + 1)."""
         encounter, speed_unit, length_unit, unit = self.encounter, self.speed_unit, self.length_unit, self.acceleration_unit
         if len(drops) < len(speed_unit):

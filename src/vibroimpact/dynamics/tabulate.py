@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from vibroimpact.dynamics.collocation import Floats
+from vibroimpact.arrays import Floats
 from vibroimpact.dynamics.energy import why_failed
 from vibroimpact.dynamics.lockstep import computed
 from vibroimpact.dynamics.outcome import Outcome

@@ -12,7 +12,7 @@ from typing import Self
 
 import numpy as np
 
-from vibroimpact.dynamics.collocation import Floats
+from vibroimpact.arrays import Floats
 from vibroimpact.dynamics.linear_equations import solutions, times
 from vibroimpact.dynamics.linear_system import State
 from vibroimpact.dynamics.local import LocalContact, linearised, stacked

@@ -7,9 +7,8 @@ from dataclasses import dataclass, field
 from typing import overload
 
 import numpy as np
-from numpy.typing import NDArray
 
-from vibroimpact.dynamics.collocation import Floats
+from vibroimpact.arrays import Floats, Indices
 from vibroimpact.dynamics.glide import Glide
 from vibroimpact.dynamics.leg import Leg
 from vibroimpact.dynamics.plane_motion import PlaneMotion
@@ -37,7 +36,7 @@ class Timeline(Sequence[Segment]):
     rest: RestSegment | None
     starts: Floats
     spent: Floats
-    _firsts: NDArray[np.intp]
+    _firsts: Indices
     _recent: dict[int, list[Segment]] = field(default_factory=dict)
 
     def __len__(self) -> int:

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from vibroimpact.arrays import Floats
 from vibroimpact.contact.hertz_time import HERTZ_TIME
-from vibroimpact.dynamics.collocation import Floats
 from vibroimpact.dynamics.problem import Problem
 
 if TYPE_CHECKING:

@@ -5,13 +5,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from vibroimpact.arrays import Bools, Drops, Floats
 from vibroimpact.bodies.body import Body
 from vibroimpact.contact.law import CompliantLaw, ContactLaw
-from vibroimpact.dynamics.collocation import Floats
 from vibroimpact.dynamics.columns import IMPACT_COLUMNS, VIBRATION_IMPACT_COLUMNS
-from vibroimpact.dynamics.contact import CAPTURED, RIDING, SETTLED, Contact, Drops, Piece
+from vibroimpact.dynamics.contact import CAPTURED, RIDING, SETTLED, Contact, Piece
 from vibroimpact.dynamics.encounter import Encounter
 from vibroimpact.dynamics.flight import Flight
 from vibroimpact.dynamics.leg import Leg
@@ -165,11 +164,11 @@ class VibratingBodies(RigidBodies):
         force, when = (np.array([getattr(found, name) for found in visits]) for name in ("max_force", "time_of_max_force"))
         return contact_of(visits, encounter.law), force, when
 
-    def falls_back(self, contact: Contact, law: CompliantLaw, gravity: Floats) -> NDArray[np.bool_]:
+    def falls_back(self, contact: Contact, law: CompliantLaw, gravity: Floats) -> Bools:
         """Tell that none does: a visit has followed those that do."""
         return np.zeros(len(gravity), dtype=bool)
 
-    def rests(self, drops: Drops, velocity: Floats, rest_speed: Floats) -> NDArray[np.bool_]:
+    def rests(self, drops: Drops, velocity: Floats, rest_speed: Floats) -> Bools:
         """Tell which have been laid down."""
         return np.array([self.lying[drop] is not None for drop in drops], dtype=bool)
 

@@ -5,9 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from vibroimpact.dynamics.collocation import Floats
+from vibroimpact.arrays import Bools, Floats
 from vibroimpact.dynamics.solve_vibrating import Aim
 from vibroimpact.dynamics.vibrating_stretch import VibratingStretch
 
@@ -39,7 +38,7 @@ def _events(stretch: VibratingStretch, place: int, weights: Floats, speed: float
     local, law, least = contact.local, contact.local.law, contact.local.least
     delta, rate = weights @ contact.delta, weights @ contact.rate
     # of each: what falls below zero there, and where it has
-    events: list[tuple[Aim, Floats, NDArray[np.bool_]]] = []
+    events: list[tuple[Aim, Floats, Bools]] = []
     above = delta - least
     events.append((Aim("parted", least, place), above, above < -ROUNDING * above.max()))
     if law.tension != "kept":  # what recoils fast enough makes the others pull as well
@@ -57,7 +56,7 @@ def _events(stretch: VibratingStretch, place: int, weights: Floats, speed: float
     return [Event(aim, _crossing(values, there)) for aim, values, there in events if there[1:].any()]
 
 
-def _crossing(values: Floats, there: NDArray[np.bool_]) -> float:
+def _crossing(values: Floats, there: Bools) -> float:
     """Return the x where values on the grid fall below zero, by the secant through the first that is seen there and the one before."""
     last = 1 + int(there[1:].argmax())
     before, after = values[last - 1], values[last]

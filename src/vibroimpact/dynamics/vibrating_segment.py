@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from vibroimpact.arrays import Floats
 from vibroimpact.dynamics.apart import Apart
-from vibroimpact.dynamics.collocation import Floats
 from vibroimpact.dynamics.linear_system import FreeMotion, LinearSystem, State
 from vibroimpact.dynamics.lying import Lying
 from vibroimpact.dynamics.vibrating_stretch import VibratingStretch

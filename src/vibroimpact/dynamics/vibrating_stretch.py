@@ -7,12 +7,12 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from vibroimpact.dynamics.collocation import Floats, Rule
+from vibroimpact.arrays import Bools, Complex, Floats
+from vibroimpact.dynamics.collocation import Rule
 from vibroimpact.dynamics.contact_history import ContactHistory
 from vibroimpact.dynamics.linear_system import LinearSystem, State
-from vibroimpact.dynamics.receptance import Complex, Seen, Spectrum, Together
+from vibroimpact.dynamics.receptance import Seen, Spectrum, Together
 
 _RIGID_ROUNDING = 2e-15  # of the kinetic energy of the bodies that touch, which may move fast together
 _ROUNDING = 2e-14  # of the energy of the modes, which may be much more than that of a soft touch
@@ -62,7 +62,7 @@ class VibratingStretch:
         """How long it lasts [s], as an array of one."""
         return np.array([self.length])
 
-    def take(self, drops: NDArray[np.bool_]) -> VibratingStretch:
+    def take(self, drops: Bools) -> VibratingStretch:
         """Return itself: it is of one drop."""
         return self
 

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-from vibroimpact.dynamics.collocation import Floats, Map
-from vibroimpact.dynamics.contact import Drops
+from vibroimpact.arrays import Bools, Drops, Floats
+from vibroimpact.dynamics.collocation import Map
 from vibroimpact.dynamics.stretch import Aim, WarmStart
 
 
@@ -17,7 +16,7 @@ class WarmStarts:
         self.size = size
         self.starts: dict[tuple[Map, Aim], WarmStart] = {}
 
-    def knows(self, kind: tuple[Map, Aim], ids: Drops) -> NDArray[np.bool_]:
+    def knows(self, kind: tuple[Map, Aim], ids: Drops) -> Bools:
         """Return for which drops there is a solution of a kind."""
         return np.isfinite(self.starts[kind].unknowns[-1, ids]) if kind in self.starts else np.zeros(len(ids), dtype=bool)
 

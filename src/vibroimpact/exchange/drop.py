@@ -5,16 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-import numpy as np
-from numpy.typing import NDArray
-
+from vibroimpact.arrays import Floats
 from vibroimpact.calibration.speed_function import SpeedFunction
 from vibroimpact.contact.law import ContactLaw
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.recording import Signal
 from vibroimpact.materials import Material
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from vibroimpact.arrays import Floats
 from vibroimpact.dynamics.columns import COUNTS, history_columns, impact_columns
 from vibroimpact.dynamics.recording import Signal
 from vibroimpact.errors import InputError
@@ -53,7 +54,7 @@ def signal_csv(signal: Signal) -> str:
     return "\n".join([f"{time_name},{name}", *rows, ""])
 
 
-def _table(columns: Mapping[str, NDArray[np.float64]], told: Mapping[str, tuple[str, str]]) -> Table:
+def _table(columns: Mapping[str, Floats], told: Mapping[str, tuple[str, str]]) -> Table:
     whole = {name: np.asarray(columns[name], dtype=np.int64 if name in COUNTS else np.float64) for name in told}
     return {name: Column(whole[name], *told[name]) for name in told}
 

@@ -9,10 +9,11 @@ from pathlib import Path
 
 import numpy as np
 
+from vibroimpact.arrays import Floats, Integers
 from vibroimpact.errors import InputError
 from vibroimpact.materials import Material
 from vibroimpact.structures.element_kinds import PLATE_ORDER
-from vibroimpact.structures.mesh import ElementBlock, Floats, Integers, Mesh
+from vibroimpact.structures.mesh import ElementBlock, Mesh
 from vibroimpact.writing.file import write_file
 
 # a square of 3 x 3 nodes, as (row, column): corners, middles of the edges, centre

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from vibroimpact.arrays import Integers
 from vibroimpact.structures.element_kinds import ELEMENT_KINDS
 
 _HEX_BOTTOM, _HEX_TOP, _HEX_UP = "01 12 23 30", "45 56 67 74", "04 15 26 37"
@@ -20,12 +20,12 @@ ABAQUS = {"hex27": f"0 1 2 3 4 5 6 7 {_HEX_BOTTOM} {_HEX_TOP} {_HEX_UP} 01234567
 """Abaqus and we differ in hex27 only: its node in the middle comes before those of the faces."""
 
 
-def from_ours(kind: str, foreign: str) -> NDArray[np.int64]:
+def from_ours(kind: str, foreign: str) -> Integers:
     """Return where each node of another order stands in ours: `theirs = ours[from_ours(...)]`."""
     return np.argsort(to_ours(kind, foreign)).astype(np.int64)
 
 
-def to_ours(kind: str, foreign: str) -> NDArray[np.int64]:
+def to_ours(kind: str, foreign: str) -> Integers:
     """Return where each of our nodes stands in another order: `ours = theirs[to_ours(...)]`.
 
     Parameters

@@ -8,14 +8,14 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
+from vibroimpact.arrays import Floats, Integers
 from vibroimpact.errors import InputError
 from vibroimpact.exchange.lines import Line
 from vibroimpact.exchange.node_order import to_ours
 from vibroimpact.shown import shown
 from vibroimpact.structures.element_kinds import ELEMENT_KINDS
-from vibroimpact.structures.mesh import ElementBlock, Integers, Mesh
+from vibroimpact.structures.mesh import ElementBlock, Mesh
 
 LARGEST_COORDINATE = 1e15
 MOST_MEMBERS = 10_000_000
@@ -156,7 +156,7 @@ class Parts:
             dict(self.skipped),
         )
 
-    def _distinct_nodes(self) -> tuple[Integers, NDArray[np.float64]]:
+    def _distinct_nodes(self) -> tuple[Integers, Floats]:
         """Return the numbers of the nodes, ascending, and where they are."""
         numbers, points = np.array(self._node_numbers, dtype=np.int64), np.array(self._points, dtype=float).reshape(-1, 3)
         order = np.argsort(numbers, kind="stable")

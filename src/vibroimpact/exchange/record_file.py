@@ -6,8 +6,8 @@ from pathlib import Path
 from typing import Literal, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from vibroimpact.arrays import Floats
 from vibroimpact.errors import InputError, did_you_mean
 from vibroimpact.exchange.formats.uff58 import MOTION
 from vibroimpact.exchange.universal_file import Function, UniversalFile, is_universal, read_universal_file
@@ -37,8 +37,8 @@ class UniversalRecord(NamedTuple):
 
     words: str
     quantity: Quantity
-    time: NDArray[np.float64]
-    values: NDArray[np.float64]
+    time: Floats
+    values: Floats
 
 
 def read_universal_record(path: str | Path, which: str | None, by_rebound: bool) -> UniversalRecord:

@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import numpy as np
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from vibroimpact.arrays import Floats, Indices
 
 
 def motion_at(history: Mapping[str, Floats], times: Floats) -> dict[str, Floats]:
@@ -44,11 +43,11 @@ def motion_at(history: Mapping[str, Floats], times: Floats) -> dict[str, Floats]
     }
 
 
-def _straight(values: Floats, before: NDArray[np.intp], part: Floats) -> Floats:
+def _straight(values: Floats, before: Indices, part: Floats) -> Floats:
     return values[before] + part * (values[before + 1] - values[before])
 
 
-def _cubic(values: Floats, slopes: Floats, before: NDArray[np.intp], step: Floats, part: Floats) -> Floats:
+def _cubic(values: Floats, slopes: Floats, before: Indices, step: Floats, part: Floats) -> Floats:
     """Return the cubic that has the values and slopes of both ends of each step."""
     rise = values[before + 1] - values[before]
     bend, twist = step * slopes[before] - rise, step * slopes[before + 1] - rise

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from vibroimpact.exchange.drop import Drop, Floats
+from vibroimpact.arrays import Floats
+from vibroimpact.exchange.drop import Drop
 
 _SHOWN = 5
 """Impacts whose restitutions are told."""

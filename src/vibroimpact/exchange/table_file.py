@@ -13,14 +13,12 @@ from os import PathLike
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
+from vibroimpact.arrays import Floats
 from vibroimpact.errors import InputError, did_you_mean
 from vibroimpact.files import FileKind, read_text
 from vibroimpact.shown import shortened, shown
 from vibroimpact.units import to_si
-
-Floats = NDArray[np.float64]
 
 TABLE = FileKind("a table is a CSV file", 500_000_000, "keep the part with the impacts")
 """What is asked of the file of a table."""

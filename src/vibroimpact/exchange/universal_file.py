@@ -10,12 +10,10 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from vibroimpact.arrays import Floats
 from vibroimpact.errors import InputError
 from vibroimpact.files import FileKind, about, beginning, read_bytes
-
-Floats = NDArray[np.float64]
 
 UNIVERSAL = FileKind("a universal file holds datasets between lines of -1", 100_000_000, "keep the functions that are needed")
 """What is asked of a universal file."""

@@ -10,9 +10,10 @@ from xml.sax.saxutils import quoteattr
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from vibroimpact.arrays import Floats, Integers
 from vibroimpact.errors import InputError
 from vibroimpact.exchange.export import nine_node_shells, write_text
-from vibroimpact.structures.mesh import Integers, Mesh
+from vibroimpact.structures.mesh import Mesh
 
 _CELLS = {"tet4": 10, "tet10": 24, "hex8": 12, "hex20": 25, "hex27": 29, "quad25": 28}
 _TYPES = {"float64": "Float64", "float32": "Float32", "int64": "Int64", "int32": "Int32", "uint8": "UInt8"}
@@ -96,7 +97,7 @@ def vtu_text(
     return "\n".join(rows)
 
 
-def checked_values(name: str, data: ArrayLike, nodes: int) -> NDArray[np.float64]:
+def checked_values(name: str, data: ArrayLike, nodes: int) -> Floats:
     """Return values at all nodes.
 
     Raises

@@ -7,11 +7,12 @@ from os import PathLike
 
 import numpy as np
 
+from vibroimpact.arrays import Integers
 from vibroimpact.exchange.export import check_elastic, check_thickness, exported, write_text
 from vibroimpact.exchange.node_order import NASTRAN, from_ours
 from vibroimpact.exchange.plain_names import one_line
 from vibroimpact.materials import Material
-from vibroimpact.structures.mesh import Integers, Mesh
+from vibroimpact.structures.mesh import Mesh
 
 _CARDS = {"tet4": "CTETRA", "tet10": "CTETRA", "hex8": "CHEXA", "hex20": "CHEXA", "quad8": "CQUAD8"}
 _SOLIDS, _SHELLS = 1, 2

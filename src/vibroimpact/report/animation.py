@@ -15,11 +15,12 @@ from matplotlib.patches import Circle, Ellipse
 from numpy.typing import NDArray
 from PIL import Image
 
+from vibroimpact.arrays import Floats
 from vibroimpact.quantity import fixed, text
 from vibroimpact.report.excerpt import touch_height
 from vibroimpact.report.projection import TILT, depth, project, show_whole
 from vibroimpact.report.style import INK, style
-from vibroimpact.storage.deflection import Deflection, Floats
+from vibroimpact.storage.deflection import Deflection
 from vibroimpact.storage.result import Result
 
 _SIZE, _DPI = (5.8, 3.3), 100

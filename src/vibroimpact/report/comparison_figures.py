@@ -9,8 +9,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from vibroimpact.arrays import Floats
 from vibroimpact.quantity import multiple
-from vibroimpact.report.excerpt import Floats, contacts, pressed, thinned
+from vibroimpact.report.excerpt import contacts, pressed, thinned
 from vibroimpact.report.layout import label_vertical, new_figure, wide_axes
 from vibroimpact.report.style import LOOPS, style
 from vibroimpact.storage.result import Result

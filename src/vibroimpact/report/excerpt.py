@@ -5,13 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 
+from vibroimpact.arrays import Floats, Indices
 from vibroimpact.dynamics.recording import Signal
 from vibroimpact.report.style import ENLARGED
 from vibroimpact.storage.result import Result
-
-Floats = NDArray[np.float64]
 
 MARGIN = 0.15
 """What an enlarged contact shows before touch and after release, as a part of its duration."""
@@ -22,17 +20,17 @@ _COLUMNS = 1500
 _AT_ONCE = 2**17  # points that are sorted at once
 
 
-def contacts(result: Result) -> NDArray[np.intp]:
+def contacts(result: Result) -> Indices:
     """Return which impacts, counted from 0, have a duration; none with an instantaneous law."""
-    found: NDArray[np.intp] = np.flatnonzero(result.impacts["duration_s"] > 0.0)
+    found: Indices = np.flatnonzero(result.impacts["duration_s"] > 0.0)
     return found
 
 
-def enlarged(result: Result) -> NDArray[np.intp]:
+def enlarged(result: Result) -> Indices:
     """Return which contacts, counted from 0, are worth enlarging: the first few, unless one fills the run by itself."""
     span = result.history["time_s"][-1] - result.history["time_s"][0]
     found = contacts(result)
-    short: NDArray[np.intp] = found[result.impacts["duration_s"][found] < 0.5 * span]
+    short: Indices = found[result.impacts["duration_s"][found] < 0.5 * span]
     return short[:ENLARGED]
 
 

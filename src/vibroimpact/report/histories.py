@@ -9,10 +9,10 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
-from numpy.typing import NDArray
 
+from vibroimpact.arrays import Floats, Indices
 from vibroimpact.quantity import Multiple, multiple
-from vibroimpact.report.excerpt import MARGIN, Floats, around, contacts, enlarged, thinned, touch_height
+from vibroimpact.report.excerpt import MARGIN, around, contacts, enlarged, thinned, touch_height
 from vibroimpact.report.layout import heading, label_vertical, new_figure, row_of_axes, wide_axes
 from vibroimpact.report.style import ACCENT, CONTACT, INK, MARK
 from vibroimpact.storage.result import Result
@@ -77,7 +77,7 @@ def _draw_run(axes: Axes, result: Result, quantity: Quantity) -> None:
     axes.margins(x=0.01, y=0.08)
 
 
-def _draw_contacts(figure: Figure, result: Result, quantity: Quantity, shown: NDArray[np.intp]) -> None:
+def _draw_contacts(figure: Figure, result: Result, quantity: Quantity, shown: Indices) -> None:
     impacts = result.impacts
     parts = [around(result, impact) for impact in shown]
     base = touch_height(result) if quantity.from_touch else 0.0

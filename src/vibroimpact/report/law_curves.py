@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter
 
+from vibroimpact.arrays import Floats
 from vibroimpact.bodies.body import Body
 from vibroimpact.bodies.plate import rigid_plate
 from vibroimpact.cases.reader import read_case
@@ -21,7 +22,6 @@ from vibroimpact.dynamics.restitution import achieved_restitution
 from vibroimpact.dynamics.simulate import simulate
 from vibroimpact.errors import InputError
 from vibroimpact.quantity import multiple, text
-from vibroimpact.report.excerpt import Floats
 from vibroimpact.report.figures import render_png
 from vibroimpact.report.law_text import paper_pair
 from vibroimpact.report.layout import label_vertical, new_figure, row_of_axes

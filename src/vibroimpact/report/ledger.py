@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
+from vibroimpact.arrays import Floats, Indices
 from vibroimpact.quantity import Multiple, multiple
-from vibroimpact.report.excerpt import MARGIN, Floats, around, enlarged
+from vibroimpact.report.excerpt import MARGIN, around, enlarged
 from vibroimpact.report.layout import label_vertical, new_figure, wide_axes
 from vibroimpact.report.style import BANDS, INK
 from vibroimpact.storage.result import Result
@@ -81,7 +81,7 @@ def bands_of(history: dict[str, Floats]) -> dict[str, Floats]:
     return bands
 
 
-def _that_show(result: Result) -> NDArray[np.intp]:
+def _that_show(result: Result) -> Indices:
     """Return which points of the history to draw: evenly spread ones, and those just beside the first contacts."""
     time, touch = result.history["time_s"], result.impacts["time_s"][:45]
     release = touch + result.impacts["duration_s"][:45]

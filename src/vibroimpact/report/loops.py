@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
+from vibroimpact.arrays import Floats, Indices
 from vibroimpact.quantity import Multiple, multiple, text
-from vibroimpact.report.excerpt import Floats, contacts, pressed
+from vibroimpact.report.excerpt import contacts, pressed
 from vibroimpact.report.layout import label_vertical, new_figure, wide_axes
 from vibroimpact.report.style import ENLARGED, LOOPS, MARK
 from vibroimpact.storage.result import Result
@@ -41,7 +41,7 @@ def _loop(result: Result, impact: int, depth: Multiple, force: Multiple) -> tupl
     return part["indentation_m"] / depth.size, part["force_N"] / force.size
 
 
-def _draw_others(axes: Axes, result: Result, others: NDArray[np.intp], depth: Multiple, force: Multiple) -> None:
+def _draw_others(axes: Axes, result: Result, others: Indices, depth: Multiple, force: Multiple) -> None:
     """Draw the loops that have no label as one line with gaps, thin and grey."""
     if not len(others):
         return
@@ -53,14 +53,14 @@ def _draw_others(axes: Axes, result: Result, others: NDArray[np.intp], depth: Mu
     axes.plot(x, y, color="#9a9a9a", linewidth=0.6, zorder=1.5, label=which)
 
 
-def _mark_largest_forces(axes: Axes, result: Result, shown: NDArray[np.intp], depth: Multiple, force: Multiple) -> None:
+def _mark_largest_forces(axes: Axes, result: Result, shown: Indices, depth: Multiple, force: Multiple) -> None:
     when = result.impacts["time_of_max_force_s"][shown]
     x = _indentation_at(result, shown, when) / depth.size
     y = result.impacts["max_force_N"][shown] / force.size
     axes.plot(x, y, "o", markersize=4.5, markerfacecolor="white", markeredgecolor=MARK, zorder=3, label="largest force")
 
 
-def _indentation_at(result: Result, shown: NDArray[np.intp], when: Floats) -> Floats:
+def _indentation_at(result: Result, shown: Indices, when: Floats) -> Floats:
     """Return the indentation of each contact at a time in it [m]."""
     parts = [pressed(result, impact) for impact in shown]
     return np.array([np.interp(time, part["time_s"], part["indentation_m"]) for time, part in zip(when, parts, strict=True)])

@@ -12,9 +12,9 @@ from matplotlib.figure import Figure
 from matplotlib.tri import Triangulation
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
+from vibroimpact.arrays import Floats, Integers
 from vibroimpact.report.layout import WIDTH
 from vibroimpact.report.style import INK, style
-from vibroimpact.structures.mesh import Floats, Integers
 from vibroimpact.structures.modal_model import ModalModel
 from vibroimpact.structures.surface import Faces, outer_faces
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import numpy as np
-from numpy.typing import NDArray
 from rich.console import Group, RenderableType
 from rich.text import Text
 
+from vibroimpact.arrays import Floats
 from vibroimpact.bodies.elastic import ElasticBody
 from vibroimpact.cases.build_elastic import elastic_bodies
 from vibroimpact.cases.case import Case
@@ -58,12 +58,12 @@ def _table(found: BodyModes) -> TerminalTable:
     return TerminalTable(with_gap(columns, _ROWS) if number > _ROWS else columns)
 
 
-def _within(errors: NDArray[np.float64]) -> list[str]:
+def _within(errors: Floats) -> list[str]:
     """Return in per cent by how much frequencies may be off."""
     return [cell if cell != MISSING else "not known" for cell in column_texts(100.0 * errors, 2)]
 
 
-def _four(values: NDArray[np.float64], whole: float) -> list[str]:
+def _four(values: Floats, whole: float) -> list[str]:
     """Return numbers with four decimals, or 0 where they are rounding of the whole."""
     return [fixed(float(value), 4) if abs(value) > 1e-6 * whole else "0" for value in values]
 

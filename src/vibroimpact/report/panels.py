@@ -10,8 +10,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
+from vibroimpact.arrays import Floats
 from vibroimpact.quantity import Multiple, multiple
-from vibroimpact.report.excerpt import Floats, thinned, window
+from vibroimpact.report.excerpt import thinned, window
 from vibroimpact.report.layout import heading, new_figure, row_of_axes
 from vibroimpact.report.style import ACCENT, CONTACT, INK
 from vibroimpact.storage.result import Result

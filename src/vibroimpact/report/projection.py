@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.axes import Axes
 
-from vibroimpact.report.excerpt import Floats
+from vibroimpact.arrays import Floats
 
 TURN, TILT = np.radians(-32.0), np.radians(24.0)
 """From where one looks: around the vertical, and above the plane."""

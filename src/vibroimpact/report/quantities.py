@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from vibroimpact.report.excerpt import Floats, gravity, touch_height
+from vibroimpact.arrays import Floats
+from vibroimpact.report.excerpt import gravity, touch_height
 from vibroimpact.report.histories import Quantity
 from vibroimpact.report.tables import entry_text
 from vibroimpact.storage.result import Result

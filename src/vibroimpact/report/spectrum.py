@@ -5,11 +5,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from vibroimpact.arrays import Floats
 from vibroimpact.storage.result import Result
-
-Floats = NDArray[np.float64]
 
 _LONGEST = 2**17
 """Samples that are transformed at most."""

@@ -7,10 +7,9 @@ from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from vibroimpact.arrays import Floats, Indices
 from vibroimpact.quantity import ALL_FIGURES, certain, certain_figures, column_texts, digits, fixed, multiple
-from vibroimpact.report.excerpt import Floats
 from vibroimpact.storage.result import Result
 
 _MOST_ROWS, _FIRST, _LAST = 50, 45, 3
@@ -162,7 +161,7 @@ def _beside(value: float, whole: float, significant: int) -> str:
     return fixed(value, decimals) if abs(value) >= 100.0 * 10.0**-decimals else digits(value, 3)
 
 
-def figures_of(name: str, change: Floats) -> NDArray[np.intp]:
+def figures_of(name: str, change: Floats) -> Indices:
     """Return how many significant figures are certain of a column of the impact table, for each impact.
 
     Parameters

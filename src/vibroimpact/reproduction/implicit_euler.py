@@ -19,10 +19,10 @@ from functools import cached_property
 
 import numpy as np
 
+from vibroimpact.arrays import Floats
 from vibroimpact.calibration.one_impact import first_speed
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.roots import find_root
-from vibroimpact.dynamics.collocation import Floats
 from vibroimpact.dynamics.linear_system import LinearSystem, State
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.vibrating_bodies import centre_of, slices_of, system_of

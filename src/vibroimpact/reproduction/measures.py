@@ -7,7 +7,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from vibroimpact.dynamics.collocation import Floats
+from vibroimpact.arrays import Floats
 from vibroimpact.dynamics.response import Response
 from vibroimpact.reproduction.runs import history_of
 

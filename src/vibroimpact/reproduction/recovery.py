@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from scipy.optimize import OptimizeResult, least_squares
 
-from vibroimpact.dynamics.collocation import Floats
+from vibroimpact.arrays import Floats
 from vibroimpact.reproduction.damping_function import parabola
 from vibroimpact.reproduction.evidence import PENETRATIONS, RESTITUTIONS, Evidence, Sweeps, evidence_of, sweep
 from vibroimpact.reproduction.printed import printed

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from vibroimpact.dynamics.collocation import Floats
+from vibroimpact.arrays import Floats
 from vibroimpact.dynamics.simulate import simulate
 from vibroimpact.quantity import fixed
 from vibroimpact.reproduction.damping_function import parabola, printed_function

@@ -6,11 +6,10 @@ from collections.abc import Callable
 from dataclasses import replace
 from functools import cached_property, lru_cache
 
+from vibroimpact.arrays import Array, Floats
 from vibroimpact.calibration.calibration import Calibration
 from vibroimpact.cases.calibration import calibrate_case, load_calibration
 from vibroimpact.cases.reader import load_case
-from vibroimpact.contact.pair import Array
-from vibroimpact.dynamics.collocation import Floats
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.response import Response
 from vibroimpact.dynamics.simulate import simulate

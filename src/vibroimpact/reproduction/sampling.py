@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from vibroimpact.dynamics.collocation import Floats
+from vibroimpact.arrays import Floats
 from vibroimpact.quantity import MISSING, digits, fixed
 from vibroimpact.reproduction.printed import Printed, printed
 from vibroimpact.reproduction.row import Account

@@ -8,8 +8,8 @@ from typing import Literal
 
 import numpy as np
 
+from vibroimpact.arrays import Floats
 from vibroimpact.cases.reader import load_table, read_case
-from vibroimpact.dynamics.collocation import Floats
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.simulate import simulate
 from vibroimpact.reproduction.implicit_euler import PEAKS, SPENT, unresolved_impact

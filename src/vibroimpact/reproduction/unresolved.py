@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from vibroimpact.dynamics.collocation import Floats
+from vibroimpact.arrays import Floats
 from vibroimpact.reproduction.implicit_euler import SPENT, unresolved_impact
 from vibroimpact.reproduction.mesh_mass import fall_beyond_touch, mesh_mass
 from vibroimpact.reproduction.printed import printed

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from vibroimpact.arrays import Floats
 from vibroimpact.storage.frames import frame_times
 from vibroimpact.storage.surface_grid import surface_grid
 
@@ -15,7 +16,6 @@ if TYPE_CHECKING:
     from vibroimpact.dynamics.response import Response
     from vibroimpact.structures.modal_model import ModalModel
 
-Floats = NDArray[np.float64]
 
 _FRAMES = 96
 

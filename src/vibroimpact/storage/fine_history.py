@@ -5,14 +5,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from vibroimpact.arrays import Floats
 from vibroimpact.dynamics.history_grid import MOST_POINTS
 
 if TYPE_CHECKING:
     from vibroimpact.dynamics.response import Response
 
-Floats = NDArray[np.float64]
 
 _VISITS = 5
 """How many visits are followed closely."""

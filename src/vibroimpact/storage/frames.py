@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from vibroimpact.arrays import Floats
 
 _IN_VISIT = 20
 """Frames in the first visit."""

@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from vibroimpact.arrays import Floats
 from vibroimpact.storage.deflection import contact_place, first_frames
 
 if TYPE_CHECKING:
@@ -17,7 +17,6 @@ if TYPE_CHECKING:
     from vibroimpact.structures.mesh import Mesh
     from vibroimpact.structures.modal_model import ModalModel
 
-Floats = NDArray[np.float64]
 
 _FRAMES = 40
 _MOST_BYTES = 40e6

@@ -6,15 +6,14 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from vibroimpact.arrays import Floats
 from vibroimpact.dynamics.bending import largest_bending
 
 if TYPE_CHECKING:
     from vibroimpact.dynamics.response import Response
     from vibroimpact.structures.modal_model import ModalBasis
 
-Floats = NDArray[np.float64]
 Peaks = dict[str, Any]
 
 

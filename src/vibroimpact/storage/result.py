@@ -10,9 +10,9 @@ from datetime import UTC, datetime
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from vibroimpact._version import __version__
+from vibroimpact.arrays import Floats
 from vibroimpact.cases.conditions import Seen
 from vibroimpact.cases.doubts import doubts
 from vibroimpact.cases.limits.plate_waves import plate_theory_error
@@ -59,8 +59,8 @@ class Result:
     """
 
     case: Mapping[str, Any]
-    impacts: dict[str, NDArray[np.float64]]
-    history: dict[str, NDArray[np.float64]]
+    impacts: dict[str, Floats]
+    history: dict[str, Floats]
     energy: dict[str, float]
     status: str
     provenance: Mapping[str, str] = field(default_factory=dict)
@@ -81,7 +81,7 @@ class Result:
         return found if isinstance(found, list) else []
 
     @property
-    def change_by_impact(self) -> NDArray[np.float64]:
+    def change_by_impact(self) -> Floats:
         """Relative change of each impact [-] for one in the drop that nobody can rule out: of 1e-9, or of the tolerance if larger."""
         return change_by_impact(self.impacts, float(self.provenance.get("tolerance", RELATIVE_CHANGE)))
 

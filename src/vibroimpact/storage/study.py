@@ -16,6 +16,7 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
+from vibroimpact.arrays import Floats
 from vibroimpact.errors import InputError
 from vibroimpact.storage.check_sums import CHECK_SUMS, DamageError, read_sealed
 from vibroimpact.storage.damaged_part import check_hdf5
@@ -114,7 +115,7 @@ class Study:
     def __repr__(self) -> str:
         return f"<Study of {self.size} drops: {', '.join(f'{name} {length}' for name, length in self.dimensions.items())}>"
 
-    def times(self, sensor: str) -> NDArray[np.float64]:
+    def times(self, sensor: str) -> Floats:
         """Return the time of each sample in the signal of a sensor [s].
 
         Parameters

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
-from vibroimpact.structures.mesh import Floats, Integers, Mesh
+from vibroimpact.arrays import Bools, Floats, Integers
+from vibroimpact.structures.mesh import Mesh
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_array
@@ -32,7 +32,7 @@ class SurfaceGrid:
     x: Floats
     y: Floats
     weights: csr_array
-    on_body: NDArray[np.bool_]
+    on_body: Bools
 
     def of(self, values: Floats) -> Floats:
         """Return values at the points (..., rows, columns) of those at the nodes (..., nodes); NaN beside the body."""

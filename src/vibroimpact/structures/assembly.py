@@ -7,8 +7,9 @@ from collections.abc import Callable, Iterator, Sequence
 import numpy as np
 from scipy.sparse import bsr_array, csr_array
 
+from vibroimpact.arrays import Floats
 from vibroimpact.structures.geometry import jacobians
-from vibroimpact.structures.mesh import ElementBlock, Floats, Mesh
+from vibroimpact.structures.mesh import ElementBlock, Mesh
 
 _CHUNK = 4_000_000  # numbers in the largest array of one step
 

@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 from scipy.sparse import csr_array
 
+from vibroimpact.arrays import Floats, Integers
 from vibroimpact.materials import Material
 from vibroimpact.structures.assembly import scaled_shapes, summation
-from vibroimpact.structures.mesh import ElementBlock, Floats, Integers, Mesh
+from vibroimpact.structures.mesh import ElementBlock, Mesh
 
 _NORMAL = (0.2066, 0.0480, 0.1398, -0.5132)  # compliances over h (1 - nu^2) / E: coefficients of 1, nu, nu^2, nu^3
 _BENT, _NARROW = 1.5, 0.05  # of the stiffness across and along: how much more there is under a disc as wide as the plate is thick

@@ -7,8 +7,8 @@ from typing import Protocol
 
 import numpy as np
 
+from vibroimpact.arrays import Floats
 from vibroimpact.errors import InputError
-from vibroimpact.structures.mesh import Floats
 
 
 class Damping(Protocol):

@@ -6,7 +6,7 @@ import functools
 
 import numpy as np
 
-from vibroimpact.structures.mesh import Floats
+from vibroimpact.arrays import Floats
 
 UNIFORM, HERTZ = 0.0, 0.5
 """Exponents of pressures: the same everywhere, and Hertz's."""

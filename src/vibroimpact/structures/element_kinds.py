@@ -13,9 +13,10 @@ from functools import cache, partial, reduce
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-Shape = tuple[NDArray[np.float64], NDArray[np.float64]]
+from vibroimpact.arrays import Floats, Integers
+
+Shape = tuple[Floats, Floats]
 
 _HEX_CORNERS = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]]
 _HEX_EDGES = [(0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4), (0, 4), (1, 5), (2, 6), (3, 7)]
@@ -52,10 +53,10 @@ class ElementKind:
     """
 
     name: str
-    reference: NDArray[np.float64]
+    reference: Floats
     corners: int
     faces: tuple[tuple[int, ...], ...]
-    basis: Callable[[NDArray[np.float64]], Shape]
+    basis: Callable[[Floats], Shape]
     degree: int
 
     @property
@@ -73,7 +74,7 @@ class ElementKind:
         """Is it a product of intervals?"""
         return self.corners == int(2**self.dimension)
 
-    def quadrature(self, degree: int | None = None) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def quadrature(self, degree: int | None = None) -> tuple[Floats, Floats]:
         """Return points (points, dimension) and weights of a rule exact to a degree; by default that of stiffness and mass.
 
         Examples
@@ -86,7 +87,7 @@ class ElementKind:
 
 
 @cache
-def _quadrature(brick: bool, dimension: int, degree: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _quadrature(brick: bool, dimension: int, degree: int) -> tuple[Floats, Floats]:
     from skfem.quadrature import get_quadrature
     from skfem.refdom import RefHex, RefQuad, RefTet
 
@@ -94,7 +95,7 @@ def _quadrature(brick: bool, dimension: int, degree: int) -> tuple[NDArray[np.fl
     return np.ascontiguousarray(points.T), weights
 
 
-def _scikit_fem(name: str, reference: NDArray[np.float64], points: NDArray[np.float64]) -> Shape:
+def _scikit_fem(name: str, reference: Floats, points: Floats) -> Shape:
     """Evaluate scikit-fem's shape functions in our order of the nodes."""
     element, order = _in_our_order(name, reference.tobytes(), reference.shape)
     found = [element.lbasis(points.T, index) for index in order]
@@ -111,7 +112,7 @@ def _in_our_order(name: str, reference: bytes, shape: tuple[int, int]) -> tuple[
     return element, [int(index) for index in distance.argmin(axis=1)]
 
 
-def _tensor_lagrange(order: int, places: NDArray[np.int64], points: NDArray[np.float64]) -> Shape:
+def _tensor_lagrange(order: int, places: Integers, points: Floats) -> Shape:
     """Evaluate products of Lagrange's polynomials; places (nodes, dimension) say which one belongs to a node along each axis."""
     axes = range(points.shape[1])
     along = [[part.take(places[:, axis], axis=1) for part in _lagrange(order, points[:, axis])] for axis in axes]
@@ -119,7 +120,7 @@ def _tensor_lagrange(order: int, places: NDArray[np.int64], points: NDArray[np.f
     return reduce(np.multiply, [value for value, _ in along]), np.stack(slopes, axis=1)
 
 
-def _lagrange(order: int, x: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _lagrange(order: int, x: Floats) -> tuple[Floats, Floats]:
     powers, coefficients = np.arange(order + 1), _lagrange_coefficients(order)
     values = x[:, None] ** powers
     slopes = powers * x[:, None] ** np.maximum(powers - 1, 0)
@@ -127,18 +128,16 @@ def _lagrange(order: int, x: NDArray[np.float64]) -> tuple[NDArray[np.float64], 
 
 
 @cache
-def _lagrange_coefficients(order: int) -> NDArray[np.float64]:
+def _lagrange_coefficients(order: int) -> Floats:
     return np.asarray(np.linalg.inv(np.vander(np.arange(order + 1) / order, increasing=True)))
 
 
-def _kind(name: str, reference: NDArray[np.float64], corners: int, element: str, degree: int) -> ElementKind:
+def _kind(name: str, reference: Floats, corners: int, element: str, degree: int) -> ElementKind:
     faces = _HEX_FACES if corners == 8 else _TET_FACES
     return ElementKind(name, reference, corners, faces, partial(_scikit_fem, element, reference), degree)
 
 
-def _product(
-    name: str, reference: NDArray[np.float64], corners: int, faces: tuple[tuple[int, ...], ...], order: int, degree: int
-) -> ElementKind:
+def _product(name: str, reference: Floats, corners: int, faces: tuple[tuple[int, ...], ...], order: int, degree: int) -> ElementKind:
     places = np.rint(order * reference).astype(np.int64)
     return ElementKind(name, reference, corners, faces, partial(_tensor_lagrange, order, places), degree)
 

@@ -7,12 +7,11 @@ import os
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import csr_array
 from scipy.sparse.linalg import SuperLU, splu
 
+from vibroimpact.arrays import Bools, Floats, Integers
 from vibroimpact.errors import ComputationError, InputError
-from vibroimpact.structures.mesh import Floats, Integers
 
 _LEAF = 40  # nodes of the smallest part; smaller ones gain nothing
 _PART_OF_MEMORY = 0.8  # of what is free: the rest of the work needs some too
@@ -111,7 +110,7 @@ def dissection(nodes: Floats, adjacency: csr_array) -> list[Integers]:
     return [part for part in parts if len(part)]
 
 
-def _best_cut(at: Floats, part: Integers, adjacency: csr_array, other: NDArray[np.bool_]) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+def _best_cut(at: Floats, part: Integers, adjacency: csr_array, other: Bools) -> tuple[Bools, Bools]:
     """Return which nodes lie below the cut near the middle that fewest touch, and which of those touch the others."""
     levels = np.unique(np.round(at, 12))
     middle = int(np.searchsorted(levels, np.median(at)))

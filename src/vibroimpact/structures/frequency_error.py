@@ -6,8 +6,8 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from vibroimpact.arrays import Floats
 from vibroimpact.materials import Material
-from vibroimpact.structures.mesh import Floats
 from vibroimpact.structures.modes import Eigenmodes
 from vibroimpact.structures.plate_waves import bending_error, stiff_shear_error, stretching_error, wave_numbers
 from vibroimpact.structures.supports.constraints import HeldStructure

@@ -8,8 +8,9 @@ import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
+from vibroimpact.arrays import Floats
 from vibroimpact.errors import InputError
-from vibroimpact.structures.mesh import ElementBlock, Floats, Mesh
+from vibroimpact.structures.mesh import ElementBlock, Mesh
 
 _INERTIA_DEGREE = 9  # exact for the product of two coordinates and the Jacobian of a second-order brick
 

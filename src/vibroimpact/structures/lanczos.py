@@ -12,8 +12,8 @@ import numpy as np
 from scipy.linalg import eigh
 from scipy.sparse import csr_array
 
+from vibroimpact.arrays import Floats
 from vibroimpact.errors import ComputationError
-from vibroimpact.structures.mesh import Floats
 
 _BLOCK = 10
 TOLERANCE = 1e-9

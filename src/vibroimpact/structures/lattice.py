@@ -15,8 +15,9 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
+from vibroimpact.arrays import Floats, Integers
 from vibroimpact.structures.element_kinds import ELEMENT_KINDS
-from vibroimpact.structures.mesh import ElementBlock, Floats, Integers, Mesh
+from vibroimpact.structures.mesh import ElementBlock, Mesh
 
 _SAME = 1e-7  # of the largest extent: points nearer to one another than this are one
 _BRICK = np.rint(2.0 * ELEMENT_KINDS["hex27"].reference).astype(np.int64)

@@ -6,13 +6,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
+from vibroimpact.arrays import Floats, Integers
 from vibroimpact.errors import InputError, did_you_mean
 from vibroimpact.structures.element_kinds import ELEMENT_KINDS, ElementKind
-
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
 
 
 @dataclass(frozen=True)

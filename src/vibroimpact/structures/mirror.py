@@ -10,7 +10,7 @@ import numpy as np
 from scipy.sparse import coo_array, csr_array
 from scipy.spatial import cKDTree
 
-from vibroimpact.structures.mesh import Floats, Integers
+from vibroimpact.arrays import Floats, Integers
 from vibroimpact.structures.supports.constraints import HeldStructure
 
 _NEAR = 1e-9  # of the body's extent: nodes no farther apart are mirror images

@@ -8,8 +8,8 @@ from collections.abc import Iterator
 import numpy as np
 from scipy.sparse import csr_array
 
+from vibroimpact.arrays import Floats
 from vibroimpact.structures.lanczos import TOLERANCE
-from vibroimpact.structures.mesh import Floats
 from vibroimpact.structures.mirror import Mirror, mirrors_of, symmetric_parts
 from vibroimpact.structures.modes import Eigenmodes, Elastic, Progress, most_modes
 from vibroimpact.structures.supports.constraints import HeldStructure

@@ -11,10 +11,11 @@ from typing import Any, TypeVar
 import numpy as np
 from scipy.sparse import csr_array
 
+from vibroimpact.arrays import Floats
 from vibroimpact.structures.damping import Damping
 from vibroimpact.structures.disc import HERTZ, disc_points
 from vibroimpact.structures.geometry import MassProperties
-from vibroimpact.structures.mesh import Floats, Mesh
+from vibroimpact.structures.mesh import Mesh
 from vibroimpact.structures.modes import Eigenmodes
 from vibroimpact.structures.recent import Recent
 from vibroimpact.structures.supports.constraints import HeldStructure

@@ -9,10 +9,10 @@ import numpy as np
 from scipy.linalg import qr
 from scipy.sparse import csr_array
 
+from vibroimpact.arrays import Floats, Integers
 from vibroimpact.errors import ComputationError, InputError
 from vibroimpact.structures.factor import BYTES, Factors, check_room
 from vibroimpact.structures.lanczos import TOLERANCE, lowest_modes
-from vibroimpact.structures.mesh import Floats, Integers
 
 _DENSE = 400  # degrees of freedom up to which a dense solver is quicker
 _SPACE = 3.0  # vectors that the iteration keeps, and as many of their momenta, for each mode

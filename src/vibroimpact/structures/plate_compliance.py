@@ -20,7 +20,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from vibroimpact.structures.mesh import Floats
+from vibroimpact.arrays import Floats
 
 _PLATES = 64  # whose terms are at hand, for other places on them
 _NODES = 16  # of Gauss's rule on each part of an integral

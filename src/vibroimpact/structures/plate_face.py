@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from vibroimpact.arrays import Floats
 from vibroimpact.materials import Material
-from vibroimpact.structures.mesh import Floats
 from vibroimpact.structures.modal_model import ModalModel
 from vibroimpact.structures.plate_waves import bending_factor, mindlin_squares, shear_wave_factor
 from vibroimpact.structures.surface import slope_divergence

@@ -16,8 +16,8 @@ import math
 import numpy as np
 from numpy.polynomial import Chebyshev
 
+from vibroimpact.arrays import Floats
 from vibroimpact.materials import Material
-from vibroimpact.structures.mesh import Floats
 from vibroimpact.structures.plate_compliance import mean_square
 from vibroimpact.structures.plate_element import shear_factor
 

@@ -9,6 +9,7 @@ from typing import Literal
 
 import numpy as np
 
+from vibroimpact.arrays import Floats, Integers
 from vibroimpact.errors import ComputationError, InputError
 from vibroimpact.materials import Material
 from vibroimpact.structures.element_kinds import ELEMENT_KINDS
@@ -23,7 +24,7 @@ from vibroimpact.structures.frequency_error import (
     of_plate_theory,
     of_supports,
 )
-from vibroimpact.structures.mesh import Floats, Integers, Mesh
+from vibroimpact.structures.mesh import Mesh
 from vibroimpact.structures.mirrored import elastic_of
 from vibroimpact.structures.modal_model import ModalModel, modal_model
 from vibroimpact.structures.modes import Eigenmodes, Elastic, Progress

@@ -8,8 +8,8 @@ from itertools import pairwise
 
 import numpy as np
 
+from vibroimpact.arrays import Floats
 from vibroimpact.errors import InputError
-from vibroimpact.structures.mesh import Floats
 
 MOST_NODES = 1_000_000
 """Meshes of more are refused before they are made: the factors of their stiffness have more entries than can be numbered."""

@@ -8,8 +8,8 @@ import numpy as np
 from scipy.linalg import eigh
 from scipy.sparse import csr_array
 
+from vibroimpact.arrays import Floats, Integers
 from vibroimpact.errors import InputError
-from vibroimpact.structures.mesh import Floats, Integers
 from vibroimpact.structures.mirrored import MirroredElastic
 from vibroimpact.structures.modes import Eigenmodes, Elastic, Progress
 

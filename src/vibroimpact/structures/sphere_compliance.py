@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from vibroimpact.arrays import Floats
 from vibroimpact.errors import InputError
-from vibroimpact.structures.mesh import Floats
 
 _REACH, _LEAST = 20.0, 60  # degrees of the series, over a / R, and more; three times as many of both change c by less than 5e-6
 _NODES = 40  # of the integral over the patch, on which the harmonics have no more than fifteen zeros

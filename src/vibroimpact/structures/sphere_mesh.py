@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from vibroimpact.arrays import Floats
 from vibroimpact.errors import InputError
 from vibroimpact.structures.lattice import mesh_of_blocks
-from vibroimpact.structures.mesh import Floats, Mesh
+from vibroimpact.structures.mesh import Mesh
 
 MOST_ACROSS = 100
 """More elements across than this are refused; no machine would find their modes."""

@@ -6,13 +6,13 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
+from vibroimpact.arrays import Bools, Floats
 from vibroimpact.errors import InputError
 from vibroimpact.materials import Material
 from vibroimpact.structures.disc import UNIFORM, disc_points
-from vibroimpact.structures.mesh import Floats, Mesh
+from vibroimpact.structures.mesh import Mesh
 from vibroimpact.structures.modes import Elastic
 from vibroimpact.structures.plate_compliance import (
     Average,
@@ -165,7 +165,7 @@ def _faces(held: HeldStructure, place: tuple[float, float], average: Average) ->
     return [(weights @ motion) @ held.expansion for motion in motions]
 
 
-def _on_body(mesh: Mesh, places: Floats) -> tuple[NDArray[np.bool_], list[csr_array]]:
+def _on_body(mesh: Mesh, places: Floats) -> tuple[Bools, list[csr_array]]:
     """Return which places lie on the body, and how these move vertically on either face.
 
     First those in the box around the body are asked for at once, as it is quick.

@@ -8,13 +8,14 @@ from functools import cached_property
 import numpy as np
 from scipy.sparse import csr_array
 
+from vibroimpact.arrays import Floats, Integers
 from vibroimpact.materials import Material
 from vibroimpact.structures.assembly import node_adjacency
 from vibroimpact.structures.bed import bed_stiffness, end_compliance
 from vibroimpact.structures.elasticity import assemble_solid
 from vibroimpact.structures.factor import check_memory, dissection, factor_entries
 from vibroimpact.structures.geometry import MassProperties, check_mesh, mass_properties
-from vibroimpact.structures.mesh import Floats, Integers, Mesh
+from vibroimpact.structures.mesh import Mesh
 from vibroimpact.structures.plate_element import assemble_plate
 
 

@@ -8,9 +8,10 @@ from typing import Literal
 import numpy as np
 from scipy.sparse import coo_array, csr_array
 
+from vibroimpact.arrays import Floats, Integers
 from vibroimpact.errors import InputError
 from vibroimpact.structures.element_kinds import ElementKind
-from vibroimpact.structures.mesh import ElementBlock, Floats, Integers, Mesh
+from vibroimpact.structures.mesh import ElementBlock, Mesh
 
 Side = Literal["upper", "lower"]
 Spot = tuple[float, float] | str | None

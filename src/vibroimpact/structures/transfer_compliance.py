@@ -20,7 +20,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from vibroimpact.structures.mesh import Floats
+from vibroimpact.arrays import Floats
 from vibroimpact.structures.plate_compliance import Average, layer_kernels, mean_square
 from vibroimpact.structures.plate_element import shear_factor
 from vibroimpact.structures.recipe import PlateOfPlates, Recipe, Reduction, is_thin

@@ -9,9 +9,9 @@ from typing import Any, Literal, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from vibroimpact.arrays import Floats
 from vibroimpact.errors import InputError
 
-Floats = NDArray[np.float64]
 Values = NDArray[Any]
 """Floats, whole numbers, or objects where values are names or tables."""
 

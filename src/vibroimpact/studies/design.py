@@ -8,8 +8,9 @@ from functools import cache
 
 import numpy as np
 
+from vibroimpact.arrays import Floats
 from vibroimpact.registry import find_named, modules_in
-from vibroimpact.studies.axes import Axis, Floats
+from vibroimpact.studies.axes import Axis
 from vibroimpact.studies.plan import Plan
 
 

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from vibroimpact.studies.axes import Floats
+from vibroimpact.arrays import Floats
 
 PERCENTILES = (5, 25, 50, 75, 95)
 """Those that are told."""

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from vibroimpact.studies.axes import Floats
+from vibroimpact.arrays import Floats, Indices
 from vibroimpact.studies.design import generator
 
 MOST_LEFT_OUT = 0.05
@@ -21,7 +21,7 @@ _RESAMPLED = 8192  # points of a block that are drawn anew; with more of them th
 _QUANTILE = 1.959964  # of the normal distribution, for 95 %
 
 
-class Indices(NamedTuple):
+class SobolIndices(NamedTuple):
     """Sobol's indices of one result, one value an axis.
 
     Attributes
@@ -42,7 +42,7 @@ class Indices(NamedTuple):
     left_out: int
 
 
-def sobol_indices(values: Floats, axes: int, seed: int = 0) -> Indices | None:
+def sobol_indices(values: Floats, axes: int, seed: int = 0) -> SobolIndices | None:
     r"""Return Sobol's indices of a result at the points of the design "saltelli".
 
     .. math:: S_i = \frac{\overline{f_B\,(f_{AB_i} - f_A)}}{V}, \qquad T_i = \frac{\overline{(f_A - f_{AB_i})^2}}{2 V}
@@ -64,7 +64,7 @@ def sobol_indices(values: Floats, axes: int, seed: int = 0) -> Indices | None:
 
     Returns
     -------
-    Indices or None
+    SobolIndices or None
         None if the result does not vary, or more than 5 % of the points would have to be left out.
 
     References
@@ -96,7 +96,7 @@ def sobol_indices(values: Floats, axes: int, seed: int = 0) -> Indices | None:
     random = generator(seed, drawn)
     resampled = [_estimates(blocks[:, random.integers(drawn, size=drawn)]) for _ in range(RESAMPLES)]
     first_error, total_error = _QUANTILE * math.sqrt(drawn / len(complete)) * np.std(resampled, axis=0, ddof=1)
-    return Indices(first, total, first_error, total_error, points, left_out)
+    return SobolIndices(first, total, first_error, total_error, points, left_out)
 
 
 def _estimates(blocks: Floats) -> Floats:
@@ -165,7 +165,7 @@ class OneAtATime(NamedTuple):
         return (self.highest - self.lowest) / abs(self.middle) if self.middle else np.full(len(self.lowest), math.nan)
 
 
-def one_at_a_time(values: NDArray[Any], orders: list[NDArray[np.intp]]) -> OneAtATime:
+def one_at_a_time(values: NDArray[Any], orders: list[Indices]) -> OneAtATime:
     """Return how far a result moves along each axis of a grid.
 
     Parameters

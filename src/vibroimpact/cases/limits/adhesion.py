@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from vibroimpact.arrays import Array
 from vibroimpact.cases.conditions import Conditions
 from vibroimpact.cases.limit import Limit, percent_less
-from vibroimpact.contact.pair import Array
 
 WORK_OF_ADHESION = 0.1
 """What is reckoned with [J/m^2]: the upper end of clean and dry bodies, 0.02 to 0.1; rough ones have less."""

@@ -6,9 +6,9 @@ import math
 
 import numpy as np
 
+from vibroimpact.arrays import Array
 from vibroimpact.cases.conditions import Conditions
 from vibroimpact.cases.limit import Limit, percent_less
-from vibroimpact.contact.pair import Array
 from vibroimpact.dynamics.air import AIR_DENSITY, AIR_VISCOSITY, drag_coefficient
 
 _ROUNDS = 2  # of speed and coefficient; each takes the error of the speed down twenty times

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 
+from vibroimpact.arrays import Array
 from vibroimpact.cases.conditions import Conditions
 from vibroimpact.cases.limit import Limit, percent_more
-from vibroimpact.contact.pair import Array
 
 _STIFFENING = {True: (0.200, 0.443), False: (0.272, 1.430)}
 """Of clamped plates and of others: by edges that slide in their plane, and by edges that are held.

@@ -6,9 +6,9 @@ import math
 
 import numpy as np
 
+from vibroimpact.arrays import Array
 from vibroimpact.cases.conditions import Conditions
 from vibroimpact.cases.limit import Limit
-from vibroimpact.contact.pair import Array
 
 _RADII, _THICKNESSES = 10.0, 2.0
 """How far the contact keeps from an edge: of a rigid plate in contact radii, where a half space is 3 to 5 % too stiff; of an elastic plate

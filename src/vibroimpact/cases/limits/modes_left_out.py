@@ -7,9 +7,9 @@ from functools import partial
 
 import numpy as np
 
+from vibroimpact.arrays import Array
 from vibroimpact.cases.conditions import Conditions
 from vibroimpact.cases.limit import Limit
-from vibroimpact.contact.pair import Array
 from vibroimpact.quantity import text
 
 _TRUNCATED = 0.05  # of the largest force

@@ -6,9 +6,9 @@ import math
 
 import numpy as np
 
+from vibroimpact.arrays import Array
 from vibroimpact.cases.conditions import Conditions
 from vibroimpact.cases.limit import Limit
-from vibroimpact.contact.pair import Array
 
 
 def _number(drops: Conditions) -> Array:

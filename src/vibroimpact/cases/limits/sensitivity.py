@@ -6,9 +6,9 @@ import math
 
 import numpy as np
 
+from vibroimpact.arrays import Array
 from vibroimpact.cases.conditions import Conditions
 from vibroimpact.cases.limit import Limit
-from vibroimpact.contact.pair import Array
 from vibroimpact.dynamics.sensitivity import RELATIVE_CHANGE
 
 _PREDICTED = 1e-3  # of an impact: a larger change of it is doubted

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from vibroimpact.arrays import Array
 from vibroimpact.cases.conditions import Conditions
 from vibroimpact.cases.limit import Limit
-from vibroimpact.contact.pair import Array
 
 
 def _number(drops: Conditions) -> Array:

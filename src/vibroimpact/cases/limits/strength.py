@@ -7,9 +7,9 @@ from functools import partial
 
 import numpy as np
 
+from vibroimpact.arrays import Array
 from vibroimpact.cases.conditions import Conditions
 from vibroimpact.cases.limit import Limit
-from vibroimpact.contact.pair import Array
 from vibroimpact.materials import RIGID, Material
 
 _YIELD = 1.6  # Johnson 1985, section 6.1: below the surface the shear reaches yield where the peak pressure is 1.6 times the yield strength

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from vibroimpact.arrays import Array
 from vibroimpact.contact.law import parameter
-from vibroimpact.contact.pair import Array
 from vibroimpact.contact.power_law import PowerLaw
 
 

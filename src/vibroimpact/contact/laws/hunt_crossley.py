@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from vibroimpact.arrays import Array
 from vibroimpact.contact.hysteretic import HystereticLaw
-from vibroimpact.contact.pair import Array
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from vibroimpact.contact.pair import Array
+from vibroimpact.arrays import Array
 from vibroimpact.contact.sticking import StickingLaw
 
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from vibroimpact.arrays import Array
 from vibroimpact.contact.law import parameter
-from vibroimpact.contact.pair import Array
 from vibroimpact.contact.sticking import StickingLaw
 
 

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from vibroimpact.arrays import Array
 from vibroimpact.contact.damping_ratio import damping_ratio_of
 from vibroimpact.contact.kelvin_voigt import KelvinVoigtLaw
 from vibroimpact.contact.law import parameter
-from vibroimpact.contact.pair import Array
 from vibroimpact.errors import InputError
 
 

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from vibroimpact.arrays import Array
 from vibroimpact.contact.elastic_plastic import ElasticPlasticLaw
 from vibroimpact.contact.law import parameter
-from vibroimpact.contact.pair import Array
 from vibroimpact.errors import InputError
 
 

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from vibroimpact.arrays import Array
 from vibroimpact.contact.hysteretic import HystereticLaw
-from vibroimpact.contact.pair import Array
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -11,9 +11,9 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from vibroimpact._version import __version__
+from vibroimpact.arrays import Floats
 from vibroimpact.errors import InputError
 from vibroimpact.exchange.drop import Drop
 from vibroimpact.exchange.export_format import ExportFormat
@@ -48,7 +48,7 @@ class _Function:
     kind: int  # of data, as dataset 58 numbers them
     unit: str
     rate: float
-    values: NDArray[np.float64]
+    values: Floats
 
 
 def write(drop: Drop) -> dict[str, bytes]:

@@ -7,13 +7,13 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
+from vibroimpact.arrays import Bools, Floats
 from vibroimpact.errors import InputError
 from vibroimpact.exchange.drop import Drop
 from vibroimpact.exchange.export_format import ExportFormat
 from vibroimpact.exchange.plain_names import one_line
 from vibroimpact.exchange.resample import motion_at
 
-Floats = NDArray[np.float64]
 Cells = tuple[NDArray[np.float32], NDArray[np.int32]]
 """Points (points, 3) [m], and the corners (cells, 4) of quadrilaterals; at the poles they have no width."""
 
@@ -89,7 +89,7 @@ def _sphere(drop: Drop) -> Cells:
     return points.astype(np.float32), np.stack(corners, axis=1).astype(np.int32)
 
 
-def _surface(drop: Drop) -> tuple[NDArray[np.float32], NDArray[np.int32], NDArray[np.bool_]]:
+def _surface(drop: Drop) -> tuple[NDArray[np.float32], NDArray[np.int32], Bools]:
     """Return the points of the plate's upper side at rest, its cells, and which points of the grid lie on the plate."""
     x, y = np.meshgrid(drop.surface["x"], drop.surface["y"])
     on_plate = np.isfinite(drop.surface["height"][0])

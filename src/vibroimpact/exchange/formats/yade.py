@@ -6,11 +6,11 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from vibroimpact.arrays import Array
 from vibroimpact.contact.damping_ratio import damping_ratio_of
 from vibroimpact.contact.law import ContactLaw
 from vibroimpact.contact.laws.hertz import Hertz
 from vibroimpact.contact.laws.tsuji import Tsuji
-from vibroimpact.contact.pair import Array
 from vibroimpact.dynamics.restitution import achieved_restitution, law_achieving
 from vibroimpact.exchange.contact_alone import (
     approach_speeds,

@@ -12,9 +12,10 @@ from matplotlib.lines import Line2D
 from matplotlib.patheffects import withStroke
 from matplotlib.ticker import MaxNLocator
 
+from vibroimpact.arrays import Floats
 from vibroimpact.dynamics.response import Response
 from vibroimpact.quantity import multiple
-from vibroimpact.report.excerpt import Floats, thinned, window
+from vibroimpact.report.excerpt import thinned, window
 from vibroimpact.report.layout import heading, label_vertical, new_figure, row_of_axes
 from vibroimpact.report.reproduction.compared import Compared
 from vibroimpact.report.reproduction.looks import LOOKS

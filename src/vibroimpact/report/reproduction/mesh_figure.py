@@ -9,13 +9,14 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection, PolyCollection
 
+from vibroimpact.arrays import Floats
 from vibroimpact.report.layout import WIDTH, new_figure
 from vibroimpact.report.projection import TILT, TURN, project
 from vibroimpact.report.reproduction.drawing import Drawing
 from vibroimpact.report.style import INK
 from vibroimpact.reproduction.printed import printed
 from vibroimpact.reproduction.runs import Runs
-from vibroimpact.structures.mesh import Floats, Mesh
+from vibroimpact.structures.mesh import Mesh
 from vibroimpact.structures.surface import Faces, outer_faces
 
 _HEIGHT, _FOOT, _HEAD, _LEFT, _GAP = 4.2, 0.55, 0.3, 0.2, 0.3

@@ -9,10 +9,10 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.patches import Circle, Polygon
 
+from vibroimpact.arrays import Floats
 from vibroimpact.cases.build import resolved
 from vibroimpact.cases.reader import load_case
 from vibroimpact.quantity import text
-from vibroimpact.report.excerpt import Floats
 from vibroimpact.report.layout import WIDTH, new_figure
 from vibroimpact.report.projection import TILT, project
 from vibroimpact.report.reproduction.drawing import Drawing

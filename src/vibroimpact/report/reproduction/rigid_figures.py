@@ -10,9 +10,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
+from vibroimpact.arrays import Floats
 from vibroimpact.dynamics.response import Response
 from vibroimpact.quantity import digits, fixed, largest, multiple, text
-from vibroimpact.report.excerpt import MARGIN, Floats, thinned, window
+from vibroimpact.report.excerpt import MARGIN, thinned, window
 from vibroimpact.report.layout import heading, label_vertical, new_figure, row_of_axes, wide_axes
 from vibroimpact.report.reproduction.drawing import Drawing
 from vibroimpact.report.reproduction.looks import LOOKS

@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from vibroimpact.report.excerpt import Floats
+from vibroimpact.arrays import Floats
 from vibroimpact.report.study.axes import StudyAxis
 from vibroimpact.report.study.outputs import Output, independent, independent_drops
 from vibroimpact.report.study.panels import add_legend, is_log, panels, title_of

@@ -10,7 +10,7 @@ from matplotlib.colors import LogNorm, Normalize
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from vibroimpact.report.excerpt import Floats
+from vibroimpact.arrays import Floats
 from vibroimpact.report.layout import WIDTH, label_vertical
 from vibroimpact.report.study.axes import StudyAxis
 from vibroimpact.report.study.outputs import Output, on_grid

@@ -8,9 +8,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from vibroimpact.arrays import Floats
 from vibroimpact.dynamics.outcome import Outcome
 from vibroimpact.quantity import Multiple, multiple
-from vibroimpact.report.excerpt import Floats
 from vibroimpact.storage.study import Study
 from vibroimpact.studies.columns import OUTCOME, PEAK_TABLE, SENSOR_PEAK
 from vibroimpact.studies.percentiles import Spread, spread_of

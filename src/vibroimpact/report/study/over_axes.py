@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from vibroimpact.report.excerpt import Floats
+from vibroimpact.arrays import Floats
 from vibroimpact.report.study.axes import StudyAxis
 from vibroimpact.report.study.outputs import Output, on_grid, some, some_places
 from vibroimpact.report.study.panels import add_legend, panels, same_heights, scale_vertical, title_of

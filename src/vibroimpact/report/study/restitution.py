@@ -9,8 +9,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from vibroimpact.arrays import Floats
 from vibroimpact.quantity import fixed
-from vibroimpact.report.excerpt import Floats
 from vibroimpact.report.layout import label_vertical, new_figure, row_of_axes, wide_axes
 from vibroimpact.report.study.outputs import independent, some
 from vibroimpact.report.study.panels import add_legend

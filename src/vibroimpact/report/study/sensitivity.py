@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from vibroimpact.report.excerpt import Floats
+from vibroimpact.arrays import Floats
 from vibroimpact.report.study.axes import StudyAxis, study_axes
 from vibroimpact.report.study.outputs import Output, on_grid, read_output, some, some_places
 from vibroimpact.report.study.ticks import rising

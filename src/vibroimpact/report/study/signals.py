@@ -7,9 +7,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
+from vibroimpact.arrays import Floats
 from vibroimpact.exchange.plain_names import plain_names
 from vibroimpact.quantity import Multiple, multiple
-from vibroimpact.report.excerpt import Floats
 from vibroimpact.report.layout import label_vertical, new_figure, wide_axes
 from vibroimpact.report.lettering import lettering
 from vibroimpact.report.study.outputs import some

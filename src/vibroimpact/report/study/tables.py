@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from vibroimpact.arrays import Floats
 from vibroimpact.quantity import digits, fixed
-from vibroimpact.report.excerpt import Floats
 from vibroimpact.report.study.axes import StudyAxis, study_axes
 from vibroimpact.report.study.outputs import Output
 from vibroimpact.report.study.sensitivity import RANKS, SOBOL, Sensitivity

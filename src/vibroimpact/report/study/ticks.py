@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from vibroimpact.arrays import Floats, Indices
 from vibroimpact.quantity import multiple
-from vibroimpact.report.excerpt import Floats
 from vibroimpact.report.lettering import lettering
 from vibroimpact.report.study.axes import StudyAxis
 from vibroimpact.report.study.words import with_unit
@@ -68,7 +68,7 @@ class Ticks:
                     text.set(rotation=20, ha="right", rotation_mode="anchor")
 
 
-def rising(axis: StudyAxis, most: int | None = None) -> NDArray[np.intp]:
+def rising(axis: StudyAxis, most: int | None = None) -> Indices:
     """Return where the levels of an axis are in rising order, names as they first come; evenly left out where there are too many.
 
     Examples

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from vibroimpact.arrays import Floats
 from vibroimpact.materials import Material
-from vibroimpact.structures.mesh import Floats
 from vibroimpact.structures.rectangle import Disc
 from vibroimpact.structures.structure import rotation_columns
 from vibroimpact.structures.supports.constraints import Constraints

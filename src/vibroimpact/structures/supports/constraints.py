@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.sparse import block_diag, coo_array, csr_array, diags_array, kron
 
+from vibroimpact.arrays import Floats, Integers
 from vibroimpact.errors import InputError
 from vibroimpact.structures.bed import area_products, bed_under, elements_within
-from vibroimpact.structures.mesh import Floats, Integers
 from vibroimpact.structures.structure import Structure, rotation_columns
 
 _STILL = 1e-12  # the part of a rigid motion's energy or displacement that rounding may leave

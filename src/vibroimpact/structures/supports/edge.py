@@ -7,9 +7,9 @@ from typing import Literal
 
 import numpy as np
 
+from vibroimpact.arrays import Floats
 from vibroimpact.errors import InputError
 from vibroimpact.structures.element_kinds import PLATE_ORDER
-from vibroimpact.structures.mesh import Floats
 from vibroimpact.structures.supports.constraints import Constraints
 from vibroimpact.structures.supports.support import Support
 

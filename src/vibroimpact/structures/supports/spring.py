@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from vibroimpact.structures.mesh import Floats
+from vibroimpact.arrays import Floats
 from vibroimpact.structures.supports.constraints import Constraints
 from vibroimpact.structures.supports.support import Support
 from vibroimpact.structures.surface import surface_motion

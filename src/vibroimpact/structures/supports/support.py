@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from vibroimpact.arrays import Floats, Integers
 from vibroimpact.errors import InputError
-from vibroimpact.structures.mesh import Floats, Integers
 from vibroimpact.structures.rectangle import Disc
 from vibroimpact.structures.structure import Structure
 from vibroimpact.structures.supports.constraints import Constraints, HeldStructure
