@@ -22,7 +22,7 @@ import vibroimpact as vi
 from support import plain_case
 from vibroimpact.calibration.speed_function import SpeedFunction
 from vibroimpact.cli import main
-from vibroimpact.dynamics.columns import HISTORY_COLUMNS, IMPACT_COLUMNS
+from vibroimpact.dynamics.columns import HISTORY_COLUMNS, IMPACT_COLUMNS, meanings
 from vibroimpact.dynamics.recording import Signal
 from vibroimpact.dynamics.sensor import Sensor
 from vibroimpact.exchange.drop import Drop
@@ -185,7 +185,7 @@ def test_parquet_has_values_and_units(elastic: Drop) -> None:
         np.testing.assert_array_equal(impacts[name].to_numpy(dtype=float), elastic.impacts[name])
     assert impacts["impact"].dtype == np.int64
     schema = parquet.read_schema(BytesIO(files["history.parquet"]))
-    for name, (unit, meaning) in HISTORY_COLUMNS.items():
+    for name, (unit, meaning) in meanings(HISTORY_COLUMNS).items():
         assert schema.field(name).metadata == {b"unit": unit.encode(), b"long_name": meaning.encode()}
     signal = parquet.read_table(BytesIO(files["sensors/slow_one.parquet"]))
     assert signal.schema.field("velocity_m_s").metadata[b"unit"] == b"m/s"

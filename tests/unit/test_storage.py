@@ -19,7 +19,7 @@ import xarray
 
 import vibroimpact as vi
 from vibroimpact.cli import main
-from vibroimpact.dynamics.columns import HISTORY_COLUMNS, IMPACT_COLUMNS, LEDGER
+from vibroimpact.dynamics.columns import HISTORY_COLUMNS, IMPACT_COLUMNS, LEDGER, meanings
 from vibroimpact.storage.folder import new_folder
 from vibroimpact.storage.hdf5 import new_array, new_hdf5, read_array
 
@@ -83,7 +83,7 @@ def test_netcdf_opens_in_xarray_with_units(folder: Path, theory: vi.Response) ->
     for group, columns in (("impacts", IMPACT_COLUMNS), ("history", HISTORY_COLUMNS)):
         with xarray.open_dataset(folder / "result.nc", group=group, engine="h5netcdf") as data:
             assert set(data.variables) == set(columns)
-            for name, (unit, meaning) in columns.items():
+            for name, (unit, meaning) in meanings(columns).items():
                 assert data[name].attrs["units"] == unit
                 assert data[name].attrs["long_name"] == meaning
             assert data.sizes == {"impact": 5} if group == "impacts" else {"time_s": len(theory.history()["time_s"])}

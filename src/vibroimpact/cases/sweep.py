@@ -23,7 +23,7 @@ from vibroimpact.cases.section import read_table
 from vibroimpact.cases.study_limits import limit_meanings
 from vibroimpact.cases.sweep_section import MOST_DROPS, SweepSection, read_axis
 from vibroimpact.cases.swept_keys import case_at, find_quantity, holds_keys
-from vibroimpact.dynamics.columns import IMPACT_COLUMNS, VIBRATION_IMPACT_COLUMNS
+from vibroimpact.dynamics.columns import ALL_IMPACT_COLUMNS, IMPACT_COLUMNS, meanings
 from vibroimpact.errors import InputError
 from vibroimpact.exchange.lines import MESH
 from vibroimpact.files import file_digest
@@ -139,7 +139,7 @@ class Sweep:
         keys = {key: (quantity.unit or "1", quantity.meaning) if quantity else ("1", key) for key, quantity in self.quantities.items()}
         largest = {f"{name}{SENSOR_PEAK}": (one.unit, f"largest magnitude that {name} reads") for name, one in sensors.items()}
         signals = {f"{SIGNAL}{name}": (one.unit, f"{one.quantity} that {name} reads") for name, one in sensors.items()}
-        impacts = {**IMPACT_COLUMNS, **VIBRATION_IMPACT_COLUMNS}
+        impacts = meanings(ALL_IMPACT_COLUMNS)
         del impacts["impact"]  # the dimension
         ended = {OUTCOME: ("1", "why the run of the drop ended")}
         return {**keys, **ended, **PEAKS, **largest, **limit_meanings(), **impacts, **signals}
@@ -233,7 +233,7 @@ def read_sweep(table: Mapping[str, Any]) -> Sweep:
     if "signals" in section.keep:
         sensors = [sensor.name for sensor in sweep.case.sensors]
         variables = [name for sensor in sensors for name in (f"{SIGNAL}{sensor}", f"{sensor}{SENSOR_PEAK}", f"time_{sensor}")]
-        taken = {*sweep.axes, OUTCOME, *PEAKS, *limit_meanings(), *IMPACT_COLUMNS, *VIBRATION_IMPACT_COLUMNS}
+        taken = {*sweep.axes, OUTCOME, *PEAKS, *limit_meanings(), *ALL_IMPACT_COLUMNS}
         for name in variables:
             if not name.isprintable() or "/" in name or variables.count(name) > 1 or name in taken:
                 words = f'"{name}" can\'t be the name of a variable of the dataset, or is that of another; call the sensor otherwise'

@@ -1,86 +1,150 @@
-"""The names of everything a response tells, with unit and meaning: one list for table, file and figure."""
+"""Everything a response tells of a drop, a line a column: one table for files, terminal, pages and figures."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
+from typing import Literal, NamedTuple
 
-IMPACT_COLUMNS: dict[str, tuple[str, str]] = {
-    "impact": ("1", "number of the impact, from 1"),
-    "time_s": ("s", "time of first touch"),
-    "duration_s": ("s", "duration of contact"),
-    "approach_speed_m_s": ("m/s", "speed at first touch, downwards"),
-    "separation_speed_m_s": ("m/s", "speed at release, upwards"),
-    "restitution_achieved": ("1", "separation speed over approach speed"),
-    "max_indentation_m": ("m", "largest indentation"),
-    "max_force_N": ("N", "largest contact force"),
-    "max_acceleration_m_s2": ("m/s2", "largest magnitude of the sphere's acceleration"),
-    "rebound_height_m": ("m", "height of the sphere's centre above the plate at the top of the rebound"),
-    "energy_lost_J": ("J", "mechanical energy lost in the contact"),
-    "plastic_work_J": ("J", "the part of the energy lost that went into plastic deformation"),
-    "restitution_asked": ("1", "restitution asked of the contact law, where it has one"),
-    "time_of_max_indentation_s": ("s", "time of the largest indentation"),
-    "time_of_max_force_s": ("s", "time of the largest contact force"),
+
+class Column(NamedTuple):
+    """A column of the impact table or of a history.
+
+    `unit` (SI), `meaning`: as files tell them. `label`: its header on a page; of an energy, its entry in the ledger. `short`: its header
+    in a terminal; of an energy, its name in a legend. `values`: what kind they are, which sets how they are written. `in_ledger`: does it
+    share the energy put in? `is_loss`: is that energy gone?
+    """
+
+    unit: str
+    meaning: str
+    label: str = ""
+    short: str = ""
+    values: Literal["quantity", "time", "ratio", "count", "factor"] = "quantity"
+    in_ledger: bool = False
+    is_loss: bool = False
+
+
+def _held(meaning: str, label: str, short: str = "") -> Column:
+    """Return a column of the ledger: energy that is still there."""
+    return Column("J", meaning, label, short, in_ledger=True)
+
+
+def _lost(meaning: str, label: str, short: str) -> Column:
+    """Return a column of the ledger: energy that is lost so far."""
+    return Column("J", meaning, label, short, in_ledger=True, is_loss=True)
+
+
+IMPACT_COLUMNS: dict[str, Column] = {
+    "impact": Column("1", "number of the impact, from 1", "Impact", "#", "count"),
+    "time_s": Column("s", "time of first touch", "First touch", "time", "time"),
+    "duration_s": Column("s", "duration of contact", "Contact duration", "contact"),
+    "approach_speed_m_s": Column("m/s", "speed at first touch, downwards", "Approach speed", "approach"),
+    "separation_speed_m_s": Column("m/s", "speed at release, upwards", "Separation speed", "separation"),
+    "restitution_achieved": Column("1", "separation speed over approach speed", "Restitution achieved", "e achieved", "ratio"),
+    "max_indentation_m": Column("m", "largest indentation", "Largest indentation", "indentation"),
+    "max_force_N": Column("N", "largest contact force", "Largest force", "force"),
+    "max_acceleration_m_s2": Column("m/s2", "largest magnitude of the sphere's acceleration", "Largest acceleration", "acceleration"),
+    "rebound_height_m": Column("m", "height of the sphere's centre above the plate at the top of the rebound", "Rebound height", "rebound"),
+    "energy_lost_J": Column("J", "mechanical energy lost in the contact", "Energy lost", "lost"),
+    "plastic_work_J": Column("J", "the part of the energy lost that went into plastic deformation"),
+    "restitution_asked": Column(
+        "1", "restitution asked of the contact law, where it has one", "Restitution asked", "e\u00a0asked", "ratio"
+    ),
+    "time_of_max_indentation_s": Column("s", "time of the largest indentation"),
+    "time_of_max_force_s": Column("s", "time of the largest contact force"),
 }
-"""Columns of the impact table, one row an impact: unit and meaning."""
+"""Columns of the impact table, one row an impact."""
 
-VIBRATION_IMPACT_COLUMNS: dict[str, tuple[str, str]] = {
-    "closing_speed_m_s": ("m/s", "speed at which the surfaces meet at first touch"),
-    "contacts": ("1", "number of contacts between first touch and last release"),
-    "energy_to_vibration_J": ("J", "energy that went into vibration, what its damping took by the last release included"),
-    "sensitivity": ("1", "relative change of the motion at first touch, for a small relative change of the drop's height or speed"),
+VIBRATION_IMPACT_COLUMNS: dict[str, Column] = {
+    "closing_speed_m_s": Column("m/s", "speed at which the surfaces meet at first touch"),
+    "contacts": Column("1", "number of contacts between first touch and last release", "Contacts in the visit", "contacts", "count"),
+    "energy_to_vibration_J": Column("J", "energy that went into vibration, what its damping took by the last release included"),
+    "sensitivity": Column(
+        "1",
+        "relative change of the motion at first touch, for a small relative change of the drop's height or speed",
+        "Sensitivity",
+        "sensitivity",
+        "factor",
+    ),
 }
 """Further columns of the impact table, where a body vibrates."""
 
-HISTORY_COLUMNS: dict[str, tuple[str, str]] = {
-    "time_s": ("s", "time since the start"),
-    "position_m": ("m", "height of the sphere's centre above the plate's upper surface"),
-    "velocity_m_s": ("m/s", "velocity of the sphere, upwards"),
-    "acceleration_m_s2": ("m/s2", "acceleration of the sphere, upwards"),
-    "force_N": ("N", "contact force on the sphere, upwards"),
-    "indentation_m": ("m", "indentation, zero without contact; negative where a sticking contact is drawn out"),
-    "kinetic_J": ("J", "kinetic energy of the sphere"),
-    "potential_J": ("J", "potential energy of the sphere, zero at first touch of the undeformed plate"),
-    "contact_elastic_J": ("J", "energy stored in the contact"),
-    "contact_dissipated_J": ("J", "energy lost so far in the damping of the contact, and when a sticking contact breaks"),
-    "plastic_work_J": ("J", "energy lost so far in plastic deformation"),
-    "written_off_at_rest_J": ("J", "energy written off when the sphere was found to be at rest"),
+HISTORY_COLUMNS: dict[str, Column] = {
+    "time_s": Column("s", "time since the start"),
+    "position_m": Column("m", "height of the sphere's centre above the plate's upper surface"),
+    "velocity_m_s": Column("m/s", "velocity of the sphere, upwards"),
+    "acceleration_m_s2": Column("m/s2", "acceleration of the sphere, upwards"),
+    "force_N": Column("N", "contact force on the sphere, upwards"),
+    "indentation_m": Column("m", "indentation, zero without contact; negative where a sticking contact is drawn out"),
+    "kinetic_J": _held("kinetic energy of the sphere", "Kinetic energy of the sphere", "kinetic"),
+    "potential_J": _held(
+        "potential energy of the sphere, zero at first touch of the undeformed plate",
+        "Potential energy of the sphere, zero at the height of first touch",
+        "potential",
+    ),
+    "contact_elastic_J": _held("energy stored in the contact", "Stored in the contact", "stored in the contact"),
+    "contact_dissipated_J": _lost(
+        "energy lost so far in the damping of the contact, and when a sticking contact breaks",
+        "Lost in the damping of the contact, or where a sticking contact broke",
+        "damping and adhesion",
+    ),
+    "plastic_work_J": _lost("energy lost so far in plastic deformation", "Lost in plastic deformation", "plastic work"),
+    "written_off_at_rest_J": _held(
+        "energy written off when the sphere was found to be at rest",
+        "Written off when the sphere was found to be at rest",
+        "written off at rest",
+    ),
 }
-"""Columns of a history: unit and meaning."""
+"""Columns of a history."""
 
-VIBRATION_HISTORY_COLUMNS: dict[str, tuple[str, str]] = {
-    "sphere_vibration_J": ("J", "kinetic energy of the sphere's vibration, beside that of its centre"),
-    "sphere_strain_J": ("J", "strain energy of the sphere's modes"),
-    "sphere_damping_J": ("J", "energy lost so far in the damping of the sphere's modes"),
-    "sphere_rotational_J": ("J", "kinetic energy of the sphere's rotation"),
-    "plate_kinetic_J": ("J", "kinetic energy of the plate"),
-    "plate_strain_J": ("J", "strain energy of the plate's modes, from where it rests under its own weight"),
-    "plate_damping_J": ("J", "energy lost so far in the damping of the plate's modes"),
-    "plate_rotational_J": ("J", "the part of the plate's kinetic energy in its turning as a whole"),
-    "plate_potential_J": ("J", "change of the plate's potential energy, which the strain of its weight makes up for"),
-    "plate_displacement_m": ("m", "displacement of the plate's centre of mass, upwards"),
-    "plate_velocity_m_s": ("m/s", "velocity of the plate's centre of mass, upwards"),
-    "plate_acceleration_m_s2": ("m/s2", "acceleration of the plate's centre of mass, upwards"),
-    "plate_deflection_m": ("m", "displacement of the plate at the contact point, upwards"),
+VIBRATION_HISTORY_COLUMNS: dict[str, Column] = {
+    "sphere_vibration_J": _held(
+        "kinetic energy of the sphere's vibration, beside that of its centre",
+        "Kinetic energy of the sphere's vibration, beside that of its centre",
+    ),
+    "sphere_strain_J": _held("strain energy of the sphere's modes", "Strain energy of the sphere's modes"),
+    "sphere_damping_J": _lost(
+        "energy lost so far in the damping of the sphere's modes", "Lost in the damping of the sphere's modes", "damping of the sphere"
+    ),
+    "sphere_rotational_J": Column("J", "kinetic energy of the sphere's rotation"),
+    "plate_kinetic_J": _held("kinetic energy of the plate", "Kinetic energy of the plate"),
+    "plate_strain_J": _held(
+        "strain energy of the plate's modes, from where it rests under its own weight",
+        "Strain energy of the plate's modes, from where it rests",
+    ),
+    "plate_damping_J": _lost(
+        "energy lost so far in the damping of the plate's modes", "Lost in the damping of the plate's modes", "damping of the plate"
+    ),
+    "plate_rotational_J": Column("J", "the part of the plate's kinetic energy in its turning as a whole"),
+    "plate_potential_J": Column("J", "change of the plate's potential energy, which the strain of its weight makes up for"),
+    "plate_displacement_m": Column("m", "displacement of the plate's centre of mass, upwards"),
+    "plate_velocity_m_s": Column("m/s", "velocity of the plate's centre of mass, upwards"),
+    "plate_acceleration_m_s2": Column("m/s2", "acceleration of the plate's centre of mass, upwards"),
+    "plate_deflection_m": Column("m", "displacement of the plate at the contact point, upwards"),
 }
 """Further columns of a history, where a body vibrates."""
 
-VIBRATION_LEDGER = ("sphere_vibration_J", "sphere_strain_J", "sphere_damping_J", "plate_kinetic_J", "plate_strain_J", "plate_damping_J")
-"""The further columns that share the energy put in."""
+ALL_IMPACT_COLUMNS = {**IMPACT_COLUMNS, **VIBRATION_IMPACT_COLUMNS}
+ALL_HISTORY_COLUMNS = {**HISTORY_COLUMNS, **VIBRATION_HISTORY_COLUMNS}
 
-LEDGER = ("kinetic_J", "potential_J", "contact_elastic_J", "contact_dissipated_J", "plastic_work_J", "written_off_at_rest_J")
+LEDGER = tuple(name for name, column in HISTORY_COLUMNS.items() if column.in_ledger)
 """The columns of a history that share the energy put in; their sum is constant."""
 
-COUNTS = ("impact", "contacts")
-"""The columns of the impact table that count."""
+VIBRATION_LEDGER = tuple(name for name, column in VIBRATION_HISTORY_COLUMNS.items() if column.in_ledger)
+"""The further columns that share it."""
 
 
-def impact_columns(impacts: Iterable[str]) -> dict[str, tuple[str, str]]:
-    """Return unit and meaning of the columns that an impact table has: more where a body vibrates."""
+def impact_columns(impacts: Iterable[str]) -> dict[str, Column]:
+    """Return the columns that an impact table has: more where a body vibrates."""
     has = set(impacts)
-    return {name: told for name, told in {**IMPACT_COLUMNS, **VIBRATION_IMPACT_COLUMNS}.items() if name in has}
+    return {name: column for name, column in ALL_IMPACT_COLUMNS.items() if name in has}
 
 
-def history_columns(history: Iterable[str]) -> dict[str, tuple[str, str]]:
-    """Return unit and meaning of the columns that a history has: more where a body vibrates."""
+def history_columns(history: Iterable[str]) -> dict[str, Column]:
+    """Return the columns that a history has: more where a body vibrates."""
     has = set(history)
-    return {name: told for name, told in {**HISTORY_COLUMNS, **VIBRATION_HISTORY_COLUMNS}.items() if name in has}
+    return {name: column for name, column in ALL_HISTORY_COLUMNS.items() if name in has}
+
+
+def meanings(columns: Mapping[str, Column]) -> dict[str, tuple[str, str]]:
+    """Return unit and meaning of columns."""
+    return {name: (column.unit, column.meaning) for name, column in columns.items()}

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.dynamics.columns import HISTORY_COLUMNS, VIBRATION_HISTORY_COLUMNS
+from vibroimpact.dynamics.columns import HISTORY_COLUMNS, VIBRATION_HISTORY_COLUMNS, meanings
 from vibroimpact.dynamics.history_grid import points_kept, thinned
 from vibroimpact.dynamics.leg import Leg
 from vibroimpact.dynamics.outcome import Outcome
@@ -101,7 +101,7 @@ class Response:
     @property
     def history_columns(self) -> dict[str, tuple[str, str]]:
         """The columns of a history: unit and meaning."""
-        return {**HISTORY_COLUMNS, **(VIBRATION_HISTORY_COLUMNS if self.problem.vibrates else {})}
+        return meanings({**HISTORY_COLUMNS, **(VIBRATION_HISTORY_COLUMNS if self.problem.vibrates else {})})
 
     @property
     def status(self) -> str:

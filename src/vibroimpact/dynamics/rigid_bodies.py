@@ -40,7 +40,7 @@ class RigidBodies:
     lying: list[Lying | None]
 
     def __init__(self, size: int, solve_contact: SolvesContact) -> None:
-        self.columns = dict(IMPACT_COLUMNS)
+        self.columns = tuple(IMPACT_COLUMNS)
         self.solve_contact = solve_contact
         self.left, self.lying = np.full(size, np.nan), [None] * size
 

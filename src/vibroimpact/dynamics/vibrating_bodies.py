@@ -9,7 +9,7 @@ import numpy as np
 from vibroimpact.arrays import Bools, Drops, Floats
 from vibroimpact.bodies.body import Body
 from vibroimpact.contact.law import CompliantLaw, ContactLaw
-from vibroimpact.dynamics.columns import IMPACT_COLUMNS, VIBRATION_IMPACT_COLUMNS
+from vibroimpact.dynamics.columns import ALL_IMPACT_COLUMNS
 from vibroimpact.dynamics.contact import CAPTURED, RIDING, SETTLED, Contact, Piece
 from vibroimpact.dynamics.encounter import Encounter
 from vibroimpact.dynamics.flight import Flight
@@ -84,7 +84,7 @@ class VibratingBodies(RigidBodies):
 
     def __init__(self, problem: Problem, mass: Floats, gravity: Floats) -> None:
         self.problem, self.mass, size = problem, mass, len(mass)
-        self.columns = {**IMPACT_COLUMNS, **VIBRATION_IMPACT_COLUMNS}
+        self.columns = tuple(ALL_IMPACT_COLUMNS)
         pairs = list(zip(mass.tolist(), gravity.tolist(), strict=True))
         self.system = system_of(problem, *pairs[0])
         alike = {(mass, gravity): self.system.falling(mass**-0.5, gravity * mass**0.5) for mass, gravity in set(pairs)}

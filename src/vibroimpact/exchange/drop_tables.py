@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vibroimpact.arrays import Floats
-from vibroimpact.dynamics.columns import COUNTS, history_columns, impact_columns
+from vibroimpact.dynamics.columns import Column as Facts
+from vibroimpact.dynamics.columns import history_columns, impact_columns
 from vibroimpact.dynamics.recording import Signal
 from vibroimpact.errors import InputError
 from vibroimpact.exchange.drop import Drop
@@ -54,9 +55,12 @@ def signal_csv(signal: Signal) -> str:
     return "\n".join([f"{time_name},{name}", *rows, ""])
 
 
-def _table(columns: Mapping[str, Floats], told: Mapping[str, tuple[str, str]]) -> Table:
-    whole = {name: np.asarray(columns[name], dtype=np.int64 if name in COUNTS else np.float64) for name in told}
-    return {name: Column(whole[name], *told[name]) for name in told}
+def _table(values: Mapping[str, Floats], columns: Mapping[str, Facts]) -> Table:
+    found = {}
+    for name, column in columns.items():
+        kind = np.int64 if column.values == "count" else np.float64
+        found[name] = Column(np.asarray(values[name], dtype=kind), column.unit, column.meaning)
+    return found
 
 
 def _of_signal(signal: Signal) -> Table:

@@ -12,10 +12,11 @@ from vibroimpact.cases.case import Case
 from vibroimpact.cases.comparison import cases_under
 from vibroimpact.cases.rigid import contact_laws_of, contact_pair, first_speed
 from vibroimpact.contact.law import ContactLaw
+from vibroimpact.dynamics.columns import ALL_IMPACT_COLUMNS
 from vibroimpact.dynamics.restitution import achieved_restitution
 from vibroimpact.dynamics.simulate import simulate
 from vibroimpact.quantity import MISSING, text
-from vibroimpact.report.tables import HEADERS, column
+from vibroimpact.report.tables import column
 from vibroimpact.storage.result import Result, result_of
 
 _SPEEDS = 61
@@ -122,7 +123,7 @@ def comparison_table(comparison: Comparison) -> tuple[list[tuple[str, str]], lis
         first = np.array([one.impacts[name][0] if len(one.impacts[name]) else np.nan for one in comparison.results.values()])
         change = np.array([one.change_by_impact[0] if len(one.impacts[name]) else 0.0 for one in comparison.results.values()])
         unit, cells = column(name, first, change)
-        headers.append((HEADERS[name], unit))
+        headers.append((ALL_IMPACT_COLUMNS[name].label, unit))
         for row, cell in zip(rows, cells, strict=True):
             row.append(cell)
     return headers, rows

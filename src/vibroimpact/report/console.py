@@ -27,31 +27,16 @@ from vibroimpact.cases.rigid import (
 )
 from vibroimpact.cases.schema import SensorSection
 from vibroimpact.contact.law import CompliantLaw, ContactLaw, unit_of
+from vibroimpact.dynamics.columns import ALL_IMPACT_COLUMNS
 from vibroimpact.dynamics.problem import STANDARD_GRAVITY
 from vibroimpact.dynamics.restitution import achieved_restitution, law_achieving
 from vibroimpact.errors import InputError
 from vibroimpact.materials import RIGID, Material
 from vibroimpact.report.deformation import deformation_rows, treatment_sentence
-from vibroimpact.report.tables import PUT_IN, SUM, column, ledger_table, several_contacts, takes_digits
+from vibroimpact.report.tables import PUT_IN, SHOWN, SUM, column, ledger_table, several_contacts, takes_digits
 from vibroimpact.report.terminal_table import Column, TerminalTable, facts, numbers, with_gap
 from vibroimpact.storage.result import Result
 
-_HEADINGS = {
-    "impact": "#",
-    "time_s": "time",
-    "duration_s": "contact",
-    "approach_speed_m_s": "approach",
-    "separation_speed_m_s": "separation",
-    "restitution_asked": "e\u00a0asked",
-    "restitution_achieved": "e achieved",
-    "max_indentation_m": "indentation",
-    "max_force_N": "force",
-    "max_acceleration_m_s2": "acceleration",
-    "rebound_height_m": "rebound",
-    "energy_lost_J": "lost",
-    "contacts": "contacts",
-    "sensitivity": "sensitivity",
-}
 _FIRST_LEFT_OUT = (
     "max_acceleration_m_s2",
     "energy_lost_J",
@@ -80,8 +65,10 @@ def impact_table(result: Result, width: int) -> RenderableType:
     rows = [index for index in range(number) if not _FIRST_ROWS <= index < number - _LAST_ROWS]
     told = {"contacts": several_contacts(impacts), "sensitivity": takes_digits(change)}
     told["restitution_asked"] = bool(np.isfinite(impacts["restitution_asked"]).any())
-    cells = {name: column(name, impacts[name], change) for name in _HEADINGS if told.get(name, True)}
-    columns = {name: numbers(_HEADINGS[name], unit, [shown[index] for index in rows]) for name, (unit, shown) in cells.items()}
+    cells = {name: column(name, impacts[name], change) for name in SHOWN if told.get(name, True)}
+    columns = {
+        name: numbers(ALL_IMPACT_COLUMNS[name].short, unit, [shown[index] for index in rows]) for name, (unit, shown) in cells.items()
+    }
     left_out = [name for name in _FIRST_LEFT_OUT if name in columns]
     while left_out and TerminalTable(tuple(columns.values())).width > width:
         del columns[left_out.pop(0)]

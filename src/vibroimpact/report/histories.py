@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from vibroimpact.arrays import Floats, Indices
+from vibroimpact.dynamics.columns import HISTORY_COLUMNS
 from vibroimpact.quantity import Multiple, multiple
 from vibroimpact.report.excerpt import MARGIN, around, contacts, enlarged, thinned, touch_height
 from vibroimpact.report.layout import heading, label_vertical, new_figure, row_of_axes, wide_axes
@@ -29,8 +30,8 @@ class Quantity(NamedTuple):
 
     Parameters
     ----------
-    column, unit : str
-        Column of the history and its SI unit.
+    column : str
+        Column of the history.
     title, label, enlarged_label : str
         What the figure is called, and its vertical axes without the unit.
     run_marks, contact_marks : callable
@@ -44,7 +45,6 @@ class Quantity(NamedTuple):
     """
 
     column: str
-    unit: str
     title: str
     label: str
     enlarged_label: str
@@ -54,6 +54,11 @@ class Quantity(NamedTuple):
     contact_meaning: str
     headline: Callable[[Result, int], str]
     from_touch: bool = False
+
+    @property
+    def unit(self) -> str:
+        """Its SI unit."""
+        return HISTORY_COLUMNS[self.column].unit
 
 
 def draw_history(result: Result, quantity: Quantity) -> Figure:

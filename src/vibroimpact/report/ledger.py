@@ -7,11 +7,18 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from vibroimpact.arrays import Floats, Indices
+from vibroimpact.dynamics.columns import ALL_HISTORY_COLUMNS
 from vibroimpact.quantity import Multiple, multiple
 from vibroimpact.report.excerpt import MARGIN, around, enlarged
 from vibroimpact.report.layout import label_vertical, new_figure, wide_axes
 from vibroimpact.report.style import BANDS, INK
 from vibroimpact.storage.result import Result
+
+_MOTIONS = {
+    "sphere_motion_J": ("vibration of the sphere", "sphere_vibration_J", "sphere_strain_J"),
+    "plate_motion_J": ("motion of the plate", "plate_kinetic_J", "plate_strain_J"),
+}
+"""Bands of two entries each: what they are called, and which."""
 
 _COLUMNS = 110
 """How many points an edge of a band has at least, but for those at impacts; filled areas make large files."""
@@ -59,7 +66,8 @@ def _stack(axes: Axes, result: Result, part: dict[str, Floats], clock: Multiple,
     # below the height of first touch the potential energy is negative: the other bands stand on it
     bottom = sum((np.minimum(part[name], 0.0) for name in shown), np.zeros_like(time)) / scale.size
     for name in shown:
-        label, colour, hatch = BANDS[name]
+        label = _MOTIONS[name][0] if name in _MOTIONS else ALL_HISTORY_COLUMNS[name].short
+        colour, hatch = BANDS[name]
         if name == "contact_dissipated_J" and "plate_motion_J" in part:
             label = "damping of the contact"  # beside that of the bodies
         top = bottom + np.maximum(part[name], 0.0) / scale.size
@@ -76,8 +84,7 @@ def bands_of(history: dict[str, Floats]) -> dict[str, Floats]:
     """Return time and bands of a history. Kinetic and strain energy of a body that vibrates change into each other: they are one."""
     bands = {name: values for name, values in history.items() if name in BANDS or name == "time_s"}
     if "plate_strain_J" in history:
-        bands["sphere_motion_J"] = history["sphere_vibration_J"] + history["sphere_strain_J"]
-        bands["plate_motion_J"] = history["plate_kinetic_J"] + history["plate_strain_J"]
+        bands |= {name: history[kinetic] + history[strain] for name, (_, kinetic, strain) in _MOTIONS.items()}
     return bands
 
 

@@ -72,7 +72,6 @@ def _acceleration(result: Result, impact: int) -> str:
 
 POSITION = Quantity(
     column="position_m",
-    unit="m",
     title="Height of the sphere's centre above the plate",
     label="Height of centre",
     enlarged_label="From first touch",
@@ -86,7 +85,6 @@ POSITION = Quantity(
 
 FORCE = Quantity(
     column="force_N",
-    unit="N",
     title="Contact force on the sphere",
     label="Force",
     enlarged_label="Force",
@@ -99,7 +97,6 @@ FORCE = Quantity(
 
 VELOCITY = Quantity(
     column="velocity_m_s",
-    unit="m/s",
     title="Velocity of the sphere, upwards",
     label="Velocity",
     enlarged_label="Velocity",
@@ -112,7 +109,6 @@ VELOCITY = Quantity(
 
 ACCELERATION = Quantity(
     column="acceleration_m_s2",
-    unit="m/s2",
     title="Acceleration of the sphere, upwards",
     label="Acceleration",
     enlarged_label="Acceleration",

@@ -34,19 +34,19 @@ MARKS = ("o", "s", "^", "D", "v")
 """Marks of the first impacts, in order; as many as are enlarged at most."""
 
 # both luminance and hatch tell the bands apart; from the bottom of the stack to its top
-BANDS: dict[str, tuple[str, str, str]] = {
-    "contact_dissipated_J": ("damping and adhesion", "#404040", ""),
-    "plastic_work_J": ("plastic work", "#9c6b52", ".."),
-    "sphere_damping_J": ("damping of the sphere", "#7d7d7d", "\\\\\\\\"),
-    "plate_damping_J": ("damping of the plate", "#a3a3a3", "||||"),
-    "written_off_at_rest_J": ("written off at rest", "#ffffff", "xx"),
-    "contact_elastic_J": ("stored in the contact", "#f7cd6b", "////"),
-    "sphere_motion_J": ("vibration of the sphere", "#e8a0a0", "...."),
-    "plate_motion_J": ("motion of the plate", "#c9e3b4", "----"),
-    "potential_J": ("potential", "#d6e6f4", ""),
-    "kinetic_J": ("kinetic", "#4a8cc7", "\\\\"),
+BANDS: dict[str, tuple[str, str]] = {
+    "contact_dissipated_J": ("#404040", ""),
+    "plastic_work_J": ("#9c6b52", ".."),
+    "sphere_damping_J": ("#7d7d7d", "\\\\\\\\"),
+    "plate_damping_J": ("#a3a3a3", "||||"),
+    "written_off_at_rest_J": ("#ffffff", "xx"),
+    "contact_elastic_J": ("#f7cd6b", "////"),
+    "sphere_motion_J": ("#e8a0a0", "...."),
+    "plate_motion_J": ("#c9e3b4", "----"),
+    "potential_J": ("#d6e6f4", ""),
+    "kinetic_J": ("#4a8cc7", "\\\\"),
 }
-"""Name in the legend, colour and hatch of each entry of the energy ledger."""
+"""Colour and hatch of each band of the energy ledger."""
 
 _SETTINGS: dict[Any, Any] = {
     "font.size": 9.0,

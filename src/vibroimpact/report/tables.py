@@ -9,62 +9,41 @@ from typing import NamedTuple
 import numpy as np
 
 from vibroimpact.arrays import Floats, Indices
+from vibroimpact.dynamics.columns import ALL_HISTORY_COLUMNS, ALL_IMPACT_COLUMNS, LEDGER, VIBRATION_LEDGER
 from vibroimpact.quantity import ALL_FIGURES, certain, certain_figures, column_texts, digits, fixed, multiple
 from vibroimpact.storage.result import Result
 
 _MOST_ROWS, _FIRST, _LAST = 50, 45, 3
 """A table of more rows shows only its first and last ones."""
 
-_CONTACTS = {"contacts": "Contacts in the visit"}
-"""Shown where a visit has more than one: the plate comes back to the sphere, or the sphere's own vibration does."""
-
 _SHOWN = 6  # significant figures in a table
 _DIGITS = 5
-
-_SENSITIVITY = {"sensitivity": "Sensitivity"}
-"""Shown where it takes digits away."""
 
 _EXACT = ("impact", "contacts", "restitution_asked", "sensitivity")
 _ARRIVAL = ("time_s", "approach_speed_m_s")
 """Columns of which a change of the drop takes no digits, and those that have the digits of the impact before."""
 
-HEADERS = {
-    "impact": "Impact",
-    "time_s": "First touch",
-    "duration_s": "Contact duration",
-    "approach_speed_m_s": "Approach speed",
-    "separation_speed_m_s": "Separation speed",
-    "restitution_asked": "Restitution asked",
-    "restitution_achieved": "Restitution achieved",
-    "max_indentation_m": "Largest indentation",
-    "max_force_N": "Largest force",
-    "max_acceleration_m_s2": "Largest acceleration",
-    "rebound_height_m": "Rebound height",
-    "energy_lost_J": "Energy lost",
-}
-"""The columns of the impact table that are shown, and how they are headed."""
+SHOWN = (
+    "impact",
+    "time_s",
+    "duration_s",
+    "approach_speed_m_s",
+    "separation_speed_m_s",
+    "restitution_asked",
+    "restitution_achieved",
+    "max_indentation_m",
+    "max_force_N",
+    "max_acceleration_m_s2",
+    "rebound_height_m",
+    "energy_lost_J",
+    "contacts",
+    "sensitivity",
+)
+"""The columns of the impact table that are shown: that of contacts where a visit has more than one, as the plate comes back to the sphere
+or the sphere's own vibration does, and that of sensitivity where it takes digits away."""
 
-_ENTRIES = {
-    "kinetic_J": "Kinetic energy of the sphere",
-    "potential_J": "Potential energy of the sphere, zero at the height of first touch",
-    "contact_elastic_J": "Stored in the contact",
-    "contact_dissipated_J": "Lost in the damping of the contact, or where a sticking contact broke",
-    "plastic_work_J": "Lost in plastic deformation",
-    "written_off_at_rest_J": "Written off when the sphere was found to be at rest",
-}
-_OF_VIBRATION = {
-    "sphere_vibration_J": "Kinetic energy of the sphere's vibration, beside that of its centre",
-    "sphere_strain_J": "Strain energy of the sphere's modes",
-    "sphere_damping_J": "Lost in the damping of the sphere's modes",
-    "plate_kinetic_J": "Kinetic energy of the plate",
-    "plate_strain_J": "Strain energy of the plate's modes, from where it rests",
-    "plate_damping_J": "Lost in the damping of the plate's modes",
-}
-_LOSSES = ("contact_dissipated_J", "plastic_work_J", "sphere_damping_J", "plate_damping_J")
 _SLOW = 0.1  # of the approach speed: what leaves more slowly counts as that
 SUM, PUT_IN = "Sum", "Put in at the start"
-_UNITS = {"_m_s2": "m/s2", "_m_s": "m/s", "_s": "s", "_m": "m", "_N": "N", "_J": "J"}
-"""Units by the ends of column names, the longest first."""
 
 
 class Table(NamedTuple):
@@ -88,9 +67,10 @@ class LedgerRow(NamedTuple):
 def impact_table(result: Result) -> Table:
     """Return the impact table in multiples of units; a long one without its middle."""
     change = result.change_by_impact
-    shown = {**HEADERS, **(_CONTACTS if several_contacts(result.impacts) else {}), **(_SENSITIVITY if takes_digits(change) else {})}
+    told = {"contacts": several_contacts(result.impacts), "sensitivity": takes_digits(change)}
+    shown = [name for name in SHOWN if told.get(name, True)]
     columns = [column(name, result.impacts[name], change) for name in shown]
-    headers = [(header, unit) for header, (unit, _) in zip(shown.values(), columns, strict=True)]
+    headers = [(ALL_IMPACT_COLUMNS[name].label, unit) for name, (unit, _) in zip(shown, columns, strict=True)]
     rows = [list(row) for row in zip(*(cells for _, cells in columns), strict=True)]
     if len(rows) <= _MOST_ROWS:
         return Table(headers, rows, 0, [])
@@ -104,9 +84,8 @@ def several_contacts(impacts: Mapping[str, Floats]) -> bool:
 
 def ledger_table(result: Result) -> tuple[str, list[LedgerRow]]:
     """Return the unit of the ledger at the end and its entries, their sum and the energy put in, with the digits that are certain."""
-    put_in, names = result.energy["input_J"], {**_ENTRIES, **_OF_VIBRATION}
-    scale = multiple("J", put_in)
-    values = {name: result.energy[name] for name in names if name in result.energy}
+    put_in, scale = result.energy["input_J"], multiple("J", result.energy["input_J"])
+    values = {name: result.energy[name] for name in (*LEDGER, *VIBRATION_LEDGER) if name in result.energy}
     figures = {name: _certain_of(name, result) for name in values}
     values |= {SUM: sum(values.values()), PUT_IN: put_in}
 
@@ -116,7 +95,8 @@ def ledger_table(result: Result) -> tuple[str, list[LedgerRow]]:
     rows = []
     for name, value in values.items():
         energy, part = shown(name, value / scale.size, put_in / scale.size), shown(name, 100.0 * value / put_in, 100.0)
-        rows.append(LedgerRow(name, names.get(name, name), energy, part))
+        title = ALL_HISTORY_COLUMNS[name].label if name in ALL_HISTORY_COLUMNS else name
+        rows.append(LedgerRow(name, title, energy, part))
     return scale.unit, rows
 
 
@@ -140,7 +120,7 @@ def _certain_of(entry: str, result: Result) -> int:
     if not len(change) or not change[-1] > 0.0:
         return ALL_FIGURES
     lost = np.abs(impacts["energy_lost_J"])
-    if entry in _LOSSES and lost.sum() > 0.0:
+    if ALL_HISTORY_COLUMNS[entry].is_loss and lost.sum() > 0.0:
         return int(certain_figures(2.0 * change @ lost / lost.sum()))
     first, closing, separation = (
         float(impacts[name][place]) for name, place in (("approach_speed_m_s", 0), ("approach_speed_m_s", -1), ("separation_speed_m_s", -1))
@@ -195,9 +175,10 @@ def takes_digits(change: Floats) -> bool:
 
 def column(name: str, values: Floats, change: Floats | None = None) -> tuple[str, list[str]]:
     """Return unit and cells of a column of the impact table, with the digits that they have where a change of the drop grows."""
-    if name in ("impact", "contacts"):
+    kind = ALL_IMPACT_COLUMNS[name].values
+    if kind == "count":
         return "", [fixed(value, 0) for value in values]
-    if name == "sensitivity":
+    if kind == "factor":
         return "", [digits(value, 2) for value in values]
     unit, values, cells = _cells(name, values)
     figures = figures_of(name, np.zeros(len(values)) if change is None else change).tolist()
@@ -206,11 +187,12 @@ def column(name: str, values: Floats, change: Floats | None = None) -> tuple[str
 
 def _cells(name: str, values: Floats) -> tuple[str, Floats, list[str]]:
     """Return the unit in which a column is shown, its values in it, and these as texts."""
-    if name.startswith("restitution"):
+    column = ALL_IMPACT_COLUMNS[name]
+    if column.values == "ratio":
         return "", values, [fixed(value, _DIGITS) for value in values]
-    scale = multiple(next(unit for end, unit in _UNITS.items() if name.endswith(end)), values)
+    scale = multiple(column.unit, values)
     values = values / scale.size
-    if name == "time_s":
+    if column.values == "time":
         # times are compared with each other: a microsecond counts, however late it is
         return scale.unit, values, [fixed(value, 6 if scale.unit == "s" else 3) for value in values]
     return scale.unit, values, column_texts(values, _DIGITS)

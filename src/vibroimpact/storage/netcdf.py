@@ -9,7 +9,7 @@ from typing import Any
 import h5py
 import numpy as np
 
-from vibroimpact.dynamics.columns import history_columns, impact_columns
+from vibroimpact.dynamics.columns import history_columns, impact_columns, meanings
 from vibroimpact.storage.hdf5 import PACKED, new_array, new_hdf5, read_array
 from vibroimpact.storage.netcdf_motion import read_deflection, read_signals, write_deflection, write_signals
 from vibroimpact.storage.result import Result
@@ -22,8 +22,8 @@ def write_groups(result: Result, path: Path) -> None:
         file.attrs["status"] = result.status
         for key, value in result.provenance.items():
             file.attrs[key] = value
-        _write_group(file, "impacts", "impact", result.impacts, impact_columns(result.impacts))
-        _write_group(file, "history", "time_s", result.history, history_columns(result.history))
+        _write_group(file, "impacts", "impact", result.impacts, meanings(impact_columns(result.impacts)))
+        _write_group(file, "history", "time_s", result.history, meanings(history_columns(result.history)))
         group = file.create_group("energy", track_order=True)
         for name, number in result.energy.items():
             new_array(group, name, float(number)).attrs["units"] = "J" if name.endswith("_J") else "1"

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
-from vibroimpact.dynamics.columns import COUNTS, impact_columns
+from vibroimpact.dynamics.columns import impact_columns
 
 
 def impact_rows(impacts: dict[str, Any]) -> list[dict[str, float | int | None]]:
@@ -35,7 +35,7 @@ def _rows(impacts: dict[str, Any]) -> Iterator[dict[str, float | int | None]]:
         row: dict[str, float | int | None] = {}
         for name in columns:
             value = float(impacts[name][index])
-            row[name] = (int(value) if name in COUNTS else value) if math.isfinite(value) else None
+            row[name] = (int(value) if columns[name].values == "count" else value) if math.isfinite(value) else None
         yield row
 
 
