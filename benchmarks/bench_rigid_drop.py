@@ -1,7 +1,7 @@
 """Five impacts of the paper's sphere: CPU time beside SciPy's DOP853 restarted at events, in one run.
 
 Medians of CPU time; the machine may be shared and noisy, so the ratio is what to quote. Also how long `--help` and
-`demo` take, and batches against single drops.
+`demo` take, batches against single drops, and tables of drops under each law.
 
     python benchmarks/bench_rigid_drop.py
 """
@@ -23,8 +23,9 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 import vibroimpact as vi
-from vibroimpact.contact.law import CompliantLaw
+from vibroimpact.contact.law import CompliantLaw, contact_laws
 from vibroimpact.contact.laws.lankarani_nikravesh import LankaraniNikravesh
+from vibroimpact.contact.pair import ContactPair
 
 
 def cpu_ms(work: Callable[[], object], runs: int = 15) -> float:
@@ -89,6 +90,14 @@ def main() -> None:
         ball = vi.Body(mass=random.uniform(0.01, 1.0, size), contact_offset=0.02)
         problem = vi.Problem(sphere=ball, plate=vi.rigid_plate(), laws=(law,), height=random.uniform(0.5, 4.0, size))
         print(f"batch of {size:6d}, five impacts: {1e3 * cpu_ms(lambda p=problem: vi.simulate(p), 3) / size:10.1f} us a drop")
+
+    pair = ContactPair(2.4e9, 0.025, 0.09, 8e7, 0.28)
+    for name, kind in contact_laws().items():
+        ball = vi.Body(mass=0.09, contact_offset=0.025)
+        problem = vi.Problem(
+            sphere=ball, plate=vi.rigid_plate(), laws=(kind.example(pair),), height=random.uniform(0.1, 2.1, 2000), impacts=5
+        )
+        print(f"table of 2,000 drops under {name:24} {1e3 * cpu_ms(lambda p=problem: vi.tabulate(p), 3) / 2000:7.1f} us a drop")
 
     with tempfile.TemporaryDirectory() as folder:
         print(f"--help {wall_s('--help'):.2f} s;  demo with report {wall_s('demo', '-o', f'{folder}/demo', '--force'):.2f} s of wall time")
