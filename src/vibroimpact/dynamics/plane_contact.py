@@ -169,6 +169,10 @@ def _solve(encounter: Encounter, found: _Found, places: Drops, ids: Drops, start
     touch = here.law.touch_level + np.zeros(len(places))
     depth = starts.depths(ids, touch, here.depth)
     passed = _passed(here.law, touch, depth, margin)
+    first = int(passed[0])
+    if (passed == first).all():  # as under a law without breakpoints
+        _through(here, found, places, ids, starts, depth, first)
+        return
     for which in np.unique(passed):
         some = np.flatnonzero(passed == which)
         _through(here.take(some), found, places[some], ids[some], starts, depth[some], int(which))
@@ -176,7 +180,9 @@ def _solve(encounter: Encounter, found: _Found, places: Drops, ids: Drops, start
 
 def _passed(law: CompliantLaw, low: Floats, high: Floats, margin: float) -> Indices:
     """Return which breakpoints lie between two indentations (B,), as the bits of a number; below the higher by a part of the depth."""
-    found, high = np.zeros(len(low), dtype=np.intp), high - margin * (high - low)
+    found = np.zeros(len(low), dtype=np.intp)
+    if law.breakpoints:
+        high = high - margin * (high - low)
     for bit, level in enumerate(law.breakpoints):
         found += ((level > low) & (level < high)).astype(np.intp) << bit
     return found

@@ -8,8 +8,8 @@ from vibroimpact.arrays import Array, Floats
 from vibroimpact.dynamics.encounter import Encounter
 from vibroimpact.dynamics.plane_way import PlaneWay
 
-_STEPS = 4
-_NEAR = 1e-6  # the last step, in y: the error is its square
+_STEPS = 5
+_NEAR = 1e-5  # the last step, in y: the error is its square
 
 
 def plane_peak(encounter: Encounter, coming: PlaneWay) -> tuple[Floats, Floats]:
@@ -24,11 +24,14 @@ def plane_peak(encounter: Encounter, coming: PlaneWay) -> tuple[Floats, Floats]:
     segment, node = np.divmod(coming.force.argmax(axis=0), rule.number)
     force = coming.of(coming.force, segment)
     slopes = rule.derivatives @ force
-    y = rule.nodes[node, 0]
-    for _ in range(_STEPS):
-        slope, curvature = (rule.weights_at(y) * slopes).sum(axis=1)
+    y, (slope, curvature) = rule.nodes[node, 0], slopes[:, node, column]
+    for number in range(_STEPS):
+        if number:
+            slope, curvature = (rule.weights_at(y) * slopes).sum(axis=1)
         step = np.where(curvature < 0.0, slope / curvature, 0.0)
         y = np.clip(y - step, 0.0, 1.0)
+        if not (np.abs(step) > _NEAR).any():
+            break
     located = (curvature < 0.0) & (np.abs(step) < _NEAR)
     indentation, square = coming.at(segment, y)
     top = _sum(encounter.law.forces(indentation, np.sqrt(square), speed))
