@@ -194,24 +194,29 @@ def _levels(law: CompliantLaw, passed: int, high: Floats, low: Floats) -> Floats
     return np.array([high, *reversed(between), low])
 
 
+def _levels_out(encounter: Encounter, high: Floats, tolerance: float) -> tuple[Bools, Floats]:
+    """Return the levels of a way out from an indentation [m], and which drops pass the breakpoints that these hold, as most do."""
+    passed = _passed(encounter.law, encounter.floor, high, _ABOUT * tolerance)
+    usual = int(np.bincount(passed).argmax())
+    return passed == usual, _levels(encounter.law, usual, high, encounter.floor)
+
+
 def _through(encounter: Encounter, found: _Found, places: Drops, ids: Drops, starts: _Starts, depth: Floats, which: int) -> None:
     """Solve both ways of contacts that get about as deep as told [m] and pass the same breakpoints."""
     law, square, number, tolerance = encounter.law, encounter.approach_speed**2, starts.number, starts.tolerance
-    touch, about = law.touch_level + np.zeros(len(places)), _ABOUT * tolerance
+    touch = law.touch_level + np.zeros(len(places))
     levels = _levels(law, which, depth, touch)
     rule = plane_rule(number, law.root, len(levels) - 1)
     start = starts.start(("in", rule.segments), ids, square, lambda: _undamped(encounter, rule, levels, square))
     coming = solve_way(encounter, rule, "in", levels, start, tolerance, _SWEEPS)
     depth = coming.levels[0]
-    good = coming.solved & (_passed(law, touch, depth, about) == which)
+    good = coming.solved & (_passed(law, touch, depth, _ABOUT * tolerance) == which)
     force, when = plane_peak(encounter, coming)
     good &= np.isfinite(force) & np.isfinite(when)
 
     back = encounter.under(law.after_compression(depth))
-    passed = _passed(back.law, back.floor, depth, about)
-    usual = int(np.bincount(passed).argmax())
-    good &= passed == usual
-    returning = _levels(back.law, usual, depth, back.floor)
+    alike, returning = _levels_out(back, depth, tolerance)
+    good &= alike
     rule_back = plane_rule(number, law.root, len(returning) - 1)
     start = starts.start(("out", rule_back.segments), ids, square, lambda: _undamped(back, rule_back, returning))
     leaving = solve_way(back, rule_back, "out", returning, start, tolerance, _SWEEPS)
@@ -253,10 +258,9 @@ def _undamped(encounter: Encounter, rule: PlaneRule, levels: Floats, square: Flo
     def energy(delta: Floats) -> Floats:
         return np.asarray(static_work(law, delta) - weight * delta)
 
-    delta = (levels[1:, None] + (levels[:-1] - levels[1:])[:, None] * rule.split(rule.shape)).reshape(-1, len(weight))
     high, low = energy(levels[0]), energy(levels[-1])
     whole = 2.0 / encounter.mass * (high - low) if square is None else square
-    found = (begun + whole * (high - energy(delta)) / (high - low)) * per_square
+    found = (begun + whole * (high - energy(rule.indentations(levels))) / (high - low)) * per_square
     return np.asarray(np.maximum(found, 1e-3 * np.abs(begun + whole)))
 
 
@@ -288,8 +292,8 @@ class _Exit:
         segment, y = end_of_push(encounter, way, pulling)
         delta, square = way.at(segment, y)
         self.delta, self.rate = np.where(ends, delta, self.delta), np.where(ends, -np.sqrt(square), self.rate)
-        self.time = np.where(ends, way.grown(way.pace, segment, y), self.time)
-        self.lost = np.where(ends, way.grown(way.loss, segment, y), self.lost)
+        time, lost = way.grown(segment, y, way.pace, way.loss)
+        self.time, self.lost = np.where(ends, time, self.time), np.where(ends, lost, self.lost)
         self.parts = [(np.arange(len(ends)), np.zeros(len(ends)), PlaneMotion.of(way, self.time.copy()))]
         if law.contact_end == "zero-force":
             return
@@ -307,13 +311,11 @@ class _Exit:
     def push_on(self, encounter: Encounter, drops: Drops, tolerance: float) -> None:
         """Take drops out whose law pushes again after they have glided."""
         here, begun, rule = encounter.take(drops), self.rate[drops] ** 2, self.way.rule
-        passed = _passed(here.law, here.floor, self.delta[drops], _ABOUT * tolerance)
-        usual = int(np.bincount(passed).argmax())
-        levels = _levels(here.law, usual, self.delta[drops], here.floor)
+        alike, levels = _levels_out(here, self.delta[drops], tolerance)
         rule = plane_rule(rule.number, rule.root, len(levels) - 1, turns=False)
         way = solve_way(here, rule, "out", levels, _undamped(here, rule, levels, begun=begun), tolerance, _SWEEPS, begun)
         pulling, unseen = pulls(way)
-        self.good[drops] &= way.solved & ~(pulling.any(axis=0) | unseen) & (passed == usual)
+        self.good[drops] &= way.solved & ~(pulling.any(axis=0) | unseen) & alike
         self.parts.append((drops, self.time[drops], PlaneMotion.of(way, way.duration)))
         self.time[drops] += way.duration
         self.delta[drops], self.rate[drops] = here.floor, -np.sqrt(way.ends[-1])

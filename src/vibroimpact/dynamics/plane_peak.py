@@ -36,7 +36,8 @@ def plane_peak(encounter: Encounter, coming: PlaneWay) -> tuple[Floats, Floats]:
     indentation, square = coming.at(segment, y)
     top = _sum(encounter.law.forces(indentation, np.sqrt(square), speed))
     candidates = [np.where(located, top, force[node, column]), _sum(encounter.law.forces(coming.levels[0], nothing, speed))]
-    when = [np.where(located, duration - coming.grown(coming.pace, segment, y), np.nan), duration]
+    (until,) = coming.grown(segment, y, coming.pace)
+    when = [np.where(located, duration - until, np.nan), duration]
     for number, level in enumerate(coming.levels[1:]):
         velocity = speed if number == rule.segments - 1 else np.sqrt(coming.ends[number])
         candidates.append(_sum(encounter.law.forces(level, velocity, speed)))

@@ -91,6 +91,16 @@ class PlaneRule:
         """Return values at all nodes (S N, B) segment by segment (S, N, B)."""
         return values.reshape(self.segments, self.number, values.shape[-1])
 
+    def indentations(self, levels: Floats) -> Floats:
+        """Return the indentations at all nodes [m] (S N, B) between levels [m] (S + 1, B)."""
+        found = (levels[:-1] - levels[1:])[:, None] * self.split(self.shape)
+        found += levels[1:, None]
+        return np.asarray(found.reshape(-1, levels.shape[-1]))
+
+    def stretch(self, levels: Floats) -> Floats:
+        """Return the derivative of the indentation by y over f, at all nodes [m] (S N, B)."""
+        return np.asarray(((levels[:-1] - levels[1:])[:, None] * self.split(self.slope)).reshape(-1, levels.shape[-1]))
+
     def grown(self, values: Floats) -> Floats:
         """Return the integrals from the deep end of the way to all nodes and ends (S, N + 1, B), of values at the nodes (S N, B)."""
         return self._along(self.integral @ self.split(values))

@@ -8,6 +8,7 @@ from typing import Literal
 import numpy as np
 
 from vibroimpact.arrays import Bools, Floats, Indices
+from vibroimpact.contact.static import static_work
 from vibroimpact.dynamics.encounter import Encounter
 from vibroimpact.dynamics.plane_rule import PlaneRule
 
@@ -18,13 +19,11 @@ _LEAST = 1e-13  # rounding
 
 
 @dataclass(frozen=True)
-class PlaneWay:
-    """A way of B drops; arrays are (S N, B) at the nodes of `rule`, or (B,).
+class PlanePath:
+    """The speed over the indentation on a way of B drops: all else follows from it and the law.
 
-    `levels`: indentations at the ends of its segments from the deepest on [m] (S + 1, B). `begun`: w at the deep end, and `squares`: u at
-    the nodes [m^2/s^2]. `ends`: w at the shallow ends of the segments (S, B). `force`, `dissipative`: at the nodes [N]. `pace`: time by y,
-    at the nodes [s]. `durations`: of the segments [s] (S, B). `dissipated` [J]. `tail`: the last terms of acceleration and pace, relative
-    to what they make. `solved`: to the tolerance?
+    `levels`: indentations at the ends of its segments from the deepest on [m] (S + 1, B). `begun`: w at the deep end (B,), `squares`: u at
+    the nodes of `rule` (S N, B), `ends`: w at the shallow ends of the segments [m^2/s^2] (S, B).
     """
 
     rule: PlaneRule
@@ -33,6 +32,16 @@ class PlaneWay:
     begun: Floats
     squares: Floats
     ends: Floats
+
+
+@dataclass(frozen=True)
+class PlaneWay(PlanePath):
+    """A way of B drops as it was solved; arrays are (S N, B) at the nodes, or (B,).
+
+    `force`, `dissipative`: at the nodes [N]. `pace`: time by y, at the nodes [s]. `durations`: of the segments [s] (S, B). `dissipated`
+    [J]. `tail`: the last terms of acceleration and pace, relative to what they make. `solved`: to the tolerance?
+    """
+
     force: Floats
     dissipative: Floats
     pace: Floats
@@ -49,9 +58,8 @@ class PlaneWay:
     @property
     def loss(self) -> Floats:
         """The energy lost by y, at the nodes [J] (S N, B)."""
-        rule, sign = self.rule, -1.0 if self.direction == "in" else 1.0
-        stretch = (self.levels[:-1] - self.levels[1:])[:, None] * rule.split(rule.slope)
-        return np.asarray(self.dissipative * (sign * rule.factor * stretch.reshape(self.dissipative.shape)))
+        sign = -1.0 if self.direction == "in" else 1.0
+        return np.asarray(self.dissipative * (sign * self.rule.factor * self.rule.stretch(self.levels)))
 
     def of(self, values: Floats, segment: Indices) -> Floats:
         """Return values at the nodes (S N, B) of one segment a drop, (N, B)."""
@@ -64,10 +72,10 @@ class PlaneWay:
         square = (self.rule.weights_at(y) * self.of(self.squares, segment)).sum(axis=0)
         return low + (self.levels[segment, column] - low) * shape, factor * factor * square
 
-    def grown(self, values: Floats, segment: Indices, y: Floats) -> Floats:
-        """Return what values by y at the nodes (S N, B) make between the deep end and y (B,) of one segment a drop."""
-        found = self.rule.grown(values)
-        return np.asarray((self.rule.weights_at(y) * found[segment, :-1, np.arange(len(y))].T).sum(axis=0))
+    def grown(self, segment: Indices, y: Floats, *values: Floats) -> list[Floats]:
+        """Return what values by y at the nodes (S N, B) each make between the deep end and y (B,) of one segment a drop."""
+        weights, column = self.rule.weights_at(y), np.arange(len(y))
+        return [np.asarray((weights * self.rule.grown(one)[segment, :-1, column].T).sum(axis=0)) for one in values]
 
     def put(self, drops: Indices, other: PlaneWay) -> None:
         """Take over the ways of some drops."""
@@ -115,17 +123,13 @@ def solve_way(
         w at the deep end, where the motion does not turn there.
     """
     law, mass, gravity, speed = encounter.law, encounter.mass, encounter.gravity, encounter.approach_speed
-    touch, per_mass, coming = speed * speed, -1.0 / mass, direction == "in"
+    touch, per_mass, coming = speed * speed, -2.0 / mass, direction == "in"
     signed = rule.factor if coming else -rule.factor
     close = max(0.1 * tolerance, _LEAST) * touch
     static_power, loss_power = _powers(encounter, levels) if coming else (touch, touch)
-    shape, slope, first = rule.split(rule.shape), 2.0 * rule.split(rule.slope), rule.number
+    gravity, first = 2.0 * gravity, rule.number  # as the square of the speed changes with twice the acceleration
     for sweep in range(sweeps + 1):
-        spans = (levels[:-1] - levels[1:])[:, None]
-        stretch = (spans * slope).reshape(squares.shape)
-        delta = spans * shape
-        delta += levels[1:, None]
-        delta = delta.reshape(squares.shape)
+        stretch, delta = rule.stretch(levels), rule.indentations(levels)
         velocity = np.sqrt(squares)
         velocity *= signed
         static, dissipative = law.forces(delta, velocity, speed)
@@ -171,17 +175,16 @@ def solve_way(
             defect += (deeper * by_depth[:, :-1]).reshape(squares.shape)
             levels = np.concatenate([(levels[1] + span * np.where(deeper > 0.0, 1.0 + deeper, np.exp(deeper)))[None], levels[1:]])
         squares = np.maximum(squares + defect, 0.1 * squares)
-    pace = -0.5 * stretch / np.sqrt(squares)
+    pace = -stretch / np.sqrt(squares)
     durations = rule.weights @ rule.split(pace)
     tail = np.maximum(_last(rule, rate) / touch, 2.0 * _last(rule, pace) / durations.sum(axis=0))
     # the ends are off by the square of the last terms, what lies between by a small part of them
     solved = settled & (tail <= min(tolerance**0.5, 3e3 * tolerance))
     work = rule.factor * stretch
     if coming:  # all of the static work must be there, or the depth is off
-        done = -0.5 * (rule.weights @ rule.split(static * work)).sum(axis=0)
-        stored = law.elastic_energy(levels[0]) + law.plastic_work(levels[0])
-        solved &= np.abs(done - stored) <= 0.05 * tolerance * mass * touch
-    lost = -0.5 * (rule.weights @ rule.split(dissipative * work)).sum(axis=0) * (1.0 if coming else -1.0)
+        done = -(rule.weights @ rule.split(static * work)).sum(axis=0)
+        solved &= np.abs(done - static_work(law, levels[0])) <= 0.05 * tolerance * mass * touch
+    lost = (rule.weights @ rule.split(dissipative * work)).sum(axis=0) * (-1.0 if coming else 1.0)
     begun = np.zeros_like(touch) if begun is None else begun
     found = PlaneWay(rule, direction, levels, begun, squares, ends, force, dissipative, pace, durations, lost, tail, solved)
     late = np.flatnonzero(~settled)

@@ -11,7 +11,6 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.contact.law import CompliantLaw
-from vibroimpact.dynamics.collocation import collocation_rule
 from vibroimpact.dynamics.encounter import Encounter
 from vibroimpact.dynamics.flight import Flight
 from vibroimpact.dynamics.glide import Glide
@@ -43,50 +42,12 @@ class FlightSegment:
 
 
 @dataclass(frozen=True)
-class StretchSegment:
-    """One solved stretch of contact of one drop: a `Stretch` and an `Encounter` of one."""
+class ContactSegment:
+    """A part of the contact of one drop that was solved at once, in time or in the phase plane, and its `Encounter`, of one."""
 
     start: float
     end: float
-    stretch: Stretch
-    encounter: Encounter
-
-    @property
-    def duration(self) -> Floats:
-        """How long it lasts [s], (1,)."""
-        return self.stretch.duration
-
-    def grid(self) -> Floats:
-        """Times since its start that draw the segment well [s]."""
-        return np.asarray(self.stretch.duration[0] * self.stretch.rule.map_time(np.linspace(0.0, 1.0, 61)))
-
-    def at(self, time: Floats) -> Motion:
-        """Return the motion at times [s] since the start of the segment."""
-        stretch, rule, law = self.stretch, self.stretch.rule, self.encounter.law
-        x = rule.unmap_time(time / stretch.duration[0])
-        delta, velocity = self.motion(x)
-        # the power is a product of two that N nodes resolve: it takes 2 N
-        finer = collocation_rule(2 * len(rule.nodes), rule.time_map, rule.root)
-        node_delta, node_velocity = self.motion(finer.nodes)
-        _, at_nodes = law.forces(node_delta, node_velocity, self.encounter.approach_speed)
-        lost = stretch.duration[0] * finer.integrate(x, at_nodes * node_velocity)
-        return _in_contact(self.encounter, float(stretch.delta[0]), delta, velocity, lost)
-
-    def motion(self, x: Floats) -> tuple[Floats, Floats]:
-        """Return the indentation [m] and its rate [m/s] at places x of the rule."""
-        stretch, rule, duration = self.stretch, self.stretch.rule, self.stretch.duration[0]
-        delta = stretch.delta[0] + duration * rule.integrate(x, stretch.node_velocity[:, 0])
-        velocity = stretch.velocity[0] + duration * rule.integrate(x, stretch.node_acceleration[:, 0])
-        return np.maximum(delta, self.encounter.floor), velocity
-
-
-@dataclass(frozen=True)
-class PlaneSegment:
-    """A way through the indentation of one drop that was solved in the phase plane: a `PlaneMotion` and an `Encounter` of one."""
-
-    start: float
-    end: float
-    motion: PlaneMotion
+    motion: Stretch | PlaneMotion
     encounter: Encounter
 
     @property
@@ -101,17 +62,12 @@ class PlaneSegment:
     def at(self, time: Floats) -> Motion:
         """Return the motion at times [s] since the start of the segment."""
         delta, velocity, lost = self.motion.at(time, self.encounter)
-        return _in_contact(self.encounter, self.motion.start, delta, velocity, lost)
-
-
-def _in_contact(encounter: Encounter, start: float, delta: Floats, velocity: Floats, lost: Floats) -> Motion:
-    """Return the motion of one drop in contact, that began at an indentation [m], from its indentation, its rate and what is lost."""
-    law = encounter.law
-    elastic, dissipative = law.forces(delta, velocity, encounter.approach_speed)
-    force = elastic + dissipative
-    if law.tension == "cut":
-        force = np.maximum(force, 0.0)
-    return -delta, -velocity, force, law.elastic_energy(delta), lost, law.plastic_work(delta) - law.plastic_work(np.array([start]))
+        law, begun = self.encounter.law, np.array([self.motion.begins_at])
+        elastic, dissipative = law.forces(delta, velocity, self.encounter.approach_speed)
+        force = elastic + dissipative
+        if law.tension == "cut":
+            force = np.maximum(force, 0.0)
+        return -delta, -velocity, force, law.elastic_energy(delta), lost, law.plastic_work(delta) - law.plastic_work(begun)
 
 
 @dataclass(frozen=True)
@@ -160,4 +116,4 @@ class RestSegment:
         return -self.sag * same, 0.0 * same, self.weight * same, self.stored * same, 0.0 * same, 0.0 * same
 
 
-Segment = FlightSegment | StretchSegment | PlaneSegment | GlideSegment | RestSegment
+Segment = FlightSegment | ContactSegment | GlideSegment | RestSegment

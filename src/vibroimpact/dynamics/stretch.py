@@ -8,7 +8,7 @@ from typing import Literal
 import numpy as np
 
 from vibroimpact.arrays import Bools, Floats, Indices
-from vibroimpact.dynamics.collocation import Rule
+from vibroimpact.dynamics.collocation import Rule, collocation_rule
 from vibroimpact.dynamics.encounter import Encounter
 from vibroimpact.dynamics.linear_equations import inverses
 
@@ -60,6 +60,30 @@ class Stretch:
         needed = np.abs(self.node_velocity).max(axis=0) / self.duration
         smooth = self.rule.tail(self.node_acceleration, needed) ** 2 <= tolerance
         return np.asarray(self.solved & (self.duration > 0.0) & closes & smooth)
+
+    @property
+    def begins_at(self) -> float:
+        """The indentation at which it begins, of one drop [m]."""
+        return float(self.delta[0])
+
+    def grid(self) -> Floats:
+        """Return times since its start that draw the motion of one drop well [s]."""
+        return np.asarray(self.duration[0] * self.rule.map_time(np.linspace(0.0, 1.0, 61)))
+
+    def at(self, time: Floats, encounter: Encounter) -> tuple[Floats, Floats, Floats]:
+        """Return indentation [m], its rate [m/s] and the loss since the start [J] of one drop at times since then [s]."""
+        x = self.rule.unmap_time(time / self.duration[0])
+        # the power is a product of two that N nodes resolve: it takes 2 N
+        finer = collocation_rule(2 * len(self.rule.nodes), self.rule.time_map, self.rule.root)
+        delta, velocity = self._motion(finer.nodes, encounter)
+        _, dissipative = encounter.law.forces(delta, velocity, encounter.approach_speed)
+        return *self._motion(x, encounter), self.duration[0] * finer.integrate(x, dissipative * velocity)
+
+    def _motion(self, x: Floats, encounter: Encounter) -> tuple[Floats, Floats]:
+        """Return the indentation [m] and its rate [m/s] of one drop at places x of the rule."""
+        delta = self.delta[0] + self.duration[0] * self.rule.integrate(x, self.node_velocity[:, 0])
+        velocity = self.velocity[0] + self.duration[0] * self.rule.integrate(x, self.node_acceleration[:, 0])
+        return np.maximum(delta, encounter.floor), velocity
 
     def take(self, drops: Bools) -> Stretch:
         """Return the stretch of the drops under a mask."""

@@ -12,7 +12,7 @@ from vibroimpact.arrays import Floats, Indices
 from vibroimpact.dynamics.glide import Glide
 from vibroimpact.dynamics.leg import Leg
 from vibroimpact.dynamics.plane_motion import PlaneMotion
-from vibroimpact.dynamics.segments import FlightSegment, GlideSegment, PlaneSegment, RestSegment, Segment, StretchSegment
+from vibroimpact.dynamics.segments import ContactSegment, FlightSegment, GlideSegment, RestSegment, Segment
 from vibroimpact.dynamics.stretch import Stretch
 
 
@@ -83,7 +83,7 @@ def timeline_of(legs: Sequence[Leg], rest: RestSegment | None, lost: Floats) -> 
         for segment in segments_of(leg):
             starts.append(segment.start)
             spent.append(so_far)
-            if isinstance(segment, (StretchSegment, PlaneSegment, GlideSegment)):
+            if isinstance(segment, (ContactSegment, GlideSegment)):
                 so_far = so_far + [float(part[0]) for part in segment.at(segment.duration)[-2:]]
     if rest is not None:
         firsts.append(len(starts))
@@ -101,10 +101,8 @@ def segments_of(leg: Leg) -> list[Segment]:
     for piece in leg.contact.pieces:
         begin = touch + float(piece.start[0])
         finish = begin + float(piece.motion.duration[0])
-        if isinstance(piece.motion, Stretch):
-            segments.append(StretchSegment(begin, finish, piece.motion, leg.encounter.under(piece.law)))
-        elif isinstance(piece.motion, PlaneMotion):
-            segments.append(PlaneSegment(begin, finish, piece.motion, leg.encounter.under(piece.law)))
+        if isinstance(piece.motion, (Stretch, PlaneMotion)):
+            segments.append(ContactSegment(begin, finish, piece.motion, leg.encounter.under(piece.law)))
         else:
             assert isinstance(piece.motion, Glide)
             segments.append(GlideSegment(begin, finish, piece.motion, piece.law))

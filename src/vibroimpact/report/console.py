@@ -33,7 +33,7 @@ from vibroimpact.dynamics.restitution import achieved_restitution, law_achieving
 from vibroimpact.errors import InputError
 from vibroimpact.materials import RIGID, Material
 from vibroimpact.report.deformation import deformation_rows, treatment_sentence
-from vibroimpact.report.tables import PUT_IN, SHOWN, SUM, column, ledger_table, several_contacts, takes_digits
+from vibroimpact.report.tables import PUT_IN, SUM, column, ledger_table, shown_columns
 from vibroimpact.report.terminal_table import Column, TerminalTable, facts, numbers, with_gap
 from vibroimpact.storage.result import Result
 
@@ -63,9 +63,9 @@ def impact_table(result: Result, width: int) -> RenderableType:
     if not number:
         return Text("No impact within the run.")
     rows = [index for index in range(number) if not _FIRST_ROWS <= index < number - _LAST_ROWS]
-    told = {"contacts": several_contacts(impacts), "sensitivity": takes_digits(change)}
-    told["restitution_asked"] = bool(np.isfinite(impacts["restitution_asked"]).any())
-    cells = {name: column(name, impacts[name], change) for name in SHOWN if told.get(name, True)}
+    asked = bool(np.isfinite(impacts["restitution_asked"]).any())
+    shown = [name for name in shown_columns(result) if asked or name != "restitution_asked"]
+    cells = {name: column(name, impacts[name], change) for name in shown}
     columns = {
         name: numbers(ALL_IMPACT_COLUMNS[name].short, unit, [shown[index] for index in rows]) for name, (unit, shown) in cells.items()
     }

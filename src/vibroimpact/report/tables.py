@@ -23,7 +23,7 @@ _EXACT = ("impact", "contacts", "restitution_asked", "sensitivity")
 _ARRIVAL = ("time_s", "approach_speed_m_s")
 """Columns of which a change of the drop takes no digits, and those that have the digits of the impact before."""
 
-SHOWN = (
+_SHOWN_COLUMNS = (
     "impact",
     "time_s",
     "duration_s",
@@ -67,14 +67,19 @@ class LedgerRow(NamedTuple):
 def impact_table(result: Result) -> Table:
     """Return the impact table in multiples of units; a long one without its middle."""
     change = result.change_by_impact
-    told = {"contacts": several_contacts(result.impacts), "sensitivity": takes_digits(change)}
-    shown = [name for name in SHOWN if told.get(name, True)]
+    shown = shown_columns(result)
     columns = [column(name, result.impacts[name], change) for name in shown]
     headers = [(ALL_IMPACT_COLUMNS[name].label, unit) for name, (unit, _) in zip(shown, columns, strict=True)]
     rows = [list(row) for row in zip(*(cells for _, cells in columns), strict=True)]
     if len(rows) <= _MOST_ROWS:
         return Table(headers, rows, 0, [])
     return Table(headers, rows[:_FIRST], len(rows) - _FIRST - _LAST, rows[-_LAST:])
+
+
+def shown_columns(result: Result) -> list[str]:
+    """Return the columns of the impact table that are shown of a result."""
+    told = {"contacts": several_contacts(result.impacts), "sensitivity": takes_digits(result.change_by_impact)}
+    return [name for name in _SHOWN_COLUMNS if told.get(name, True)]
 
 
 def several_contacts(impacts: Mapping[str, Floats]) -> bool:
