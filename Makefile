@@ -36,11 +36,11 @@ bench: $(VENV)/installed
 	for script in benchmarks/bench_*.py; do $(BIN)/python $$script || exit 1; done
 
 docs: $(VENV)/installed
-	$(BIN)/python -m vibroimpact.report.law_pages docs
+	$(BIN)/python -m vibroimpact.laws.pages docs
 
 reproduce: $(VENV)/installed
 	$(BIN)/vibroimpact reproduce -o vibroimpact-paper --force
-	$(BIN)/python -m vibroimpact.report.reproduction.documented vibroimpact-paper docs
+	$(BIN)/python -m vibroimpact.paper.report.documented vibroimpact-paper docs
 
 $(VENV)/bin/python:
 	@command -v $(PYTHON) >/dev/null || { \

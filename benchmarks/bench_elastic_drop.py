@@ -14,9 +14,9 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 import vibroimpact as vi
-from vibroimpact.dynamics.recording import Signal
-from vibroimpact.dynamics.sensor import Sensor
-from vibroimpact.dynamics.vibrating_bodies import system_of
+from vibroimpact.dynamics.sensors.recording import Signal
+from vibroimpact.dynamics.sensors.sensor import Sensor
+from vibroimpact.dynamics.vibrating.bodies import system_of
 
 REPEATS = 3
 

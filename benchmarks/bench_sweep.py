@@ -22,9 +22,9 @@ from pathlib import Path
 from typing import Any
 
 import vibroimpact as vi
-from vibroimpact.cases.compute_points import compute_points
 from vibroimpact.cases.coupling import carried_modes
 from vibroimpact.structures.store import receive
+from vibroimpact.studies.compute_points import compute_points
 from vibroimpact.studies.dask_workers import dask_workers
 from vibroimpact.studies.ledger import Span
 from vibroimpact.studies.run_chunks import run_chunks

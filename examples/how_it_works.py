@@ -15,11 +15,11 @@ from numpy.polynomial import legendre
 from scipy.special import betaincinv
 
 import vibroimpact as vi
-from vibroimpact.dynamics.apart import Apart
 from vibroimpact.dynamics.lockstep import computed
-from vibroimpact.dynamics.march import March
-from vibroimpact.dynamics.touching import Law
-from vibroimpact.dynamics.vibrating_stretch import VibratingStretch
+from vibroimpact.dynamics.vibrating.free_motion import Apart
+from vibroimpact.dynamics.vibrating.march import March
+from vibroimpact.dynamics.vibrating.stretch import VibratingStretch
+from vibroimpact.dynamics.vibrating.touching import Law
 from vibroimpact.structures.modal_model import ModalBasis
 
 BLUE, RED, GREY = "#0b4f8a", "#b3400e", "#6b6b6b"

@@ -11,7 +11,7 @@ import vibroimpact as vi
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from vibroimpact.storage.result import Result
+    from vibroimpact.results.result import Result
 
 
 @pytest.fixture(scope="session")
@@ -27,13 +27,13 @@ def variable() -> vi.Response:
 @pytest.fixture
 def few_pictures(monkeypatch: pytest.MonkeyPatch) -> None:
     """Draw no more than one figure of a run, and none of a study, where none is looked at: they take longest of all that is written."""
-    from vibroimpact.report.histories import draw_history
-    from vibroimpact.report.quantities import POSITION
     from vibroimpact.report.style import style
+    from vibroimpact.runs.histories import draw_history
+    from vibroimpact.runs.quantities import POSITION
 
     def draw(result: Result) -> dict[str, Figure]:
         with style():
             return {"position": draw_history(result, POSITION)}
 
-    monkeypatch.setattr("vibroimpact.report.page.draw_figures", draw)
-    monkeypatch.setattr("vibroimpact.report.study.page.study_figures", lambda *_: {})
+    monkeypatch.setattr("vibroimpact.runs.page.draw_figures", draw)
+    monkeypatch.setattr("vibroimpact.studies.report.page.study_figures", lambda *_: {})

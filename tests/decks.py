@@ -21,10 +21,10 @@ from oracles.adams_dataset import read_dataset, read_solver_commands
 from oracles.lammps_lines import commands
 from told import ROCK, STEEL, STIFFNESS, told
 from vibroimpact.contact.laws.hertz import Hertz
-from vibroimpact.dynamics.recording import Signal
-from vibroimpact.dynamics.sensor import Sensor
-from vibroimpact.exchange.drop import Drop
-from vibroimpact.exchange.export_format import ExportFormat
+from vibroimpact.dynamics.sensors.recording import Signal
+from vibroimpact.dynamics.sensors.sensor import Sensor
+from vibroimpact.exporting.drop import Drop
+from vibroimpact.exporting.export_format import ExportFormat
 
 _BASE = told(Hertz(stiffness=STIFFNESS), number=1)
 _DEVICE = re.compile(r"(con|prn|aux|nul|com\d|lpt\d)(\..*)?", re.IGNORECASE)

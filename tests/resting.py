@@ -13,8 +13,8 @@ from oracles.simply_supported import simply_supported
 from vibrating import modes_of, random_modes
 from vibroimpact.contact.law import CompliantLaw, contact_laws
 from vibroimpact.contact.pair import ContactPair
-from vibroimpact.dynamics.apart import Apart
-from vibroimpact.dynamics.vibrating_stretch import VibratingStretch
+from vibroimpact.dynamics.vibrating.free_motion import Apart
+from vibroimpact.dynamics.vibrating.stretch import VibratingStretch
 
 LAWS = [law for law in contact_laws().values() if issubclass(law, CompliantLaw)]
 STEEL, ALUMINIUM, ACRYLIC = (7850.0, 210e9, 0.3), (2700.0, 70e9, 0.33), (1190.0, 3.2e9, 0.37)

@@ -8,7 +8,7 @@ import vibroimpact as vi
 from vibroimpact.bodies.body import Body
 from vibroimpact.bodies.plate import rigid_plate
 from vibroimpact.contact.law import ContactLaw
-from vibroimpact.exchange.drop import Drop
+from vibroimpact.exporting.drop import Drop
 
 ROCK = vi.Material(name="rock", density=1380.0, youngs_modulus=2.26e9, poissons_ratio=0.28)
 STEEL = vi.Material(name="steel", density=7850.0, youngs_modulus=2.1e11, poissons_ratio=0.3)

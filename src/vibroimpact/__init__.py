@@ -21,18 +21,17 @@ if TYPE_CHECKING:
     from vibroimpact.bodies.sphere import rigid_sphere as rigid_sphere
     from vibroimpact.calibration.calibrate import calibrate as calibrate
     from vibroimpact.calibration.calibration import Calibration as Calibration
+    from vibroimpact.calibration.case import calibrate_case as calibrate_case
+    from vibroimpact.calibration.case import calibrated_case as calibrated_case
+    from vibroimpact.calibration.case import load_calibration as load_calibration
+    from vibroimpact.calibration.case import read_calibration as read_calibration
+    from vibroimpact.calibration.folder import save_calibration as save_calibration
     from vibroimpact.calibration.force_record import impacts_in_force as impacts_in_force
-    from vibroimpact.calibration.local_element import identify_local_element as identify_local_element
-    from vibroimpact.calibration.local_element import local_element_deviations as local_element_deviations
     from vibroimpact.calibration.observations import Observations as Observations
     from vibroimpact.calibration.position_record import impacts_in_position as impacts_in_position
     from vibroimpact.calibration.speed_function import SpeedFunction as SpeedFunction
     from vibroimpact.calibration.tunables import law_parameter as law_parameter
     from vibroimpact.calibration.tunables import modal_damping as modal_damping
-    from vibroimpact.cases.calibration import calibrate_case as calibrate_case
-    from vibroimpact.cases.calibration import calibrated_case as calibrated_case
-    from vibroimpact.cases.calibration import load_calibration as load_calibration
-    from vibroimpact.cases.calibration import read_calibration as read_calibration
     from vibroimpact.cases.case import Case as Case
     from vibroimpact.cases.case import case_schema as case_schema
     from vibroimpact.cases.modes import BodyModes as BodyModes
@@ -40,22 +39,24 @@ if TYPE_CHECKING:
     from vibroimpact.cases.reader import load_case as load_case
     from vibroimpact.cases.reader import read_case as read_case
     from vibroimpact.cases.reader import shipped_cases as shipped_cases
-    from vibroimpact.cases.sweep import Sweep as Sweep
-    from vibroimpact.cases.sweep import load_sweep as load_sweep
-    from vibroimpact.cases.sweep import read_sweep as read_sweep
+    from vibroimpact.comparison.comparison import Comparison as Comparison
+    from vibroimpact.comparison.comparison import compare_laws as compare_laws
+    from vibroimpact.comparison.folder import save_comparison as save_comparison
     from vibroimpact.contact.law import ContactLaw as ContactLaw
     from vibroimpact.contact.law import contact_laws as contact_laws
     from vibroimpact.contact.law import find_contact_law as find_contact_law
     from vibroimpact.contact.quasi_static import QuasiStatic as QuasiStatic
+    from vibroimpact.dynamics.local_element import identify_local_element as identify_local_element
+    from vibroimpact.dynamics.local_element import local_element_deviations as local_element_deviations
     from vibroimpact.dynamics.outcome import Outcome as Outcome
     from vibroimpact.dynamics.problem import Problem as Problem
-    from vibroimpact.dynamics.recording import Signal as Signal
     from vibroimpact.dynamics.response import Response as Response
     from vibroimpact.dynamics.restitution import achieved_restitution as achieved_restitution
     from vibroimpact.dynamics.restitution import integrated_restitution as integrated_restitution
     from vibroimpact.dynamics.restitution import law_achieving as law_achieving
-    from vibroimpact.dynamics.sensor import Accelerometer as Accelerometer
-    from vibroimpact.dynamics.sensor import Sensor as Sensor
+    from vibroimpact.dynamics.sensors.recording import Signal as Signal
+    from vibroimpact.dynamics.sensors.sensor import Accelerometer as Accelerometer
+    from vibroimpact.dynamics.sensors.sensor import Sensor as Sensor
     from vibroimpact.dynamics.simulate import simulate as simulate
     from vibroimpact.dynamics.simulate_system import BodyMotion as BodyMotion
     from vibroimpact.dynamics.simulate_system import SystemResponse as SystemResponse
@@ -68,41 +69,40 @@ if TYPE_CHECKING:
     from vibroimpact.errors import ComputationError as ComputationError
     from vibroimpact.errors import InputError as InputError
     from vibroimpact.errors import VibroimpactError as VibroimpactError
-    from vibroimpact.exchange.export_format import export_formats as export_formats
-    from vibroimpact.exchange.mesh_file import read_mesh as read_mesh
-    from vibroimpact.exchange.vtu import write_vtu as write_vtu
-    from vibroimpact.exchange.write_abaqus import write_abaqus as write_abaqus
-    from vibroimpact.exchange.write_nastran import write_nastran as write_nastran
+    from vibroimpact.exporting.export_format import export_formats as export_formats
+    from vibroimpact.exporting.export_result import export_result as export_result
     from vibroimpact.materials import Material as Material
     from vibroimpact.materials import find_material as find_material
     from vibroimpact.materials import material_library as material_library
-    from vibroimpact.report.calibration_folder import save_calibration as save_calibration
-    from vibroimpact.report.comparison import Comparison as Comparison
-    from vibroimpact.report.comparison import compare_laws as compare_laws
-    from vibroimpact.report.comparison_folder import save_comparison as save_comparison
-    from vibroimpact.report.modes_folder import save_modes as save_modes
-    from vibroimpact.report.reproduction.folder import reproduce_paper as reproduce_paper
-    from vibroimpact.report.save import remake_report as remake_report
-    from vibroimpact.report.save import save_result as save_result
-    from vibroimpact.report.study.folder import run_sweep as run_sweep
-    from vibroimpact.storage.export_result import export_result as export_result
-    from vibroimpact.storage.folder import read_result as read_result
-    from vibroimpact.storage.result import Result as Result
-    from vibroimpact.storage.study import Study as Study
-    from vibroimpact.storage.study import read_study as read_study
+    from vibroimpact.meshes.mesh_file import read_mesh as read_mesh
+    from vibroimpact.meshes.write_abaqus import write_abaqus as write_abaqus
+    from vibroimpact.meshes.write_nastran import write_nastran as write_nastran
+    from vibroimpact.meshes.write_vtu import write_vtu as write_vtu
+    from vibroimpact.modes.folder import save_modes as save_modes
+    from vibroimpact.paper.report.folder import reproduce_paper as reproduce_paper
+    from vibroimpact.remake import remake_report as remake_report
+    from vibroimpact.results.folder import read_result as read_result
+    from vibroimpact.results.result import Result as Result
+    from vibroimpact.runs.save import save_result as save_result
     from vibroimpact.structures.mesh import Mesh as Mesh
     from vibroimpact.structures.modal_model import ModalBasis as ModalBasis
-    from vibroimpact.units import convert_units as convert_units
-    from vibroimpact.units import to_si as to_si
+    from vibroimpact.studies.report.folder import run_sweep as run_sweep
+    from vibroimpact.studies.study import Study as Study
+    from vibroimpact.studies.study import read_study as read_study
+    from vibroimpact.studies.sweep import Sweep as Sweep
+    from vibroimpact.studies.sweep import load_sweep as load_sweep
+    from vibroimpact.studies.sweep import read_sweep as read_sweep
+    from vibroimpact.units.reading import convert_units as convert_units
+    from vibroimpact.units.reading import to_si as to_si
 
 _HOME = {
-    "Accelerometer": "dynamics.sensor",
+    "Accelerometer": "dynamics.sensors.sensor",
     "Body": "bodies.body",
     "BodyModes": "cases.modes",
     "BodyMotion": "dynamics.simulate_system",
     "Calibration": "calibration.calibration",
     "Case": "cases.case",
-    "Comparison": "report.comparison",
+    "Comparison": "comparison.comparison",
     "ComputationError": "errors",
     "ContactLaw": "contact.law",
     "ImpactTable": "dynamics.tabulate",
@@ -117,63 +117,63 @@ _HOME = {
     "Problem": "dynamics.problem",
     "QuasiStatic": "contact.quasi_static",
     "Response": "dynamics.response",
-    "Result": "storage.result",
-    "Sensor": "dynamics.sensor",
-    "Signal": "dynamics.recording",
+    "Result": "results.result",
+    "Sensor": "dynamics.sensors.sensor",
+    "Signal": "dynamics.sensors.recording",
     "SpeedFunction": "calibration.speed_function",
-    "Study": "storage.study",
-    "Sweep": "cases.sweep",
+    "Study": "studies.study",
+    "Sweep": "studies.sweep",
     "System": "dynamics.system",
     "SystemResponse": "dynamics.simulate_system",
     "VibroimpactError": "errors",
     "achieved_restitution": "dynamics.restitution",
     "calibrate": "calibration.calibrate",
-    "calibrate_case": "cases.calibration",
-    "calibrated_case": "cases.calibration",
+    "calibrate_case": "calibration.case",
+    "calibrated_case": "calibration.case",
     "case_schema": "cases.case",
-    "compare_laws": "report.comparison",
+    "compare_laws": "comparison.comparison",
     "compute_modes": "cases.modes",
     "contact_laws": "contact.law",
-    "convert_units": "units",
-    "export_formats": "exchange.export_format",
-    "export_result": "storage.export_result",
+    "convert_units": "units.reading",
+    "export_formats": "exporting.export_format",
+    "export_result": "exporting.export_result",
     "find_contact_law": "contact.law",
     "find_material": "materials",
-    "identify_local_element": "calibration.local_element",
+    "identify_local_element": "dynamics.local_element",
     "impacts_in_force": "calibration.force_record",
     "impacts_in_position": "calibration.position_record",
     "integrated_restitution": "dynamics.restitution",
     "law_achieving": "dynamics.restitution",
     "law_parameter": "calibration.tunables",
-    "load_calibration": "cases.calibration",
+    "load_calibration": "calibration.case",
     "load_case": "cases.reader",
-    "load_sweep": "cases.sweep",
-    "local_element_deviations": "calibration.local_element",
+    "load_sweep": "studies.sweep",
+    "local_element_deviations": "dynamics.local_element",
     "material_library": "materials",
     "modal_damping": "calibration.tunables",
-    "read_calibration": "cases.calibration",
+    "read_calibration": "calibration.case",
     "read_case": "cases.reader",
-    "read_mesh": "exchange.mesh_file",
-    "read_result": "storage.folder",
-    "read_study": "storage.study",
-    "read_sweep": "cases.sweep",
-    "remake_report": "report.save",
-    "reproduce_paper": "report.reproduction.folder",
+    "read_mesh": "meshes.mesh_file",
+    "read_result": "results.folder",
+    "read_study": "studies.study",
+    "read_sweep": "studies.sweep",
+    "remake_report": "remake",
+    "reproduce_paper": "paper.report.folder",
     "rigid_plate": "bodies.plate",
     "rigid_sphere": "bodies.sphere",
-    "run_sweep": "report.study.folder",
-    "save_calibration": "report.calibration_folder",
-    "save_comparison": "report.comparison_folder",
-    "save_modes": "report.modes_folder",
-    "save_result": "report.save",
+    "run_sweep": "studies.report.folder",
+    "save_calibration": "calibration.folder",
+    "save_comparison": "comparison.folder",
+    "save_modes": "modes.folder",
+    "save_result": "runs.save",
     "shipped_cases": "cases.reader",
     "simulate": "dynamics.simulate",
     "simulate_system": "dynamics.simulate_system",
     "tabulate": "dynamics.tabulate",
-    "to_si": "units",
-    "write_abaqus": "exchange.write_abaqus",
-    "write_nastran": "exchange.write_nastran",
-    "write_vtu": "exchange.vtu",
+    "to_si": "units.reading",
+    "write_abaqus": "meshes.write_abaqus",
+    "write_nastran": "meshes.write_nastran",
+    "write_vtu": "meshes.write_vtu",
 }
 
 __all__ = [*sorted(_HOME), "__version__"]

@@ -14,10 +14,10 @@ from told import MASS, RADIUS, STIFFNESS, told
 from vibroimpact.contact.law import CompliantLaw, contact_laws
 from vibroimpact.contact.laws.lankarani_nikravesh import LankaraniNikravesh
 from vibroimpact.contact.pair import ContactPair
-from vibroimpact.exchange.drop import Drop
-from vibroimpact.exchange.export_format import ExportFormat, export_formats, find_export_format
-from vibroimpact.storage.exported import drop_of_result
-from vibroimpact.storage.result import result_of
+from vibroimpact.exporting.drop import Drop
+from vibroimpact.exporting.export_format import ExportFormat, export_formats, find_export_format
+from vibroimpact.exporting.exported import drop_of_result
+from vibroimpact.results.result import result_of
 
 FORMATS = list(export_formats().values())
 DATA = {"csv", "mat", "parquet", "uff58", "vtu", "wav"}

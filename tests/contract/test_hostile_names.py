@@ -11,8 +11,8 @@ import pytest
 import vibroimpact as vi
 from decks import check_file_names, named, said
 from told import STEEL
-from vibroimpact.exchange.export_format import ExportFormat, export_formats, find_export_format
-from vibroimpact.exchange.plain_names import one_line, plain_names, plain_words
+from vibroimpact.exporting.export_format import ExportFormat, export_formats, find_export_format
+from vibroimpact.files.plain_names import one_line, plain_names, plain_words
 from vibroimpact.structures.lattice import box_mesh
 
 NAMES = [

@@ -14,13 +14,13 @@ import pytest
 
 import vibroimpact as vi
 from support import one_in
+from vibroimpact.calibration.case import read_calibration
 from vibroimpact.cases.build import resolved
-from vibroimpact.cases.calibration import read_calibration
 from vibroimpact.cases.reader import load_table, shipped_cases
 from vibroimpact.cases.rigid import contact_pair
 from vibroimpact.cases.slips.facts import Facts
 from vibroimpact.cases.slips.find import slips, swept_slips
-from vibroimpact.cases.sweep import read_sweep
+from vibroimpact.studies.sweep import read_sweep
 
 ROOT = Path(__file__).parents[2]
 

@@ -12,9 +12,9 @@ from attack import failures, number, seed
 from mutations import case_files
 from vibroimpact.cases.reader import load_table, named
 from vibroimpact.cases.rigid import deforms
-from vibroimpact.report.console import case_explained
-from vibroimpact.report.study.explained import sweep_explained
 from vibroimpact.report.terminal import TerminalConsole
+from vibroimpact.runs.console import case_explained
+from vibroimpact.studies.report.explained import sweep_explained
 
 
 def shown(renderable: object) -> None:

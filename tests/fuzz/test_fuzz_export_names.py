@@ -10,7 +10,7 @@ import pytest
 
 from attack import failures, number, seed
 from decks import named, said
-from vibroimpact.exchange.export_format import export_formats, find_export_format
+from vibroimpact.exporting.export_format import export_formats, find_export_format
 
 PIECES = [
     *"$&#!;%'\"`\\/<>{}[]()*?-_=+,.:|~^@ \t\n\r\0\x1b\x7f\x85\u2028\u202e\ud800",

@@ -11,8 +11,8 @@ import pytest
 
 import vibroimpact as vi
 from attack import failures, number, seed
-from vibroimpact.exchange.geometry import mesh_geometry
-from vibroimpact.exchange.mesh_file import read_mesh
+from vibroimpact.meshes.geometry import mesh_geometry
+from vibroimpact.meshes.mesh_file import read_mesh
 
 pytest.importorskip("gmsh", exc_type=ImportError)
 
@@ -70,7 +70,7 @@ def test_damaged_geometries(step: bytes, tmp_path: Path) -> None:
 
 
 def test_a_geometry_that_takes_too_long(step: bytes, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("vibroimpact.exchange.geometry.MOST_SECONDS", 0.06)
+    monkeypatch.setattr("vibroimpact.meshes.geometry.MOST_SECONDS", 0.06)
     file = tmp_path / "box.step"
     file.write_bytes(step)
     with pytest.raises(vi.InputError, match=r"Gmsh did not end within 0.001 minutes and was stopped; give a larger element size, or mesh"):

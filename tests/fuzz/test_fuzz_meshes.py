@@ -13,8 +13,8 @@ import pytest
 import vibroimpact as vi
 from attack import failures, number, seed
 from support import plain_case
-from vibroimpact.exchange.mesh_file import read_mesh
-from vibroimpact.report.console import case_explained
+from vibroimpact.meshes.mesh_file import read_mesh
+from vibroimpact.runs.console import case_explained
 
 NASTRAN = """\
 SOL 103

@@ -19,13 +19,13 @@ import pytest
 import attack
 import vibroimpact as vi
 from support import plain_case
-from vibroimpact.dynamics.recording import Signal
-from vibroimpact.dynamics.sensor import Sensor
-from vibroimpact.report.reproduction.folder import read_parts, reproduce_paper
-from vibroimpact.storage.deflection import Deflection
-from vibroimpact.storage.exported import drop_of
-from vibroimpact.storage.folder import write_result
-from vibroimpact.storage.result import Result, result_of
+from vibroimpact.dynamics.sensors.recording import Signal
+from vibroimpact.dynamics.sensors.sensor import Sensor
+from vibroimpact.exporting.exported import drop_of
+from vibroimpact.paper.report.folder import read_parts, reproduce_paper
+from vibroimpact.results.deflection import Deflection
+from vibroimpact.results.folder import write_result
+from vibroimpact.results.result import Result, result_of
 from vibroimpact.structures.store import load_entry, save_entry
 from vibroimpact.studies.chunk_file import ChunkResult, chunk_path, read_chunk, write_chunk
 from vibroimpact.studies.ledger import Span, make_ledger, open_ledger
@@ -34,7 +34,7 @@ from vibroimpact.studies.ledger import Span, make_ledger, open_ledger
 @pytest.fixture(autouse=True)
 def quick(monkeypatch: pytest.MonkeyPatch) -> None:
     """Leave out the process that looks for the part to name: what is refused is refused before."""
-    monkeypatch.setattr("vibroimpact.storage.damaged_part.damaged_part", lambda path: "", raising=False)
+    monkeypatch.setattr("vibroimpact.files.damaged_part.damaged_part", lambda path: "", raising=False)
 
 
 class Damage(NamedTuple):
@@ -183,8 +183,8 @@ def read_calibration(folder: Path) -> Any:
 
 @pytest.fixture(scope="module")
 def calibration(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    from vibroimpact.cases.calibration import calibrate_case, read_calibration
-    from vibroimpact.report.calibration_folder import save_calibration
+    from vibroimpact.calibration.case import calibrate_case, read_calibration
+    from vibroimpact.calibration.folder import save_calibration
 
     case = plain_case(contact={"law": "adams-impact", "damping_max": 100.0}, run={"impacts": 2}, calibrate={"target": {"restitution": 0.6}})
     what = read_calibration(case)

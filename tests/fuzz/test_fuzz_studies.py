@@ -7,9 +7,9 @@ from test_fuzz_cases import shown
 import vibroimpact as vi
 from attack import failures, number, seed
 from mutations import Table, studies
-from vibroimpact.cases.compute_points import compute_points
-from vibroimpact.report.console import case_explained
-from vibroimpact.report.study.explained import sweep_explained
+from vibroimpact.runs.console import case_explained
+from vibroimpact.studies.compute_points import compute_points
+from vibroimpact.studies.report.explained import sweep_explained
 
 
 def compute_a_few(table: Table) -> None:

@@ -16,11 +16,11 @@ import pyuff
 import vibroimpact as vi
 from attack import failures, number, seed
 from support import plain_case
+from vibroimpact.calibration.case import read_calibration
+from vibroimpact.calibration.targets import target_of
 from vibroimpact.cases.build import problem_of
-from vibroimpact.cases.calibration import read_calibration
-from vibroimpact.cases.sweep import read_sweep
-from vibroimpact.cases.targets import target_of
-from vibroimpact.exchange.table_file import read_table_file
+from vibroimpact.measurements.table_file import read_table_file
+from vibroimpact.studies.sweep import read_sweep
 
 HEIGHTS = "impact,rebound_height [mm]\n1,310\n2,190\n3,130\n"
 IMPACTS = "approach_speed_m_s,restitution,restitution_standard_deviation\n1,0.7,0.01\n2,0.65,0.02\n3,0.6,0.02\n"

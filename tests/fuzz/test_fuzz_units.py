@@ -6,7 +6,7 @@ import random
 
 from attack import failures, number, seed
 from vibroimpact.errors import InputError
-from vibroimpact.units import convert_units, dimension_of, read_quantity, to_si
+from vibroimpact.units.reading import convert_units, dimension_of, read_quantity, to_si
 
 UNITS = [
     "m", "mm", "kg", "s", "N", "Pa", "GPa", "Hz", "J", "rad", "deg", "%", "degC", "dB", "byte", "lbf", "inch", "µm", "kkg", "e", "pi",

@@ -77,8 +77,8 @@ def test_documented_commands_run(
 def test_readme_shows_what_the_demo_prints(variable: vi.Response) -> None:
     from rich.console import Console
 
-    from vibroimpact.report.console import result_summary
-    from vibroimpact.storage.result import result_of
+    from vibroimpact.results.result import result_of
+    from vibroimpact.runs.console import result_summary
 
     written = StringIO()
     Console(width=80, file=written).print(result_summary(result_of(variable), 80))

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 import vibroimpact as vi
-from vibroimpact.report.law_pages import law_pages, write_law_pages
+from vibroimpact.laws.pages import law_pages, write_law_pages
 
 DOCS = Path(__file__).parents[2] / "docs"
 LAWS = [name for name, law in vi.contact_laws().items() if law.__module__.startswith("vibroimpact.")]

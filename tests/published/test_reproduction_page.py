@@ -7,14 +7,14 @@ from pathlib import Path
 import pytest
 
 from same_numbers import other_numbers
-from vibroimpact.report.figures import render_svg
-from vibroimpact.report.reproduction.documented import documented
-from vibroimpact.report.reproduction.made import Made, make_part
-from vibroimpact.report.reproduction.page import report_text
-from vibroimpact.report.reproduction.parts import CHAPTERS, PARTS
-from vibroimpact.reproduction.printed import printed_values
-from vibroimpact.reproduction.row import Verdict
-from vibroimpact.reproduction.runs import Runs
+from vibroimpact.paper.printed import printed_values
+from vibroimpact.paper.printed_and_computed import Verdict
+from vibroimpact.paper.report.documented import documented
+from vibroimpact.paper.report.outline import CHAPTERS, PARTS
+from vibroimpact.paper.report.page import report_text
+from vibroimpact.paper.report.rendered_part import Made, make_part
+from vibroimpact.paper.runs import Runs
+from vibroimpact.report.figure_files import render_svg
 
 PAGE = Path(__file__).parents[2] / "docs" / "reproduction.md"
 

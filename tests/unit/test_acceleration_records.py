@@ -10,7 +10,7 @@ import pytest
 import vibroimpact as vi
 from support import plain_case
 from vibroimpact.calibration.calibration import Calibration
-from vibroimpact.cases.calibration import calibrate_case, read_calibration
+from vibroimpact.calibration.case import calibrate_case, read_calibration
 
 CONTACT = {"law": "adams-impact", "damping_max": 200.0}
 

@@ -10,8 +10,8 @@ import pytest
 
 import vibroimpact as vi
 from support import plain_case
-from vibroimpact.cases.calibration import ToCalibrate
-from vibroimpact.storage.exported import drop_of
+from vibroimpact.calibration.case import ToCalibrate
+from vibroimpact.exporting.exported import drop_of
 
 ADAMS = {"law": "adams-impact"}
 PAPER = {"drop": {"height": 4.0, "gravity": 9.8}, "contact": ADAMS}

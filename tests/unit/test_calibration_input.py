@@ -11,9 +11,9 @@ import tomli_w
 import vibroimpact as vi
 from support import plain_case
 from vibroimpact.calibration.calibration import Calibration
-from vibroimpact.cases.calibration import calibrate_case, read_calibration
+from vibroimpact.calibration.case import calibrate_case, read_calibration
 from vibroimpact.cli import main
-from vibroimpact.exchange.table_file import read_table_file
+from vibroimpact.measurements.table_file import read_table_file
 
 NAN = float("nan")
 ADAMS = {"law": "adams-impact"}

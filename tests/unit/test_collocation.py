@@ -8,7 +8,7 @@ import pytest
 from vibroimpact.contact.laws.lankarani_nikravesh import LankaraniNikravesh
 from vibroimpact.dynamics.collocation import collocation_rule
 from vibroimpact.dynamics.encounter import encounter_of
-from vibroimpact.dynamics.stretch import WarmStart, acceleration_unit, solve_stretch
+from vibroimpact.dynamics.rigid.stretch import WarmStart, acceleration_unit, solve_stretch
 
 ENCOUNTER = encounter_of(LankaraniNikravesh(stiffness=1.0, restitution=0.5), np.ones(1), np.full(1, 1e-3), np.ones(1))
 NOTHING = np.zeros(1)

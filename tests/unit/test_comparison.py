@@ -11,8 +11,8 @@ import pytest
 
 import vibroimpact as vi
 from support import plain_case
-from vibroimpact.cases.comparison import cases_under
 from vibroimpact.cli import main
+from vibroimpact.comparison.laws import cases_under
 
 CASE = vi.read_case(plain_case())
 

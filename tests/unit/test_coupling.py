@@ -111,7 +111,7 @@ def test_superposed_bodies_have_nothing_taken_out() -> None:
 
 
 def test_too_few_modes_and_an_overdriven_accelerometer_are_doubted() -> None:
-    from vibroimpact.storage.result import result_of
+    from vibroimpact.results.result import result_of
 
     sensor = {**SENSOR, "rate": "1 kHz", "accelerometer": {"range": 1e-3}}
     found = result_of(vi.simulate(vi.read_case(case(plate={"modes": 3}, sensors=[sensor])))).doubts

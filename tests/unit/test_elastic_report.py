@@ -28,20 +28,20 @@ from vibroimpact.dynamics.columns import (
     VIBRATION_LEDGER,
     meanings,
 )
-from vibroimpact.report.animation import animate, exaggeration
-from vibroimpact.report.console import result_summary
-from vibroimpact.report.deformation import counted_twice, deformation_rows, treatment_sentence
-from vibroimpact.report.figures import draw_figures
-from vibroimpact.report.ledger import bands_of
-from vibroimpact.report.page import render_page
-from vibroimpact.report.spectrum import amplitude_spectrum
-from vibroimpact.report.tables import impact_table
-from vibroimpact.storage import paraview
-from vibroimpact.storage.folder import write_result
-from vibroimpact.storage.frames import frame_times
-from vibroimpact.storage.paraview import write_paraview
-from vibroimpact.storage.result import Result, result_of
-from vibroimpact.storage.surface_grid import surface_grid
+from vibroimpact.results.folder import write_result
+from vibroimpact.results.frames import frame_times
+from vibroimpact.results.result import Result, result_of
+from vibroimpact.results.surface_grid import surface_grid
+from vibroimpact.runs import paraview
+from vibroimpact.runs.animation import animate, exaggeration
+from vibroimpact.runs.console import result_summary
+from vibroimpact.runs.deformation import counted_twice, deformation_rows, treatment_sentence
+from vibroimpact.runs.figures import draw_figures
+from vibroimpact.runs.ledger import bands_of
+from vibroimpact.runs.page import render_page
+from vibroimpact.runs.paraview import write_paraview
+from vibroimpact.runs.spectrum import amplitude_spectrum
+from vibroimpact.runs.tables import impact_table
 from vibroimpact.structures.lattice import box_mesh
 
 SPHERE = {"radius": "25 mm", "material": "rock-paper", "model": "elastic", "modes": 6, "damping": 0.02, "mesh": {"elements_across": 4}}
@@ -77,8 +77,8 @@ def elastic_case(**changes: Any) -> vi.Case:
 def store(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("VIBROIMPACT_STORE", str(tmp_path_factory.mktemp("store")))
-        patch.setattr("vibroimpact.report.figures._DPI", 40)  # nobody looks at these
-        patch.setattr("vibroimpact.storage.deflection._FRAMES", 48)
+        patch.setattr("vibroimpact.report.figure_files._DPI", 40)  # nobody looks at these
+        patch.setattr("vibroimpact.results.deflection._FRAMES", 48)
         yield
 
 

@@ -23,17 +23,17 @@ from support import plain_case
 from vibroimpact.calibration.speed_function import SpeedFunction
 from vibroimpact.cli import main
 from vibroimpact.dynamics.columns import HISTORY_COLUMNS, IMPACT_COLUMNS, meanings
-from vibroimpact.dynamics.recording import Signal
-from vibroimpact.dynamics.sensor import Sensor
-from vibroimpact.exchange.drop import Drop
-from vibroimpact.exchange.export_format import find_export_format
-from vibroimpact.exchange.formats.matlab import legal_names
-from vibroimpact.exchange.formats.uff58 import history_rate
-from vibroimpact.exchange.resample import motion_at
-from vibroimpact.storage import export_result as module
-from vibroimpact.storage.exported import drop_of, drop_of_result
-from vibroimpact.storage.folder import write_result
-from vibroimpact.storage.result import result_of
+from vibroimpact.dynamics.sensors.recording import Signal
+from vibroimpact.dynamics.sensors.sensor import Sensor
+from vibroimpact.exporting import export_result as module
+from vibroimpact.exporting.drop import Drop
+from vibroimpact.exporting.export_format import find_export_format
+from vibroimpact.exporting.exported import drop_of, drop_of_result
+from vibroimpact.exporting.formats.matlab import legal_names
+from vibroimpact.exporting.formats.uff58 import history_rate
+from vibroimpact.exporting.resample import motion_at
+from vibroimpact.results.folder import write_result
+from vibroimpact.results.result import result_of
 
 ELASTIC = {
     "name": "elastic",

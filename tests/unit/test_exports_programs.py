@@ -25,9 +25,9 @@ from vibroimpact.contact.laws.tsuji import Tsuji
 from vibroimpact.contact.pair import ContactPair
 from vibroimpact.dynamics.restitution import achieved_restitution
 from vibroimpact.errors import InputError
-from vibroimpact.exchange.contact_alone import clipped_dashpot
-from vibroimpact.exchange.drop import Drop
-from vibroimpact.exchange.formats import exudyn, lammps, mujoco, yade
+from vibroimpact.exporting.contact_alone import clipped_dashpot
+from vibroimpact.exporting.drop import Drop
+from vibroimpact.exporting.formats import exudyn, lammps, mujoco, yade
 
 FORMATS = [lammps.FORMAT, yade.FORMAT, mujoco.FORMAT, exudyn.FORMAT]
 TSUJI = Tsuji(stiffness=STIFFNESS, restitution=0.7, effective_mass=MASS)

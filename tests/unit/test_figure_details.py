@@ -12,13 +12,13 @@ from matplotlib.figure import Figure
 
 import vibroimpact as vi
 from support import plain_case
-from vibroimpact.quantity import multiple
-from vibroimpact.report.comparison import compare_laws
-from vibroimpact.report.comparison_figures import apart, draw_comparison
-from vibroimpact.report.deflection_figure import draw_deflection
-from vibroimpact.report.sensor_figures import draw_sensor
-from vibroimpact.storage.deflection import Deflection
-from vibroimpact.storage.result import Result, result_of
+from vibroimpact.comparison.comparison import compare_laws
+from vibroimpact.comparison.figures import apart, draw_comparison
+from vibroimpact.results.deflection import Deflection
+from vibroimpact.results.result import Result, result_of
+from vibroimpact.runs.deflection_figure import draw_deflection
+from vibroimpact.runs.sensor_figures import draw_sensor
+from vibroimpact.units.display import multiple
 
 
 @pytest.fixture(scope="module")

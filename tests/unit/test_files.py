@@ -13,11 +13,11 @@ import pytest
 import vibroimpact as vi
 from attack import attack
 from support import plain_case
-from vibroimpact.cases.calibration import read_calibration
-from vibroimpact.exchange.lines import MESH
-from vibroimpact.exchange.mesh_file import read_mesh
-from vibroimpact.exchange.table_file import read_table_file
-from vibroimpact.files import FileKind, beginning, file_digest, read_bytes, read_text
+from vibroimpact.calibration.case import read_calibration
+from vibroimpact.files.lines import MESH
+from vibroimpact.files.reading import FileKind, beginning, file_digest, read_bytes, read_text
+from vibroimpact.measurements.table_file import read_table_file
+from vibroimpact.meshes.mesh_file import read_mesh
 
 KIND = FileKind("a note is a text file", 1_000_000, "write less")
 
@@ -99,7 +99,7 @@ def test_a_socket_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
 def test_a_file_that_grows_while_it_is_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     file = tmp_path / "growing"
     file.write_bytes(b"a" * 10)
-    monkeypatch.setattr("vibroimpact.files._check", lambda *_: None)  # as if it had been small when it was looked at
+    monkeypatch.setattr("vibroimpact.files.reading._check", lambda *_: None)  # as if it had been small when it was looked at
     with pytest.raises(vi.InputError, match="the file is larger than 0 MB; write less"):
         read_bytes(file, KIND._replace(largest=9))
     assert read_bytes(file, KIND._replace(largest=10)) == b"a" * 10

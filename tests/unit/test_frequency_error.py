@@ -12,7 +12,7 @@ import pytest
 import vibroimpact as vi
 from vibroimpact.bodies.elastic import plate_recipe
 from vibroimpact.materials import Material
-from vibroimpact.report.modes_folder import save_modes
+from vibroimpact.modes.folder import save_modes
 from vibroimpact.structures.frequency_error import from_coarser, main_cause
 from vibroimpact.structures.plate_waves import _lamb, bending_error
 from vibroimpact.structures.recipe import PlateOfSolids, Recipe, Reduction, SphereOfSolids, computed_model

@@ -12,8 +12,8 @@ from scipy.constants import g as standard_gravity
 import vibroimpact as vi
 from support import plain_case
 from vibroimpact.cases.case import case_schema
-from vibroimpact.report.console import case_explained
-from vibroimpact.units import to_si
+from vibroimpact.runs.console import case_explained
+from vibroimpact.units.reading import to_si
 
 
 @pytest.mark.parametrize(

@@ -10,12 +10,12 @@ import pytest
 import vibroimpact as vi
 from attack import attack
 from support import plain_case
-from vibroimpact.cases.calibration import read_calibration
+from vibroimpact.calibration.case import read_calibration
 from vibroimpact.cases.meshes import meshes_of
-from vibroimpact.exchange.mesh_file import read_mesh
-from vibroimpact.exchange.parts import Selection
-from vibroimpact.exchange.table_file import name_and_unit, read_table_file
-from vibroimpact.report.console import case_explained
+from vibroimpact.measurements.table_file import name_and_unit, read_table_file
+from vibroimpact.meshes.mesh_file import read_mesh
+from vibroimpact.meshes.parsed_mesh import Selection
+from vibroimpact.runs.console import case_explained
 from vibroimpact.structures.lattice import box_mesh
 
 NUMBER = 4000
@@ -118,7 +118,7 @@ def test_tables_that_are_refused(text: str, message: str, tmp_path: Path) -> Non
 
 
 def test_a_table_of_too_many_lines(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("vibroimpact.exchange.table_file.MOST_LINES", 3)
+    monkeypatch.setattr("vibroimpact.measurements.table_file.MOST_LINES", 3)
     file = tmp_path / "table.csv"
     file.write_text("time_s\n1\n2\n")
     assert read_table_file(file, {"time": "s"}).columns["time"].tolist() == [1.0, 2.0]

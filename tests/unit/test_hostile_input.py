@@ -15,12 +15,13 @@ from attack import LONGEST, attack
 from studies import study_table
 from support import plain_case
 from vibroimpact.cases.bounds import DEEPEST, check_text
-from vibroimpact.cases.compute_points import compute_points
 from vibroimpact.cli import main
 from vibroimpact.errors import MOST_LINES, ComputationError, InputError
-from vibroimpact.report.figures import draw_figures, render_png
-from vibroimpact.storage.folder import check_free
-from vibroimpact.storage.result import result_of
+from vibroimpact.report.figure_files import render_png
+from vibroimpact.results.folder import check_free
+from vibroimpact.results.result import result_of
+from vibroimpact.runs.figures import draw_figures
+from vibroimpact.studies.compute_points import compute_points
 
 ESCAPE = "\x1b[31m"
 SENSOR = {"name": "a", "position": [0, 0]}

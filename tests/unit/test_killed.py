@@ -204,7 +204,7 @@ def command_status(*arguments: object) -> None:
 def stage(request: pytest.FixtureRequest, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Stage:
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("VIBROIMPACT_STORE", "store")
-    monkeypatch.setattr("vibroimpact.storage.result.datetime", Clock)
+    monkeypatch.setattr("vibroimpact.results.result.datetime", Clock)
     monkeypatch.setattr("time.process_time", lambda: 0.0)  # which a page tells of the modes
     monkeypatch.setattr("sys.argv", list(sys.argv))
     return Stage(SCENES[request.param], tmp_path)

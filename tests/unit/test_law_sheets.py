@@ -12,8 +12,8 @@ from rich.console import Console
 import vibroimpact as vi
 from support import one_in
 from vibroimpact.cli import main
-from vibroimpact.report.law_sheet import law_sheet, law_table
-from vibroimpact.report.law_text import law_text, short_source
+from vibroimpact.laws.sheet import law_sheet, law_table
+from vibroimpact.laws.text import law_text, short_source
 
 LAWS = vi.contact_laws()
 

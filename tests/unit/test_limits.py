@@ -22,12 +22,12 @@ from vibroimpact.cases.conditions import Conditions, Seen
 from vibroimpact.cases.doubts import doubts
 from vibroimpact.cases.expected import expected_of
 from vibroimpact.cases.limit import limits, numbers_of
+from vibroimpact.comparison.comparison import comparison_doubts
 from vibroimpact.contact.laws.lankarani_nikravesh import LankaraniNikravesh
-from vibroimpact.report.comparison import comparison_doubts
-from vibroimpact.report.study.text import study_summary
-from vibroimpact.storage.compute_study import compute_study
-from vibroimpact.storage.result import result_of
-from vibroimpact.units import to_si
+from vibroimpact.results.result import result_of
+from vibroimpact.studies.compute_study import compute_study
+from vibroimpact.studies.report.text import study_summary
+from vibroimpact.units.reading import to_si
 
 STEEL = {"density": 7850, "youngs_modulus": 2.1e11, "poissons_ratio": 0.3, "yield_strength": 1e12}
 """One that never yields, so that nothing is said of strength."""

@@ -14,8 +14,8 @@ from vibroimpact.contact.laws.lankarani_nikravesh import LankaraniNikravesh
 from vibroimpact.contact.laws.walton_braun import WaltonBraun
 from vibroimpact.dynamics.impact_rows import ImpactRows
 from vibroimpact.dynamics.packed_list import PackedList
-from vibroimpact.dynamics.plane_rule import PlaneRule
-from vibroimpact.storage import fine_history as kept
+from vibroimpact.dynamics.phase_plane.collocation import PlaneRule
+from vibroimpact.results import fine_history as kept
 
 BALL = vi.Body(mass=0.09, contact_offset=0.025)
 

@@ -7,10 +7,10 @@ import tracemalloc
 import numpy as np
 import pytest
 
-from vibroimpact.dynamics.recording import Signal
-from vibroimpact.dynamics.sensor import Sensor
-from vibroimpact.report import excerpt
-from vibroimpact.report.excerpt import thinned, thinned_samples
+from vibroimpact.dynamics.sensors.recording import Signal
+from vibroimpact.dynamics.sensors.sensor import Sensor
+from vibroimpact.runs import windows as excerpt
+from vibroimpact.runs.windows import thinned, thinned_samples
 
 COUNT = 3_000_000
 RANDOM = np.random.default_rng(0).standard_normal(COUNT)

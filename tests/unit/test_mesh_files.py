@@ -9,16 +9,16 @@ import pytest
 
 from support import one_in
 from vibroimpact.errors import InputError
-from vibroimpact.exchange.abaqus import read_abaqus
-from vibroimpact.exchange.geometry import mesh_geometry
-from vibroimpact.exchange.gmsh_file import read_gmsh
-from vibroimpact.exchange.mesh_file import read_mesh
-from vibroimpact.exchange.nastran import read_nastran
-from vibroimpact.exchange.nastran_cards import nastran_real
-from vibroimpact.exchange.vtu import write_vtu
-from vibroimpact.exchange.write_abaqus import write_abaqus
-from vibroimpact.exchange.write_nastran import nastran_number, write_nastran
 from vibroimpact.materials import RIGID, Material
+from vibroimpact.meshes.geometry import mesh_geometry
+from vibroimpact.meshes.mesh_file import read_mesh
+from vibroimpact.meshes.nastran_cards import nastran_real
+from vibroimpact.meshes.read_abaqus import read_abaqus
+from vibroimpact.meshes.read_gmsh import read_gmsh
+from vibroimpact.meshes.read_nastran import read_nastran
+from vibroimpact.meshes.write_abaqus import write_abaqus
+from vibroimpact.meshes.write_nastran import nastran_number, write_nastran
+from vibroimpact.meshes.write_vtu import write_vtu
 from vibroimpact.structures.element_kinds import ELEMENT_KINDS
 from vibroimpact.structures.mesh import ElementBlock, Mesh
 

@@ -11,13 +11,13 @@ from matplotlib.text import Text
 
 import vibroimpact as vi
 from support import plain_case
-from vibroimpact.exchange.plain_names import plain_names
-from vibroimpact.report.deflection_figure import draw_deflection
-from vibroimpact.report.figures import render_png, render_svg
+from vibroimpact.files.plain_names import plain_names
+from vibroimpact.report.figure_files import render_png, render_svg
 from vibroimpact.report.lettering import lettering
-from vibroimpact.report.sensor_figures import draw_sensor
 from vibroimpact.report.style import style
-from vibroimpact.storage.result import Result, result_of
+from vibroimpact.results.result import Result, result_of
+from vibroimpact.runs.deflection_figure import draw_deflection
+from vibroimpact.runs.sensor_figures import draw_sensor
 
 NAMES = [
     r"a$\frac{$b",
@@ -47,8 +47,8 @@ def response() -> vi.Response:
 @pytest.fixture(scope="module")
 def folder(response: vi.Response, tmp_path_factory: pytest.TempPathFactory) -> Path:
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("vibroimpact.report.figures._DPI", 40)
-        patch.setattr("vibroimpact.storage.deflection._FRAMES", 24)
+        patch.setattr("vibroimpact.report.figure_files._DPI", 40)
+        patch.setattr("vibroimpact.results.deflection._FRAMES", 24)
         place = tmp_path_factory.mktemp("results") / "named"
         response.save(place)
         return place

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from support import one_in
-from vibroimpact.dynamics.linear_system import FreeMotion, LinearSystem, State
-from vibroimpact.dynamics.next_touch import next_touch
+from vibroimpact.dynamics.vibrating.linear_system import FreeMotion, LinearSystem, State
+from vibroimpact.dynamics.vibrating.next_touch import next_touch
 
 NONE = np.zeros(0)
 

@@ -17,7 +17,7 @@ from vibroimpact.cases.limits.plate_waves import plate_theory_error
 from vibroimpact.dynamics.truncation import time_of_contact
 from vibroimpact.errors import InputError
 from vibroimpact.materials import Material
-from vibroimpact.storage.result import result_of
+from vibroimpact.results.result import result_of
 from vibroimpact.structures.plate_compliance import plate_theory_average
 from vibroimpact.structures.plate_face import face_shapes
 from vibroimpact.structures.plate_waves import bending_factor, wave_numbers

@@ -11,7 +11,7 @@ import pytest
 from vibroimpact.materials import Material
 from vibroimpact.structures import recipe as recipes
 from vibroimpact.structures import static_compliance as statics
-from vibroimpact.structures.recent import Recent
+from vibroimpact.structures.memory_cache import Recent
 from vibroimpact.structures.recipe import (
     PlateOfPlates,
     Recipe,

@@ -10,9 +10,9 @@ import pytest
 import vibroimpact as vi
 from support import plain_case
 from vibroimpact.calibration.calibration import Calibration
-from vibroimpact.cases.calibration import calibrate_case, read_calibration
-from vibroimpact.report.calibration_figures import draw_calibration
-from vibroimpact.report.calibration_folder import save_calibration
+from vibroimpact.calibration.case import calibrate_case, read_calibration
+from vibroimpact.calibration.figures import draw_calibration
+from vibroimpact.calibration.folder import save_calibration
 
 CONTACT = {"law": "adams-impact", "damping_max": 200.0}
 

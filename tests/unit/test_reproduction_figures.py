@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 
 from vibroimpact.dynamics.response import Response
-from vibroimpact.quantity import digits
-from vibroimpact.report.reproduction.compared import beside_printed
-from vibroimpact.report.reproduction.paper_figures import PAPER_FIGURES
-from vibroimpact.report.reproduction.type_figures import ENERGY, MOTION
+from vibroimpact.paper.measures import column, falling_potential, largest_of
+from vibroimpact.paper.printed import printed
+from vibroimpact.paper.report.compared import beside_printed
+from vibroimpact.paper.report.paper_figures import PAPER_FIGURES
+from vibroimpact.paper.report.type_figures import ENERGY, MOTION
+from vibroimpact.paper.runs import Runs
 from vibroimpact.report.style import style
-from vibroimpact.reproduction.measures import column, falling_potential, largest_of
-from vibroimpact.reproduction.printed import printed
-from vibroimpact.reproduction.runs import Runs
+from vibroimpact.units.display import digits
 
 
 class RigidRuns(Runs):

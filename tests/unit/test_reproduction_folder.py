@@ -16,16 +16,16 @@ import pytest
 
 import vibroimpact as vi
 from vibroimpact.cli import main
-from vibroimpact.report.reproduction import folder as module
-from vibroimpact.report.reproduction.documented import write_documented
-from vibroimpact.report.reproduction.folder import is_reproduction, missing_parts, read_parts, reproduce_paper
-from vibroimpact.report.reproduction.made import make_part
-from vibroimpact.report.reproduction.page import counts, report_html, report_text
-from vibroimpact.report.reproduction.parts import PARTS, Part, find_parts
-from vibroimpact.reproduction.printed import printed
-from vibroimpact.reproduction.row import Row, Verdict
-from vibroimpact.reproduction.runs import Runs
-from vibroimpact.reproduction.section import Section
+from vibroimpact.paper.printed import printed
+from vibroimpact.paper.printed_and_computed import Row, Verdict
+from vibroimpact.paper.report import folder as module
+from vibroimpact.paper.report.documented import write_documented
+from vibroimpact.paper.report.folder import is_reproduction, missing_parts, read_parts, reproduce_paper
+from vibroimpact.paper.report.outline import PARTS, Part, find_parts
+from vibroimpact.paper.report.page import counts, report_html, report_text
+from vibroimpact.paper.report.rendered_part import make_part
+from vibroimpact.paper.runs import Runs
+from vibroimpact.paper.section import Section
 
 QUICK = ["table1", "section3.1", "fig4"]
 COLUMNS = "part,name,what,place,read,unit,relation,printed,by,computed,difference,allowed,verdict,why"
@@ -284,7 +284,7 @@ def test_a_part_is_there_with_its_figure_or_not_at_all(
     copy: Path, monkeypatch: pytest.MonkeyPatch, step: str, error: BaseException
 ) -> None:
     before = contents(copy)
-    monkeypatch.setattr(f"vibroimpact.report.reproduction.{step}", raises(error))
+    monkeypatch.setattr(f"vibroimpact.paper.report.{step}", raises(error))
     with pytest.raises((vi.InputError, KeyboardInterrupt)) as failed:
         reproduce_paper(copy, ["fig3"])
     if isinstance(error, OSError):

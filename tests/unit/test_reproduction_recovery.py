@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 import vibroimpact as vi
-from vibroimpact.quantity import MISSING
-from vibroimpact.reproduction.damping_function import function_at, parabola, printed_dampings
-from vibroimpact.reproduction.recovery import Recovery, implied_restitution, off_joint, penetration_bands, recover
-from vibroimpact.reproduction.recovery_section import recovery
-from vibroimpact.reproduction.runs import Runs, with_law
+from vibroimpact.paper.damping_function import function_at, parabola, printed_dampings
+from vibroimpact.paper.recovery import Recovery, implied_restitution, off_joint, penetration_bands, recover
+from vibroimpact.paper.recovery_section import recovery
+from vibroimpact.paper.runs import Runs, with_law
+from vibroimpact.units.display import MISSING
 
 
 @pytest.fixture(scope="module")

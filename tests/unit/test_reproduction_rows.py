@@ -12,7 +12,10 @@ import pytest
 from markdown_it import MarkdownIt
 
 from vibroimpact.errors import InputError
-from vibroimpact.report.reproduction.markdown import (
+from vibroimpact.paper import printed as library
+from vibroimpact.paper.printed import Printed, Relation, corrections, printed, printed_values
+from vibroimpact.paper.printed_and_computed import Account, Row, Verdict
+from vibroimpact.paper.report.markdown import (
     allowed_text,
     computed_text,
     difference_text,
@@ -23,10 +26,7 @@ from vibroimpact.report.reproduction.markdown import (
     table,
     verdict_text,
 )
-from vibroimpact.reproduction import printed as library
-from vibroimpact.reproduction.printed import Printed, Relation, corrections, printed, printed_values
-from vibroimpact.reproduction.row import Account, Row, Verdict
-from vibroimpact.reproduction.section import Section, Table
+from vibroimpact.paper.section import Section, Table
 
 
 def value(text: str, relation: Relation = "=", digits: int | None = None, unit: str = "m") -> Printed:

@@ -7,8 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from vibroimpact.reproduction.runs import IMPACTS, Runs
-from vibroimpact.reproduction.sampling import (
+from vibroimpact.paper.runs import IMPACTS, Runs
+from vibroimpact.paper.sampling import (
     CONTACTS,
     error_range,
     found_spacing,

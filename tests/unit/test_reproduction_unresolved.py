@@ -10,12 +10,12 @@ from vibroimpact.contact.laws.adams_impact import AdamsImpact
 from vibroimpact.contact.laws.hertz import Hertz
 from vibroimpact.contact.laws.newton import Newton
 from vibroimpact.errors import ComputationError, InputError
-from vibroimpact.reproduction import implicit_euler
-from vibroimpact.reproduction.implicit_euler import PEAKS, SPENT, unresolved_impact
-from vibroimpact.reproduction.row import Verdict
-from vibroimpact.reproduction.runs import Runs
-from vibroimpact.reproduction.step_sweep import COMPARED, closest, paper_impact, resolved, superposed, sweep
-from vibroimpact.reproduction.unresolved import unresolved, unresolved_range
+from vibroimpact.paper import implicit_euler
+from vibroimpact.paper.implicit_euler import PEAKS, SPENT, unresolved_impact
+from vibroimpact.paper.printed_and_computed import Verdict
+from vibroimpact.paper.runs import Runs
+from vibroimpact.paper.step_sweep import COMPARED, closest, paper_impact, resolved, superposed, sweep
+from vibroimpact.paper.unresolved import unresolved, unresolved_range
 
 IMPACT = AdamsImpact(stiffness=5.1154524848e8, damping_max=180.0)
 SPHERE = random_modes(3, 6, 12e3, 40e3, 3.0, 1.0)

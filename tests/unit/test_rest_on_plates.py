@@ -18,13 +18,13 @@ from vibroimpact.contact.laws.jkr import JKR
 from vibroimpact.contact.laws.lankarani_nikravesh import LankaraniNikravesh
 from vibroimpact.contact.pair import ContactPair
 from vibroimpact.contact.quasi_static import QuasiStatic
-from vibroimpact.dynamics import visit
 from vibroimpact.dynamics.columns import LEDGER, VIBRATION_LEDGER
-from vibroimpact.dynamics.linear_system import LinearSystem, State
-from vibroimpact.dynamics.local import LocalContact
-from vibroimpact.dynamics.lying import lay_down
-from vibroimpact.dynamics.riding import Riding
-from vibroimpact.dynamics.vibrating_bodies import centre_of, system_of
+from vibroimpact.dynamics.vibrating import visit
+from vibroimpact.dynamics.vibrating.bodies import centre_of, system_of
+from vibroimpact.dynamics.vibrating.linear_system import LinearSystem, State
+from vibroimpact.dynamics.vibrating.local import LocalContact
+from vibroimpact.dynamics.vibrating.lying import lay_down
+from vibroimpact.dynamics.vibrating.riding import Riding
 
 LOSSY = LankaraniNikravesh(stiffness=STIFFNESS, restitution=0.5)
 PAIR = ContactPair(2.4264724e9, 0.025, 0.09032078879, 8e7, 0.28)
@@ -194,7 +194,7 @@ def test_the_bound_of_the_force_is_met_and_not_passed() -> None:
 
 
 def test_a_write_off_of_less_than_nothing_fails_the_run(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("vibroimpact.dynamics.rigid_bodies.static_indentation", lambda law, weight: 0.0 * weight + 1.0)
+    monkeypatch.setattr("vibroimpact.dynamics.rigid.bodies.static_indentation", lambda law, weight: 0.0 * weight + 1.0)
     problem = vi.Problem(sphere=vi.Body(mass=1.0, contact_offset=0.1), plate=vi.rigid_plate(), laws=(LOSSY,), height=0.2, rest_speed=0.01)
     with pytest.raises(vi.ComputationError, match=r"was laid to rest with .* J more than it and what it lies on had left"):
         vi.simulate(replace(problem, impacts=None))

@@ -17,11 +17,11 @@ from vibroimpact.cases.build import resolved
 from vibroimpact.cases.conditions import Seen
 from vibroimpact.cases.doubts import doubts
 from vibroimpact.contact.laws.hertz import Hertz
-from vibroimpact.report.console import result_summary
-from vibroimpact.report.quantities import ACCELERATION, FORCE, POSITION, VELOCITY
-from vibroimpact.report.tables import impact_table
-from vibroimpact.storage.result import Result, result_of
-from vibroimpact.storage.summary import summary_of
+from vibroimpact.results.result import Result, result_of
+from vibroimpact.results.summary import summary_of
+from vibroimpact.runs.console import result_summary
+from vibroimpact.runs.quantities import ACCELERATION, FORCE, POSITION, VELOCITY
+from vibroimpact.runs.tables import impact_table
 
 CHANGES = np.array([1e-9, 2e-3, 0.1, 10.0])
 

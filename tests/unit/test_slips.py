@@ -13,16 +13,16 @@ from typer.testing import CliRunner
 import vibroimpact as vi
 from studies import study_table
 from support import plain_case
+from vibroimpact.calibration.case import calibrate_case, read_calibration
 from vibroimpact.cases.build import resolved
-from vibroimpact.cases.calibration import calibrate_case, read_calibration
 from vibroimpact.cases.slips.find import slips, swept_slips
-from vibroimpact.cases.study_slips import slips_of_axes
-from vibroimpact.cases.sweep import read_sweep
 from vibroimpact.cli import app
-from vibroimpact.report.study.doubts import doubt_sentences
-from vibroimpact.storage.compute_study import compute_study
-from vibroimpact.storage.result import result_of
-from vibroimpact.storage.study import read_study
+from vibroimpact.results.result import result_of
+from vibroimpact.studies.compute_study import compute_study
+from vibroimpact.studies.report.doubts import doubt_sentences
+from vibroimpact.studies.slips import slips_of_axes
+from vibroimpact.studies.study import read_study
+from vibroimpact.studies.sweep import read_sweep
 
 STEEL = {"density": 7850, "youngs_modulus": "210 GPa", "poissons_ratio": 0.3}
 ACRYLIC = {"density": 1190, "youngs_modulus": "3.3 GPa", "poissons_ratio": 0.37}

@@ -12,8 +12,8 @@ import vibroimpact as vi
 from vibroimpact.cases.build import resolved
 from vibroimpact.cases.conditions import Conditions, Seen
 from vibroimpact.cases.rigid import contact_pair
-from vibroimpact.storage.compute_study import compute_study
-from vibroimpact.storage.exported import drop_of
+from vibroimpact.exporting.exported import drop_of
+from vibroimpact.studies.compute_study import compute_study
 
 STEEL, GLASS = "steel-paper", "glass-chung-ooi"
 

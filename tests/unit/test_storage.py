@@ -20,8 +20,8 @@ import xarray
 import vibroimpact as vi
 from vibroimpact.cli import main
 from vibroimpact.dynamics.columns import HISTORY_COLUMNS, IMPACT_COLUMNS, LEDGER, meanings
-from vibroimpact.storage.folder import new_folder
-from vibroimpact.storage.hdf5 import new_array, new_hdf5, read_array
+from vibroimpact.files.hdf5 import new_array, new_hdf5, read_array
+from vibroimpact.results.folder import new_folder
 
 HEADER = (
     "impact,time_s,duration_s,approach_speed_m_s,separation_speed_m_s,restitution_achieved,max_indentation_m,max_force_N,"
@@ -180,7 +180,7 @@ def test_a_failure_leaves_nothing_and_loses_nothing(
     def breaks(*_: object) -> None:
         raise OSError("no space left on device")
 
-    monkeypatch.setattr("vibroimpact.report.save.write_report", breaks)
+    monkeypatch.setattr("vibroimpact.runs.save.write_report", breaks)
     for name in ("new", "out"):
         with pytest.raises(OSError, match="no space"):
             theory.save(tmp_path / name, force=True)
@@ -270,7 +270,7 @@ _NO_ROOM = """
 import resource, sys
 from pathlib import Path
 import numpy as np
-from vibroimpact.storage.hdf5 import new_array, new_hdf5
+from vibroimpact.files.hdf5 import new_array, new_hdf5
 
 def fill(size):
     resource.setrlimit(resource.RLIMIT_FSIZE, (size, resource.RLIM_INFINITY))

@@ -9,7 +9,7 @@ import pytest
 import vibroimpact as vi
 from studies import RANDOM, study_table
 from vibroimpact.errors import InputError
-from vibroimpact.storage.compute_study import chunk_size, compute_study, least_memory
+from vibroimpact.studies.compute_study import chunk_size, compute_study, least_memory
 
 LARGE = vi.read_sweep(study_table({**RANDOM, "samples": 100_000}))
 

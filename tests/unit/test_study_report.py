@@ -16,21 +16,21 @@ from matplotlib.figure import Figure
 from rich.console import Console
 
 from support import plain_case
-from vibroimpact.cases.sweep import read_sweep
 from vibroimpact.dynamics.response import Outcome
 from vibroimpact.errors import InputError
-from vibroimpact.report.save import remake_report
-from vibroimpact.report.study.axes import study_axes
-from vibroimpact.report.study.curves import draw_curves
-from vibroimpact.report.study.folder import run_sweep
-from vibroimpact.report.study.outputs import drawn_outputs, output_names, some, study_outputs
-from vibroimpact.report.study.sensitivity import sensitivity_of, strongest
-from vibroimpact.report.study.text import study_summary
-from vibroimpact.report.study.ticks import Ticks
-from vibroimpact.storage import compute_study as computing
-from vibroimpact.storage.study import Study, read_study
+from vibroimpact.remake import remake_report
+from vibroimpact.studies import compute_study as computing
 from vibroimpact.studies.chunk_file import ChunkResult
 from vibroimpact.studies.columns import OUTCOME
+from vibroimpact.studies.report.axes import study_axes
+from vibroimpact.studies.report.curves import draw_curves
+from vibroimpact.studies.report.folder import run_sweep
+from vibroimpact.studies.report.outputs import drawn_outputs, output_names, some, study_outputs
+from vibroimpact.studies.report.sensitivity import sensitivity_of, strongest
+from vibroimpact.studies.report.text import study_summary
+from vibroimpact.studies.report.ticks import Ticks
+from vibroimpact.studies.study import Study, read_study
+from vibroimpact.studies.sweep import read_sweep
 
 LOSSY = {"law": "lankarani-nikravesh", "restitution": 0.7}
 RADII = {"from": "5 mm", "to": "50 mm", "scale": "log"}
@@ -48,7 +48,7 @@ def study_of(folder: Path, sweep: Mapping[str, Any], **sections: Any) -> Study:
 
 def draw_two_results(patch: pytest.MonkeyPatch) -> None:
     """Have two results of the bodies drawn in place of six."""
-    patch.setattr("vibroimpact.report.study.outputs._BODIES", 2)
+    patch.setattr("vibroimpact.studies.report.outputs._BODIES", 2)
 
 
 @pytest.fixture(scope="module")
@@ -75,13 +75,13 @@ def two_drawn(monkeypatch: pytest.MonkeyPatch) -> None:
         return dict.fromkeys(figures, b"<svg/>")
 
     draw_two_results(monkeypatch)
-    monkeypatch.setattr("vibroimpact.report.study.page.save_figures", draw)
+    monkeypatch.setattr("vibroimpact.studies.report.page.save_figures", draw)
 
 
 @pytest.fixture
 def words_alone(monkeypatch: pytest.MonkeyPatch) -> None:
     """Write reports without figures."""
-    monkeypatch.setattr("vibroimpact.report.study.page.study_figures", lambda *_: {})
+    monkeypatch.setattr("vibroimpact.studies.report.page.study_figures", lambda *_: {})
 
 
 def rows_of(path: Path) -> list[dict[str, str]]:
@@ -311,7 +311,7 @@ def test_a_report_that_cannot_be_written_leaves_the_old_one(copy_of_grid: Path, 
     def full(*_: Any, **__: Any) -> None:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr("vibroimpact.report.study.page.save_figures", full)
+    monkeypatch.setattr("vibroimpact.studies.report.page.save_figures", full)
     with pytest.raises(InputError, match="No space left"):
         remake_report(copy_of_grid)
     assert (copy_of_grid / "report.html").read_bytes() == before

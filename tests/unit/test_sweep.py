@@ -18,13 +18,13 @@ import xarray as xr
 import vibroimpact as vi
 from studies import OVER, RANDOM, study_file, study_table
 from support import plain_case
-from vibroimpact.cases import compute_points as compute_points_module
-from vibroimpact.cases.compute_points import compute_points
-from vibroimpact.cases.swept_keys import case_at
-from vibroimpact.storage.compute_study import chunk_size, compute_study
+from vibroimpact.studies import compute_points as compute_points_module
+from vibroimpact.studies.compute_points import compute_points
+from vibroimpact.studies.compute_study import chunk_size, compute_study
 from vibroimpact.studies.dask_workers import dask_workers
 from vibroimpact.studies.ledger import Span
 from vibroimpact.studies.run_chunks import run_chunks
+from vibroimpact.studies.swept_keys import case_at
 from vibroimpact.studies.workers import processes, this_process
 
 PEAKS = ("first_restitution_achieved", "largest_force_N", "total_energy_lost_J")

@@ -23,11 +23,11 @@ import pytest
 
 import vibroimpact as vi
 from studies import RANDOM, study_file, study_table
-from vibroimpact.cases.compute_points import compute_points
-from vibroimpact.storage import compute_study as computing
-from vibroimpact.storage import study_dataset
-from vibroimpact.storage.compute_study import compute_study
+from vibroimpact.studies import compute_study as computing
+from vibroimpact.studies import dataset as study_dataset
 from vibroimpact.studies.chunk_file import ChunkResult
+from vibroimpact.studies.compute_points import compute_points
+from vibroimpact.studies.compute_study import compute_study
 from vibroimpact.studies.ledger import LEDGER, Span, make_ledger, open_ledger
 from vibroimpact.studies.run_chunks import run_chunks
 from vibroimpact.studies.workers import Crew, processes, this_process

@@ -107,7 +107,7 @@ def test_a_ball_comes_to_rest() -> None:
 
 
 def test_contacts_without_end_are_told(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("vibroimpact.dynamics.march._MOST_STRETCHES", 50)
+    monkeypatch.setattr("vibroimpact.dynamics.vibrating.march._MOST_STRETCHES", 50)
     with pytest.raises(
         vi.ComputationError, match="follow each other ever faster, as where a body comes to rest; ask for a shorter duration"
     ):

@@ -13,11 +13,11 @@ from vibroimpact.contact.law import CompliantLaw, ContactLaw, contact_laws
 from vibroimpact.contact.laws.hertz import Hertz
 from vibroimpact.contact.laws.lankarani_nikravesh import LankaraniNikravesh
 from vibroimpact.contact.pair import ContactPair
-from vibroimpact.dynamics import plane_contact
 from vibroimpact.dynamics import tabulate as module
 from vibroimpact.dynamics.contact import Contact
 from vibroimpact.dynamics.encounter import Encounter
-from vibroimpact.dynamics.solve_contact import SolvesContact, collocated
+from vibroimpact.dynamics.phase_plane import contact as plane_contact
+from vibroimpact.dynamics.rigid.solve_contact import SolvesContact, collocated
 
 LAWS = list(contact_laws().values())
 SMOOTH = {

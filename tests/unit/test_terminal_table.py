@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 from rich.text import Text
 
-from vibroimpact.quantity import column_texts
 from vibroimpact.report.encodable import encodable
 from vibroimpact.report.terminal import TerminalConsole
 from vibroimpact.report.terminal_table import Column, TerminalTable, facts, numbers
+from vibroimpact.units.display import column_texts
 
 WIDE = [
     Column("Law", ["hunt-crossley", "flores"], words=True),

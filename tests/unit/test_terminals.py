@@ -18,27 +18,27 @@ from studies import study_table
 from support import one_in, plain_case
 from told import told_case
 from vibroimpact.calibration.calibrate import calibrate
+from vibroimpact.calibration.text import calibration_summary
 from vibroimpact.cases.modes import compute_modes
-from vibroimpact.cases.sweep import read_sweep
 from vibroimpact.cli import main
-from vibroimpact.doctor import diagnose
-from vibroimpact.exchange.export_format import find_export_format
-from vibroimpact.report.calibration_text import calibration_summary
-from vibroimpact.report.comparison import compare_laws
-from vibroimpact.report.comparison_text import comparison_summary
-from vibroimpact.report.console import case_explained, result_summary, versions_table
-from vibroimpact.report.format_table import export_summary, format_table
-from vibroimpact.report.law_sheet import law_sheet, law_table
-from vibroimpact.report.material_text import material_sheet, material_table
-from vibroimpact.report.modes_text import modes_summary
-from vibroimpact.report.reproduction import summary
-from vibroimpact.report.study.explained import sweep_explained
-from vibroimpact.report.study.text import study_summary
+from vibroimpact.cli.doctor import diagnose
+from vibroimpact.cli.material_text import material_sheet, material_table
+from vibroimpact.cli.unit_table import converted, unit_table
+from vibroimpact.comparison.comparison import compare_laws
+from vibroimpact.comparison.text import comparison_summary
+from vibroimpact.exporting.export_format import find_export_format
+from vibroimpact.exporting.text import export_summary, format_table
+from vibroimpact.laws.sheet import law_sheet, law_table
+from vibroimpact.modes.text import modes_summary
+from vibroimpact.paper.printed_and_computed import Verdict
+from vibroimpact.paper.report import summary
 from vibroimpact.report.terminal import TerminalConsole
-from vibroimpact.report.unit_table import converted, unit_table
-from vibroimpact.reproduction.row import Verdict
-from vibroimpact.storage.compute_study import compute_study
-from vibroimpact.storage.result import result_of
+from vibroimpact.results.result import result_of
+from vibroimpact.runs.console import case_explained, result_summary, versions_table
+from vibroimpact.studies.compute_study import compute_study
+from vibroimpact.studies.report.explained import sweep_explained
+from vibroimpact.studies.report.text import study_summary
+from vibroimpact.studies.sweep import read_sweep
 
 _NUMBER = re.compile(r"(?<![\w.])[-\u2212+]?\d+(?:\.\d+)?(?:·10[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+|e[-+]?\d+)?(?![\w.]*\d)")
 _WIDTHS = (60, 80, 120, 160)

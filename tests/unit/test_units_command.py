@@ -8,8 +8,8 @@ from hypothesis import strategies as st
 
 import vibroimpact as vi
 from vibroimpact.cli import main
-from vibroimpact.report.unit_table import in_unit_systems, number_text
-from vibroimpact.units import dimension_of, read_quantity, unit_text
+from vibroimpact.cli.unit_table import in_unit_systems, number_text
+from vibroimpact.units.reading import dimension_of, read_quantity, unit_text
 
 POWERS = st.floats(1.0, 3.0).map(lambda power: round(power, 3))
 

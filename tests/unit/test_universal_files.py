@@ -13,10 +13,10 @@ import pyuff
 import vibroimpact as vi
 from support import plain_case
 from vibroimpact.calibration.calibration import Calibration
-from vibroimpact.cases.calibration import calibrate_case, read_calibration
-from vibroimpact.exchange.record_file import read_universal_record
-from vibroimpact.exchange.universal_file import is_universal, read_universal_file
-from vibroimpact.storage.export_result import export_result
+from vibroimpact.calibration.case import calibrate_case, read_calibration
+from vibroimpact.exporting.export_result import export_result
+from vibroimpact.measurements.record_file import read_universal_record
+from vibroimpact.measurements.universal_file import is_universal, read_universal_file
 
 CONTACT = {"law": "adams-impact", "damping_max": 200.0}
 NEWTON = {"law": "newton", "restitution": 0.5}

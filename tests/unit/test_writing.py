@@ -9,13 +9,13 @@ from pathlib import Path
 
 import pytest
 
-import vibroimpact.writing.folder as folders
-from vibroimpact.writing.exchange import exchange
-from vibroimpact.writing.file import new_file, write_file
-from vibroimpact.writing.folder import whole_folder
-from vibroimpact.writing.into_folder import write_into
-from vibroimpact.writing.leftovers import NEW, OLD, WHOLE, inner_path, working_path
-from vibroimpact.writing.recover import recover
+import vibroimpact.files.write_folder as folders
+from vibroimpact.files.exchange import exchange
+from vibroimpact.files.leftovers import NEW, OLD, WHOLE, inner_path, working_path
+from vibroimpact.files.recover import recover
+from vibroimpact.files.write_file import new_file, write_file
+from vibroimpact.files.write_folder import whole_folder
+from vibroimpact.files.write_into_folder import write_into
 
 
 def nothing() -> None:
@@ -85,8 +85,8 @@ def test_what_a_living_process_writes_is_not_touched(tmp_path: Path) -> None:
     code = f"""
 import sys
 from pathlib import Path
-from vibroimpact.writing.folder import whole_folder
-from vibroimpact.writing.file import new_file
+from vibroimpact.files.write_folder import whole_folder
+from vibroimpact.files.write_file import new_file
 with whole_folder(Path({str(tmp_path / "out")!r}), lambda: None) as a, new_file(Path({str(tmp_path / "file")!r})) as b:
     print("ready", flush=True)
     sys.stdin.read()

@@ -25,8 +25,8 @@ from vibroimpact.contact.laws.adams_impact import AdamsImpact
 from vibroimpact.contact.laws.hertz import Hertz
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.errors import InputError
-from vibroimpact.exchange.drop import Drop
-from vibroimpact.exchange.formats import adams_solver, adams_view
+from vibroimpact.exporting.drop import Drop
+from vibroimpact.exporting.formats import adams_solver, adams_view
 from vibroimpact.materials import find_material
 
 RADIUS, MASS = 0.025, 0.09032078879

@@ -17,7 +17,7 @@ import pytest
 import vibroimpact as vi
 from oracles.axisymmetric_contact import impact, static_approach
 from support import plain_case
-from vibroimpact.dynamics.local import LocalContact
+from vibroimpact.dynamics.vibrating.local import LocalContact
 
 FORCE, DURATION, RESTITUTION, SPEED = 12166.0, 246.45e-6, 0.99906, 8.826664
 RADIUS, DENSITY, MODULUS, RATIO = 0.025, 1380.0, 2.26e9, 0.28

@@ -13,7 +13,7 @@ from oracles.bouncing_in_air import Bounces, bounces, clift_gauvin, schiller_nau
 from support import plain_case
 from vibroimpact.calibration.air_flights import AirFlights
 from vibroimpact.calibration.calibration import Calibration
-from vibroimpact.cases.calibration import calibrate_case, read_calibration
+from vibroimpact.calibration.case import calibrate_case, read_calibration
 
 GRAVITY = 9.80665
 RUBBER = {"density": 1100.0, "youngs_modulus": 5e6, "poissons_ratio": 0.48}

@@ -15,10 +15,10 @@ import vibroimpact as vi
 from support import one_in, plain_case
 from vibrating import STIFFNESS, drop_on, random_modes
 from vibroimpact.calibration.calibrate import calibrate
+from vibroimpact.calibration.case import calibrate_case, calibrated_case, read_calibration
 from vibroimpact.calibration.observations import from_table
 from vibroimpact.calibration.outcomes import OUTCOMES
 from vibroimpact.calibration.tunables import modal_damping
-from vibroimpact.cases.calibration import calibrate_case, calibrated_case, read_calibration
 from vibroimpact.contact.law import contact_laws
 from vibroimpact.contact.laws.hertz import Hertz
 from vibroimpact.contact.pair import ContactPair
@@ -87,7 +87,7 @@ def test_every_law_but_hertz_has_a_parameter_that_sets_its_loss() -> None:
 @pytest.mark.parametrize("name", ["paper:type1-theory", "paper:calibration"])
 def test_the_calibrated_case_bounces_as_the_target_does(name: str) -> None:
     """Another law as the target: every rebound height of the paper's drop."""
-    from vibroimpact.cases.calibration import load_calibration
+    from vibroimpact.calibration.case import load_calibration
 
     what = load_calibration(name)
     run = vi.simulate(calibrated_case(what.case, calibrate_case(what))).impacts
@@ -182,7 +182,7 @@ def test_several_outcomes_are_as_near_as_they_can_be() -> None:
 
 def test_the_full_damping_penetration_that_gives_the_printed_height() -> None:
     """The paper prints 1e-5 m and a rebound of 2.41132 m; the height takes ten times that, and the run has it."""
-    from vibroimpact.cases.calibration import load_calibration
+    from vibroimpact.calibration.case import load_calibration
 
     what = load_calibration("paper:full-damping-penetration")
     found = calibrate_case(what)

@@ -9,7 +9,7 @@ from scipy.integrate import solve_ivp
 import vibroimpact as vi
 from support import plain_case
 from vibroimpact.cases.limits.air_drag import drag_coefficient, drag_loss
-from vibroimpact.storage.result import result_of
+from vibroimpact.results.result import result_of
 
 DENSITY, VISCOSITY, GRAVITY = 1.2, 1.81e-5, 9.80665
 

@@ -17,7 +17,7 @@ import vibroimpact as vi
 from vibrating import STIFFNESS, drop_on, modes_of, random_modes
 from vibroimpact.contact.laws.hertz import Hertz
 from vibroimpact.contact.laws.lankarani_nikravesh import LankaraniNikravesh
-from vibroimpact.dynamics.sensor import Accelerometer, Sensor
+from vibroimpact.dynamics.sensors.sensor import Accelerometer, Sensor
 
 HERTZ = Hertz(stiffness=STIFFNESS)
 QUANTITIES: tuple[Literal["displacement", "velocity", "acceleration"], ...] = ("displacement", "velocity", "acceleration")

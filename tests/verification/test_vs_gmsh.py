@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from vibroimpact.errors import InputError
-from vibroimpact.exchange.geometry import mesh_geometry
-from vibroimpact.exchange.mesh_file import read_mesh
+from vibroimpact.meshes.geometry import mesh_geometry
+from vibroimpact.meshes.mesh_file import read_mesh
 from vibroimpact.structures.mesh import Mesh
 
 try:

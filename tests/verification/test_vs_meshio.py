@@ -7,10 +7,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from vibroimpact.exchange.vtu import write_vtu
-from vibroimpact.exchange.write_abaqus import write_abaqus
-from vibroimpact.exchange.write_nastran import write_nastran
 from vibroimpact.materials import Material
+from vibroimpact.meshes.write_abaqus import write_abaqus
+from vibroimpact.meshes.write_nastran import write_nastran
+from vibroimpact.meshes.write_vtu import write_vtu
 from vibroimpact.structures.element_kinds import ELEMENT_KINDS
 from vibroimpact.structures.mesh import ElementBlock, Mesh
 
@@ -87,7 +87,7 @@ def test_plates(tmp_path: Path) -> None:
 
 def test_a_mesh_of_meshio(tmp_path: Path) -> None:
     """What meshio writes is read: two tetrahedra in each of its formats."""
-    from vibroimpact.exchange.mesh_file import read_mesh
+    from vibroimpact.meshes.mesh_file import read_mesh
 
     points = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 1, 1]])
     tets = np.array([[0, 1, 2, 3], [1, 2, 3, 4]])

@@ -9,13 +9,13 @@ import pytest
 
 import vibroimpact as vi
 from vibrating import STIFFNESS, drop_on, random_modes
+from vibroimpact.comparison.comparison import Comparison, comparison_table
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.laws.hertz import Hertz
 from vibroimpact.contact.laws.lankarani_nikravesh import LankaraniNikravesh
-from vibroimpact.report.captions import caption
-from vibroimpact.report.comparison import Comparison, comparison_table
-from vibroimpact.report.tables import impact_table, ledger_table
-from vibroimpact.storage.result import Result, result_of
+from vibroimpact.results.result import Result, result_of
+from vibroimpact.runs.captions import caption
+from vibroimpact.runs.tables import impact_table, ledger_table
 
 LAWS = (Hertz(stiffness=STIFFNESS), LankaraniNikravesh(stiffness=STIFFNESS, restitution=0.7))
 _NUMBER = re.compile(r"(-?[\d.]+)(?:·10([⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)|e([-+]\d+))?")

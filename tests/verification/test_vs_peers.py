@@ -18,8 +18,8 @@ from told import MASS, STIFFNESS, told, told_case
 from vibroimpact.contact.law import ContactLaw, contact_laws
 from vibroimpact.contact.pair import ContactPair
 from vibroimpact.dynamics.restitution import achieved_restitution
-from vibroimpact.exchange.drop import Drop
-from vibroimpact.exchange.export_format import find_export_format
+from vibroimpact.exporting.drop import Drop
+from vibroimpact.exporting.export_format import find_export_format
 
 pytestmark = pytest.mark.peers
 

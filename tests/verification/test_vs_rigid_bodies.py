@@ -20,13 +20,13 @@ from oracles.adams import Bounce, Motion
 from oracles.adams_commands import read_commands
 from oracles.adams_dataset import read_dataset, read_solver_commands
 from support import one_in
+from vibroimpact.calibration.file import CALIBRATION, calibration_table
 from vibroimpact.cases.build import resolved
 from vibroimpact.cli import main
-from vibroimpact.exchange.export_format import find_export_format
-from vibroimpact.storage.calibration_file import CALIBRATION, calibration_table
-from vibroimpact.storage.exported import drop_of_result
-from vibroimpact.storage.folder import write_result
-from vibroimpact.storage.result import result_of
+from vibroimpact.exporting.export_format import find_export_format
+from vibroimpact.exporting.exported import drop_of_result
+from vibroimpact.results.folder import write_result
+from vibroimpact.results.result import result_of
 
 ELASTIC: dict[str, Any] = {
     "name": "clamped",

@@ -17,7 +17,7 @@ from vibroimpact.contact.laws.hertz import Hertz
 from vibroimpact.contact.laws.kuwabara_kono import KuwabaraKono
 from vibroimpact.contact.laws.lankarani_nikravesh import LankaraniNikravesh
 from vibroimpact.contact.laws.thornton import Thornton
-from vibroimpact.dynamics.vibrating_stretch import VibratingStretch
+from vibroimpact.dynamics.vibrating.stretch import VibratingStretch
 
 LAWS: list[ContactLaw] = [
     Hertz(stiffness=STIFFNESS),

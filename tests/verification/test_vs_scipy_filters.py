@@ -14,8 +14,8 @@ from support import one_in
 from vibrating import STIFFNESS, drop_on, modes_of, random_modes
 from vibroimpact.contact.laws.hertz import Hertz
 from vibroimpact.contact.laws.lankarani_nikravesh import LankaraniNikravesh
-from vibroimpact.dynamics.antialias import REACH, kernel
-from vibroimpact.dynamics.sensor import Accelerometer, Sensor
+from vibroimpact.dynamics.sensors.antialias import REACH, kernel
+from vibroimpact.dynamics.sensors.sensor import Accelerometer, Sensor
 
 RATE, FINER = 20e3, 64
 HERTZ = Hertz(stiffness=STIFFNESS)

@@ -14,7 +14,7 @@ import pytest
 import vibroimpact as vi
 from oracles.measuring_chain import RATE, Floats, SimplySupported, driven, rms, sampled, seismic
 from oracles.three_dimensional_plate import Elastic, thickness_modes
-from vibroimpact.dynamics.sensor import Accelerometer, Sensor
+from vibroimpact.dynamics.sensors.sensor import Accelerometer, Sensor
 
 SIZE, DENSITY, MODULUS, POISSON, RATIO = (0.18, 0.15, 0.006), 7850.0, 210e9, 0.3, 0.002
 SPOT, DURATION, SAMPLES = (-0.011, -0.0147), 2e-3, 50e3
@@ -113,7 +113,7 @@ def test_without_a_filter(response: vi.Response, motion: dict[str, dict[str, Flo
 
 def test_under_the_contact_the_doubt_holds(response: vi.Response, motion: dict[str, dict[str, Floats]]) -> None:
     """Plate theory knows neither thickness nor face: a signal there may be off by what is said, and a sensor farther away has no doubt."""
-    from vibroimpact.storage.result import result_of
+    from vibroimpact.results.result import result_of
 
     off = compared(response, Sensor("under"), sampled(motion["under"]["acceleration"], SAMPLES, "sigma-delta"))
     found = result_of(response).doubts

@@ -1,1 +1,1 @@
-"""From what was measured to the parameters of a model."""
+"""From what was measured, or wanted, to the parameters of a model."""

@@ -15,9 +15,9 @@ from vibroimpact.calibration.matching import Tunable
 from vibroimpact.calibration.observations import Observations
 from vibroimpact.calibration.outcomes import REBOUND, REBOUNDS, check_weights
 from vibroimpact.calibration.overlay import overlays
-from vibroimpact.calibration.reach import other_parameters
 from vibroimpact.calibration.tunables import law_parameter
 from vibroimpact.calibration.uncertainty import of_the_whole
+from vibroimpact.calibration.unreachable import other_parameters
 from vibroimpact.dynamics.problem import Problem, StatesProblem
 from vibroimpact.dynamics.simulate import simulate
 from vibroimpact.errors import InputError

@@ -10,12 +10,12 @@ import numpy as np
 from vibroimpact.arrays import Floats
 from vibroimpact.calibration.drops import impacts_of, shortened
 from vibroimpact.calibration.fitting import fit_values
-from vibroimpact.calibration.matched import Matched, degree_of
+from vibroimpact.calibration.match_result import Matched, degree_of
 from vibroimpact.calibration.matching import Tunable, match
 from vibroimpact.calibration.observations import Observations
 from vibroimpact.calibration.one_impact import one_impact, stacked
 from vibroimpact.calibration.outcomes import OUTCOMES
-from vibroimpact.calibration.reach import check_reached
+from vibroimpact.calibration.unreachable import check_reached
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.simulate import simulate
 from vibroimpact.errors import InputError

@@ -7,11 +7,11 @@ from collections.abc import Callable, Mapping
 import numpy as np
 
 from vibroimpact.calibration.fitting import fit_observations, value_noise
-from vibroimpact.calibration.matched import Matched, degree_of
+from vibroimpact.calibration.match_result import Matched, degree_of
 from vibroimpact.calibration.matching import Tunable, match
 from vibroimpact.calibration.observations import Observations, scaled
-from vibroimpact.calibration.reach import check_reached
 from vibroimpact.calibration.uncertainty import default_draws, redrawn, undetermined, with_nearest_end
+from vibroimpact.calibration.unreachable import check_reached
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.errors import InputError
 

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import fields, replace
 from typing import TYPE_CHECKING, Any, Literal
 
-from vibroimpact.cases.calibrate_section import calibrate_table
+from vibroimpact.calibration.section import calibrate_table
 from vibroimpact.cases.material_field import material_table
 from vibroimpact.cases.rigid import FALLS, contact_laws_of, deforms, elastic_names, impacts_of, is_free_sphere, rigid_problem
 from vibroimpact.contact.law import CompliantLaw, loses_nothing

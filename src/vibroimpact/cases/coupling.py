@@ -11,7 +11,6 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.bodies.sphere import rigid_sphere
-from vibroimpact.calibration.local_element import identify_local_element, local_element_deviations
 from vibroimpact.cases.local_section import MeasuredImpact
 from vibroimpact.cases.modes import BodyModes, compute_modes
 from vibroimpact.cases.residuals import residual_key, with_residuals
@@ -19,9 +18,10 @@ from vibroimpact.cases.rigid import FALLS, contact_laws_of, contact_pair, elasti
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.quasi_static import QuasiStatic
 from vibroimpact.dynamics.encounter import encounter_of
-from vibroimpact.dynamics.local import LocalContact
+from vibroimpact.dynamics.local_element import identify_local_element, local_element_deviations
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.simulate import simulate
+from vibroimpact.dynamics.vibrating.local import LocalContact
 from vibroimpact.errors import InputError
 from vibroimpact.materials import Material
 from vibroimpact.structures.modal_model import ModalBasis, ModalModel

@@ -11,8 +11,8 @@ from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
 from vibroimpact.cases.quantities import Quantity
 from vibroimpact.cases.section import Section, read_table
 from vibroimpact.errors import InputError
-from vibroimpact.exchange.lines import MESH
-from vibroimpact.files import about, file_digest
+from vibroimpact.files.lines import MESH
+from vibroimpact.files.reading import about, file_digest
 from vibroimpact.ranges import Range
 from vibroimpact.shown import shown
 
@@ -59,7 +59,7 @@ class BroughtMeshTable(Section):
 
     def read(self) -> Mesh:
         """Read the mesh [m]."""
-        from vibroimpact.exchange.mesh_file import read_mesh
+        from vibroimpact.meshes.mesh_file import read_mesh
 
         try:
             return read_mesh(self.file, self.unit, self.element_size)

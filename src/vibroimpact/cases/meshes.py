@@ -8,7 +8,7 @@ import numpy as np
 from scipy.sparse import csr_array
 
 from vibroimpact.cases.build_elastic import elastic_bodies
-from vibroimpact.cases.place_words import in_list
+from vibroimpact.cases.item_labels import in_list
 from vibroimpact.errors import InputError
 from vibroimpact.structures.geometry import check_mesh, mass_properties
 from vibroimpact.structures.mesh import Mesh

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from vibroimpact.cases.elastic_fields import BroughtMeshTable
-from vibroimpact.cases.place_words import in_list
+from vibroimpact.cases.item_labels import in_list
 from vibroimpact.cases.slips.lengths import likely_lengths
 from vibroimpact.errors import InputError
 from vibroimpact.structures.rectangle import CLOSEST

@@ -11,7 +11,7 @@ from pydantic_core import CoreSchema, core_schema
 from vibroimpact.errors import InputError
 from vibroimpact.ranges import Range
 from vibroimpact.shown import shown
-from vibroimpact.units import to_si
+from vibroimpact.units.reading import to_si
 
 SMALLEST, LARGEST = 1e-50, 1e50
 """Magnitudes of a quantity in SI; squares and products of what lies between them are numbers that a computer has."""

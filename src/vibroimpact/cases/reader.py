@@ -13,18 +13,18 @@ from typing import Any, TypeVar
 
 from pydantic import BaseModel, ValidationError
 
+from vibroimpact.calibration.section import CalibrateSection, SpeedsTable
 from vibroimpact.cases.bounds import MOST_BYTES, check_bounds, check_text
 from vibroimpact.cases.build import check_case
-from vibroimpact.cases.calibrate_section import CalibrateSection, SpeedsTable
 from vibroimpact.cases.case import Case
 from vibroimpact.cases.explain import explained
+from vibroimpact.cases.item_labels import place_in_words
 from vibroimpact.cases.material_field import InlineMaterial
-from vibroimpact.cases.place_words import place_in_words
 from vibroimpact.cases.schema import AccelerometerTable, DropSection, PlateSection, RunSection, SensorSection, SphereSection
-from vibroimpact.cases.sweep_section import SweepSection
 from vibroimpact.errors import InputError, did_you_mean
-from vibroimpact.files import FileKind, read_text
+from vibroimpact.files.reading import FileKind, read_text
 from vibroimpact.shown import shortened, shown
+from vibroimpact.studies.section import SweepSection
 
 Read = TypeVar("Read")
 

@@ -8,8 +8,8 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import BeforeValidator, Field, StrictBool, model_validator
 
+from vibroimpact.calibration.section import CalibrateSection
 from vibroimpact.cases.bounds import MOST_ITEMS, Name, at_most
-from vibroimpact.cases.calibrate_section import CalibrateSection
 from vibroimpact.cases.contact_section import ContactSection, read_contact
 from vibroimpact.cases.damping_field import DampingField
 from vibroimpact.cases.elastic_fields import (
@@ -28,13 +28,13 @@ from vibroimpact.cases.quantities import Quantity
 from vibroimpact.cases.section import Section
 from vibroimpact.cases.slips.lengths import likely_lengths
 from vibroimpact.cases.supports_field import SupportsField
-from vibroimpact.cases.sweep_section import SweepSection
 from vibroimpact.dynamics.problem import MOST_IMPACTS, STANDARD_GRAVITY
-from vibroimpact.dynamics.sensor import FILTERS, Accelerometer, Sensor
+from vibroimpact.dynamics.sensors.sensor import FILTERS, Accelerometer, Sensor
 from vibroimpact.errors import InputError, did_you_mean
 from vibroimpact.materials import RIGID
 from vibroimpact.ranges import Range
 from vibroimpact.shown import shown
+from vibroimpact.studies.section import SweepSection
 
 
 class SphereSection(Section):

@@ -6,8 +6,8 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from vibroimpact.dynamics.recording import Signal
-from vibroimpact.quantity import text
+from vibroimpact.dynamics.sensors.recording import Signal
+from vibroimpact.units.display import text
 
 _PROMISED = 0.01  # of the rms value: what the modes left out may change in a signal without a word
 _NEAR = 2.0  # thicknesses from the contact

@@ -23,12 +23,12 @@ def calibrate(
     The [calibrate] section of the case says what to match: a contact law, a restitution, or measurements. Without it the
     damping of Adams' IMPACT is found with which the sphere bounces as under the law of the case.
     """
-    from vibroimpact.cases.calibration import calibrate_case, load_calibration
+    from vibroimpact.calibration.case import calibrate_case, load_calibration
+    from vibroimpact.calibration.folder import save_calibration
+    from vibroimpact.calibration.text import calibration_summary
     from vibroimpact.cases.reader import named
-    from vibroimpact.report.calibration_folder import save_calibration
-    from vibroimpact.report.calibration_text import calibration_summary
     from vibroimpact.report.progress import patient_progress
-    from vibroimpact.storage.folder import check_free
+    from vibroimpact.results.folder import check_free
 
     what = load_calibration(case)
     target = Path(f"{stem(case)}-calibrated") if output is None else output

@@ -35,11 +35,11 @@ def compare(
     Parameters that the case's own law has are used where another law has the same.
     """
     from vibroimpact.cases.reader import load_case
-    from vibroimpact.report.comparison import compare_laws
-    from vibroimpact.report.comparison_folder import save_comparison
-    from vibroimpact.report.comparison_text import comparison_summary
+    from vibroimpact.comparison.comparison import compare_laws
+    from vibroimpact.comparison.folder import save_comparison
+    from vibroimpact.comparison.text import comparison_summary
     from vibroimpact.report.progress import patient_progress
-    from vibroimpact.storage.folder import check_free
+    from vibroimpact.results.folder import check_free
 
     found = load_case(case)
     target = Path(f"{stem(case)}-compared") if output is None else output

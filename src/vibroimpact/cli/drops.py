@@ -40,12 +40,12 @@ def run(
 @app.command()
 def check(case: CaseArgument) -> None:
     """Validate a case or a study and explain it; run nothing."""
+    from vibroimpact.calibration.section import check_target
     from vibroimpact.cases.build import check_drop
-    from vibroimpact.cases.calibrate_section import check_target
     from vibroimpact.cases.reader import load_case, load_table, named
-    from vibroimpact.cases.sweep import read_sweep
-    from vibroimpact.report.console import case_explained
-    from vibroimpact.report.study.explained import sweep_explained
+    from vibroimpact.runs.console import case_explained
+    from vibroimpact.studies.report.explained import sweep_explained
+    from vibroimpact.studies.sweep import read_sweep
 
     table = named(case, lambda: load_table(case))
     if "sweep" not in table:
@@ -63,10 +63,10 @@ def _run(name: str, output: Path | None, *, force: bool) -> None:
     from vibroimpact.cases.costs import costs_told
     from vibroimpact.cases.reader import load_case, named
     from vibroimpact.dynamics.simulate import simulate
-    from vibroimpact.report.console import result_summary
     from vibroimpact.report.progress import patient_progress
-    from vibroimpact.report.save import save_result
-    from vibroimpact.storage.folder import check_free, read_result
+    from vibroimpact.results.folder import check_free, read_result
+    from vibroimpact.runs.console import result_summary
+    from vibroimpact.runs.save import save_result
 
     case = load_case(name)
     target = Path(stem(name)) if output is None else output
@@ -98,10 +98,10 @@ def modes(
     from vibroimpact.cases.costs import costs_told
     from vibroimpact.cases.modes import compute_modes
     from vibroimpact.cases.reader import load_case, named
-    from vibroimpact.report.modes_folder import save_modes
-    from vibroimpact.report.modes_text import modes_summary
+    from vibroimpact.modes.folder import save_modes
+    from vibroimpact.modes.text import modes_summary
     from vibroimpact.report.progress import patient_progress
-    from vibroimpact.storage.folder import check_free
+    from vibroimpact.results.folder import check_free
 
     found = load_case(case)
     target = Path(f"{stem(case)}-modes") if output is None else output
@@ -120,6 +120,6 @@ def modes(
 @app.command()
 def report(directory: Annotated[Path, typer.Argument(metavar="DIR", help="A result folder.")]) -> None:
     """Remake the report of a result folder."""
-    from vibroimpact.report.save import remake_report
+    from vibroimpact.remake import remake_report
 
     say(f"wrote {remake_report(directory) / 'report.html'}")

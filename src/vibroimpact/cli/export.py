@@ -26,10 +26,10 @@ def export(
 
     What the format can't hold is said, and what the writer was tested against.
     """
-    from vibroimpact.exchange.export_format import find_export_format
-    from vibroimpact.report.format_table import export_summary, format_table
-    from vibroimpact.storage.export_result import default_output, save_export
-    from vibroimpact.storage.exported import drop_of
+    from vibroimpact.exporting.export_format import find_export_format
+    from vibroimpact.exporting.export_result import default_output, save_export
+    from vibroimpact.exporting.exported import drop_of
+    from vibroimpact.exporting.text import export_summary, format_table
 
     if formats and (to is not None or output is not None or force):
         raise InputError("--formats lists them, and takes no other option")

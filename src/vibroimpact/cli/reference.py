@@ -22,8 +22,8 @@ def units(
 
     A stiffness in N/m^n is 1000^n times one in N/mm^n, not 1000 times.
     """
-    from vibroimpact.report.unit_table import converted, unit_table
-    from vibroimpact.units import read_quantity
+    from vibroimpact.cli.unit_table import converted, unit_table
+    from vibroimpact.units.reading import read_quantity
 
     try:
         value, unit = read_quantity(" ".join(quantity))
@@ -41,7 +41,7 @@ def laws(
     force: Annotated[bool, typer.Option("--force", help="Replace an existing picture.")] = False,
 ) -> None:
     """List the contact laws, or show one: equation, parameters, sources; with -o PNG also a picture of its curves."""
-    from vibroimpact.report.law_sheet import law_sheet, law_table
+    from vibroimpact.laws.sheet import law_sheet, law_table
 
     screen = console()
     if name is None:
@@ -51,12 +51,12 @@ def laws(
         return
     sheet = law_sheet(name)
     if output is not None:
-        from vibroimpact.report.law_curves import check_picture
+        from vibroimpact.laws.curves import check_picture
 
         check_picture(output, force=force)  # before the work, not after it
     screen.print(sheet)
     if output is not None:
-        from vibroimpact.report.law_curves import save_law_picture
+        from vibroimpact.laws.curves import save_law_picture
 
         say(f"\nwrote {save_law_picture(name, output)}")
 
@@ -66,7 +66,7 @@ def materials(
     name: Annotated[str | None, typer.Argument(metavar="[NAME]", help="Show one material, with the source of each number.")] = None,
 ) -> None:
     """List the shipped materials, or one with its sources."""
-    from vibroimpact.report.material_text import material_sheet, material_table
+    from vibroimpact.cli.material_text import material_sheet, material_table
 
     console().print(material_sheet(name) if name else material_table())
 
@@ -86,8 +86,8 @@ def doctor(
     clear_store: Annotated[bool, typer.Option("--clear-store", help="Empty the store of computed modes.")] = False,
 ) -> None:
     """Show versions and the store of modes, and test this installation."""
-    from vibroimpact.doctor import diagnose, first_rebound_error
-    from vibroimpact.report.console import versions_table
+    from vibroimpact.cli.doctor import diagnose, first_rebound_error
+    from vibroimpact.runs.console import versions_table
 
     if clear_store:
         from vibroimpact.structures.store import clear_store as clear

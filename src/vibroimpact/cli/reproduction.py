@@ -27,9 +27,9 @@ def reproduce(
     The parts: table1, section3.1, fig3, section3.2, fig4 to fig8, damping, table2, section4, fig9, section5.1, fig10 to fig13,
     section5.2, fig14 to fig17, section5.3, fig18 to fig23, conclusions, recovery, sampling, unresolved, corrections.
     """
+    from vibroimpact.paper.report.folder import missing_parts, reproduce_paper
+    from vibroimpact.paper.report.summary import summary_table
     from vibroimpact.report.progress import patient_progress
-    from vibroimpact.report.reproduction.folder import missing_parts, reproduce_paper
-    from vibroimpact.report.reproduction.summary import summary_table
 
     names = None if only is None else names_in(only)
     screen = console()

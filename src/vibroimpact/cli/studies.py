@@ -14,7 +14,7 @@ from vibroimpact.cli.shared import app, console, fail, note, say, stem, stopping
 from vibroimpact.errors import InputError
 
 if TYPE_CHECKING:
-    from vibroimpact.cases.sweep import Sweep
+    from vibroimpact.studies.sweep import Sweep
 
 MOST_UNASKED = 100_000
 """Drops beyond which a study must be confirmed by --yes."""
@@ -77,13 +77,13 @@ def _sweep(
     KeyboardInterrupt
         Where it can stop, once it was told to.
     """
-    from vibroimpact.cases.study_slips import whole_slips
-    from vibroimpact.cases.sweep import load_sweep
     from vibroimpact.report.progress import counting_progress, patient_progress
-    from vibroimpact.report.study.folder import run_sweep
-    from vibroimpact.report.study.text import study_summary
-    from vibroimpact.storage.study import begun, read_study
-    from vibroimpact.units import to_si
+    from vibroimpact.studies.report.folder import run_sweep
+    from vibroimpact.studies.report.text import study_summary
+    from vibroimpact.studies.slips import whole_slips
+    from vibroimpact.studies.study import begun, read_study
+    from vibroimpact.studies.sweep import load_sweep
+    from vibroimpact.units.reading import to_si
 
     try:
         size = float(memory) if memory.isdecimal() else to_si(memory, "byte")

@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 
 from vibroimpact.arrays import Bools, Drops, Floats
 from vibroimpact.contact.law import CompliantLaw
-from vibroimpact.dynamics.glide import Glide
-from vibroimpact.dynamics.plane_motion import PlaneMotion
-from vibroimpact.dynamics.stretch import Stretch
+from vibroimpact.dynamics.phase_plane.motion import PlaneMotion
+from vibroimpact.dynamics.rigid.glide import Glide
+from vibroimpact.dynamics.rigid.stretch import Stretch
 
 COMPRESSION, RESTITUTION, GLIDE, RELEASED, CAPTURED, FAILED, SETTLED, RIDING = range(8)
 """Where a drop is in its contact; from RELEASED on it is over.

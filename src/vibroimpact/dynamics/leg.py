@@ -10,7 +10,7 @@ from vibroimpact.arrays import Floats, Indices
 from vibroimpact.dynamics.contact import Contact
 from vibroimpact.dynamics.encounter import Encounter
 from vibroimpact.dynamics.flight import Flight
-from vibroimpact.dynamics.linear_system import FreeMotion
+from vibroimpact.dynamics.vibrating.linear_system import FreeMotion
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ from vibroimpact.arrays import Array
 from vibroimpact.bodies.body import Body
 from vibroimpact.contact.law import ContactLaw, InstantaneousLaw
 from vibroimpact.contact.quasi_static import QuasiStatic
-from vibroimpact.dynamics.sensor import Sensor
+from vibroimpact.dynamics.sensors.sensor import Sensor
 from vibroimpact.errors import InputError
 
 if TYPE_CHECKING:

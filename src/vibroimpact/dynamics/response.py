@@ -17,16 +17,16 @@ from vibroimpact.dynamics.history_grid import points_kept, thinned
 from vibroimpact.dynamics.leg import Leg
 from vibroimpact.dynamics.outcome import Outcome
 from vibroimpact.dynamics.problem import Problem
-from vibroimpact.dynamics.recording import Signal, record
 from vibroimpact.dynamics.rest import Rest
-from vibroimpact.dynamics.segments import FlightSegment, RestSegment
-from vibroimpact.dynamics.sensor import Sensor, sample_count
+from vibroimpact.dynamics.rigid.segments import FlightSegment, RestSegment
+from vibroimpact.dynamics.rigid.timeline import Timeline, end_of, timeline_of
+from vibroimpact.dynamics.sensors.recording import Signal, record
+from vibroimpact.dynamics.sensors.sensor import Sensor, sample_count
 from vibroimpact.dynamics.status import Ended, status_of
-from vibroimpact.dynamics.timeline import Timeline, end_of, timeline_of
 from vibroimpact.dynamics.truncation import truncation_estimates
-from vibroimpact.dynamics.vibrating_bodies import slices_of
-from vibroimpact.dynamics.vibrating_history import vibrating_history
-from vibroimpact.dynamics.vibrating_segment import VibratingSegment, vibrating_timeline
+from vibroimpact.dynamics.vibrating.bodies import slices_of
+from vibroimpact.dynamics.vibrating.history import vibrating_history
+from vibroimpact.dynamics.vibrating.segments import VibratingSegment, vibrating_timeline
 from vibroimpact.errors import InputError
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from vibroimpact.arrays import Floats
-from vibroimpact.dynamics.lying import Lying
+from vibroimpact.dynamics.vibrating.lying import Lying
 
 
 @dataclass(frozen=True)

@@ -21,9 +21,9 @@ from vibroimpact.dynamics.outcome import OUTCOMES, Outcome
 from vibroimpact.dynamics.problem import MOST_IMPACTS, Problem
 from vibroimpact.dynamics.response import Response
 from vibroimpact.dynamics.rest import Rest
-from vibroimpact.dynamics.rigid_bodies import RigidBodies
-from vibroimpact.dynamics.solve_contact import SolvesContact
-from vibroimpact.dynamics.vibrating_bodies import VibratingBodies
+from vibroimpact.dynamics.rigid.bodies import RigidBodies
+from vibroimpact.dynamics.rigid.solve_contact import SolvesContact
+from vibroimpact.dynamics.vibrating.bodies import VibratingBodies
 
 
 class Run:

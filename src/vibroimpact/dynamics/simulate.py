@@ -10,8 +10,8 @@ from vibroimpact.dynamics.leg import Leg
 from vibroimpact.dynamics.lockstep import Course, computed, side_by_side
 from vibroimpact.dynamics.outcome import Outcome
 from vibroimpact.dynamics.packed_list import PackedList
-from vibroimpact.dynamics.plane_contact import contact_solver
-from vibroimpact.dynamics.plane_rule import PlaneRule
+from vibroimpact.dynamics.phase_plane.collocation import PlaneRule
+from vibroimpact.dynamics.phase_plane.contact import contact_solver
 from vibroimpact.dynamics.problem import StatesProblem
 from vibroimpact.dynamics.response import Response
 from vibroimpact.dynamics.run import Run

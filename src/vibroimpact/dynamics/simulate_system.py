@@ -12,13 +12,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vibroimpact.arrays import Bools, Floats
-from vibroimpact.dynamics.apart import Apart
-from vibroimpact.dynamics.linear_system import LinearSystem, State
 from vibroimpact.dynamics.lockstep import computed
-from vibroimpact.dynamics.march import March
 from vibroimpact.dynamics.system import MovingBody, System
-from vibroimpact.dynamics.touching import Law
-from vibroimpact.dynamics.vibrating_stretch import VibratingStretch
+from vibroimpact.dynamics.vibrating.free_motion import Apart
+from vibroimpact.dynamics.vibrating.linear_system import LinearSystem, State
+from vibroimpact.dynamics.vibrating.march import March
+from vibroimpact.dynamics.vibrating.stretch import VibratingStretch
+from vibroimpact.dynamics.vibrating.touching import Law
 from vibroimpact.errors import ComputationError, InputError
 
 _LONGEST = 1e9  # seconds

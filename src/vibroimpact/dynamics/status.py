@@ -12,9 +12,9 @@ from vibroimpact.dynamics.energy import why_failed
 from vibroimpact.dynamics.outcome import Outcome
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.rest import Rest
-from vibroimpact.dynamics.sensitivity import change_by_impact
-from vibroimpact.dynamics.visit import MOST_STEPS, MOST_STEPS_TO_A_TIME
-from vibroimpact.quantity import certain, certain_figures
+from vibroimpact.dynamics.vibrating.sensitivity import change_by_impact
+from vibroimpact.dynamics.vibrating.visit import MOST_STEPS, MOST_STEPS_TO_A_TIME
+from vibroimpact.units.display import certain, certain_figures
 
 
 @dataclass(frozen=True)

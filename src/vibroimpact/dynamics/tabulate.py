@@ -12,7 +12,7 @@ from vibroimpact.arrays import Floats
 from vibroimpact.dynamics.energy import why_failed
 from vibroimpact.dynamics.lockstep import computed
 from vibroimpact.dynamics.outcome import Outcome
-from vibroimpact.dynamics.plane_contact import contact_solver
+from vibroimpact.dynamics.phase_plane.contact import contact_solver
 from vibroimpact.dynamics.problem import Problem, StatesProblem
 from vibroimpact.dynamics.response import Response
 from vibroimpact.dynamics.run import Run

@@ -1,1 +1,1 @@
-"""The report of a run: figures, and one page that shows them with the numbers and the case."""
+"""What all reports are made with: the style of figures, pages, tables for the terminal, progress."""

@@ -1,43 +1,12 @@
-"""The report page: numbers first, then figures, the case and where it comes from, in one file."""
+"""What the pages of all reports share: their template, and the figures that they hold."""
 
 from __future__ import annotations
 
 from base64 import b64encode
-from collections.abc import Mapping
 from importlib.resources import files
-from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
-import tomli_w
 from jinja2 import Environment, FunctionLoader, StrictUndefined, Template
-
-from vibroimpact.dynamics.energy import CLOSURE_LIMIT
-from vibroimpact.quantity import digits
-from vibroimpact.report.animation import animate
-from vibroimpact.report.captions import caption, left_out
-from vibroimpact.report.captions_motion import animation_caption, sensors_left_out
-from vibroimpact.report.deformation import deformation_rows, treatment_sentence
-from vibroimpact.report.figures import draw_figures, save_figures
-from vibroimpact.report.sensor_figures import drawn_sensors
-from vibroimpact.report.tables import impact_table, ledger_table
-from vibroimpact.storage.result import Result
-
-_TITLES = {
-    "position": "Position",
-    "force": "Contact force",
-    "velocity": "Velocity",
-    "acceleration": "Acceleration",
-    "force_indentation": "Force over indentation",
-    "energy": "Energy",
-    "sphere_energy": "Energy of the sphere",
-    "plate_motion": "Motion of the plate",
-    "plate_energy": "Energy of the plate",
-    "deflection": "Deflection of the plate",
-}
-
-
-ANIMATION = "figures/plate.gif"
-_LARGEST_HELD = 1_500_000  # bytes of an animation that the page holds
 
 
 class Picture(NamedTuple):
@@ -49,84 +18,17 @@ class Picture(NamedTuple):
     source: str
 
 
-def write_report(result: Result, directory: Path) -> None:
-    """Write `report.html`, and the figures that it shows under `figures`, into a directory.
+def template(package: str) -> Template:
+    """Return the template of the page of a package, `page.html.j2`, which extends `base.html.j2` here.
 
-    Parameters
-    ----------
-    result : Result
-        A run of one drop.
-    directory : pathlib.Path
-        An existing directory.
+    What it shows is escaped, and it may show nothing that it was not given.
     """
-    (directory / "figures").mkdir(exist_ok=True)
-    pictures = save_figures(draw_figures(result), directory / "figures")
-    animation = animate(result) if result.deflection is not None else b""
-    if animation:
-        (directory / ANIMATION).write_bytes(animation)
-    (directory / "report.html").write_text(render_page(result, pictures, animation), encoding="utf-8")
-
-
-def render_page(result: Result, pictures: Mapping[str, bytes], animation: bytes = b"") -> str:
-    """Return the report as one HTML page that needs neither network nor script.
-
-    Parameters
-    ----------
-    result : Result
-        A run of one drop.
-    pictures : mapping of str to bytes
-        Each figure as SVG, by its name, in the order of the page.
-    animation : bytes, optional
-        Plate and ball as GIF; a large one is not held by the page, which then names its file.
-    """
-    unit, ledger = ledger_table(result)
-    return template("page.html.j2").render(
-        name=result.name[:1].upper() + result.name[1:],
-        status=result.status,
-        failed=result.status.startswith("Failed"),
-        impacts=impact_table(result),
-        ledger_unit=unit,
-        ledger=ledger,
-        closure=f"{digits(result.energy['closure_J'], 2)} J",
-        closure_relative=digits(result.energy["closure_relative"], 2),
-        closure_limit=digits(CLOSURE_LIMIT, 1),
-        pictures=_pictures(result, pictures),
-        left_out=left_out(result),
-        sentence=treatment_sentence(result),
-        deformation=deformation_rows(result),
-        sensors_left_out=sensors_left_out(result),
-        animation=_animation(result, animation),
-        animation_file=ANIMATION,
-        case=_as_text(result.case),
-        doubts=result.doubts,
-        provenance=result.provenance,
-    )
-
-
-def template(name: str) -> Template:
-    """Return a template of this package; what it shows is escaped, and it may show nothing that it was not given."""
-    loader = FunctionLoader(lambda file: files(__package__).joinpath(file).read_text(encoding="utf-8"))
+    of = {"page.html.j2": package, "base.html.j2": __package__}
+    loader = FunctionLoader(lambda file: files(of[file]).joinpath(file).read_text(encoding="utf-8"))
     environment = Environment(loader=loader, autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
-    return environment.get_template(name)
+    return environment.get_template("page.html.j2")
 
 
 def picture(name: str, title: str, words: str, svg: bytes) -> Picture:
     """Return a figure for a page, which holds it whole."""
     return Picture(name, title, words, f"data:image/svg+xml;base64,{b64encode(svg).decode()}")
-
-
-def _pictures(result: Result, pictures: Mapping[str, bytes]) -> list[Picture]:
-    titles = {**_TITLES, **{figure: f"Sensor {name}" for figure, name in drawn_sensors(result).items()}}
-    return [picture(name, titles[name], caption(name, result), svg) for name, svg in pictures.items()]
-
-
-def _animation(result: Result, gif: bytes) -> Picture | None:
-    """Return the animation for the page; without source, if it is too large to be held."""
-    if not gif:
-        return None
-    source = f"data:image/gif;base64,{b64encode(gif).decode()}" if len(gif) <= _LARGEST_HELD else ""
-    return Picture("animation", "Plate and ball in slow motion", animation_caption(result), source)
-
-
-def _as_text(case: Mapping[str, Any]) -> str:
-    return tomli_w.dumps(case) if case else ""

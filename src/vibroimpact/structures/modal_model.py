@@ -15,9 +15,9 @@ from vibroimpact.arrays import Floats
 from vibroimpact.structures.damping import Damping
 from vibroimpact.structures.disc import HERTZ, disc_points
 from vibroimpact.structures.geometry import MassProperties
+from vibroimpact.structures.memory_cache import Recent
 from vibroimpact.structures.mesh import Mesh
 from vibroimpact.structures.modes import Eigenmodes
-from vibroimpact.structures.recent import Recent
 from vibroimpact.structures.supports.constraints import HeldStructure
 from vibroimpact.structures.surface import Side, Spot, place_of, surface_motion
 

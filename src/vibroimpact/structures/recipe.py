@@ -24,12 +24,12 @@ from vibroimpact.structures.frequency_error import (
     of_plate_theory,
     of_supports,
 )
+from vibroimpact.structures.memory_cache import Recent
 from vibroimpact.structures.mesh import Mesh
 from vibroimpact.structures.mirrored import elastic_of
 from vibroimpact.structures.modal_model import ModalModel, modal_model
 from vibroimpact.structures.modes import Eigenmodes, Elastic, Progress
 from vibroimpact.structures.plate_mesh import plate_mesh, solid_plate_mesh
-from vibroimpact.structures.recent import Recent
 from vibroimpact.structures.rectangle import Disc
 from vibroimpact.structures.reduction import attachment_modes, craig_bampton, projected
 from vibroimpact.structures.sphere_mesh import sphere_mesh

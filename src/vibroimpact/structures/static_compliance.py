@@ -12,6 +12,7 @@ from vibroimpact.arrays import Bools, Floats
 from vibroimpact.errors import InputError
 from vibroimpact.materials import Material
 from vibroimpact.structures.disc import UNIFORM, disc_points
+from vibroimpact.structures.memory_cache import Recent
 from vibroimpact.structures.mesh import Mesh
 from vibroimpact.structures.modes import Elastic
 from vibroimpact.structures.plate_compliance import (
@@ -22,7 +23,6 @@ from vibroimpact.structures.plate_compliance import (
     through_thickness_term,
 )
 from vibroimpact.structures.plate_element import shear_factor
-from vibroimpact.structures.recent import Recent
 from vibroimpact.structures.recipe import Recipe, Reduction, SphereOfSolids, is_thin
 from vibroimpact.structures.store import key_of, load_entry, save_entry
 from vibroimpact.structures.structure import Structure

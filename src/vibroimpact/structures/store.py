@@ -17,11 +17,11 @@ import numpy as np
 
 from vibroimpact._version import __version__
 from vibroimpact.errors import InputError
+from vibroimpact.files.recover import clear
+from vibroimpact.files.write_file import write_file
 from vibroimpact.structures.geometry import MassProperties
 from vibroimpact.structures.mesh import ElementBlock, Mesh
 from vibroimpact.structures.modal_model import ModalModel
-from vibroimpact.writing.file import write_file
-from vibroimpact.writing.recover import clear
 
 FORMAT = 3
 """Counts up when what is stored, or how it is computed, changes."""

@@ -1,1 +1,1 @@
-"""Studies: many drops, which points they are at, and how they are run so that none is lost."""
+"""Studies: many drops of one case, run so that none is lost, with dataset and report."""

@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vibroimpact.errors import ComputationError
+from vibroimpact.files.write_file import write_file
 from vibroimpact.studies.ledger import Span
-from vibroimpact.writing.file import write_file
 
 FOLDER, CHUNK = "chunks", ".h5"
 """Where chunks are in the folder of a study, and how their names end."""

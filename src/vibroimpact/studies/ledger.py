@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from vibroimpact.errors import ComputationError, InputError
-from vibroimpact.writing.file import new_file
+from vibroimpact.files.write_file import new_file
 
 LEDGER = "ledger.sqlite"
 

@@ -10,7 +10,7 @@ import numpy as np
 from vibroimpact.arrays import Array
 from vibroimpact.cases.conditions import Conditions
 from vibroimpact.cases.limit import Limit
-from vibroimpact.quantity import text
+from vibroimpact.units.display import text
 
 _TRUNCATED = 0.05  # of the largest force
 _CYCLES, _ENOUGH = 1.5, 3.0  # periods of the highest mode in a contact: too few, and enough

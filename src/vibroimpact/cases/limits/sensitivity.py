@@ -9,7 +9,7 @@ import numpy as np
 from vibroimpact.arrays import Array
 from vibroimpact.cases.conditions import Conditions
 from vibroimpact.cases.limit import Limit
-from vibroimpact.dynamics.sensitivity import RELATIVE_CHANGE
+from vibroimpact.dynamics.vibrating.sensitivity import RELATIVE_CHANGE
 
 _PREDICTED = 1e-3  # of an impact: a larger change of it is doubted
 _LOST = 0.3  # a larger one leaves no digit

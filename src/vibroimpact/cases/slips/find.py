@@ -11,13 +11,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from vibroimpact.cases.place_words import NUMBERS, in_list
+from vibroimpact.cases.item_labels import NUMBERS, in_list
 from vibroimpact.cases.slips.facts import Facts
 from vibroimpact.cases.slips.plausible import Place, Plausible, Words, number
 from vibroimpact.cases.slips.rules import stiffness_unit
 from vibroimpact.cases.slips.table import PLACES
 from vibroimpact.errors import InputError
-from vibroimpact.units import to_si
+from vibroimpact.units.reading import to_si
 
 _SHORT = 1e6  # what people type without an exponent
 _PREFIXED = ("Pa", "N", "Hz")  # which are hardly written without k, M or G where there are many

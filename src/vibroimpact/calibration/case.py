@@ -1,0 +1,194 @@
+"""From a case with a [calibrate] section to a calibration, and on to the calibrated case."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import fields, replace
+from os import PathLike
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from vibroimpact.calibration.calibrate import calibrate
+from vibroimpact.calibration.calibration import Calibration
+from vibroimpact.calibration.drops import impacts_of
+from vibroimpact.calibration.matching import Tunable
+from vibroimpact.calibration.section import CalibrateSection
+from vibroimpact.calibration.targets import target_of
+from vibroimpact.calibration.tunables import law_parameter, modal_damping
+from vibroimpact.cases.build import problem_of, resolved
+from vibroimpact.cases.case import Case
+from vibroimpact.cases.contact_section import read_contact
+from vibroimpact.cases.local_section import LocalSection
+from vibroimpact.cases.reader import load_table, named, read_case
+from vibroimpact.cases.slips.find import slips
+from vibroimpact.contact.law import find_contact_law
+from vibroimpact.contact.pair import ContactPair
+from vibroimpact.dynamics.problem import Problem
+from vibroimpact.errors import InputError
+
+MODEL = "adams-impact"
+"""The law that is tuned where none is named."""
+
+_LOCAL = tuple(LocalSection.model_fields)
+_ANY_PAIR = ContactPair(1e9, 0.01, 0.01, 1e8, 0.3)
+_DAMPINGS = ("sphere.damping", "plate.damping")
+
+
+class ToCalibrate(NamedTuple):
+    """A case whose contact law is the one that is tuned; whether the value of the parameter was given, or is only to begin with."""
+
+    case: Case
+    given: bool
+
+
+def load_calibration(source: str | PathLike[str]) -> ToCalibrate:
+    """Read a case to calibrate, as `load_case` does; but the parameter that is looked for may be left out.
+
+    Examples
+    --------
+    >>> load_calibration("paper:type1-theory").case.contact.law
+    'adams-impact'
+    """
+    return named(source, lambda: read_calibration(load_table(source)))
+
+
+def read_calibration(table: Mapping[str, Any]) -> ToCalibrate:
+    """Read a case to calibrate from a mapping, as a TOML file would hold it.
+
+    Raises
+    ------
+    InputError
+        If it is not a valid case, or nothing is there to match.
+    """
+    whole = dict(table)
+    section = dict(whole.get("calibrate") or {}) if isinstance(whole.get("calibrate", {}), dict) else whole["calibrate"]
+    contact = whole.get("contact")
+    if isinstance(section, dict) and isinstance(contact, dict) and set(section) <= set(CalibrateSection.model_fields):
+        model = section.pop("model", None)
+        model = {"law": model} if isinstance(model, str) else model
+        own = "target" in section
+        if not own:
+            if contact.get("law") == MODEL and model is None:
+                words = f"nothing says what impacts are to be like, since the law of the case is {MODEL} itself"
+                raise InputError(f"{words}; give a target, such as {{ restitution = 0.7 }}", "calibrate.target")
+            section["target"] = {key: value for key, value in contact.items() if key not in _LOCAL}
+            model = {"law": MODEL} if model is None else model
+        if model is not None:
+            kept = {key: value for key, value in contact.items() if key in _LOCAL}
+            whole["contact"] = contact = {**kept, **model} if isinstance(model, dict) else model
+        whole["contact"] = started = _with_start(contact, section.get("parameter"))
+        whole["calibrate"] = section
+        try:
+            return ToCalibrate(read_case(whole), started is contact)
+        except InputError as error:
+            raise InputError.of_several(_where(line, own, model is not None) for line in error.lines) from None
+    return ToCalibrate(read_case(whole), True)
+
+
+def calibrate_case(
+    what: ToCalibrate, progress: Callable[[float], None] | None = None, tell: Callable[[str], None] | None = None
+) -> Calibration:
+    """Calibrate the contact law of a case, or the damping of its elastic bodies.
+
+    Parameters
+    ----------
+    what : ToCalibrate
+        As `load_calibration` or `read_calibration` reads it.
+    progress : callable, optional
+        Called with the fraction done, in [0, 1].
+    tell : callable, optional
+        Called with a sentence if something is wrong with the store of modes.
+
+    Raises
+    ------
+    InputError
+        If no value meets the target, or what was measured can't be read.
+
+    Examples
+    --------
+    >>> calibrate_case(load_calibration("paper:type1-theory")).values.round(3).tolist()
+    [179.79, 172.746, 166.419, 160.869, 156.663]
+    """
+    case = what.case
+    section = case.calibrate
+    if section is None or section.target is None:
+        raise InputError("it is missing; it says what impacts are to be like, such as { restitution = 0.7 }", "calibrate.target")
+    problem = problem_of(case, progress, tell)
+    if problem.same_spot and getattr(problem.laws[0], "lasting", False) and impacts_of(problem) > 1:
+        words = f"{case.contact.law} leaves a dent that the next impact falls into, and each impact is matched on fresh surfaces"
+        raise InputError(f"{words}; set it to false, or run.impacts = 1", "drop.same_spot")
+    try:
+        tunable = _tunable(problem, section.parameter)
+        found = calibrate(
+            problem,
+            target_of(case, problem, section),
+            tunable=tunable if what.given else replace(tunable, given=np.full(1, np.nan)),
+            weights=section.match,
+            degree=section.degree,
+            speeds=None if section.speeds is None else section.speeds.values(),
+            confidence=section.confidence,
+            bootstrap=section.bootstrap,
+            seed=section.seed,
+            progress=progress,
+        )
+    except InputError as error:
+        raise InputError(error.message, f"calibrate.{error.key}".rstrip(".")) from None
+    tuned = (f"contact.{found.parameter}", found.parameter)  # where it begins says nothing
+    return replace(found, doubts=(*slips(resolved(case), tuned), *found.doubts))
+
+
+def calibrated_case(case: Case, found: Calibration) -> Case:
+    """Return a case with the values found: one an impact of a contact law, one in all of the damping of modes.
+
+    Parameters
+    ----------
+    case : Case
+        The case that was calibrated.
+    found : Calibration
+        What was found.
+    """
+    table = {key: value for key, value in resolved(case).items() if key != "calibrate"}
+    values = found.impacts[1].tolist()
+    if found.parameter in _DAMPINGS:
+        body = found.parameter.partition(".")[0]
+        return read_case({**table, body: {**table[body], "damping": values[0]}})
+    return read_case({**table, "contact": {**table["contact"], found.parameter: values}})
+
+
+def _where(line: str, own_target: bool, own_model: bool) -> str:
+    """Return a fault under the key that it was written at: target and law may come from [contact], the law from calibrate.model."""
+    if not own_target and line.startswith("calibrate.target"):
+        return line.replace("calibrate.target", "contact", 1)
+    if own_model and line.startswith("contact") and not line.startswith(tuple(f"contact.{key}" for key in _LOCAL)):
+        return line.replace("contact", "calibrate.model", 1)
+    return line
+
+
+def _with_start(contact: dict[str, Any], parameter: str | None) -> dict[str, Any]:
+    """Return a [contact] section in which what is tuned has a value to begin with; the same one if it has."""
+    try:
+        section = read_contact(contact)
+    except InputError:
+        return contact  # the reader of the case says what is wrong
+    law = find_contact_law(section.law)
+    if parameter not in {item.name for item in fields(law)}:
+        parameter = None  # one that the law does not have is named later
+    for item in fields(law):
+        start = item.metadata["example"]
+        if item.name in contact or start is None or (parameter is not None and item.name != parameter):
+            continue
+        values = {key: value[0] if isinstance(value, tuple) else value for key, value in section.parameters.items()}
+        try:
+            made = law.for_pair(_ANY_PAIR, **{**values, item.name: start})
+        except InputError:
+            continue
+        if item.name == (parameter or made.free_parameter):
+            return {**contact, item.name: start}
+    return contact
+
+
+def _tunable(problem: Problem, parameter: str | None) -> Tunable:
+    if parameter not in _DAMPINGS:
+        return law_parameter(problem, parameter)
+    return modal_damping(problem, "sphere" if parameter == "sphere.damping" else "plate")

@@ -1,0 +1,97 @@
+"""Write a calibration: data, the calibrated case, figures and page."""
+
+from __future__ import annotations
+
+import json
+from os import PathLike
+from pathlib import Path
+
+import tomli_w
+
+from vibroimpact._version import __version__
+from vibroimpact.calibration.calibration import Calibration
+from vibroimpact.calibration.case import calibrated_case
+from vibroimpact.calibration.figures import draw_calibration
+from vibroimpact.calibration.file import CALIBRATION, calibration_table, columns_of, comparison_rows, matched_rows
+from vibroimpact.calibration.tables import (
+    differences_tables,
+    fit_sentences,
+    function_words,
+    given_sentences,
+    match_words,
+    values_table,
+    ways_words,
+)
+from vibroimpact.cases.build import resolved
+from vibroimpact.cases.case import Case
+from vibroimpact.files.check_sums import CHECK_SUMS, file_digest, sealed
+from vibroimpact.report.figure_files import save_figures
+from vibroimpact.report.page import picture, template
+from vibroimpact.results.folder import SUMMARY, new_folder
+from vibroimpact.results.tables import write_csv
+
+_TITLES = {
+    "parameter": ("The value over the approach speed", "Each impact by itself, and the polynomial through them."),
+    "record": (
+        "Measured and simulated",
+        "The record, and what is simulated with the values found: each impact at the speed with which it came.",
+    ),
+    "differences": ("What is still wrong", "Each impact of the drop beside what was wanted, with the value given in three ways."),
+}
+
+
+def save_calibration(case: Case, found: Calibration, directory: str | PathLike[str], *, force: bool = False) -> Path:
+    """Write a calibration folder; it appears whole or not at all.
+
+    It holds `calibration.json`, `case.toml` (the case with the value found, ready to run), `matched.csv`, `comparison.csv`,
+    figures and a page.
+
+    Parameters
+    ----------
+    case : Case
+        The case that was calibrated.
+    found : Calibration
+        What was found.
+    directory : path
+        The folder to make.
+    force : bool, default False
+        Replace the folder that is there.
+
+    Returns
+    -------
+    pathlib.Path
+        The folder.
+
+    Raises
+    ------
+    InputError
+        If something is there already, or the place can't be written to.
+    """
+    with new_folder(directory, force=force) as folder:
+        (folder / "case.toml").write_text(tomli_w.dumps(resolved(calibrated_case(case, found))), encoding="utf-8")
+        table = {**calibration_table(case, found), CHECK_SUMS: {"case.toml": file_digest(folder / "case.toml")}}
+        (folder / CALIBRATION).write_text(sealed(table), encoding="utf-8")
+        summary = {"name": case.name, "version": __version__, "calibration": found.parameter}
+        (folder / SUMMARY).write_text(json.dumps(summary, indent=2) + "\n", encoding="utf-8")
+        for name, rows in (("matched", matched_rows(found)), ("comparison", comparison_rows(found))):
+            write_csv(rows, columns_of(rows), folder / f"{name}.csv")
+        (folder / "figures").mkdir()
+        pictures = save_figures(draw_calibration(found), folder / "figures")
+        name = case.name or "a drop"
+        page = template(__package__).render(
+            name=name[:1].upper() + name[1:],
+            law=case.contact.law,
+            function=function_words(found),
+            matched=match_words(found),
+            fit=fit_sentences(found),
+            given=given_sentences(found),
+            values=values_table(found),
+            differences=differences_tables(found),
+            ways=ways_words(found),
+            doubts=found.doubts,
+            pictures=[picture(name, *_TITLES[name], svg) for name, svg in pictures.items()],
+            case=tomli_w.dumps(resolved(case)),
+            version=__version__,
+        )
+        (folder / "report.html").write_text(page, encoding="utf-8")
+    return Path(directory)

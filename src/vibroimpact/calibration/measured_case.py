@@ -1,0 +1,123 @@
+"""Measurements that a case holds itself: restitutions, rebound heights, or the first impact."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from vibroimpact.arrays import Floats
+from vibroimpact.calibration.above_one import Believed, believed, restitutions
+from vibroimpact.calibration.flights import Flights, VacuumFlights, as_in_vacuum
+from vibroimpact.calibration.in_air import Measurement, speed_at_touch
+from vibroimpact.calibration.observations import Observations, from_heights, from_table
+from vibroimpact.calibration.outcomes import OUTCOMES
+from vibroimpact.calibration.section import ImpactTarget, RestitutionTarget
+from vibroimpact.cases.case import Case
+from vibroimpact.errors import InputError
+
+
+def of_heights(case: Case, heights: Floats, deviation: Floats | None, labels: tuple[str, ...]) -> Measurement:
+    """Return rebound heights [m], from the first impact on.
+
+    Raises
+    ------
+    InputError
+        If one can't be.
+    """
+    radius = case.sphere.radius
+    _check_above(case, heights, labels)
+
+    def evaluated(flights: Flights | None) -> Observations:
+        speed, gravity = speed_at_touch(case, flights), case.drop.gravity
+        seen = from_heights(heights, deviation, first_speed=speed, radius=radius, gravity=gravity, labels=labels, flights=flights)
+        limit, values = _believed(seen, case), restitutions(seen, radius, gravity)
+        assert values is not None
+        higher = np.flatnonzero(values > limit.most)
+        if higher.size:
+            at = int(higher[0])
+            start = case.drop.height or radius + 0.5 * speed**2 / gravity
+            fallen = heights[at - 1] if at else start
+            what = f"{heights[at]:g} m is higher than the {fallen:g} m from which the sphere fell"
+            raise InputError(f"{labels[at]}: {what}, {_by_noise(values[at], limit.most[at], limit.why)}", "target")
+        return seen
+
+    return Measurement(evaluated, float(heights.max()) - radius)
+
+
+def of_first(case: Case, target: ImpactTarget) -> Measurement:
+    """Return the first impact of the drop."""
+    if target.rebound_height is not None:
+        _check_above(case, np.array([target.rebound_height]), ("impact 1",))
+    radius, part = case.sphere.radius, target.relative_deviation
+
+    def evaluated(flights: Flights | None) -> Observations:
+        speed, found = speed_at_touch(case, flights), {name: getattr(target, name) for name in OUTCOMES}
+        if target.restitution is not None:
+            found["separation_speed"] = target.restitution * speed
+        if target.rebound_height is not None:
+            rise = as_in_vacuum(flights or VacuumFlights(case.drop.gravity), np.array(target.rebound_height - radius))[0]
+            found["rebound_height"] = radius + float(rise)
+        wanted = {name: np.array([value]) for name, value in found.items() if value is not None}
+        deviations = None if part is None else {name: part * value for name, value in wanted.items()}
+        seen = from_table(np.array([speed]), wanted, deviations, ("impact 1",), of_the_drop=True)
+        if target.restitution is not None:
+            check_restitutions(seen, case)
+        return replace(seen, flights=flights)
+
+    return Measurement(evaluated, 0.0 if target.rebound_height is None else target.rebound_height - radius)
+
+
+def of_speeds(case: Case, target: RestitutionTarget) -> Observations:
+    """Return restitutions at several approach speeds."""
+    assert isinstance(target.restitution, tuple)
+    speeds, values = np.array(target.approach_speed), np.array(target.restitution)
+    deviations = None if target.standard_deviation is None else {"separation_speed": target.standard_deviation * speeds}
+    labels = tuple(f"restitution {number + 1}" for number in range(len(speeds)))
+    seen = from_table(speeds, {"separation_speed": values * speeds}, deviations, labels)
+    check_restitutions(seen, case)
+    return seen
+
+
+def check_restitutions(seen: Observations, case: Case) -> None:
+    """Raise unless restitutions are 1 at most, but for noise.
+
+    Raises
+    ------
+    InputError
+        If one is larger than noise explains; with how far it is believed.
+    """
+    values = restitutions(seen, case.sphere.radius, case.drop.gravity)
+    if values is None:
+        return
+    limit = _believed(seen, case)
+    over = np.flatnonzero(values > limit.most)
+    if over.size:
+        at = int(over[0])
+        words = f"restitution is {values[at]:.5g}; it is 1 at most, {_by_noise(values[at], limit.most[at], limit.why)}"
+        raise InputError(f"{seen.labels[at]}: {words}", "target")
+
+
+def _believed(seen: Observations, case: Case) -> Believed:
+    values, deviations = restitutions(seen, case.sphere.radius, case.drop.gravity), None
+    assert values is not None
+    if seen.deviations_known:
+        name = "separation_speed" if "separation_speed" in seen.wanted else "rebound_height"
+        left = values * seen.speeds
+        by_reading = 1.0 if name == "separation_speed" else case.drop.gravity / np.maximum(left, 1e-300)[:, None]
+        noise = by_reading * seen.noise[name] / seen.speeds[:, None] - (values / seen.speeds)[:, None] * seen.speed_noise
+        deviations = np.linalg.norm(noise, axis=1)
+    return believed(seen.speeds, values, deviations)
+
+
+def _by_noise(value: float, most: float, why: str) -> str:
+    return f"and {value:.4g} is more than the {most:.4g} that noise is believed to make ({why}); look at speeds, heights and their units"
+
+
+def _check_above(case: Case, heights: Floats, labels: tuple[str, ...]) -> None:
+    if case.drop.gravity == 0.0:
+        raise InputError("without gravity a sphere rises for ever; its rebound height tells nothing", "target")
+    low = np.flatnonzero(heights <= case.sphere.radius)
+    if low.size:
+        what = f"{heights[low[0]]:g} m is not above where the sphere lies on the plate, with its centre at {case.sphere.radius:g} m"
+        raise InputError(f"{labels[low[0]]}: {what}", "target")

@@ -1,0 +1,191 @@
+"""Measurements in a file: impacts one a row, rebound heights, or a record of position, force or the sphere's acceleration."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+from vibroimpact.arrays import Floats
+from vibroimpact.calibration.flights import Flights, VacuumFlights, as_in_vacuum
+from vibroimpact.calibration.force_record import impacts_in_force
+from vibroimpact.calibration.in_air import Measurement, speed_at_touch
+from vibroimpact.calibration.measured_case import check_restitutions, of_heights
+from vibroimpact.calibration.observations import Observations, from_table
+from vibroimpact.calibration.outcomes import OUTCOMES
+from vibroimpact.calibration.position_record import impacts_in_position
+from vibroimpact.calibration.section import FileTarget
+from vibroimpact.cases.case import Case
+from vibroimpact.cases.rigid import contact_pair, mass_of_sphere
+from vibroimpact.errors import InputError
+from vibroimpact.measurements.record_file import SPHERE_ACCELERATION, is_universal, read_universal_record
+from vibroimpact.measurements.table_file import TableFile, read_table_file, rising
+
+_OUTCOMES = {name: outcome.unit for name, outcome in OUTCOMES.items()}
+_DEVIATION = "_standard_deviation"
+_COLUMNS = {
+    "time": "s",
+    "position": "m",
+    "force": "N",
+    "sphere_acceleration": "m/s^2",
+    "acceleration": "m/s^2",
+    "approach_speed": "m/s",
+    "restitution": "",
+    "restitution_achieved": "",
+    "rebound_height": "m",
+    **_OUTCOMES,
+    **{f"{name}{_DEVIATION}": unit for name, unit in {"restitution": "", "rebound_height": "m", **_OUTCOMES}.items()},
+}
+_RECORDED = ("position", "force", "sphere_acceleration")
+_KINDS = (
+    "approach_speed with restitution, separation_speed, rebound_height, max_force, max_indentation or duration; rebound_height; "
+    "or a record of time with position, force or sphere_acceleration"
+)
+_WHOSE = (
+    "an acceleration tells a rebound only if it is the sphere's: call the column sphere_acceleration (upwards, measured in the sphere), "
+    "mass times which is the force. That of the plate tells none; give rebound heights or restitutions instead"
+)
+
+
+class Recorded(NamedTuple):
+    """A record: times [s]; position [m], force [N] and acceleration of the sphere [m/s^2], as far as they are there, by their columns;
+    and the line of each sample.
+    """
+
+    time: Floats
+    values: dict[str, Floats]
+    lines: Sequence[int] | None
+
+
+def of_file(case: Case, target: FileTarget, by_rebound: bool) -> Measurement:
+    """Return what a file tells; of a record of both position and force the position, if only the rebound is matched.
+
+    Raises
+    ------
+    InputError
+        If it can't be read, or does not tell of impacts; with the line.
+    """
+    if is_universal(target.file):
+        found = read_universal_record(target.file, target.function, by_rebound)
+        if found.quantity == "acceleration" and found.words != SPHERE_ACCELERATION:
+            raise InputError(f'{target.file}: "{found.words}": in a table, {_WHOSE}', "target")
+        column = "sphere_acceleration" if found.quantity == "acceleration" else found.quantity
+        return _named(target.file, _of_record(case, Recorded(found.time, {column: found.values}, None), by_rebound))
+    if target.function is not None:
+        raise InputError("only a universal file has functions; the columns of a table say what they are", "target.function")
+    table = _table(target.file)
+    columns = table.columns
+    if "approach_speed" in columns:
+        return _named(target.file, _of_rows(case, table))
+    try:
+        if "rebound_height" in columns:
+            if table.empty:
+                words = "the line is empty; rebound heights are those of one impact after another, and none can be missing"
+                raise InputError(f"line {table.empty[0]}: {words}")
+            labels = tuple(f"line {line}" for line in table.lines)
+            deviation = columns.get(f"rebound_height{_DEVIATION}")
+            return _named(target.file, of_heights(case, columns["rebound_height"], deviation, labels))
+        if "acceleration" in columns and not set(_RECORDED) & set(columns):
+            raise InputError(_WHOSE)
+        if "time" not in columns or not set(_RECORDED) & set(columns):
+            raise InputError(f"the columns {', '.join(columns)} do not tell of impacts; a file has {_KINDS}")
+        table = rising(table, "time")
+        values = {name: table.columns[name] for name in _RECORDED if name in table.columns}
+        return _named(target.file, _of_record(case, Recorded(table.columns["time"], values, table.lines), by_rebound))
+    except InputError as error:
+        raise _in_file(target.file, error) from None
+
+
+def _of_record(case: Case, record: Recorded, by_rebound: bool) -> Measurement:
+    time, values, lines = record
+    if "position" in values and (by_rebound or len(values) == 1):
+        if case.drop.gravity == 0.0:
+            raise InputError("without gravity a sphere rises for ever; a record of its position tells nothing")
+        radius, gravity, position = case.sphere.radius, case.drop.gravity, values["position"]
+
+        def in_position(flights: Flights | None) -> Observations:
+            speed = speed_at_touch(case, flights)
+            return impacts_in_position(time, position, radius=radius, gravity=gravity, first_speed=speed, lines=lines, flights=flights)
+
+        return Measurement(in_position, float(position.max()) - radius)
+    mass = float(contact_pair(case).effective_mass)
+    force = values["force"] if "force" in values else mass_of_sphere(case) * values["sphere_acceleration"]
+
+    def in_force(flights: Flights | None) -> Observations:
+        given = {"mass": mass, "gravity": case.drop.gravity, "first_speed": speed_at_touch(case, flights)}
+        return impacts_in_force(time, force, **given, lines=lines, flights=flights)
+
+    return Measurement(in_force, case.drop.gravity * float(time[-1] - time[0]) ** 2 / 8.0)
+
+
+def _of_rows(case: Case, table: TableFile) -> Measurement:
+    """Return impacts that a file gives one a row."""
+    columns, speeds = dict(table.columns), table.columns["approach_speed"]
+    if "restitution_achieved" in columns:  # as the impact table of a result calls it
+        columns.setdefault("restitution", columns["restitution_achieved"])
+    for name in ("approach_speed", *(name for name in columns if name.endswith(_DEVIATION))):
+        _positive(table, name)
+    for ending in ("", _DEVIATION):  # a restitution is a separation speed over the approach speed
+        if f"restitution{ending}" in columns:
+            columns.setdefault(f"separation_speed{ending}", columns[f"restitution{ending}"] * speeds)
+    wanted = {name: columns[name] for name in OUTCOMES if name in columns}
+    if not wanted:
+        raise InputError(f"{table.path}: beside approach_speed a column is missing: restitution, {', '.join(OUTCOMES)}", "target")
+    for name in wanted:
+        _positive(table, next(column for column in (name, "restitution", "restitution_achieved") if column in table.columns))
+    known = [name for name in wanted if f"{name}{_DEVIATION}" in columns]
+    if known and len(known) < len(wanted):
+        without = next(name for name in wanted if name not in known)
+        raise InputError(f"{table.path}: {known[0]} has a standard deviation and {without} has none; give {without}{_DEVIATION}", "target")
+    deviations = {name: columns[f"{name}{_DEVIATION}"] for name in wanted} if known else None
+    labels, radius, gravity = tuple(f"line {line}" for line in table.lines), case.sphere.radius, case.drop.gravity
+
+    def evaluated(flights: Flights | None) -> Observations:
+        seen = from_table(speeds, wanted, deviations, labels)
+        if "rebound_height" in wanted and gravity > 0.0 and np.all(wanted["rebound_height"] > radius):
+            rises, scales = as_in_vacuum(flights or VacuumFlights(gravity), wanted["rebound_height"] - radius)
+            noise = {**seen.noise, "rebound_height": scales[:, None] * seen.noise["rebound_height"]}
+            seen = replace(seen, wanted={**wanted, "rebound_height": radius + rises}, noise=noise)
+        if "restitution" in columns:
+            check_restitutions(seen, case)
+        return seen
+
+    return Measurement(evaluated, float(np.max(wanted.get("rebound_height", radius))) - radius)
+
+
+def _positive(table: TableFile, column: str) -> None:
+    wrong = np.flatnonzero(~(table.columns[column] > 0.0))
+    if wrong.size:
+        value = table.columns[column][wrong[0]]
+        raise InputError(f"{table.path}, line {table.lines[wrong[0]]}: {column} is {value:g}; it must be greater than 0", "target")
+
+
+def _table(file: str) -> TableFile:
+    try:
+        return read_table_file(file, _COLUMNS)
+    except InputError as error:
+        if "acceleration; what is wanted is a " in error.message:  # of a force, a position
+            what = error.message.partition(" (a number in ")[0]  # and not how else to write a force
+            raise InputError(f"{what}. In a record {_WHOSE}", "target") from None
+        raise InputError(error.message, "target") from None
+
+
+def _named(file: str, measurement: Measurement) -> Measurement:
+    """Return a measurement whose faults name the file."""
+
+    def evaluated(flights: Flights | None) -> Observations:
+        try:
+            return measurement.evaluated(flights)
+        except InputError as error:
+            raise _in_file(file, error) from None
+
+    return Measurement(evaluated, measurement.highest)
+
+
+def _in_file(file: str, error: InputError) -> InputError:
+    if file in error.message:
+        return InputError(error.message, "target")
+    between = ", " if error.message.startswith("line ") else ": "
+    return InputError(f"{file}{between}{error.message}", "target")

@@ -1,0 +1,229 @@
+"""The [calibrate] section: what impacts are to be like, and what is tuned for it."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from pydantic import BeforeValidator, Field, StrictBool, WithJsonSchema, model_validator
+
+from vibroimpact.calibration.outcomes import OUTCOMES, check_weights
+from vibroimpact.cases.bounds import Name, at_most
+from vibroimpact.cases.contact_section import ContactSection, law_schema, read_contact
+from vibroimpact.cases.quantities import Quantity
+from vibroimpact.cases.section import Section, read_table
+from vibroimpact.errors import InputError, did_you_mean
+from vibroimpact.files.reading import FileKind, about, beginning
+from vibroimpact.ranges import Range
+from vibroimpact.shown import shown
+
+MOST_SPEEDS = 10_000
+
+_POSITIVE = Range(above=0)
+_Measured = Annotated[float, Quantity("", "restitution; noise may lift it a little above 1", _POSITIVE)]
+_Speed = Annotated[float, Quantity("m/s", "approach speed", _POSITIVE)]
+_Restitution = Annotated[float, Quantity("", "restitution", Range(above=0, at_most=1))]
+_Height = Annotated[float, Quantity("m", "height of the sphere's centre at the top of a rebound", _POSITIVE)]
+
+
+class RestitutionTarget(Section):
+    """A restitution: one for every impact, or one at each of several approach speeds."""
+
+    restitution: Annotated[_Restitution | tuple[_Measured, ...], at_most(MOST_SPEEDS, "restitutions")] = Field(
+        description="separation speed over approach speed"
+    )
+    approach_speed: Annotated[tuple[_Speed, ...], at_most(MOST_SPEEDS, "speeds")] | None = Field(
+        None, description="a list of speeds [m/s] at which each of several restitutions was measured"
+    )
+    standard_deviation: Annotated[float, Quantity("", "standard deviation of each", _POSITIVE)] | None = None
+
+    @model_validator(mode="after")
+    def _paired(self) -> RestitutionTarget:
+        several, speeds = self.restitution, self.approach_speed
+        if isinstance(several, tuple) and (speeds is None or len(speeds) != len(several)):
+            have = "no approach_speed is given" if speeds is None else f"there are {len(speeds)} approach speeds"
+            raise InputError(f"{len(several)} restitutions need as many approach speeds, and {have}", "approach_speed")
+        if not isinstance(several, tuple) and (speeds or self.standard_deviation):
+            key = "approach_speed" if speeds else "standard_deviation"
+            raise InputError("one restitution holds at any approach speed, and exactly; leave this out", key)
+        return self
+
+
+class HeightsTarget(Section):
+    """Measured rebound heights, from the first impact on."""
+
+    rebound_heights: Annotated[tuple[_Height, ...], at_most(MOST_SPEEDS, "heights")] = Field(
+        min_length=1, description="a list of heights of the sphere's centre above the plate, one an impact [m]"
+    )
+    standard_deviation: Annotated[float, Quantity("m", "standard deviation of each", _POSITIVE)] | None = None
+
+
+class ImpactTarget(Section):
+    """What was measured of the first impact of the drop."""
+
+    max_force: Annotated[float, Quantity("N", "largest contact force", _POSITIVE)] | None = None
+    max_indentation: Annotated[float, Quantity("m", "largest indentation", _POSITIVE)] | None = None
+    duration: Annotated[float, Quantity("s", "duration of the contact", _POSITIVE)] | None = None
+    separation_speed: Annotated[float, Quantity("m/s", "speed after the impact", _POSITIVE)] | None = None
+    rebound_height: _Height | None = None
+    restitution: _Measured | None = None
+    relative_deviation: Annotated[float, Quantity("", "standard deviation of each, as a part of it", Range(above=0, below=1))] | None = None
+
+    @model_validator(mode="after")
+    def _one_rebound(self) -> ImpactTarget:
+        given = [key for key in ("separation_speed", "rebound_height", "restitution") if getattr(self, key) is not None]
+        if len(given) > 1:
+            raise InputError(f"{' and '.join(given)} say the same; give one of them", given[1])
+        return self
+
+
+class FileTarget(Section):
+    """A file: impacts, rebound heights, or a record of position, force or the sphere's acceleration."""
+
+    file: str = Field(description="a CSV file whose header names its columns with their units, or a universal file (UFF 58) with a record")
+    function: str | None = Field(None, description="which function of a universal file, by its first line of identification or its number")
+
+
+Target = ContactSection | RestitutionTarget | HeightsTarget | ImpactTarget | FileTarget
+_KEYS: dict[str, type[Section]] = {
+    "file": FileTarget,
+    "rebound_heights": HeightsTarget,
+    **dict.fromkeys(("max_force", "max_indentation", "duration", "separation_speed", "rebound_height"), ImpactTarget),
+    "restitution": RestitutionTarget,
+}
+
+
+def _read_target(value: Any) -> Any:
+    if isinstance(value, (ContactSection, Section)):
+        return value
+    if isinstance(value, str):
+        return FileTarget(file=value)
+    if not isinstance(value, dict):
+        raise InputError(f"{shown(value)} is not allowed; it must be a table with law, {', '.join(_KEYS)}, or the name of a file")
+    if "law" in value:
+        return read_contact(value)
+    kind = next((key for key in _KEYS if key in value), None)
+    if kind is None:
+        keys = ["law", *_KEYS]
+        hint = next((words for key in value if (words := did_you_mean(key, keys))), "")
+        raise InputError(f"it needs one of {', '.join(keys)}.{hint}")
+    return read_table(_KEYS[kind], value)
+
+
+def _read_model(value: Any) -> Any:
+    return read_contact({"law": value} if isinstance(value, str) else value)
+
+
+def _read_match(value: Any) -> Any:
+    if isinstance(value, str):
+        value = {value: 1.0}
+    if not isinstance(value, dict):
+        raise InputError(f"{shown(value)} is not allowed; it must be one of {', '.join(OUTCOMES)}, or a table of them with weights")
+    try:
+        weights = {str(name): float(weight) for name, weight in value.items()}
+    except (TypeError, ValueError):
+        raise InputError("the weights must be numbers, such as { separation_speed = 1, max_force = 0.5 }") from None
+    try:
+        check_weights(weights)
+    except InputError as error:
+        raise InputError(error.message) from None
+    return weights
+
+
+class SpeedsTable(Section):
+    """Approach speeds that the polynomial is fitted over."""
+
+    start: Annotated[float, Quantity("m/s", "slowest", _POSITIVE)] = Field(alias="from")
+    end: Annotated[float, Quantity("m/s", "fastest", _POSITIVE)] = Field(alias="to")
+    number: Annotated[int, Field(ge=2, le=MOST_SPEEDS, strict=True)] = Field(50, description="how many")
+    scale: Literal["linear", "log"] = "linear"
+
+    @model_validator(mode="after")
+    def _rises(self) -> SpeedsTable:
+        if not self.end > self.start:
+            raise InputError(f"{self.end:g} m/s is not more than where it starts, {self.start:g} m/s", "to")
+        return self
+
+    def values(self) -> np.ndarray:
+        """Return the speeds [m/s]."""
+        return (np.linspace if self.scale == "linear" else np.geomspace)(self.start, self.end, self.number)
+
+
+_TARGET_SCHEMA = {
+    "description": "what impacts are to be like",
+    "anyOf": [
+        {"type": "string", "description": "a CSV or universal file"},
+        law_schema(),
+        *(kind.model_json_schema() for kind in dict.fromkeys(_KEYS.values())),
+    ],
+}
+_MATCH_SCHEMA = {
+    "description": "what of an impact is matched: one, or a table of several with weights",
+    "anyOf": [
+        {"enum": list(OUTCOMES)},
+        {"type": "object", "properties": {name: {"type": "number"} for name in OUTCOMES}, "additionalProperties": False},
+    ],
+}
+
+
+class CalibrateSection(Section):
+    """What `vibroimpact calibrate` does with the case; a run takes no notice of it."""
+
+    target: Annotated[Any, BeforeValidator(_read_target), WithJsonSchema(_TARGET_SCHEMA)] = Field(
+        None, description="what impacts are to be like; by default what they are under the law of the case, and the model is Adams' IMPACT"
+    )
+    model: Annotated[Any, BeforeValidator(_read_model), WithJsonSchema(law_schema())] = Field(
+        None, description="the contact law that is tuned; by default that of the case"
+    )
+    parameter: Name | None = Field(
+        None, description='what is tuned: a parameter of the law, "sphere.damping" or "plate.damping"; by default what sets the law\'s loss'
+    )
+    air: StrictBool | None = Field(
+        None,
+        description="whether the sphere was measured in air, whose drag its flights then have; without this key they are those of a "
+        "vacuum, and a doubt says where drag matters",
+    )
+    match: Annotated[Any, BeforeValidator(_read_match), WithJsonSchema(_MATCH_SCHEMA)] = Field(
+        None, description="what of an impact is matched: one, or a table of several with weights; by default the rebound, if it is there"
+    )
+    degree: Annotated[int, Field(ge=0, le=12, strict=True)] | None = Field(
+        None, description="of the polynomial of the approach speed; by default 2, or less where there are fewer speeds"
+    )
+    speeds: SpeedsTable | None = Field(None, description="what the polynomial is fitted over, instead of the impacts of the drop")
+    confidence: Annotated[float, Quantity("", "of the intervals", Range(above=0, below=1))] = 0.95
+    bootstrap: Annotated[int, Field(ge=0, le=100_000, strict=True)] | None = Field(
+        None,
+        description="how often the measurement is drawn again for the intervals, 0 or at least 20; by default where they are wide",
+    )
+    seed: Annotated[int, Field(ge=0, strict=True)] = Field(0, description="of the drawing")
+
+
+def calibrate_table(section: CalibrateSection) -> dict[str, Any]:
+    """Return the section as a case holds it, in SI."""
+    table = section.model_dump(exclude_defaults=True, exclude={"target", "model"}, by_alias=True, mode="json")
+    laws = {name: value for name in ("target", "model") if (value := getattr(section, name)) is not None}
+    return {**{name: _as_table(value) for name, value in laws.items()}, **table}
+
+
+def _as_table(value: Target) -> dict[str, Any]:
+    if isinstance(value, ContactSection):
+        return {"law": value.law, **{name: list(one) if isinstance(one, tuple) else one for name, one in value.parameters.items()}}
+    return value.model_dump(exclude_none=True, mode="json")
+
+
+_MEASURED = FileKind("what was measured is in a CSV file or a universal file", 500_000_000, "keep the part with the impacts")
+
+
+def check_target(section: CalibrateSection | None) -> None:
+    """Raise unless the file with what was measured, if there is one, can be read; what it tells is not looked at.
+
+    Raises
+    ------
+    InputError
+        If it can't be.
+    """
+    if section is not None and isinstance(section.target, FileTarget):
+        try:
+            beginning(section.target.file, _MEASURED, 1)
+        except InputError as error:
+            raise about(section.target.file, error, "calibrate.target") from None

@@ -1,0 +1,154 @@
+"""The tables and sentences of a calibration, as text that is ready to show."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from vibroimpact.calibration.calibration import Calibration
+from vibroimpact.calibration.comparison import COMPARED, WAYS, differences, largest_misfit
+from vibroimpact.calibration.outcomes import OUTCOMES, REBOUNDS
+from vibroimpact.calibration.tunables import law_parameter
+from vibroimpact.runs.tables import column
+from vibroimpact.units.display import column_texts, digits, fixed, largest, text
+
+_MOST_ROWS = 50
+_MET = 1e-3  # of what is wanted
+_POWERS = ("", " v", " v²", " v³")
+_MEANING = {
+    "constant": "the value of the first impact throughout",
+    "variable": "each impact its own value",
+    "function": "the polynomial of the approach speed",
+}
+
+Cells = tuple[list[tuple[str, str]], list[list[str]]]
+
+
+def values_table(found: Calibration) -> Cells:
+    """Return headers with units, and a row for each impact that was matched."""
+    seen = found.observations
+    headers = [("", ""), ("Approach speed", "m/s"), (found.parameter, found.unit)]
+    columns = [list(seen.labels), column_texts(seen.speeds), column_texts(found.values, 6)]
+    if found.intervals is not None:
+        headers.append((f"Interval, {_percent(found.confidence)}", found.unit))
+        ends = column_texts(np.ravel(found.intervals), 6)
+        columns.append([f"{low} to {high}" for low, high in zip(ends[::2], ends[1::2], strict=True)])
+    if found.as_given:
+        headers.append(("As the case gives it", found.unit))
+        columns.append(column_texts(found.given, 6))
+    for name in found.weights:
+        header = OUTCOMES[name].words.capitalize()
+        unit, cells = column(OUTCOMES[name].column, np.concatenate([seen.wanted[name], found.outcomes[name]]))
+        headers += [(f"{header} wanted", unit), ("found", unit)]
+        columns += [cells[: len(seen.speeds)], cells[len(seen.speeds) :]]
+        if found.as_given:
+            headers.append(("as given, off by", "%"))
+            columns.append(_off(found.as_given[name] / seen.wanted[name] - 1.0))
+    rows = [list(row) for row in zip(*columns, strict=True)]
+    return headers, rows if len(rows) <= _MOST_ROWS else [*rows[: _MOST_ROWS - 1], ["…", *[""] * (len(headers) - 1)]]
+
+
+def differences_tables(found: Calibration) -> dict[str, Cells]:
+    """Return headers, and a row an impact, for each quantity that is compared: how far each way is off [%].
+
+    None for a single impact, which is matched, and where nothing is there to compare with.
+    """
+    off = differences(found)
+    if "rebound_height_m" in off and "separation_speed_m_s" in off:
+        del off["separation_speed_m_s"]  # which says the same
+    tables = {}
+    for name, ways in off.items():
+        number = len(next(iter(ways.values())))
+        cells = np.reshape(_off(np.concatenate([ways[way] for way in WAYS])), (len(WAYS), number))
+        rows = [[str(impact + 1), *cells[:, impact].tolist()] for impact in range(number)]
+        tables[COMPARED[name]] = ([("Impact", ""), *((way, "%") for way in WAYS)], rows[:_MOST_ROWS])
+    return tables if len(found.impacts[1]) > 1 else {}
+
+
+def function_words(found: Calibration) -> str:
+    """Return the fitted polynomial in words.
+
+    Examples
+    --------
+    >>> import vibroimpact as vi
+    >>> from vibroimpact.calibration.calibrate import calibrate
+    >>> found = calibrate(vi.load_case("paper:type1-constant"), vi.load_case("paper:type1-theory"))
+    >>> print(function_words(found).replace("\u2212", "-"))
+    damping_max = 139.408 + 5.86289 v - 0.145602 v² [N s/m], v in m/s from 3.180 to 8.827
+    """
+    function, words = found.fit.function, ""
+    for power, value in enumerate(function.coefficients):
+        minus = "\u2212" if value < 0.0 else "+" if words else ""
+        words += f" {minus} " if words else minus
+        words += digits(abs(value), 6) + (_POWERS[power] if power < len(_POWERS) else f" v^{power}")
+    unit = f" [{found.unit}]" if found.unit else ""
+    if not function.degree:
+        return f"{found.parameter} = {words}{unit}"
+    speeds = f"v in m/s from {digits(function.slowest)} to {digits(function.fastest)}"
+    return f"{found.parameter} = {words}{unit}, {speeds}"
+
+
+def fit_sentences(found: Calibration) -> list[str]:
+    """Return how good the polynomial is: how well it is known, and how far it is off."""
+    fit, seen = found.fit, found.observations
+    told = list(seen.notes)
+    if seen.measured:
+        half = fit.half_widths(found.confidence)
+        if np.isfinite(half).all():
+            told.append(f"Its coefficients are known to ± {', '.join(digits(value, 3) for value in half)} at {_percent(found.confidence)}.")
+        way = f"by drawing the measurement {found.bootstrap} times again" if found.bootstrap else "to first order"
+        if found.intervals is not None:
+            told.append(f"Intervals are {way}, from {seen.noise_from if seen.deviations_known else 'the scatter of what was measured'}.")
+        if seen.deviations_known and np.isfinite(fit.scatter):
+            told.append(f"Residuals are {digits(fit.scatter, 3)} times as large as their standard deviations.")
+    else:
+        where = "over these speeds" if found.curve is not None else "at the impacts"
+        told.append(f"It is off by {digits(largest_misfit(found), 3)} {found.unit} at most {where}.".replace("  ", " "))
+    return told
+
+
+def given_sentences(found: Calibration) -> list[str]:
+    """Return how far the value that the case gives is off, and what would meet the target instead."""
+    told, missed = [], False
+    for name in found.weights if found.as_given else ():
+        wanted, comes = found.observations.wanted[name], found.as_given[name]
+        off = comes / wanted - 1.0
+        if np.all(np.abs(off) < 1e-6):
+            continue
+        worst = int(np.nanargmax(np.abs(off)))
+        given, meets = (f"{digits(value, 6)} {found.unit}".rstrip() for value in (found.given[worst], found.values[worst]))
+        words = f"With {found.parameter} = {given}, as the case gives it, the {OUTCOMES[name].words} of {found.observations.labels[worst]}"
+        instead, asked = (text(float(value), OUTCOMES[name].unit, 5) for value in (comes[worst], wanted[worst]))
+        misses = abs(off[worst]) > _MET
+        within = found.intervals is not None and bool(np.prod(found.intervals[worst] - found.given[worst]) <= 0.0)
+        verdict = ", no more than the measurement leaves open" if within else ": the target can't be met so" if misses else ""
+        told.append(f"{words} is {instead} instead of {asked}, off by {_off(off[worst])[0]} %{verdict}. With {meets} it is met.")
+        missed |= misses and not within
+    if missed and found.others:
+        each = [f"{name} = {digits(value, 6)} {law_parameter(found.problem, name).unit}".rstrip() for name, value in found.others.items()]
+        told.append(f"So would, at the first impact and with the rest as given: {'; '.join(each)}.")
+    return told
+
+
+def match_words(found: Calibration) -> str:
+    """Return what was matched, in words."""
+    if len(found.weights) == 1:
+        return f"the {OUTCOMES[next(iter(found.weights))].words} of each impact comes out as wanted"
+    every = " and ".join(f"the {OUTCOMES[name].words} (weight {weight:g})" for name, weight in found.weights.items())
+    return f"{every} of each impact come as near to what is wanted as one number can make them"
+
+
+def ways_words(found: Calibration) -> str:
+    """Return what the ways to give the value mean."""
+    chain = "" if set(found.weights) & set(REBOUNDS) else ". The rebound is not matched, so later impacts come at other speeds"
+    return "; ".join(f"{way}: {_MEANING[way]}" for way in WAYS) + chain
+
+
+def _off(parts: ArrayLike) -> list[str]:
+    """Return parts in percent, all with the same decimals: three, or two where one is 10 % or more."""
+    percent = 100.0 * np.atleast_1d(np.asarray(parts, dtype=float))
+    return [fixed(float(value), 3 if largest(percent) < 10.0 else 2) for value in percent]
+
+
+def _percent(confidence: float) -> str:
+    return f"{100.0 * confidence:g} %"

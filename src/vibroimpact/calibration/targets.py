@@ -1,0 +1,59 @@
+"""What the impacts of a calibration are to be like: under another law, or as they were measured."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from vibroimpact.calibration.in_air import Measurement, in_air
+from vibroimpact.calibration.measured_case import of_first, of_heights, of_speeds
+from vibroimpact.calibration.measured_file import of_file
+from vibroimpact.calibration.observations import Observations, from_table
+from vibroimpact.calibration.outcomes import REBOUND, REBOUNDS
+from vibroimpact.calibration.section import CalibrateSection, FileTarget, HeightsTarget, ImpactTarget, RestitutionTarget
+from vibroimpact.cases.case import Case
+from vibroimpact.cases.contact_section import ContactSection
+from vibroimpact.cases.rigid import contact_laws_of, first_speed
+from vibroimpact.contact.laws.newton import Newton
+from vibroimpact.dynamics.problem import Problem
+from vibroimpact.errors import InputError
+
+
+def target_of(case: Case, problem: Problem, section: CalibrateSection) -> Problem | Observations:
+    """Return what impacts are to be like: the drop under another law, or what was measured.
+
+    Raises
+    ------
+    InputError
+        If a file can't be read, or does not tell of impacts, with the line; or if what was measured can't be.
+    """
+    target = section.target
+    if isinstance(target, (HeightsTarget, ImpactTarget, FileTarget)):
+        return in_air(case, _measured(case, target, section), section.air)
+    if section.air:
+        raise InputError("nothing that is to be matched flew; leave this out", "air")
+    if isinstance(target, ContactSection):
+        try:
+            return replace(problem, laws=contact_laws_of(case.model_copy(update={"contact": target})))
+        except InputError as error:
+            raise InputError(error.message, error.key.replace("contact", "target", 1)) from None
+    assert isinstance(target, RestitutionTarget)
+    if isinstance(target.restitution, tuple):
+        return of_speeds(case, target)
+    if problem.vibrates:  # where a law without a force has no meaning: the first impact, on a plate at rest
+        speed = first_speed(case)
+        return from_table(
+            np.array([speed]), {"separation_speed": np.array([target.restitution * speed])}, None, ("impact 1",), of_the_drop=True
+        )
+    return replace(problem, laws=(Newton(restitution=target.restitution),))
+
+
+def _measured(case: Case, target: HeightsTarget | ImpactTarget | FileTarget, section: CalibrateSection) -> Measurement:
+    if isinstance(target, HeightsTarget):
+        heights = np.array(target.rebound_heights)
+        deviation = None if target.standard_deviation is None else np.full(len(heights), target.standard_deviation)
+        return of_heights(case, heights, deviation, tuple(f"impact {number + 1}" for number in range(len(heights))))
+    if isinstance(target, ImpactTarget):
+        return of_first(case, target)
+    return of_file(case, target, set(section.match or REBOUND) <= set(REBOUNDS))

@@ -1,0 +1,101 @@
+"""Targets that no value meets: which, what can be reached, and which other parameter would."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import fields
+
+import numpy as np
+
+from vibroimpact.arrays import Floats
+from vibroimpact.calibration.above_one import believed, restitutions
+from vibroimpact.calibration.matching import Match, Tunable, match, slopes
+from vibroimpact.calibration.observations import Observations
+from vibroimpact.calibration.outcomes import OUTCOMES, REBOUNDS
+from vibroimpact.calibration.tunables import law_parameter
+from vibroimpact.contact.law import CompliantLaw
+from vibroimpact.dynamics.problem import Problem
+from vibroimpact.errors import InputError
+
+_BEYOND_NOISE = 3.0  # standard deviations
+_LOSSLESS = 1e-4  # how near to no loss a law must come for a restitution above 1 to be noise
+
+_NEAR = 3  # steps of four from what is given, in which another parameter is looked for
+
+
+def check_reached(tunable: Tunable, problem: Problem, seen: Observations, weights: Mapping[str, float], found: Match) -> Floats:
+    """Return the values found; those that noise puts out of reach are NaN.
+
+    Raises
+    ------
+    InputError
+        If one is out of reach and noise does not explain it.
+    """
+    missed = np.flatnonzero(np.isnan(found.values))
+    if len(weights) > 1:
+        if missed.size:
+            raise InputError(f"{seen.labels[missed[0]]}: no value of {tunable.name} is better than all others", "target")
+        return found.values
+    (name,) = weights
+    wanted, (_, unit, words) = seen.wanted[name], OUTCOMES[name]
+    for row in missed:
+        beyond = max(wanted[row] - found.most[row], found.least[row] - wanted[row])
+        if 0.0 < beyond <= max(_BEYOND_NOISE * _noise_of(tunable, seen, name, int(row)), _above_one(problem, seen, name, int(row))):
+            continue
+        others = other_parameters(problem, tunable, seen, weights, row=int(row))
+        hint = "; with the rest as given it would take " + " or ".join(_value(problem, *item) for item in others.items()) if others else ""
+        asked = f"{seen.labels[row]}: after {seen.speeds[row]:.5g} m/s a {words} of {wanted[row]:.5g} {unit} is wanted"
+        reach = f"{found.least[row]:.5g} to {found.most[row]:.5g} {unit}, whatever {tunable.name} is"
+        if beyond <= 0.0:
+            reach = f"{reach}, but jumps over this one"
+        elif tunable.damps and wanted[row] > found.most[row]:
+            reach = f"at most {found.most[row]:.5g} {unit}, without any {tunable.name}"
+        raise InputError(f"{asked}, and {problem.laws[0].name} gives {reach}{hint}", "target")
+    return found.values
+
+
+def _above_one(problem: Problem, seen: Observations, name: str, row: int) -> float:
+    """Return by how much a rebound is more than one without loss, where that may be noise whose size is not known."""
+    if seen.deviations_known or not seen.measured or name not in REBOUNDS:
+        return 0.0
+    radius, gravity, speed = float(problem.sphere.contact_offset), float(problem.gravity), float(seen.speeds[row])
+    found = restitutions(seen, radius, gravity)
+    if found is None or not 1.0 < found[row] <= believed(seen.speeds, found, None).most[row]:
+        return 0.0
+    height = 0.5 * speed**2 / gravity if name == "rebound_height" else 0.0
+    lossless, scale = (radius + height, height) if height else (speed, speed)
+    return float(seen.wanted[name][row]) - lossless + _LOSSLESS * scale
+
+
+def _noise_of(tunable: Tunable, seen: Observations, name: str, row: int) -> float:
+    """Return the standard deviation of what is wanted less what would come of it, where the sizes of the noise are known."""
+    if not seen.deviations_known:
+        return 0.0
+    near = slopes(tunable, seen.speeds[[row]], tunable.allowed.clip(np.array([1e-3 * tunable.start])), seen.which[[row]])
+    return float(np.linalg.norm(seen.noise[name][row] - near.by_speed[name][0] * seen.speed_noise[row]))
+
+
+def other_parameters(
+    problem: Problem, tunable: Tunable, seen: Observations, weights: Mapping[str, float], row: int = 0
+) -> dict[str, float]:
+    """Return values of the other parameters of the law, each of which would meet an impact with the rest as given.
+
+    None with several outcomes, or where bodies vibrate.
+    """
+    law = problem.laws[0]
+    if len(weights) > 1 or problem.vibrates or not isinstance(law, CompliantLaw):
+        return {}
+    found = {}
+    for item in fields(law):
+        if item.metadata["memory"] or item.name == tunable.name or not isinstance(getattr(law, item.name), float):
+            continue
+        other = law_parameter(problem, item.name)
+        wanted = {name: values[[row]] for name, values in seen.wanted.items()}
+        value = match(other, seen.speeds[[row]], wanted, weights, seen.which[[row]], _NEAR).values[0]
+        if np.isfinite(value):
+            found[item.name] = float(value)
+    return found
+
+
+def _value(problem: Problem, name: str, value: float) -> str:
+    return f"{name} = {value:.5g} {law_parameter(problem, name).unit}".rstrip()

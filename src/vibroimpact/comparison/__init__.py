@@ -1,0 +1,1 @@
+"""One case under several contact laws, side by side."""

@@ -1,0 +1,154 @@
+"""One drop under several contact laws, and the table of it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from vibroimpact.cases.case import Case
+from vibroimpact.cases.rigid import contact_laws_of, contact_pair, first_speed
+from vibroimpact.comparison.laws import cases_under
+from vibroimpact.contact.law import ContactLaw
+from vibroimpact.dynamics.columns import ALL_IMPACT_COLUMNS
+from vibroimpact.dynamics.restitution import achieved_restitution
+from vibroimpact.dynamics.simulate import simulate
+from vibroimpact.results.result import Result, result_of
+from vibroimpact.runs.tables import column
+from vibroimpact.units.display import MISSING, text
+
+_SPEEDS = 61
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """One drop under several contact laws.
+
+    Parameters
+    ----------
+    name : str
+        The name of the case.
+    results : dict of str to Result
+        The result under each law, by the law's name.
+    laws : dict of str to ContactLaw
+        The law of the first impact.
+    speeds : array, shape (S,)
+        Approach speeds [m/s].
+    restitutions : dict of str to array, shape (S,)
+        The restitution that each law of the first impact achieves at them, without gravity.
+    """
+
+    name: str
+    results: dict[str, Result] = field(repr=False)
+    laws: dict[str, ContactLaw]
+    speeds: np.ndarray = field(repr=False)
+    restitutions: dict[str, np.ndarray] = field(repr=False)
+
+
+def compare_laws(
+    case: Case,
+    laws: Iterable[str],
+    given: Mapping[str, Any] | None = None,
+    *,
+    achieving: float | None = None,
+    progress: Callable[[float], None] | None = None,
+) -> Comparison:
+    """Run a case under each of several contact laws.
+
+    Parameters
+    ----------
+    case : Case
+        The case; its own law counts only if it is among the laws.
+    laws : iterable of str
+        Names of laws.
+    given : mapping of str, optional
+        Parameters: "KEY" for every law that has it, "LAW.KEY" for one; the others come from the case where its law has
+        one of the same name and unit.
+    achieving : float, optional
+        Give each law the value of its free parameter with which the first impact achieves this restitution [-].
+    progress : callable, optional
+        Called with the fraction done, in [0, 1].
+
+    Raises
+    ------
+    InputError
+        If a law or a parameter is not known or missing, or a law can't achieve the restitution.
+
+    Examples
+    --------
+    >>> import vibroimpact as vi
+    >>> comparison = vi.compare_laws(vi.load_case("paper:type1-theory"), ["hunt-crossley", "flores"])
+    >>> {name: round(float(one.impacts["restitution_achieved"][0]), 3) for name, one in comparison.results.items()}
+    {'hunt-crossley': 0.739, 'flores': 0.63}
+    """
+    cases = cases_under(case, laws, given, achieving)
+    mass, speed = contact_pair(case).effective_mass, first_speed(case)
+    speeds = speed * np.geomspace(1e-3, 3.0, _SPEEDS)
+    first, results, restitutions = {}, {}, {}
+    for number, (name, one) in enumerate(cases.items()):
+        results[name] = result_of(simulate(one))
+        first[name] = contact_laws_of(one)[0]
+        restitutions[name] = achieved_restitution(first[name], mass, speeds)
+        if progress is not None:
+            progress((number + 1) / len(cases))
+    return Comparison(case.name or "a drop", results, first, speeds, restitutions)
+
+
+_COLUMNS = ("max_indentation_m", "max_force_N", "duration_s", "rebound_height_m", "energy_lost_J")
+
+
+def comparison_title(comparison: Comparison) -> str:
+    """Return what heads a comparison: how many laws, of one drop. The name of the case may name a law that is not among them."""
+    number = len(comparison.results)
+    return f"One drop under {number} contact law{'' if number == 1 else 's'}"
+
+
+def comparison_subtitle(comparison: Comparison) -> str:
+    """Return whose drop it is, and how fast it arrives."""
+    speeds = next(iter(comparison.results.values())).impacts["approach_speed_m_s"]
+    arrives = f", which arrives at {text(float(speeds[0]), 'm/s')}" if len(speeds) else ""
+    return f'The drop is that of the case "{comparison.name}"{arrives}.'
+
+
+def comparison_table(comparison: Comparison) -> tuple[list[tuple[str, str]], list[list[str]]]:
+    """Return headers with units, and a row a law: asked and achieved restitution, and the first impact."""
+    headers = [("Law", ""), ("Impacts", ""), ("Restitution asked", ""), ("achieved, first", ""), ("achieved, last", "")]
+    rows = []
+    for name, one in comparison.results.items():
+        some = [_restitution(one, "restitution_asked", 0), *(_restitution(one, "restitution_achieved", at) for at in (0, -1))]
+        rows.append([name, str(len(one.impacts["impact"])), *some])
+    for name in _COLUMNS:
+        first = np.array([one.impacts[name][0] if len(one.impacts[name]) else np.nan for one in comparison.results.values()])
+        change = np.array([one.change_by_impact[0] if len(one.impacts[name]) else 0.0 for one in comparison.results.values()])
+        unit, cells = column(name, first, change)
+        headers.append((ALL_IMPACT_COLUMNS[name].label, unit))
+        for row, cell in zip(rows, cells, strict=True):
+            row.append(cell)
+    return headers, rows
+
+
+def _restitution(result: Result, name: str, at: int) -> str:
+    """Return the restitution of the first or the last impact, in the digits that are certain."""
+    values = result.impacts[name]
+    return column(name, values, result.change_by_impact)[1][at] if len(values) else MISSING
+
+
+def comparison_doubts(comparison: Comparison) -> list[str]:
+    """Return the doubts of the drops under all laws, each once, with the laws that it is of."""
+    laws: dict[str, list[str]] = {}
+    for name, one in comparison.results.items():
+        for doubt in one.doubts:
+            laws.setdefault(doubt, []).append(name)
+    every = len(comparison.results)
+    return [f"{'every law' if len(names) == every > 1 else ', '.join(names)}: {doubt}" for doubt, names in laws.items()]
+
+
+def free_parameter_words(law: ContactLaw) -> str:
+    """Return the free parameter of a law with its value and unit; "nothing to set" if it has none."""
+    name = law.free_parameter
+    if name is None:
+        return "nothing to set"
+    unit = next(item for item in law.__dataclass_fields__.values() if item.name == name).metadata["unit"]
+    return f"{name} = {float(getattr(law, name)):.6g} {unit}".rstrip()

@@ -1,0 +1,30 @@
+"""What the compare command prints: a row a law, and what sets the loss of each."""
+
+from __future__ import annotations
+
+from rich.console import Group, RenderableType
+from rich.text import Text
+
+from vibroimpact.comparison.comparison import (
+    Comparison,
+    comparison_doubts,
+    comparison_subtitle,
+    comparison_table,
+    comparison_title,
+    free_parameter_words,
+)
+from vibroimpact.report.terminal_table import Column, TerminalTable, facts, numbers
+from vibroimpact.runs.console import doubt_lines
+
+
+def comparison_summary(comparison: Comparison) -> RenderableType:
+    """Return what a comparison prints: a row a law, the parameter that sets the loss of each, and what to doubt."""
+    headers, rows = comparison_table(comparison)
+    names, *cells = zip(*rows, strict=True)
+    key = Column(headers[0][0], names, words=True)
+    table = TerminalTable([key, *(numbers(heading, unit, one) for (heading, unit), one in zip(headers[1:], cells, strict=True))])
+    free = facts([(name, free_parameter_words(law), comparison.results[name].status) for name, law in comparison.laws.items()], indent=1)
+    note = Text(" Indentation, force, duration, height and energy are those of the first impact.", style="dim")
+    title = Text("What sets the loss, and how the run ended", style="bold")
+    heading = (Text(comparison_title(comparison), style="bold"), Text(comparison_subtitle(comparison)))
+    return Group(*heading, table, note, Text(), title, free, *doubt_lines(comparison_doubts(comparison)))

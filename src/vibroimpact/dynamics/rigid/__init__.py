@@ -1,0 +1,1 @@
+"""Contacts of bodies that move rigidly, integrated in time, and their histories."""

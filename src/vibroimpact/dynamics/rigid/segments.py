@@ -1,0 +1,119 @@
+"""The history of one drop as a row of segments, each of which can be asked at any time within it.
+
+A segment counts time from its own start: a contact may be a billion times shorter than the run.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from vibroimpact.arrays import Floats
+from vibroimpact.contact.law import CompliantLaw
+from vibroimpact.dynamics.encounter import Encounter
+from vibroimpact.dynamics.flight import Flight
+from vibroimpact.dynamics.phase_plane.motion import PlaneMotion
+from vibroimpact.dynamics.rigid.glide import Glide
+from vibroimpact.dynamics.rigid.stretch import Stretch
+
+Motion = tuple[Floats, Floats, Floats, Floats, Floats, Floats]
+"""Gap [m], upward velocity [m/s], contact force [N], stored energy [J], and energy lost in damping and in
+plastic deformation since the start [J]."""
+
+
+@dataclass(frozen=True)
+class FlightSegment:
+    """Free flight of one drop."""
+
+    start: float
+    end: float
+    flight: Flight
+
+    def grid(self) -> Floats:
+        """Times since its start that draw the segment well [s]."""
+        return np.linspace(0.0, self.end - self.start, 49)
+
+    def at(self, time: Floats) -> Motion:
+        """Return the motion at times [s] since the start of the segment."""
+        gap, velocity = self.flight.at(self.flight.start + time)
+        nothing = np.zeros_like(time)
+        return gap, velocity, nothing, nothing, nothing, nothing
+
+
+@dataclass(frozen=True)
+class ContactSegment:
+    """A part of the contact of one drop that was solved at once, in time or in the phase plane, and its `Encounter`, of one."""
+
+    start: float
+    end: float
+    motion: Stretch | PlaneMotion
+    encounter: Encounter
+
+    @property
+    def duration(self) -> Floats:
+        """How long it lasts [s], (1,)."""
+        return self.motion.duration
+
+    def grid(self) -> Floats:
+        """Times since its start that draw the segment well [s]."""
+        return self.motion.grid()
+
+    def at(self, time: Floats) -> Motion:
+        """Return the motion at times [s] since the start of the segment."""
+        delta, velocity, lost = self.motion.at(time, self.encounter)
+        law, begun = self.encounter.law, np.array([self.motion.begins_at])
+        elastic, dissipative = law.forces(delta, velocity, self.encounter.approach_speed)
+        force = elastic + dissipative
+        if law.tension == "cut":
+            force = np.maximum(force, 0.0)
+        return -delta, -velocity, force, law.elastic_energy(delta), lost, law.plastic_work(delta) - law.plastic_work(begun)
+
+
+@dataclass(frozen=True)
+class GlideSegment:
+    """Free motion of one drop inside an indentation."""
+
+    start: float
+    end: float
+    glide: Glide
+    law: CompliantLaw
+
+    @property
+    def duration(self) -> Floats:
+        """How long it lasts [s], (1,)."""
+        return self.glide.duration
+
+    def grid(self) -> Floats:
+        """Times since its start that draw the segment well [s]."""
+        return np.linspace(0.0, float(self.glide.duration[0]), 17)
+
+    def at(self, time: Floats) -> Motion:
+        """Return the motion at times [s] since the start of the segment."""
+        delta, velocity = (part[:, 0] for part in self.glide.at(time[:, None]))
+        stored = self.law.elastic_energy(delta)
+        nothing = np.zeros_like(time)
+        return -delta, -velocity, nothing, stored, self.law.elastic_energy(self.glide.delta) - stored, nothing
+
+
+@dataclass(frozen=True)
+class RestSegment:
+    """The sphere at rest on the plate, in its static indentation."""
+
+    start: float
+    end: float
+    sag: float
+    weight: float
+    stored: float
+
+    def grid(self) -> Floats:
+        """Times since its start that draw the segment well [s]."""
+        return np.array([0.0, self.end - self.start])
+
+    def at(self, time: Floats) -> Motion:
+        """Return the motion at times [s] since the start of the segment."""
+        same = np.ones_like(time)
+        return -self.sag * same, 0.0 * same, self.weight * same, self.stored * same, 0.0 * same, 0.0 * same
+
+
+Segment = FlightSegment | ContactSegment | GlideSegment | RestSegment

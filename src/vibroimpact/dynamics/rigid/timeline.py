@@ -1,0 +1,114 @@
+"""The history of one drop between rigid bodies, as a row of segments in order."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import overload
+
+import numpy as np
+
+from vibroimpact.arrays import Floats, Indices
+from vibroimpact.dynamics.leg import Leg
+from vibroimpact.dynamics.phase_plane.motion import PlaneMotion
+from vibroimpact.dynamics.rigid.glide import Glide
+from vibroimpact.dynamics.rigid.segments import ContactSegment, FlightSegment, GlideSegment, RestSegment, Segment
+from vibroimpact.dynamics.rigid.stretch import Stretch
+
+
+@dataclass(frozen=True, eq=False)
+class Timeline(Sequence[Segment]):
+    """Segments that are made of the legs of a run when they are asked for: of a hundred thousand impacts they would take 1 GB.
+
+    Parameters
+    ----------
+    legs : sequence of Leg
+        The flights and contacts of one drop.
+    rest : RestSegment or None
+        What comes after them, if the drop comes to rest.
+    starts : array, shape (segments,)
+        When each segment begins [s].
+    spent : array, shape (segments, 2)
+        Energy lost before each in damping and in plastic deformation [J].
+    """
+
+    legs: Sequence[Leg]
+    rest: RestSegment | None
+    starts: Floats
+    spent: Floats
+    _firsts: Indices
+    _recent: dict[int, list[Segment]] = field(default_factory=dict)
+
+    def __len__(self) -> int:
+        return len(self.starts)
+
+    @overload
+    def __getitem__(self, index: int) -> Segment: ...
+
+    @overload
+    def __getitem__(self, index: slice) -> list[Segment]: ...
+
+    def __getitem__(self, index: int | slice) -> Segment | list[Segment]:
+        if isinstance(index, slice):
+            return [self[number] for number in range(*index.indices(len(self)))]
+        number = range(len(self))[index]
+        leg = int(np.searchsorted(self._firsts, number, side="right")) - 1
+        if self.rest is not None and leg == len(self.legs):
+            return self.rest
+        if leg not in self._recent:  # neighbours are asked for one after the other
+            self._recent.clear()
+            self._recent[leg] = segments_of(self.legs[leg])
+        return self._recent[leg][number - int(self._firsts[leg])]
+
+
+def timeline_of(legs: Sequence[Leg], rest: RestSegment | None, lost: Floats) -> Timeline:
+    """Return the history of one drop.
+
+    Parameters
+    ----------
+    legs : sequence of Leg
+        Its flights and contacts.
+    rest : RestSegment or None
+        What comes after them, if it comes to rest.
+    lost : array, shape (impacts, 2)
+        Energy that each impact takes in damping and in plastic deformation [J].
+    """
+    before = np.concatenate([np.zeros((1, 2)), np.cumsum(lost, axis=0)])
+    starts: list[float] = []
+    spent: list[Floats] = []
+    firsts = []
+    for number, leg in enumerate(legs):
+        firsts.append(len(starts))
+        so_far = before[number]
+        for segment in segments_of(leg):
+            starts.append(segment.start)
+            spent.append(so_far)
+            if isinstance(segment, (ContactSegment, GlideSegment)):
+                so_far = so_far + [float(part[0]) for part in segment.at(segment.duration)[-2:]]
+    if rest is not None:
+        firsts.append(len(starts))
+        starts.append(rest.start)
+        spent.append(before[-1])
+    return Timeline(legs, rest, np.array(starts), np.array(spent), np.array(firsts))
+
+
+def segments_of(leg: Leg) -> list[Segment]:
+    """Return the segments of a leg of one drop."""
+    touch = float(leg.flight_end[0])
+    segments: list[Segment] = [FlightSegment(float(leg.flight.start[0]), touch, leg.flight)]
+    if leg.contact is None or leg.encounter is None:
+        return segments
+    for piece in leg.contact.pieces:
+        begin = touch + float(piece.start[0])
+        finish = begin + float(piece.motion.duration[0])
+        if isinstance(piece.motion, (Stretch, PlaneMotion)):
+            segments.append(ContactSegment(begin, finish, piece.motion, leg.encounter.under(piece.law)))
+        else:
+            assert isinstance(piece.motion, Glide)
+            segments.append(GlideSegment(begin, finish, piece.motion, piece.law))
+    return segments
+
+
+def end_of(leg: Leg) -> float:
+    """Return when a leg of one drop ends [s]."""
+    return segments_of(leg)[-1].end

@@ -1,0 +1,93 @@
+r"""What keeps frequencies above half the sampling rate out of samples: a converter's filter, an analogue one, or nothing.
+
+"sigma-delta" is the decimation filter of a delta-sigma converter: a linear-phase low-pass of 66 sampling periods, here the ideal one
+at half the rate under J. F. Kaiser's window (Nonrecursive digital filter design using the I0-sinh window function, Proc. IEEE Int. Symp.
+Circuits and Systems, 1974): from 0 to 0.45 of the rate flat within 0.001 dB, from 0.55 of it on at least 100 dB down. Its delay of 33
+samples is taken out, so that a sample holds a little of what comes after it. "butterworth" is S. Butterworth's low-pass of order eight
+(On the theory of filter amplifiers, Experimental Wireless 7:536, 1930), causal and with its delay. "none" takes what is there at the
+instants of the samples, and so folds higher frequencies into the band.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from vibroimpact.arrays import Floats
+from vibroimpact.dynamics.sensors.pole_pairs import PolePairs
+from vibroimpact.dynamics.sensors.sensor import CORNER, Sensor
+
+REACH = 33
+"""Sampling periods over which the filter of a converter looks back, and ahead."""
+FINENESS = 8
+"""Points a sampling period at which its kernel, and what answers to it, are known."""
+_KAISER = 10.4  # the window's parameter: 102 dB, and with the reach a transition of a tenth of the rate
+_ORDER = 8
+
+Section = tuple[float, float]
+"""A pair of poles, by the coefficients (stiffness, damping) of s^2 + damping s + stiffness."""
+
+
+@dataclass(frozen=True)
+class AntiAlias:
+    """An anti-alias filter: the reach of its linear-phase kernel in samples, zero if it has none, and its pairs of poles."""
+
+    reach: int = 0
+    sections: tuple[Section, ...] = ()
+
+
+def antialias_of(sensor: Sensor) -> AntiAlias:
+    """Return the anti-alias filter of a sensor.
+
+    Examples
+    --------
+    >>> antialias_of(Sensor("a")).reach, len(antialias_of(Sensor("a", filter="butterworth")).sections)
+    (33, 4)
+    """
+    if sensor.filter == "sigma-delta":
+        return AntiAlias(reach=REACH)
+    if sensor.filter == "butterworth":
+        return AntiAlias(sections=butterworth(sensor.corner or CORNER * sensor.rate))
+    return AntiAlias()
+
+
+def butterworth(corner: float) -> tuple[Section, ...]:
+    """Return the pairs of poles of a Butterworth low-pass of order eight, whose gain at the corner [Hz] is 1 / sqrt(2)."""
+    omega = 2.0 * math.pi * corner
+    angles = (math.pi * (2.0 * number + 1.0) / (2.0 * _ORDER) for number in range(_ORDER // 2))
+    return tuple((omega**2, 2.0 * omega * math.sin(angle)) for angle in angles)
+
+
+def kernel(x: Floats) -> Floats:
+    """Return the kernel of a converter's filter at times in sampling periods; times the rate it is [1/s].
+
+    Examples
+    --------
+    >>> x = np.arange(-REACH * 8, REACH * 8 + 1) / 8
+    >>> round(float(kernel(x).sum() / 8), 5)  # a constant passes as it is
+    1.0
+    """
+    window = np.i0(_KAISER * np.sqrt(np.maximum(1.0 - (x / REACH) ** 2, 0.0))) / np.i0(_KAISER)
+    return np.asarray(np.where(np.abs(x) <= REACH, np.sinc(x) * window, 0.0))
+
+
+def kernel_derivatives() -> Floats:
+    """Return the kernel and its first two derivatives [per sampling period, squared], (3, points), at `FINENESS` points a period."""
+    points = 2 * REACH * FINENESS
+    values = kernel(np.arange(-REACH * FINENESS, REACH * FINENESS + 1) / FINENESS)
+    size = 2 * points  # zeros apart, so that the ends do not meet
+    spectrum, slope = np.fft.rfft(values, size), 2j * np.pi * np.fft.rfftfreq(size, 1.0 / FINENESS)
+    slope[-1] = 0.0
+    return np.stack([values, *(np.fft.irfft(spectrum * slope**order, size)[: points + 1] for order in (1, 2))])
+
+
+def parallel(sections: tuple[Section, ...]) -> list[tuple[Floats, Section]]:
+    """Return a low-pass of pairs of poles as a sum: of each pair the numerator a + b s, (2,), and the pair."""
+    parts = []
+    for number, (stiffness, damping) in enumerate(sections):
+        at = PolePairs(np.array([stiffness]), np.array([damping]))
+        value = stiffness * at.low_pass([*sections[:number], *sections[number + 1 :]])
+        parts.append((value[:, 0], sections[number]))
+    return parts

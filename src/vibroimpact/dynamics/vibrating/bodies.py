@@ -1,0 +1,237 @@
+"""How B drops of bodies that vibrate fly, meet and lie: their systems, where their coordinates are, and what damping takes."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from vibroimpact.arrays import Bools, Drops, Floats
+from vibroimpact.bodies.body import Body
+from vibroimpact.contact.law import CompliantLaw, ContactLaw
+from vibroimpact.dynamics.columns import ALL_IMPACT_COLUMNS
+from vibroimpact.dynamics.contact import CAPTURED, RIDING, SETTLED, Contact, Piece
+from vibroimpact.dynamics.encounter import Encounter
+from vibroimpact.dynamics.flight import Flight
+from vibroimpact.dynamics.leg import Leg
+from vibroimpact.dynamics.lockstep import Course, side_by_side
+from vibroimpact.dynamics.problem import Problem
+from vibroimpact.dynamics.rigid.bodies import Motions, RigidBodies
+from vibroimpact.dynamics.vibrating.linear_system import FreeMotion, LinearSystem, State
+from vibroimpact.dynamics.vibrating.lying import Lying, lay_down
+from vibroimpact.dynamics.vibrating.next_touch import next_touch
+from vibroimpact.dynamics.vibrating.riding import Riding
+from vibroimpact.dynamics.vibrating.sensitivity import Neighbours
+from vibroimpact.dynamics.vibrating.visit import Visit, visit
+
+if TYPE_CHECKING:
+    from vibroimpact.structures.modal_model import ModalBasis  # which loads sparse matrices
+
+
+def system_of(problem: Problem, mass: float, gravity: float) -> LinearSystem:
+    """Return the system of a drop: the fall of the sphere, the rigid motions of the plate, then the modes of both; and the local element.
+
+    Parameters
+    ----------
+    problem : Problem
+        What is simulated.
+    mass, gravity : float
+        Of this drop [kg, m/s^2].
+    """
+    parts = [(np.zeros(1), np.zeros(1), np.array([mass**-0.5]))]
+    of_bodies = ((problem.plate.rigid, 1.0), (problem.sphere.modes, -1.0), (problem.plate.modes, 1.0))
+    parts += [(basis.angular_frequencies, basis.damping_ratios, sign * basis.contact) for basis, sign in of_bodies if basis]
+    frequency, damping, shape = (np.concatenate(part) for part in zip(*parts, strict=True))
+    of_rigid, of_sphere, of_plate = slices_of(problem)
+    load, inside, ground = np.zeros(len(shape)), np.zeros(len(shape), dtype=bool), np.zeros(len(shape), dtype=bool)
+    load[0], inside[of_sphere], ground[of_rigid], ground[of_plate] = gravity * mass**0.5, problem.sphere_inside, True, True
+    local = [problem.local_element] if problem.local_element else []
+    rate = np.array([stiffness / damping for stiffness, damping in local])
+    mobility = np.array([1.0 / damping for _, damping in local])
+    return LinearSystem(
+        frequency, damping, shape[None], np.zeros(1), load, inside, ground[None], rate, mobility, np.zeros(len(local), dtype=np.intp)
+    )
+
+
+def slices_of(problem: Problem) -> tuple[slice, slice, slice]:
+    """Return where among the coordinates of a drop the rigid motions of the plate are, the modes of the sphere, and those of the plate.
+
+    Before them is the fall of the sphere.
+    """
+    rigid = 0 if problem.plate.rigid is None else len(problem.plate.rigid.frequencies)
+    ends = np.cumsum([1, rigid, modes_of(problem.sphere), modes_of(problem.plate)]).tolist()
+    return slice(ends[0], ends[1]), slice(ends[1], ends[2]), slice(ends[2], ends[3])
+
+
+def bases_of_plate(problem: Problem) -> list[ModalBasis]:
+    """Return the rigid motions of a plate that nothing holds, and its modes: what its `ground` coordinates are."""
+    return [basis for basis in (problem.plate.rigid, problem.plate.modes) if basis is not None]
+
+
+def centre_of(state: State, mass: Floats | float) -> tuple[Floats, Floats]:
+    """Return how far down the centre of the sphere of a drop is from where it touches [m], and how fast it comes down [m/s]."""
+    root = np.sqrt(mass)
+    return np.asarray(state.displacement[..., 0] / root), np.asarray(state.velocity[..., 0] / root)
+
+
+def modes_of(body: Body) -> int:
+    """Return how many modes a body has."""
+    return 0 if body.modes is None else len(body.modes.frequencies)
+
+
+class VibratingBodies(RigidBodies):
+    """The bodies of B drops of which some vibrate: a system a drop, which have their modes in common."""
+
+    def __init__(self, problem: Problem, mass: Floats, gravity: Floats) -> None:
+        self.problem, self.mass, size = problem, mass, len(mass)
+        self.columns = tuple(ALL_IMPACT_COLUMNS)
+        pairs = list(zip(mass.tolist(), gravity.tolist(), strict=True))
+        self.system = system_of(problem, *pairs[0])
+        alike = {(mass, gravity): self.system.falling(mass**-0.5, gravity * mass**0.5) for mass, gravity in set(pairs)}
+        self.systems = [alike[pair] for pair in pairs]
+        self.displacement, self.velocity = np.zeros((size, self.system.number)), np.zeros((size, self.system.number))
+        self.local = np.zeros((size, len(self.system.rate)))
+        self.lost = np.zeros((size, self.system.number + 1))
+        self.lying: list[Lying | None] = [None] * size
+        self.left = np.full(size, np.nan)
+        self.neighbours = Neighbours(problem, mass, self.system)
+
+    def state(self, drop: int, gap: float, velocity: float) -> State:
+        """Return the state of a drop whose sphere has a gap [m] and a velocity upwards [m/s]."""
+        state = State(*(part[drop].copy() for part in (self.displacement, self.velocity, self.local)))  # which go on changing
+        root = self.mass[drop] ** 0.5
+        state.displacement[0], state.velocity[0] = -root * gap, -root * velocity
+        return state
+
+    def place(self, drop: int, state: State) -> None:
+        """Note where the coordinates of a drop are."""
+        self.displacement[drop], self.velocity[drop], self.local[drop] = state.displacement, state.velocity, state.local
+
+    def next_touch(self, drops: Drops, flight: Flight, law: ContactLaw) -> tuple[Floats, Floats, Motions]:
+        """Return when the surfaces next meet as they move [s], the speed of the bodies then [m/s], and their free motions."""
+        assert isinstance(law, CompliantLaw)  # the problem has seen to it
+        starts = zip(drops, flight.gap, flight.velocity, strict=True)
+        motions = tuple(FreeMotion(self.systems[drop], self.state(drop, *sphere)) for drop, *sphere in starts)
+        level = law.touch_level + np.zeros(len(motions))
+        touch = flight.start + np.array([next_touch(motion, float(at), np.inf) for motion, at in zip(motions, level, strict=True)])
+        met = np.isfinite(touch)
+        return touch, -self.rigid_speed(drops, flight.at(np.where(met, touch, flight.start))[1]), motions
+
+    def pass_flight(self, drops: Drops, motions: Motions, elapsed: Floats) -> None:
+        """Let the coordinates of drops move freely."""
+        for drop, motion, time in zip(drops, motions, elapsed, strict=True):
+            self.lost[drop] += motion.lost_by(time)
+            self.place(drop, motion.state(time))
+
+    def closing_speed(self, drops: Drops, speed: Floats, velocity: Floats) -> Floats:
+        """Return the speed at which the surfaces approach each other, with what vibrates outside the contact."""
+        states = (self.state(drop, 0.0, up) for drop, up in zip(drops, velocity, strict=True))
+        return np.array([float(self.systems[drop].outer_rates(state)[0]) for drop, state in zip(drops, states, strict=True)])
+
+    def rigid_speed(self, drops: Drops, velocity: Floats) -> Floats:
+        """Return the speed at which the bodies part as rigid bodies [m/s], of which the plate may move as well."""
+        states = (self.state(drop, 0.0, up) for drop, up in zip(drops, velocity, strict=True))
+        return np.array([-float(self.systems[drop].rigid_motion(state)[1][0]) for drop, state in zip(drops, states, strict=True)])
+
+    def collide(
+        self, drops: Drops, encounter: Encounter, place: tuple[Floats, Floats], limits: tuple[Floats, Floats], row: dict[str, Floats]
+    ) -> Course[tuple[Contact, Floats, Floats]]:
+        """Take drops through their visits, side by side."""
+        (gaps, velocities), (rest_speed, until) = place, limits
+        starts, courses = [], []
+        for number, drop in enumerate(drops):
+            one, problem = encounter.pick(np.array([number])), self.problem
+            # as Hertz's contact takes longer with a larger mass: where the plate is free, the two have a smaller one
+            lighter = float(self.systems[drop].mass[0] / one.mass[0]) ** 0.4
+            start, pace = self.state(drop, gaps[number], velocities[number]), 3.0 * lighter * float(one.depth[0] / one.speed_scale[0])
+            rules = (problem.tolerance, pace, not problem.same_spot, float(rest_speed[number]), float(until[number]))
+            courses.append(visit(self.systems[drop], one.law.take(0), problem.quasi_static, start, *rules))
+            starts.append(start)
+        visits = yield from side_by_side(courses)
+        for number, (drop, start, found) in enumerate(zip(drops, starts, visits, strict=True)):
+            system = self.systems[drop]
+            before, after = (float(np.sum(system.energies(state), axis=0)[system.vibrating].sum()) for state in (start, found.state))
+            row["closing_speed_m_s"][drop], row["contacts"][drop] = encounter.approach_speed[number], found.contacts
+            row["energy_to_vibration_J"][drop] = after - before + found.lost[:-1].sum()
+            self.lost[drop, :-1] += found.lost[:-1]
+            self.place(drop, found.state)
+            if found.outcome in (CAPTURED, SETTLED, RIDING):
+                riding = Riding(system, found.local)
+                self.left[drop] = riding.excess(found.state, found.stored)
+                if found.outcome != RIDING:
+                    self.lying[drop] = lying = lay_down(riding, found.state, found.stored)
+                    self.left[drop] = lying.left
+        force, when = (np.array([getattr(found, name) for found in visits]) for name in ("max_force", "time_of_max_force"))
+        return contact_of(visits, encounter.law), force, when
+
+    def falls_back(self, contact: Contact, law: CompliantLaw, gravity: Floats) -> Bools:
+        """Tell that none does: a visit has followed those that do."""
+        return np.zeros(len(gravity), dtype=bool)
+
+    def rests(self, drops: Drops, velocity: Floats, rest_speed: Floats) -> Bools:
+        """Tell which have been laid down."""
+        return np.array([self.lying[drop] is not None for drop in drops], dtype=bool)
+
+    def laid(self, drops: Drops, law: ContactLaw, weight: Floats, energy: Floats) -> dict[str, Floats]:
+        """Return how drops lie that have been laid down: `sag` [m], `stored` and `written_off` [J]."""
+        lying = [found for drop in drops if (found := self.lying[drop]) is not None]
+        told = [(found.riding.sag, found.riding.stored, found.written_off) for found in lying]
+        return dict(zip(("sag", "stored", "written_off"), np.array(told).reshape(-1, 3).T, strict=True))
+
+    def follow(self, drops: Drops, elapsed: Floats, sag: Floats, stored: Floats) -> tuple[Floats, Floats, Floats]:
+        """Let drops lie on what vibrates, and move with it."""
+        ends = np.zeros((len(drops), 3))
+        for number, drop in enumerate(drops):
+            lying, time = self.lying[drop], elapsed[number : number + 1]
+            assert lying is not None  # it has been laid down
+            state = lying.state(time).take(0)
+            self.lost[drop] += lying.lost_by(time)[0]
+            self.place(drop, state)
+            depth, sinking = centre_of(state, self.mass[drop])
+            ends[number] = -float(depth), -float(sinking), float(lying.stored(time)[0])
+        return ends[:, 0], ends[:, 1], ends[:, 2]
+
+    def growth(self, leg: Leg) -> Course[Floats]:
+        """Return the growth that a second drop beside each shows."""
+        return (yield from self.neighbours.follow(leg))
+
+    def energies(self) -> dict[str, Floats]:
+        """Return the entries of the ledger [J], (B,); what the local elements hold, and lost in flight, apart."""
+        state = State(self.displacement, self.velocity, self.local)
+        (kinetic, strain), (rigid, sphere, plate) = self.system.energies(state), slices_of(self.problem)
+        return {
+            "sphere_vibration_J": kinetic[:, sphere].sum(axis=1),
+            "sphere_strain_J": strain[:, sphere].sum(axis=1),
+            "sphere_damping_J": self.lost[:, sphere].sum(axis=1),
+            "plate_kinetic_J": kinetic[:, rigid].sum(axis=1) + kinetic[:, plate].sum(axis=1),
+            "plate_strain_J": strain[:, plate].sum(axis=1),
+            "plate_damping_J": self.lost[:, plate].sum(axis=1),
+            "local_J": self.system.local_energy(state),
+            "local_damping_J": self.lost[:, -1],
+        }
+
+
+def contact_of(visits: list[Visit], law: CompliantLaw) -> Contact:
+    """Return visits of several drops as one contact of them all; `law` is theirs before it."""
+
+    def gathered(name: str) -> Floats:
+        return np.array([getattr(found, name) for found in visits], dtype=float)
+
+    pieces = [
+        Piece(np.array([drop]), np.array([part.start]), part.motion, law) for drop, found in enumerate(visits) for part in found.parts
+    ]
+    ends = np.array([centre_of(found.state, float(found.system.shape[0, 0]) ** -2) for found in visits], dtype=float)
+    memories = {name: np.array([found.law.memories()[name] for found in visits], dtype=float) for name in law.memories()}
+    return Contact(
+        pieces,
+        gathered("outcome").astype(np.int8),
+        gathered("duration"),
+        ends[:, 0],
+        ends[:, 1],
+        gathered("max_indentation"),
+        gathered("time_of_max_indentation"),
+        np.array([found.lost[-1] for found in visits]),
+        gathered("plastic"),
+        gathered("stored"),
+        law.changed(memories),
+    )

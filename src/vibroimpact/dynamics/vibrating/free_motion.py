@@ -1,0 +1,59 @@
+"""Free motion between two contacts, or inside an indentation once the law has stopped pushing."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from vibroimpact.arrays import Bools, Floats
+from vibroimpact.dynamics.vibrating.linear_system import FreeMotion, LinearSystem, State
+from vibroimpact.dynamics.vibrating.local import LocalContact
+
+
+@dataclass(frozen=True)
+class Apart:
+    """Free motion between two contacts, or inside an indentation once the law has stopped pushing.
+
+    `length` [s]. `recoiling`: contacts, by their numbers, that hold in their indentation what is lost as it recovers; where none is, all
+    surfaces are apart.
+    """
+
+    free: FreeMotion
+    length: float
+    recoiling: tuple[tuple[int, LocalContact], ...] = ()
+
+    @property
+    def local(self) -> LocalContact | None:
+        """The first contact that recoils, if one does."""
+        return self.recoiling[0][1] if self.recoiling else None
+
+    @property
+    def duration(self) -> Floats:
+        """How long it lasts [s], as an array of one."""
+        return np.array([self.length])
+
+    def take(self, drops: Bools) -> Apart:
+        """Return itself: it is of one drop."""
+        return self
+
+    def state(self, time: Floats) -> State:
+        """Return the state at times since the start [s] (...)."""
+        return self.free.state(time)
+
+    def lost_by(self, time: Floats) -> Floats:
+        """Return what is lost since the start [J] at times since then [s], (..., n + 1): in each coordinate; last, in the contacts."""
+        return self.lost_at(self.free.state(time))
+
+    def lost_at(self, state: State) -> Floats:
+        """Return the same of states that the motion comes to."""
+        lost, of = self.free.lost_at(state), self.free.system
+        for number, local in self.recoiling:
+            lost[..., -1] += given_up(of, number, local, self.free.start, state)
+        return lost
+
+
+def given_up(system: LinearSystem, number: int, local: LocalContact, before: State, now: State) -> Floats:
+    """Return what a contact that recoils without a force loses of the energy in its indentation from a state to others [J]."""
+    begun, left = (local.elastic_energy(np.maximum(system.approach(at)[..., number], local.release_level)) for at in (before, now))
+    return np.asarray(begun - left)

@@ -1,0 +1,105 @@
+"""The history of one drop whose bodies vibrate, as a row of segments that can be asked at any time within them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from vibroimpact.arrays import Floats
+from vibroimpact.dynamics.vibrating.free_motion import Apart
+from vibroimpact.dynamics.vibrating.linear_system import FreeMotion, LinearSystem, State
+from vibroimpact.dynamics.vibrating.lying import Lying
+from vibroimpact.dynamics.vibrating.stretch import VibratingStretch
+
+if TYPE_CHECKING:
+    from vibroimpact.dynamics.leg import Leg
+
+_STRETCH_POINTS, _GAP_POINTS = 49, 25
+_FREE_POINTS, _LATER_POINTS, _PERIODS = 2001, 1001, 10.0
+"""How a free motion is drawn: so many points in so many periods of the lowest mode, and so many in what is left."""
+
+
+@dataclass(frozen=True)
+class VibratingSegment:
+    """A part of the history of one drop: a flight, a stretch of contact, a gap between two, or rest.
+
+    `start`, `end` [s]. `spent`: energy lost before [J], (n + 2,): in each coordinate, in the contact, in plastic deformation.
+    """
+
+    start: float
+    end: float
+    motion: VibratingStretch | Apart | FreeMotion | Lying
+    spent: Floats
+
+    @property
+    def moving(self) -> VibratingStretch | FreeMotion | Lying:
+        """What can be asked for states."""
+        return self.motion.free if isinstance(self.motion, Apart) else self.motion
+
+    @property
+    def system(self) -> LinearSystem:
+        """What moves."""
+        moving = self.moving
+        return (moving.riding if isinstance(moving, Lying) else moving).system
+
+    @property
+    def in_contact(self) -> bool:
+        """Do the surfaces overlap?"""
+        return isinstance(self.motion, (VibratingStretch, Lying)) or (isinstance(self.motion, Apart) and self.motion.local is not None)
+
+    def grid(self) -> Floats:
+        """Times since its start that draw the segment well [s]."""
+        span = self.end - self.start
+        if isinstance(self.motion, VibratingStretch):
+            return np.asarray(span * self.motion.rule.map_time(np.linspace(0.0, 1.0, _STRETCH_POINTS)))
+        if isinstance(self.motion, Apart):
+            return np.linspace(0.0, span, _GAP_POINTS)
+        lowest = float(self.system.angular_frequency[self.system.vibrating].min(initial=np.inf))
+        early = min(span, _PERIODS * 2.0 * np.pi / lowest) if np.isfinite(lowest) else 0.0
+        return np.concatenate([np.linspace(0.0, early, _FREE_POINTS)[:-1], np.linspace(early, span, _LATER_POINTS)])
+
+    @property
+    def spent_after(self) -> Floats:
+        """Energy lost by its end [J], as in `spent`."""
+        if isinstance(self.motion, VibratingStretch):
+            (contact,), lost = self.motion.contacts, self.motion.lost
+            local = contact.local
+            before, now = np.maximum(contact.approach[[0, -1]], local.release_level)
+            plastic = float(local.plastic_work(now) - local.plastic_work(before)) if local.law.yields else 0.0
+            return np.asarray(self.spent + np.append(lost, plastic))
+        return np.asarray(self.spent + np.append(self.motion.lost_by(np.array([self.end - self.start]))[0], 0.0))
+
+    def state(self, time: Floats) -> State:
+        """Return the state at times since the start [s] (T,)."""
+        return self.moving.state(time)
+
+
+def vibrating_timeline(legs: Sequence[Leg], lying: Lying | None, end: float) -> list[VibratingSegment]:
+    """Return the history of one drop as segments in order.
+
+    Parameters
+    ----------
+    legs : sequence of Leg
+        Its flights and visits.
+    lying : Lying or None
+        How it lies, if it comes to rest.
+    end : float
+        When the run ends [s].
+    """
+    segments: list[VibratingSegment] = []
+    spent = np.zeros(legs[0].motions[0].system.number + 2)
+    for leg in legs:
+        touch = float(leg.flight_end[0])
+        segments.append(VibratingSegment(float(leg.flight.start[0]), touch, leg.motions[0], spent))
+        spent = segments[-1].spent_after
+        for piece in leg.contact.pieces if leg.contact is not None else ():
+            begin = touch + float(piece.start[0])
+            assert isinstance(piece.motion, (VibratingStretch, Apart))
+            segments.append(VibratingSegment(begin, begin + piece.motion.length, piece.motion, spent))
+            spent = segments[-1].spent_after
+    if lying is not None:
+        segments.append(VibratingSegment(segments[-1].end, end, lying, spent))
+    return segments

@@ -1,1 +1,0 @@
-"""Mesh files of other programs: read, written, and made from geometry."""

@@ -1,0 +1,221 @@
+"""The contact of a drop as expressions that Adams evaluates at run time, in millimetres, kilograms, newtons and seconds."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+
+from vibroimpact.calibration.speed_function import SpeedFunction
+from vibroimpact.contact.hysteretic import HystereticLaw
+from vibroimpact.contact.law import ContactLaw, contact_laws
+from vibroimpact.contact.laws.adams_impact import AdamsImpact
+from vibroimpact.contact.laws.hertz import Hertz
+from vibroimpact.errors import InputError
+from vibroimpact.exporting.contact_alone import approach_speeds
+from vibroimpact.exporting.drop import Drop
+
+_ANY_PENETRATION = 1e-4
+"""Of full damping where there is no damping [m]; IMPACT asks for one above zero."""
+
+
+class Names(NamedTuple):
+    """How a file refers to what the expressions read: by number in a dataset, by name in Adams View."""
+
+    centre: str
+    spot: str
+    sensor: str
+    speed: str
+    damping: str
+
+    @property
+    def height(self) -> str:
+        """The height of the sphere's centre over the plate [mm]."""
+        return f"DZ({self.centre}, {self.spot}, {self.spot})"
+
+    @property
+    def velocity(self) -> str:
+        """Its velocity upwards [mm/s]."""
+        return f"VZ({self.centre}, {self.spot}, {self.spot}, {self.spot})"
+
+
+@dataclass(frozen=True)
+class AdamsContact:
+    """A contact law in Adams' units, its expressions still without names.
+
+    `damping` is the coefficient C [N s/mm] of IMPACT, or the factor D [-] of a hysteretic law: a number, or an expression of
+    `speed`, the held approach speed [mm/s]; `meaning` says which and how it came about. `penetration` [mm] is None of a hysteretic law.
+    """
+
+    radius: float
+    gravity: float
+    first_speed: float
+    stiffness: float
+    exponent: float
+    penetration: float | None
+    damping: str
+    varies: bool
+    meaning: str
+
+    @property
+    def holds_speed(self) -> bool:
+        """Does the force need the approach speed of the contact under way?"""
+        return self.varies or self.penetration is None
+
+    def gap(self, names: Names) -> str:
+        """Return the distance of the surfaces [mm], negative in contact."""
+        return f"{names.height} - {number(self.radius)}"
+
+    def coming_speed(self, names: Names) -> str:
+        """Return the speed that the sphere will next touch with [mm/s], right at any moment of a flight: its energy does not change."""
+        return f"SQRT({names.velocity}**2 + {number(2.0 * self.gravity)} * MAX({self.gap(names)}, 0.0))"
+
+    def held_speed(self, names: Names) -> str:
+        """Return the approach speed of the contact under way [mm/s]; the first one as long as the sensor has not fired."""
+        first = number(self.first_speed)
+        return f"IF(SENVAL({names.sensor}): {first}, {first}, SENVAL({names.sensor}))"
+
+    def damping_now(self, names: Names) -> str:
+        """Return the damping as an expression of the held approach speed."""
+        return self.damping.replace("speed", f"VARVAL({names.speed})")
+
+    def force(self, names: Names) -> str:
+        """Return the contact force [N]."""
+        height, velocity = names.height, names.velocity
+        stiffness, exponent, radius = number(self.stiffness), number(self.exponent), number(self.radius)
+        damping = f"VARVAL({names.damping})" if self.varies else self.damping
+        if self.penetration is not None:
+            return f"IMPACT({height}, {velocity}, {radius}, {stiffness}, {exponent}, {damping}, {number(self.penetration)})"
+        return f"{stiffness} * MAX({radius} - {height}, 0.0)**{exponent} * (1.0 - {damping} * {velocity} / VARVAL({names.speed}))"
+
+    def readings(self, names: Names, force: str) -> dict[int, tuple[str, str]]:
+        """Return title and expression of what a run is asked for, by the column of a request; the first and fifth are magnitudes.
+
+        Height [mm], velocity [mm/s] and the force [N], which the file calls `force`; approach speed and damping where they are held.
+        """
+        asked = {2: ("height", names.height), 3: ("velocity", names.velocity), 4: ("force", f"SFORCE({force}, 0, 4, {names.spot})")}
+        if self.holds_speed:
+            asked[6] = ("approach_speed", f"VARVAL({names.speed})")
+        if self.varies:
+            asked[7] = ("damping", f"VARVAL({names.damping})")
+        return asked
+
+
+def adams_contact(drop: Drop) -> AdamsContact:
+    """Return the contact of a drop for Adams.
+
+    Raises
+    ------
+    InputError
+        If its law can't be written, or changes from impact to impact in another way than by its damping.
+
+    Examples
+    --------
+    >>> from vibroimpact.materials import find_material
+    >>> steel, law = find_material("steel"), AdamsImpact(stiffness=1e9, damping_max=150.0)
+    >>> drop = Drop(name="a drop", radius=0.025, mass=0.1, sphere_material=steel, plate_material=steel, height=1.0, gravity=9.8,
+    ...             laws=(law,), end_time=1.0, impacts={"approach_speed_m_s": np.array([4.4])})
+    >>> round(adams_contact(drop).stiffness, 6), adams_contact(drop).damping
+    (31622.776602, '0.15')
+    """
+    speeds = approach_speeds(drop)
+    laws = drop.laws[: len(speeds)]
+    law = laws[0]
+    if not isinstance(law, (AdamsImpact, Hertz, HystereticLaw)):
+        hysteretic = ", ".join(name for name, kind in contact_laws().items() if issubclass(kind, HystereticLaw))
+        raise InputError(
+            f"{law.name} can't be written for Adams; adams-impact, hertz and the laws with hysteretic damping ({hysteretic}) can. "
+            '"vibroimpact calibrate" finds the damping of adams-impact that achieves the same restitution'
+        )
+    varies = drop.function is not None or len({_damping(one) for one in laws}) > 1
+    if drop.function is not None:
+        damping, meaning = _by_function(law, *drop.function)
+    elif varies:
+        damping, meaning = _by_steps([_damping(one) for one in laws], speeds)
+    else:
+        damping, meaning = number(_damping(law)), "the same in every impact"
+    for one in laws[1:]:
+        if _spring(one) != _spring(law):
+            raise InputError("Adams' contact can change its damping from impact to impact, and nothing else", "laws")
+    stiffness, exponent, penetration = _spring(law)
+    return AdamsContact(
+        radius=1e3 * drop.radius,
+        gravity=1e3 * drop.gravity,
+        first_speed=1e3 * float(np.sqrt(drop.speed**2 + 2.0 * drop.gravity * max(drop.height - drop.radius, 0.0))),
+        stiffness=stiffness / 1000.0**exponent,
+        exponent=exponent,
+        penetration=None if penetration is None else 1e3 * penetration,
+        damping=damping,
+        varies=varies,
+        meaning=meaning,
+    )
+
+
+def number(value: float) -> str:
+    """Return a number in 15 digits as Adams takes it: with a point, and an exponent in capitals.
+
+    Examples
+    --------
+    >>> number(1e-05), number(25.0), number(0.1 + 0.2), number(5), number(1e22)
+    ('1.0E-05', '25.0', '0.3', '5.0', '1.0E+22')
+    """
+    mantissa, _, exponent = repr(float(f"{value:.15g}")).partition("e")
+    return (mantissa if "." in mantissa else f"{mantissa}.0") + (f"E{exponent}" if exponent else "")
+
+
+def numbers(values: Sequence[float]) -> str:
+    """Return numbers as a list."""
+    return ", ".join(map(number, values))
+
+
+def titles(readings: Mapping[int, tuple[str, str]]) -> str:
+    """Return the titles of all columns up to the last that is read, empty where none is."""
+    return ", ".join(f'"{readings.get(column, ("",))[0]}"' for column in range(1, max(readings) + 1))
+
+
+def _spring(law: ContactLaw) -> tuple[float, float, float | None]:
+    """Return stiffness [N/m^n], exponent and penetration of full damping [m]."""
+    assert isinstance(law, (AdamsImpact, Hertz, HystereticLaw))
+    penetration = None if isinstance(law, HystereticLaw) else float(getattr(law, "full_damping_penetration", _ANY_PENETRATION))
+    return float(law.stiffness), float(law.exponent), penetration
+
+
+def _damping(law: ContactLaw) -> float:
+    """Return the largest damping [N s/mm], or the factor of a hysteretic law."""
+    if isinstance(law, HystereticLaw):
+        return float(law.damping_factor)
+    return float(getattr(law, "damping_max", 0.0)) / 1000.0
+
+
+def _by_function(law: ContactLaw, name: str, function: SpeedFunction) -> tuple[str, str]:
+    """Return the damping as a polynomial of the held approach speed; never below zero, which IMPACT does not take."""
+    if not (isinstance(law, AdamsImpact) and name == "damping_max"):
+        raise InputError(
+            f"of {law.name}, {name} as a function of the approach speed can't be written for Adams; damping_max of adams-impact can"
+        )
+    # from N s/m over (m/s)^k to N s/mm over (mm/s)^k
+    factors = [coefficient / 1000.0 ** (power + 1) for power, coefficient in enumerate(function.coefficients)]
+    polynomial = number(factors[-1])
+    for factor in factors[-2::-1]:
+        polynomial = f"{number(factor)} + speed * ({polynomial})"
+    fitted = f"{function.slowest:.4g} to {function.fastest:.4g} m/s"
+    return f"MAX({polynomial}, 0.0)", f"a polynomial of the approach speed, fitted over {fitted}"
+
+
+def _by_steps(dampings: Sequence[float], speeds: Sequence[float]) -> tuple[str, str]:
+    """Return the damping as steps of the held approach speed, with edges midway between the speeds of the impacts."""
+    for impact, (fast, slow) in enumerate(pairwise(speeds[: len(dampings)]), 1):
+        if not slow < fast:
+            raise InputError(
+                f"impact {impact + 1} is not slower than impact {impact}, so that Adams can't tell their dampings apart by the "
+                "approach speed; give one damping for all, or a function of the speed",
+                "laws",
+            )
+    steps = number(dampings[-1])
+    for damping, (fast, slow) in reversed(list(zip(dampings[:-1], pairwise(speeds), strict=False))):
+        edge = number(1000.0 * 0.5 * (fast + slow))
+        steps = f"IF(speed - {edge}: {steps}, {number(damping)}, {number(damping)})"
+    return steps, "one value an impact, told apart by the approach speed; the edges lie midway between the speeds of neighbouring impacts"

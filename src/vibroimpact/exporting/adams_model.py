@@ -1,0 +1,190 @@
+"""What an Adams model of a drop holds, in Adams' units MMKS: millimetres, kilograms, newtons and seconds."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from textwrap import wrap
+from typing import NamedTuple
+
+from vibroimpact.exporting.adams_contact import AdamsContact, adams_contact
+from vibroimpact.exporting.contact_alone import first_contact, laws_of_impacts, shared_notes
+from vibroimpact.exporting.drop import Drop
+from vibroimpact.files.plain_names import identifier, plain_words
+from vibroimpact.materials import Material
+
+_STEPS, _OUTPUTS = 50, 20  # a contact, at least
+_LONGEST_NAME = 40
+
+_OWN_NAMES = {
+    *("ground", "spot", "corner", "plate", "sphere", "cm", "ball"),
+    *("touch", "approach_speed", "damping", "contact", "gravity", "motion", "drop"),
+}
+"""What else has a name in the model."""
+
+LINE = 80
+"""Columns of a line, at most."""
+
+ACCURACY = 1e-6
+"""Error that the integrator is allowed; of displacements [mm]."""
+
+SENSOR_ERROR = 1e-4
+"""How far from first touch the sensor may still fire [mm]: 1/1000 of Adams' penetration of full damping."""
+
+TESTED = (
+    "a strict parser of the documented syntax, which integrates the contact of what it reads; restitution, peak force and rebound "
+    "heights of vibroimpact's drops between rigid bodies within 1e-7. No Adams was run"
+)
+
+
+class MaterialData(NamedTuple):
+    """A material: density [kg/mm^3], Young's modulus [N/mm^2], Poisson's ratio."""
+
+    name: str
+    density: float
+    youngs_modulus: float
+    poissons_ratio: float
+
+
+@dataclass(frozen=True)
+class AdamsModel:
+    """The model, with the plate's upper surface at z = 0 and z upwards; `plate` [mm] is None where its size is not known."""
+
+    name: str
+    title: str
+    contact: AdamsContact
+    mass: float
+    centre: tuple[float, float, float]
+    velocity: float
+    plate: tuple[float, float, float] | None
+    materials: tuple[MaterialData, ...]
+    notes: tuple[str, ...]
+    end: float
+    longest_step: float
+    output_step: float
+
+    @property
+    def radius(self) -> float:
+        """Radius of the sphere [mm]."""
+        return self.contact.radius
+
+    @property
+    def inertia(self) -> float:
+        """Moment of inertia of the solid sphere about any axis through its centre [kg mm^2]."""
+        return 0.4 * self.mass * self.radius**2
+
+    @property
+    def corner(self) -> tuple[float, float, float]:
+        """The lower corner of the plate from which it reaches along x, y and z [mm]."""
+        assert self.plate is not None
+        length, width, thickness = self.plate
+        return -0.5 * length, -0.5 * width, -thickness
+
+
+def adams_model(drop: Drop) -> AdamsModel:
+    """Return the model of a drop.
+
+    Raises
+    ------
+    InputError
+        If its contact law can't be written, or it has no impact.
+    """
+    contact = adams_contact(drop)
+    duration, _ = first_contact(laws_of_impacts(drop)[0], drop)
+    both = [drop.sphere_material] if drop.sphere_material == drop.plate_material else [drop.sphere_material, drop.plate_material]
+    x, y = drop.position
+    return AdamsModel(
+        name=legal_name(drop.name),
+        # without underscores, for the remark adams_view_name='...' names what comes next
+        title=f'the case "{plain_words(drop.name).replace("_", " ")}"',
+        contact=contact,
+        mass=drop.mass,
+        centre=(1e3 * x, 1e3 * y, 1e3 * drop.height),
+        velocity=-1e3 * drop.speed,
+        plate=None if drop.plate_size is None else (1e3 * drop.plate_size[0], 1e3 * drop.plate_size[1], 1e3 * drop.plate_size[2]),
+        materials=_material_data([material for material in both if _is_elastic(material)]),
+        notes=tuple(shared_notes(drop)),
+        end=drop.end_time,
+        longest_step=_round_down(duration / _STEPS),
+        output_step=_round_down(duration / _OUTPUTS),
+    )
+
+
+def remarks(model: AdamsModel) -> list[str]:
+    """Return what the file says of itself, a line each."""
+    contact = model.contact
+    lines = [
+        "written by vibroimpact; units: mm, kg, N, s (MMKS); z is up, the plate's upper surface is z = 0",
+        "the plate is part of the ground; both bodies are rigid, and do not use the materials",
+        f"stiffness in N/mm^n = that in N/m^n over 1000^n, n = {contact.exponent:g}",
+        ("largest damping C [N s/mm]: " if contact.penetration is not None else "hysteretic damping factor D [-]: ") + contact.meaning,
+        "the longest step is 1/50 of the first contact, the output step 1/20: with coarser ones, such as 20000 outputs in 5 s, "
+        "a contact gets one output, and the largest force is missed",
+    ]
+    if contact.holds_speed:
+        lines.append(
+            "the sensor is true while the sphere is free; it then stores the speed of the next touch, from the energy, which is "
+            "the same at any moment of a flight; in contact it is false, and the value is held"
+        )
+    return [*lines, *model.notes]
+
+
+def legal_name(text: str) -> str:
+    """Return a name that Adams takes: letters, digits and underscores, no digit first.
+
+    Examples
+    --------
+    >>> legal_name("the paper's Type 1"), legal_name("4 m"), legal_name("")
+    ('the_paper_s_Type_1', 'drop_4_m', 'drop')
+    """
+    name = identifier(text, "A-Za-z0-9", "drop", longest=_LONGEST_NAME)
+    return f"drop_{name}" if name[0].isdigit() else name
+
+
+def comments(model: AdamsModel) -> list[str]:
+    """Return the comment lines at the head of a file."""
+    return [f"! {line}" for remark in (model.title, *remarks(model)) for line in wrap(remark, LINE - 2, break_on_hyphens=False)]
+
+
+def broken(text: str, width: int) -> list[str]:
+    """Return an expression in lines of at most `width` columns, broken at its blanks.
+
+    Examples
+    --------
+    >>> broken("A + B * (C - D)", 8)
+    ['A + B *', '(C - D)']
+    """
+    lines = [""]
+    for word in text.split(" "):
+        if lines[-1] and len(lines[-1]) + 1 + len(word) > width:
+            lines.append(word)
+        else:
+            lines[-1] = f"{lines[-1]} {word}".lstrip()
+    return lines
+
+
+def _is_elastic(material: Material) -> bool:
+    return math.isfinite(material.density) and math.isfinite(material.youngs_modulus)
+
+
+def _material_data(materials: list[Material]) -> tuple[MaterialData, ...]:
+    """Return materials under names that differ from each other, and from what else the model has, however they are written."""
+    names: list[str] = []
+    for material in materials:
+        name = legal_name(material.name or "material")
+        taken = name.lower() in _OWN_NAMES or name.lower() in (one.lower() for one in names)
+        names.append(f"{name}_material_{len(names) + 1}" if taken else name)
+    each = zip(names, materials, strict=True)
+    return tuple(MaterialData(name, 1e-9 * one.density, 1e-6 * one.youngs_modulus, one.poissons_ratio) for name, one in each)
+
+
+def _round_down(value: float) -> float:
+    """Return a number with two digits that is not larger.
+
+    Examples
+    --------
+    >>> _round_down(5.39e-6), _round_down(0.0999)
+    (5.3e-06, 0.099)
+    """
+    scale = 10.0 ** (1 - math.floor(math.log10(value)))
+    return float(f"{math.floor(value * scale) / scale:.1e}")

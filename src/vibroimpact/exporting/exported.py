@@ -1,0 +1,124 @@
+"""What is exported of a folder: the drop that it holds, as plain data."""
+
+from __future__ import annotations
+
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+from vibroimpact.calibration.file import CALIBRATION
+from vibroimpact.calibration.speed_function import SpeedFunction
+from vibroimpact.cases.case import Case
+from vibroimpact.cases.reader import load_case, read_case
+from vibroimpact.cases.rigid import contact_laws_of, deforms, elastic_names, mass_of_sphere, rigid_problem
+from vibroimpact.errors import InputError
+from vibroimpact.exporting.drop import Drop
+from vibroimpact.files.check_sums import CHECK_SUMS, DamageError, check_file, read_sealed
+from vibroimpact.files.hdf5 import why
+from vibroimpact.files.recover import recover
+from vibroimpact.results.folder import read_result
+from vibroimpact.results.result import Result, result_of
+
+
+def drop_of(directory: str | PathLike[str]) -> Drop:
+    """Return the drop that a result folder holds, or the one that a calibration folder states, simulated.
+
+    Parameters
+    ----------
+    directory : path
+        A result folder or a calibration folder.
+
+    Raises
+    ------
+    InputError
+        If it is neither, a file of it is missing or damaged, or it is the result of a problem made in Python, which has no case.
+    """
+    folder = Path(directory)
+    recover(folder)
+    if (folder / CALIBRATION).is_file():
+        return _of_calibration(folder)
+    result = read_result(folder)
+    if not result.case:
+        raise InputError(f"{folder}: this run has no case.toml, for its problem was made in Python; what is exported needs its case")
+    try:
+        return drop_of_result(result, read_case(result.case))
+    except InputError as error:
+        raise InputError(f"{folder / 'case.toml'}: {error}") from None
+
+
+def drop_of_result(result: Result, case: Case, function: tuple[str, SpeedFunction] | None = None) -> Drop:
+    """Return a run as a drop, with the same between rigid bodies where the run is not one of them, or not one under the function.
+
+    Parameters
+    ----------
+    result : Result
+        What came of it.
+    case : Case
+        What was run.
+    function : tuple of str and SpeedFunction, optional
+        A parameter of the contact law as a function of the approach speed.
+    """
+    _check_flat(case)
+    found, dropped = result.deflection, case.drop
+    surface = {} if found is None else {"time": found.time, "x": found.x, "y": found.y, "height": found.height.astype(float)}
+    if found is not None:
+        surface["sphere_position"] = found.sphere_position
+    return Drop(
+        name=result.name,
+        radius=case.sphere.radius,
+        mass=mass_of_sphere(case),
+        sphere_material=case.sphere.material,
+        plate_material=case.plate.material,
+        plate_size=case.plate.size,
+        position=dropped.position if found is None else found.contact,  # which may be a set of a mesh that was brought
+        height=case.sphere.radius if dropped.height is None else dropped.height,
+        speed=dropped.speed or 0.0,
+        gravity=dropped.gravity,
+        laws=contact_laws_of(case),
+        function=function,
+        elastic=tuple(elastic_names(case)),
+        local_element=case.contact.local.local_compliance == "identified",
+        finite_sphere=case.contact.local.finite_sphere,
+        rigid=rigid_problem(case) if deforms(case) or function is not None else None,
+        end_time=float(result.history["time_s"][-1]),
+        impacts=result.impacts,
+        history=result.history,
+        signals=result.signals,
+        surface=surface,
+    )
+
+
+def _check_flat(case: Case) -> None:
+    """Raise if a sphere falls on another one, which no format here holds."""
+    if case.plate.radius is not None:
+        raise InputError("what is exported falls on a flat plate, and this sphere falls on another", "plate.radius")
+
+
+def _of_calibration(folder: Path) -> Drop:
+    """Return the drop of a calibration: its case, simulated, and the function that was fitted."""
+    from vibroimpact.dynamics.simulate import simulate
+
+    name = CALIBRATION
+    try:
+        table = read_sealed(folder / name)
+        function = _fitted(table)
+        name = "case.toml"
+        check_file(folder / name, table.get(CHECK_SUMS, {}).get(name))
+    except DamageError as error:
+        raise InputError(f"{folder / name}: {error}; make the calibration anew") from None
+    except KeyError as error:
+        raise InputError(f"{folder / name}: the file is damaged: it has no {error}; make the calibration anew") from None
+    except (OSError, ValueError, TypeError, AttributeError) as error:
+        raise InputError(f"{folder / name}: the file is missing or damaged: {why(error)}; make the calibration anew") from None
+    case = load_case(folder / name)
+    _check_flat(case)
+    return drop_of_result(result_of(simulate(case.to_problem())), case, function)
+
+
+def _fitted(found: dict[str, Any]) -> tuple[str, SpeedFunction] | None:
+    """Return the function of a calibration; None where it is one number, which the case has, or of no parameter of the law."""
+    fit = found["fit"]
+    coefficients = tuple(float(one) for one in fit["coefficients"])
+    if len(coefficients) == 1 or "." in found["parameter"]:
+        return None
+    return str(found["parameter"]), SpeedFunction(coefficients, float(fit["from_speed_m_s"]), float(fit["to_speed_m_s"]))

@@ -1,0 +1,229 @@
+"""EXUDYN: a Python script with a mass above a contact that is a function of the user's, exact for most laws."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import fields
+
+from vibroimpact.contact.law import ContactLaw
+from vibroimpact.contact.laws.linear_spring_dashpot import LinearSpringDashpot
+from vibroimpact.errors import InputError
+from vibroimpact.exporting.contact_alone import approach_speeds, first_contact, shared_notes
+from vibroimpact.exporting.drop import Drop
+from vibroimpact.exporting.export_format import ExportFormat
+from vibroimpact.exporting.rigid_drop import as_rigid
+from vibroimpact.exporting.script_text import comment_lines, file_name
+from vibroimpact.files.plain_names import plain_words
+from vibroimpact.ranges import Range
+
+# the damping factor D of the laws F = K delta^n (1 + D rate / approach), by the restitution e that is asked for
+_FACTORS = {
+    "flores": "1.6 * (1.0 - e) / e",
+    "gonthier": "(1.0 - e * e) / e",
+    "herbert-mcwhannell": "6.0 * (1.0 - e) / ((2.0 * e - 1.0) ** 2 + 3.0)",
+    "hu-guo": "1.5 * (1.0 - e) / e",
+    "hunt-crossley": "1.5 * (1.0 - e)",
+    "lankarani-nikravesh": "0.75 * (1.0 - e * e)",
+    "lee-wang": "0.75 * (1.0 - e)",
+    "safaeifar": "1.25 * (1.0 - e) / e",
+    "zhiying-qishao": "0.75 * (1.0 - e * e) * math.exp(2.0 * (1.0 - e))",
+}
+
+_DAMPING_RATIO = "ratio = -math.log(p.restitution) / math.hypot(math.pi, math.log(p.restitution))"
+_LINEAR = f"{_DAMPING_RATIO}\nreturn p.stiffness * delta + 2.0 * ratio * math.sqrt(p.stiffness * p.effective_mass) * rate"
+
+# without adams-poisson: its force jumps at the deepest point, where an integrator with adaptive steps is caught
+_FORCES = {
+    "adams-impact": """\
+s = min(delta / p.full_damping_penetration, 1.0)
+damping = p.damping_max * s * s * (3.0 - 2.0 * s)
+return max(0.0, p.stiffness * delta**p.exponent + damping * rate)""",
+    "anagnostopoulos": _LINEAR,
+    "hertz": "return p.stiffness * delta**p.exponent",
+    "jankowski": """\
+e = p.restitution
+ratio = 4.5 * math.sqrt(5.0) * (1.0 - e * e) / (e * (e * (9.0 * math.pi - 16.0) + 16.0))
+damping = 2.0 * ratio * math.sqrt(p.effective_mass * p.stiffness) * delta**0.25
+return p.stiffness * delta**1.5 + (damping * rate if rate > 0.0 else 0.0)""",
+    "kuwabara-kono": "return max(0.0, p.stiffness * (delta**1.5 + 1.5 * p.dissipation_time * math.sqrt(delta) * rate))",
+    "linear-spring-dashpot": _LINEAR,
+    "tsuji": f"""\
+{_DAMPING_RATIO}
+damping = math.sqrt(5.0 * p.effective_mass * p.stiffness) * ratio * delta**0.25
+return p.stiffness * delta**1.5 + damping * rate""",
+    **{
+        name: f"e = p.restitution\nfactor = {factor}\nreturn p.stiffness * delta**p.exponent * (1.0 + factor * rate / approach)"
+        for name, factor in _FACTORS.items()
+    },
+}
+
+
+def _force(law: ContactLaw) -> str:
+    """Return the body of the function that gives the force of a law."""
+    if isinstance(law, LinearSpringDashpot) and law.damping is not None:
+        return "return p.stiffness * delta + p.damping * rate"
+    if law.name not in _FORCES:
+        raise InputError(
+            f"{law.name} can't be written for EXUDYN; {', '.join(sorted(_FORCES))} can. "
+            'Take one of them, with the parameter that "vibroimpact calibrate" finds'
+        )
+    return _FORCES[law.name]
+
+
+def _parameters(drop: Drop) -> str:
+    """Return the lines that tell the parameters of the law: of each the values of the impacts, and a function if it has one."""
+    rows = []
+    for item in fields(drop.laws[0]):
+        values = [getattr(law, item.name) for law in drop.laws]
+        if values[0] is None or item.metadata["memory"]:
+            continue
+        given = [float(value) for value in values] if len(set(values)) > 1 else [float(values[0])]
+        rows.append(f'    "{item.name}": {given},  # {item.metadata["meaning"]}, {item.metadata["unit"] or "-"}')
+    return "\n".join(rows)
+
+
+def _function(drop: Drop) -> str:
+    if drop.function is None:
+        return ""
+    name, polynomial = drop.function
+    terms = " + ".join(f"{value!r} * approach**{power}" for power, value in enumerate(map(float, polynomial.coefficients)))
+    allowed: Range = next(item for item in fields(drop.laws[0]) if item.name == name).metadata["range"]
+    low, high = float(allowed.clip(-math.inf)), float(allowed.clip(math.inf))
+    inside = f"max({terms}, {low!r})" if math.isfinite(low) else terms
+    inside = f"min({inside}, {high!r})" if math.isfinite(high) else inside
+    return f"    p.{name} = {inside}  # of the approach speed, fitted from {polynomial.slowest:.6g} to {polynomial.fastest:.6g} m/s\n"
+
+
+def _write(drop: Drop) -> Mapping[str, bytes]:
+    law, speeds = drop.laws[0], approach_speeds(drop)
+    body = "\n".join(f"    {line}" for line in _force(law).splitlines())
+    duration, _ = first_contact(law, drop)
+    return {
+        file_name(drop, "-exudyn.py"): f'''\
+"""A sphere that falls on a plate, for EXUDYN 1.13 or later. Units: m, kg, s, N."""
+# The contact law is {law.name}: {law.equation}
+# The case "{plain_words(drop.name)}"
+{comment_lines(shared_notes(drop))}
+import math
+from types import SimpleNamespace
+
+import exudyn as exu
+from exudyn.itemInterface import (
+    CoordinateSpringDamper,
+    LoadCoordinate,
+    MarkerNodeCoordinate,
+    Mass1D,
+    Node1D,
+    NodePointGround,
+)
+
+RADIUS, MASS, GRAVITY = {drop.radius!r}, {drop.mass!r}, {drop.gravity!r}
+HEIGHT, SPEED = {drop.height!r}, {drop.speed!r}  # of the centre above the plate, and downwards
+IMPACTS = {len(speeds)}
+CONTACT = {duration!r}  # about how long a contact takes, s
+
+# the parameters of the law, one value an impact; the last goes on
+PARAMETERS = {{
+{_parameters(drop)}
+}}
+
+
+def parameters(impact, approach):
+    """Return the parameters of an impact, counted from 0, at an approach speed."""
+    p = SimpleNamespace(**{{name: values[min(impact, len(values) - 1)] for name, values in PARAMETERS.items()}})
+{_function(drop)}    return p
+
+
+def contact_force(delta, rate, approach, p):
+    """Return the force that pushes the sphere off the plate, at an indentation delta > 0 that grows at a rate."""
+{body}
+
+
+now = SimpleNamespace(approach=0.0, p=None, in_contact=False, largest=0.0)
+
+
+def spring_force(mbs, t, item, position, velocity, *unused):
+    """The force of the contact as EXUDYN takes it: positive pulls the sphere down."""
+    return -contact_force(-position, -velocity, now.approach, now.p) if now.in_contact and position < 0.0 else 0.0
+
+
+def goes_on(mbs, t):
+    """Before each step: stop once the surfaces are apart."""
+    gap, velocity = state()
+    if now.in_contact and gap < 0.0:
+        now.largest = max(now.largest, contact_force(-gap, -velocity, now.approach, now.p))
+    return not (now.in_contact and gap > 0.0 and velocity > 0.0)
+
+
+container = exu.SystemContainer()
+mbs = container.AddSystem()
+ground = mbs.AddNode(NodePointGround())
+node = mbs.AddNode(Node1D(initialCoordinates=[HEIGHT - RADIUS], initialVelocities=[-SPEED]))  # the gap
+mbs.AddObject(Mass1D(mass=MASS, nodeNumber=node))
+plate = mbs.AddMarker(MarkerNodeCoordinate(nodeNumber=ground, coordinate=0))
+sphere = mbs.AddMarker(MarkerNodeCoordinate(nodeNumber=node, coordinate=0))
+mbs.AddObject(CoordinateSpringDamper(markerNumbers=[plate, sphere], springForceUserFunction=spring_force))
+mbs.AddLoad(LoadCoordinate(markerNumber=sphere, load=-MASS * GRAVITY))
+mbs.SetPreStepUserFunction(goes_on)
+mbs.Assemble()
+
+
+def state():
+    """Return the gap and the velocity, upwards."""
+    data = mbs.systemData
+    return float(data.GetODE2Coordinates()[0]), float(data.GetODE2Coordinates_t()[0])
+
+
+def advance(duration, steps):
+    """Integrate from the state now, in so many steps or more."""
+    settings = exu.SimulationSettings()
+    settings.solution.file.write = False
+    settings.timeIntegration.endTime = duration
+    settings.timeIntegration.numberOfSteps = steps
+    settings.timeIntegration.minimumStepSize = 1e-9 * CONTACT
+    settings.timeIntegration.relativeTolerance = 1e-10
+    settings.timeIntegration.absoluteTolerance = 1e-14
+    mbs.SolveDynamic(settings, solverType=exu.DynamicSolverType.DOPRI5)
+    initial = exu.ConfigurationType.Initial
+    mbs.systemData.SetODE2Coordinates(mbs.systemData.GetODE2Coordinates(), initial)
+    mbs.systemData.SetODE2Coordinates_t(mbs.systemData.GetODE2Coordinates_t(), initial)
+
+
+def speed_at_touch():
+    """Return the speed that the sphere has, or had, where the gap is zero."""
+    gap, velocity = state()
+    return math.sqrt(velocity**2 + 2.0 * GRAVITY * gap)
+
+
+gap, velocity = HEIGHT - RADIUS, -SPEED
+for impact in range(IMPACTS):
+    if gap > 0.0:
+        advance((velocity + math.sqrt(velocity**2 + 2.0 * GRAVITY * gap)) / GRAVITY, 1)
+        gap, velocity = state()
+    now.in_contact, now.approach, now.largest = True, -velocity, 0.0
+    now.p = parameters(impact, now.approach)
+    advance(20.0 * CONTACT, 20000)
+    now.in_contact = False
+    gap, velocity = state()
+    if gap <= 0.0:
+        print("the sphere stays in contact")
+        break
+    speed = speed_at_touch()
+    print(
+        f"impact {{impact + 1}}: approach speed {{now.approach:.9g}} m/s, restitution {{speed / now.approach:.9g}}, "
+        f"rebound height {{RADIUS + speed**2 / (2.0 * GRAVITY):.9g}} m, largest force {{now.largest:.9g}} N"
+    )
+'''.encode()
+    }
+
+
+FORMAT = ExportFormat(
+    name="exudyn",
+    program="EXUDYN",
+    files="a Python script (.py)",
+    tested="run with EXUDYN 1.13.6, beside vibroimpact's drops between rigid bodies",
+    write=_write,
+    notes=shared_notes,
+    told=as_rigid,
+)

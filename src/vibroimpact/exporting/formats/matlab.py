@@ -1,0 +1,145 @@
+"""MATLAB: one .mat file with structs of everything that a drop is and what came of it, and their units."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import fields
+from io import BytesIO
+from typing import Any
+
+import numpy as np
+
+from vibroimpact._version import __version__
+from vibroimpact.contact.law import unit_of
+from vibroimpact.exporting.drop import Drop
+from vibroimpact.exporting.drop_tables import Table, tables_of
+from vibroimpact.exporting.export_format import ExportFormat
+from vibroimpact.exporting.script_text import file_name
+from vibroimpact.files.plain_names import one_line, plain_names
+
+_LONGEST = 63
+"""Of a name in MATLAB."""
+_KEYWORDS = (
+    *("break", "case", "catch", "classdef", "continue", "else", "elseif", "end", "for", "function", "global", "if", "otherwise"),
+    *("parfor", "persistent", "return", "spmd", "switch", "try", "while"),
+)
+_HEADER = 116
+"""Bytes of text at the start of a file."""
+
+
+def write(drop: Drop) -> dict[str, bytes]:
+    """Return the file.
+
+    Raises
+    ------
+    InputError
+        If the drop has no tables.
+    """
+    from scipy.io import savemat
+
+    tables = tables_of(drop)
+    units: dict[str, Any] = {
+        name: {column: one.unit for column, one in tables[name].items()} for name in ("impacts", "history") if name in tables
+    }
+    found: dict[str, Any] = {name: _values(tables[name]) for name in units}
+    legal = legal_names(list(drop.signals))
+    plain = plain_names(list(drop.signals))
+    signals = {legal[name]: _signal(drop, name, tables[f"sensors/{plain[name]}"]) for name in drop.signals}
+    if signals:
+        found["signals"] = signals
+    if drop.surface:
+        found["surface"] = {name: np.asarray(values) for name, values in drop.surface.items()}
+        units["surface"] = {name: "s" if name == "time" else "m" for name in drop.surface}
+    found["drop"], units["drop"] = _facts(drop)
+    file = BytesIO()
+    savemat(file, {**found, "units": units}, long_field_names=True, oned_as="column", do_compression=True)
+    text = f"MATLAB 5.0 MAT-file, written by vibroimpact {__version__}".encode().ljust(_HEADER)  # in place of one with the time of day
+    return {file_name(drop, ".mat"): text + file.getvalue()[_HEADER:]}
+
+
+def legal_names(names: list[str]) -> dict[str, str]:
+    """Return for each name one that a field of a struct can have in MATLAB, no two alike.
+
+    Examples
+    --------
+    >>> legal_names(["a1", "2nd sensor", "end", "left/upper"])
+    {'a1': 'a1', '2nd sensor': 's_2nd_sensor', 'end': 's_end', 'left/upper': 'left_upper'}
+    """
+    starts = (plain.replace("-", "_") for plain in plain_names(names).values())
+    legal = [start if re.match("[A-Za-z]", start) and start not in _KEYWORDS else f"s_{start}" for start in starts]
+    found: set[str] = set()
+    numbers: dict[str, int] = {}
+    for place, name in enumerate(legal):
+        tried = start = name[:_LONGEST]
+        while tried in found:
+            numbers[start] = numbers.get(start, 1) + 1
+            tried = f"{name[: _LONGEST - 1 - len(str(numbers[start]))]}_{numbers[start]}"
+        found.add(tried)
+        legal[place] = tried
+    return dict(zip(names, legal, strict=True))
+
+
+def _values(table: Table) -> dict[str, Any]:
+    return {name: np.asarray(column.values, dtype=float) for name, column in table.items()}
+
+
+def _signal(drop: Drop, name: str, table: Table) -> dict[str, Any]:
+    sensor = drop.signals[name].sensor
+    values = dict(zip(("time_s", "value"), _values(table).values(), strict=True))
+    return {
+        **values,
+        "unit": sensor.unit,
+        "quantity": sensor.quantity,
+        "rate_Hz": sensor.rate,
+        "direction": np.array(sensor.direction),
+        "name": one_line(name),
+    }
+
+
+def _facts(drop: Drop) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Return what is dropped on what, and the units."""
+    told: Mapping[str, tuple[Any, str]] = {
+        "name": (one_line(drop.name), ""),
+        "radius": (drop.radius, "m"),
+        "mass": (drop.mass, "kg"),
+        "height": (drop.height, "m"),
+        "speed": (drop.speed, "m/s"),
+        "gravity": (drop.gravity, "m/s2"),
+        "position": (np.array(drop.position), "m"),
+        "plate_size": (np.array(drop.plate_size or ()), "m"),
+        "end_time": (drop.end_time, "s"),
+        "elastic": (", ".join(drop.elastic), ""),
+        "contact_law": (drop.laws[0].name, ""),
+    }
+    facts = {name: value for name, (value, _) in told.items()}
+    units: dict[str, Any] = {name: unit for name, (_, unit) in told.items() if unit}
+    for name in ("sphere", "plate"):
+        material = getattr(drop, f"{name}_material")
+        for key, unit in (("density", "kg/m3"), ("youngs_modulus", "Pa"), ("poissons_ratio", "1")):
+            facts[f"{name}_{key}"], units[f"{name}_{key}"] = getattr(material, key), unit
+    law, law_units = {}, {}
+    for item in fields(drop.laws[0]):
+        values = [getattr(one, item.name) for one in drop.laws]
+        if values[0] is not None and not item.metadata["memory"]:
+            unit = unit_of(item, getattr(drop.laws[0], "exponent", 1))
+            law[item.name], law_units[item.name] = np.asarray(values), unit
+    facts["law"], units["law"] = law, law_units
+    if drop.function is not None:
+        name, function = drop.function
+        facts["function"] = {"parameter": name, "coefficients_lowest_power_first": np.array(function.coefficients)}
+    return facts, units
+
+
+FORMAT = ExportFormat(
+    name="mat",
+    program="MATLAB, GNU Octave",
+    files="one file (.mat) of structs: impacts, history, signals, surface, drop and units",
+    tested="read back with scipy.io.loadmat of SciPy 1.17, values, names and units the same; not with MATLAB itself",
+    write=write,
+    notes=lambda drop: [
+        f'The sensor "{one_line(name)}" is called signals.{legal} in it, a name that MATLAB takes.'
+        for name, legal in legal_names(list(drop.signals)).items()
+        if name != legal
+    ],
+)

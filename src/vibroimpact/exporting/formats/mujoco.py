@@ -1,0 +1,107 @@
+"""MuJoCo: a model in MJCF with a sphere above a plane, whose soft contact is a linear spring and dashpot."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Mapping
+from xml.sax.saxutils import quoteattr
+
+from vibroimpact.contact.laws.adams_impact import AdamsImpact
+from vibroimpact.dynamics.restitution import achieved_restitution
+from vibroimpact.exporting.contact_alone import approach_speeds, clipped_dashpot, first_contact, laws_of_impacts, shared_notes, spring
+from vibroimpact.exporting.drop import Drop
+from vibroimpact.exporting.export_format import ExportFormat
+from vibroimpact.exporting.rigid_drop import as_rigid
+from vibroimpact.exporting.script_text import comment_lines, file_name
+from vibroimpact.files.plain_names import plain_words
+
+_STEPS = 1000
+"""Steps in the first contact: its restitution is then right to 1e-3."""
+
+_IMPEDANCE = 0.9999
+"""The largest that MuJoCo allows; what is missing to 1 is left to the free motion."""
+
+
+def _linear(drop: Drop) -> AdamsImpact:
+    """Return the linear spring and dashpot, which never pulls, with restitution and duration of the drop's first contact."""
+    law, speed = laws_of_impacts(drop)[0], approach_speeds(drop)[0]
+    spring(law, "MuJoCo")
+    restitution = float(achieved_restitution(law, drop.mass, speed))
+    duration, _ = first_contact(law, drop)
+
+    def achieving(stiffness: float) -> AdamsImpact:
+        dashpot = clipped_dashpot(stiffness, 1.0, restitution, drop.mass, speed)
+        depth = speed * math.sqrt(drop.mass / stiffness)
+        return AdamsImpact(stiffness=stiffness, exponent=1.0, damping_max=dashpot, full_damping_penetration=1e-7 * depth)
+
+    # the damping ratio is told by the restitution, so the duration goes with the period
+    trial = drop.mass * (math.pi / duration) ** 2
+    return achieving(trial * (first_contact(achieving(trial), drop)[0] / duration) ** 2)
+
+
+def _write(drop: Drop) -> Mapping[str, bytes]:
+    linear, laws = _linear(drop), laws_of_impacts(drop)
+    duration, force = first_contact(linear, drop)
+    _, own_force = first_contact(laws[0], drop)
+    length, width, _ = drop.plate_size or (0.0, 0.0, 0.0)  # zero: without an edge
+    x, y = (float(value) for value in drop.position)
+    inertia = 0.4 * drop.mass * drop.radius**2
+    comment = f"""\
+{plain_words(drop.name)}. Units: m, kg, s, N.
+The contact law is {laws[0].name}: {laws[0].equation}
+{comment_lines(_notes(drop)).replace("# ", "")}
+solref = -(stiffness / mass), -(damping / mass) of the contact: {linear.stiffness:.9g} N/m and {linear.damping_max:.9g} N s/m.
+Duration of the first contact {duration:.6g} s; largest force {force:.6g} N, where the law has {own_force:.6g} N.
+The sphere's height above the plate is qpos[0], its velocity qvel[0]."""
+    comment = re.sub("-(?=-)", "- ", comment)  # two of them end a comment
+    text = f"""\
+<!--
+{comment}
+-->
+<mujoco model={quoteattr(plain_words(drop.name))}>
+  <option timestep="{duration / _STEPS!r}" gravity="0 0 {-drop.gravity!r}" integrator="Euler" cone="elliptic"/>
+  <default>
+    <geom condim="1" solref="{-linear.stiffness / drop.mass!r} {-linear.damping_max / drop.mass!r}"
+          solimp="{_IMPEDANCE} {_IMPEDANCE} 1 0.5 1"/>
+  </default>
+  <worldbody>
+    <geom name="plate" type="plane" size="{0.5 * length!r} {0.5 * width!r} 1"/>
+    <body name="sphere" pos="{x!r} {y!r} {drop.height!r}">
+      <joint name="height" type="slide" axis="0 0 1" ref="{drop.height!r}"/>
+      <inertial pos="0 0 0" mass="{drop.mass!r}" diaginertia="{inertia!r} {inertia!r} {inertia!r}"/>
+      <geom name="surface" type="sphere" size="{drop.radius!r}"/>
+    </body>
+  </worldbody>
+  <keyframe>
+    <key name="start" qpos="{drop.height!r}" qvel="{-drop.speed!r}"/>
+  </keyframe>
+</mujoco>
+"""
+    return {file_name(drop, ".xml"): text.encode()}
+
+
+def _notes(drop: Drop) -> list[str]:
+    laws, notes = laws_of_impacts(drop), shared_notes(drop)
+    _, exponent = spring(laws[0], "MuJoCo")
+    speed = approach_speeds(drop)[0]
+    notes.append(
+        f"MuJoCo's contact is a linear spring and dashpot that does not pull; it stands for {laws[0].name} and has its restitution and "
+        f"duration at {speed:.6g} m/s, the first impact; the course and the largest force differ."
+    )
+    if exponent != 1.0:
+        notes.append(f"The exponent {exponent:g} of the spring can't be represented, so durations at other speeds differ.")
+    changing = "; damping that changes from impact to impact can't be represented." if len(laws) > 1 else "."
+    notes.append("Its restitution is the same at every speed" + changing)
+    return notes
+
+
+FORMAT = ExportFormat(
+    name="mujoco",
+    program="MuJoCo",
+    files="a model (.xml, MJCF)",
+    tested="run with MuJoCo 3.2.7 and 3.17.0, the first impact beside vibroimpact's between rigid bodies",
+    write=_write,
+    notes=_notes,
+    told=as_rigid,
+)

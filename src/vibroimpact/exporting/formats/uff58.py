@@ -1,0 +1,188 @@
+"""Universal file, dataset 58: signals, and the sphere's motion and force, as functions of time for programs of vibration testing."""
+
+from __future__ import annotations
+
+import math
+import warnings
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+import numpy as np
+
+from vibroimpact._version import __version__
+from vibroimpact.arrays import Floats
+from vibroimpact.errors import InputError
+from vibroimpact.exporting.drop import Drop
+from vibroimpact.exporting.export_format import ExportFormat
+from vibroimpact.exporting.resample import motion_at
+from vibroimpact.exporting.script_text import file_name
+from vibroimpact.files.plain_names import one_line, plain_words
+from vibroimpact.measurements.universal_file import SPHERE_FUNCTIONS
+
+_IN_CONTACT = 20
+"""Samples of the history in the shortest contact, at least: then a half-sine's peak is read to 0.3 %."""
+_MOST_SAMPLES = 2_000_000
+"""Of a function of the history."""
+_SPHERE, _FIRST_SENSOR = 1, 2  # nodes
+_UP = 3  # the direction +z
+_LINE = 80
+"""Letters of a line of text."""
+_MOST_NAMED = 10
+"""Sensors that are told by name."""
+_QUANTITIES = {"displacement": 8, "velocity": 11, "acceleration": 12}
+
+
+@dataclass(frozen=True)
+class _Function:
+    words: str
+    node: int
+    direction: int
+    kind: int  # of data, as dataset 58 numbers them
+    unit: str
+    rate: float
+    values: Floats
+
+
+def write(drop: Drop) -> dict[str, bytes]:
+    """Return the file.
+
+    Raises
+    ------
+    InputError
+        If there is neither a sensor nor a history that can be sampled evenly, or pyuff is not installed.
+    """
+    functions = [*_of_signals(drop), *_of_history(drop)]
+    if not functions:
+        raise InputError(
+            f'"{one_line(drop.name)}" has no sensors, and {_why_no_history(drop)}; there is nothing to write as functions of time'
+        )
+    try:
+        import pyuff
+    except ImportError:
+        raise InputError('universal files need pyuff, which is not installed: pip install "vibroimpact[uff]"') from None
+    with TemporaryDirectory() as folder, warnings.catch_warnings():  # pyuff writes to files alone
+        warnings.simplefilter("ignore", ResourceWarning)  # and leaves it to Python to close them after binary data
+        path = Path(folder, "drop.uff")
+        pyuff.UFF(str(path)).write_sets([_header(drop), _si(), *(_dataset(one, drop) for one in functions)], "overwrite")
+        return {file_name(drop, ".uff"): path.read_bytes()}
+
+
+def history_rate(drop: Drop) -> float | None:
+    """Return at how many samples a second the history is written [Hz]: enough for the shortest contact, on the sensors' times.
+
+    It is a whole multiple of the rate of the fastest sensor; without sensors 1, 2 or 5 times a power of ten, so that the step is
+    exact in the few digits that the format gives it. None if no contact has a duration, or there would be too many samples.
+    """
+    durations = drop.impacts["duration_s"][drop.impacts["duration_s"] > 0.0] if drop.impacts else np.zeros(0)
+    if not len(durations) or not len(drop.history.get("time_s", ())):
+        return None
+    needed = _IN_CONTACT / float(durations.min())
+    if drop.signals:
+        fastest = max(signal.sensor.rate for signal in drop.signals.values())
+        rate = fastest * max(1, math.ceil(needed / fastest))
+    else:
+        power = 10.0 ** math.floor(math.log10(needed))
+        rate = next(step * power for step in (1.0, 2.0, 5.0, 10.0) if step * power >= needed)
+    return rate if drop.end_time * rate < _MOST_SAMPLES else None
+
+
+def _of_signals(drop: Drop) -> Iterator[_Function]:
+    for node, (name, signal) in enumerate(drop.signals.items(), _FIRST_SENSOR):
+        sensor = signal.sensor
+        if len(signal.value) > 1:
+            words = f"{sensor.quantity} of {plain_words(name)}"
+            yield _Function(words, node, _direction(sensor.direction), _QUANTITIES[sensor.quantity], sensor.unit, sensor.rate, signal.value)
+
+
+def _of_history(drop: Drop) -> Iterator[_Function]:
+    rate = history_rate(drop)
+    if rate is None:
+        return
+    motion = motion_at(drop.history, np.arange(int(drop.history["time_s"][-1] * rate * (1.0 + 1e-12)) + 1) / rate)
+    for name, (words, kind, unit) in SPHERE_FUNCTIONS.items():
+        yield _Function(words, _SPHERE, _UP, kind, unit, rate, motion[name])
+
+
+def _direction(along: tuple[float, float, float]) -> int:
+    """Return the number of an axis, negative against it; 0 if it is none."""
+    for axis, part in enumerate(along, 1):
+        if abs(part) > 1.0 - 1e-9:
+            return axis if part > 0.0 else -axis
+    return 0
+
+
+def _header(drop: Drop) -> dict[str, Any]:
+    date = {f"{what}_{when}": "" for what in ("date", "time") for when in ("db_created", "db_saved", "file_written")}
+    words = {"model_name": plain_words(drop.name), "description": "a sphere that falls on a plate", "db_app": "vibroimpact"}
+    return {"type": 151, **words, "program": f"vibroimpact {__version__}", **date}
+
+
+def _si() -> dict[str, Any]:
+    scales = {"length": 1.0, "force": 1.0, "temp": 1.0, "temp_offset": 273.15}
+    return {"type": 164, "units_code": 1, "units_description": "SI", "temp_mode": 1, **scales}
+
+
+def _dataset(one: _Function, drop: Drop) -> dict[str, Any]:
+    labels = {"abscissa_axis_lab": "time", "abscissa_axis_units_lab": "s", "ordinate_axis_units_lab": one.unit}
+    return {
+        "type": 58,
+        "binary": 1,
+        "id1": one.words[:_LINE],
+        "id2": plain_words(drop.name),
+        "func_type": 1,
+        "rsp_ent_name": "NONE",
+        "rsp_node": one.node,
+        "rsp_dir": one.direction,
+        "ref_ent_name": "NONE",
+        "ref_node": 0,
+        "ref_dir": 0,
+        "abscissa_spacing": 1,
+        "abscissa_spec_data_type": 17,
+        "ordinate_spec_data_type": one.kind,
+        "orddenom_spec_data_type": 0,
+        "z_axis_spec_data_type": 0,
+        **labels,
+        "x": np.array([0.0, 1.0 / one.rate]),  # of which the start and the step are written
+        "data": one.values,
+    }
+
+
+def _why_no_history(drop: Drop) -> str:
+    if not len(drop.history.get("time_s", ())):
+        return "it has no history"
+    if not drop.impacts or not np.any(drop.impacts["duration_s"] > 0.0):
+        return "no contact in it has a duration that a rate could be chosen for"
+    return f"its history would take more than {_MOST_SAMPLES} samples, {_IN_CONTACT} in the shortest contact"
+
+
+def _notes(drop: Drop) -> list[str]:
+    rate = history_rate(drop)
+    nodes = [f"{number} is the sensor {one_line(name)}" for number, name in enumerate(drop.signals, _FIRST_SENSOR)]
+    nodes = nodes if len(nodes) <= _MOST_NAMED else [*nodes[: _MOST_NAMED - 1], "and so on"]
+    notes = [f"Node {_SPHERE} is the sphere" + "".join(f", {words}" for words in nodes) + "; directions are the plate's, +z upwards."]
+    if rate is None:
+        notes.append(f"The history is left out: {_why_no_history(drop)}.")
+    else:
+        notes.append(f"The history is sampled at {rate:g} Hz: at least {_IN_CONTACT} times in the shortest contact.")
+    notes.append("Nothing is filtered against aliasing.")
+    slanting = [one_line(name) for name, signal in drop.signals.items() if not _direction(signal.sensor.direction)]
+    if slanting:
+        notes.append(f"The direction of {', '.join(slanting)} lies along no axis; it is written as a scalar.")
+    rates = {signal.sensor.rate for signal in drop.signals.values()} | ({rate} if rate else set())
+    rough = sorted(one for one in rates if float(f"{1.0 / one:.5e}") != 1.0 / one)
+    if rough:
+        notes.append(f"The time step of {', '.join(f'{one:g} Hz' for one in rough)} is rounded to the six digits that the format has.")
+    return notes
+
+
+FORMAT = ExportFormat(
+    name="uff58",
+    program="programs of vibration testing (Simcenter Testlab, ME'scope, pyuff, ...)",
+    files="one universal file (.uff), datasets 151, 164 and binary 58",
+    tested="read back with pyuff 2.5, which also writes it, and by a reader of the test's own; not with the programs of its makers",
+    write=write,
+    notes=_notes,
+)

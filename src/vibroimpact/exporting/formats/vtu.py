@@ -1,0 +1,135 @@
+"""VTU: the sphere and the plate's upper side over time, as ParaView plays them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from vibroimpact.arrays import Bools, Floats
+from vibroimpact.errors import InputError
+from vibroimpact.exporting.drop import Drop
+from vibroimpact.exporting.export_format import ExportFormat
+from vibroimpact.exporting.resample import motion_at
+from vibroimpact.files.plain_names import one_line
+
+Cells = tuple[NDArray[np.float32], NDArray[np.int32]]
+"""Points (points, 3) [m], and the corners (cells, 4) of quadrilaterals; at the poles they have no width."""
+
+_EVEN, _IMPACTS = 200, 20
+"""Frames of the history spread evenly, and impacts whose touch, deepest point and release are frames too."""
+_AROUND, _DOWN = 32, 16
+"""Quadrilaterals of the sphere, around it and from pole to pole."""
+_QUADRILATERAL, _BRICK = 9, 12
+
+
+def write(drop: Drop) -> dict[str, bytes]:
+    """Return `sphere.pvd` and `plate.pvd`, and a file each frame; of a flat plate `plate.vtu` alone.
+
+    Raises
+    ------
+    InputError
+        If the drop has neither a history nor a deflected surface.
+    """
+    times, height = _sphere_path(drop)
+    points, cells = _sphere(drop)
+    moved = [points + np.array([0.0, 0.0, at], dtype=np.float32) for at in height]
+    files = _series("sphere", times, [_text(one, cells) for one in moved])
+    if drop.surface:
+        points, cells, on_plate = _surface(drop)
+        lifted = np.zeros((len(times), len(points), 3), dtype=np.float32)
+        lifted[:, :, 2] = drop.surface["height"].reshape(len(times), -1)[:, on_plate]
+        return files | _series("plate", times, [_text(points, cells, one) for one in lifted])
+    return files | ({"plate.vtu": _box(drop.plate_size)} if drop.plate_size else {})
+
+
+def _sphere_path(drop: Drop) -> tuple[Floats, Floats]:
+    """Return the times of the frames [s] and the height of the sphere's centre [m]."""
+    if drop.surface:
+        return drop.surface["time"], drop.surface["sphere_position"]
+    if len(drop.history.get("time_s", ())) < 2:
+        raise InputError(f'"{one_line(drop.name)}" has no history; there is no motion to write')
+    times = np.linspace(0.0, float(drop.history["time_s"][-1]), _EVEN)
+    if drop.impacts:
+        touch, duration, deepest = (drop.impacts[name][:_IMPACTS] for name in ("time_s", "duration_s", "time_of_max_indentation_s"))
+        events = np.concatenate([touch, touch + duration, deepest])
+        times = np.union1d(times, events[(events >= 0.0) & (events <= times[-1])])  # which leaves out what is no number
+    return times, motion_at(drop.history, times)["position_m"]
+
+
+def _series(name: str, times: Floats, texts: list[bytes]) -> dict[str, bytes]:
+    from vibroimpact.meshes.vtu_series import collection_text  # which loads sparse matrices
+
+    files = {f"{name}/{name}_{number:03d}.vtu": text for number, text in enumerate(texts)}
+    return {f"{name}.pvd": collection_text(times.tolist(), files).encode(), **files}
+
+
+def _text(points: NDArray[np.float32], cells: NDArray[np.int32], moved: NDArray[np.float32] | None = None) -> bytes:
+    return _file(points, cells, _QUADRILATERAL, {} if moved is None else {"displacement_m": moved})
+
+
+def _file(points: NDArray[np.float32], cells: NDArray[np.int32], kind: int, values: dict[str, NDArray[np.float32]]) -> bytes:
+    from vibroimpact.meshes.write_vtu import vtu_text  # which loads sparse matrices
+
+    ends = np.cumsum(np.full(len(cells), cells.shape[1], dtype=np.int32), dtype=np.int32)
+    return vtu_text(points, cells.ravel(), ends, np.full(len(cells), kind, dtype=np.uint8), values).encode()
+
+
+def _sphere(drop: Drop) -> Cells:
+    """Return the sphere around the place where its centre is when its height is zero."""
+    around = np.linspace(0.0, 2.0 * np.pi, _AROUND, endpoint=False)
+    down = np.linspace(0.0, np.pi, _DOWN + 1)
+    ring = np.stack([np.cos(around), np.sin(around), np.zeros(_AROUND)], axis=1)
+    unit = np.sin(down)[:, None, None] * ring + np.cos(down)[:, None, None] * np.array([0.0, 0.0, 1.0])
+    points = np.array([*drop.position, 0.0]) + drop.radius * unit.reshape(-1, 3)
+    row, column = (part.ravel() for part in np.meshgrid(np.arange(_DOWN), np.arange(_AROUND), indexing="ij"))
+    right = (column + 1) % _AROUND
+    corners = [row * _AROUND + column, (row + 1) * _AROUND + column, (row + 1) * _AROUND + right, row * _AROUND + right]
+    return points.astype(np.float32), np.stack(corners, axis=1).astype(np.int32)
+
+
+def _surface(drop: Drop) -> tuple[NDArray[np.float32], NDArray[np.int32], Bools]:
+    """Return the points of the plate's upper side at rest, its cells, and which points of the grid lie on the plate."""
+    x, y = np.meshgrid(drop.surface["x"], drop.surface["y"])
+    on_plate = np.isfinite(drop.surface["height"][0])
+    number = np.cumsum(on_plate.ravel()).reshape(on_plate.shape) - 1
+    squares = [part.ravel() for part in _corners(on_plate)]
+    whole = np.logical_and.reduce(squares)
+    cells = np.stack([part.ravel()[whole] for part in _corners(number)], axis=1)
+    points = np.stack([x, y, np.zeros_like(x)], axis=-1).reshape(-1, 3)[on_plate.ravel()]
+    return points.astype(np.float32), cells.astype(np.int32), on_plate.ravel()
+
+
+def _corners(grid: NDArray[np.generic]) -> Iterator[NDArray[np.generic]]:
+    """Yield a grid at the four corners of its squares, around them."""
+    yield from (grid[:-1, :-1], grid[:-1, 1:], grid[1:, 1:], grid[1:, :-1])
+
+
+def _box(size: tuple[float, float, float]) -> bytes:
+    """Return a plate that does not move; its upper side lies at z = 0."""
+    corners = [(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)]
+    points = np.array([(x, y, z) for z in (-1.0, 0.0) for x, y in corners]) * np.array(size)
+    return _file(points.astype(np.float32), np.arange(8, dtype=np.int32)[None, :], _BRICK, {})
+
+
+def _notes(drop: Drop) -> list[str]:
+    notes = ["The sphere is drawn round, wherever it deforms, at its true height above the plate at rest (z = 0)."]
+    if drop.surface:
+        notes.append("The frames are those of the result folder, from the first touch on; plate.pvd is drawn flat: apply Warp By Vector")
+        notes[-1] += " to displacement_m, which is small."
+    elif drop.plate_size is None:
+        notes.append("The case gives no size of the plate, so the sphere is written alone.")
+    elif "plate" in drop.elastic:
+        notes.append("The plate is written flat: its deflection is not known.")
+    return notes
+
+
+FORMAT = ExportFormat(
+    name="vtu",
+    program="ParaView, VTK, PyVista",
+    files="sphere.pvd and plate.pvd with a .vtu file each frame; a rigid plate is plate.vtu",
+    tested="read back with meshio 5.3: points, cells and displacements the same",
+    write=write,
+    notes=_notes,
+)

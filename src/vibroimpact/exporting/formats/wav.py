@@ -1,0 +1,86 @@
+"""WAV: the signals of the sensors, to be heard, and for programs that analyse sound."""
+
+from __future__ import annotations
+
+import struct
+from io import BytesIO
+
+import numpy as np
+
+from vibroimpact.dynamics.sensors.recording import Signal
+from vibroimpact.errors import InputError
+from vibroimpact.exporting.drop import Drop
+from vibroimpact.exporting.export_format import ExportFormat
+from vibroimpact.files.plain_names import one_line, plain_names
+
+_HIGHEST_RATE = 2**32 // 4 - 1
+"""Samples a second: the header holds the bytes a second in 32 bits."""
+_MOST_BYTES = 2**32 - 1024
+
+
+def write(drop: Drop) -> dict[str, bytes]:
+    """Return a file each sensor.
+
+    Raises
+    ------
+    InputError
+        If there is no sensor, or WAV can't hold its rate or its length.
+    """
+    if not drop.signals:
+        raise InputError(f'"{one_line(drop.name)}" has no sensors, and a WAV file holds the signal of one; add [[sensors]] to the case')
+    return {f"{plain}.wav": _file(drop.signals[name]) for name, plain in plain_names(list(drop.signals)).items()}
+
+
+def full_scale(signal: Signal) -> float:
+    """Return the value that stands as 1 in the file: the largest magnitude of the signal; 1 if it is zero throughout."""
+    return float(np.abs(signal.value).max(initial=0.0)) or 1.0
+
+
+def _file(signal: Signal) -> bytes:
+    from scipy.io import wavfile
+
+    rate = round(signal.sensor.rate)
+    if not 1 <= rate <= _HIGHEST_RATE:
+        raise InputError(
+            f'{signal.sensor.rate:g} Hz of "{one_line(signal.sensor.name)}" is not allowed in a WAV file; it must be 1 to {_HIGHEST_RATE}'
+        )
+    if 4 * len(signal.value) > _MOST_BYTES:
+        raise InputError(
+            f'the {len(signal.value)} samples of "{one_line(signal.sensor.name)}" do not fit into a WAV file, which holds 4 GB'
+        )
+    scale, file = full_scale(signal), BytesIO()
+    wavfile.write(file, rate, (signal.value / scale).astype(np.float32))
+    return _with_comment(
+        file.getvalue(), f"1.0 is {scale!r} {signal.sensor.unit} ({signal.sensor.quantity} of {one_line(signal.sensor.name)})"
+    )
+
+
+def _with_comment(wave: bytes, words: str) -> bytes:
+    """Return a WAV file with a comment, as the chunk LIST INFO ICMT at its end."""
+    text = words.encode("utf-8") + b"\0"
+    text += b"\0" * (len(text) % 2)  # chunks begin at even places
+    chunk = b"INFO" + b"ICMT" + struct.pack("<I", len(text)) + text
+    whole = wave[8:] + b"\0" * (len(wave) % 2) + b"LIST" + struct.pack("<I", len(chunk)) + chunk
+    return b"RIFF" + struct.pack("<I", len(whole)) + whole
+
+
+def _notes(drop: Drop) -> list[str]:
+    notes = []
+    for name, plain in plain_names(list(drop.signals)).items():
+        sensor = drop.signals[name].sensor
+        notes.append(f"1.0 in {plain}.wav is {full_scale(drop.signals[name]):.9g} {sensor.unit}; the comment in the file says so too.")
+        if sensor.rate != round(sensor.rate):
+            notes.append(f"{plain}.wav is said to have {round(sensor.rate)} samples a second; it has {sensor.rate!r}.")
+        if sensor.rate > 192e3:
+            notes.append(f"Few players take the {sensor.rate:g} Hz of {plain}.wav; programs that analyse sound do.")
+    return notes
+
+
+FORMAT = ExportFormat(
+    name="wav",
+    program="players and programs that analyse sound",
+    files="NAME.wav of each sensor: 32-bit floating point at the sensor's rate, scaled to 1.0",
+    tested="read back with scipy.io.wavfile of SciPy 1.17, samples and rate the same",
+    write=write,
+    notes=_notes,
+)

@@ -1,0 +1,160 @@
+"""YADE: a Python script with one sphere above a wall."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from vibroimpact.arrays import Array
+from vibroimpact.contact.damping_ratio import damping_ratio_of
+from vibroimpact.contact.law import ContactLaw
+from vibroimpact.contact.laws.hertz import Hertz
+from vibroimpact.contact.laws.tsuji import Tsuji
+from vibroimpact.dynamics.restitution import achieved_restitution, law_achieving
+from vibroimpact.exporting.contact_alone import (
+    approach_speeds,
+    clipped_dashpot,
+    first_contact,
+    laws_of_impacts,
+    linear_or_hertzian,
+    shared_notes,
+)
+from vibroimpact.exporting.drop import Drop
+from vibroimpact.exporting.export_format import ExportFormat
+from vibroimpact.exporting.rigid_drop import as_rigid
+from vibroimpact.exporting.script_text import comment_lines, file_name
+from vibroimpact.files.plain_names import plain_words
+
+_STEPS = 10_000
+"""Steps in the first contact: restitutions and largest forces are then right to 1e-4, but for gravity: damping is calibrated without."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Clipped(Tsuji):
+    """Tsuji's law as YADE has it: it does not pull."""
+
+    tension = "cut"  # type: ignore[assignment]
+
+    def closed_form_restitution(self, mass: Array, speed: Array) -> None:
+        """Return None: integrate."""
+
+
+def _damping(law: ContactLaw, drop: Drop, speed: float) -> float:
+    """Return the damping ratio betan of Mindlin's law in YADE, or the linear law's dashpot [N s/m], that has the restitution."""
+    stiffness, exponent = linear_or_hertzian(drop, "YADE")
+    if isinstance(law, Hertz):
+        return 0.0
+    restitution = float(achieved_restitution(law, drop.mass, speed))
+    if exponent == 1.0:
+        return clipped_dashpot(stiffness, exponent, restitution, drop.mass, speed)
+    clipped = _Clipped(stiffness=stiffness, restitution=restitution, effective_mass=drop.mass)
+    # they take the critical damping of the spring's slope, 3/2 K sqrt(delta)
+    return math.sqrt(5.0 / 6.0) * float(damping_ratio_of(law_achieving(clipped, restitution, drop.mass, speed).restitution))
+
+
+def _linear(drop: Drop) -> bool:
+    return linear_or_hertzian(drop, "YADE")[1] == 1.0
+
+
+def _write(drop: Drop) -> Mapping[str, bytes]:
+    laws, speeds = laws_of_impacts(drop), approach_speeds(drop)
+    stiffness, _ = linear_or_hertzian(drop, "YADE")
+    dampings = [_damping(law, drop, speed) for law, speed in zip(laws, speeds, strict=False)]
+    duration, _ = first_contact(laws[0], drop)
+    density = drop.mass / (4.0 / 3.0 * math.pi * drop.radius**3)
+    if _linear(drop):
+        comment = "# springs and dashpots of sphere and wall are in series: each is twice the contact's"
+        material = f"ViscElMat(kn={2.0 * stiffness!r}, cn=2.0 * DAMPING[0], ks=0.0, cs=0.0, density={density!r}, frictionAngle=0.0)"
+        physics, law = "Ip2_ViscElMat_ViscElMat_ViscElPhys()", "Law2_ScGeom_ViscElPhys_Basic()"
+        new_damping = "material.cn = 2.0 * damping"
+    else:
+        poisson = float(drop.sphere_material.poissons_ratio)
+        youngs = 1.5 * stiffness * (1.0 - poisson**2) / math.sqrt(0.5 * drop.radius)
+        comment = "# YADE takes a wall as a sphere of the same size and material: this modulus gives the contact's stiffness, " + (
+            f"{stiffness:.9g} N/m^1.5"
+        )
+        material = f"FrictMat(young={youngs!r}, poisson={poisson!r}, density={density!r}, frictionAngle=0.0)"
+        physics, law = "Ip2_FrictMat_FrictMat_MindlinPhys(betan=DAMPING[0], betas=0.0)", "Law2_ScGeom_MindlinPhys_Mindlin()"
+        new_damping = "physics.betan = damping"
+    return {
+        file_name(drop, "-yade.py"): f'''\
+"""A sphere that falls on a plate, for YADE: yade -n -x FILE. Units: m, kg, s, N."""
+# The contact law is {laws[0].name}: {laws[0].equation}
+# The case "{plain_words(drop.name)}"
+{comment_lines(_notes(drop))}
+import math
+
+RADIUS, MASS, GRAVITY = {drop.radius!r}, {drop.mass!r}, {drop.gravity!r}
+HEIGHT, SPEED = {drop.height!r}, {drop.speed!r}  # of the centre above the plate, and downwards
+IMPACTS = {len(speeds)}
+CONTACT = {duration!r}  # about how long a contact takes, s
+# of each impact, the last goes on: {"N s/m" if _linear(drop) else "part of the critical damping"}
+DAMPING = {dampings!r}
+
+{comment}
+material = {material}
+O.materials.append(material)
+O.bodies.append(wall(0, axis=2, sense=1, material=material))
+O.bodies.append(sphere((0, 0, HEIGHT), RADIUS, material=material))
+ball = O.bodies[1]  # its mass is that of the density
+physics = {physics}
+O.engines = [
+    ForceResetter(),
+    InsertionSortCollider([Bo1_Sphere_Aabb(), Bo1_Wall_Aabb()], verletDist=RADIUS),
+    InteractionLoop([Ig2_Wall_Sphere_ScGeom()], [physics], [{law}]),
+    NewtonIntegrator(damping=0, gravity=(0, 0, -GRAVITY)),
+]
+O.dt = CONTACT / {_STEPS}
+
+gap, velocity = HEIGHT - RADIUS, -SPEED
+for impact in range(IMPACTS):
+    # the flight is known: it ends at first touch with this speed
+    approach = math.sqrt(velocity**2 + 2.0 * GRAVITY * gap)
+    ball.state.pos, ball.state.vel = (0, 0, RADIUS), (0, 0, -approach)
+    damping = DAMPING[min(impact, len(DAMPING) - 1)]
+    {new_damping}
+    largest = 0.0
+    for step in range({20 * _STEPS}):
+        O.step()
+        gap, velocity = ball.state.pos[2] - RADIUS, ball.state.vel[2]
+        if gap > 0.0 and velocity > 0.0:
+            break
+        largest = max(largest, O.forces.f(1)[2])
+    else:
+        print("the sphere stays in contact")
+        break
+    speed = math.sqrt(velocity**2 + 2.0 * GRAVITY * gap)
+    rebound = RADIUS + speed**2 / (2.0 * GRAVITY)
+    print(
+        f"impact {{impact + 1}}: approach speed {{approach:.9g}} m/s, restitution {{speed / approach:.9g}}, "
+        f"rebound height {{rebound:.9g}} m, largest force {{largest:.9g}} N"
+    )
+'''.encode()
+    }
+
+
+def _notes(drop: Drop) -> list[str]:
+    law, notes = drop.laws[0], shared_notes(drop)
+    if isinstance(law, Hertz):
+        return notes
+    name = "Law2_ScGeom_ViscElPhys_Basic" if _linear(drop) else "Law2_ScGeom_MindlinPhys_Mindlin"
+    own = isinstance(law, Tsuji) or _linear(drop)
+    notes.append(
+        f"YADE's {name} stands for {law.name}; it {'differs in that it never pulls' if own else 'has another damping'}, so forces within "
+        "the contact differ. Its restitution is the law's at the first impact's speed, and does not depend on the speed."
+    )
+    if len(laws_of_impacts(drop)) > 1:
+        notes.append("The damping changes from impact to impact in this script; YADE's laws have one value for all contacts of a material.")
+    return notes
+
+
+FORMAT = ExportFormat(
+    name="yade",
+    program="YADE",
+    files="a Python script (.py)",
+    tested="run with YADE 2023.02a, beside vibroimpact's drops between rigid bodies",
+    write=_write,
+    notes=_notes,
+    told=as_rigid,
+)

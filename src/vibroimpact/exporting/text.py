@@ -1,0 +1,38 @@
+"""What the export command prints: the formats there are, and what was written."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from os.path import commonpath
+from pathlib import Path
+
+from rich.console import Group, RenderableType
+from rich.text import Text
+
+from vibroimpact.exporting.drop import Drop
+from vibroimpact.exporting.export_format import ExportFormat, export_formats
+from vibroimpact.report.terminal_table import Column, TerminalTable
+
+_MOST = 6
+"""Files that are named; of more, the first ones, and how many there are."""
+
+
+def format_table() -> RenderableType:
+    """Return the table of export formats."""
+    formats = export_formats()
+    said = {"read by": [one.program for one in formats.values()], "files": [one.files for one in formats.values()]}
+    said["tested"] = [one.tested for one in formats.values()]
+    table = TerminalTable([Column("format", list(formats), words=True), *(Column(name, cells, words=True) for name, cells in said.items())])
+    return Group(table, Text(), Text("vibroimpact export DIR --to FORMAT writes a result folder, or a calibration folder, in one of them."))
+
+
+def export_summary(drop: Drop, format: ExportFormat, files: Sequence[Path]) -> RenderableType:
+    """Return what was written, what the format can't represent, and what its writer was tested against."""
+    shown = files if len(files) <= _MOST else files[: _MOST - 1]
+    more = f"and {len(files) - len(shown)} more files in {commonpath(files)}"
+    return Group(
+        *(Text(f"wrote {file}") for file in shown),
+        *([Text(more)] if len(shown) < len(files) else []),
+        *(Text(f"Note: {note}", style="yellow") for note in format.notes(drop)),
+        Text(f"Tested: {format.tested}.", style="dim"),
+    )

@@ -1,0 +1,123 @@
+"""The lines of a text file, each knowing where it stands, and the numbers in them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import NamedTuple
+
+from vibroimpact.errors import InputError
+from vibroimpact.files.reading import FileKind, about, read_text_bytes
+from vibroimpact.shown import shortened, shown
+
+MESH = FileKind("a mesh is a file of nodes and elements, in plain text (UTF-8 or Latin-1)", 2_000_000_000, "write a coarser mesh")
+"""What is asked of the file of a mesh."""
+
+
+class Line(NamedTuple):
+    """One line of a file; lines are counted from 1."""
+
+    path: Path
+    number: int
+    text: str
+
+    def wrong(self, message: str) -> InputError:
+        """Return the error that says where and what."""
+        return InputError(f"{shortened(str(self.path), 200)}:{self.number}: {message}")
+
+
+def read_lines(path: Path) -> list[Line]:
+    """Return the lines of a text file in UTF-8, or else in Latin-1, which older programs write.
+
+    Raises
+    ------
+    InputError
+        If there is no such file, or it is not text.
+    """
+    try:
+        data = read_text_bytes(path, MESH)
+    except InputError as error:
+        raise about(path, error) from None
+    if not data.strip():
+        raise InputError(f"{path}: the file is empty; a mesh file holds nodes and elements")
+    try:
+        text = data.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        text = data.decode("latin-1")
+    rows = text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
+    return [Line(path, number, row) for number, row in enumerate(rows, 1)]
+
+
+def lines_with_includes(path: Path, included: Callable[[str], str | None]) -> Iterator[Line]:
+    """Yield the lines of a file and, after a line that includes another file, the lines of that one.
+
+    No file is read twice, which ends loops and keeps small files from growing without bound.
+
+    Parameters
+    ----------
+    path : Path
+        The file to start with.
+    included : callable
+        From a line to the name of the file that it includes, relative to its own or the first one; None if it includes none.
+
+    Raises
+    ------
+    InputError
+        If a file can't be read, or is included twice.
+    """
+    stack = [iter(read_lines(path))]
+    seen = {path.resolve()}
+    while stack:
+        line = next(stack[-1], None)
+        if line is None:
+            stack.pop()
+            continue
+        yield line
+        name = included(line.text)
+        if name is not None:
+            stack.append(iter(_included_lines(line, name, path.parent, seen)))
+
+
+def _included_lines(line: Line, name: str, root: Path, seen: set[Path]) -> list[Line]:
+    """Return the lines of a file next to the one that includes it, or next to the first one."""
+    name = name.replace("\\", "/")
+    try:
+        inner = next((folder / name for folder in (line.path.parent, root) if (folder / name).is_file()), root / name)
+        place = inner.resolve()
+        lines = read_lines(inner)
+    except (InputError, OSError, ValueError, RuntimeError) as error:
+        raise line.wrong(f"the file to include can't be read: {getattr(error, 'strerror', None) or error}") from None
+    if place in seen:
+        raise line.wrong(f"{shown(name)} is included a second time; a file may be included once")
+    seen.add(place)
+    return lines
+
+
+def whole(text: str, line: Line, what: str) -> int:
+    """Return the whole number from 0 on that `text` is.
+
+    Raises
+    ------
+    InputError
+        If it is none, or has more than 18 digits.
+    """
+    text = text.strip()
+    if not (text.isascii() and text.isdigit() and len(text) <= 18):
+        raise line.wrong(f"{shown(text)} is not {what}; it must be a whole number of at most 18 digits")
+    return int(text)
+
+
+def real(text: str, line: Line) -> float:
+    """Return the number that `text` is; whether it is finite is checked where it is used.
+
+    Raises
+    ------
+    InputError
+        If it is none.
+    """
+    try:
+        if "_" in text:
+            raise ValueError
+        return float(text)
+    except ValueError:
+        raise line.wrong(f"{shown(text.strip())} is not a coordinate; it must be a number such as 0.25 or 2.5e-3") from None

@@ -1,0 +1,1 @@
+"""The contact laws shown: sheets, curves, and pages of the documentation."""

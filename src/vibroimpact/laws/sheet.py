@@ -1,0 +1,108 @@
+"""What the command line prints of the contact laws: the table of all, and the sheet of one."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from rich.console import Group, RenderableType
+from rich.padding import Padding
+from rich.table import Table
+from rich.text import Text
+
+from vibroimpact.contact.law import CompliantLaw, ContactLaw, contact_laws, find_contact_law
+from vibroimpact.laws.text import SPEED, LawText, ParameterText, asked_and_achieved, law_text, plain_paragraph, short_source
+from vibroimpact.report.terminal_table import Column, TerminalTable
+
+_ENDS = {"zero-indentation": "no overlap", "zero-force": "no force", "pull-off": "torn apart"}
+_PULLS = {"none": "never", "cut": "cut", "kept": "yes"}
+_WIDE = 130  # columns of a terminal, from which sources are printed in full
+
+
+def law_table(width: int) -> RenderableType:
+    """Return the table of contact laws for a terminal of a width."""
+    rows = []
+    for name, law in contact_laws().items():
+        end, pulls = ("at once", "-") if not issubclass(law, CompliantLaw) else (_ENDS[law.contact_end], _PULLS[law.tension])
+        source = law.source if width >= _WIDE else short_source(law)
+        rows.append((name, law_text(law).loses_by.replace("nothing is lost", "-"), end, pulls, source))
+    headings = ("law", "loses by", "ends at", "pulls", "source")
+    table = TerminalTable(
+        [Column(words, cells, words=True) for words, cells in zip(headings, zip(*rows, strict=True), strict=True)], indent=0
+    )
+    hint = '"vibroimpact laws NAME" prints one with its equation, parameters and sources; with -o PNG it draws its curves.'
+    return Group(table, Text(), Text(hint))
+
+
+def law_sheet(name: str) -> RenderableType:
+    """Return what there is to know of one contact law.
+
+    Raises
+    ------
+    InputError
+        If there is no such law.
+    """
+    law = find_contact_law(name)
+    text = law_text(law)
+    body = text.body[1:] if text.body and text.body[0].startswith(".. math::") else text.body  # the equation stands for it
+    parts: list[RenderableType] = [
+        Text(f"{name}: {plain_paragraph(text.title)}", style="bold"),
+        Text(),
+        _indented(text.equation),
+        *([Text()] if body else []),
+        *_prose(body),
+        *_heading("Parameters"),
+        _parameters(text.parameters),
+        *(_indented(f"Refused {plain_paragraph(line)[:1].lower()}{plain_paragraph(line)[1:]}") for line in text.raises),
+        *_state(text),
+        *_heading("End of the contact"),
+        _indented(f"{text.end} {text.pulls}".strip()),
+        *(_heading("Notes") if text.notes else []),
+        *_prose(text.notes),
+        *_achieved(law),
+        *_heading("References"),
+        *(_indented(plain_paragraph(reference)) for reference in text.references or (text.source,)),
+    ]
+    return Group(*parts)
+
+
+def _heading(words: str) -> list[RenderableType]:
+    return [Text(), Text(words, style="bold")]
+
+
+def _indented(words: str) -> RenderableType:
+    return Padding(Text(words), (0, 0, 0, 2), expand=False)
+
+
+def _prose(paragraphs: Iterable[str]) -> list[RenderableType]:
+    return [_indented(("  " if paragraph.startswith("..") else "") + plain_paragraph(paragraph)) for paragraph in paragraphs]
+
+
+def _parameters(parameters: Iterable[ParameterText], *, given: bool = True) -> RenderableType:
+    """Return a table of names and meanings; below a meaning its unit and, of what a case may give, range and default."""
+    table = Table.grid(padding=(0, 2, 0, 0))
+    table.add_column(no_wrap=True)
+    for item in parameters:
+        facts = [item.unit or "no unit", *([item.allowed or "any number", _left_out(item.default)] if given else [])]
+        table.add_row(item.name, Text(plain_paragraph(item.meaning)))
+        table.add_row("", Text("; ".join(facts), style="dim"))
+    return Padding(table, (0, 0, 0, 2), expand=False)
+
+
+def _left_out(default: str) -> str:
+    return default if default.startswith(("required", "optional")) else f"if left out, {default}"
+
+
+def _state(text: LawText) -> list[RenderableType]:
+    if not text.state:
+        return []
+    return [*_heading("State, zero of a fresh contact"), _parameters(text.state, given=False), _indented(text.lasts)]
+
+
+def _achieved(law: type[ContactLaw]) -> list[RenderableType]:
+    pairs = asked_and_achieved(law)
+    if not pairs:
+        return []
+    table = Table(box=None, padding=(0, 2, 0, 0), show_header=False, pad_edge=False)
+    table.add_row("asked", *(f"{asked:g}" for asked, _ in pairs))
+    table.add_row("achieved", *(f"{achieved:.3f}" for _, achieved in pairs))
+    return [*_heading(f"Restitution, of the paper's sphere at {SPEED:g} m/s without gravity"), Padding(table, (0, 0, 0, 2), expand=False)]

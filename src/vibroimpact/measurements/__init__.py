@@ -1,0 +1,1 @@
+"""Files that measurements come in: tables in CSV, and universal files."""

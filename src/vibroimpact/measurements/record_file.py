@@ -1,0 +1,118 @@
+"""A measured record in a universal file: which of its functions it is, in SI."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Literal, NamedTuple
+
+import numpy as np
+
+from vibroimpact.arrays import Floats
+from vibroimpact.errors import InputError, did_you_mean
+from vibroimpact.measurements.universal_file import SPHERE_FUNCTIONS, Function, UniversalFile, is_universal, read_universal_file
+from vibroimpact.units.reading import to_si
+
+__all__ = ["SPHERE_ACCELERATION", "UniversalRecord", "is_universal", "read_universal_record"]
+
+Quantity = Literal["position", "force", "acceleration"]
+
+_KINDS: dict[int, tuple[Quantity, str]] = {
+    8: ("position", "m"),
+    9: ("force", "N"),
+    13: ("force", "N"),
+    12: ("acceleration", "m/s^2"),
+}
+_DIMENSIONS = {"m": "m", "N": "N", "m/s^2": "m"}
+_OWN = {words for words, *_ in SPHERE_FUNCTIONS.values()}
+SPHERE_ACCELERATION = SPHERE_FUNCTIONS["acceleration_m_s2"][0]
+"""What this program calls the sphere's own acceleration."""
+
+_SAME = 1e-6
+_MOST_NAMED = 8
+
+
+class UniversalRecord(NamedTuple):
+    """A record: what it is called and what it is, times [s], and values in SI."""
+
+    words: str
+    quantity: Quantity
+    time: Floats
+    values: Floats
+
+
+def read_universal_record(path: str | Path, which: str | None, by_rebound: bool) -> UniversalRecord:
+    """Read a record of force or position from a universal file.
+
+    Parameters
+    ----------
+    path : path
+        The file.
+    which : str, optional
+        The first line of identification of the function that is meant, or its number in the file. By default the only one of its
+        kind, or the one that this program writes of its sphere.
+    by_rebound : bool
+        Is a position better than a force?
+
+    Raises
+    ------
+    InputError
+        If the file can't be read, or has no such function, or several.
+    """
+    file = read_universal_file(path)
+    functions = [one for one in file.functions if one.kind in _KINDS]
+    if which is not None:
+        one = _asked(path, file.functions, which)
+    else:
+        order: tuple[Quantity, ...] = ("position", "force") if by_rebound else ("force", "position")
+        groups = ([one for one in functions if _KINDS[one.kind][0] == quantity] for quantity in (*order, "acceleration"))
+        group = next((group for group in groups if group), [])
+        if not group:
+            raise InputError(f"{path}: there is no force, displacement or acceleration over time in it; {_there(file.functions)}", "target")
+        own = [one for one in group if one.words in _OWN]
+        group = own if len(own) == 1 else group
+        if len(group) > 1:
+            raise InputError(f"{path}: say which function is meant: {_there(group)}", "target.function")
+        one = group[0]
+    quantity, unit = _KINDS[one.kind]
+    steps = np.diff(one.time)
+    if np.any(steps <= 0.0):
+        raise InputError(f'{path}: "{one.words}": time does not rise at sample {int(np.argmin(steps > 0.0)) + 2}', "target")
+    return UniversalRecord(one.words, quantity, one.time, one.values * _in_si(path, one, unit, file))
+
+
+def _asked(path: str | Path, functions: list[Function], which: str) -> Function:
+    found = [one for one in functions if which in (one.words, str(one.number))]
+    if len(found) != 1:
+        several = "there are several functions" if found else "there is no function"
+        hint = "" if found else did_you_mean(which, [one.words for one in functions])
+        raise InputError(f'{path}: {several} "{which}"; {_there(functions)}.{hint}', "target.function")
+    if found[0].kind not in _KINDS:
+        raise InputError(f'{path}: "{which}" is no force, displacement or acceleration; {_there(functions)}', "target.function")
+    return found[0]
+
+
+def _there(functions: list[Function]) -> str:
+    named = [f'{one.number} "{one.words[:40]}"' for one in functions[:_MOST_NAMED]]
+    more = f" and {len(functions) - _MOST_NAMED} more" if len(functions) > _MOST_NAMED else ""
+    return f"there are {', '.join(named)}{more}" if functions else "there is no real function of time"
+
+
+def _in_si(path: str | Path, one: Function, unit: str, file: UniversalFile) -> float:
+    """Return the factor to SI, which dataset 164 tells, or the label of the unit; they must agree."""
+    by_label, by_file = _by_label(one.unit, unit), None if file.factors is None else 1.0 / file.factors[_DIMENSIONS[unit]]
+    if by_label is None and by_file is None:
+        label = f'the label "{one.unit}" of its unit is not known' if one.unit else "it has no unit"
+        raise InputError(f'{path}: "{one.words}": {label}, and there is no dataset 164 that says the units of the file', "target")
+    if by_label is not None and by_file is not None and abs(by_label / by_file - 1.0) > _SAME:
+        words = f'its unit is "{one.unit}", and by dataset 164 the values are in units of {by_file:g} {unit}'
+        raise InputError(f'{path}: "{one.words}": {words}; correct one of them', "target")
+    return by_label if by_label is not None else float(by_file or 1.0)
+
+
+def _by_label(label: str, unit: str) -> float | None:
+    if not label:
+        return None
+    try:
+        return to_si(f"1 {label}", unit)
+    except InputError:
+        return None

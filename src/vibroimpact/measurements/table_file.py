@@ -1,0 +1,243 @@
+"""A table of measurements from a CSV file: columns with units, read with the row of every fault."""
+
+from __future__ import annotations
+
+import csv
+import re
+from array import array
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from io import StringIO
+from math import isfinite
+from os import PathLike
+from pathlib import Path
+
+import numpy as np
+
+from vibroimpact.arrays import Floats
+from vibroimpact.errors import InputError, did_you_mean
+from vibroimpact.files.reading import FileKind, read_text
+from vibroimpact.shown import shortened, shown
+from vibroimpact.units.reading import to_si
+
+TABLE = FileKind("a table is a CSV file", 500_000_000, "keep the part with the impacts")
+"""What is asked of the file of a table."""
+
+MOST_LINES = 10_000_000
+"""Of a table: five seconds at 2 MHz."""
+
+_LARGEST_NUMBER = 1e30  # whose powers are numbers too
+_LONGEST = 100_000  # characters of a line
+_MOST_COLUMNS = 1000
+_MOST_NAMED = 12  # columns that a message names
+_LONG_NAME = 40  # characters of a name in a message
+_ENDINGS = {
+    "_m_s2": "m/s^2",
+    "_m_s": "m/s",
+    "_s": "s",
+    "_ms": "ms",
+    "_us": "us",
+    "_m": "m",
+    "_mm": "mm",
+    "_um": "um",
+    "_N": "N",
+    "_kN": "kN",
+}
+
+
+@dataclass(frozen=True)
+class TableFile:
+    """What a file holds: columns (rows,) in SI by their names, the line that each row stands on, and empty lines before the last."""
+
+    path: Path
+    columns: Mapping[str, Floats]
+    lines: Sequence[int]
+    empty: Sequence[int] = ()
+
+
+def read_table_file(path: str | PathLike[str], units: Mapping[str, str]) -> TableFile:
+    """Read those columns of a CSV file that are known.
+
+    The first line that is not a comment (#) names the columns with their units: `time_s`, `time [ms]`, `force (kN)`. Fields are
+    separated by commas, semicolons or tabs; with semicolons or tabs a comma may be the decimal point.
+
+    Parameters
+    ----------
+    path : path
+        The file.
+    units : mapping of str to str
+        The SI unit of each column that is known; "" of a plain number.
+
+    Raises
+    ------
+    InputError
+        If it can't be read, a column has no unit or one of another kind, or a cell is not a finite number; with the line.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> with TemporaryDirectory() as folder:
+    ...     file = Path(folder, "drop.csv")
+    ...     _ = file.write_text("time [ms],force_N\\n0,1\\n1,2\\n")
+    ...     read_table_file(file, {"time": "s", "force": "N"}).columns["time"].tolist()
+    [0.0, 0.001]
+    """
+    file = Path(path)
+    try:
+        rows = _rows(read_text(file, TABLE))
+        number, first = next(rows, (0, ""))
+        if not first:
+            raise InputError("the file is empty")
+        header, mark = _header(number, first)
+        places, factors = _places(number, header, units)
+        found: list[array[float]] = [array("d") for _ in places]
+        lines, empty, last = array("q"), array("q"), number
+        for number, line in rows:
+            if not line:
+                empty.append(number)
+                continue
+            cells = line.split(mark) if '"' not in line else next(csv.reader([line], delimiter=mark))
+            if len(cells) > len(header):
+                hint = "; where a comma is the decimal point, semicolons separate the fields" if mark == "," else ""
+                raise InputError(f"line {number}: there are {len(cells)} fields, and the header has {len(header)}{hint}")
+            for values, place, factor in zip(found, places.values(), factors, strict=True):
+                values.append(_number(number, header[place], cells, place, mark) * factor)
+            lines.append(number)
+            last = number
+    except InputError as error:
+        where = shortened(str(file), 200)
+        raise InputError(f"{where}{', ' if error.message.startswith('line ') else ': '}{error.message}") from None
+    if not lines:
+        raise InputError(f"{file}: there are no rows under the header")
+    columns = {name: np.array(values) for name, values in zip(places, found, strict=True)}
+    return TableFile(file, columns, lines.tolist(), [number for number in empty if number < last])
+
+
+def rising(table: TableFile, column: str) -> TableFile:
+    """Return a table without the rows at which a column stands still; raise if it goes backwards, or stands still throughout.
+
+    Raises
+    ------
+    InputError
+        With the line where it does not.
+    """
+    steps = np.diff(table.columns[column])
+    back = np.flatnonzero(steps < 0.0)
+    if back.size:
+        at = int(back[0])
+        one, other = table.columns[column][at : at + 2]
+        raise InputError(f"{table.path}, line {table.lines[at + 1]}: {column} goes backwards, from {one:.9g} to {other:.9g}")
+    if not (steps > 0.0).any():
+        raise InputError(f"{table.path}: {column} stands still; a record has more than one moment")
+    kept = np.append(True, steps > 0.0)
+    lines = [line for line, keep in zip(table.lines, kept, strict=True) if keep]
+    return TableFile(table.path, {name: values[kept] for name, values in table.columns.items()}, lines)
+
+
+def _rows(text: str) -> Iterator[tuple[int, str]]:
+    """Yield the number and the text of each line without its comment: from the first on that is not empty, and "" for an empty one."""
+    begun = False
+    for number, whole in enumerate(StringIO(text, newline=None), 1):
+        if number > MOST_LINES:
+            raise InputError(f"the file has more than {MOST_LINES:,} lines; keep the part with the impacts, or fewer samples a second")
+        if len(whole) > _LONGEST:
+            raise InputError(f"line {number}: it has more than {_LONGEST:,} characters; this is not a table")
+        line = whole.partition("#")[0].rstrip()
+        if not line.strip(" ,;\t"):
+            line = ""
+        begun = begun or bool(line)
+        if begun:
+            yield number, line
+
+
+def _header(number: int, line: str) -> tuple[list[str], str]:
+    """Return the cells of the line that names the columns, and what separates them."""
+    mark = next((mark for mark in ("\t", ";", ",") if mark in line), ",")
+    header = [cell.strip() for cell in next(csv.reader([line], delimiter=mark))]
+    if len(header) > _MOST_COLUMNS:
+        raise InputError(f"line {number}: there are {len(header)} columns; a table has {_MOST_COLUMNS} at most")
+    return header, mark
+
+
+def _places(number: int, header: Sequence[str], units: Mapping[str, str]) -> tuple[dict[str, int], list[float]]:
+    """Return where the columns stand that are known, and what their numbers are multiplied by."""
+    places: dict[str, int] = {}
+    factors = []
+    for place, cell in enumerate(header):
+        name, unit = name_and_unit(cell)
+        if name not in units:
+            continue
+        if name in places:
+            raise InputError(f'line {number}: there are two columns "{name}"')
+        places[name] = place
+        factors.append(_factor(number, cell, unit, units[name]))
+    if not places:
+        names = [name_and_unit(cell)[0] for cell in header[:_MOST_NAMED]]
+        hint = next((words for name in names if len(name) < _LONG_NAME and (words := did_you_mean(name, units))), "")
+        told = ", ".join(shortened(name, _LONG_NAME) for name in names) + (", ..." if len(header) > _MOST_NAMED else "")
+        raise InputError(f"line {number}: no column is known among {told}; {_allowed(units)}.{hint}")
+    return places, factors
+
+
+def name_and_unit(cell: str) -> tuple[str, str | None]:
+    """Return name and unit of a header's cell; None where it has no unit.
+
+    Examples
+    --------
+    >>> name_and_unit("Rebound height [mm]"), name_and_unit("time_s"), name_and_unit("count")
+    (('rebound_height', 'mm'), ('time', 's'), ('count', None))
+    """
+    whole = cell.strip()
+    if whole.endswith(("]", ")")):
+        # the unit stands between the last two brackets; a search for that as a pattern takes minutes for a long line of brackets
+        inside = whole[:-1]
+        start = max(inside.rfind("]"), inside.rfind(")")) + 1
+        opening = min((at for at in (inside.find("[", start), inside.find("(", start)) if at >= 0), default=-1)
+        if opening >= 0:
+            return _plain(inside[:opening]), inside[opening + 1 :].strip()
+    for ending, unit in sorted(_ENDINGS.items(), key=lambda item: -len(item[0])):
+        if cell.endswith(ending):
+            return _plain(cell.removesuffix(ending)), unit
+    return _plain(cell), None
+
+
+def _plain(name: str) -> str:
+    return re.sub(r"[\s-]+", "_", name.strip().lower())
+
+
+def _factor(line: int, cell: str, unit: str | None, wanted: str) -> float:
+    where = f"line {line}, column {shown(cell)}"
+    if not wanted:
+        if unit == "%":
+            return 0.01
+        if unit not in (None, "", "-", "1"):
+            raise InputError(f"{where}: it is a plain number, and has no unit")
+        return 1.0
+    if unit is None or not unit:
+        name = shortened(cell.split("[")[0].strip(), _LONG_NAME)
+        raise InputError(f"{where}: the unit is missing; write it in brackets, such as {name} [{wanted}]")
+    try:
+        return to_si(f"1 {unit}", wanted)
+    except InputError as error:
+        raise InputError(f"{where}: {error.message}") from None
+
+
+def _number(line: int, column: str, row: list[str], place: int, mark: str) -> float:
+    if place >= len(row):
+        raise InputError(f"line {line}, column {shown(column)}: the cell is missing; the line has {len(row)}")
+    text = row[place]
+    try:
+        if "_" in text:  # which Python takes in a number
+            raise ValueError(text)
+        value = float(text.replace(",", ".") if mark != "," else text)
+    except ValueError:
+        what = f"{shown(text.strip())} is not a number" if text.strip() else "the cell is empty"
+    else:
+        if -_LARGEST_NUMBER < value < _LARGEST_NUMBER:
+            return value
+        what = f"{shown(text.strip())} is not {'finite' if not isfinite(value) else 'a measurement; it must be less than 1e30 in size'}"
+    raise InputError(f"line {line}, column {shown(column)}: {what}")
+
+
+def _allowed(units: Mapping[str, str]) -> str:
+    return "known are " + ", ".join(f"{name} [{unit}]" if unit else name for name, unit in units.items() if "deviation" not in name)

@@ -1,0 +1,213 @@
+"""Functions of time in a universal file: its datasets 58, as text or binary, and the units of dataset 164."""
+
+from __future__ import annotations
+
+import itertools
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from vibroimpact.arrays import Floats
+from vibroimpact.errors import InputError
+from vibroimpact.files.reading import FileKind, about, beginning, read_bytes
+
+UNIVERSAL = FileKind("a universal file holds datasets between lines of -1", 100_000_000, "keep the functions that are needed")
+"""What is asked of a universal file."""
+
+SPHERE_FUNCTIONS = {
+    "position_m": ("height of the sphere's centre", 8, "m"),
+    "velocity_m_s": ("velocity of the sphere", 11, "m/s"),
+    "acceleration_m_s2": ("acceleration of the sphere", 12, "m/s2"),
+    "force_N": ("contact force on the sphere", 13, "N"),
+}
+"""The motion of the sphere as this program writes it, and finds it again: first line of identification, kind of data, unit."""
+
+_LARGEST = 1e30
+"""What measurements are less than, whose powers are numbers too."""
+
+_MARK = b"-1"
+_HERE = re.compile(rb"[ \t]*-1[ \t\r]*(?:\n|\Z)")  # behind binary data, which no line ends
+_MARKED = re.compile(rb"^" + _HERE.pattern, re.MULTILINE)
+_HEADER_LINES = 11
+_REAL, _TIME = (2, 4), 17
+_WIDTHS = {2: 13, 4: 20}  # of a number in text, single and double
+_ENDS = {1: "<", 2: ">"}
+_IEEE = 2
+
+
+@dataclass(frozen=True)
+class Function:
+    """A function of time.
+
+    Parameters
+    ----------
+    number : int
+        Which of the functions of the file it is, from 1.
+    words : str
+        Its first line of identification.
+    kind : int
+        What its values are, as dataset 58 numbers them: 8 a displacement, 9 and 13 forces, 11 a velocity, 12 an acceleration.
+    unit : str
+        The label of its unit; "" if there is none.
+    time, values : array, shape (n,)
+        Times [s], and values as the file has them.
+    """
+
+    number: int
+    words: str
+    kind: int
+    unit: str
+    time: Floats
+    values: Floats
+
+
+class UniversalFile(NamedTuple):
+    """What a universal file holds: its functions of time; and by what its lengths ("m") and forces ("N") are divided for SI, None if
+    it does not say.
+    """
+
+    functions: list[Function]
+    factors: dict[str, float] | None
+
+
+def is_universal(path: str | Path) -> bool:
+    """Return whether a file begins as universal files do, with a line of -1."""
+    try:
+        return beginning(path, UNIVERSAL, 200).lstrip().split(b"\n")[0].strip() == _MARK
+    except InputError:  # whoever reads it says what is wrong
+        return False
+
+
+def read_universal_file(path: str | Path) -> UniversalFile:
+    """Read the functions of time of a universal file.
+
+    Parameters
+    ----------
+    path : path
+        The file.
+
+    Raises
+    ------
+    InputError
+        If it can't be read, or a dataset is not whole.
+    """
+    file = Path(path)
+    try:
+        raw = read_bytes(file, UNIVERSAL)
+    except InputError as error:
+        raise about(file, error) from None
+    functions: list[Function] = []
+    factors, number = None, 0
+    for header, place in _datasets(raw):
+        kind = header.split()[0] if header.split() else b""
+        try:
+            if kind == b"164":
+                factors = _factors(raw, place)
+            elif kind in (b"58", b"58b"):
+                number += 1
+                found = _function(raw, header, place, number)
+                if found is not None:
+                    functions.append(found)
+        except (ValueError, IndexError, KeyError, OverflowError):
+            what = f"function {number}" if kind != b"164" else "dataset 164, which says the units,"
+            raise InputError(f"{file}: {what} can't be read; the file is damaged, or not of the format that its first lines say") from None
+    return UniversalFile(functions, factors)
+
+
+def _datasets(raw: bytes) -> Iterator[tuple[bytes, int]]:
+    """Yield the first line of each dataset, and the place behind it."""
+    place, inside = 0, False
+    while (mark := _HERE.match(raw, place) or _MARKED.search(raw, place)) is not None:
+        inside, place = not inside, mark.end()
+        if inside:
+            header, place = _line(raw, place)
+            yield header, place
+            words = header.split()
+            if words and words[0] == b"58b":  # binary data may hold what looks like a mark
+                place = _binary_end(raw, words, place)
+
+
+def _binary_end(raw: bytes, words: list[bytes], place: int) -> int:
+    for _ in range(_HEADER_LINES):
+        _, place = _line(raw, place)
+    size = int(words[4]) if len(words) > 4 and words[4].isdigit() else 0
+    return min(place + size, len(raw))
+
+
+def _line(raw: bytes, place: int) -> tuple[bytes, int]:
+    """Return the line at a place, and the place behind it."""
+    end = raw.find(b"\n", place)
+    return (raw[place:], len(raw)) if end < 0 else (raw[place:end].rstrip(b"\r"), end + 1)
+
+
+def _lines(raw: bytes, place: int, number: int) -> tuple[list[str], int]:
+    lines = []
+    for _ in range(number):
+        line, place = _line(raw, place)
+        lines.append(line[:200].decode("latin-1"))
+    return lines, place
+
+
+def _factors(raw: bytes, place: int) -> dict[str, float]:
+    lines, _ = _lines(raw, place, 2)
+    numbers = [float(lines[1][at : at + 25].replace("D", "E").replace("d", "e")) for at in (0, 25)]
+    if not all(0.0 < number < np.inf for number in numbers):
+        raise ValueError
+    return {"m": numbers[0], "N": numbers[1]}
+
+
+def _function(raw: bytes, header: bytes, place: int, number: int) -> Function | None:
+    """Return a function of time; None of another kind: complex, or over something else."""
+    lines, place = _lines(raw, place, _HEADER_LINES)
+    ordinate, count, even = (int(lines[6][at : at + 10]) for at in (0, 10, 20))
+    start, step = (float(lines[6][at : at + 13]) for at in (30, 43))
+    if ordinate not in _REAL or int(lines[7][:10]) != _TIME:
+        return None
+    if not 0 < count <= len(raw):
+        raise ValueError
+    if header.split()[0] == b"58b":
+        given, values = _binary(raw, header, place, ordinate, count, even == 1)
+    else:
+        given, values = _text(raw, place, ordinate, count, even == 1)
+    time = start + step * np.arange(count, dtype=float) if given is None else given
+    if not all((np.abs(numbers) < _LARGEST).all() for numbers in (time, values)):  # nor are they NaN
+        raise ValueError
+    unit = lines[8][47:67].strip()
+    words = "".join(letter for letter in lines[0] if letter.isprintable()).strip()
+    return Function(number, words, int(lines[8][:10]), "" if unit == "NONE" else unit, time, values)
+
+
+def _binary(raw: bytes, header: bytes, place: int, ordinate: int, count: int, even: bool) -> tuple[Floats | None, Floats]:
+    order, form, _, size = (int(word) for word in header.split()[1:5])
+    end, values = _ENDS[order], "f4" if ordinate == 2 else "f8"
+    if form != _IEEE or place + size > len(raw):
+        raise ValueError
+    if even:
+        return None, np.frombuffer(raw, f"{end}{values}", count, place).astype(float)
+    # times of single and of double precision are in use with double values, and sizes that leave them out
+    wide = raw[place + (8 + int(values[1])) * count :][:12].lstrip().startswith(_MARK)
+    times = "f8" if wide else "f4"
+    pairs = np.frombuffer(raw, [("x", f"{end}{times}"), ("y", f"{end}{values}")], count, place)
+    return pairs["x"].astype(float), pairs["y"].astype(float)
+
+
+def _text(raw: bytes, place: int, ordinate: int, count: int, even: bool) -> tuple[Floats | None, Floats]:
+    width = _WIDTHS[ordinate]
+    # columns of fixed width, between which there need be no blank
+    widths = ([width] * (6 if ordinate == 2 else 4)) if even else [13, width] * (3 if ordinate == 2 else 2)
+    edges = np.concatenate([[0], np.cumsum(widths)])
+    found: list[float] = []
+    wanted = count if even else 2 * count
+    while len(found) < wanted:
+        if place >= len(raw):
+            raise ValueError
+        line, place = _line(raw, place)
+        text = line.decode("ascii").upper().replace("D", "E")
+        cells = [text[begin:stop].strip() for begin, stop in itertools.pairwise(edges)]
+        found += [float(cell) for cell in cells if cell]
+    numbers = np.array(found[:wanted])
+    return (None, numbers) if even else (numbers[::2], numbers[1::2])

@@ -1,0 +1,77 @@
+"""The blocks of an Abaqus input file: a keyword, its parameters and its data lines."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
+
+from vibroimpact.files.lines import Line
+
+_PARAMETER = re.compile(r'(?:"[^"]*"|[^,])+')
+_INCLUDED = re.compile(r"\*\s*(?:INCLUDE|NODE|ELEMENT|NSET|ELSET)\s*,.*?\bINPUT\s*=\s*(?:\"([^\"]+)\"|([^,\"]+))", re.IGNORECASE)
+
+
+@dataclass
+class Block:
+    """A keyword in capitals, without its star; its parameters by their names in capitals; its data."""
+
+    line: Line
+    keyword: str
+    parameters: dict[str, str]
+    data: list[Line] = field(default_factory=list)
+
+
+def included_file(text: str) -> str | None:
+    """Return the file from which a keyword line takes lines.
+
+    Examples
+    --------
+    >>> included_file("*Include, input=mesh/plate.inp")
+    'mesh/plate.inp'
+    """
+    found = _INCLUDED.match(text.strip()) if text.lstrip().startswith("*") else None
+    return (found[1] or found[2]).strip() if found else None
+
+
+def blocks(lines: Iterable[Line]) -> Iterator[Block]:
+    """Yield the blocks of an input file.
+
+    Raises
+    ------
+    InputError
+        If data come before the first keyword.
+    """
+    block, goes_on = None, False
+    for line in lines:
+        text = line.text.strip()
+        if not text or text.startswith("**"):
+            continue
+        if text.startswith("*"):
+            if block is not None:
+                yield block
+            keyword, _, rest = text[1:].partition(",")
+            block = Block(line, " ".join(keyword.upper().split()), _parameters(rest))
+            goes_on = text.endswith(",")
+        elif block is None:
+            raise line.wrong("there are data before the first keyword; an Abaqus input file starts with a keyword such as *NODE")
+        elif goes_on and text[0].isalpha():
+            block.parameters.update(_parameters(text))
+            goes_on = text.endswith(",")
+        else:
+            goes_on = False
+            block.data.append(line)
+    if block is not None:
+        yield block
+
+
+def _parameters(text: str) -> dict[str, str]:
+    """Return the parameters of a keyword line.
+
+    Examples
+    --------
+    >>> _parameters(' TYPE=C3D8 , elset = "upper, left", GENERATE')
+    {'TYPE': 'C3D8', 'ELSET': 'upper, left', 'GENERATE': ''}
+    """
+    found = (parameter.partition("=") for parameter in _PARAMETER.findall(text) if parameter.strip())
+    return {key.strip().upper(): value.strip().strip('"') for key, _, value in found}

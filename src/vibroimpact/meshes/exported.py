@@ -1,0 +1,121 @@
+"""A mesh as Nastran and Abaqus can take it: shapes that they know, numbered from 1."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from os import PathLike
+from pathlib import Path
+
+import numpy as np
+
+from vibroimpact.arrays import Floats, Integers
+from vibroimpact.errors import InputError
+from vibroimpact.files.write_file import write_file
+from vibroimpact.materials import Material
+from vibroimpact.structures.element_kinds import PLATE_ORDER
+from vibroimpact.structures.mesh import ElementBlock, Mesh
+
+# a square of 3 x 3 nodes, as (row, column): corners, middles of the edges, centre
+_SQUARE = np.array([(0, 0), (0, 2), (2, 2), (2, 0), (0, 1), (1, 2), (2, 1), (1, 0), (1, 1)])
+
+
+@dataclass(frozen=True)
+class Export:
+    """What is written: the nodes in use, and for each block a shape and its nodes, all counted from 1.
+
+    A shape is the kind of the block, except for "hex20" in place of hex27 and "quad8" in place of quad25.
+    """
+
+    points: Floats
+    blocks: list[tuple[str, Integers]]
+    node_sets: Mapping[str, Integers]
+    element_sets: Mapping[str, Integers]
+
+
+def exported(mesh: Mesh) -> Export:
+    """Return a mesh as it is written; sets lose the nodes that no shape uses.
+
+    Raises
+    ------
+    InputError
+        If the mesh has no elements.
+    """
+    if mesh.number_of_elements == 0:
+        raise InputError("the mesh has no elements; there is nothing to write")
+    shapes = [_shape(block) for block in mesh.blocks if len(block.connectivity)]
+    used = np.unique(np.concatenate([nodes.ravel() for _, nodes in shapes]))
+    owner = np.repeat(
+        np.arange(mesh.number_of_elements),
+        np.concatenate([np.full(len(block.connectivity), 4 if block.kind == "quad25" else 1) for block in mesh.blocks]),
+    )
+    return Export(
+        np.asarray(mesh.nodes, dtype=float)[used],
+        [(shape, np.searchsorted(used, nodes) + 1) for shape, nodes in shapes],
+        _without_empty({name: np.flatnonzero(np.isin(used, nodes)) + 1 for name, nodes in mesh.node_sets.items()}),
+        _without_empty({name: np.flatnonzero(np.isin(owner, elements)) + 1 for name, elements in mesh.element_sets.items()}),
+    )
+
+
+def nine_node_shells(connectivity: Integers) -> Integers:
+    """Return four shells of nine nodes (corners, edges, centre) for each plate element of five by five nodes.
+
+    Examples
+    --------
+    >>> nine_node_shells(np.arange(25)[None, :])[0].tolist()
+    [0, 2, 12, 10, 1, 7, 11, 5, 6]
+    """
+    lattice = connectivity.reshape(-1, PLATE_ORDER + 1, PLATE_ORDER + 1)
+    places = range(0, PLATE_ORDER, 2)
+    squares = [lattice[:, row + _SQUARE[:, 0], column + _SQUARE[:, 1]] for row in places for column in places]
+    return np.stack(squares, axis=1).reshape(-1, len(_SQUARE))
+
+
+def check_elastic(material: Material) -> None:
+    """Check that another program can take a material.
+
+    Raises
+    ------
+    InputError
+        If its density or modulus is not finite.
+    """
+    if not np.isfinite([material.density, material.youngs_modulus]).all():
+        raise InputError(f'the material "{material.name}" is rigid or has no density; one that is written to a file must have both')
+
+
+def check_thickness(thickness: float | None) -> None:
+    """Check the thickness of shells.
+
+    Raises
+    ------
+    InputError
+        If it is not positive and finite.
+    """
+    if thickness is not None and not 0 < thickness < np.inf:
+        raise InputError(f"{thickness:g} m is not allowed; it must be greater than 0 and finite", "thickness")
+
+
+def write_text(path: str | PathLike[str], text: str) -> None:
+    """Write a text file, whole or not at all.
+
+    Raises
+    ------
+    InputError
+        If it can't be written.
+    """
+    try:
+        write_file(Path(path), text.encode())
+    except OSError as error:
+        raise InputError(f"{path}: the file can't be written: {error.strerror}") from None
+
+
+def _shape(block: ElementBlock) -> tuple[str, Integers]:
+    if block.kind == "quad25":
+        return "quad8", nine_node_shells(block.connectivity)[:, :8]
+    if block.kind == "hex27":
+        return "hex20", block.connectivity[:, :20]
+    return block.kind, block.connectivity
+
+
+def _without_empty(sets: Mapping[str, Integers]) -> dict[str, Integers]:
+    return {name: members for name, members in sets.items() if len(members)}

@@ -1,0 +1,107 @@
+"""Meshes of geometry (STEP and BREP), made by Gmsh."""
+
+from __future__ import annotations
+
+import math
+import os
+import subprocess
+import sys
+from dataclasses import replace
+from os import PathLike
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from vibroimpact.errors import InputError
+from vibroimpact.files.reading import FileKind, about, beginning
+from vibroimpact.meshes.geometry_process import MARK
+from vibroimpact.meshes.read_gmsh import read_gmsh
+from vibroimpact.shown import shortened
+from vibroimpact.structures.mesh import Mesh
+
+STEP, BREP = (".step", ".stp"), (".brep",)
+
+GEOMETRY = FileKind("a geometry is a STEP or BREP file with one solid", 500_000_000, "leave out details that an impact does not feel")
+"""What is asked of the file of a geometry."""
+
+MOST_SECONDS = 1200.0
+"""That Gmsh may take: more than three million elements need; on some damaged geometries it works for ever."""
+
+
+def mesh_geometry(path: str | PathLike[str], size: float | None = None, order: int = 2, unit_in_metres: float = 1.0) -> Mesh:
+    """Return a mesh of tetrahedra of the solid in a STEP or BREP file; Gmsh must be installed.
+
+    The nodes of the second order lie on the geometry. Its faces are the node sets `face1`, `face2`, ... or as the file names
+    them. Gmsh runs in a process of its own, so that its messages, its settings and its crashes stay there.
+
+    Parameters
+    ----------
+    path : path
+        The file: .step, .stp or .brep.
+    size : float, optional
+        About the largest length of an element [m]; by default a twelfth of the largest extent.
+    order : int, default 2
+        Order of the elements, 1 or 2.
+    unit_in_metres : float, default 1
+        The unit of a BREP file [m]; a STEP file names its own.
+
+    Raises
+    ------
+    InputError
+        If Gmsh is not there, or can't mesh the file.
+
+    Examples
+    --------
+    >>> mesh_geometry("plate.iges")
+    Traceback (most recent call last):
+    vibroimpact.errors.InputError: plate.iges: ".iges" is not a geometry that is read; it must be .step, .stp or .brep
+    """
+    path = Path(path)
+    suffix = path.suffix.lower()
+    if suffix not in (*STEP, *BREP):
+        raise InputError(f'{path}: "{path.suffix}" is not a geometry that is read; it must be .step, .stp or .brep')
+    if size is not None and not 0 < size < math.inf:
+        raise InputError(f"{size:g} m is not allowed; it must be greater than 0 and finite", "size")
+    if order not in (1, 2):
+        raise InputError(f"{order} is not allowed; it must be 1 or 2", "order")
+    if suffix in STEP and unit_in_metres != 1.0:
+        raise InputError(f"{path}: a STEP file names its own unit; leave unit_in_metres at 1")
+    # STEP is read in millimetres, as the tolerances of the geometry kernel are made for
+    unit = 1e-3 if suffix in STEP else unit_in_metres
+    try:
+        if not beginning(path, GEOMETRY, 1):
+            raise InputError(f"the file is empty; {GEOMETRY.what}")
+    except InputError as error:
+        raise about(path, error) from None
+    with TemporaryDirectory() as folder:
+        made = Path(folder, "mesh.msh")
+        # a bare file name that starts with a dash, or a link, is no trouble when the path is whole
+        _run_gmsh(path, [str(path.resolve()), str(made), repr(0.0 if size is None else size / unit), str(order)])
+        mesh = read_gmsh(made)
+    return replace(mesh, nodes=mesh.nodes * unit)
+
+
+def _run_gmsh(path: Path, arguments: list[str]) -> None:
+    """Run Gmsh, and say what went wrong."""
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
+    command = [sys.executable, "-m", "vibroimpact.meshes.geometry_process", *arguments]
+    try:
+        done = subprocess.run(command, env=environment, stdin=subprocess.DEVNULL, capture_output=True, check=False, timeout=MOST_SECONDS)
+    except subprocess.TimeoutExpired:
+        raise InputError(
+            f"{path}: Gmsh did not end within {MOST_SECONDS / 60:g} minutes and was stopped; "
+            "give a larger element size, or mesh the geometry in another program"
+        ) from None
+    if done.returncode == 0:
+        return
+    _, mark, reason = done.stderr.decode("utf-8", errors="replace").rpartition(MARK)
+    reason = " ".join(reason.split())
+    kind, _, what = reason.partition(": ")
+    if not mark:
+        raise InputError(
+            f"{path}: Gmsh stopped with status {done.returncode} while it meshed the geometry; check the file in another program"
+        )
+    if kind in ("ImportError", "ModuleNotFoundError", "OSError"):
+        raise InputError(
+            f'{path}: meshing a geometry needs Gmsh, which can\'t be loaded ({shortened(what, 200)}): pip install "vibroimpact[mesh]"'
+        )
+    raise InputError(f"{path}: the geometry can't be meshed: {shortened(what, 300)}")

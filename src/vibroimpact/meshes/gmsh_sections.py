@@ -1,0 +1,100 @@
+"""The sections of a mesh file of Gmsh: from $Name to $EndName."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Collection, Iterable, Iterator
+
+from vibroimpact.files.lines import Line
+from vibroimpact.shown import shown
+
+
+class Section:
+    """The lines of a section, taken one after the other as words."""
+
+    def __init__(self, line: Line) -> None:
+        self.line = line
+        self.body: list[Line] = []
+        self._at = 0
+
+    @property
+    def has_more(self) -> bool:
+        """Is there a line that was not taken?"""
+        return self._at < len(self.body)
+
+    def words(self, least: int) -> tuple[Line, list[str]]:
+        """Return the next line and its words.
+
+        Raises
+        ------
+        InputError
+            If there is no line, or it has fewer words than `least`.
+        """
+        if not self.has_more:
+            raise self.line.wrong(f"{self.line.text.strip()} ends too soon; the file is cut short or its counts are wrong")
+        line = self.body[self._at]
+        self._at += 1
+        words = line.text.split()
+        if len(words) < least:
+            raise line.wrong(f"the line has {len(words)} of the {least} entries that it must have")
+        return line, words
+
+    def take(self, count: int, least: int) -> Iterator[tuple[Line, list[str]]]:
+        """Yield the next `count` lines and their words.
+
+        Raises
+        ------
+        InputError
+            If there are fewer lines, or one has fewer words than `least`.
+        """
+        left = len(self.body) - self._at
+        if count > left:
+            raise self.line.wrong(
+                f"{self.line.text.strip()} says {count} lines where {left} are left; the file is cut short or its counts are wrong"
+            )
+        for _ in range(count):
+            yield self.words(least)
+
+    def end(self) -> None:
+        """Check that all lines were taken.
+
+        Raises
+        ------
+        InputError
+            If there are more.
+        """
+        if self.has_more:
+            raise self.body[self._at].wrong(f"{self.line.text.strip()} has more lines than it says; the two must agree")
+
+
+def sections(lines: Iterable[Line], known: Collection[str], skipped: Counter[str]) -> dict[str, Section]:
+    """Return the known sections by name, and count the others.
+
+    Raises
+    ------
+    InputError
+        If a section has no end or comes twice, or there is text outside.
+    """
+    found: dict[str, Section] = {}
+    name, section = "", None
+    for line in lines:
+        text = line.text.strip()
+        if not text:
+            continue
+        if section is None:
+            if not text.startswith("$"):
+                raise line.wrong(f"{shown(text)} stands outside a section; a mesh file of Gmsh has sections from $Name to $EndName")
+            name, section = text[1:], Section(line)
+        elif text == f"$End{name}":
+            if name not in known:
+                skipped[f"${name}"] += 1
+            elif name in found:
+                raise section.line.wrong(f"this is a second ${name}; a file must have one")
+            else:
+                found[name] = section
+            section = None
+        else:
+            section.body.append(line)
+    if section is not None:
+        raise section.line.wrong(f"{shown('$' + name)} has no {shown('$End' + name)}; the file is cut short")
+    return found

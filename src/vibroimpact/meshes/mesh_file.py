@@ -1,0 +1,64 @@
+"""A mesh from any file that is known by its suffix."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from os import PathLike
+from pathlib import Path
+
+from vibroimpact.errors import InputError
+from vibroimpact.meshes.geometry import BREP, STEP, mesh_geometry
+from vibroimpact.meshes.read_abaqus import read_abaqus
+from vibroimpact.meshes.read_gmsh import read_gmsh
+from vibroimpact.meshes.read_nastran import read_nastran
+from vibroimpact.structures.mesh import Mesh
+
+READERS: Mapping[str, Callable[[str | PathLike[str]], Mesh]] = {
+    ".bdf": read_nastran,
+    ".dat": read_nastran,
+    ".nas": read_nastran,
+    ".fem": read_nastran,
+    ".inp": read_abaqus,
+    ".msh": read_gmsh,
+}
+
+
+def read_mesh(path: str | PathLike[str], unit_in_metres: float = 1.0, size: float | None = None) -> Mesh:
+    """Read a mesh (Nastran, Abaqus, Gmsh) or make one of a geometry (STEP, BREP), by the suffix of the file.
+
+    Parameters
+    ----------
+    path : path
+        The file: .bdf, .dat, .nas, .fem, .inp, .msh, .step, .stp or .brep.
+    unit_in_metres : float, default 1
+        The unit of its coordinates [m], such as 0.001 for millimetres; a STEP file names its own.
+    size : float, optional
+        About the largest length of an element of a geometry [m]; by default a twelfth of the largest extent.
+
+    Raises
+    ------
+    InputError
+        If the file is not such a file, or can't be read.
+
+    Examples
+    --------
+    >>> read_mesh("plate.stl")
+    Traceback (most recent call last):
+    vibroimpact.errors.InputError: plate.stl: ".stl" is not read; a mesh must be .bdf, .dat, .nas, .fem, .inp, .msh, .step, .stp or .brep
+    """
+    path = Path(path)
+    suffix = path.suffix.lower()
+    known = [*READERS, *STEP, *BREP]
+    if suffix not in known:
+        allowed = f"{', '.join(known[:-1])} or {known[-1]}"
+        raise InputError(f'{path}: "{path.suffix}" is not read; a mesh must be {allowed}')
+    if not 0 < unit_in_metres < math.inf:
+        raise InputError(f"{unit_in_metres:g} m is not allowed; it must be greater than 0 and finite", "unit_in_metres")
+    if suffix not in READERS:
+        return mesh_geometry(path, size, unit_in_metres=unit_in_metres)
+    if size is not None:
+        raise InputError(f"{path}: the file is a mesh already; a size is for geometries (.step, .stp or .brep)", "size")
+    mesh = READERS[suffix](path)
+    return replace(mesh, nodes=mesh.nodes * unit_in_metres)

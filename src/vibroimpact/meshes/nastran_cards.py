@@ -1,0 +1,95 @@
+"""The cards of a Nastran file: free, small and large fields, and lines that go on."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator
+from typing import NamedTuple
+
+from vibroimpact.files.lines import Line, real
+from vibroimpact.shown import shown
+
+_EXPONENT = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+))(?:[dD]([+-]?\d+)|([+-]\d+))")
+_INCLUDE = re.compile(r"""\s*INCLUDE\s+(?:'([^']+)'|"([^"]+)"|([^'"$\s]+))\s*(?:\$.*)?""", re.IGNORECASE)
+
+
+class Card(NamedTuple):
+    """A card: its name in capitals, and its fields from the second on."""
+
+    line: Line
+    name: str
+    fields: list[str]
+
+
+def included_file(text: str) -> str | None:
+    """Return the file that a line of a Nastran file includes.
+
+    Examples
+    --------
+    >>> included_file("include 'mesh/plate.bdf'  $ the plate")
+    'mesh/plate.bdf'
+    """
+    found = _INCLUDE.fullmatch(text) if "NCLUDE" in text[:40].upper() else None
+    return next(name for name in found.groups() if name) if found else None
+
+
+def nastran_real(text: str, line: Line) -> float:
+    """Return a number that may lack the letter of its exponent or have a D; a blank is zero.
+
+    Examples
+    --------
+    >>> nastran_real("1.5-3", None), nastran_real("1.D+3", None), nastran_real("", None)
+    (0.0015, 1000.0, 0.0)
+    """
+    if not text:
+        return 0.0
+    found = _EXPONENT.fullmatch(text)
+    return float(f"{found[1]}e{found[2] or found[3]}") if found else real(text, line)
+
+
+def cards(lines: Iterable[Line]) -> Iterator[Card]:
+    """Yield the cards of bulk data, up to ENDDATA and with it.
+
+    Raises
+    ------
+    InputError
+        If a continuation has no card, or belongs to another one.
+    """
+    card, goes_on = None, ""
+    for line in lines:
+        text = line.text.split("$", 1)[0].rstrip()
+        if not text or included_file(text) is not None:
+            continue
+        head, fields, end = _split(text.expandtabs(8))
+        if not head or head[0] in "+*":
+            if card is None:
+                raise line.wrong("a line goes on without a card before it; a card starts with its name, such as GRID")
+            if (name := head.lstrip("+*").strip()) and goes_on and name != goes_on:
+                raise line.wrong(
+                    f"{shown(name)} does not go on with the card before it, which asks for {shown(goes_on)}; it must follow its card"
+                )
+            card.fields.extend(fields)
+        else:
+            if card is not None:
+                yield card
+            card = Card(line, head.rstrip("*").strip().upper(), fields)
+            if card.name == "ENDDATA":
+                break
+            if card.name.startswith("="):
+                raise line.wrong('the card "=" repeats the one before it, which is not read; write each card out')
+        goes_on = end.lstrip("+*").strip()
+    if card is not None:
+        yield card
+
+
+def _split(text: str) -> tuple[str, list[str], str]:
+    """Return the first field, the data, filled up to 8 (or to 4 large ones), and the field that names what follows."""
+    if "," in text:
+        head, *fields = (field.strip() for field in text.split(","))
+        width = 4 if "*" in head else 8
+        if len(fields) == width + 1:
+            return head, fields[:width], fields[width]
+        return head, fields + [""] * (width - len(fields)), ""
+    head = text[:8].strip()
+    size = 16 if "*" in head else 8
+    return head, [text[start : start + size].strip() for start in range(8, 72, size)], text[72:80].strip()

@@ -1,0 +1,215 @@
+"""What a reader finds in a file, and the mesh it makes."""
+
+from __future__ import annotations
+
+from collections import Counter, defaultdict
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from vibroimpact.arrays import Floats, Integers
+from vibroimpact.errors import InputError
+from vibroimpact.files.lines import Line
+from vibroimpact.meshes.node_order import to_ours
+from vibroimpact.shown import shown
+from vibroimpact.structures.element_kinds import ELEMENT_KINDS
+from vibroimpact.structures.mesh import ElementBlock, Mesh
+
+LARGEST_COORDINATE = 1e15
+MOST_MEMBERS = 10_000_000
+"""Of all sets of nodes, or of elements, together: with sets of sets and ranges a short file can ask for more than fits into memory."""
+
+EMPTY_SET = "set without solid elements or their nodes"
+
+
+@dataclass
+class Selection:
+    """Single numbers, and ranges of numbers as (first, last, step).
+
+    A range stays a range until the numbers that exist are known: "1 to 10^12" costs nothing.
+
+    Examples
+    --------
+    >>> Selection({7}, {(2, 10**12, 2)}).places(np.array([1, 2, 3, 4, 7])).tolist()
+    [1, 3, 4]
+    """
+
+    numbers: set[int] = field(default_factory=set)
+    ranges: set[tuple[int, int, int]] = field(default_factory=set)
+
+    def places(self, known: Integers) -> Integers:
+        """Return where the selected ones stand among the numbers `known`, which ascend."""
+        numbers = np.fromiter(self.numbers, np.int64, len(self.numbers))
+        places = np.minimum(np.searchsorted(known, numbers), len(known) - 1).astype(np.int64)
+        places = np.sort(places[known[places] == numbers])
+        if not self.ranges:  # nothing here costs as much as all that is known: there may be many small sets
+            return places
+        ranges = np.array(list(self.ranges), dtype=np.int64)
+        starts, stops = np.searchsorted(known, ranges[:, 0]), np.searchsorted(known, ranges[:, 1], side="right")
+        whole = ranges[:, 2] == 1
+        # where ranges without gaps begin and end: thousands of them cost as much as one
+        ends = np.bincount(starts[whole], minlength=len(known) + 1) - np.bincount(stops[whole], minlength=len(known) + 1)
+        chosen = np.cumsum(ends[:-1]) > 0
+        chosen[places] = True
+        for (first, _, step), start, stop in zip(ranges[~whole].tolist(), starts[~whole].tolist(), stops[~whole].tolist(), strict=True):
+            chosen[start:stop] |= (known[start:stop] - first) % step == 0
+        return np.flatnonzero(chosen)
+
+    def update(self, other: Selection) -> None:
+        """Add what another selection selects."""
+        self.numbers |= other.numbers
+        self.ranges |= other.ranges
+
+
+@dataclass
+class _Elements:
+    """The elements of one kind as the file numbers them."""
+
+    lines: list[Line] = field(default_factory=list)
+    numbers: list[int] = field(default_factory=list)
+    nodes: list[Sequence[int]] = field(default_factory=list)
+
+
+@dataclass
+class Parts:
+    """Nodes, elements and sets under the numbers that the file gives them.
+
+    Parameters
+    ----------
+    path : Path
+        The file, for the messages.
+    orders : mapping of str to str
+        The file's order of the nodes, for the kinds where it differs from ours.
+    """
+
+    path: Path
+    orders: Mapping[str, str] = field(default_factory=dict)
+    node_sets: defaultdict[str, Selection] = field(default_factory=lambda: defaultdict(Selection))
+    element_sets: defaultdict[str, Selection] = field(default_factory=lambda: defaultdict(Selection))
+    skipped: Counter[str] = field(default_factory=Counter)
+    _copied: int = 0
+    _node_lines: list[Line] = field(default_factory=list)
+    _node_numbers: list[int] = field(default_factory=list)
+    _points: list[tuple[float, float, float]] = field(default_factory=list)
+    _elements: defaultdict[str, _Elements] = field(default_factory=lambda: defaultdict(_Elements))
+
+    def add_node(self, line: Line, number: int, point: tuple[float, float, float]) -> None:
+        """Add a node.
+
+        Raises
+        ------
+        InputError
+            If a coordinate is not finite.
+        """
+        for coordinate in point:
+            if not -LARGEST_COORDINATE < coordinate < LARGEST_COORDINATE:
+                raise line.wrong(f"node {number} has the coordinate {coordinate:g}; it must be finite and less than 1e15 in size")
+        self._node_lines.append(line)
+        self._node_numbers.append(number)
+        self._points.append(point)
+
+    def add_members(self, line: Line, chosen: Selection, more: Selection) -> None:
+        """Add to a set what another one selects.
+
+        Raises
+        ------
+        InputError
+            If there are too many in all.
+        """
+        self._copied += len(more.numbers) + len(more.ranges)
+        if self._copied > MOST_MEMBERS:
+            raise line.wrong(_too_many_members())
+        chosen.update(more)
+
+    def add_element(self, line: Line, kind: str, number: int, nodes: Sequence[int]) -> None:
+        """Add an element with as many nodes as its kind has, in the file's order."""
+        found = self._elements[kind]
+        found.lines.append(line)
+        found.numbers.append(number)
+        found.nodes.append(nodes)
+
+    def mesh(self) -> Mesh:
+        """Return the mesh: numbered from 0, without nodes that no element uses.
+
+        Raises
+        ------
+        InputError
+            If a number is given twice, a node is missing or there is no element.
+        """
+        if not self._elements:
+            left_out = ", ".join(f"{shown(name)[1:-1]} ({count})" for name, count in self.skipped.most_common(5))
+            raise InputError(
+                f"{self.path}: the file has no solid element; a mesh is of tetrahedra or bricks{left_out and '; left out: ' + left_out}"
+            )
+        numbers, points = self._distinct_nodes()
+        blocks = {kind: self._places_of_nodes(kind, numbers) for kind in ELEMENT_KINDS if kind in self._elements}
+        used, places = np.unique(np.concatenate([places.ravel() for places in blocks.values()]), return_inverse=True)
+        ends = np.cumsum([places.size for places in blocks.values()])[:-1]
+        renumbered = zip(blocks, np.split(places, ends), blocks.values(), strict=True)
+        return Mesh(
+            points[used],
+            tuple(ElementBlock(kind, flat.reshape(shaped.shape)) for kind, flat, shaped in renumbered),
+            self._sets(self.node_sets, numbers[used], np.arange(len(used))),
+            self._sets(self.element_sets, *self._distinct_elements(list(blocks))),
+            dict(self.skipped),
+        )
+
+    def _distinct_nodes(self) -> tuple[Integers, Floats]:
+        """Return the numbers of the nodes, ascending, and where they are."""
+        numbers, points = np.array(self._node_numbers, dtype=np.int64), np.array(self._points, dtype=float).reshape(-1, 3)
+        order = np.argsort(numbers, kind="stable")
+        numbers, points = numbers[order], points[order]
+        again = numbers[1:] == numbers[:-1]
+        moved = again & (points[1:] != points[:-1]).any(axis=1)
+        if moved.any():
+            at = int(np.argmax(moved)) + 1
+            first = self._node_lines[order[at - 1]]
+            raise self._node_lines[order[at]].wrong(
+                f"node {numbers[at]} was given other coordinates in line {first.number}; a node may be given once"
+            )
+        once = np.append(~again, True) if len(numbers) else np.ones(0, dtype=bool)
+        return numbers[once], points[once]
+
+    def _places_of_nodes(self, kind: str, numbers: Integers) -> Integers:
+        """Return the nodes of the elements as places in `numbers`, in our order."""
+        found = self._elements[kind]
+        wanted = np.array(found.nodes, dtype=np.int64)
+        places = np.minimum(np.searchsorted(numbers, wanted), max(len(numbers) - 1, 0)).astype(np.int64)
+        missing = numbers[places] != wanted if len(numbers) else np.ones(wanted.shape, dtype=bool)
+        if missing.any():
+            row, column = np.argwhere(missing)[0]
+            raise found.lines[row].wrong(
+                f"element {found.numbers[row]} has the node {wanted[row, column]}, which the file does not give; "
+                "every node of an element must be in the file"
+            )
+        return places[:, to_ours(kind, self.orders[kind])] if kind in self.orders else places
+
+    def _distinct_elements(self, kinds: list[str]) -> tuple[Integers, Integers]:
+        """Return the numbers of the elements, ascending, and their places through all blocks."""
+        numbers = np.concatenate([np.array(self._elements[kind].numbers, dtype=np.int64) for kind in kinds])
+        order = np.argsort(numbers, kind="stable")
+        again = np.flatnonzero(np.diff(numbers[order]) == 0)
+        if len(again):
+            lines = [line for kind in kinds for line in self._elements[kind].lines]
+            first, second = sorted((lines[order[again[0]]], lines[order[again[0] + 1]]), key=lambda line: line.number)
+            raise second.wrong(f"element {numbers[order[again[0]]]} was given in line {first.number} already; an element may be given once")
+        return numbers[order], order
+
+    def _sets(self, sets: Mapping[str, Selection], numbers: Integers, places: Integers) -> dict[str, Integers]:
+        """Return the sets as places; what the mesh does not have is left out of them."""
+        found: dict[str, Integers] = {}
+        total = 0
+        for name, selection in sets.items():
+            found[name] = np.sort(places[selection.places(numbers)])
+            total += len(found[name])
+            if total > MOST_MEMBERS:
+                raise InputError(f"{self.path}: {_too_many_members()}")
+        empty = [name for name, members in found.items() if len(members) == 0]
+        self.skipped.update({EMPTY_SET: len(empty)} if empty else {})
+        return {name: members for name, members in found.items() if len(members)}
+
+
+def _too_many_members() -> str:
+    return f"the sets have more than {MOST_MEMBERS:,} members in all; leave out those that are not needed"

@@ -1,0 +1,201 @@
+"""Abaqus input files, read."""
+
+from __future__ import annotations
+
+import re
+from os import PathLike
+from pathlib import Path
+
+from vibroimpact.errors import did_you_mean
+from vibroimpact.files.lines import Line, lines_with_includes, real, whole
+from vibroimpact.meshes.abaqus_blocks import Block, blocks, included_file
+from vibroimpact.meshes.node_order import ABAQUS
+from vibroimpact.meshes.parsed_mesh import Parts, Selection
+from vibroimpact.shown import shown
+from vibroimpact.structures.element_kinds import ELEMENT_KINDS
+from vibroimpact.structures.mesh import Mesh
+
+_KINDS = {"4": "tet4", "8": "hex8", "10": "tet10", "20": "hex20", "27": "hex27"}
+_SOLID = re.compile(r"C3D(\d+)[A-Z]*")
+_OTHER_SOLID = re.compile(r"E?C3D|SC[68]|CSS8|CCL\d|Q3D")
+_MAKES_MESH = {"NGEN", "NFILL", "NCOPY", "NMAP", "ELGEN", "ELCOPY", "SYMMETRIC MODEL GENERATION"}
+_INPUTS = {"INCLUDE", "NODE", "ELEMENT", "NSET", "ELSET"}
+_QUIET = {"HEADING", "INCLUDE", "PART", "END PART", "ASSEMBLY", "END ASSEMBLY", "INSTANCE", "END INSTANCE"}
+
+
+def read_abaqus(path: str | PathLike[str]) -> Mesh:
+    """Read the solid elements of an Abaqus input file with one part.
+
+    C3D4, C3D8, C3D10, C3D20 and C3D27 of every formulation make the mesh, with the sets of *NSET, *ELSET, *NODE and
+    *ELEMENT. Other keywords, and elements that are not solid, are counted in `Mesh.skipped`.
+
+    Parameters
+    ----------
+    path : path
+        The file; what it includes is read too.
+
+    Raises
+    ------
+    InputError
+        If it is not such a file, has solid elements that are not read, or more than one part.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> deck = "*NODE\\n1,0,0,0\\n2,1,0,0\\n3,0,1,0\\n4,0,0,1\\n*ELEMENT,TYPE=C3D4,ELSET=all\\n1,1,2,3,4\\n"
+    >>> with TemporaryDirectory() as folder:
+    ...     file = Path(folder, "tet.inp")
+    ...     _ = file.write_text(deck)
+    ...     mesh = read_abaqus(file)
+    >>> mesh.blocks[0].kind, list(mesh.element_sets)
+    ('tet4', ['all'])
+    """
+    reader = _Reader(Path(path))
+    for block in blocks(lines_with_includes(Path(path), included_file)):
+        reader.take(block)
+    return reader.mesh()
+
+
+class _Reader:
+    """Takes block after block; knows what the part and the assembly around them are."""
+
+    def __init__(self, path: Path) -> None:
+        self.parts = Parts(path, ABAQUS)
+        self.names: dict[tuple[str, str], str] = {}
+        self.seen: dict[str, Line] = {}
+        self.open: dict[str, Line] = {}
+        self.in_assembly = False
+
+    def take(self, block: Block) -> None:
+        keyword = block.keyword
+        # a file that is not read here would be missed without a word
+        if (keyword == "INCLUDE" or "INPUT" in block.parameters) and included_file(block.line.text) is None and keyword in _INPUTS:
+            raise block.line.wrong(f"the file to include can't be told; *{keyword} must have INPUT=file on its first line")
+        if keyword in _MAKES_MESH:
+            raise block.line.wrong(f"*{keyword} makes nodes or elements by a rule, which is not read; write each one out")
+        if keyword == "SYSTEM" and block.data:
+            raise block.line.wrong("*SYSTEM moves the nodes that follow, which is not read; write their global coordinates")
+        if keyword in ("PART", "INSTANCE"):
+            self._once(block)
+        if f"END {keyword}" in _QUIET:
+            self.open[keyword] = block.line
+        elif keyword.startswith("END "):
+            self.open.pop(keyword.removeprefix("END "), None)
+        # reference points of an assembly have numbers of their own, which may be those of nodes of the part
+        self.in_assembly = keyword in ("ASSEMBLY", "END INSTANCE") or (
+            self.in_assembly and keyword not in ("END ASSEMBLY", "INSTANCE", "PART")
+        )
+        if keyword == "NODE" and not self.in_assembly:
+            self._nodes(block)
+        elif keyword == "ELEMENT":
+            self._elements(block)
+        elif keyword in ("NSET", "ELSET") and (not self.in_assembly or "INSTANCE" in block.parameters):
+            self._set(block)
+        elif keyword not in _QUIET:
+            self.parts.skipped[f"*{keyword}"] += 1
+
+    def mesh(self) -> Mesh:
+        if self.open:
+            keyword, line = self.open.popitem()
+            raise line.wrong(f"*{keyword} has no *END {keyword}; the file is cut short")
+        return self.parts.mesh()
+
+    def _once(self, block: Block) -> None:
+        """One part, standing where it was drawn."""
+        if block.keyword in self.seen:
+            first = self.seen[block.keyword].number
+            raise block.line.wrong(f"this is a second *{block.keyword}, after that in line {first}; the file must hold one body")
+        self.seen[block.keyword] = block.line
+        moves = [line for line in block.data if any(real(field, line) for field in line.text.split(",") if field.strip())]
+        if moves and block.keyword == "INSTANCE":
+            raise moves[0].wrong("the instance is moved or turned, which is not read; it must stand where the part was drawn")
+
+    def _selection(self, kind: str, name: str) -> Selection:
+        """Return the set of that name, whatever its case."""
+        sets = self.parts.node_sets if kind == "NSET" else self.parts.element_sets
+        return sets[self.names.setdefault((kind, name.upper()), name)]
+
+    def _nodes(self, block: Block) -> None:
+        if block.parameters.get("SYSTEM", "R").upper() != "R":
+            raise block.line.wrong("the nodes are in cylindrical or spherical coordinates; only SYSTEM=R is read")
+        chosen = self._selection("NSET", block.parameters["NSET"]) if block.parameters.get("NSET") else Selection()
+        for line in block.data:
+            fields = line.text.split(",")
+            if len(fields) < 4:
+                raise line.wrong("a node must have a number and three coordinates, with commas between them")
+            number = whole(fields[0], line, "the number of a node")
+            x, y, z = (real(text, line) if text.strip() else 0.0 for text in fields[1:4])
+            self.parts.add_node(line, number, (x, y, z))
+            chosen.numbers.add(number)
+
+    def _elements(self, block: Block) -> None:
+        given = block.parameters.get("TYPE", "").upper()
+        solid = _SOLID.fullmatch(given)
+        if solid is None or solid[1] not in _KINDS or self.in_assembly:
+            if _OTHER_SOLID.match(given):
+                where = " in the assembly" if self.in_assembly else ""
+                raise block.line.wrong(
+                    f"{shown(given)}{where} is a solid element that is not read; the part must be of C3D4, C3D8, C3D10, C3D20 or C3D27"
+                )
+            if not given:
+                raise block.line.wrong("*ELEMENT has no TYPE; it must say one, such as TYPE=C3D10")
+            ends = sum(not line.text.rstrip().endswith(",") for line in block.data)
+            self.parts.skipped[given] += max(ends, 1)
+            return
+        kind = _KINDS[solid[1]]
+        name = block.parameters.get("ELSET")
+        chosen = self._selection("ELSET", name) if name else Selection()
+        wanted = 1 + len(ELEMENT_KINDS[kind].reference)
+        numbers: list[int] = []
+        for line in block.data:
+            if not numbers:
+                first = line
+            texts = line.text.split(",")
+            goes_on = not texts[-1].strip()
+            numbers += [whole(text, line, "the number of an element or node") for text in (texts[:-1] if goes_on else texts)]
+            if len(numbers) == wanted:
+                self.parts.add_element(first, kind, numbers[0], numbers[1:])
+                chosen.numbers.add(numbers[0])
+                numbers = []
+            elif not goes_on or len(numbers) > wanted:
+                raise first.wrong(f"element {numbers[0]} has {len(numbers) - 1} nodes; {given} must have {wanted - 1}")
+        if numbers:
+            raise first.wrong(f"element {numbers[0]} has {len(numbers) - 1} nodes and its lines end there; {given} must have {wanted - 1}")
+
+    def _set(self, block: Block) -> None:
+        kind = block.keyword
+        name = block.parameters.get(kind)
+        if not name:
+            raise block.line.wrong(f"*{kind} has no name; it must say {kind}=name")
+        if kind == "NSET" and "ELSET" in block.parameters:
+            self.parts.skipped["*NSET, ELSET="] += 1
+            return
+        chosen = self._selection(kind, name)
+        included: set[str] = set()
+        for line in block.data:
+            texts = [text.strip() for text in line.text.split(",") if text.strip()]
+            if "GENERATE" in block.parameters:
+                chosen.ranges.add(_range(texts, line))
+                continue
+            for text in texts:
+                number = text.rpartition(".")[2]  # a set of the assembly may say instance.number
+                if number.isdigit():
+                    chosen.numbers.add(whole(number, line, "the number of a member"))
+                elif text not in included:
+                    included.add(text)
+                    self.parts.add_members(line, chosen, self._known(kind, text.strip('"'), line))
+
+    def _known(self, kind: str, name: str, line: Line) -> Selection:
+        exact = next((key for key in (name.upper(), name.rpartition(".")[2].upper()) if (kind, key) in self.names), None)
+        if exact is None:
+            suggestion = did_you_mean(name.upper(), [key for of, key in self.names if of == kind and len(key) < 100][:1000])
+            raise line.wrong(f"{shown(name)} is neither a number nor a *{kind} before this line; it must be one of them.{suggestion}")
+        return self._selection(kind, exact)
+
+
+def _range(texts: list[str], line: Line) -> tuple[int, int, int]:
+    numbers = [whole(text, line, "the bound of a range") for text in texts]
+    first, last, step = [*numbers, 1][:3] if len(numbers) in (2, 3) else (1, 0, 1)
+    if last < first or step < 1:
+        raise line.wrong("GENERATE needs first, last and step; last must be at least first, and step at least 1")
+    return first, last, step

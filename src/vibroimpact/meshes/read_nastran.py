@@ -1,0 +1,159 @@
+"""Nastran bulk data, read."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Sequence
+from os import PathLike
+from pathlib import Path
+
+from vibroimpact.errors import InputError
+from vibroimpact.files.lines import Line, lines_with_includes, whole
+from vibroimpact.meshes.nastran_cards import Card, cards, included_file, nastran_real
+from vibroimpact.meshes.node_order import NASTRAN
+from vibroimpact.meshes.parsed_mesh import Parts, Selection
+from vibroimpact.shown import shown
+from vibroimpact.structures.mesh import Mesh
+
+_KINDS = {"CTETRA": {4: "tet4", 10: "tet10"}, "CHEXA": {8: "hex8", 20: "hex20"}}
+_OTHER_SOLIDS = ("CTETRA", "CHEX", "CPENT", "CPYR", "CWEDGE")
+_BEGIN = re.compile(r"\s*BEGIN[\s,]+(\w*)", re.IGNORECASE)
+_SET = re.compile(r"\s*SET\s+(\d{1,18})\s*=(.*)", re.IGNORECASE)
+_SET_NAME = re.compile(r"\$ node set (\d{1,18}): (\S.*)")
+
+
+def read_nastran(path: str | PathLike[str]) -> Mesh:
+    """Read the solid elements of a Nastran file (bulk data, with or without executive and case control).
+
+    CTETRA, CHEXA and their GRIDs make the mesh. The elements of property n are the set `PIDn`, the nodes of SPC1 cards the
+    set `SPCn`, and those of `SET n` in case control the set `SETn`, or as a comment "$ node set n: name" calls it. Other
+    cards are counted in `Mesh.skipped`.
+
+    Parameters
+    ----------
+    path : path
+        The file; what it includes is read too.
+
+    Raises
+    ------
+    InputError
+        If it is not such a file, or has solid elements that are not read.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> bulk = "GRID,1\\nGRID,2,,1.\\nGRID,3,,,1.\\nGRID,4,,,,1.\\nCTETRA,1,7,1,2,3,4\\n"
+    >>> with TemporaryDirectory() as folder:
+    ...     file = Path(folder, "tet.bdf")
+    ...     _ = file.write_text(bulk)
+    ...     mesh = read_nastran(file)
+    >>> mesh.blocks[0].kind, list(mesh.element_sets)
+    ('tet4', ['PID7'])
+    """
+    path = Path(path)
+    parts = Parts(path, NASTRAN)
+    lines = list(lines_with_includes(path, included_file))
+    begin = next((index for index, line in enumerate(lines) if _BEGIN.match(line.text)), None)
+    if begin is not None:
+        _check_begin(lines[begin])
+        _read_sets(lines[:begin], parts)
+        lines = lines[begin + 1 :]
+    ended = False
+    for card in cards(lines):
+        ended = card.name == "ENDDATA"
+        if not ended:
+            _read_card(card, parts)
+    if begin is not None and not ended:
+        raise InputError(f"{path}: there is a BEGIN BULK but no ENDDATA; the file is cut short")
+    return parts.mesh()
+
+
+def _check_begin(line: Line) -> None:
+    section = _BEGIN.match(line.text)
+    if section and section[1].upper() not in ("", "BULK"):
+        raise line.wrong(f'"BEGIN {section[1]}" is not read; the mesh must stand after BEGIN BULK')
+
+
+def _read_card(card: Card, parts: Parts) -> None:
+    line, name, fields = card
+    if name == "GRID":
+        if fields[1] not in ("", "0"):
+            raise line.wrong(f"the GRID is in coordinate system {shown(fields[1])}; only the basic one (0 or blank) is read")
+        number = whole(fields[0], line, "the number of a node")
+        if len(fields) < 5:
+            raise line.wrong(f"GRID* {number} has two coordinates; the third must stand in a second line, which starts with *")
+        x, y, z = fields[2:5]
+        parts.add_node(line, number, (nastran_real(x, line), nastran_real(y, line), nastran_real(z, line)))
+    elif name in _KINDS:
+        _read_solid(card, parts)
+    elif name.startswith(_OTHER_SOLIDS):
+        raise line.wrong(f"{shown(name)} is a solid element that is not read; the elements must be CTETRA or CHEXA")
+    elif name.startswith("INCLUDE"):
+        raise line.wrong("the file to include can't be told; its name must stand in quotes on the line of INCLUDE")
+    elif name == "SPC1":
+        chosen = _selection([field for field in fields[2:] if field])
+        if chosen is None:
+            raise line.wrong("the nodes of SPC1 can't be read; they must be numbers, or a number, THRU and a number")
+        parts.node_sets[f"SPC{whole(fields[0], line, 'the number of a set')}"].update(chosen)
+    else:
+        if name == "GRDSET" and fields[1] not in ("", "0"):
+            raise line.wrong(f"GRDSET puts nodes in coordinate system {shown(fields[1])}; only the basic one (0 or blank) is read")
+        parts.skipped[name] += 1
+
+
+def _read_solid(card: Card, parts: Parts) -> None:
+    line, name, fields = card
+    number = whole(fields[0], line, "the number of an element")
+    nodes = [whole(field, line, "the number of a node") if field else 0 for field in fields[2:]]
+    while nodes and nodes[-1] == 0:
+        nodes.pop()
+    kinds = _KINDS[name]
+    if len(nodes) not in kinds or 0 in nodes:
+        takes = " or ".join(map(str, kinds))
+        raise line.wrong(f"{name} {number} has {len(nodes) - nodes.count(0)} nodes; it must have {takes}, with none left blank")
+    parts.add_element(line, kinds[len(nodes)], number, nodes)
+    pid = whole(fields[1], line, "the number of a property") if fields[1] else number
+    parts.element_sets[f"PID{pid}"].numbers.add(number)
+
+
+def _read_sets(lines: Iterable[Line], parts: Parts) -> None:
+    """Read the sets of case control; those that are not plain lists of numbers are counted as skipped."""
+    names: dict[str, str] = {}
+    listed: dict[str, list[str]] = {}
+    open_set = ""
+    for line in lines:
+        if found := _SET_NAME.match(line.text):
+            names[found[1]] = found[2].strip()
+        text = line.text.split("$", 1)[0].strip()
+        if found := _SET.match(text):
+            open_set, listed[found[1]] = found[1], [found[2]]
+        elif open_set and text:
+            listed[open_set].append(text)
+        if text and not text.endswith(","):
+            open_set = ""
+    for number, texts in listed.items():
+        chosen = _selection(" ".join(texts).replace(",", " ").split())
+        if chosen is None:
+            parts.skipped["SET"] += 1
+        else:
+            parts.node_sets[names.get(number, f"SET{number}")].update(chosen)
+
+
+def _selection(words: Sequence[str]) -> Selection | None:
+    """Return what a list such as "1 5 THRU 10" selects; None if there is anything else in it."""
+    found = Selection()
+    words = [word.upper() for word in words]
+    numbers = [int(word) if word.isascii() and word.isdigit() and len(word) <= 18 else -1 for word in words]
+    at = 0
+    while at < len(words):
+        if numbers[at] < 0:
+            return None
+        if words[at + 1 : at + 2] == ["THRU"]:
+            if at + 2 >= len(words) or numbers[at + 2] < numbers[at]:
+                return None
+            found.ranges.add((numbers[at], numbers[at + 2], 1))
+            at += 3
+        else:
+            found.numbers.add(numbers[at])
+            at += 1
+    return found

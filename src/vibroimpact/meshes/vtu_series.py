@@ -1,0 +1,82 @@
+"""A mesh that moves, as ParaView opens it: a file of VTK (.vtu) for each time, and one (.pvd) that names them all."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from os import PathLike
+from pathlib import Path
+from xml.sax.saxutils import quoteattr
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from vibroimpact.errors import InputError
+from vibroimpact.meshes.exported import write_text
+from vibroimpact.meshes.write_vtu import cells_of, checked_values, vtu_text
+from vibroimpact.structures.mesh import Mesh
+
+
+def write_vtu_series(mesh: Mesh, path: str | PathLike[str], times: ArrayLike, point_data: Iterable[Mapping[str, ArrayLike]]) -> list[Path]:
+    """Write values at the nodes of a mesh over time, in single precision.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        What moves.
+    path : path
+        The .pvd file to open in ParaView; the others lie beside it, in a folder of its name.
+    times : array_like
+        [s].
+    point_data : iterable of mapping of str to array
+        For each time, values at all nodes by name, of shape (nodes,) or (nodes, 3).
+
+    Returns
+    -------
+    list of pathlib.Path
+        The files of each time.
+
+    Raises
+    ------
+    InputError
+        If there are not as many values as times, values have another shape, or a file can't be written.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> from vibroimpact.structures.mesh import ElementBlock
+    >>> tet = Mesh(np.eye(4, 3), (ElementBlock("tet4", np.array([[3, 0, 1, 2]])),))
+    >>> with TemporaryDirectory() as folder:
+    ...     files = write_vtu_series(tet, Path(folder, "tet.pvd"), [0.0, 1e-3], [{"displacement_m": np.zeros((4, 3))}] * 2)
+    ...     [file.name for file in files]
+    ['tet_000.vtu', 'tet_001.vtu']
+    """
+    target, instants, data = Path(path), np.asarray(times, dtype=float), iter(point_data)
+    points = np.asarray(mesh.nodes, dtype=np.float32)
+    nodes, ends, types = cells_of(mesh)
+    cells = nodes.astype(np.int32), ends.astype(np.int32), types
+    files: list[Path] = []
+    try:
+        (target.parent / target.stem).mkdir(exist_ok=True)
+    except OSError as error:
+        raise InputError(f"{target.parent / target.stem}: the folder can't be made: {error.strerror}") from None
+    for number, values in zip(range(len(instants)), data, strict=False):
+        single = {name: checked_values(name, given, len(points)).astype(np.float32) for name, given in values.items()}
+        files.append(target.parent / target.stem / f"{target.stem}_{number:03d}.vtu")
+        write_text(files[-1], vtu_text(points, *cells, single))
+    if len(files) < len(instants) or next(data, None) is not None:
+        raise InputError(f"there must be values for each of the {len(instants)} times, and no more", "point_data")
+    write_text(target, collection_text(instants.tolist(), [f"{target.stem}/{file.name}" for file in files]))
+    return files
+
+
+def collection_text(times: Iterable[float], files: Iterable[str]) -> str:
+    """Return the .pvd file that names a file for each time [s]."""
+    rows = [f'<DataSet timestep="{time!r}" part="0" file={quoteattr(file)}/>' for time, file in zip(times, files, strict=True)]
+    head = '<?xml version="1.0"?>\n<VTKFile type="Collection" version="0.1" byte_order="LittleEndian">\n<Collection>'
+    return "\n".join([head, *rows, "</Collection>", "</VTKFile>", ""])
+
+
+def series_size(mesh: Mesh, vectors: int) -> int:
+    """Return about how many bytes a file of one time takes, with so many vectors at the nodes."""
+    nodes, ends, _ = cells_of(mesh)
+    return int((4 * len(nodes) + 5 * len(ends) + 12 * (1 + vectors) * len(mesh.nodes)) * 4 / 3) + 2000

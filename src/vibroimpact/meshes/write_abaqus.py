@@ -1,0 +1,93 @@
+"""Abaqus input files, written."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from os import PathLike
+
+from vibroimpact.files.plain_names import one_line
+from vibroimpact.materials import Material
+from vibroimpact.meshes.exported import check_elastic, check_thickness, exported, write_text
+from vibroimpact.structures.mesh import Mesh
+
+_TYPES = {"tet4": "C3D4", "tet10": "C3D10", "hex8": "C3D8", "hex20": "C3D20", "quad8": "S8R"}
+_A_LINE = 16
+"""How many numbers a line may hold."""
+
+
+def write_abaqus(mesh: Mesh, path: str | PathLike[str], material: Material | None = None, thickness: float | None = None) -> None:
+    """Write a mesh with its sets as an Abaqus input file in metres, kilograms and seconds.
+
+    Bricks of 27 nodes become C3D20, which other programs read too; each plate element becomes four S8R.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        What to write.
+    path : path
+        The file; one that is there is replaced.
+    material : Material, optional
+        Written with the sections that use it.
+    thickness : float, optional
+        Thickness of the shells [m]; without it their section is left out.
+
+    Raises
+    ------
+    InputError
+        If the mesh is empty, the material rigid, or the file can't be written.
+
+    Examples
+    --------
+    >>> from pathlib import Path
+    >>> from tempfile import TemporaryDirectory
+    >>> import numpy as np
+    >>> from vibroimpact.structures.mesh import ElementBlock
+    >>> tet = Mesh(np.eye(4, 3), (ElementBlock("tet4", np.array([[3, 0, 1, 2]])),))
+    >>> with TemporaryDirectory() as folder:
+    ...     write_abaqus(tet, Path(folder, "tet.inp"))
+    ...     print(Path(folder, "tet.inp").read_text().splitlines()[-1])
+    1, 4, 1, 2, 3
+    """
+    export = exported(mesh)
+    check_thickness(thickness)
+    rows = ["*NODE"]
+    rows += [f"{number}, {x!r}, {y!r}, {z!r}" for number, (x, y, z) in enumerate(export.points.tolist(), 1)]
+    number = 0
+    made_of: dict[str, list[tuple[int, int]]] = {"SOLIDS": [], "SHELLS": []}
+    for shape, nodes in export.blocks:
+        rows.append(f"*ELEMENT, TYPE={_TYPES[shape]}")
+        made_of["SHELLS" if shape == "quad8" else "SOLIDS"].append((number + 1, number + len(nodes)))
+        for members in nodes.tolist():
+            number += 1
+            rows += _rows([number, *members])
+    for keyword, sets in (("NSET", export.node_sets), ("ELSET", export.element_sets)):
+        for name, members in sets.items():
+            rows += [f"*{keyword}, {keyword}={_quoted(name)}", *_rows(members.tolist())]
+    if material is not None:
+        check_elastic(material)
+        name = _quoted(material.name or "material")
+        rows += [
+            f"*MATERIAL, NAME={name}",
+            "*DENSITY",
+            repr(float(material.density)),
+            "*ELASTIC",
+            f"{float(material.youngs_modulus)!r}, {float(material.poissons_ratio)!r}",
+        ]
+        for part, data in (("SOLIDS", ""), ("SHELLS", None if thickness is None else repr(float(thickness)))):
+            if made_of[part] and data is not None:
+                rows += [f"*ELSET, ELSET={part}, GENERATE", *(f"{first}, {last}, 1" for first, last in made_of[part])]
+                rows += [f"*{part[:-1]} SECTION, ELSET={part}, MATERIAL={name}", *([data] if data else [])]
+    write_text(path, "\n".join([*rows, ""]))
+
+
+def _rows(numbers: Sequence[int]) -> Iterator[str]:
+    for start in range(0, len(numbers), _A_LINE):
+        goes_on = "," if start + _A_LINE < len(numbers) else ""
+        yield ", ".join(map(str, numbers[start : start + _A_LINE])) + goes_on
+
+
+def _quoted(name: str) -> str:
+    """Return a name as a label: in quotes if it is not a plain word."""
+    label = one_line(name.replace('"', "'"))  # as long as Abaqus takes it
+    plain = label.isascii() and label.replace("_", "").replace("-", "").isalnum() and label[0].isalpha()
+    return label if plain else f'"{label}"'

@@ -1,0 +1,128 @@
+"""Nastran bulk data, written."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from os import PathLike
+
+import numpy as np
+
+from vibroimpact.arrays import Integers
+from vibroimpact.files.plain_names import one_line
+from vibroimpact.materials import Material
+from vibroimpact.meshes.exported import check_elastic, check_thickness, exported, write_text
+from vibroimpact.meshes.node_order import NASTRAN, from_ours
+from vibroimpact.structures.mesh import Mesh
+
+_CARDS = {"tet4": "CTETRA", "tet10": "CTETRA", "hex8": "CHEXA", "hex20": "CHEXA", "quad8": "CQUAD8"}
+_SOLIDS, _SHELLS = 1, 2
+
+
+def write_nastran(
+    mesh: Mesh, path: str | PathLike[str], material: Material | None = None, title: str = "", thickness: float | None = None
+) -> None:
+    """Write a mesh as Nastran bulk data in metres, kilograms and seconds.
+
+    Bricks of 27 nodes become CHEXA of 20, each plate element four CQUAD8. Solids have property 1, shells property 2. Sets of
+    nodes become SETs of case control, named in comments; sets of elements are left out.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        What to write.
+    path : path
+        The file; one that is there is replaced.
+    material : Material, optional
+        Written as MAT1, with PSOLID.
+    title : str, optional
+        The title of the analysis.
+    thickness : float, optional
+        Thickness of the shells [m]; with it PSHELL is written.
+
+    Raises
+    ------
+    InputError
+        If the mesh is empty, the material rigid, or the file can't be written.
+
+    Examples
+    --------
+    >>> from pathlib import Path
+    >>> from tempfile import TemporaryDirectory
+    >>> from vibroimpact.structures.mesh import ElementBlock
+    >>> tet = Mesh(np.eye(4, 3), (ElementBlock("tet4", np.array([[3, 0, 1, 2]])),))
+    >>> with TemporaryDirectory() as folder:
+    ...     write_nastran(tet, Path(folder, "tet.bdf"))
+    ...     print(Path(folder, "tet.bdf").read_text().splitlines()[-2])
+    CTETRA         1       1       4       1       2       3
+    """
+    export = exported(mesh)
+    check_thickness(thickness)
+    rows = ["CEND"]
+    if title:
+        rows.append(f"TITLE = {_one_line(title)[:60]}")
+    for number, (name, nodes) in enumerate(export.node_sets.items(), 1):
+        rows += [f"$ node set {number}: {_one_line(name)}", *_set(number, nodes)]
+    rows.append("BEGIN BULK")
+    if material is not None:
+        check_elastic(material)
+        youngs, poisson, density = (nastran_number(value) for value in (material.youngs_modulus, material.poissons_ratio, material.density))
+        rows += [f"MAT1*   {1:16d}{youngs:>16}{'':16}{poisson:>16}", f"*       {density:>16}"]
+    shapes = {shape for shape, _ in export.blocks}
+    if material is not None and shapes - {"quad8"}:
+        rows.append(f"PSOLID  {_SOLIDS:8d}{1:8d}")
+    if thickness is not None and "quad8" in shapes:
+        rows += [f"PSHELL* {_SHELLS:16d}{1:16d}{nastran_number(thickness):>16}{1:16d}", f"*       {'':16}{1:16d}"]
+    for number, point in enumerate(export.points.tolist(), 1):
+        x, y, z = map(nastran_number, point)
+        rows += [f"GRID*   {number:16d}{'':16}{x:>16}{y:>16}", f"*       {z:>16}"]
+    number = 0
+    for shape, nodes in export.blocks:
+        card, pid = _CARDS[shape], _SHELLS if shape == "quad8" else _SOLIDS
+        theirs = nodes[:, from_ours(shape, NASTRAN[shape])] if shape in NASTRAN else nodes
+        for members in theirs.tolist():
+            number += 1
+            rows += _card(card, [number, pid, *members])
+    write_text(path, "\n".join([*rows, "ENDDATA", ""]))
+
+
+def nastran_number(value: float) -> str:
+    """Return a number with a point in at most 16 characters, with as many digits as fit: 12 or more.
+
+    Examples
+    --------
+    >>> nastran_number(0.1), nastran_number(-1 / 3), nastran_number(-1.2345678901234567e-12), nastran_number(2e11)
+    ('.1', '-.33333333333333', '-1.2345678901-12', '200000000000.')
+    """
+    # the shortest text that means the same number comes first: 0.1 rather than 0.10000000000000001
+    form = "e" if abs(value) < 1e-3 else "g"
+    for text in (repr(value), *(f"{value:.{digits}{form}}" for digits in range(15, 8, -1))):
+        mantissa, _, exponent = text.partition("e")
+        sign, mantissa = ("-", mantissa[1:]) if mantissa[0] == "-" else ("", mantissa)
+        if "." not in mantissa:
+            mantissa += "."
+        elif mantissa.endswith(".0"):
+            mantissa = mantissa[:-1]
+        if mantissa.startswith("0.") and mantissa != "0.":
+            mantissa = mantissa[1:]
+        short = sign + mantissa + (f"{int(exponent):+d}" if exponent else "")
+        if len(short) <= 16:
+            return short
+    raise AssertionError(f"{value} needs more than 16 characters")
+
+
+def _card(name: str, numbers: Sequence[int]) -> Iterator[str]:
+    for start in range(0, len(numbers), 8):
+        yield f"{name if start == 0 else '+':8}" + "".join(f"{number:8d}" for number in numbers[start : start + 8])
+
+
+def _set(number: int, nodes: Integers) -> Iterator[str]:
+    """Yield the lines of a set of case control, with ranges where numbers follow each other."""
+    runs = np.split(nodes, np.flatnonzero(np.diff(nodes) != 1) + 1)
+    items = [f"{run[0]} THRU {run[-1]}" if len(run) > 2 else ", ".join(map(str, run)) for run in runs]
+    for start in range(0, len(items), 3):
+        last = start + 3 >= len(items)
+        yield (f"SET {number} = " if start == 0 else "    ") + ", ".join(items[start : start + 3]) + ("" if last else ",")
+
+
+def _one_line(text: str) -> str:
+    return " ".join(one_line(text).replace("$", " ").split())

@@ -1,0 +1,126 @@
+"""VTK's files of unstructured grids (.vtu), written; ParaView opens them."""
+
+from __future__ import annotations
+
+import base64
+from collections.abc import Mapping
+from os import PathLike
+from xml.sax.saxutils import quoteattr
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from vibroimpact.arrays import Floats, Integers
+from vibroimpact.errors import InputError
+from vibroimpact.meshes.exported import nine_node_shells, write_text
+from vibroimpact.structures.mesh import Mesh
+
+_CELLS = {"tet4": 10, "tet10": 24, "hex8": 12, "hex20": 25, "hex27": 29, "quad25": 28}
+_TYPES = {"float64": "Float64", "float32": "Float32", "int64": "Int64", "int32": "Int32", "uint8": "UInt8"}
+
+
+def write_vtu(mesh: Mesh, path: str | PathLike[str], point_data: Mapping[str, ArrayLike] | None = None) -> None:
+    """Write a mesh, and values at its nodes, as a file that ParaView opens.
+
+    Each plate element becomes four biquadratic quadrilaterals.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        What to write.
+    path : path
+        The file; one that is there is replaced.
+    point_data : mapping of str to array, optional
+        Values at all nodes by name, of shape (nodes,) or (nodes, 3).
+
+    Raises
+    ------
+    InputError
+        If values have another shape, or the file can't be written.
+
+    Examples
+    --------
+    >>> from pathlib import Path
+    >>> from tempfile import TemporaryDirectory
+    >>> from vibroimpact.structures.mesh import ElementBlock
+    >>> tet = Mesh(np.eye(4, 3), (ElementBlock("tet4", np.array([[3, 0, 1, 2]])),))
+    >>> with TemporaryDirectory() as folder:
+    ...     write_vtu(tet, Path(folder, "tet.vtu"), {"displacement_m": np.zeros((4, 3))})
+    ...     "displacement_m" in Path(folder, "tet.vtu").read_text()
+    True
+    """
+    values = {name: checked_values(name, data, len(mesh.nodes)) for name, data in (point_data or {}).items()}
+    write_text(path, vtu_text(np.asarray(mesh.nodes, dtype=float), *cells_of(mesh), values))
+
+
+def cells_of(mesh: Mesh) -> tuple[Integers, Integers, NDArray[np.uint8]]:
+    """Return the cells of a mesh as VTK has them: their nodes one after another, where each ends, and of which type they are."""
+    cells: list[tuple[int, Integers]] = [
+        (_CELLS[block.kind], nine_node_shells(block.connectivity) if block.kind == "quad25" else block.connectivity)
+        for block in mesh.blocks
+    ]
+    sizes = np.concatenate([np.zeros(0, dtype=np.int64), *(np.full(len(nodes), nodes.shape[1]) for _, nodes in cells)])
+    nodes = np.concatenate([np.zeros(0, dtype=np.int64), *(nodes.ravel() for _, nodes in cells)])
+    types = np.concatenate([np.zeros(0, dtype=np.uint8), *(np.full(len(nodes), cell, dtype=np.uint8) for cell, nodes in cells)])
+    return nodes, np.cumsum(sizes), types
+
+
+def vtu_text(
+    points: NDArray[np.floating],
+    nodes: NDArray[np.integer],
+    ends: NDArray[np.integer],
+    types: NDArray[np.uint8],
+    point_data: Mapping[str, NDArray[np.floating]],
+) -> str:
+    """Return a whole file; each array is written in the precision that it has."""
+    rows = [
+        '<?xml version="1.0"?>',
+        '<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian" header_type="UInt64">',
+        "<UnstructuredGrid>",
+        f'<Piece NumberOfPoints="{len(points)}" NumberOfCells="{len(types)}">',
+        "<Points>",
+        _array("Points", points),
+        "</Points>",
+        "<Cells>",
+        _array("connectivity", nodes),
+        _array("offsets", ends),
+        _array("types", types),
+        "</Cells>",
+        "<PointData>",
+        *(_array(name, data) for name, data in point_data.items()),
+        "</PointData>",
+        "</Piece>",
+        "</UnstructuredGrid>",
+        "</VTKFile>",
+        "",
+    ]
+    return "\n".join(rows)
+
+
+def checked_values(name: str, data: ArrayLike, nodes: int) -> Floats:
+    """Return values at all nodes.
+
+    Raises
+    ------
+    InputError
+        If they are no real numbers, or have another shape than (nodes,) or (nodes, 3).
+    """
+    try:
+        values = np.asarray(data)
+        if np.iscomplexobj(values):
+            raise TypeError
+        values = values.astype(float)
+    except (TypeError, ValueError):
+        raise InputError("the values are not real numbers; ParaView takes no others", name) from None
+    if values.shape not in ((nodes,), (nodes, 3)):
+        raise InputError(f"the values have the shape {values.shape}; it must be ({nodes},) or ({nodes}, 3), for {nodes} nodes", name)
+    return values
+
+
+def _array(name: str, values: NDArray[np.generic]) -> str:
+    """Return an array as VTK wants it: how many bytes there are, then the bytes, both in base64."""
+    raw = values.astype(values.dtype.newbyteorder("<")).tobytes()
+    text = base64.b64encode(len(raw).to_bytes(8, "little") + raw).decode("ascii")
+    label = quoteattr("".join(letter for letter in name if letter.isprintable()))
+    components = f' NumberOfComponents="{values.shape[1]}"' if values.ndim == 2 else ""
+    return f'<DataArray type="{_TYPES[values.dtype.name]}" Name={label}{components} format="binary">{text}</DataArray>'

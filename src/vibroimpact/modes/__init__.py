@@ -1,0 +1,1 @@
+"""The modes of the elastic bodies of a case: tables, pictures and meshes."""

@@ -1,0 +1,100 @@
+"""What the command line prints of modes, and of elastic bodies before they are computed."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+from rich.console import Group, RenderableType
+from rich.text import Text
+
+from vibroimpact.arrays import Floats
+from vibroimpact.bodies.elastic import ElasticBody
+from vibroimpact.cases.build_elastic import elastic_bodies
+from vibroimpact.cases.case import Case
+from vibroimpact.cases.meshes import meshes_of
+from vibroimpact.cases.modes import BodyModes
+from vibroimpact.report.terminal_table import Column, TerminalTable, facts, numbers, with_gap
+from vibroimpact.structures.recipe import model_key
+from vibroimpact.structures.store import has_model
+from vibroimpact.units.display import MISSING, column_texts, fixed
+
+_ROWS = 20
+
+
+def modes_summary(case: Case, modes: Mapping[str, BodyModes]) -> RenderableType:
+    """Return what is printed of the modes of a case: what each body is, its lowest modes, and what to doubt."""
+    parts: list[RenderableType] = [Text(case.name or "modes", style="bold")]
+    for name, found in modes.items():
+        properties = found.model.properties
+        rows = [
+            (
+                name,
+                f"{properties.mass:.6g} kg, {found.model.facts['elements']}, {found.model.facts['degrees of freedom']} degrees of freedom",
+            ),
+            ("held by", _supports(found.body)),
+            ("rigid motions", str(len(found.model.left))),
+            ("damping", found.body.damping.words),
+        ]
+        if "left out of the file" in found.model.facts:
+            rows.append(("left out of the file", found.model.facts["left out of the file"]))
+        parts += [facts(rows), _table(found), *(Text(f"Doubt: {doubt}.", style="yellow") for doubt in found.doubts), Text()]
+    return Group(*parts[:-1])
+
+
+def _table(found: BodyModes) -> TerminalTable:
+    """Return the table of the lowest modes, and of the highest where some between are left out."""
+    basis, number = found.basis, len(found.basis.frequencies)
+    shown = list(range(min(_ROWS, number))) + ([number - 1] if number > _ROWS else [])
+    effective = basis.participation[:, 2] ** 2
+    columns = (
+        Column("mode", [str(mode + 1) for mode in shown]),
+        numbers("frequency", "Hz", column_texts(basis.frequencies[shown], 6)),
+        numbers("within", "%", _within(found.model.frequency_errors[shown])),
+        Column("damping ratio", column_texts(basis.damping_ratios[shown], 4)),
+        numbers("shape at contact", "1/sqrt kg", _four(basis.contact[shown], float(np.abs(basis.contact).max()))),
+        numbers("effective mass, vertical", "kg", _four(effective[shown], found.model.properties.mass)),
+    )
+    return TerminalTable(with_gap(columns, _ROWS) if number > _ROWS else columns)
+
+
+def _within(errors: Floats) -> list[str]:
+    """Return in per cent by how much frequencies may be off."""
+    return [cell if cell != MISSING else "not known" for cell in column_texts(100.0 * errors, 2)]
+
+
+def _four(values: Floats, whole: float) -> list[str]:
+    """Return numbers with four decimals, or 0 where they are rounding of the whole."""
+    return [fixed(float(value), 4) if abs(value) > 1e-6 * whole else "0" for value in values]
+
+
+def elastic_rows(case: Case) -> list[tuple[str, str]]:
+    """Return what `check` says of the elastic bodies of a case: their mesh, supports, modes and damping.
+
+    Raises
+    ------
+    InputError
+        If a mesh can't be made, or what must lie on it does not.
+    """
+    rows: list[tuple[str, str]] = []
+    meshes = meshes_of(case)
+    for name, body in elastic_bodies(case).items():
+        mesh = meshes[name]
+        elements = ", ".join(f"{len(block.connectivity)} {block.kind}" for block in mesh.blocks)
+        reduction = body.recipe.reduction
+        kept = f"{reduction.modes} modes" if reduction.modes else f"modes up to {reduction.max_frequency:g} Hz"
+        stored = "computed already" if has_model(model_key(body.recipe)) else "not computed yet"
+        rows += [
+            (
+                f"elastic {name}",
+                f"{elements}, {len(mesh.nodes)} nodes, {mesh.dofs_per_node * len(mesh.nodes)} degrees of freedom before supports",
+            ),
+            ("  modes", f"{kept}, {reduction.method}{', with an attachment mode' if reduction.attachment else ''}; {stored}"),
+            ("  damping", body.damping.words),
+            ("  held by", _supports(body)),
+        ]
+    return rows
+
+
+def _supports(body: ElasticBody) -> str:
+    return "; ".join(support.words for support in body.recipe.supports) or "nothing: it is free"

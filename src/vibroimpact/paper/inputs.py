@@ -1,0 +1,77 @@
+"""The inputs: Table 1 and section 3.1, beside what the shipped cases have."""
+
+from __future__ import annotations
+
+from vibroimpact.cases.build import resolved
+from vibroimpact.cases.reader import load_case
+from vibroimpact.cases.rigid import contact_pair
+from vibroimpact.contact.laws.adams_impact import AdamsImpact
+from vibroimpact.dynamics.simulate import simulate
+from vibroimpact.paper.printed import printed
+from vibroimpact.paper.printed_and_computed import Row
+from vibroimpact.paper.runs import Runs, with_law
+from vibroimpact.paper.section import Section
+
+
+def table1(runs: Runs) -> Section:
+    """Return Table 1 beside the shipped case of Type 3, which has all of it."""
+    case = resolved(load_case("paper:type3"))
+    sphere, plate, drop = case["sphere"], case["plate"], case["drop"]
+    values = {f"{body}.{name}": case[body]["material"][name] for body in ("sphere", "plate") for name in _MATERIAL}
+    values["sphere.radius"] = 1e3 * sphere["radius"]
+    values |= {f"plate.size.{number}": 1e3 * length for number, length in enumerate(plate["size"], start=1)}
+    values |= {f"plate.spacing.{number}": 1e3 * length for number, length in enumerate(plate["supports"][0]["spacing"], start=1)}
+    values |= {"gravity": drop["gravity"], "drop.height": drop["height"]}
+    return Section(
+        "Table 1: the inputs",
+        ("What the shipped cases have, beside what is printed.",),
+        tuple(Row(printed(name), value, by="the shipped case") for name, value in values.items()),
+    )
+
+
+_MATERIAL = ("density", "youngs_modulus", "poissons_ratio")
+
+
+def section_3_1(runs: Runs) -> Section:
+    """Return the parameters of the contact beside Hertz's theory and the shipped cases."""
+    problem, thin = runs.problem("type1-variable"), printed("full_damping_penetration")
+    law = problem.laws[0]
+    assert isinstance(law, AdamsImpact)
+    rebound = simulate(with_law(problem, full_damping_penetration=thin.value)).impacts["rebound_height_m"][0]
+    return Section(
+        "Section 3.1: the contact",
+        (
+            "IMPACT, the contact of Adams, is Hertz's spring and a dashpot that fades in with the indentation and is full from the "
+            "full-damping penetration on. The stiffness follows from the corrected equations (3) and (4); the full-damping penetration is "
+            "not the one printed.",
+        ),
+        (
+            Row(printed("stiffness"), float(contact_pair(load_case("paper:type1-variable")).hertz_stiffness), by="Hertz"),
+            Row(printed("exponent"), float(law.exponent), by="Hertz"),
+            Row(
+                thin,
+                float(law.full_damping_penetration),
+                by="the shipped case",
+                otherwise=f"with it the first rebound would be {rebound:.5f} m, and {printed('type1.rebound_height').text} m is printed",
+            ),
+        ),
+    )
+
+
+def section_4(runs: Runs) -> Section:
+    """Return the meshes beside those of the paper."""
+    sphere, plate = (runs.problem("type3").models[body].mesh for body in ("sphere", "plate"))
+    counts = {
+        "mesh.sphere.nodes": len(sphere.nodes),
+        "mesh.sphere.elements": sphere.number_of_elements,
+        "mesh.plate.elements": plate.number_of_elements,
+    }
+    return Section(
+        "Section 4: the meshes",
+        (
+            "The meshes of the paper are not to be had. Here the plate has plate elements of order four, and the sphere curved bricks of "
+            "second order, fine enough for the modes that are kept. The superposed treatment depends on the mesh whatever is done, as "
+            "the forensic section shows.",
+        ),
+        tuple(Row(printed(name), float(count), by="the shipped case", otherwise="a mesh of our own") for name, count in counts.items()),
+    )

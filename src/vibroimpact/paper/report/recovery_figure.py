@@ -1,0 +1,108 @@
+"""The figure of the restitution and the full-damping penetration: each piece of evidence a line, and where they cross."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.ticker import MaxNLocator
+
+from vibroimpact.paper.evidence import PENETRATIONS, RESTITUTIONS, Evidence
+from vibroimpact.paper.printed import printed
+from vibroimpact.paper.recovery import Recovery, implied_restitution, off_joint, penetration_bands, recover
+from vibroimpact.paper.report.drawing import Drawing
+from vibroimpact.paper.runs import Runs
+from vibroimpact.report.layout import label_vertical, new_figure, row_of_axes
+from vibroimpact.report.style import LOOPS, MARK
+
+_AROUND = (2.0e-4, 1.2e-7)
+"""What is enlarged, to either side of the joint estimate: restitution [-], penetration [m]."""
+
+_BEYOND = 20.0
+_POINTS, _ROWS = 401, 121
+
+
+class _Window(NamedTuple):
+    """A part of the plane: ranges of the restitution and of the penetration [m]."""
+
+    restitutions: tuple[float, float]
+    penetrations: tuple[float, float]
+
+
+def draw_recovery(runs: Runs) -> Drawing:
+    """Draw what each printed number implies of the restitution and the full-damping penetration.
+
+    Parameters
+    ----------
+    runs : Runs
+        The cases.
+    """
+    found = recover(runs)
+    e, d = found.restitution.value, found.penetration.value
+    given = printed("full_damping_penetration")
+    close = _Window((e - _AROUND[0], e + _AROUND[0]), (d - _AROUND[1], d + _AROUND[1]))
+    figure = new_figure(4.95)
+    whole, enlarged = row_of_axes(figure, 2, 1.4, 3.2)
+    _draw_lines(whole, found, _Window(RESTITUTIONS, PENETRATIONS))
+    _draw_lines(enlarged, found, close)
+    whole.set_yscale("log")
+    whole.yaxis.set_major_formatter("{x:g}")
+    whole.axhline(1e6 * given.value, color="#6b6b6b", linestyle=(0, (1, 2)), label=f"$d_{{max}}$ as printed, {1e6 * given.value:g} µm")
+    whole.plot(e, 1e6 * d, "o", markersize=9.0, markerfacecolor="none", markeredgecolor=MARK, label="joint estimate")
+    enlarged.errorbar(
+        e, 1e6 * d, xerr=found.restitution.deviation, yerr=1e6 * found.penetration.deviation, color=MARK, elinewidth=1.4, zorder=4
+    )
+    enlarged.plot(found.round_values[0], 1e6 * found.round_values[1], "x", color="black", markersize=6.0, zorder=5)
+    whole.set_title("All that was searched")
+    enlarged.set_title("Where they cross, enlarged (cross: round values)")
+    for axes in (whole, enlarged):
+        axes.set_xlabel("Restitution asked for, $e_h$")
+    enlarged.xaxis.set_major_locator(MaxNLocator(4, steps=[1, 2, 5, 10]))
+    label_vertical(whole, "Full-damping penetration $d_{max}$ [µm]")
+    figure.legend(*whole.get_legend_handles_labels(), loc="lower center", ncols=2, handlelength=3.5)
+    return Drawing(
+        figure,
+        "What the printed numbers imply: restitution and full-damping penetration",
+        "Each printed number is a line in the plane of the two, with a band as wide as rounding or its own scatter allows, where "
+        f"it is not wider than the picture. {_crossing(found)}",
+    )
+
+
+def _shown(found: Recovery) -> list[Evidence]:
+    """Return the evidence that is drawn: what was not read off samples."""
+    return [one for one in found.evidence if not one.sampled]
+
+
+def _crossing(found: Recovery) -> str:
+    """Say how near the lines pass to the joint estimate, and which of them the printed penetration meets."""
+    off = [off_joint(found, one) for one in _shown(found)]
+    given = printed("full_damping_penetration").value
+    met = penetration_bands(found, given)
+    return (
+        f"The joint estimate, e_h = {found.restitution.value:.4f} and d_max = {1e6 * found.penetration.value:.2f} µm, lies in "
+        f"{sum(one <= 1.0 for one in off)} of the {len(off)} bands, and from no line farther than {max(off):.1f} times half the width of "
+        f"its band; the printed {1e6 * given:g} µm lies in {sum(met) or 'none'} of the {len(met)} bands that depend on d_max alone."
+    )
+
+
+def _draw_lines(axes: Axes, found: Recovery, window: _Window) -> None:
+    """Draw the lines of the evidence, and their bands."""
+    across, up = np.array(window.restitutions), np.geomspace(*window.penetrations, _ROWS)
+    for (colour, dashes), one in zip(LOOPS, _shown(found), strict=False):
+        by, through = found.alone[one.name]
+        look: dict[str, Any] = {"color": colour, "linestyle": dashes, "linewidth": 1.4}
+        if by is None and through is not None:
+            half = 1e6 * one.reach * through.deviation
+            axes.axhspan(1e6 * through.value - half, 1e6 * through.value + half, color=colour, alpha=0.13, linewidth=0.0)
+            axes.axhline(1e6 * through.value, label=one.name, **look)
+        elif by is not None:
+            half = one.reach * by.deviation
+            searched = (across[0] - _BEYOND * half, across[1] + _BEYOND * half)
+            restitutions = np.linspace(max(RESTITUTIONS[0], searched[0]), min(RESTITUTIONS[1], searched[1]), _POINTS)
+            line = implied_restitution(one, restitutions, up)
+            if half < 0.5 * (across[1] - across[0]):  # else it would only dye the ground
+                axes.fill_betweenx(1e6 * up, line - half, line + half, color=colour, alpha=0.13, linewidth=0.0)
+            axes.plot(line, 1e6 * up, label=one.name, **look)
+    axes.set_xlim(*across)
+    axes.set_ylim(*(1e6 * end for end in window.penetrations))

@@ -1,0 +1,189 @@
+"""The result folder: there whole or not at all, and read back."""
+
+from __future__ import annotations
+
+import math
+import os
+import shlex
+import tomllib
+from collections.abc import Iterator, Mapping
+from contextlib import ExitStack, contextmanager
+from functools import partial
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import tomli_w
+
+from vibroimpact.dynamics.columns import IMPACT_COLUMNS, history_columns, impact_columns
+from vibroimpact.errors import InputError
+from vibroimpact.files.check_sums import CHECK_SUMS, DamageError, check_file, file_digest, read_sealed, sealed
+from vibroimpact.files.damaged_part import check_hdf5
+from vibroimpact.files.hdf5 import why
+from vibroimpact.files.recover import recover
+from vibroimpact.files.write_folder import whole_folder
+from vibroimpact.results.netcdf import read_groups, write_groups
+from vibroimpact.results.result import Result
+from vibroimpact.results.signal_csv import write_signal_files
+from vibroimpact.results.summary import summary_of
+from vibroimpact.results.summary_types import check_types
+from vibroimpact.results.tables import write_impacts
+
+SUMMARY, CASE, DATA = "summary.json", "case.toml", "result.nc"
+
+LONGEST_FOLDER_NAME = 200
+"""Bytes; most disks take 255, and while it is written a folder has a longer name."""
+
+
+_OTHER_FOLDERS = {
+    "laws": "this is a comparison of contact laws, not the result of a run; make it anew with compare",
+    "calibration": "this is a calibration, not the result of a run; run its case.toml, or make it anew with calibrate",
+    "reproduction": "this is a reproduction of the paper, not the result of a run; make it anew with reproduce",
+    "study": "this is a study of many drops, not the result of a run; its results are in study.nc",
+    "modes": "these are modes of elastic bodies, not the result of a run; make them anew with modes",
+}
+"""What a folder is whose summary has one of these keys."""
+
+
+@contextmanager
+def new_folder(directory: str | PathLike[str], *, force: bool = False) -> Iterator[Path]:
+    """Give a folder to fill, which becomes `directory` when the block ends without an error.
+
+    Parameters
+    ----------
+    directory : path
+        Where it is to be.
+    force : bool, default False
+        Replace a result folder that is there; nothing else is ever replaced.
+
+    Raises
+    ------
+    InputError
+        If something is there already, or the place can't be written to.
+    """
+    target = Path(directory)
+    check_free(target, force=force)
+    with ExitStack() as stack:
+        try:
+            target.parent.mkdir(parents=True, exist_ok=True)
+            working = stack.enter_context(whole_folder(target, partial(check_free, target, force=force)))
+        except OSError as error:
+            raise InputError(f"{target}: the folder can't be made: {error.strerror}") from None
+        yield working
+
+
+def check_free(directory: str | PathLike[str], *, force: bool = False) -> None:
+    """Raise unless a result folder may be written to `directory`; what a process that died has left of it is put right.
+
+    Raises
+    ------
+    InputError
+        If something is there that may not be replaced.
+    """
+    target = Path(directory)
+    if "\0" in str(target):
+        raise InputError(f"{target}: a path can't have the character NUL")
+    if len(os.fsencode(target.name)) > LONGEST_FOLDER_NAME:
+        raise InputError(f"{target}: the name of a folder may have {LONGEST_FOLDER_NAME} letters at most")
+    if target.absolute() == Path(target.absolute().anchor):
+        raise InputError(f"{target}: this is where all files are; name a folder inside it")
+    recover(target)
+    if target.resolve() == Path.cwd():
+        raise InputError(f"{target}: this is the folder you stand in; name one inside it")
+    above = next(folder for folder in target.absolute().parents if folder.exists())
+    if not os.access(above, os.W_OK):
+        raise InputError(f"{target}: {above} can't be written to; name another place for the result")
+    if not os.path.lexists(target):
+        return
+    if not target.is_dir():
+        raise InputError(f"{target}: this is not a folder; name another place for the result")
+    if (force and (target / SUMMARY).is_file()) or not any(target.iterdir()):
+        return
+    if force:
+        raise InputError(f"{target}: the folder is there and is not a result folder, so --force does not replace it; name another one")
+    raise InputError(f"{target}: the folder is there already; name another one, or replace it with --force")
+
+
+def write_result(result: Result, directory: Path) -> None:
+    """Write the data files of a result into a folder: case.toml, impacts.csv, summary.json, result.nc, and short signals as CSV."""
+    if result.case:  # a problem made in Python has no case; its provenance says what it was
+        (directory / CASE).write_text(tomli_w.dumps(result.case), encoding="utf-8")
+    write_impacts(result.impacts, directory / "impacts.csv")
+    write_groups(result, directory / DATA)
+    check_sums = {name: file_digest(directory / name) for name in (CASE, DATA) if (directory / name).is_file()}
+    (directory / SUMMARY).write_text(sealed({**summary_of(result), CHECK_SUMS: check_sums}), encoding="utf-8")
+    write_signal_files(result.signals, directory / "sensors")
+
+
+def read_result(directory: str | PathLike[str]) -> Result:
+    """Read a result folder.
+
+    Raises
+    ------
+    InputError
+        If it is not a result folder, or a file of it is missing or damaged.
+    """
+    folder = Path(directory)
+    recover(folder)
+    if not (folder / SUMMARY).is_file():
+        raise InputError(f"{folder}: this is not a result folder; it has no {SUMMARY}")
+    name = SUMMARY
+    try:
+        summary = read_sealed(folder / name)
+        for key, words in _OTHER_FOLDERS.items():
+            if key in summary:
+                raise InputError(f"{folder}: {words}")
+        check_types(summary)
+        expected = summary.get(CHECK_SUMS, {})
+        name = CASE
+        case = {}
+        if "problem" not in summary["provenance"]:
+            check_file(folder / name, expected.get(name))
+            case = tomllib.loads((folder / name).read_text(encoding="utf-8"))
+        name = DATA
+        check_hdf5(folder / name, expected.get(name))
+        return _result(case, summary, read_groups(folder / name))
+    except InputError:
+        raise
+    except DamageError as error:
+        raise InputError(f"{folder / name}: {error}; {_anew(folder, name)}") from None
+    except Exception as error:  # of many kinds, as files are damaged in many ways
+        raise InputError(f"{folder / name}: the file is missing or damaged: {_why(error)}; {_anew(folder, name)}") from None
+
+
+def _result(case: Mapping[str, Any], summary: Mapping[str, Any], groups: Mapping[str, Mapping[str, Any]]) -> Result:
+    missing = set(IMPACT_COLUMNS) - set(groups["impacts"])
+    if missing:
+        raise KeyError(f"no {', '.join(sorted(missing))}")
+    impacts = {key: np.atleast_1d(groups["impacts"][key]) for key in impact_columns(groups["impacts"])}
+    history = {key: groups["history"][key] for key in history_columns(groups["history"])}
+    for group, columns in (("impacts", impacts), ("history", history)):
+        if len({column.shape for column in columns.values()}) != 1:
+            raise ValueError(f"the columns of {group} are not of one length")
+    return Result(
+        case,
+        impacts,
+        history,
+        {key: float(value) for key, value in groups["energy"].items()},
+        summary["status"],
+        dict(summary["provenance"]),
+        dict(summary.get("deformation", {})),
+        {body: math.nan if value is None else float(value) for body, value in summary.get("truncation", {}).items()},
+        {body: dict(summary[body]) for body in ("sphere", "plate") if body in summary},
+        groups["sensors"],
+        groups["deflection"]["deflection"],
+    )
+
+
+def _why(error: Exception) -> str:
+    if isinstance(error, KeyError):
+        return f"it has no {error.args[0]}" if error.args and not str(error.args[0]).startswith("no ") else str(error.args[0])
+    return why(error)
+
+
+def _anew(folder: Path, name: str) -> str:
+    """Return what to do about a file of a result that is damaged."""
+    if name == CASE or not (folder / CASE).is_file():
+        return "make the result anew"
+    return f"make it anew with: vibroimpact run {shlex.quote(str(folder / CASE))} -o {shlex.quote(str(folder))} --force"

@@ -1,0 +1,52 @@
+"""What `summary.json` holds of a result."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from vibroimpact.results.result import Result
+from vibroimpact.results.tables import impact_rows
+
+
+def summary_of(result: Result) -> dict[str, Any]:
+    """Return a result in short: the impact table, the ledger at the end, and of bodies that vibrate their peaks."""
+    return {
+        "name": result.name,
+        "status": result.status,
+        "version": result.provenance.get("version", ""),
+        "impacts": impact_rows(result.impacts),
+        "energy": result.energy,
+        **_of_vibration(result),
+        "doubts": result.doubts,
+        "provenance": dict(result.provenance),
+    }
+
+
+def _of_vibration(result: Result) -> dict[str, Any]:
+    """Return what the summary has only where bodies vibrate; None in it where a number does not exist."""
+    if not result.vibrates:
+        return {}
+    truncation = {name: value if math.isfinite(value) else None for name, value in result.truncation.items()}
+    sensors = {
+        name: {
+            "quantity": signal.sensor.quantity,
+            "unit": signal.sensor.unit,
+            "rate_Hz": signal.sensor.rate,
+            "samples": len(signal.value),
+            "max_magnitude": signal.largest,
+            "filter": signal.sensor.filter,
+            "relative_uncertainty": signal.uncertainty if math.isfinite(signal.uncertainty) else None,
+            "peak_before_range": signal.peak if math.isfinite(signal.peak) else None,
+            "overload_time_s": signal.overload_time,
+        }
+        for name, signal in result.signals.items()
+    }
+    change = [float(value) if math.isfinite(value) else None for value in result.change_by_impact]
+    return {
+        **result.peaks,
+        "deformation": dict(result.deformation),
+        "truncation": truncation,
+        "change_by_impact": change,
+        "sensors": sensors,
+    }

@@ -1,0 +1,157 @@
+"""The animation of plate and ball: the deflected plate in space, drawn by a parallel projection."""
+
+from __future__ import annotations
+
+from io import BytesIO
+
+import numpy as np
+from matplotlib import colormaps
+from matplotlib.artist import Artist
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.collections import PolyCollection
+from matplotlib.colors import Normalize
+from matplotlib.figure import Figure
+from matplotlib.patches import Circle, Ellipse
+from numpy.typing import NDArray
+from PIL import Image
+
+from vibroimpact.arrays import Floats
+from vibroimpact.report.projection import TILT, depth, project, show_whole
+from vibroimpact.report.style import INK, style
+from vibroimpact.results.deflection import Deflection
+from vibroimpact.results.result import Result
+from vibroimpact.runs.windows import touch_height
+from vibroimpact.units.display import fixed, text
+
+_SIZE, _DPI = (5.8, 3.3), 100
+_CELLS = 22
+"""Along the longer side of the plate: more do not show."""
+_HEIGHT = 0.16
+"""Of the plate's larger side: the largest deflection as drawn."""
+_MILLISECONDS = 70
+"""A frame."""
+_MAP, _SHADES = "RdBu_r", 25
+"""Colours of the plate, and how many shades of them there are."""
+
+
+def animate(result: Result) -> bytes:
+    """Return plate and ball around the first visit as a GIF; the plate's deflection is exaggerated by a factor that is told.
+
+    The ball and its gap to the plate are to scale. Time runs the slower the faster things happen; each frame tells its own.
+    """
+    deflection = result.deflection
+    assert deflection is not None  # who asks has seen to it
+    with style():
+        scene = _Scene(result, deflection)
+        frames = [Image.fromarray(scene.frame(number)) for number in range(len(deflection.time))]
+    palette = _palette()
+    plain = [frame.quantize(palette=palette, dither=Image.Dither.NONE) for frame in frames]
+    file = BytesIO()
+    plain[0].save(file, "gif", save_all=True, append_images=plain[1:], duration=_MILLISECONDS, loop=0, optimize=False)
+    return file.getvalue()
+
+
+def _palette() -> Image.Image:
+    """Return a picture with the colours of all frames: those of the plate, as bright and under a line, and greys."""
+    plate = 255.0 * colormaps[_MAP](np.linspace(0.0, 1.0, _SHADES))[:, :3]
+    greys = np.repeat(np.linspace(0.0, 255.0, _SHADES)[:, None], 3, axis=1)
+    colours = np.concatenate([plate, 0.8 * plate, greys]).round().astype(np.uint8)
+    picture = Image.new("P", (1, 1))
+    picture.putpalette(colours.tobytes())
+    return picture
+
+
+def exaggeration(deflection: Deflection) -> float:
+    """Return the factor by which the deflection is drawn too large: 1, 2 or 5 times a power of ten."""
+    largest = float(np.nanmax(np.abs(deflection.height)))
+    if largest == 0.0:
+        return 1.0
+    wanted = _HEIGHT * float(max(np.ptp(deflection.x), np.ptp(deflection.y))) / largest
+    power = 10.0 ** np.floor(np.log10(wanted))
+    return float(max((step * power for step in (1.0, 2.0, 5.0) if step * power <= wanted), default=power))
+
+
+class _Scene:
+    """What is drawn: all that stays is drawn once, and what moves over it."""
+
+    def __init__(self, result: Result, deflection: Deflection) -> None:
+        self.deflection, self.factor = deflection, exaggeration(deflection)
+        self.radius = touch_height(result)
+        self.contact = np.array(deflection.contact[0]), np.array(deflection.contact[1])
+        self.touch = float(result.impacts["time_s"][0])
+        skip = max(1, round(max(len(deflection.x), len(deflection.y)) / _CELLS))
+        self.columns, self.rows = (
+            np.unique(np.append(np.arange(0, len(side), skip), len(side) - 1)) for side in (deflection.x, deflection.y)
+        )
+        self.x, self.y = np.meshgrid(deflection.x[self.columns], deflection.y[self.rows])
+        self.canvas = FigureCanvasAgg(Figure(figsize=_SIZE, dpi=_DPI))
+        figure = self.canvas.figure
+        self.axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
+        self.axes.set_axis_off()
+        self.axes.set_aspect("equal")
+        self.movers = self._artists(result, figure)
+        self._set_limits()
+        self.canvas.draw()  # type: ignore[no-untyped-call]
+        self.ground = self.canvas.copy_from_bbox(figure.bbox)  # type: ignore[no-untyped-call]
+
+    def _artists(self, result: Result, figure: Figure) -> list[Artist]:
+        most = self.factor * float(np.nanmax(np.abs(self.deflection.height)))
+        self.plate = PolyCollection([], cmap=_MAP, norm=Normalize(-most, most), edgecolors="#00000030", linewidths=0.3)
+        self.shadow = Ellipse((0.0, 0.0), 2.0 * self.radius, 2.0 * self.radius * np.sin(TILT), facecolor="#000000", alpha=0.25)
+        self.ball = Circle((0.0, 0.0), self.radius, facecolor="#8d8d8d", edgecolor=INK, linewidth=1.0)
+        self.shine = Ellipse((0.0, 0.0), 0.5 * self.radius, 0.35 * self.radius, angle=35.0, facecolor="white", alpha=0.7)
+        self.clock = figure.text(0.03, 0.93, "", fontsize=12, color=INK)
+        figure.text(0.03, 0.045, f"plate's deflection drawn {self.factor:g} times too large; ball and gap to scale", fontsize=8, color=INK)
+        figure.text(0.97, 0.045, "red up, blue down", fontsize=8, color=INK, ha="right")
+        for artist in (self.plate, self.shadow, self.ball, self.shine):
+            artist.set_animated(True)
+        self.clock.set_animated(True)
+        self.axes.add_collection(self.plate, autolim=False)
+        for patch in (self.shadow, self.ball, self.shine):
+            self.axes.add_patch(patch)
+        return [self.plate, self.shadow, self.ball, self.shine, self.clock]
+
+    def _set_limits(self) -> None:
+        deflection = self.deflection
+        highest = float(np.nanmax(self._ball_height(slice(None)))) + self.radius
+        across, up = project(self.x, self.y, np.zeros_like(self.x))
+        swing = self.factor * float(np.nanmax(np.abs(deflection.height)))
+        ball = project(*self.contact, np.array(highest))[1]
+        top = max(float(up.max()) + 0.5 * swing, min(float(ball), float(up.max()) + 0.5 * swing + 4.0 * self.radius))
+        show_whole(self.axes, (float(across.min()), float(across.max())), (float(up.min()) - 0.3 * swing, top), _SIZE[0] / _SIZE[1])
+
+    def _ball_height(self, frame: int | slice) -> Floats:
+        """Return where the ball's centre is drawn: over the exaggerated plate at its true gap."""
+        down = self.deflection.contact_deflection[frame]
+        return np.asarray(self.deflection.sphere_position[frame] - down + self.factor * down)
+
+    def frame(self, number: int) -> NDArray[np.uint8]:
+        """Return the pixels of a frame."""
+        deflection = self.deflection
+        height = self.factor * deflection.height[number][np.ix_(self.rows, self.columns)].astype(float)
+        across, up = project(self.x, self.y, height)
+        corner = np.stack([across, up], axis=-1)
+        cells = np.stack([corner[:-1, :-1], corner[:-1, 1:], corner[1:, 1:], corner[1:, :-1]], axis=2).reshape(-1, 4, 2)
+        mean = 0.25 * (height[:-1, :-1] + height[:-1, 1:] + height[1:, 1:] + height[1:, :-1]).ravel()
+        order = np.argsort(-depth(self.x, self.y)[:-1, :-1].ravel(), kind="stable")  # the farthest first
+        order = order[np.isfinite(mean[order])]
+        self.plate.set_verts(cells[order])
+        self.plate.set_array(mean[order])
+        contact = float(deflection.contact_deflection[number]) * self.factor
+        place = tuple(float(part) for part in project(*self.contact, np.array(contact)))
+        centre = tuple(float(part) for part in project(*self.contact, self._ball_height(number)))
+        self.shadow.set_center((place[0], place[1]))
+        self.ball.set_center((centre[0], centre[1]))
+        self.shine.set_center((centre[0] - 0.35 * self.radius, centre[1] + 0.4 * self.radius))
+        since = float(deflection.time[number]) - self.touch
+        self.clock.set_text(_clock(since))
+        self.canvas.restore_region(self.ground)  # type: ignore[no-untyped-call]
+        renderer = self.canvas.get_renderer()  # type: ignore[no-untyped-call]
+        for artist in self.movers:
+            artist.draw(renderer)
+        return np.array(self.canvas.buffer_rgba())[..., :3]  # type: ignore[no-untyped-call]
+
+
+def _clock(since: float) -> str:
+    words = text(abs(since), "s", 3) if abs(since) < 1e-3 else f"{fixed(since / 1e-3, 2)}\u00a0ms"
+    return f"{words} {'before' if since < 0.0 else 'after'} first touch"

@@ -1,0 +1,252 @@
+"""What the command line prints of a drop: its results, and a case explained."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Container, Iterable
+from dataclasses import fields
+
+import numpy as np
+from rich.console import Group, RenderableType
+from rich.text import Text
+
+from vibroimpact.cases.build import resolved
+from vibroimpact.cases.case import Case
+from vibroimpact.cases.costs import costs_told
+from vibroimpact.cases.doubts import doubts
+from vibroimpact.cases.expected import expected_of
+from vibroimpact.cases.rigid import (
+    contact_laws_of,
+    contact_pair,
+    deforms,
+    elastic_names,
+    first_speed,
+    impacts_of,
+    is_free_sphere,
+    mass_of_sphere,
+)
+from vibroimpact.cases.schema import SensorSection
+from vibroimpact.contact.law import CompliantLaw, ContactLaw, unit_of
+from vibroimpact.dynamics.columns import ALL_IMPACT_COLUMNS
+from vibroimpact.dynamics.problem import STANDARD_GRAVITY
+from vibroimpact.dynamics.restitution import achieved_restitution, law_achieving
+from vibroimpact.errors import InputError
+from vibroimpact.materials import RIGID, Material
+from vibroimpact.report.terminal_table import Column, TerminalTable, facts, numbers, with_gap
+from vibroimpact.results.result import Result
+from vibroimpact.runs.deformation import deformation_rows, treatment_sentence
+from vibroimpact.runs.tables import PUT_IN, SUM, column, ledger_table, shown_columns
+
+_FIRST_LEFT_OUT = (
+    "max_acceleration_m_s2",
+    "energy_lost_J",
+    "separation_speed_m_s",
+    "restitution_asked",
+    "max_indentation_m",
+    "contacts",
+    "rebound_height_m",
+    "duration_s",
+    "approach_speed_m_s",
+)
+"""Columns that a narrow terminal does without, in this order, until the others fit."""
+_FIRST_ROWS, _LAST_ROWS = 15, 3
+
+
+def impact_table(result: Result, width: int) -> RenderableType:
+    """Return the table of impacts for a terminal of a width: columns that do not fit are left out, numbers are not cut.
+
+    The middle of a long table is left out. Units are those of the page; numbers have the digits that they have where the drop is
+    sensitive.
+    """
+    impacts, change = result.impacts, result.change_by_impact
+    number = len(impacts["impact"])
+    if not number:
+        return Text("No impact within the run.")
+    rows = [index for index in range(number) if not _FIRST_ROWS <= index < number - _LAST_ROWS]
+    asked = bool(np.isfinite(impacts["restitution_asked"]).any())
+    shown = [name for name in shown_columns(result) if asked or name != "restitution_asked"]
+    cells = {name: column(name, impacts[name], change) for name in shown}
+    columns = {
+        name: numbers(ALL_IMPACT_COLUMNS[name].short, unit, [shown[index] for index in rows]) for name, (unit, shown) in cells.items()
+    }
+    left_out = [name for name in _FIRST_LEFT_OUT if name in columns]
+    while left_out and TerminalTable(tuple(columns.values())).width > width:
+        del columns[left_out.pop(0)]
+    table = TerminalTable(with_gap(tuple(columns.values()), _FIRST_ROWS) if len(rows) < number else tuple(columns.values()))
+    note = Text(" A wider terminal shows more columns; impacts.csv has all, in SI units.", style="dim")
+    return Group(table, *([note] if len(columns) < len(cells) else []))
+
+
+def energy_table(result: Result) -> RenderableType:
+    """Return the ledger at the end of the run, without the entries that are zero."""
+    unit, ledger = ledger_table(result)
+    whole = result.energy["input_J"]
+    shown = [row for row in ledger if row.name != SUM and abs(result.energy.get(row.name, whole)) > 1e-12 * abs(whole)]  # less is rounding
+    names = [row.name.removesuffix("_J").replace("_", " ") if row.name != PUT_IN else "put in" for row in shown]
+    columns = (
+        Column("energy at the end", names, words=True),
+        numbers("", unit, [row.energy for row in shown]),
+        Column("%", [row.part for row in shown]),
+    )
+    closure = Text(f" closure {result.energy['closure_relative']:.1e} of the energy put in", style="dim")
+    return Group(TerminalTable(columns, bold=(len(shown) - 1,)), closure)
+
+
+def result_summary(result: Result, width: int) -> RenderableType:
+    """Return what a run prints in a terminal of a width: the tables, the status, and what to doubt."""
+    return Group(
+        Text(result.name, style="bold"),
+        impact_table(result, width),
+        Text(),
+        energy_table(result),
+        Text(),
+        Text(result.status),
+        *_deformation(result),
+        *doubt_lines(result.doubts),
+    )
+
+
+def _deformation(result: Result) -> list[RenderableType]:
+    """Return how the bodies deform, where they do: a sentence, and its numbers."""
+    rows, sentence = deformation_rows(result), treatment_sentence(result)
+    return [Text(), *([Text(sentence)] if sentence else []), *([facts(rows, indent=1)] if rows else [])] if rows or sentence else []
+
+
+def _below(case: Case) -> str:
+    """Return what the sphere falls on, in words."""
+    plate = case.plate
+    if plate.radius is not None:
+        return f"in its place a sphere, radius {plate.radius:g} m, {'free' if plate.supports == 'free' else 'rigid, held fixed'}"
+    size = f", {' x '.join(f'{side:g}' for side in plate.size)} m" if plate.size else ""
+    return f"{'rigid, held fixed' if plate.model == 'rigid' else 'elastic'}{size}"
+
+
+def case_explained(case: Case, aside: Container[str] = ()) -> RenderableType:
+    """Return what a case means: the resolved numbers, what to expect, and what to doubt; but slips of units at keys told elsewhere."""
+    laws, pair, speed = contact_laws_of(case), contact_pair(case), first_speed(case)
+    mass, radius, gravity = mass_of_sphere(case), case.sphere.radius, case.drop.gravity
+    rows: list[tuple[str, str]] = [
+        ("sphere", f"radius {radius:g} m, mass {mass:.6g} kg, {case.sphere.model}, of {_stuff(case.sphere.material)}"),
+        ("plate", f"{_below(case)}, of {_stuff(case.plate.material)}"),
+        *_elastic_rows(case),
+        *_coupling_rows(case),
+        ("effective modulus", f"{pair.effective_modulus:.6g} Pa"),
+        ("first approach speed", f"{speed:.6g} m/s, gravity {gravity:g} m/s2"),
+        ("contact law", f"{case.contact.law}: {laws[0].equation}"),
+    ]
+    for item in fields(laws[0]):
+        values = [getattr(law, item.name) for law in laws]
+        if values[0] is None or (item.metadata["memory"] and not any(values)):
+            continue
+        shown = (
+            ", ".join(f"{value:.9g}" for value in values) if len(set(values)) > 1 else f"{values[0]:.9g}" if values[0] is not None else "-"
+        )
+        rows.append((f"  {item.name}", f"{shown} {unit_of(item, getattr(laws[0], 'exponent', 1))}"))
+    number = impacts_of(case)
+    stop = ["at rest"] + ([f"after {number} impact{'' if number == 1 else 's'}"] if number else [])
+    stop += [f"at {case.run.duration:g} s"] if case.run.duration else []
+    rows += [("stops", " or ".join(stop)), ("tolerance", f"{case.run.tolerance:g}")]
+    if case.calibrate is not None:
+        tuned = case.calibrate.parameter or "what sets the loss of the law"
+        rows.append(("to calibrate", f"{tuned}; a run takes no notice of [calibrate]"))
+    if isinstance(laws[0], CompliantLaw) and laws[0].lasting:
+        where = "on the same spot: the dent of the last one lasts" if case.drop.same_spot else "on fresh surfaces"
+        rows.append(("each impact", f"{where} (drop.same_spot = {str(case.drop.same_spot).lower()})"))
+    rigid = not deforms(case) or is_free_sphere(case)
+    label = "restitution" if rigid else "restitution if rigid"
+    rows += [("" if number else label, line) for number, line in enumerate(_restitution_lines(laws[0], pair.effective_mass, speed))]
+    expected = expected_of(case)
+    if not math.isnan(expected.force):
+        numbers = f"indentation {expected.depth:.4g} m, force {expected.force:.4g} N"
+        rows.append(("if nothing were lost" + ("" if rigid else ", rigid"), numbers))
+    rows += [("" if number else "cost", line) for number, line in enumerate(costs_told(case))]
+    found = doubts(resolved(case), expected, aside)
+    return Group(Text(case.name or "a drop", style="bold"), facts(rows), *doubt_lines(found))
+
+
+def _elastic_rows(case: Case) -> list[tuple[str, str]]:
+    if not elastic_names(case):
+        return []
+    from vibroimpact.modes.text import elastic_rows  # which loads sparse matrices
+
+    return elastic_rows(case)
+
+
+def _coupling_rows(case: Case) -> list[tuple[str, str]]:
+    """Say how local indentation is treated, and what is watched."""
+    if not deforms(case):
+        return []
+    local = case.contact.local
+    words: list[str] = []
+    if elastic_names(case) or local.local_compliance is not None:
+        words.append(local.local_compliance or "consistent, by default")
+    if local.finite_sphere:
+        words.append("Hertz's half space corrected to a sphere of finite size")
+    if local.local_stiffness is not None:
+        words.append(f"local element of {local.local_stiffness:.6g} N/m and {local.local_damping:.6g} N s/m")
+    if local.measured is not None:
+        where = "on a rigid plate" if local.measured.plate == "rigid" else "on this plate"
+        words.append(f"local element found from a largest force of {local.measured.max_force:.6g} N {where}")
+    rows = [("local compliance", "; ".join(words))] if words else []
+    for sensor in case.sensors:
+        place = sensor.position if isinstance(sensor.position, str) else f"({sensor.position[0]:g}, {sensor.position[1]:g}) m"
+        words = [f"{sensor.quantity} at {place}, {sensor.face} face", *_accelerometer(sensor), f"{sensor.rate:g} Hz", _filter(sensor)]
+        rows.append((f"sensor {sensor.name}", ", ".join(words)))
+    return rows
+
+
+def _accelerometer(sensor: SensorSection) -> list[str]:
+    """Say what reads a sensor's acceleration, where something does."""
+    meter = sensor.accelerometer
+    if meter is None:
+        return []
+    given = [
+        ("resonance", meter.resonance, f"Hz with a damping ratio of {meter.damping_ratio:g}"),
+        ("range", meter.range, f"m/s2, {(meter.range or 0.0) / STANDARD_GRAVITY:.4g} times standard gravity"),
+        ("noise", meter.noise or None, "m/s2"),
+        ("resolution", meter.resolution, "m/s2"),
+    ]
+    words = [f"{name} {value:g} {unit}" for name, value, unit in given if value is not None]
+    return [f"by an accelerometer ({'; '.join(words) or 'ideal'})"]
+
+
+def _filter(sensor: SensorSection) -> str:
+    """Say what keeps a sensor's samples from folding."""
+    if sensor.filter == "none":
+        return "no anti-alias filter"
+    corner = f" at {sensor.corner:g} Hz" if sensor.corner else ""
+    return f"{sensor.filter} filter{corner}"
+
+
+def _restitution_lines(law: ContactLaw, mass: float, speed: float) -> list[str]:
+    """Say what a law achieves, and what to ask it for where that is something else."""
+    achieved = float(achieved_restitution(law, mass, speed))
+    asked = getattr(law, "restitution", achieved) if law.free_parameter == "restitution" else achieved
+    if abs(achieved - asked) < 5e-4:
+        return [f"{achieved:.5g} achieved at the first touch, without gravity"]
+    lines = [f"{asked:.5g} asked, {achieved:.5g} achieved at the first touch, without gravity"]
+    try:
+        better = getattr(law_achieving(law, asked, mass, speed), "restitution", asked)
+        lines.append(f"restitution = {better:.6g} would achieve {asked:.5g}")
+    except InputError as error:
+        lines.append(error.message)
+    return lines
+
+
+def versions_table(rows: Iterable[tuple[str, str]]) -> RenderableType:
+    """Return a plain table of two columns."""
+    return facts(rows)
+
+
+def _stuff(material: Material) -> str:
+    name = material.name or "a material"
+    return (
+        name
+        if material is RIGID
+        else f"{name} (E {material.youngs_modulus:.4g} Pa, nu {material.poissons_ratio:g}, {material.density:g} kg/m3)"
+    )
+
+
+def doubt_lines(found: Iterable[str]) -> list[RenderableType]:
+    """Return what to doubt, a paragraph each."""
+    return [Text(f"Doubt: {doubt}.", style="yellow") for doubt in found]

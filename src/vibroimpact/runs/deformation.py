@@ -1,0 +1,83 @@
+"""How the deformation of the bodies was modelled, said in a sentence, and its numbers."""
+
+from __future__ import annotations
+
+import math
+
+from vibroimpact.cases.limits.plate_waves import plate_theory_error
+from vibroimpact.results.result import Result
+from vibroimpact.units.display import digits, fixed, text
+
+_SENTENCES = {
+    "consistent": (
+        "Consistent: the contact law carries the local and the quasi-static indentation, and the modes add only what is dynamic; "
+        "nothing is counted twice."
+    ),
+    "superposed": (
+        "Superposed: the contact law and the modes of the bodies are in series, as in a multibody program with flexible bodies. What the "
+        "modes yield quasi-statically comes on top of what the law yields already, so the local indentation is counted twice."
+    ),
+    "identified": (
+        "Identified: a spring and a dashpot side by side, in series with the contact law, stand for all that the sphere adds; they were "
+        "fitted to a measured impact or given, and are no property of a material."
+    ),
+}
+
+
+def treatment_sentence(result: Result) -> str:
+    """Return what was done, in a sentence; empty where nothing tells it."""
+    return _SENTENCES.get(str(result.deformation.get("treatment", "")), "")
+
+
+def counted_twice(result: Result) -> float:
+    """Return which part of the contact's own compliance the modes of the sphere count again; NaN if they do not."""
+    modal = result.deformation.get("sphere_modal_compliance_m_N")
+    if result.deformation.get("treatment") != "superposed" or modal is None or not len(result.impacts["impact"]):
+        return math.nan
+    return float(modal) * float(result.impacts["max_force_N"][0]) / float(result.impacts["max_indentation_m"][0])
+
+
+def deformation_rows(result: Result) -> list[tuple[str, str]]:
+    """Return the numbers of it: what each is, and its value with its unit."""
+    facts, rows = result.deformation, []
+    for name, words in (
+        ("plate_static_compliance_m_N", "Static compliance of the plate at the contact point"),
+        (
+            "plate_modal_compliance_m_N",
+            "Of it in the modes kept" if "plate_static_compliance_m_N" in facts else "Compliance of the plate's modes",
+        ),
+        ("sphere_modal_compliance_m_N", "Quasi-static compliance of the sphere's modes"),
+        ("series_compliance_m_N", "Compliance put in series with the law, so that it is counted once"),
+    ):
+        if name in facts:
+            rows.append((words, f"{digits(float(facts[name]) / 1e-9)}\u00a0nm/N"))
+    if not math.isnan(twice := counted_twice(result)):
+        rows.append(("Counted twice: of the law's own indentation over force in impact 1", f"{fixed(100.0 * twice, 1)}\u00a0%"))
+    if "finite_sphere_factor" in facts:
+        factor = digits(float(facts["finite_sphere_factor"]))
+        rows.append(("The sphere is not a half-space: its approach differs from the law's by c F/(E R)", f"c\u00a0=\u00a0{factor}"))
+    if "contact_patch_m" in facts:
+        rows.append(("Radius of the contact patch over which the sphere's modes are averaged", text(float(facts["contact_patch_m"]), "m")))
+    rows += _local_element(result)
+    for body, part in result.truncation.items():
+        if math.isfinite(part):
+            rows.append((f"Largest force off for the modes of the {body} left out, estimated", f"{digits(100.0 * part, 2)}\u00a0%"))
+    lacking = plate_theory_error(facts, result.impacts)
+    if math.isfinite(lacking):
+        rows.append(("Largest force off for what plate elements lack, estimated", f"{digits(100.0 * lacking, 2)}\u00a0%"))
+    return rows
+
+
+def _local_element(result: Result) -> list[tuple[str, str]]:
+    """Return stiffness and damping of the local element: identified, or given in the case."""
+    contact, facts = result.case.get("contact", {}), result.deformation
+    stiffness = facts.get("local_stiffness_N_m", contact.get("local_stiffness"))
+    damping = facts.get("local_damping_N_s_m", contact.get("local_damping"))
+    if stiffness is None or damping is None:
+        return []
+    known = [facts.get(f"local_{name}_deviation_{unit}") for name, unit in (("stiffness", "N_m"), ("damping", "N_s_m"))]
+    told = ["" if deviation is None else f" ± {digits(float(deviation), 2)}" for deviation in known]
+    return [
+        ("Stiffness of the local element", f"{digits(float(stiffness))}{told[0]}\u00a0N/m"),
+        ("Damping of the local element", f"{digits(float(damping))}{told[1]}\u00a0N\u00a0s/m"),
+    ]

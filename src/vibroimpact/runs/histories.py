@@ -1,0 +1,118 @@
+"""The figures of one quantity over time: the whole run, and below it the first contacts enlarged."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
+
+from vibroimpact.arrays import Floats, Indices
+from vibroimpact.dynamics.columns import HISTORY_COLUMNS
+from vibroimpact.report.layout import heading, label_vertical, new_figure, row_of_axes, wide_axes
+from vibroimpact.report.style import ACCENT, CONTACT, INK, MARK
+from vibroimpact.results.result import Result
+from vibroimpact.runs.windows import MARGIN, around, contacts, enlarged, thinned, touch_height
+from vibroimpact.units.display import Multiple, multiple
+
+_RUN_HEIGHT, _ROW_HEIGHT = 2.7, 2.5
+"""How much of a figure the whole run and the enlarged contacts take [in]."""
+
+Marks = Callable[[Result], tuple[Floats, Floats]]
+"""Times [s] and values to mark, from the impact table: its peaks were located, not picked from samples."""
+
+
+class Quantity(NamedTuple):
+    """What a figure over time shows.
+
+    Parameters
+    ----------
+    column : str
+        Column of the history.
+    title, label, enlarged_label : str
+        What the figure is called, and its vertical axes without the unit.
+    run_marks, contact_marks : callable
+        What is marked in the whole run and in the enlarged contacts.
+    run_meaning, contact_meaning : str
+        What the marks mean.
+    headline : callable
+        What the title of an enlarged contact tells of it, from the result and the impact, counted from 0.
+    from_touch : bool
+        Do the enlarged contacts count from the value at first touch?
+    """
+
+    column: str
+    title: str
+    label: str
+    enlarged_label: str
+    run_marks: Marks
+    run_meaning: str
+    contact_marks: Marks
+    contact_meaning: str
+    headline: Callable[[Result, int], str]
+    from_touch: bool = False
+
+    @property
+    def unit(self) -> str:
+        """Its SI unit."""
+        return HISTORY_COLUMNS[self.column].unit
+
+
+def draw_history(result: Result, quantity: Quantity) -> Figure:
+    """Draw a quantity over the whole run and, where there are any, the first contacts enlarged."""
+    shown = enlarged(result)
+    figure = new_figure(_RUN_HEIGHT + (_ROW_HEIGHT if len(shown) else 0.0))
+    _draw_run(wide_axes(figure, figure.get_figheight() - _RUN_HEIGHT + 0.5, _RUN_HEIGHT - 0.8), result, quantity)
+    if len(shown):
+        _draw_contacts(figure, result, quantity, shown)
+    return figure
+
+
+def _draw_run(axes: Axes, result: Result, quantity: Quantity) -> None:
+    time, values = result.history["time_s"], result.history[quantity.column]
+    clock, scale = multiple("s", time), multiple(quantity.unit, values)
+    axes.plot(*thinned(time / clock.size, values / scale.size), color=INK, linewidth=1.0)
+    marked = _mark(axes, *quantity.run_marks(result), clock, scale)
+    axes.set_title(f"{quantity.title}, whole run" + (f" ({quantity.run_meaning})" if marked else ""))
+    axes.set_xlabel(f"Time [{clock.unit}]")
+    label_vertical(axes, f"{quantity.label} [{scale.unit}]")
+    axes.margins(x=0.01, y=0.08)
+
+
+def _draw_contacts(figure: Figure, result: Result, quantity: Quantity, shown: Indices) -> None:
+    impacts = result.impacts
+    parts = [around(result, impact) for impact in shown]
+    base = touch_height(result) if quantity.from_touch else 0.0
+    clock = multiple("s", impacts["duration_s"][shown])
+    scale = multiple(quantity.unit, np.concatenate([part[quantity.column] - base for part in parts]))
+    times, values = quantity.contact_marks(result)
+    row = row_of_axes(figure, len(shown), 0.52, _ROW_HEIGHT - 1.12)
+    for axes, impact, part in zip(row, shown, parts, strict=True):
+        touch, span = impacts["time_s"][impact], impacts["duration_s"][impact] / clock.size
+        axes.axvspan(0.0, span, color=CONTACT, linewidth=0, zorder=0)
+        axes.plot(part["time_s"] / clock.size, (part[quantity.column] - base) / scale.size, color=ACCENT, linewidth=1.4)
+        here = np.abs(times - touch - 0.5 * impacts["duration_s"][impact]) <= 0.5001 * impacts["duration_s"][impact]
+        _mark(axes, times[here] - touch, values[here] - base, clock, scale)
+        axes.set_xlim(-MARGIN * span, (1.0 + MARGIN) * span)
+        axes.margins(y=0.1)
+        axes.grid(visible=False)
+        axes.xaxis.set_major_locator(MaxNLocator(max(3, 10 // len(row)), steps=[1, 2, 5, 10]))
+        axes.yaxis.set_major_locator(MaxNLocator(4, min_n_ticks=3, steps=[1, 2, 2.5, 5, 10]))
+        axes.set_title(f"Impact {impact + 1}: {quantity.headline(result, impact)}", fontsize=7.8)
+    label_vertical(row[0], f"{quantity.enlarged_label} [{scale.unit}]")
+    figure.text(0.5, 0.08 / figure.get_figheight(), f"Time since first touch of each contact [{clock.unit}]", ha="center", va="bottom")
+    total = len(contacts(result))
+    each = "The contact enlarged" if total == 1 else "Each contact enlarged"
+    what = f"The first {len(shown)} of {total} contacts enlarged" if len(shown) < total else each
+    heading(figure, f"{what} (grey: in contact; {quantity.contact_meaning})", _ROW_HEIGHT - 0.32)
+
+
+def _mark(axes: Axes, times: Floats, values: Floats, clock: Multiple, scale: Multiple) -> bool:
+    """Mark points, smaller where they are many; return whether there were any."""
+    x, y = thinned(times / clock.size, values / scale.size)
+    size = 4.5 if len(x) <= 30 else 2.5
+    axes.plot(x, y, "o", markersize=size, markerfacecolor="white", markeredgecolor=MARK, markeredgewidth=1.0, clip_on=False, zorder=3)
+    return bool(len(x))

@@ -1,0 +1,111 @@
+"""The report of a run: numbers first, then figures, the case and where it comes from, on one page."""
+
+from __future__ import annotations
+
+from base64 import b64encode
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import tomli_w
+
+from vibroimpact.dynamics.energy import CLOSURE_LIMIT
+from vibroimpact.report.figure_files import save_figures
+from vibroimpact.report.page import Picture, picture, template
+from vibroimpact.results.result import Result
+from vibroimpact.runs.animation import animate
+from vibroimpact.runs.captions import caption, left_out
+from vibroimpact.runs.captions_motion import animation_caption, sensors_left_out
+from vibroimpact.runs.deformation import deformation_rows, treatment_sentence
+from vibroimpact.runs.figures import draw_figures
+from vibroimpact.runs.sensor_figures import drawn_sensors
+from vibroimpact.runs.tables import impact_table, ledger_table
+from vibroimpact.units.display import digits
+
+_TITLES = {
+    "position": "Position",
+    "force": "Contact force",
+    "velocity": "Velocity",
+    "acceleration": "Acceleration",
+    "force_indentation": "Force over indentation",
+    "energy": "Energy",
+    "sphere_energy": "Energy of the sphere",
+    "plate_motion": "Motion of the plate",
+    "plate_energy": "Energy of the plate",
+    "deflection": "Deflection of the plate",
+}
+
+
+ANIMATION = "figures/plate.gif"
+_LARGEST_HELD = 1_500_000  # bytes of an animation that the page holds
+
+
+def write_report(result: Result, directory: Path) -> None:
+    """Write `report.html`, and the figures that it shows under `figures`, into a directory.
+
+    Parameters
+    ----------
+    result : Result
+        A run of one drop.
+    directory : pathlib.Path
+        An existing directory.
+    """
+    (directory / "figures").mkdir(exist_ok=True)
+    pictures = save_figures(draw_figures(result), directory / "figures")
+    animation = animate(result) if result.deflection is not None else b""
+    if animation:
+        (directory / ANIMATION).write_bytes(animation)
+    (directory / "report.html").write_text(render_page(result, pictures, animation), encoding="utf-8")
+
+
+def render_page(result: Result, pictures: Mapping[str, bytes], animation: bytes = b"") -> str:
+    """Return the report as one HTML page that needs neither network nor script.
+
+    Parameters
+    ----------
+    result : Result
+        A run of one drop.
+    pictures : mapping of str to bytes
+        Each figure as SVG, by its name, in the order of the page.
+    animation : bytes, optional
+        Plate and ball as GIF; a large one is not held by the page, which then names its file.
+    """
+    unit, ledger = ledger_table(result)
+    return template(__package__).render(
+        name=result.name[:1].upper() + result.name[1:],
+        status=result.status,
+        failed=result.status.startswith("Failed"),
+        impacts=impact_table(result),
+        ledger_unit=unit,
+        ledger=ledger,
+        closure=f"{digits(result.energy['closure_J'], 2)} J",
+        closure_relative=digits(result.energy["closure_relative"], 2),
+        closure_limit=digits(CLOSURE_LIMIT, 1),
+        pictures=_pictures(result, pictures),
+        left_out=left_out(result),
+        sentence=treatment_sentence(result),
+        deformation=deformation_rows(result),
+        sensors_left_out=sensors_left_out(result),
+        animation=_animation(result, animation),
+        animation_file=ANIMATION,
+        case=_as_text(result.case),
+        doubts=result.doubts,
+        provenance=result.provenance,
+    )
+
+
+def _pictures(result: Result, pictures: Mapping[str, bytes]) -> list[Picture]:
+    titles = {**_TITLES, **{figure: f"Sensor {name}" for figure, name in drawn_sensors(result).items()}}
+    return [picture(name, titles[name], caption(name, result), svg) for name, svg in pictures.items()]
+
+
+def _animation(result: Result, gif: bytes) -> Picture | None:
+    """Return the animation for the page; without source, if it is too large to be held."""
+    if not gif:
+        return None
+    source = f"data:image/gif;base64,{b64encode(gif).decode()}" if len(gif) <= _LARGEST_HELD else ""
+    return Picture("animation", "Plate and ball in slow motion", animation_caption(result), source)
+
+
+def _as_text(case: Mapping[str, Any]) -> str:
+    return tomli_w.dumps(case) if case else ""

@@ -1,0 +1,82 @@
+"""The moving bodies of a run for ParaView, while the plate is hit for the first time."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from vibroimpact.arrays import Floats
+from vibroimpact.results.deflection import contact_place, first_frames
+
+if TYPE_CHECKING:
+    from vibroimpact.dynamics.response import Response
+    from vibroimpact.structures.mesh import Mesh
+    from vibroimpact.structures.modal_model import ModalModel
+
+
+_FRAMES = 40
+_MOST_BYTES = 40e6
+"""All files together: of a fine mesh there are fewer frames."""
+
+
+def write_paraview(response: Response, directory: Path) -> None:
+    """Write `plate.pvd` and `sphere.pvd` with their files into the folder `paraview` of a directory.
+
+    Both lie in the coordinates of the plate. `displacement_m` is from where the plate is at rest and the sphere just touches it;
+    `deformation_m`, of the sphere, is what its modes add to the motion of its centre. There is no folder where no body has modes,
+    nothing is touched, or even a few frames would be too large.
+
+    Parameters
+    ----------
+    response : Response
+        A run of one drop.
+    directory : pathlib.Path
+        An existing directory.
+    """
+    from vibroimpact.meshes.vtu_series import series_size, write_vtu_series  # which loads sparse matrices
+
+    models, times = response.problem.models, first_frames(response)
+    if not models or not len(times):
+        return
+    size = sum(series_size(model.mesh, 2 if name == "sphere" else 1) for name, model in models.items())
+    count = min(_FRAMES, len(times), int(_MOST_BYTES / size))
+    if count < 2:
+        return
+    times = times[np.unique(np.linspace(0, len(times) - 1, count).round().astype(int))]
+    folder, modal = directory / "paraview", response.modal(times)
+    folder.mkdir()
+    if "plate" in models:
+        plate = models["plate"]
+        write_vtu_series(plate.mesh, folder / "plate.pvd", times, ({"displacement_m": moved} for moved in _moved(plate, modal["plate"])))
+    if "sphere" in models:
+        sphere, offset = models["sphere"], float(response.problem.sphere.contact_offset)
+        fall = response.at(times)["position_m"] - offset
+        write_vtu_series(
+            _at_first_touch(response, offset),
+            folder / "sphere.pvd",
+            times,
+            (
+                {"displacement_m": moved + np.array([0.0, 0.0, down]), "deformation_m": moved}
+                for moved, down in zip(_moved(sphere, modal["sphere"]), fall, strict=True)
+            ),
+        )
+
+
+def _moved(model: ModalModel, modal: Floats) -> Iterator[Floats]:
+    """Return how the nodes are displaced (nodes, 3) [m], for each time."""
+    for one in modal:
+        yield (one @ model.shapes).reshape(len(model.mesh.nodes), -1)[:, :3]
+
+
+def _at_first_touch(response: Response, offset: float) -> Mesh:
+    """Return the mesh of the sphere where it just touches the plate, in the coordinates of the plate."""
+    sphere, plate = response.problem.models["sphere"], response.problem.models.get("plate")
+    above = np.zeros(3)
+    if plate is not None:
+        above = plate.at(np.array([contact_place(response, plate)]))[1][0]
+    move = above + np.array([0.0, 0.0, offset]) - sphere.properties.centre
+    return replace(sphere.mesh, nodes=sphere.mesh.nodes + move)

@@ -1,0 +1,256 @@
+"""Compute a study in its folder, from the first chunk to the dataset, or on from where it stopped."""
+
+from __future__ import annotations
+
+import math
+import os
+import shutil
+from collections.abc import Callable
+from functools import partial
+from os import PathLike
+from pathlib import Path
+
+import numpy as np
+
+from vibroimpact._version import __version__
+from vibroimpact.cases.coupling import carried_modes
+from vibroimpact.cases.rigid import impacts_of
+from vibroimpact.errors import ComputationError, InputError
+from vibroimpact.files.check_sums import sealed
+from vibroimpact.results.folder import SUMMARY, new_folder
+from vibroimpact.structures.store import receive
+from vibroimpact.studies.chunk_file import FOLDER, ChunkResult, checksum, read_chunk, write_chunk
+from vibroimpact.studies.compute_points import compute_points
+from vibroimpact.studies.dask_workers import check_scheduler, dask_workers
+from vibroimpact.studies.dataset import write_dataset
+from vibroimpact.studies.ledger import LEDGER, Ledger, Span, busy, is_held, make_ledger, open_ledger
+from vibroimpact.studies.run_chunks import Points, run_chunks
+from vibroimpact.studies.study import DATASET, STUDY, clear_study, is_study, recover_study
+from vibroimpact.studies.sweep import LONG, Sweep
+from vibroimpact.studies.table import MOST_ROWS, write_drops
+from vibroimpact.studies.toml import study_toml
+from vibroimpact.studies.workers import Workers, processes, this_process
+
+MEMORY = 500e6
+"""Bytes that the drops of a chunk may take, where nothing else is said."""
+
+LEAST_MEMORY = 1e6
+"""The least of that."""
+
+_CHUNK = 8000  # drops of rigid bodies: a tenth of a second
+_ELASTIC_CHUNK = 8  # drops of elastic ones: half a second
+_PER_DROP, _COPIES = 4000.0, 4.0  # bytes that a drop takes while it is computed, and how often its results are there until they are written
+
+_FEW_CHUNKS = 40  # what so many cost beside their drops is two seconds, however small they are
+_USEFUL, _USEFUL_ELASTIC = 15_000, 3  # impacts of rigid bodies, or drops of elastic ones, beside which a chunk costs a third more at most
+
+_MANY = 50_000  # drops from which on it takes seconds to put them together
+
+Progress = Callable[[int, int], None]
+Tell = Callable[[str], None]
+
+
+def compute_study(
+    sweep: Sweep,
+    directory: str | PathLike[str],
+    *,
+    resume: bool = False,
+    force: bool = False,
+    workers: int = 1,
+    scheduler: str | None = None,
+    memory: float = MEMORY,
+    progress: Progress | None = None,
+    modes_progress: Callable[[float], None] | None = None,
+    tell: Tell | None = None,
+) -> Path:
+    """Compute a study in a folder: `study.nc`, `drops.csv`, and the ledger of its chunks; `run_sweep` draws its report too.
+
+    Parameters
+    ----------
+    sweep, directory, resume, force, workers, scheduler, memory, progress, modes_progress, tell
+        As `run_sweep` takes them.
+
+    Returns
+    -------
+    pathlib.Path
+        The folder.
+
+    Raises
+    ------
+    InputError, ComputationError
+        As `run_sweep` does.
+    """
+    if not isinstance(sweep, Sweep):
+        raise InputError(f"a study is wanted, as vi.load_sweep(...) reads it, not {sweep!r}")
+    if not isinstance(workers, int) or workers < 1:
+        raise InputError(f"{workers!r} is not allowed; it must be a whole number from 1", "workers")
+    if isinstance(memory, str) or not memory >= LEAST_MEMORY:
+        raise InputError(f"{memory!r} is not allowed; it must be a number of bytes, 1e6 or more", "memory")
+    if not resume:
+        _check_memory(sweep, memory)
+    folder = Path(directory)
+    if scheduler is not None:
+        check_scheduler(scheduler)
+    recover_study(folder)
+    if resume and is_study(folder):
+        _see_that_there_is_a_ledger(folder, sweep, memory)
+    else:
+        _begin(folder, sweep, memory, force=force and not resume)
+    with open_ledger(folder) as ledger:
+        clear_study(folder)
+        _check_same(ledger, folder, sweep)
+        if not (folder / DATASET).is_file():
+            _forget_damaged(ledger, folder, tell)
+            number = min(workers, len(ledger.chunks("waiting")))
+            _run(ledger, folder, sweep, _workers(folder, sweep, number, scheduler, modes_progress, tell), progress)
+            if tell is not None and sweep.size >= _MANY:
+                tell("all drops are done; putting the results together")
+            _assemble(folder, ledger, sweep)
+        shutil.rmtree(folder / FOLDER, ignore_errors=True)
+    return folder
+
+
+def _begin(folder: Path, sweep: Sweep, memory: float, *, force: bool) -> None:
+    """Make the folder of a study of which nothing is computed."""
+    if is_held(folder):
+        raise InputError(busy(folder))
+    if is_study(folder) and not force:
+        raise InputError(f"{folder}: a study is there already; go on with it by --resume, replace it by --force, or name another folder")
+    with new_folder(folder, force=force) as working:
+        (working / STUDY).write_text(study_toml(sweep.whole_table), encoding="utf-8")
+        (working / FOLDER).mkdir()
+        make_ledger(working, _facts(sweep), sweep.size, chunk_size(sweep, memory))
+        summary = {"name": sweep.name, "version": __version__, "study": {"design": sweep.section.design, "drops": sweep.size}}
+        (working / SUMMARY).write_text(sealed(summary), encoding="utf-8")
+
+
+def _see_that_there_is_a_ledger(folder: Path, sweep: Sweep, memory: float) -> None:
+    """Make the ledger of a study that was begun anew if it is missing."""
+    if (folder / LEDGER).is_file():
+        return
+    make_ledger(folder, _facts(sweep), sweep.size, chunk_size(sweep, memory))
+    with open_ledger(folder) as ledger:
+        for chunk in ledger.chunks("waiting"):
+            try:
+                found = read_chunk(folder, chunk, sweep.digest)
+            except (OSError, KeyError, ValueError):
+                continue
+            ledger.done(chunk, checksum(folder, chunk.number) or "", len(found.failures))
+
+
+def _check_same(ledger: Ledger, folder: Path, sweep: Sweep) -> None:
+    """Raise unless a ledger is that of a study, begun by these versions."""
+    facts, now = ledger.facts, _facts(sweep)
+    for key, name in (("version", "vibroimpact"), ("numpy", "NumPy")):
+        if facts.get(key) != now[key]:
+            words = f"this study was begun with {name} {facts.get(key)}, and this is {now[key]}"
+            raise InputError(f"{folder}: {words}; go on with that version, or begin anew with --force")
+    if facts.get("digest") != now["digest"]:
+        words = "the study has changed since it was begun here: its case, its points, its files or what is kept"
+        raise InputError(f"{folder}: {words}; {STUDY} in it is what was begun; begin anew with --force, or in another folder")
+
+
+def _forget_damaged(ledger: Ledger, folder: Path, tell: Tell | None) -> None:
+    """Have chunks computed again that are not on disk as they were written."""
+    for number, expected in ledger.checksums().items():
+        if checksum(folder, number) != expected:
+            ledger.undone(number)
+            if tell is not None:
+                tell(f"chunk {number} is not on disk as it was written; it is computed again")
+
+
+def _run(ledger: Ledger, folder: Path, sweep: Sweep, workers: Workers, progress: Progress | None) -> None:
+    """Compute the chunks that wait."""
+    waiting = ledger.chunks("waiting")
+    done = sweep.size - sum(chunk.size for chunk in waiting)
+    if progress is not None:
+        progress(done, sweep.size)
+
+    def keep(chunk: Span, result: ChunkResult) -> None:
+        nonlocal done
+        ledger.done(chunk, write_chunk(folder, chunk, result, sweep.digest), len(result.failures))
+        done += chunk.size
+        if progress is not None:
+            progress(done, sweep.size)
+
+    def points(chunk: Span) -> Points:
+        return sweep.plan.points(chunk.first, chunk.size)
+
+    run_chunks(partial(compute_points, sweep.table, sweep.section.keep), points, waiting, workers, keep)
+
+
+def _assemble(folder: Path, ledger: Ledger, sweep: Sweep) -> None:
+    """Put the chunks together, the dataset last: once it is there, all is."""
+    chunks, left = ledger.chunks("done"), ledger.chunks("waiting")
+    if left:
+        raise ComputationError(f"{folder}: {len(left)} chunks are not done; go on with --resume")
+    rates = {sensor.name: sensor.rate for sensor in sweep.case.sensors}
+    try:
+        if sweep.size <= MOST_ROWS:
+            write_drops(folder, chunks, sweep.digest, sweep.plan, sweep.meanings)
+        write_dataset(folder, sweep.name, chunks, sweep.digest, sweep.plan, sweep.whole_table, sweep.meanings, rates)
+    except OSError as error:
+        why = os.strerror(error.errno) if error.errno else str(error)
+        words = f"the results can't be put together: {why}; see to the disk, then go on with --resume"
+        raise ComputationError(f"{folder}: {words}") from None
+
+
+def _workers(
+    folder: Path, sweep: Sweep, number: int, scheduler: str | None, modes_progress: Callable[[float], None] | None, tell: Tell | None
+) -> Workers:
+    """Return what starts workers; each gets the modes of the first point once, so that it finds them wherever it runs."""
+    from threadpoolctl import threadpool_limits  # which looks at all libraries that are loaded
+
+    entries = {}
+    if sweep.deforms and number:
+        with threadpool_limits(1):  # as the workers compute them
+            entries = carried_modes(sweep.case, modes_progress, tell)
+    if scheduler is not None:
+        return partial(dask_workers, scheduler, number, partial(receive, entries))
+    return this_process if number <= 1 else partial(processes, number, partial(receive, entries), folder / FOLDER)
+
+
+def _facts(sweep: Sweep) -> dict[str, str]:
+    return {"digest": sweep.digest, "version": __version__, "numpy": np.__version__}
+
+
+def least_memory(sweep: Sweep) -> float:
+    """Return the bytes for the drops of a chunk below which a study becomes dearer by more than a third, for what each chunk costs.
+
+    Parameters
+    ----------
+    sweep : Sweep
+        The study.
+    """
+    useful = _USEFUL_ELASTIC if sweep.deforms else math.ceil(_USEFUL / (impacts_of(sweep.case) or LONG))
+    return max(LEAST_MEMORY, min(useful, math.ceil(sweep.size / _FEW_CHUNKS)) * _bytes_each(sweep))
+
+
+def _check_memory(sweep: Sweep, memory: float) -> None:
+    """Raise if so little memory makes a study much dearer."""
+    least = least_memory(sweep)
+    if memory < least:
+        size = chunk_size(sweep, memory)
+        raise InputError(
+            f"{memory / 1e6:.3g} MB is too little for {sweep.size:,} drops: computed {size:,} at a time they take several times as long; "
+            f"give {math.ceil(least / 1e6)} MB or more",
+            "memory",
+        )
+
+
+def _bytes_each(sweep: Sweep) -> float:
+    """Return how many bytes a drop of a chunk takes."""
+    return _PER_DROP + _COPIES * sweep.bytes / sweep.size
+
+
+def chunk_size(sweep: Sweep, memory: float) -> int:
+    """Return how many drops a chunk has: fewer if memory is short, and the same however many workers there are.
+
+    Parameters
+    ----------
+    sweep : Sweep
+        The study.
+    memory : float
+        Bytes that the drops of a chunk may take.
+    """
+    return max(1, min(_ELASTIC_CHUNK if sweep.deforms else _CHUNK, int(memory / _bytes_each(sweep))))

@@ -1,0 +1,116 @@
+"""The figures of a study with many axes: one result over each of them, as a band on a grid, as points where it was drawn."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from vibroimpact.arrays import Floats
+from vibroimpact.report.style import ACCENT, INK, MARK
+from vibroimpact.studies.percentiles import PERCENTILES
+from vibroimpact.studies.report.axes import StudyAxis
+from vibroimpact.studies.report.labels import BAND
+from vibroimpact.studies.report.outputs import Output, on_grid, some, some_places
+from vibroimpact.studies.report.panels import add_legend, panels, same_heights, scale_vertical, title_of
+from vibroimpact.studies.report.ticks import Ticks, rising
+from vibroimpact.studies.study import Study
+
+MOST_AXES = 8
+"""How many axes are drawn."""
+
+MOST_POINTS = 1500
+"""How many drops are drawn as points: more would hide each other."""
+
+_BANDED = 100_000  # drops behind the medians
+_BINS, _FULL = 12, 15  # bins of the medians, and how many drops one needs
+_LEVELS = 200  # of a grid's axis
+_MANY = 200  # drops beyond which marks are small
+_PARTS = np.array([PERCENTILES[0], 50, PERCENTILES[-1]]) / 100.0
+
+
+def draw_bands(study: Study, axes: list[StudyAxis], output: Output) -> Figure:
+    """Draw a result of a grid over each axis: the median and the 5 to 95 % band over all others."""
+    axes = axes[:MOST_AXES]
+    ticks = [Ticks(axis) for axis in axes]
+    values = on_grid(study, output.name)
+    figure, panel = panels([one.turned for one in ticks], legend=True)
+    for number, (one, axis) in enumerate(zip(ticks, axes, strict=True)):
+        order = rising(axis, _LEVELS)
+        bands = np.array([_parts_of(values[(slice(None),) * number + (level,)]) for level in order])
+        _draw_band(panel[number], one, one.places(axis.values[order]), bands / output.scale.size)
+    _finish(figure, panel, ticks, output)
+    return figure
+
+
+def draw_points(study: Study, axes: list[StudyAxis], output: Output) -> Figure:
+    """Draw a result of drawn points over each axis: some drops, and the median and band of more of them."""
+    axes = [axis for axis in axes if axis.varies][:MOST_AXES]
+    ticks = [Ticks(axis) for axis in axes]
+    values = some(study, output.name, _BANDED) / output.scale.size
+    figure, panel = panels([one.turned for one in ticks], legend=True)
+    for one, axis, here in zip(ticks, axes, panel, strict=True):
+        places = one.places(axis.values[some_places(study, _BANDED)])
+        finite = np.isfinite(values)
+        if finite.sum() > 20 * _FULL:
+            _draw_band(here, one, *_in_bins(places[finite], values[finite], one))
+        few = slice(None, None, math.ceil(len(values) / MOST_POINTS)) if study.design == "zip" else slice(0, MOST_POINTS)
+        spread = _beside(len(places[few])) if one.names else 0.0
+        here.plot(
+            places[few] + spread,
+            values[few],
+            ".",
+            color=MARK,
+            alpha=0.5 if len(values) > _MANY else 1.0,
+            markersize=2.5 if len(values) > _MANY else 8.0,
+            markeredgewidth=0.0,
+            label="a drop",
+            rasterized=True,
+            zorder=1.5,
+        )
+    _finish(figure, panel, ticks, output, enlarged=3.0 if len(values) > _MANY else 1.0)
+    return figure
+
+
+def _draw_band(axes: Axes, ticks: Ticks, places: Floats, bands: Floats) -> None:
+    low, middle, high = bands.T
+    if ticks.names or len(places) == 1:
+        axes.vlines(places, low, high, color=ACCENT, alpha=0.4, linewidth=4.0, label=BAND)
+        axes.plot(places, middle, "o", color=INK, markersize=4.0, label="median")
+        return
+    axes.fill_between(places, low, high, color=ACCENT, alpha=0.22, linewidth=0.0, label=BAND)
+    axes.plot(places, middle, color=INK, marker="o" if len(places) <= 40 else "", markersize=3.0, label="median", zorder=2.5)
+
+
+def _finish(figure: Figure, panel: list[Axes], ticks: list[Ticks], output: Output, enlarged: float = 1.0) -> None:
+    for number, (one, axes) in enumerate(zip(ticks, panel, strict=True)):
+        if number == 0:
+            axes.set_title(title_of(output))
+        scale_vertical(axes, output)
+        one.set_on(axes)
+        axes.set_xlabel(one.label)
+    same_heights(panel)
+    add_legend(figure, panel[0], enlarged)
+
+
+def _parts_of(values: Floats) -> Floats:
+    finite = values[np.isfinite(values)]
+    return np.quantile(finite, _PARTS) if len(finite) else np.full(len(_PARTS), np.nan)
+
+
+def _in_bins(places: Floats, values: Floats, ticks: Ticks) -> tuple[Floats, Floats]:
+    """Return the middles of parts of an axis with as many drops each, or its names, and the band in each."""
+    found = np.unique(places)
+    if ticks.names or len(found) <= _BINS:  # a list: a part would mix its values
+        return found, np.array([_parts_of(values[places == place]) for place in found])
+    order = np.argsort(places, kind="stable")
+    groups = [group for group in np.array_split(order, min(_BINS, len(order) // _FULL)) if len(group)]
+    middles = np.array([float(np.median(places[group])) for group in groups])
+    return middles, np.array([_parts_of(values[group]) for group in groups])
+
+
+def _beside(number: int) -> Floats:
+    """Return how far points of one name are moved aside, so that they do not hide each other: by the golden ratio, without chance."""
+    return np.asarray(0.5 * ((np.arange(number) * 0.6180339887498949) % 1.0 - 0.5), dtype=np.float64)

@@ -1,0 +1,139 @@
+"""Restitution asked of the contact laws of a study, and what the drops achieved: in words, and as a figure."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from vibroimpact.arrays import Floats
+from vibroimpact.report.layout import label_vertical, new_figure, row_of_axes, wide_axes
+from vibroimpact.report.style import LOOPS, MARKS
+from vibroimpact.studies.report.outputs import independent, some
+from vibroimpact.studies.report.panels import add_legend
+from vibroimpact.studies.report.ticks import is_spread_by_factors, plain_log_ticks
+from vibroimpact.studies.study import Study
+from vibroimpact.units.display import fixed
+
+_MOST = 1200  # drops that are drawn
+_FEW, _SOME = 100, 300  # drops up to which marks are large, and are drawn as lines
+_AS_ASKED: dict[str, Any] = {"color": "#888888", "linewidth": 0.9, "linestyle": (0, (4, 2)), "zorder": 1.5, "label": "as asked"}
+
+
+class Restitution(NamedTuple):
+    """Restitution at the first impacts of all drops.
+
+    Attributes
+    ----------
+    asked, achieved : (float, float) or None
+        The least and the largest; None where there is none.
+    difference : float
+        The median of what was achieved less what was asked; NaN without either.
+    """
+
+    asked: tuple[float, float] | None
+    achieved: tuple[float, float] | None
+    difference: float
+
+
+def restitution_of(study: Study) -> Restitution:
+    """Return how restitution asked and achieved compare at the first impacts."""
+    if "first_restitution_achieved" not in study.shapes:
+        return Restitution(None, None, math.nan)
+    found = independent(study, "first_restitution_achieved")
+    achieved = _extremes(found)
+    if "first_restitution_asked" not in study.shapes:
+        return Restitution(None, achieved, math.nan)
+    wanted = independent(study, "first_restitution_asked")
+    asked = _extremes(wanted)
+    found -= wanted
+    del wanted  # there may be millions
+    found = found[np.isfinite(found)]
+    return Restitution(asked, achieved, float(np.median(found, overwrite_input=True)) if len(found) else math.nan)
+
+
+def _extremes(values: Floats) -> tuple[float, float] | None:
+    """Return the least and the largest of the finite values."""
+    low, high = float(np.fmin.reduce(values)), float(np.fmax.reduce(values))
+    return (low, high) if math.isfinite(low) else None
+
+
+def restitution_sentence(found: Restitution) -> str:
+    """Return in words what was asked and what was achieved; "" if nothing was achieved."""
+    if found.achieved is None:
+        return ""
+    achieved = f"the first impacts achieved {_ends(found.achieved)}"
+    if found.asked is None:
+        return f"No restitution is asked of the law; {achieved}."
+    median = fixed(found.difference, 4) if found.difference <= 0.0 else f"+{fixed(found.difference, 4)}"
+    return f"Restitution asked: {_ends(found.asked)}; {achieved}. The median of what was achieved less what was asked is {median}."
+
+
+def draw_restitution(study: Study) -> Figure | None:
+    """Draw restitution achieved over that asked, and the difference over the approach speed; None where none is asked.
+
+    Where one restitution alone was asked, what was achieved is drawn over the approach speed instead.
+    """
+    found = _asked_achieved_speed(study)
+    if found is None:
+        return None
+    asked, achieved, speed = found
+    least, most = float(np.nanmin(asked)), float(np.nanmax(asked))
+    figure = new_figure(4.3)
+    if most > least:
+        left, right = row_of_axes(figure, 2, 0.9, 3.0)
+        _plot_impacts(left, asked, achieved)
+        ends = [min(least, float(np.nanmin(achieved))), max(most, float(np.nanmax(achieved)))]
+        left.plot(ends, ends, **_AS_ASKED)
+        left.set_title("Achieved over asked")
+        left.set_xlabel("Restitution asked")
+        _plot_impacts(right, speed, achieved - asked)
+        right.axhline(0.0, **_AS_ASKED)
+        right.set_title("Achieved less asked")
+    else:
+        left = right = wide_axes(figure, 0.9, 3.0)
+        _plot_impacts(right, speed, achieved)
+        right.axhline(most, **_AS_ASKED)
+        right.set_title("Achieved over the approach speed")
+    label_vertical(left, "Restitution achieved")
+    right.set_xlabel("Approach speed [m/s]")
+    if is_spread_by_factors(np.unique(speed[np.isfinite(speed)])):
+        right.set_xscale("log")
+        plain_log_ticks(right.xaxis)
+    add_legend(figure, left, 1.0 if len(asked) < _FEW else 2.5)
+    return figure
+
+
+def _asked_achieved_speed(study: Study) -> tuple[Floats, Floats, Floats] | None:
+    """Return restitution asked and achieved, and the approach speed, (drops, impacts) each: of all impacts if kept, else the first."""
+    names = ("restitution_asked", "restitution_achieved", "approach_speed_m_s")
+    if not all(name in study.shapes for name in names):
+        names = ("first_restitution_asked", "first_restitution_achieved", "first_approach_speed_m_s")
+    if names[0] not in study.shapes:
+        return None
+    asked, achieved, speed = (np.atleast_2d(some(study, name, _MOST).T).T for name in names)
+    return (asked, achieved, speed) if (np.isfinite(asked) & np.isfinite(achieved)).any() else None
+
+
+def _plot_impacts(axes: Axes, across: Floats, up: Floats) -> None:
+    """Draw a mark an impact, of the first impacts of each drop."""
+    for impact, (mark, (colour, _), x, y) in enumerate(zip(MARKS, LOOPS, across.T, up.T, strict=False)):
+        axes.plot(
+            x,
+            y,
+            color=colour,
+            marker=mark,
+            linestyle="",
+            markersize=3.0 if len(x) < _FEW else 1.8,
+            markeredgewidth=0.0,
+            label=f"impact {impact + 1}",
+            rasterized=len(x) > _SOME,
+        )
+
+
+def _ends(ends: tuple[float, float]) -> str:
+    low, high = fixed(ends[0], 4), fixed(ends[1], 4)
+    return low if low == high else f"{low} to {high}"

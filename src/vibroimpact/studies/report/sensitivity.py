@@ -1,0 +1,131 @@
+"""Which swept key moves which result: indices, rank correlations or ranges, as the design of a study allows."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from vibroimpact.arrays import Floats
+from vibroimpact.studies.report.axes import StudyAxis, study_axes
+from vibroimpact.studies.report.outputs import Output, on_grid, read_output, some, some_places
+from vibroimpact.studies.report.ticks import rising
+from vibroimpact.studies.sensitivity import MOST_LEFT_OUT, one_at_a_time, rank_correlations, sobol_indices
+from vibroimpact.studies.study import Study
+
+SOBOL, RANKS, RANGES = "sobol", "ranks", "ranges"
+"""The three ways to tell it."""
+
+_POINTS = 131_072  # of a block that indices are estimated from: a power of two
+_RANKED = 65_536  # drops of which ranks are compared
+
+
+class Sensitivity(NamedTuple):
+    """What each key does to each result.
+
+    Attributes
+    ----------
+    way : str
+        SOBOL, RANKS or RANGES.
+    keys : list of str
+        Those that vary; those that are numbers alone for RANKS.
+    rows : dict of str to dict of str to array
+        By the name of the result the columns of the table, one value a key.
+    strength : dict of str to array
+        By the name of the result, how strong each key is: a total index, the magnitude of a correlation, a relative range.
+    notes : list of str
+        What was left out, as sentences.
+    """
+
+    way: str
+    keys: list[str]
+    rows: dict[str, dict[str, Floats]]
+    strength: dict[str, Floats]
+    notes: list[str]
+
+
+def sensitivity_of(study: Study, outputs: list[Output]) -> Sensitivity | None:
+    """Return what each key does to each of some results that vary; None in a zip, or without a key that varies."""
+    axes = study_axes(study)
+    varying = [axis for axis in axes if axis.varies]
+    outputs = [one for one in outputs if one.spread.varies]
+    if study.design == "zip" or not varying or not outputs:
+        return None
+    if study.design == "saltelli":
+        return _indices(study, axes, outputs)
+    return _ranges(study, [axis for axis in axes if len(axis.values) > 1], outputs) if study.is_grid else _ranks(study, varying, outputs)
+
+
+def strongest(found: Sensitivity, output: str) -> str | None:
+    """Return the key that moves a result most; None where it can't be told."""
+    strength = found.strength.get(output)
+    if strength is None or not np.isfinite(strength).any():
+        return None
+    return found.keys[int(np.nanargmax(strength))]
+
+
+def _indices(study: Study, axes: list[StudyAxis], outputs: list[Output]) -> Sensitivity | None:
+    rows, strength, refused, partly = {}, {}, [], {}
+    block = study.size // (2 + len(axes))
+    points = min(block, _POINTS)
+    for output in outputs:
+        # of a drop that failed there is no value, and its point is left out
+        parts = [read_output(study, output.name, slice(first, first + points)) for first in range(0, study.size, block)]
+        found = sobol_indices(np.concatenate(parts), len(axes), int(study.table["sweep"].get("seed", 0)))
+        if found is None:
+            refused.append(output.title)
+            continue
+        if found.left_out:
+            partly[output.title] = found.left_out
+        rows[output.name] = {
+            "first_order": found.first,
+            "first_order_low": found.first - found.first_error,
+            "first_order_high": found.first + found.first_error,
+            "total": found.total,
+            "total_low": found.total - found.total_error,
+            "total_high": found.total + found.total_error,
+            "points": np.full(len(axes), found.points),
+        }
+        strength[output.name] = found.total
+    notes = [f"Indices are those of the first {points} points of each block."] if points < block else []
+    if refused:
+        part = f"{100 * MOST_LEFT_OUT:g} % of the points"
+        notes.append(f"No indices of {', '.join(refused)}: more than {part} have a drop without a value, since it failed or has none.")
+    if partly:
+        told = ", ".join(f"{number} of {title}" for title, number in partly.items())
+        notes.append(f"Points left out, since a drop of theirs has no value: {told}. The indices are those of the others.")
+    return Sensitivity(SOBOL, [axis.key for axis in axes], rows, strength, notes) if rows or notes else None
+
+
+def _ranks(study: Study, axes: list[StudyAxis], outputs: list[Output]) -> Sensitivity | None:
+    named = [axis.key for axis in axes if not axis.numeric]
+    numeric = [axis for axis in axes if axis.numeric]
+    notes = [f"{', '.join(named)}: names have no order, so that there is no rank correlation with them."] if named else []
+    if not numeric:
+        return Sensitivity(RANKS, [], {}, {}, notes)
+    places = some_places(study, _RANKED)
+    inputs = np.array([axis.values[places] for axis in numeric])
+    rows = {}
+    for output in outputs:
+        values = some(study, output.name, _RANKED)
+        drops = np.full(len(numeric), int(np.isfinite(values).sum()))
+        rows[output.name] = {"rank_correlation": rank_correlations(inputs, values), "drops": drops}
+    if inputs.shape[1] < study.size:
+        notes.append(f"Ranks are those of the first {inputs.shape[1]} drops.")
+    strength = {name: np.abs(row["rank_correlation"]) for name, row in rows.items()}
+    return Sensitivity(RANKS, [axis.key for axis in numeric], rows, strength, notes)
+
+
+def _ranges(study: Study, axes: list[StudyAxis], outputs: list[Output]) -> Sensitivity | None:
+    orders = [rising(axis) for axis in axes]
+    rows, strength, without = {}, {}, []
+    for output in outputs:
+        moved = one_at_a_time(on_grid(study, output.name), orders)
+        if not np.isfinite(moved.middle):
+            without.append(output.title)
+            continue
+        middle = np.full(len(axes), moved.middle)
+        rows[output.name] = {"lowest": moved.lowest, "at_the_middle": middle, "highest": moved.highest, "relative_range": moved.relative}
+        strength[output.name] = moved.relative
+    notes = [f"No range of {', '.join(without)}: the drop at the middle of the grid has no value."] if without else []
+    return Sensitivity(RANGES, [axis.key for axis in axes], rows, strength, notes) if rows or notes else None

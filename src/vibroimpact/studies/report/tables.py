@@ -1,0 +1,167 @@
+"""What the report of a study tells in words and tables."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from typing import Any
+
+import numpy as np
+
+from vibroimpact.arrays import Floats
+from vibroimpact.studies.percentiles import PERCENTILES
+from vibroimpact.studies.report.axes import StudyAxis, study_axes
+from vibroimpact.studies.report.labels import drops_text, percent, range_text, value_text
+from vibroimpact.studies.report.outputs import Output
+from vibroimpact.studies.report.sensitivity import RANKS, SOBOL, Sensitivity
+from vibroimpact.studies.study import Study
+from vibroimpact.units.display import digits, fixed
+
+PERCENTILE_COLUMNS = ["output", "unit", "drops", "mean", "standard_deviation", *(f"percentile_{part}" for part in PERCENTILES)]
+"""Of `percentiles.csv`."""
+
+_COUNT = "number_of_impacts"
+_FAILURES, _REASONS = 10, 5
+_MOST_KEYS = 20
+_NUMBER = re.compile(r"[-+]?\d+\.?\d*(?:e[-+]?\d+)?")
+
+
+def counts_sentence(study: Study) -> str:
+    """Return how many drops there are and how many failed."""
+    failed = len(study.failures)
+    drops = drops_text(study.size)
+    if not failed:
+        return f"{drops}; none failed."
+    if failed == study.size:
+        return f"{drops}; all of them failed." if failed > 1 else f"{drops}; it failed."
+    return f"{drops}; {failed} failed ({percent(failed / study.size)})."
+
+
+def reasons(study: Study) -> list[tuple[int, str]]:
+    """Return the most frequent reasons of failures: how many drops had each, and the words of the first; numbers in them may differ."""
+    found: dict[str, str] = {}
+    counts: Counter[str] = Counter()
+    for words in study.failures.values():
+        kind = _NUMBER.sub("#", words)
+        found.setdefault(kind, words)
+        counts[kind] += 1
+    return [(number, found[kind]) for kind, number in counts.most_common(_REASONS)]
+
+
+def failures_table(study: Study) -> tuple[list[str], list[list[str]]]:
+    """Return the first failures: headers, and rows of the drop's number, its point and the reason."""
+    axes, rows = study_axes(study), []
+    for number, reason in list(study.failures.items())[:_FAILURES]:
+        rows.append(
+            [str(number), *(value_text(axis, value) for axis, value in zip(axes, point_of(study, axes, number), strict=True)), reason]
+        )
+    return ["Drop (from 0)", *(axis.key for axis in axes), "Why it failed"], rows
+
+
+def point_of(study: Study, axes: list[StudyAxis], number: int) -> list[Any]:
+    """Return the values of a drop on the axes, by its number."""
+    if study.is_grid:
+        places = np.unravel_index(number, tuple(study.dimensions.values()))
+        return [axis.values[place] for axis, place in zip(axes, places, strict=True)]
+    return [axis.values[number] for axis in axes]
+
+
+def axes_table(study: Study, axes: list[StudyAxis]) -> list[tuple[str, str, str]]:
+    """Return what was swept: key, meaning, and what it runs over."""
+    rows = []
+    for axis in axes:
+        meaning = study.meanings[axis.key][1]
+        levels = f"{len(axis.values)} levels, " if study.is_grid and axis.varies else ""
+        rows.append((axis.key, "" if meaning == axis.key else meaning, levels + range_text(axis)))
+    return rows
+
+
+def percentiles_table(outputs: list[Output]) -> tuple[list[str], list[list[str]]]:
+    """Return the spread of the results as text: headers, and a row a result that a drop has."""
+    rows = []
+    for one in outputs:
+        spread, (unit, size) = one.spread, one.scale
+        if not spread.drops:
+            continue
+        deviation = spread.standard_deviation if spread.varies or spread.drops < 2 else 0.0  # else it is rounding
+        parts = [f"{part:g}" if one.name == _COUNT else digits(part / size) for part in spread.percentiles]
+        rows.append([one.title, unit, str(spread.drops), digits(spread.mean / size), digits(deviation / size), *parts])
+    return ["Result", "Unit", "Drops", "Mean", "Standard deviation", *(f"{part} %" for part in PERCENTILES)], rows
+
+
+def percentiles_rows(outputs: list[Output]) -> list[dict[str, Any]]:
+    """Return the spread of the results for a CSV file, in SI."""
+    found = []
+    for one in outputs:
+        numbers = {"mean": one.spread.mean, "standard_deviation": one.spread.standard_deviation}
+        numbers |= {f"percentile_{part}": value for part, value in zip(PERCENTILES, one.spread.percentiles, strict=True)}
+        told = {name: value if np.isfinite(value) else None for name, value in numbers.items()}
+        found.append({"output": one.name, "unit": one.unit, "drops": one.spread.drops, **told})
+    return found
+
+
+def sensitivity_table(found: Sensitivity, outputs: list[Output]) -> tuple[list[str], list[list[str]]]:
+    """Return headers and rows of the sensitivity: a row a key, two of Sobol's indices, and a column a result."""
+    shown = [one for one in outputs if one.name in found.rows]
+    columns = {SOBOL: {"first_order": ", alone", "total": ", in all"}, RANKS: {"rank_correlation": ""}}.get(
+        found.way, {"relative_range": ""}
+    )
+    rows = [
+        [f"{key}{words}", *(_cell(found.rows[one.name], column, place) for one in shown)]
+        for place, key in enumerate(found.keys[:_MOST_KEYS])
+        for column, words in columns.items()
+    ]
+    return ["Key", *(one.title for one in shown)], rows
+
+
+def sensitivity_rows(found: Sensitivity) -> list[dict[str, Any]]:
+    """Return the sensitivity for a CSV file: a row a result and key."""
+    rows = []
+    for output, columns in found.rows.items():
+        for place, key in enumerate(found.keys):
+            cells = {name: float(values[place]) for name, values in columns.items()}
+            counts = {name: int(value) for name, value in cells.items() if name in ("points", "drops")}
+            rows.append({"output": output, "key": key, **{name: v if np.isfinite(v) else None for name, v in cells.items()}, **counts})
+    return rows
+
+
+def sensitivity_words(found: Sensitivity) -> str:
+    """Return what the numbers of the sensitivity are."""
+    if found.way == SOBOL:
+        return (
+            "Sobol's indices, in percent of the variance: what a key does alone (first order), and in all, together with others "
+            "(total), with the half of its interval of 95 % found by drawing the points anew. An index that is smaller than its "
+            "interval can't be told from zero; an estimate may even be negative."
+        )
+    if found.way == RANKS:
+        drops = max((int(row["drops"].max()) for row in found.rows.values()), default=0)
+        least = f" Of {drops} drops, magnitudes below {digits(2.0 / np.sqrt(drops), 1)} may be chance." if drops else ""
+        return f"Spearman's rank correlation: 1 if the result always rises with the key, \u22121 if it always falls.{least}"
+    return (
+        "How far a result moves along one key, from its lowest to its highest, with all other keys at their middle level; in percent of "
+        "the result in the middle of the grid."
+    )
+
+
+def _cell(row: dict[str, Floats], column: str, place: int) -> str:
+    value = float(row[column][place])
+    if column == "rank_correlation":
+        return digits(value, 2)
+    half = f" ± {_percent(float(row[f'{column}_high'][place]) - value)}" if f"{column}_high" in row else ""
+    return f"{_percent(value)}{half}"
+
+
+def _percent(part: float) -> str:
+    return fixed(100.0 * part, 1)
+
+
+def spread_words(study: Study) -> str:
+    """Return what the percentiles of a study are."""
+    failed = " Drops that failed are left out." if study.failures else ""
+    words = {
+        "grid": "These describe the grid: its levels were chosen, so that they say nothing of how likely a result is.",
+        "zip": "These describe the points that were chosen; they say nothing of how likely a result is.",
+        "saltelli": "How the results spread when the keys spread as they were drawn. Counted are the blocks A and B, whose drops are "
+        "independent.",
+    }
+    return words.get(study.design, "How the results spread when the keys spread as they were drawn.") + failed

@@ -1,0 +1,192 @@
+"""The [sweep] section: which keys of a case run over what, by which design, and what is kept."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Annotated, Any, Literal
+
+from pydantic import BeforeValidator, Field, WithJsonSchema
+
+from vibroimpact.cases.quantities import Quantity, read_quantity
+from vibroimpact.cases.section import Section, read_table
+from vibroimpact.errors import InputError, did_you_mean
+from vibroimpact.measurements.table_file import TableFile, name_and_unit, read_table_file
+from vibroimpact.ranges import Range
+from vibroimpact.shown import shown
+from vibroimpact.studies.axes import Axis, Listed, Normal, Spaced
+from vibroimpact.studies.design import designs, find_design
+
+MOST_DROPS = 10_000_000
+"""The most that a study may have."""
+
+_LEVELS = 10  # of a range or a distribution in a grid, where nothing else is said
+_Levels = Annotated[int, Field(ge=2, le=MOST_DROPS, strict=True)]
+
+
+def _read_design(value: Any) -> str:
+    if not isinstance(value, str):
+        raise InputError(f"{shown(value)} is not allowed; it must be one of {', '.join(designs())}")
+    return find_design(value).name
+
+
+class SweepSection(Section):
+    """What `vibroimpact sweep` does with the case; a run takes no notice of it."""
+
+    design: Annotated[str, BeforeValidator(_read_design), WithJsonSchema({"enum": list(designs())})] = Field(
+        "grid", description="how the points are chosen: " + "; ".join(f"{one.name}: {one.meaning}" for one in designs().values())
+    )
+    over: dict[str, Any] = Field(
+        description='by dotted keys of the case, such as "sphere.radius": a list, a range { from, to, number, scale }, a distribution '
+        '{ distribution = "normal", "lognormal" or "uniform", ... } or a column of a file { file, column, weights }'
+    )
+    samples: Annotated[int, Field(ge=1, le=MOST_DROPS, strict=True)] | None = Field(None, description="how many points are drawn")
+    seed: Annotated[int, Field(ge=0, strict=True)] = Field(0, description="of the drawing")
+    keep: tuple[Literal["peaks", "impacts", "signals"], ...] = Field(
+        ("impacts",),
+        description="what is kept of each drop: its peaks, which are kept always, the impact table, the signals of the sensors",
+    )
+
+
+class RangeTable(Section):
+    """Values from one to another."""
+
+    start: Any = Field(alias="from")
+    end: Any = Field(alias="to")
+    number: _Levels = _LEVELS
+    scale: Literal["linear", "log"] = "linear"
+
+
+class UniformTable(RangeTable):
+    """A uniform distribution, on a linear or a logarithmic scale."""
+
+    distribution: Literal["uniform"]
+
+
+class NormalTable(Section):
+    """A normal or a lognormal distribution, perhaps truncated."""
+
+    distribution: Literal["normal", "lognormal"]
+    mean: Any
+    standard_deviation: Any
+    at_least: Any = None
+    at_most: Any = None
+    number: _Levels = _LEVELS
+
+
+class ColumnTable(Section):
+    """The values in a column of a CSV file, and their weights in another."""
+
+    file: str
+    column: str
+    weights: str | None = None
+
+
+_DISTRIBUTIONS: dict[str, type[Section]] = {"normal": NormalTable, "lognormal": NormalTable, "uniform": UniformTable}
+_ASKED = "a list of values, a range { from, to, number, scale }, a distribution or a column { file, column, weights }"
+
+
+def read_axis(value: Any, quantity: Quantity | None) -> Axis:
+    """Read what a swept key runs over.
+
+    Parameters
+    ----------
+    value : any
+        As a TOML file holds it.
+    quantity : Quantity or None
+        What the key holds; None if it is no quantity, and then only a list is taken.
+
+    Raises
+    ------
+    InputError
+        If it can't be read, or no such distribution exists.
+
+    Examples
+    --------
+    >>> read_axis({"from": "5 mm", "to": "50 mm", "number": 2}, Quantity("m", "radius")).levels().tolist()
+    [0.005, 0.05]
+    """
+    if isinstance(value, list):
+        if not value:
+            raise InputError("the list is empty; it must have one value or more")
+        return Listed(tuple(value if quantity is None else [_read_item(item, quantity) for item in value]))
+    if not isinstance(value, Mapping):
+        raise InputError(f"{shown(value)} is not allowed; it must be {_ASKED}")
+    if quantity is None:
+        raise InputError("this key holds no quantity, so that it takes a list of values alone")
+    if "file" in value:
+        return _columns(read_table(ColumnTable, value), quantity)
+    if "distribution" in value:
+        kind = value["distribution"]
+        if not isinstance(kind, str) or kind not in _DISTRIBUTIONS:
+            hint = did_you_mean(str(kind), _DISTRIBUTIONS)
+            raise InputError(f"{shown(kind)} is not allowed; it must be one of {', '.join(_DISTRIBUTIONS)}.{hint}", "distribution")
+        table = read_table(_DISTRIBUTIONS[kind], value)
+        return _normal(table, quantity) if isinstance(table, NormalTable) else _spaced(table, quantity, is_random=True)
+    if "from" not in value and "to" not in value:
+        raise InputError(f"{', '.join(value) or 'an empty table'} says nothing; it must be {_ASKED}")
+    return _spaced(read_table(RangeTable, value), quantity, is_random=False)
+
+
+def _read_item(item: Any, quantity: Quantity) -> Any:
+    """Read one value of a list; a plain number may have names and tables beside it, as a damping has."""
+    if isinstance(item, (list, dict)) or (isinstance(item, str) and not quantity.unit):
+        return item
+    return _number(item, quantity, quantity.allowed)
+
+
+def _number(value: Any, quantity: Quantity, allowed: Range, key: str = "") -> float:
+    try:
+        return read_quantity(value, quantity.unit, allowed)
+    except InputError as error:
+        raise InputError(error.message, key) from None
+
+
+def _spaced(table: Section, quantity: Quantity, *, is_random: bool) -> Spaced:
+    assert isinstance(table, RangeTable)
+    start, end = (_number(value, quantity, quantity.allowed, key) for key, value in (("from", table.start), ("to", table.end)))
+    if not end > start:
+        raise InputError(f"{end:g} is not more than where it begins, {start:g}", "to")
+    if table.scale == "log" and start <= 0.0:
+        raise InputError(f"{start:g} has no logarithm; it must be greater than 0", "from")
+    return Spaced(start, end, table.number, table.scale, is_random)
+
+
+def _normal(table: NormalTable, quantity: Quantity) -> Normal:
+    anything, positive = Range(), Range(above=0)
+    mean = _number(table.mean, quantity, anything, "mean")
+    deviation = _number(table.standard_deviation, quantity, positive, "standard_deviation")
+    ends = {key: _number(value, quantity, anything, key) for key in ("at_least", "at_most") if (value := getattr(table, key)) is not None}
+    if len(ends) == 2 and not ends["at_most"] > ends["at_least"]:
+        raise InputError(f"{ends['at_most']:g} is not more than at_least, {ends['at_least']:g}", "at_most")
+    bounds = (ends.get("at_least", -math.inf), ends.get("at_most", math.inf))
+    return Normal(mean, deviation, table.number, *bounds, lognormal=table.distribution == "lognormal")
+
+
+def _columns(table: ColumnTable, quantity: Quantity) -> Listed:
+    """Return the values in a column of a CSV file, whose header gives its unit, with their weights if there are any."""
+    name, weights = (None if column is None else name_and_unit(column)[0] for column in (table.column, table.weights))
+    assert name is not None
+    try:
+        read = read_table_file(table.file, {name: quantity.unit, **({weights: ""} if weights else {})})
+    except InputError as error:
+        raise InputError(error.message, "file") from None
+    for key, column in (("column", name), ("weights", weights)):
+        if column is not None and column not in read.columns:
+            raise InputError(f'there is no column "{column}" in {table.file}', key)
+    _check_column(table, read, name, quantity.allowed, quantity.unit)
+    values = tuple(float(value) for value in read.columns[name])
+    if weights is None:
+        return Listed(values)
+    _check_column(table, read, weights, Range(at_least=0), "")
+    if not read.columns[weights].any():
+        raise InputError("all weights are zero", "weights")
+    return Listed(values, tuple(read.columns[weights].tolist()))
+
+
+def _check_column(table: ColumnTable, read: TableFile, name: str, allowed: Range, unit: str) -> None:
+    for value, line in zip(read.columns[name].tolist(), read.lines, strict=True):
+        try:
+            allowed.check(value, unit)
+        except InputError as error:
+            raise InputError(f"{table.file}, line {line}: {error.message}", "file") from None

@@ -1,0 +1,246 @@
+"""A study that is done: one NetCDF-4 dataset, whose dimensions are the swept keys or `sample`."""
+
+from __future__ import annotations
+
+import shlex
+import tomllib
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from math import prod
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+import h5py
+import numpy as np
+from numpy.typing import NDArray
+
+from vibroimpact.arrays import Floats
+from vibroimpact.errors import InputError
+from vibroimpact.files.check_sums import CHECK_SUMS, DamageError, read_sealed
+from vibroimpact.files.damaged_part import check_hdf5
+from vibroimpact.files.hdf5 import read_array, why
+from vibroimpact.files.leftovers import remove
+from vibroimpact.files.recover import clear, recover
+from vibroimpact.results.folder import SUMMARY
+from vibroimpact.studies.chunk_file import CHUNK
+from vibroimpact.studies.chunk_file import FOLDER as CHUNKS
+from vibroimpact.studies.columns import SIGNAL
+from vibroimpact.studies.ledger import LEDGER, is_held
+from vibroimpact.studies.plan import SAMPLE
+from vibroimpact.studies.recorded_doubts import StudyDoubt, study_doubts
+
+DATASET, STUDY = "study.nc", "study.toml"
+FAILED_POINT, FAILED_REASON = "failed_point", "failed_reason"
+"""The variables that say which drops failed, and why."""
+
+
+@dataclass(frozen=True, eq=False)
+class Study:
+    """A study that is done; its variables are read when they are asked for.
+
+    Attributes
+    ----------
+    path : Path
+        Of its dataset.
+    name : str
+        What it is called.
+    table : dict
+        The case with its [sweep] section.
+    version : str
+        Of the package that made it.
+    dimensions : dict of str to int
+        The dimensions of every variable, in order, and their lengths: the swept keys, or `sample`.
+    coordinates : dict of str to array
+        By the swept key its levels, or its values along `sample`.
+    meanings : dict of str to (str, str)
+        Unit and meaning of every variable and every swept key.
+    shapes : dict of str to tuple
+        The shape of every variable: that of `dimensions`, and then impacts or samples in time.
+    failures : dict of int to str
+        Why a drop failed, by its number: its place when all points are counted through, from 0.
+    """
+
+    path: Path
+    name: str
+    table: dict[str, Any]
+    version: str
+    dimensions: dict[str, int]
+    coordinates: dict[str, NDArray[Any]]
+    meanings: dict[str, tuple[str, str]]
+    shapes: dict[str, tuple[int, ...]]
+    failures: dict[int, str]
+
+    @property
+    def design(self) -> str:
+        """The name of its design, such as "grid"."""
+        return _design(self.table)
+
+    @property
+    def is_grid(self) -> bool:
+        """Are its points all combinations of the levels of its keys?"""
+        return SAMPLE not in self.dimensions
+
+    @property
+    def size(self) -> int:
+        """The number of drops."""
+        return prod(self.dimensions.values())
+
+    @property
+    def doubts(self) -> list[StudyDoubt]:
+        """The limits of the theory that drops are beyond: how many drops, and the worst of them."""
+        with _damage_told(self.path):
+            return study_doubts(self.path)
+
+    def values(self, name: str, *place: Any) -> NDArray[Any]:
+        """Return a variable, or the part of it at a place as NumPy counts.
+
+        Parameters
+        ----------
+        name : str
+            Such as "max_force_N".
+        *place : int or slice
+            Along the first dimension, the second, ...
+
+        Raises
+        ------
+        InputError
+            If there is no such variable, or it is damaged.
+        """
+        self._check(name)
+        with _damage_told(self.path), h5py.File(self.path, "r") as file:
+            return read_array(file[name], place or ())
+
+    def __repr__(self) -> str:
+        return f"<Study of {self.size} drops: {', '.join(f'{name} {length}' for name, length in self.dimensions.items())}>"
+
+    def times(self, sensor: str) -> Floats:
+        """Return the time of each sample in the signal of a sensor [s].
+
+        Parameters
+        ----------
+        sensor : str
+            Its name.
+
+        Raises
+        ------
+        InputError
+            If its signal was not kept.
+        """
+        name = f"{SIGNAL}{sensor}"
+        self._check(name)
+        with _damage_told(self.path), h5py.File(self.path, "r") as file:
+            (scale,) = file[name].dims[len(self.dimensions)].values()
+            return np.asarray(read_array(scale), dtype=np.float64)
+
+    def _check(self, name: str) -> None:
+        if name not in self.shapes:
+            raise InputError(f'there is no variable "{name}"; there are {", ".join(self.shapes)}')
+
+
+def is_study(folder: Path) -> bool:
+    """Was a study begun in a folder?"""
+    return (folder / STUDY).is_file() or (folder / LEDGER).is_file()
+
+
+def begun(folder: Path) -> bool:
+    """Was a study begun in a folder, and is it there, or can it be brought back?"""
+    recover(folder)
+    return is_study(folder)
+
+
+def recover_study(folder: Path) -> None:
+    """Put right what processes that died have left of a study; if one is at work on it, all stays as it is."""
+    recover(folder)
+    if (folder / LEDGER).is_file() and not is_held(folder):
+        clear_study(folder)
+        if (folder / DATASET).is_file():
+            remove(folder / CHUNKS)
+
+
+def clear_study(folder: Path) -> None:
+    """Clear what lies half written in a study that no process is at work on: whole are its chunks alone."""
+    clear(folder)
+    for path in (folder / CHUNKS).glob("*"):
+        if path.suffix != CHUNK:
+            remove(path)
+
+
+def read_study(directory: str | PathLike[str]) -> Study:
+    """Read the dataset of a study, but for its variables.
+
+    Parameters
+    ----------
+    directory : path
+        The folder of the study.
+
+    Raises
+    ------
+    InputError
+        If there is none, or it is damaged.
+    """
+    path = Path(directory) / DATASET
+    recover_study(path.parent)
+    if not path.is_file():
+        folder = Path(directory)
+        if not (folder / STUDY).is_file():
+            raise InputError(f"{folder}: this is not the folder of a study; it has no {DATASET}")
+        command = f"vibroimpact sweep {shlex.quote(str(folder / STUDY))} -o {shlex.quote(str(folder))} --resume"
+        raise InputError(f"{folder}: the study is not done; if nothing is at work on it, go on with: {command}")
+    with _damage_told(path):
+        check_hdf5(path, _check_sum(path.parent))
+    with _damage_told(path), h5py.File(path, "r") as file:
+        table = tomllib.loads(str(file.attrs["study"]))
+        over = list(table["sweep"]["over"])  # in the order of the dimensions
+        is_grid = _design(table) == "grid"
+        coordinates = {key: _of_file(file[key]) for key in over}
+        dimensions = {key: len(coordinates[key]) for key in over} if is_grid else {SAMPLE: len(file[SAMPLE])}
+        names = [one for one in file if not file[one].is_scale and one not in (*over, FAILED_REASON)]
+        meanings = {one: (str(file[one].attrs["units"]), str(file[one].attrs["long_name"])) for one in [*over, *names]}
+        reasons = [reason.decode() for reason in read_array(file[FAILED_REASON])]
+        failures = dict(zip(read_array(file[FAILED_POINT]).tolist(), reasons, strict=True))
+        shapes = {one: tuple(file[one].shape) for one in names}
+        name, version = str(file.attrs["title"]), str(file.attrs["version"])
+        return Study(path, name, table, version, dimensions, coordinates, meanings, shapes, failures)
+
+
+def _check_sum(folder: Path) -> str | None:
+    """Return the check sum of the dataset; None of an earlier version, which wrote none.
+
+    Raises
+    ------
+    InputError
+        If the summary that holds it is damaged.
+    """
+    try:
+        return dict(read_sealed(folder / SUMMARY)[CHECK_SUMS])[DATASET] if (folder / SUMMARY).is_file() else None
+    except KeyError:
+        return None
+    except (OSError, ValueError, TypeError) as error:
+        words = "delete it, and the dataset is read without being checked"
+        raise InputError(f"{folder / SUMMARY}: the file is damaged: {why(error)}; {words}") from None
+
+
+@contextmanager
+def _damage_told(path: Path) -> Iterator[None]:
+    """Say of a dataset that can't be read that it is damaged."""
+    try:
+        yield
+    except InputError:
+        raise
+    except Exception as error:  # of many kinds, as files are damaged in many ways
+        words = str(error) if isinstance(error, DamageError) else f"the file is damaged: {why(error)}"
+        folder = shlex.quote(str(path.parent))
+        command = f"vibroimpact sweep {shlex.quote(str(path.parent / STUDY))} -o {folder} --force"
+        raise InputError(f"{path}: {words}; make it anew with: {command}") from None
+
+
+def _design(table: dict[str, Any]) -> str:
+    return str(table["sweep"].get("design", "grid"))
+
+
+def _of_file(data: h5py.Dataset) -> NDArray[Any]:
+    """Return the values of a coordinate: numbers, or texts."""
+    values = read_array(data)
+    return np.array([text.decode() for text in values], dtype=object) if values.dtype == object else np.asarray(values)

@@ -1,0 +1,308 @@
+"""From a case with a [sweep] section to a study: a case, the axes it runs over, and what is kept."""
+
+from __future__ import annotations
+
+import json
+from collections import Counter
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from hashlib import sha256
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from vibroimpact.cases.bounds import MOST_ITEMS, check_bounds, check_count
+from vibroimpact.cases.case import Case
+from vibroimpact.cases.quantities import Quantity
+from vibroimpact.cases.reader import load_table, named
+from vibroimpact.cases.rigid import deforms, impacts_of
+from vibroimpact.cases.section import read_table
+from vibroimpact.dynamics.columns import ALL_IMPACT_COLUMNS, IMPACT_COLUMNS, meanings
+from vibroimpact.errors import InputError
+from vibroimpact.files.lines import MESH
+from vibroimpact.files.reading import file_digest
+from vibroimpact.shown import shortened, shown, visible
+from vibroimpact.studies.axes import Axis, Listed, Values
+from vibroimpact.studies.columns import OUTCOME, PEAKS, SENSOR_PEAK, SIGNAL
+from vibroimpact.studies.design import find_design
+from vibroimpact.studies.limits import limit_meanings
+from vibroimpact.studies.plan import Plan
+from vibroimpact.studies.section import MOST_DROPS, SweepSection, read_axis
+from vibroimpact.studies.swept_keys import case_at, find_quantity, holds_keys
+
+MOST_KEYS = 100
+"""Swept keys of a study."""
+
+MOST_POINT_VALUES = 40_000_000
+"""Values of all keys at all points of a study that is no grid; they lie in memory."""
+
+LONG = 100
+"""Impacts that are reckoned with where a drop goes on to rest."""
+
+
+@dataclass(frozen=True, eq=False)
+class Sweep:
+    """A study, read and checked.
+
+    Attributes
+    ----------
+    table : dict
+        The case without its [sweep] section, as a TOML file would hold it.
+    section : SweepSection
+        The design and what is kept.
+    axes : dict of str to Axis
+        What each key runs over.
+    quantities : dict of str to Quantity or None
+        What each key holds.
+    """
+
+    table: dict[str, Any]
+    section: SweepSection
+    axes: dict[str, Axis]
+    quantities: dict[str, Quantity | None]
+
+    @cached_property
+    def size(self) -> int:
+        """The number of drops."""
+        return find_design(self.section.design).size(self.axes, self.section.samples or 0)
+
+    @cached_property
+    def plan(self) -> Plan:
+        """The points."""
+        return find_design(self.section.design).plan(self.axes, self.section.samples or 0, self.section.seed)
+
+    @cached_property
+    def case(self) -> Case:
+        """The case at the first point."""
+        return self.case_at(self.values_of(0))
+
+    def values_of(self, drop: int) -> dict[str, Any]:
+        """Return the values of one drop at the swept keys, by its number, from 0."""
+        return {key: values[0] for key, values in self.plan.points(drop, 1).items()}
+
+    def case_at(self, values: Mapping[str, Any]) -> Case:
+        """Return the case with values at its swept keys.
+
+        Raises
+        ------
+        InputError
+            If there is no such case.
+        """
+        return case_at(self.table, values)
+
+    @cached_property
+    def deforms(self) -> bool:
+        """Does anything but the contact itself deform, at any level of what is swept?"""
+        first = self.values_of(0)
+        names = {key: values for key, values in self.plan.columns.items() if values.dtype == object}
+        cases = (self.case_at({**first, key: level}) for key, values in names.items() for level in _different(values))
+        return deforms(self.case) or any(map(deforms, cases))
+
+    def case_of(self, drop: int) -> Case:
+        """Return the case of one drop by its number, from 0: to run it by itself.
+
+        Raises
+        ------
+        InputError
+            If there is no such drop, or no such case.
+        """
+        if not 0 <= drop < self.size:
+            raise InputError(f"there is no drop {drop}; the study has {self.size}, counted from 0")
+        return self.case_at(self.values_of(drop))
+
+    @property
+    def bytes(self) -> float:
+        """About how large its results are."""
+        impacts = (impacts_of(self.case) or LONG) if "impacts" in self.section.keep else 0
+        kept = self.case.sensors if "signals" in self.section.keep else ()
+        samples = sum(sensor.rate * (self.case.run.duration or 0.0) for sensor in kept)
+        double, single = len(self.axes) + len(PEAKS) + impacts * len(IMPACT_COLUMNS), len(limit_meanings()) + samples
+        return self.size * (8.0 * double + 4.0 * single)
+
+    @property
+    def name(self) -> str:
+        """What the study is called."""
+        return self.case.name or "a study of drops"
+
+    @property
+    def whole_table(self) -> dict[str, Any]:
+        """The case with its [sweep] section, as a TOML file would hold it."""
+        return {**self.table, "sweep": self.section.model_dump(exclude_none=True, mode="json")}
+
+    @property
+    def meanings(self) -> dict[str, tuple[str, str]]:
+        """Unit and meaning of every swept key and of everything that may be kept of a drop, in the order in which it is told."""
+        sensors = {sensor.name: sensor.sensor() for sensor in self.case.sensors} if "signals" in self.section.keep else {}
+        keys = {key: (quantity.unit or "1", quantity.meaning) if quantity else ("1", key) for key, quantity in self.quantities.items()}
+        largest = {f"{name}{SENSOR_PEAK}": (one.unit, f"largest magnitude that {name} reads") for name, one in sensors.items()}
+        signals = {f"{SIGNAL}{name}": (one.unit, f"{one.quantity} that {name} reads") for name, one in sensors.items()}
+        impacts = meanings(ALL_IMPACT_COLUMNS)
+        del impacts["impact"]  # the dimension
+        ended = {OUTCOME: ("1", "why the run of the drop ended")}
+        return {**keys, **ended, **PEAKS, **largest, **limit_meanings(), **impacts, **signals}
+
+    @cached_property
+    def digest(self) -> str:
+        """A fingerprint of the case, its meshes, the points and what is kept."""
+        meshes = [file_digest(file, MESH) for file in _meshes(self.table)]
+        rest = json.dumps([self.table, meshes, self.section.keep], sort_keys=True, default=str)
+        return sha256(f"{self.plan.digest()} {rest}".encode()).hexdigest()
+
+
+def load_sweep(source: str | PathLike[str]) -> Sweep:
+    """Read a study: a case file with a [sweep] section.
+
+    Parameters
+    ----------
+    source : path or str
+        A TOML file, or a shipped study such as "paper:sweep".
+
+    Raises
+    ------
+    InputError
+        If it can't be read, or is not a valid study; the message says where, what, and what is allowed.
+    """
+    return named(source, lambda: read_sweep(load_table(source)))
+
+
+def read_sweep(table: Mapping[str, Any]) -> Sweep:
+    """Read a study from a mapping, as a TOML file would hold it.
+
+    What it would compute is looked at, and nothing is computed: the case at the first point, and at the ends of every axis.
+
+    Raises
+    ------
+    InputError
+        If it is not a valid study.
+
+    Examples
+    --------
+    >>> from vibroimpact.cases.reader import load_table
+    >>> case = load_table("paper:type1-theory")
+    >>> study = read_sweep({**case, "sweep": {"over": {"sphere.radius": ["10 mm", "25 mm"], "contact.restitution": [0.5, 0.6, 0.7]}}})
+    >>> study.size
+    6
+    """
+    if not isinstance(table, Mapping):
+        raise InputError(f"a study is a table, as a TOML file holds it, not {shown(table)}")
+    check_bounds(table)
+    base = {key: value for key, value in table.items() if key != "sweep"}
+    if "sweep" not in table:
+        raise InputError('it is missing; it says what runs over what, such as [sweep.over] "sphere.radius" = ["10 mm", "25 mm"]', "sweep")
+    if not isinstance(table["sweep"], dict):
+        raise InputError(f"{shown(table['sweep'])} is not a table", "sweep")
+    try:
+        section = read_table(SweepSection, table["sweep"])
+        design = find_design(section.design)
+        if design.is_drawn and section.samples is None:
+            raise InputError(f"it is missing; {design.name} needs to know how many points it draws", "samples")
+        if not design.is_drawn and section.samples is not None:
+            raise InputError(f"{design.name} has the points that its values give; leave this out", "samples")
+        keys = list(_flat(section.over))
+        over = dict(keys)
+        twice = next((key for number, (key, _) in enumerate(keys) if key in dict(keys[:number])), None)
+        if twice is not None:
+            raise InputError("this key stands there twice, in quotes and in a table", f'over."{twice}"')
+        if not over:
+            raise InputError("it is empty; it takes dotted keys of the case", "over")
+        check_count(len(over), MOST_KEYS, "swept keys")
+        quantities, axes = {}, {}
+        for key, value in over.items():
+            try:
+                quantities[key] = find_quantity(base, key)
+                axes[key] = read_axis(value, quantities[key])
+                _check_names(axes[key])
+            except InputError as error:
+                raise InputError(error.message, f'over."{key}".{error.key}'.rstrip(".")) from None
+        sweep = Sweep(base, section.model_copy(update={"over": over}), axes, quantities)
+        if sweep.size > MOST_DROPS:
+            raise InputError(f"there would be {sweep.size} drops, and {MOST_DROPS} are the most; sweep in parts", "over")
+        if sweep.size * len(axes) > MOST_POINT_VALUES and section.design != "grid":
+            words = f"there would be {sweep.size} drops of {len(axes)} values each, and {MOST_POINT_VALUES} values are the most"
+            raise InputError(f"{words}; sweep in parts", "over")
+        for key, axis in axes.items() if section.design == "grid" else ():
+            again = _twice(axis)
+            if again is not None:
+                raise InputError(f"{again} stands there twice, and a grid has each value once", f'over."{key}"')
+    except InputError as error:
+        raise InputError(error.message, f"sweep.{error.key}".rstrip(".")) from None
+    _check_points(sweep)
+    if "signals" in section.keep:
+        sensors = [sensor.name for sensor in sweep.case.sensors]
+        variables = [name for sensor in sensors for name in (f"{SIGNAL}{sensor}", f"{sensor}{SENSOR_PEAK}", f"time_{sensor}")]
+        taken = {*sweep.axes, OUTCOME, *PEAKS, *limit_meanings(), *ALL_IMPACT_COLUMNS}
+        for name in variables:
+            if not name.isprintable() or "/" in name or variables.count(name) > 1 or name in taken:
+                words = f'"{name}" can\'t be the name of a variable of the dataset, or is that of another; call the sensor otherwise'
+                raise InputError(words, "sensors")
+        if not sweep.case.sensors:
+            raise InputError('"signals" needs [[sensors]] on an elastic plate', "sweep.keep")
+        if sweep.case.run.duration is None:
+            raise InputError("it is missing; signals need it, so that those of all drops are of one length", "run.duration")
+    return sweep
+
+
+def _check_names(axis: Axis) -> None:
+    """Raise if there are more different names and tables than can be looked at: there is a case at each."""
+    if isinstance(axis, Listed) and len(axis.values) > MOST_ITEMS and axis.levels().dtype == object:
+        check_count(len(_different(axis.levels())), MOST_ITEMS, "different names and tables")
+
+
+def _twice(axis: Axis) -> str | None:
+    """Return a level that an axis has twice; those of a range and of a distribution differ, unless it is narrower than numbers are."""
+    levels = axis.levels()
+    if levels.dtype == object:
+        again, often = Counter(map(repr, levels.tolist())).most_common(1)[0]
+        return shortened(again, 80) if often > 1 else None
+    ordered = np.sort(levels)
+    same = np.flatnonzero(ordered[1:] == ordered[:-1])
+    return repr(ordered[same[0]].item()) if same.size else None
+
+
+def _flat(over: Mapping[str, Any], above: str = "") -> Iterator[tuple[str, Any]]:
+    """Yield what is swept by its dotted key, also where TOML made tables of keys that were not in quotes."""
+    for key, value in over.items():
+        dotted = f"{above}{key}"
+        if isinstance(value, dict) and holds_keys(dotted):
+            yield from _flat(value, f"{dotted}.")
+        else:
+            yield dotted, value
+
+
+def _check_points(sweep: Sweep) -> None:
+    """Raise unless all values are in range, and there is a case at the first point and with every axis at its ends there."""
+    columns = sweep.plan.columns
+    for key, values in columns.items():
+        quantity = sweep.quantities[key]
+        if quantity is not None and values.dtype != object:
+            try:
+                quantity.allowed.check(values, quantity.unit)
+            except InputError as error:
+                remedy = "; truncate the distribution with at_least and at_most" if sweep.axes[key].is_random else ""
+                raise InputError(f"{error.message}{remedy}", f'sweep.over."{key}"') from None
+    first = sweep.values_of(0)
+    sweep.case_at(first)
+    for key, values in columns.items():
+        several = _different(values) if values.dtype == object else [values.min(), values.max()]
+        for value in several:
+            try:
+                sweep.case_at({**first, key: value})
+            except InputError as error:
+                raise InputError.of_several(f"at {key} = {shortened(visible(str(value)), 60)}: {line}" for line in error.lines) from None
+
+
+def _different(values: Values) -> list[Any]:
+    """Return the different ones of values that may be tables, in order."""
+    return list({repr(value): value for value in values.tolist()}.values())
+
+
+def _meshes(table: Mapping[str, Any]) -> Iterator[Path]:
+    """Yield the files of meshes that a case brings."""
+    for body in ("sphere", "plate"):
+        mesh = table[body].get("mesh") if isinstance(table.get(body), dict) else None
+        file = mesh.get("file") if isinstance(mesh, dict) else mesh
+        if isinstance(file, str) and Path(file).is_file():
+            yield Path(file)

@@ -1,0 +1,320 @@
+"""Read a quantity at the file's edge: a bare number is SI, a string carries its unit.
+
+Everything inside the package is a float in SI; nothing below the case reader calls this module.
+pint is imported when the first unit is met.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterable
+from functools import cache, lru_cache
+from typing import TYPE_CHECKING
+
+from vibroimpact.errors import InputError
+from vibroimpact.shown import shortened, shown
+from vibroimpact.units.grammar import is_unit
+
+if TYPE_CHECKING:
+    import pint
+
+_QUANTITY = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*((?:1/)?[^\d\s.+-].*)?")
+
+_KIND = {
+    "m": "length",
+    "kg": "mass",
+    "s": "time",
+    "m/s": "speed",
+    "m/s^2": "acceleration",
+    "Pa": "pressure",
+    "kg/m^3": "density",
+    "Hz": "frequency",
+    "N": "force",
+    "N/m": "stiffness",
+    "N/m^1.5": "contact stiffness",
+    "N s/m": "damping",
+    "J/m^2": "work of adhesion",
+    "1/m": "reciprocal length",
+    "byte": "memory size",
+    "": "plain number",
+}
+_EXAMPLE = {
+    "m": "25 mm",
+    "kg": "90 g",
+    "s": "5 ms",
+    "m/s": "8.8 m/s",
+    "m/s^2": "9.8 m/s^2",
+    "Pa": "2.26 GPa",
+    "kg/m^3": "1.38 g/cm^3",
+    "Hz": "60 kHz",
+    "N": "3.5 kN",
+    "N/m": "1.2 MN/m",
+    "N/m^1.5": "1.6e4 N/mm^1.5",
+    "N s/m": "179.75 N s/m",
+    "J/m^2": "50 mJ/m^2",
+    "1/m": "0.5 1/mm",
+    "byte": "500 MB",
+}
+
+
+@cache
+def _registry() -> pint.UnitRegistry[float]:
+    import pint
+
+    return pint.UnitRegistry()
+
+
+def to_si(value: float | str, unit: str = "") -> float:
+    """Convert a number or a "number unit" string to a float in the SI `unit`.
+
+    Parameters
+    ----------
+    value : float or str
+        A bare number is taken to be in `unit` already; a string must carry a unit of the same
+        dimension.
+    unit : str, default ""
+        The SI unit wanted, as pint reads it; "" for a plain number.
+
+    Returns
+    -------
+    float
+        The finite value in `unit`.
+
+    Raises
+    ------
+    InputError
+        If the value is not finite, not a number, has no unit or one of another dimension.
+
+    Examples
+    --------
+    >>> to_si("25 mm", "m")
+    0.025
+    >>> to_si("2.26 GPa", "Pa")
+    2260000000.0
+    >>> to_si(0.025, "m")
+    0.025
+    >>> to_si("500 g", "m/s^2")  # as data sheets have it: standard gravity; of a mass "g" is the gram
+    4903.325
+    >>> to_si("25 kg", "m")
+    Traceback (most recent call last):
+        ...
+    vibroimpact.errors.InputError: "25 kg" is a mass; what is wanted is a length (a number in m, or a string such as "25 mm")
+    """
+    if isinstance(value, bool) or not isinstance(value, (int, float, str)):
+        raise InputError(f"{shown(value)} is not {_wanted(unit)}")
+    if isinstance(value, str):
+        return _finite(_parse(value, unit), value)
+    try:
+        return _finite(float(value), value)
+    except OverflowError:
+        raise InputError(f"{_long(value)} is too large for a number") from None
+
+
+def read_quantity(text: str) -> tuple[float, str]:
+    """Return the number and the unit of a text such as "5.115e8 N/m^1.5".
+
+    Raises
+    ------
+    InputError
+        If it is not a finite number with a unit.
+
+    Examples
+    --------
+    >>> read_quantity("179.75 N s/m")
+    (179.75, 'N s/m')
+    """
+    parts = _split(text)
+    if parts is None or not parts[1]:
+        raise InputError(f'{shown(text, 80)} is not a number with a unit, such as "5.115e8 N/m^1.5"')
+    return _finite(parts[0], text), parts[1]
+
+
+def convert_units(value: float, unit: str, to: str) -> float:
+    """Convert a number from one unit to another.
+
+    Parameters
+    ----------
+    value : float
+        The number, in `unit`.
+    unit, to : str
+        Units, as pint reads them: "N/m^1.5", "N s/mm", "kN/mm^1.5", "kg/s".
+
+    Returns
+    -------
+    float
+        The number in `to`.
+
+    Raises
+    ------
+    InputError
+        If the number is not finite, a unit is not known, or the two are of different dimensions.
+
+    Examples
+    --------
+    >>> round(convert_units(5.115e8, "N/m^1.5", "N/mm^1.5"), 3)
+    16175.05
+    >>> round(convert_units(179.75, "N s/m", "N s/mm"), 5)
+    0.17975
+    """
+    have, want = _known_unit(unit), _known_unit(to)
+    number = _finite(to_si(value), value)
+    if have.dimensionality != want.dimensionality:
+        told = " and ".join(f"{shown(name)} is {_dimension_words(one)}" for name, one in ((unit, have), (to, want)))
+        raise InputError(f"{told}; one can't be converted to the other")
+    try:
+        found = float(_registry().Quantity(number, have).to(want).magnitude)
+    except OverflowError:
+        found = math.inf
+    return _finite(found, f"{value:g} {unit} in {to}")
+
+
+def dimension_of(unit: str) -> dict[str, float]:
+    """Return the powers of "force", "length" and "time" in a unit; of "mass" in place of "force" where it holds no time.
+
+    Raises
+    ------
+    InputError
+        If the unit is not known.
+
+    Examples
+    --------
+    >>> dimension_of("N/m^1.5")
+    {'force': 1.0, 'length': -1.5}
+    >>> dimension_of("kg/s")  # which is N s/m
+    {'force': 1.0, 'length': -1.0, 'time': 1.0}
+    """
+    return _dimension(_known_unit(unit))
+
+
+def _dimension(unit: pint.Unit) -> dict[str, float]:
+    powers = {str(name).strip("[]"): float(str(power)) for name, power in unit.dimensionality.items()}
+    mass = powers.get("mass", 0.0)
+    if mass and powers.get("time", 0.0):
+        # what holds mass and time is thought of as force: programs differ in whether theirs is mass length / time^2
+        del powers["mass"]
+        powers |= {"force": mass, "length": powers.get("length", 0.0) - mass, "time": powers["time"] + 2.0 * mass}
+    order = ("force", "mass", "length", "time")
+    powers = {name: round(power, 9) for name, power in powers.items() if abs(power) > 1e-9}
+    return dict(sorted(powers.items(), key=lambda one: order.index(one[0]) if one[0] in order else len(order)))
+
+
+def unit_text(powers: Iterable[tuple[str, float]]) -> str:
+    """Return a product of powers as a unit is written.
+
+    Examples
+    --------
+    >>> unit_text([("N", 1.0), ("mm", -1.5)]), unit_text([("N", 1.0), ("s", 1.0), ("mm", -1.0)])
+    ('N/mm^1.5', 'N s/mm')
+    """
+    given = list(powers)
+    above, below = ([_power(name, abs(power)) for name, power in given if power * side > 0.0] for side in (1, -1))
+    return "/".join([" ".join(above) or "1", *below])
+
+
+def _power(name: str, power: float) -> str:
+    return name if power == 1.0 else f"{name}^{power:g}"
+
+
+def _dimension_words(unit: pint.Unit) -> str:
+    """Return what a unit measures, in words where it has a name, and of what dimension that is."""
+    registry = _registry()
+    if not unit.dimensionality:
+        return "a plain number"
+    kind = next((k for u, k in _KIND.items() if u and unit.dimensionality == registry.parse_units(u).dimensionality), None)
+    dimension = unit_text(_dimension(unit).items())
+    if kind is None:
+        return f"of the dimension {dimension}"
+    named = f"{_article(kind)} {kind}"
+    return named if kind == dimension else f"{named} ({dimension})"
+
+
+def _known_unit(text: str) -> pint.Unit:
+    try:
+        return _parse_unit(text)
+    except Exception as error:  # pint raises many kinds for a unit that it can't read
+        raise InputError(f'{shown(text, 80)} is not a unit that is known; write it as "N/mm^1.5", "N s/m" or "kg/s"') from error
+
+
+def _parse(text: str, unit: str) -> float:
+    parts = _split(text)
+    if parts is None:
+        raise InputError(f"{shown(text, 80)} is not {_wanted(unit)}")
+    number, given = parts
+    if not unit:
+        if given:
+            raise InputError(
+                f"{shown(text, 80)} has a unit, but a plain number is wanted: write {number / 100 if given == '%' else number:g}"
+            )
+        return number
+    if not given:
+        raise InputError(f'{shown(text, 80)} has no unit: write {number:g} (it is then in {unit}) or "{number:g} {unit}"')
+    return float(number * _factor(given, unit, text))
+
+
+def _split(text: str) -> tuple[float, str] | None:
+    """Return number and unit of a text, "" without one; None if it begins with no number."""
+    match = _QUANTITY.fullmatch(text) if len(text) <= 80 else None
+    if match is None:
+        return None
+    unit = (match[2] or "").strip()
+    if re.match(r",\d", unit):
+        raise InputError(f"{shown(text, 80)} has a comma in its number; write a point: {text.replace(',', '.', 1)}")
+    return float(match[1]), unit
+
+
+def _parse_unit(text: str) -> pint.Unit:
+    """Return a unit; raises ValueError, and whatever pint does for one that it can't read."""
+    if not is_unit(text):
+        raise ValueError(text)
+    return _registry().parse_units(text)
+
+
+_GRAVITIES = {"g": "g0", "mg": "mg0", "ug": "ug0", "µg": "ug0", "μg": "ug0"}
+"""What accelerometers' data sheets write for standard gravity, 9.80665 m/s^2, and its multiples, by what pint calls it."""
+
+
+@lru_cache(maxsize=1000)
+def _factor(given: str, unit: str, text: str) -> float:
+    """Return how many `unit` there are in one `given`."""
+    import pint
+
+    registry = _registry()
+    try:
+        spelled = _GRAVITIES.get(given, given) if unit == "m/s^2" else given  # no mass can be meant by 500 g of acceleration
+        have, want = registry.Quantity(1.0, _parse_unit(spelled)), registry.parse_units(unit)
+        return float(have.to(want).magnitude)
+    except pint.DimensionalityError:
+        kind = next((k for u, k in _KIND.items() if u and have.check(registry.parse_units(u).dimensionality)), None)
+        is_a = f"is {_article(kind)} {kind}" if kind else "is another kind of quantity"
+        raise InputError(f"{shown(text, 80)} {is_a}; what is wanted is {_wanted(unit)}") from None
+    except Exception as error:  # pint raises many kinds for a unit that it can't read
+        raise InputError(
+            f"{shown(given, 80)} in {shown(text, 80)} is not a unit that is known; what is wanted is {_wanted(unit)}"
+        ) from error
+
+
+def _long(number: float) -> str:
+    """Return the first digits of a whole number, which may have more than Python writes."""
+    try:
+        return f"{str(number)[:20]}..."
+    except ValueError:
+        return "a number of thousands of digits"
+
+
+def _article(noun: str) -> str:
+    return "an" if noun[0] in "aeiou" else "a"
+
+
+def _wanted(unit: str) -> str:
+    if not unit:
+        return "a plain number"
+    example = _EXAMPLE.get(unit, f"1 {unit}")
+    kind = _KIND.get(unit, "quantity")
+    return f'{_article(kind)} {kind} (a number in {unit}, or a string such as "{example}")'
+
+
+def _finite(number: float, value: float | str) -> float:
+    if not math.isfinite(number):
+        raise InputError(f"{shortened(str(value), 60)} is not finite")
+    return number
