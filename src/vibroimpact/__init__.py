@@ -64,7 +64,6 @@ if TYPE_CHECKING:
     from vibroimpact.dynamics.system import MovingBody as MovingBody
     from vibroimpact.dynamics.system import PointContact as PointContact
     from vibroimpact.dynamics.system import System as System
-    from vibroimpact.dynamics.tabulate import ImpactTable as ImpactTable
     from vibroimpact.dynamics.tabulate import tabulate as tabulate
     from vibroimpact.errors import ComputationError as ComputationError
     from vibroimpact.errors import InputError as InputError
@@ -105,7 +104,6 @@ _HOME = {
     "Comparison": "comparison.comparison",
     "ComputationError": "errors",
     "ContactLaw": "contact.law",
-    "ImpactTable": "dynamics.tabulate",
     "InputError": "errors",
     "Material": "materials",
     "Mesh": "structures.mesh",

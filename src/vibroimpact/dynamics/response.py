@@ -13,6 +13,7 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.dynamics.columns import HISTORY_COLUMNS, VIBRATION_HISTORY_COLUMNS, meanings
+from vibroimpact.dynamics.energy import why_failed
 from vibroimpact.dynamics.history_grid import points_kept, thinned
 from vibroimpact.dynamics.leg import Leg
 from vibroimpact.dynamics.outcome import Outcome
@@ -49,10 +50,13 @@ class Response:
         When each run ended [s].
     rest : Rest
         How the drops that came to rest do so. `rest.left` is what they, and those that ride, have left in vibration [J], (B,).
+    legs : sequence of Leg, optional
+        Flights and contacts, from which histories are read; None where none are kept, as by `tabulate`.
 
     See Also
     --------
     simulate : makes one.
+    tabulate : makes one without histories.
     """
 
     problem: Problem
@@ -61,7 +65,7 @@ class Response:
     outcomes: tuple[Outcome, ...]
     end_time: Floats
     rest: Rest
-    legs: Sequence[Leg]
+    legs: Sequence[Leg] | None
 
     def __len__(self) -> int:
         """Return the number of drops."""
@@ -89,14 +93,21 @@ class Response:
             {name: np.asarray(value)[index] for name, value in self.energy.items()},
             self.outcomes[index : index + 1],
             self.end_time[index : index + 1],
-            Rest(*(value[index : index + 1] for value in vars(self.rest).values())),
-            tuple(small for leg in self.legs if (small := leg.of(index)) is not None),
+            self.rest.take(index),
+            None if self.legs is None else tuple(small for leg in self.legs if (small := leg.of(index)) is not None),
         )
 
     def squeezed(self) -> Response:
         """Return the response of a batch of one as that of a single drop."""
         impacts = {name: column[0] for name, column in self.impacts.items()}
         return replace(self, impacts=impacts, energy={name: value[0] for name, value in self.energy.items()})
+
+    @property
+    def failures(self) -> dict[int, str]:
+        """Why a drop failed, in a sentence, by its number from 0; empty if none did."""
+        energies = {name: np.atleast_1d(values) for name, values in self.energy.items()}
+        failed = [drop for drop, outcome in enumerate(self.outcomes) if outcome is Outcome.FAILED]
+        return {drop: why_failed({name: values[drop] for name, values in energies.items()}) for drop in failed}
 
     @property
     def history_columns(self) -> dict[str, tuple[str, str]]:
@@ -291,6 +302,8 @@ class Response:
         """What the history of one drop is made of, in order."""
         if self.problem.shape != ():
             raise InputError("a history belongs to one drop: ask response.drop(0), response.drop(1), ...")
+        if self.legs is None:
+            raise InputError("tabulate keeps no histories; ask simulate")
         end = float(self.end_time[0])
         if self.problem.vibrates:
             return vibrating_timeline(self.legs, self.rest.lying[0], end)

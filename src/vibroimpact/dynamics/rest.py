@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
+from typing import Any
+
+import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.dynamics.vibrating.lying import Lying
@@ -25,3 +29,16 @@ class Rest:
     written_off: Floats
     left: Floats
     lying: tuple[Lying | None, ...]
+
+    def take(self, index: int) -> Rest:
+        """Return the rest of one drop, as that of a batch of one."""
+        return Rest(*(value[index : index + 1] for value in vars(self).values()))
+
+    @staticmethod
+    def joined(parts: Sequence[Rest]) -> Rest:
+        """Return the rest of the drops of several batches, in order."""
+        arrays: dict[str, Any] = {name: np.concatenate([getattr(part, name) for part in parts]) for name in _ARRAYS}
+        return Rest(**arrays, lying=tuple(one for part in parts for one in part.lying))
+
+
+_ARRAYS = tuple(item.name for item in fields(Rest) if item.name != "lying")

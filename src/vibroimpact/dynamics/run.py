@@ -247,7 +247,7 @@ class Run:
             tuple(OUTCOMES[code] for code in self.outcomes.tolist()),
             self.end_time,
             Rest(self.rest_speed, self.rest_time, self.sag, self.stored, self.written_off, self.bodies.left, tuple(self.bodies.lying)),
-            (),
+            None,
         )
 
     def final_motion(self, at_rest: Drops) -> tuple[Floats, Floats]:

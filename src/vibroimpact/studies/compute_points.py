@@ -16,7 +16,7 @@ from vibroimpact.dynamics.outcome import Outcome
 from vibroimpact.dynamics.response import Response
 from vibroimpact.dynamics.sensors.sensor import Sensor, sample_count
 from vibroimpact.dynamics.simulate import simulate_together
-from vibroimpact.dynamics.tabulate import ImpactTable, tabulate
+from vibroimpact.dynamics.tabulate import tabulate
 from vibroimpact.errors import ComputationError, InputError, lines_of
 from vibroimpact.studies.axes import Values
 from vibroimpact.studies.chunk_file import ChunkResult
@@ -189,7 +189,7 @@ def _noise(sensor: Sensor, number: int) -> Sensor:
     return replace(sensor, accelerometer=replace(meter, seed=(*seed, number)))
 
 
-def _columns(response: Response | ImpactTable, keep: tuple[str, ...]) -> dict[str, NDArray[Any]]:
+def _columns(response: Response, keep: tuple[str, ...]) -> dict[str, NDArray[Any]]:
     """Return impact table and peaks of the drops of a response."""
     impacts = {name: np.atleast_2d(values) for name, values in response.impacts.items()}
     first = {peak: impacts[name][:, 0] if impacts[name].size else np.full(len(response), np.nan) for peak, name in FIRST.items()}
