@@ -1,14 +1,15 @@
-r"""Collocation in the phase plane: the speed over the indentation, which knows its ends.
+r"""Collocation in the phase plane: the speed as a function of the indentation.
 
-A way through the indentation, in or out, is a row of segments between levels where the force is not smooth, from its deep end to its
-shallow one. In each, y goes from 0, where it is deeper, to 1, and :math:`\delta = \delta_1 + (\delta_0 - \delta_1)\, s(y)`, with
+A phase of a contact, compression or restitution, is divided into segments at the indentations where the force is not smooth, numbered
+from the deep end to the shallow one. In each, y goes from 0 at its deep end to 1 at its shallow one, and
+:math:`\delta = \delta_1 + (\delta_0 - \delta_1)\, s(y)`, with
 
-* :math:`s = 1 - y^2` where the motion turns at the deep end of the way: so the speed is smooth in y, in the next segments as well, which
-  may begin just beyond that; on a way that begins with a speed :math:`s = 1 - y`,
-* to the power p, the `root` of the law, where the surfaces meet at the shallow end.
+* :math:`s = 1 - y^2` where the speed is zero at the deep end of the phase: so it is smooth in y, also in the next segments, which may
+  begin just beyond that point; :math:`s = 1 - y` in a phase that begins with a speed,
+* raised to the power p, the `root` of the law, in a segment that ends at touch.
 
-The square of the speed, :math:`w = f^2 u` with f = y in a segment where the motion turns and f = 1 else, is smooth in y throughout, and
-collocated at N Gauss nodes, with the acceleration a:
+The square of the speed, :math:`w = f^2 u` with f = y in a segment where the speed becomes zero and f = 1 else, is smooth
+in y throughout, and collocated at N Gauss nodes, with the acceleration a:
 
 .. math:: \frac{dw}{dy} = 2 a(\delta, \pm\sqrt w)\, \frac{d\delta}{dy} = f\, G(y),
           \qquad u(y) = \frac1{f^2} \left(w(0) + \int_0^y f\, G(z)\, dz\right)
@@ -32,16 +33,16 @@ DENSE = 33
 
 @dataclass(frozen=True)
 class PlaneRule:
-    """Nodes and matrices of a way of S segments with N nodes each; columns are (N, 1), or (S N, 1) for all segments.
+    """Nodes and matrices of a phase of S segments with N nodes each; columns are (N, 1), or (S N, 1) for all segments.
 
     Parameters
     ----------
     segments, number, root : int
         S, N and p.
     turns : bool
-        Does the motion turn at the deep end of the first segment?
+        Whether the speed is zero at the deep end of the first segment.
     touches : bool
-        Do the surfaces meet at the shallow end of the last?
+        Whether the shallow end of the last segment is the touch of the surfaces.
     nodes : array, shape (N, 1)
         Nodes y in (0, 1).
     factor, per_node : array, shape (S N, 1)
@@ -51,7 +52,7 @@ class PlaneRule:
     slope : array, shape (S N, 1)
         Its derivative, over f: negative.
     mean : array, shape (S, N + 1, N)
-        From G at the nodes to what it adds to u within the segment, at the nodes and at 1.
+        From G at the nodes to the integral of f G over f^2 from the start of the segment, at the nodes and at 1.
     integral : array, shape (N + 1, N)
         From values at the nodes to their integrals from 0 to the nodes and to 1.
     weights : array, shape (N,)
@@ -88,7 +89,7 @@ class PlaneRule:
     barycentric: Floats
 
     def split(self, values: Floats) -> Floats:
-        """Return values at all nodes (S N, B) segment by segment (S, N, B)."""
+        """Return values at all nodes (S N, B) as an array by segments (S, N, B)."""
         return values.reshape(self.segments, self.number, values.shape[-1])
 
     def indentations(self, levels: Floats) -> Floats:
@@ -97,27 +98,28 @@ class PlaneRule:
         found += levels[1:, None]
         return np.asarray(found.reshape(-1, levels.shape[-1]))
 
-    def stretch(self, levels: Floats) -> Floats:
+    def indentation_slope(self, levels: Floats) -> Floats:
         """Return the derivative of the indentation by y over f, at all nodes [m] (S N, B)."""
         return np.asarray(((levels[:-1] - levels[1:])[:, None] * self.split(self.slope)).reshape(-1, levels.shape[-1]))
 
-    def grown(self, values: Floats) -> Floats:
-        """Return the integrals from the deep end of the way to all nodes and ends (S, N + 1, B), of values at the nodes (S N, B)."""
-        return self._along(self.integral @ self.split(values))
+    def cumulative(self, values: Floats) -> Floats:
+        """Return the integrals from the deep end to all nodes and segment ends (S, N + 1, B), of values at the nodes (S N, B)."""
+        return self._accumulated(self.integral @ self.split(values))
 
-    def summed(self, values: Floats) -> Floats:
-        """Return what G (S N, B) adds to u from the deep end of the way (S, N + 1, B)."""
-        return self._along(self.mean @ self.split(values))
+    def cumulative_square(self, values: Floats) -> Floats:
+        """Return u - w(0) / f^2 at all nodes and segment ends (S, N + 1, B), from G at the nodes (S N, B)."""
+        return self._accumulated(self.mean @ self.split(values))
 
-    def _along(self, found: Floats) -> Floats:
+    def _accumulated(self, found: Floats) -> Floats:
+        """Add to each segment the value at the end of the one before, in place."""
         for segment in range(1, self.segments):
             found[segment] += found[segment - 1, -1]
         return found
 
     def weights_at(self, y: Floats) -> Floats:
-        """Return the weights of the values at the nodes of a segment for their polynomials at y (B,): (N, B)."""
+        """Return the weights of barycentric interpolation from the nodes of a segment to y (B,): (N, B)."""
         distance = y - self.nodes
-        distance[distance == 0.0] = 1e-300  # at a node, its weight outweighs all others
+        distance[distance == 0.0] = 1e-300  # at a node the interpolant is its value
         weights = self.barycentric / distance
         weights /= weights.sum(axis=0)
         return np.asarray(weights)
@@ -131,14 +133,16 @@ class PlaneRule:
 
 @cache
 def plane_rule(number: int, root: int, segments: int = 1, *, turns: bool = True, touches: bool = True) -> PlaneRule:
-    """Return the rule of a way of some segments with `number` nodes each, for a law that is smooth in that root of the indentation.
+    """Return the collocation rule of a phase of some segments with `number` nodes each.
+
+    `root`: the force is smooth in that root of the indentation.
 
     Examples
     --------
     Undamped Hertz without gravity, where G is a multiple of the slope times the shape to the power 3/2, has w = 1 at touch:
 
     >>> rule = plane_rule(10, 2)
-    >>> bool(abs(rule.summed(-2.5 * rule.slope * rule.shape**1.5)[0, -1, 0] - 1) < 1e-14)
+    >>> bool(abs(rule.cumulative_square(-2.5 * rule.slope * rule.shape**1.5)[0, -1, 0] - 1) < 1e-14)
     True
     """
     z, weights = legendre.leggauss(number)
@@ -179,5 +183,5 @@ def plane_rule(number: int, root: int, segments: int = 1, *, turns: bool = True,
         np.stack([slopes(1), slopes(2)]),
         coefficients,
         legendre.legvander(np.linspace(-1.0, 1.0, DENSE), number - 1) @ coefficients,
-        (1.0 / np.prod(4.0 * (nodes[:, None] - nodes) + np.eye(number), axis=1))[:, None],  # 4: against underflow
+        (1.0 / np.prod(4.0 * (nodes[:, None] - nodes) + np.eye(number), axis=1))[:, None],  # the factor 4 avoids underflow
     )

@@ -1,8 +1,9 @@
-"""Contacts of rigid bodies in the phase plane, where both ends of each way are known and no event is sought.
+"""Contacts of rigid bodies solved in the phase plane, where no event has to be located in time.
 
-The way in is solved up to the deepest point, then the way out with what the law remembers of that, each in segments between the levels
-where the force is not smooth (`plane_rule`). Where a law may not pull and its force becomes zero on the way out, the contact ends or the
-sphere glides until the law pushes again, and so out. What does not come out to the tolerance is integrated in time (`contact_phase`).
+The compression phase is solved up to the largest indentation, then the restitution phase with the law's memory of it, each in segments
+between the indentations where the force is not smooth (`collocation`). Where the force of a law without tension becomes zero in
+restitution, the contact ends, or the sphere moves freely within the indentation until the law pushes again. Contacts that are not solved
+to the tolerance here are integrated in time (`rigid.contact_in_time`).
 """
 
 from __future__ import annotations
@@ -20,51 +21,51 @@ from vibroimpact.dynamics.contact import RELEASED, Contact, Piece
 from vibroimpact.dynamics.encounter import Encounter
 from vibroimpact.dynamics.phase_plane.collocation import PlaneRule, plane_rule
 from vibroimpact.dynamics.phase_plane.motion import PlaneMotion
-from vibroimpact.dynamics.phase_plane.peak_force import plane_peak
-from vibroimpact.dynamics.phase_plane.phase import Direction, PlaneWay, solve_way
-from vibroimpact.dynamics.phase_plane.zero_force import end_of_push, pulls
+from vibroimpact.dynamics.phase_plane.peak_force import peak_force
+from vibroimpact.dynamics.phase_plane.phase import PhaseName, PlanePhase, solve_phase
+from vibroimpact.dynamics.phase_plane.zero_force import tensile_points, zero_force_point
 from vibroimpact.dynamics.rigid.glide import Glide, glide_until_push
 from vibroimpact.dynamics.rigid.solve_contact import SolvesContact, collocated
 
-_TIGHTEST = 1e-11  # below it rounding leaves too little room
-_LEAST_RESTITUTION = 0.1  # slower drops are left to what knows how to capture them
+_TIGHTEST = 1e-11  # a smaller tolerance is too close to rounding
+_LEAST_RESTITUTION = 0.1  # below it a drop may be captured, which the integration in time finds
 _SWEEPS = 10
-_MARGIN = 5e-3  # of its depth: by less than that it is not known beforehand whether a drop will pass a breakpoint
-_ABOUT = 10.0  # tolerances of its depth: by less than that it has not passed it
-_MORE = 8  # nodes, for what does not come out with the usual number
-_INSIDE = 300.0  # tolerances: the last terms of a way that ends between its ends, where its error goes with them and not with their square
+_MARGIN = 5e-3  # of the depth: the estimated depth is not certain to pass a breakpoint that is closer
+_ABOUT = 10.0  # tolerances of the depth: a breakpoint passed by less counts as not passed
+_MORE = 8  # nodes, in a second attempt
+_INSIDE = 300.0  # tolerances: bound of the last coefficients of a phase that ends within a segment, where the error is of their order
 
 
 def contact_solver(law: ContactLaw, tolerance: float, size: int, *, finer: float = 1.0) -> SolvesContact:
-    """Return what solves the contacts of a run of `size` drops of rigid bodies under laws of that kind.
+    """Return the solver of contacts of rigid bodies for a run of `size` drops under laws of this type.
 
-    The tolerance is one of what comes out of a contact. Histories are read within it, where the phase plane is not as exact: there it is
-    to be `finer` times as tight.
+    `tolerance`: relative error of the state at the end of a contact. `finer`: the factor by which it is reduced where histories are read
+    within the contacts, since collocation is less accurate between the ends of a segment than at them.
     """
     in_time = collocated(tolerance, size)
     if tolerance < _TIGHTEST or not (isinstance(law, CompliantLaw) and law.contact_end != "pull-off"):
         return in_time
     tolerance = max(tolerance / finer, _TIGHTEST)
-    number, useless = _nodes_for(law, tolerance), False
-    starts = _Starts(size, number, tolerance)
+    number, always_in_time = _nodes_for(law, tolerance), False
+    starts = _StartingValues(size, number, tolerance)
 
     def solve(encounter: Encounter, drops: Drops) -> tuple[Contact, Floats, Floats]:
-        nonlocal useless
-        if useless:
+        nonlocal always_in_time
+        if always_in_time:
             return in_time(encounter, drops)
-        found = _Found.of_size(len(drops))
-        with np.errstate(all="ignore"):  # what is not finite is found, and tried again
+        found = _Solutions.of_size(len(drops))
+        with np.errstate(all="ignore"):  # values that are not finite fail the checks below
             _solve(encounter, found, np.arange(len(drops)), drops, starts, _MARGIN)
             again = np.flatnonzero(~found.good)
             if again.size:
-                afresh = _Starts(len(again), number + _MORE, tolerance)
+                afresh = _StartingValues(len(again), number + _MORE, tolerance)
                 _solve(encounter, found, again, np.arange(len(again)), afresh, -_MARGIN)
         left = np.flatnonzero(~found.good)
         if not left.size:
             return found.contact(encounter.law), found.force, found.when
         later, force, when = in_time(encounter.pick(left), drops[left])
-        useless = left.size == size
-        if useless:
+        always_in_time = left.size == size
+        if always_in_time:
             return later, force, when
         contact = found.contact(encounter.law)
         contact.put(left, later)
@@ -75,31 +76,31 @@ def contact_solver(law: ContactLaw, tolerance: float, size: int, *, finer: float
 
 
 def _nodes_for(law: CompliantLaw, tolerance: float) -> int:
-    """Return the number of nodes of a segment: 14 at a tolerance of 1e-8, for a law that is smooth in the square root.
+    """Return the number of nodes of a segment: 14 at a tolerance of 1e-8, for a law that is smooth in the square root of the indentation.
 
-    Eight more where a way may end between its ends, where it is not as exact.
+    Eight more for a law whose tension is cut, since its restitution phase may end within a segment.
     """
     return int(2 * np.ceil(-np.log10(tolerance) - 1e-9)) + 2 * law.root - (-2 if law.tension == "cut" else 6)
 
 
-class _Starts:
-    """The solutions of a run's last contacts, in units of their approach speeds and depths, to start the next from.
+class _StartingValues:
+    """Starting values of Newton's method: the solutions of the last contacts of a run, scaled by their approach speeds and depths.
 
-    `number`: of nodes in a segment; `tolerance`: to which they are solved.
+    `number`: of nodes in a segment; `tolerance`: of the solutions.
     """
 
     def __init__(self, size: int, number: int, tolerance: float) -> None:
         self.number, self.tolerance = number, tolerance
         self.depth = np.full(size, np.nan)
-        self.squares: dict[tuple[Direction, int], Floats] = {}
+        self.squares: dict[tuple[PhaseName, int], Floats] = {}
 
     def depths(self, ids: Drops, touch: Floats, free: Floats) -> Floats:
-        """Return about how deep contacts get [m], that touch at an indentation and would get as deep without damping [m]."""
+        """Return estimates of the largest indentations [m], from those at touch and those without damping [m]."""
         part = self.depth[ids]
         return np.asarray(touch + np.where(np.isfinite(part), part, 1.0) * (free - touch))
 
-    def start(self, kind: tuple[Direction, int], ids: Drops, square: Floats, undamped: Callable[[], Floats]) -> Floats:
-        """Return squares to start from, those of an undamped motion where no contact is known."""
+    def start(self, kind: tuple[PhaseName, int], ids: Drops, square: Floats, undamped: Callable[[], Floats]) -> Floats:
+        """Return starting values of u, from an undamped motion where there is no earlier contact."""
         if kind not in self.squares:
             return undamped()
         found = self.squares[kind][:, ids] * square
@@ -108,21 +109,20 @@ class _Starts:
             found[:, unknown] = undamped()[:, unknown]
         return found
 
-    def keep(self, ids: Drops, good: Bools, way: PlaneWay, square: Floats) -> None:
-        """Remember a way, of the drops for which it is good."""
-        kind = way.direction, way.rule.segments
+    def keep(self, ids: Drops, good: Bools, phase: PlanePhase, square: Floats) -> None:
+        """Keep the solution of a phase, of the drops that were solved."""
+        kind = phase.name, phase.rule.segments
         if kind not in self.squares:
-            self.squares[kind] = np.full((len(way.squares), len(self.depth)), np.nan)
-        self.squares[kind][:, ids] = np.where(good, way.squares / square, np.nan)
+            self.squares[kind] = np.full((len(phase.squares), len(self.depth)), np.nan)
+        self.squares[kind][:, ids] = np.where(good, phase.squares / square, np.nan)
 
 
 @dataclass
-class _Found:
-    """What came of the contacts of B drops.
+class _Solutions:
+    """Solutions of the contacts of B drops.
 
-    `good`: those that were solved to the tolerance; the others are to be solved otherwise. `pieces`: which drops, since when, their
-    motion, and whether it is after the deepest point. `force`, `when`: the largest [N], and its time since first touch [s]. Else as in
-    `Contact`.
+    `good`: whether the contact was solved to the tolerance. `pieces`: drops, start, motion, and whether it is in restitution. `force`,
+    `when`: largest force [N], and its time since first touch [s]. The others are as in `Contact`.
     """
 
     good: Bools
@@ -143,10 +143,10 @@ class _Found:
         return cls(np.zeros(size, dtype=bool), *np.full((10, size), np.nan))
 
     def contact(self, law: CompliantLaw) -> Contact:
-        """Return the contact, of the drops that are good."""
+        """Return the contacts; those of drops that are not good are NaN."""
         after = law.after_compression(self.max_delta)
         return Contact(
-            [Piece(drops, start, motion, after if outward else law) for drops, start, motion, outward in self.pieces],
+            [Piece(drops, start, motion, after if unloading else law) for drops, start, motion, unloading in self.pieces],
             np.full(len(self.good), RELEASED, dtype=np.int8),
             self.duration,
             self.final_delta,
@@ -160,26 +160,27 @@ class _Found:
         )
 
 
-def _solve(encounter: Encounter, found: _Found, places: Drops, ids: Drops, starts: _Starts, margin: float) -> None:
-    """Solve the contacts at some places of B, those together that pass the same breakpoints.
+def _solve(encounter: Encounter, found: _Solutions, places: Drops, ids: Drops, starts: _StartingValues, margin: float) -> None:
+    """Solve the contacts of some drops, in groups that pass the same breakpoints, which is estimated from their depths.
 
-    `ids`: their numbers among the starts. `margin`: of the depth they are thought to get, by which they are thought to pass a breakpoint.
+    `places`: of the drops in the encounter. `ids`: their numbers in the run. `margin`: part of the estimated depth by which a breakpoint
+    must be passed to be counted.
     """
     here = encounter.take(places)
     touch = here.law.touch_level + np.zeros(len(places))
     depth = starts.depths(ids, touch, here.depth)
-    passed = _passed(here.law, touch, depth, margin)
+    passed = _passed_breakpoints(here.law, touch, depth, margin)
     first = int(passed[0])
-    if (passed == first).all():  # as under a law without breakpoints
-        _through(here, found, places, ids, starts, depth, first)
+    if (passed == first).all():  # always so under a law without breakpoints
+        _solve_both_phases(here, found, places, ids, starts, depth, first)
         return
     for which in np.unique(passed):
         some = np.flatnonzero(passed == which)
-        _through(here.take(some), found, places[some], ids[some], starts, depth[some], int(which))
+        _solve_both_phases(here.take(some), found, places[some], ids[some], starts, depth[some], int(which))
 
 
-def _passed(law: CompliantLaw, low: Floats, high: Floats, margin: float) -> Indices:
-    """Return which breakpoints lie between two indentations (B,), as the bits of a number; below the higher by a part of the depth."""
+def _passed_breakpoints(law: CompliantLaw, low: Floats, high: Floats, margin: float) -> Indices:
+    """Return the breakpoints between two indentations (B,) as the bits of a number; `margin` is a part of their distance."""
     found = np.zeros(len(low), dtype=np.intp)
     if law.breakpoints:
         high = high - margin * (high - low)
@@ -188,71 +189,79 @@ def _passed(law: CompliantLaw, low: Floats, high: Floats, margin: float) -> Indi
     return found
 
 
-def _levels(law: CompliantLaw, passed: int, high: Floats, low: Floats) -> Floats:
-    """Return the levels between which the force is smooth, from the deepest [m], (S + 1, B)."""
+def _segment_levels(law: CompliantLaw, passed: int, high: Floats, low: Floats) -> Floats:
+    """Return the ends of the segments within which the force is smooth [m] (S + 1, B), from the deepest."""
     between = [level + np.zeros(len(low)) for bit, level in enumerate(law.breakpoints) if passed >> bit & 1]
     return np.array([high, *reversed(between), low])
 
 
-def _levels_out(encounter: Encounter, high: Floats, tolerance: float) -> tuple[Bools, Floats]:
-    """Return the levels of a way out from an indentation [m], and which drops pass the breakpoints that these hold, as most do."""
-    passed = _passed(encounter.law, encounter.floor, high, _ABOUT * tolerance)
+def _unloading_levels(encounter: Encounter, high: Floats, tolerance: float) -> tuple[Bools, Floats]:
+    """Return the ends of the segments of a restitution phase [m], and which drops pass the breakpoints among these.
+
+    They are those of most drops; the others are solved otherwise.
+    """
+    passed = _passed_breakpoints(encounter.law, encounter.floor, high, _ABOUT * tolerance)
     usual = int(np.bincount(passed).argmax())
-    return passed == usual, _levels(encounter.law, usual, high, encounter.floor)
+    return passed == usual, _segment_levels(encounter.law, usual, high, encounter.floor)
 
 
-def _through(encounter: Encounter, found: _Found, places: Drops, ids: Drops, starts: _Starts, depth: Floats, which: int) -> None:
-    """Solve both ways of contacts that get about as deep as told [m] and pass the same breakpoints."""
+def _solve_both_phases(
+    encounter: Encounter, found: _Solutions, places: Drops, ids: Drops, starts: _StartingValues, depth: Floats, which: int
+) -> None:
+    """Solve compression and restitution of contacts of about this depth [m] that pass the same breakpoints (`which`)."""
     law, square, number, tolerance = encounter.law, encounter.approach_speed**2, starts.number, starts.tolerance
     touch = law.touch_level + np.zeros(len(places))
-    levels = _levels(law, which, depth, touch)
+    levels = _segment_levels(law, which, depth, touch)
     rule = plane_rule(number, law.root, len(levels) - 1)
-    start = starts.start(("in", rule.segments), ids, square, lambda: _undamped(encounter, rule, levels, square))
-    coming = solve_way(encounter, rule, "in", levels, start, tolerance, _SWEEPS)
-    depth = coming.levels[0]
-    good = coming.solved & (_passed(law, touch, depth, _ABOUT * tolerance) == which)
-    force, when = plane_peak(encounter, coming)
+    start = starts.start(("compression", rule.segments), ids, square, lambda: _undamped_squares(encounter, rule, levels, square))
+    compression = solve_phase(encounter, rule, "compression", levels, start, tolerance, _SWEEPS)
+    depth = compression.levels[0]
+    good = compression.solved & (_passed_breakpoints(law, touch, depth, _ABOUT * tolerance) == which)
+    force, when = peak_force(encounter, compression)
     good &= np.isfinite(force) & np.isfinite(when)
 
     back = encounter.under(law.after_compression(depth))
-    alike, returning = _levels_out(back, depth, tolerance)
+    alike, levels_back = _unloading_levels(back, depth, tolerance)
     good &= alike
-    rule_back = plane_rule(number, law.root, len(returning) - 1)
-    start = starts.start(("out", rule_back.segments), ids, square, lambda: _undamped(back, rule_back, returning))
-    leaving = solve_way(back, rule_back, "out", returning, start, tolerance, _SWEEPS)
-    good &= leaving.solved & (leaving.ends[-1] > _LEAST_RESTITUTION**2 * square)
-    starts.keep(ids, good, coming, square)
-    starts.keep(ids, good, leaving, square)
+    rule_back = plane_rule(number, law.root, len(levels_back) - 1)
+    start = starts.start(("restitution", rule_back.segments), ids, square, lambda: _undamped_squares(back, rule_back, levels_back))
+    restitution = solve_phase(back, rule_back, "restitution", levels_back, start, tolerance, _SWEEPS)
+    good &= restitution.solved & (restitution.ends[-1] > _LEAST_RESTITUTION**2 * square)
+    starts.keep(ids, good, compression, square)
+    starts.keep(ids, good, restitution, square)
     starts.depth[ids] = np.where(good, (depth - touch) / (encounter.depth - touch), np.nan)
 
-    left = _Exit(leaving, back.floor)
+    release = _Release(restitution, back.floor)
     if law.tension == "cut":
-        left.cut_short(back, tolerance)
-    good &= left.good
-    time_in = coming.duration
+        release.cut_tension(back, tolerance)
+    good &= release.good
+    time_in = compression.duration
     values = {
         "good": good,
         "max_delta": depth,
         "time_of_max_delta": time_in,
-        "duration": time_in + left.time,
-        "final_delta": left.delta,
-        "final_rate": left.rate,
-        "dissipated": coming.dissipated + left.lost,
+        "duration": time_in + release.time,
+        "final_delta": release.delta,
+        "final_rate": release.rate,
+        "dissipated": compression.dissipated + release.lost,
         "plastic": law.plastic_work(depth),
-        "stored": back.law.elastic_energy(left.delta),
+        "stored": back.law.elastic_energy(release.delta),
         "force": force,
         "when": when,
     }
     for name, value in values.items():
         getattr(found, name)[places] = value
-    everyone, parts = np.arange(len(places)), [(drops, time_in[drops] + since, motion, True) for drops, since, motion in left.parts]
-    for drops, since, motion, outward in [(everyone, 0.0 * time_in, PlaneMotion.of(coming, time_in), False), *parts]:
+    everyone, parts = np.arange(len(places)), [(drops, time_in[drops] + since, motion, True) for drops, since, motion in release.parts]
+    for drops, since, motion, unloading in [(everyone, 0.0 * time_in, PlaneMotion.of(compression, time_in), False), *parts]:
         if (kept := good[drops]).any():
-            found.pieces.append((places[drops[kept]], since[kept], motion.take(kept), outward))
+            found.pieces.append((places[drops[kept]], since[kept], motion.take(kept), unloading))
 
 
-def _undamped(encounter: Encounter, rule: PlaneRule, levels: Floats, square: Floats | None = None, begun: Array = 0.0) -> Floats:
-    """Return the u at the nodes of a way (S N, B) without damping, of a w at its shallow end, or as the static force gives it back."""
+def _undamped_squares(encounter: Encounter, rule: PlaneRule, levels: Floats, square: Floats | None = None, begun: Array = 0.0) -> Floats:
+    """Return u at the nodes (S N, B) of an undamped phase.
+
+    `square`: w at its shallow end; by default as the static work gives it. `begun`: w at its deep end.
+    """
     law, weight, per_square = encounter.law, encounter.mass * encounter.gravity, rule.per_node**2
 
     def energy(delta: Floats) -> Floats:
@@ -264,37 +273,37 @@ def _undamped(encounter: Encounter, rule: PlaneRule, levels: Floats, square: Flo
     return np.asarray(np.maximum(found, 1e-3 * np.abs(begun + whole)))
 
 
-class _Exit:
-    """How B drops leave after their deepest point.
+class _Release:
+    """Restitution phases of B drops up to the separation of the surfaces.
 
-    `good`: those that were solved to the tolerance. `time`: since then [s]. `delta`, `rate`: where they part [m], [m/s]. `lost` [J].
-    `parts`: which drops, since when, and their motion.
+    `good`: whether they were solved to the tolerance. `time`: duration since the largest indentation [s]. `delta`, `rate`: indentation and
+    its rate at separation [m], [m/s]. `lost`: energy dissipated [J]. `parts`: drops, start, and motion of each part.
     """
 
-    def __init__(self, way: PlaneWay, floor: Floats) -> None:
+    def __init__(self, phase: PlanePhase, floor: Floats) -> None:
         size = len(floor)
-        self.way, self.good, self.time, self.delta = way, np.ones(size, dtype=bool), way.duration, floor.copy()
-        self.rate, self.lost = -np.sqrt(way.ends[-1]), way.dissipated.copy()
-        self.parts: list[tuple[Drops, Floats, PlaneMotion | Glide]] = [(np.arange(size), np.zeros(size), PlaneMotion.of(way, self.time))]
+        self.phase, self.good, self.time, self.delta = phase, np.ones(size, dtype=bool), phase.duration, floor.copy()
+        self.rate, self.lost = -np.sqrt(phase.ends[-1]), phase.dissipated.copy()
+        self.parts: list[tuple[Drops, Floats, PlaneMotion | Glide]] = [(np.arange(size), np.zeros(size), PlaneMotion.of(phase, self.time))]
 
-    def cut_short(self, encounter: Encounter, tolerance: float) -> None:
-        """End the push of a law that may not pull where its force becomes zero, and with it the contact, or let drops glide."""
-        law, way = encounter.law, self.way
-        pulling, unseen = pulls(way)
+    def cut_tension(self, encounter: Encounter, tolerance: float) -> None:
+        """End restitution where the force of a law without tension becomes zero; there the contact ends, or free motion begins."""
+        law, phase = encounter.law, self.phase
+        pulling, unseen = tensile_points(phase)
         self.good &= ~unseen
         ends = np.asarray(pulling.any(axis=0))
         if law.contact_end == "zero-force":
-            self.good &= ends  # or it is too small to be seen
-        some = np.flatnonzero(ends & way.solved)
+            self.good &= ends  # otherwise the tension is too small to be resolved
+        some = np.flatnonzero(ends & phase.solved)
         if not some.size:
             return
-        self.good[some] &= way.tail[some] <= _INSIDE * tolerance
-        segment, y = end_of_push(encounter, way, pulling)
-        delta, square = way.at(segment, y)
+        self.good[some] &= phase.tail[some] <= _INSIDE * tolerance
+        segment, y = zero_force_point(encounter, phase, pulling)
+        delta, square = phase.at(segment, y)
         self.delta, self.rate = np.where(ends, delta, self.delta), np.where(ends, -np.sqrt(square), self.rate)
-        time, lost = way.grown(segment, y, way.pace, way.loss)
+        time, lost = phase.integrals(segment, y, phase.pace, phase.loss)
         self.time, self.lost = np.where(ends, time, self.time), np.where(ends, lost, self.lost)
-        self.parts = [(np.arange(len(ends)), np.zeros(len(ends)), PlaneMotion.of(way, self.time.copy()))]
+        self.parts = [(np.arange(len(ends)), np.zeros(len(ends)), PlaneMotion.of(phase, self.time.copy()))]
         if law.contact_end == "zero-force":
             return
         here = encounter.take(some)
@@ -306,17 +315,19 @@ class _Exit:
         self.delta[some], self.rate[some] = glide.end()
         self.lost[some] += held - here.law.elastic_energy(self.delta[some])
         if pushes.any():
-            self.push_on(encounter, some[pushes], tolerance)
+            self.resume_contact(encounter, some[pushes], tolerance)
 
-    def push_on(self, encounter: Encounter, drops: Drops, tolerance: float) -> None:
-        """Take drops out whose law pushes again after they have glided."""
-        here, begun, rule = encounter.take(drops), self.rate[drops] ** 2, self.way.rule
-        alike, levels = _levels_out(here, self.delta[drops], tolerance)
+    def resume_contact(self, encounter: Encounter, drops: Drops, tolerance: float) -> None:
+        """Continue restitution where the law pushes again after free motion within the indentation."""
+        here, begun, rule = encounter.take(drops), self.rate[drops] ** 2, self.phase.rule
+        alike, levels = _unloading_levels(here, self.delta[drops], tolerance)
         rule = plane_rule(rule.number, rule.root, len(levels) - 1, turns=False)
-        way = solve_way(here, rule, "out", levels, _undamped(here, rule, levels, begun=begun), tolerance, _SWEEPS, begun)
-        pulling, unseen = pulls(way)
-        self.good[drops] &= way.solved & ~(pulling.any(axis=0) | unseen) & alike
-        self.parts.append((drops, self.time[drops], PlaneMotion.of(way, way.duration)))
-        self.time[drops] += way.duration
-        self.delta[drops], self.rate[drops] = here.floor, -np.sqrt(way.ends[-1])
-        self.lost[drops] += way.dissipated
+        phase = solve_phase(
+            here, rule, "restitution", levels, _undamped_squares(here, rule, levels, begun=begun), tolerance, _SWEEPS, begun
+        )
+        pulling, unseen = tensile_points(phase)
+        self.good[drops] &= phase.solved & ~(pulling.any(axis=0) | unseen) & alike
+        self.parts.append((drops, self.time[drops], PlaneMotion.of(phase, phase.duration)))
+        self.time[drops] += phase.duration
+        self.delta[drops], self.rate[drops] = here.floor, -np.sqrt(phase.ends[-1])
+        self.lost[drops] += phase.dissipated
