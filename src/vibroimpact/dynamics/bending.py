@@ -1,4 +1,4 @@
-"""How far a plate bends under the contact."""
+"""Largest bending of an elastic plate at the contact."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ import numpy as np
 if TYPE_CHECKING:
     from vibroimpact.dynamics.response import Response
 
-_IMPACTS, _POINTS = 3, 64  # it is looked at after so many touches, at so many instants of a period of the lowest mode that bends
-_RIGID = 0.95  # of a mode's kinetic energy: a mode that moves as a whole by more does not bend
+_IMPACTS, _POINTS = 3, 64  # number of touches, and of instants in a period of the lowest bending mode after each
+_RIGID = 0.95  # part of rigid motion in a mode's kinetic energy above which it does not count as bending
 
 
 def largest_bending(response: Response) -> float:
-    """Return about how far an elastic plate bends under the contact at most [m], a per cent short; NaN of another plate.
+    """Return the largest bending deflection of an elastic plate at the contact [m], to about 1 %; NaN for a rigid plate.
 
     Modes in which the plate moves on its springs as a whole are left out.
 

@@ -1,4 +1,4 @@
-"""Everything a response tells of a drop, a line a column: one table for files, terminal, pages and figures."""
+"""The columns of impact tables and histories: one definition for files, terminal, pages and figures."""
 
 from __future__ import annotations
 
@@ -24,12 +24,12 @@ class Column(NamedTuple):
 
 
 def _held(meaning: str, label: str, short: str = "") -> Column:
-    """Return a column of the ledger: energy that is still there."""
+    """Return a column of the ledger for stored energy."""
     return Column("J", meaning, label, short, in_ledger=True)
 
 
 def _lost(meaning: str, label: str, short: str) -> Column:
-    """Return a column of the ledger: energy that is lost so far."""
+    """Return a column of the ledger for energy lost so far."""
     return Column("J", meaning, label, short, in_ledger=True, is_loss=True)
 
 
@@ -134,13 +134,13 @@ VIBRATION_LEDGER = tuple(name for name, column in VIBRATION_HISTORY_COLUMNS.item
 
 
 def impact_columns(impacts: Iterable[str]) -> dict[str, Column]:
-    """Return the columns that an impact table has: more where a body vibrates."""
+    """Return the columns of an impact table, which has more where a body vibrates."""
     has = set(impacts)
     return {name: column for name, column in ALL_IMPACT_COLUMNS.items() if name in has}
 
 
 def history_columns(history: Iterable[str]) -> dict[str, Column]:
-    """Return the columns that a history has: more where a body vibrates."""
+    """Return the columns of a history, which has more where a body vibrates."""
     has = set(history)
     return {name: column for name, column in ALL_HISTORY_COLUMNS.items() if name in has}
 

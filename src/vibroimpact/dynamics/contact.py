@@ -1,4 +1,4 @@
-"""One impact as it came out: its pieces, how it ended, and what it took."""
+"""The contact of drops as it was solved: its parts, its end, and the energy lost in it."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ from vibroimpact.dynamics.rigid.glide import Glide
 from vibroimpact.dynamics.rigid.stretch import Stretch
 
 COMPRESSION, RESTITUTION, GLIDE, RELEASED, CAPTURED, FAILED, SETTLED, RIDING = range(8)
-"""Where a drop is in its contact; from RELEASED on it is over.
+"""States of a drop in its contact; from RELEASED on the contact is over.
 
-Only on bodies that vibrate: SETTLED, released more slowly than the rest speed for good; RIDING, in contact still, and not to stay.
+Only with bodies that vibrate: SETTLED, released below the rest speed and at rest; RIDING, still in contact without being at rest.
 """
 
 
@@ -26,7 +26,7 @@ class PartOfVisit(Protocol):
 
     @property
     def duration(self) -> Floats:
-        """How long it lasts [s], (1,)."""
+        """Return the duration [s] (1,)."""
 
     def take(self, drops: Bools) -> PartOfVisit:
         """Return itself."""
@@ -34,25 +34,24 @@ class PartOfVisit(Protocol):
 
 @dataclass(frozen=True)
 class Piece:
-    """One piece of the history of some drops' contact: a solved stretch or a free glide."""
+    """A part of the contact of some drops: a solved stretch or phase, or free motion within the indentation."""
 
     drops: Drops
     start: Floats
     """Time since first touch at which it begins [s], (b,)."""
     motion: Stretch | PlaneMotion | Glide | PartOfVisit
     law: CompliantLaw
-    """The law with its memories then, of all B drops of the contact."""
+    """The law with its memory in this part, of all B drops of the contact."""
 
 
 @dataclass
 class Contact:
-    """One impact of B drops, first touch to release; arrays are (B,).
+    """One contact of B drops, from first touch to release; arrays are (B,).
 
-    `outcome` is RELEASED, CAPTURED (its energy no longer suffices to get out of the indentation) or FAILED, or what only
-    bodies that vibrate have.
-    `final_delta`, `final_rate`: indentation [m] and its rate [m/s] at the end. `dissipated`, `plastic`: work
-    lost in damping and in plastic deformation [J]. `stored`: energy left in the contact [J]. `law`: the law with what
-    it remembers of this contact.
+    `outcome`: RELEASED, CAPTURED (the energy does not suffice to leave the indentation), FAILED, SETTLED or RIDING.
+    `final_delta`, `final_rate`: indentation [m] and its rate [m/s] at the end. `dissipated`, `plastic`: energy lost in
+    damping and in plastic deformation [J]. `stored`: energy left in the contact [J]. `law`: the law with its memory of
+    this contact.
     """
 
     pieces: list[Piece]
@@ -68,7 +67,7 @@ class Contact:
     law: CompliantLaw
 
     def put(self, drops: Drops, other: Contact) -> None:
-        """Take over the contacts of some drops."""
+        """Replace the contacts of some drops."""
         for name, values in vars(other).items():
             if isinstance(values, np.ndarray):
                 getattr(self, name)[drops] = values
@@ -89,7 +88,7 @@ class Contact:
 
 
 def _remembering(law: CompliantLaw, drops: Drops, other: CompliantLaw) -> CompliantLaw:
-    """Return a law of B drops, of which some remember what another law, of these alone, does."""
+    """Return a law of B drops with the memory of some of them taken from a law of these alone."""
     memories = {name: values + np.zeros(len(drops)) for name, values in other.memories().items()}
     whole = {name: np.array(getattr(law, name)) for name in memories}
     for name, values in memories.items():

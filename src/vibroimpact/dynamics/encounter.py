@@ -1,4 +1,4 @@
-"""The facts of one impact: what the contact of each drop knows of its bodies."""
+"""The data of one impact: contact law, masses, gravity and approach speed of each drop."""
 
 from __future__ import annotations
 
@@ -13,11 +13,10 @@ from vibroimpact.contact.static import free_depth, static_indentation
 
 @dataclass(frozen=True)
 class Encounter:
-    """The facts of one impact of B drops: the law, the mass it moves, gravity, the approach speed.
+    """Data of one impact of B drops: law, effective mass [kg], gravity [m/s^2] and approach speed [m/s].
 
-    `depth`: the indentation that it would reach if its damping took nothing [m]. `speed_scale`: the speed of
-    the motion in contact [m/s]: that of the approach, or what gravity and adhesion add to a soft touch. `floor`: the
-    least indentation there is in this contact [m], where the surfaces part.
+    `depth`: largest indentation without damping [m]. `speed_scale`: scale of the speed in contact [m/s]: the approach
+    speed, or that due to gravity and adhesion in a soft touch. `floor`: the indentation at separation [m].
     """
 
     law: CompliantLaw
@@ -38,20 +37,20 @@ class Encounter:
         return Encounter(self.law.take(drops), *(array[drops] for array in arrays))
 
     def under(self, law: CompliantLaw) -> Encounter:
-        """Return the encounter with another law, or the same with other memories."""
+        """Return the encounter with another law, or with the same law and another memory."""
         return self if law is self.law else replace(self, law=law, floor=law.release_level + np.zeros(len(self.mass)))
 
     def acceleration(self, delta: Floats, velocity: Floats) -> Floats:
-        """Return the rate of the indentation rate [m/s^2], without any clip of the force."""
+        """Return the second derivative of the indentation [m/s^2], with the force as the formula of the law gives it."""
         static, dissipative = self.law.forces(delta, velocity, self.approach_speed)
         return np.asarray(self.gravity - (static + dissipative) / self.mass)
 
 
 def encounter_of(law: CompliantLaw, mass: Floats, gravity: Floats, approach_speed: Floats) -> Encounter:
-    """Return the encounter of B drops, with its depth from the energy that is put in."""
+    """Return the encounter of B drops, with the undamped depth from the balance of energy."""
     weight = mass * gravity
     depth = free_depth(law, 0.5 * mass * approach_speed**2, weight)
     squared = approach_speed**2 + gravity * (depth - law.touch_level)
     if law.contact_end == "pull-off":
-        squared = squared - 2.0 * law.elastic_energy(static_indentation(law, weight)) / mass  # which is negative
+        squared = squared - 2.0 * law.elastic_energy(static_indentation(law, weight)) / mass  # negative: the energy of adhesion
     return Encounter(law, mass, gravity, approach_speed, depth, np.sqrt(squared), law.release_level + np.zeros(len(mass)))

@@ -10,21 +10,21 @@ import numpy as np
 from vibroimpact.arrays import Floats
 
 CLOSURE_LIMIT = 1e-6
-"""The part of the energy put in that may be missing; above it a run has failed."""
+"""Largest closure error of the ledger, as a part of the energy put in, above which a run has failed."""
 
 WRITE_OFF_LIMIT = 1e-9
-"""The part of the energy put in by which less than nothing may be written off at rest: what rounding may do."""
+"""Largest negative energy written off at rest, as a part of the energy put in, that counts as rounding."""
 
 
 def close_ledger(energy_in: Floats, added: Floats, entries: dict[str, Floats]) -> dict[str, Floats]:
-    """Return the ledger [J] with what was put in and its closure.
+    """Return the energy ledger [J] with input and closure error.
 
     Parameters
     ----------
     energy_in : array, shape (B,)
         Kinetic and potential energy at the start [J].
     added : array, shape (B,)
-        What gravity and adhesion add in the indentation [J]; of a sphere put down softly, more than `energy_in`.
+        Work of gravity and adhesion within the indentation [J]; in a soft touch more than `energy_in`.
     entries : dict of str to array
         The entries of the ledger at the end [J].
 
@@ -40,7 +40,7 @@ def close_ledger(energy_in: Floats, added: Floats, entries: dict[str, Floats]) -
 
 
 def why_failed(energy: Mapping[str, Any]) -> str:
-    """Say why the run of one drop failed, by its ledger.
+    """Return the reason why the run of one drop failed, from its ledger.
 
     Examples
     --------

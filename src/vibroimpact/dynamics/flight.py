@@ -13,7 +13,7 @@ from vibroimpact.arrays import Floats
 class Flight:
     """Flights of B drops; all arrays are (B,).
 
-    `start`: when they begin [s]. `gap`: height of the sphere's lowest point above the plate then [m], >= 0.
+    `start`: start times [s]. `gap`: height of the sphere's lowest point above the plate then [m], >= 0.
     `velocity`: upward [m/s]. `gravity` [m/s^2].
     """
 
@@ -28,7 +28,7 @@ class Flight:
         return self.gap + elapsed * (self.velocity - 0.5 * self.gravity * elapsed), self.velocity - self.gravity * elapsed
 
     def touch(self, level: Floats) -> tuple[Floats, Floats]:
-        r"""Return time [s] and approach speed [m/s] of the next touch; an infinite time if there is none.
+        r"""Return time [s] and approach speed [m/s] of the next touch; the time is infinite if there is none.
 
         .. math:: v = \sqrt{v_0^2 + 2 g h},\qquad t = (v_0 + v)/g = 2 h/(v - v_0)
 
@@ -38,7 +38,7 @@ class Flight:
         speed = np.sqrt(self.velocity**2 + 2.0 * self.gravity * height)
         with np.errstate(divide="ignore", invalid="ignore"):
             rising = (self.velocity + speed) / self.gravity
-            falling = 2.0 * height / (speed - self.velocity)  # the same root without its cancellation
+            falling = 2.0 * height / (speed - self.velocity)  # the same root without cancellation
             elapsed = np.where(self.velocity > 0.0, rising, np.where(speed > self.velocity, falling, np.inf))
         never = (self.gravity == 0.0) & (self.velocity >= 0.0)
         return np.where(never, np.inf, self.start + elapsed), speed

@@ -1,4 +1,4 @@
-"""How many points of a history are kept of each of its segments, where it would become too long."""
+"""Thinning of long histories: the number of points kept of each segment."""
 
 from __future__ import annotations
 
@@ -7,23 +7,23 @@ import numpy as np
 from vibroimpact.arrays import Floats, Indices
 
 MOST_POINTS = 1_000_000
-"""Of a history that is kept in a file: a hundred million bytes of it."""
+"""Most points of a history that is stored in a file, about 100 MB."""
 
-_WHOLE = 0.25  # of those points: what the first segments get, so that they are kept whole
-_LEAST = 3  # points of a segment: both of its ends, which are events, and its middle
+_WHOLE = 0.25  # part of the points reserved for the first segments, which are kept in full
+_LEAST = 3  # points of a segment: its ends, which are events, and its middle
 
 
 def points_kept(points: Indices, most: int) -> Indices:
-    """Return how many points each segment of a history keeps, so that they are about `most` in all.
+    """Return the number of points to keep of each segment of a history, about `most` in total.
 
     If it is too long the first segments keep all of theirs, up to a quarter of `most`; each of the others keeps equally many.
 
     Parameters
     ----------
     points : array of int, shape (segments,)
-        How many points draw each segment well.
+        Number of points that resolve each segment.
     most : int
-        How many points there may be in all; there are more only where three a segment are.
+        Largest total number; exceeded only where three points per segment are more.
 
     Examples
     --------
@@ -38,5 +38,5 @@ def points_kept(points: Indices, most: int) -> Indices:
 
 
 def thinned(grid: Floats, count: int) -> Floats:
-    """Return so many points of a grid, evenly, its ends among them."""
+    """Return `count` evenly spaced points of a grid, including its ends."""
     return grid if count >= len(grid) else grid[np.linspace(0.0, len(grid) - 1.0, count).round().astype(int)]

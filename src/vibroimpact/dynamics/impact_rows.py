@@ -1,4 +1,4 @@
-"""The table of impacts of a run while it grows, a row an impact."""
+"""The impact table of a run while it grows, one row per impact."""
 
 from __future__ import annotations
 
@@ -8,18 +8,18 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 
-_FIRST = 4  # rows; each block of memory has as many as all before it
+_FIRST = 4  # rows of the first block; each further block doubles the capacity
 
 
 class ImpactRows:
-    """The rows of the impacts of B drops so far; what a drop does not have is NaN.
+    """Impact table of B drops; entries that a drop does not have are NaN.
 
     Parameters
     ----------
     columns : iterable of str
         The names of the columns.
     size : int
-        How many drops, B.
+        Number of drops, B.
 
     Examples
     --------
@@ -38,7 +38,7 @@ class ImpactRows:
         return self._count
 
     def add(self) -> dict[str, Floats]:
-        """Add a row; return its columns (B,), to be written to."""
+        """Append a row of NaN and return its columns (B,) for writing."""
         if self._count == self._room:
             rows = max(_FIRST, self._room)
             self._blocks.append(np.full((len(self._columns), rows, self._size), np.nan))

@@ -1,4 +1,4 @@
-"""A leg of a run: one flight of some drops, and the contact that it ends in."""
+"""A leg of a run: a flight and the contact that follows it."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ from vibroimpact.dynamics.vibrating.linear_system import FreeMotion
 
 @dataclass(frozen=True)
 class Leg:
-    """One flight of some drops and the contact it ends in; arrays belong to `drops`, (b,).
+    """A flight of some drops and the contact that follows it; arrays have one entry for each of `drops` (b,).
 
-    `flight_end`: when the flight ends [s]. `contact` and `encounter` belong to `contact_drops`; they are
+    `flight_end`: end of the flight [s]. `contact` and `encounter` belong to `contact_drops`; they are
     None for a flight that ends the run and for an instantaneous law.
     """
 
@@ -28,10 +28,10 @@ class Leg:
     contact: Contact | None = None
     encounter: Encounter | None = None
     motions: tuple[FreeMotion, ...] = ()
-    """Of each of the drops, in flight, where a body vibrates."""
+    """Free motions of the bodies of each drop in flight, where a body vibrates."""
 
     def of(self, drop: int) -> Leg | None:
-        """Return the leg of one drop, or None if it takes no part."""
+        """Return the leg of one drop, or None if the drop is not in it."""
         here = np.flatnonzero(self.drops == drop)
         if not here.size:
             return None

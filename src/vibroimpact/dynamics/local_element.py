@@ -21,7 +21,7 @@ _LOSSES = np.geomspace(0.02, 50.0, 8)  # damping over that of a critical oscilla
 def identify_local_element(
     problem: Problem, max_force: float, *, separation_speed: float | None = None, rebound_height: float | None = None
 ) -> tuple[float, float]:
-    """Return stiffness [N/m] and damping [N s/m] of the local element with which an impact comes out as it was measured.
+    """Return stiffness [N/m] and damping [N s/m] of the local element that reproduces a measured impact.
 
     Parameters
     ----------
@@ -71,7 +71,7 @@ def identify_local_element(
         )
     mass = float(problem.sphere.mass)
     speed = float(simulate(problem).impacts["approach_speed_m_s"][0])
-    soft = (max_force / speed) ** 2 / mass  # of a linear spring with that force
+    soft = (max_force / speed) ** 2 / mass  # stiffness of a linear spring with that largest force
 
     def misses(logarithms: Floats) -> Floats:
         stiffness, damping = np.exp(logarithms).tolist()
@@ -92,9 +92,9 @@ def identify_local_element(
 def local_element_deviations(
     problem: Problem, element: tuple[float, float], max_force_deviation: float, separation_speed_deviation: float
 ) -> tuple[float, float]:
-    """Return how well a force and a rebound tell stiffness [N/m] and damping [N s/m] of a local element: standard deviations.
+    """Return the standard deviations of stiffness [N/m] and damping [N s/m] of a local element identified from force and rebound.
 
-    To first order, from readings that are independent of each other.
+    By linear propagation of independent errors.
 
     Parameters
     ----------
@@ -132,7 +132,7 @@ def _outcome(problem: Problem, element: tuple[float, float] | None, column: str)
 
 
 def _newton(function: Callable[[Floats], Floats], start: Floats) -> Floats | None:
-    """Return where a function of two variables vanishes, or None if the way from the start does not lead there."""
+    """Return a zero of a function of two variables by damped Newton iteration, or None if it does not converge."""
     place = start
     try:
         value = function(place)
@@ -156,11 +156,11 @@ def _newton(function: Callable[[Floats], Floats], start: Floats) -> Floats | Non
 
 
 def _reached(outcome: Callable[[tuple[float, float]], Floats], max_force: float, soft: float, mass: float) -> list[float]:
-    """Return rebounds that elements with the measured force give, from little damping to much."""
+    """Return the rebounds of elements that give the measured force, from low to high damping."""
     reached = []
     for loss in _LOSSES:
         low, high = 1e-6 * soft, 1e6 * soft
-        for _ in range(40):  # the force grows with the stiffness, and with the damping that goes with it
+        for _ in range(40):  # bisection: the force grows with the stiffness, as the damping is a fixed multiple of critical damping
             middle = float(np.sqrt(low * high))
             force, rebound = outcome((middle, 2.0 * loss * float(np.sqrt(middle * mass)))).tolist()
             low, high = (low, middle) if force > max_force else (middle, high)

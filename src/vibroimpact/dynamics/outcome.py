@@ -1,4 +1,4 @@
-"""Why the run of a drop ended."""
+"""Reasons for the end of a run."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from enum import Enum
 
 
 class Outcome(Enum):
-    """Why a drop's run ended; the value is the rule's name."""
+    """Reason why the run of a drop ended; the value is the name of the rule."""
 
     IMPACTS = "number of impacts"
     DURATION = "duration"
@@ -20,12 +20,12 @@ class Outcome(Enum):
 
     @property
     def at_rest(self) -> bool:
-        """Did the sphere come to rest?"""
+        """Whether the sphere is at rest."""
         return self in (Outcome.REST_SPEED, Outcome.CAPTURED, Outcome.STUCK)
 
     @property
     def code(self) -> int:
-        """Its place in `OUTCOMES`, by which arrays and files hold it."""
+        """Its index in `OUTCOMES`, which arrays and files store."""
         return _CODES[self]
 
 

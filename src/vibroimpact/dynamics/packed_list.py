@@ -1,4 +1,4 @@
-"""A growing list of records whose numbers lie in one buffer: there a number takes 8 bytes, and as an array by itself 120."""
+"""A compact list of records, with all numbers in one buffer: 8 bytes each, where a small array takes 120."""
 
 from __future__ import annotations
 
@@ -14,18 +14,18 @@ from vibroimpact.arrays import Floats
 
 Item = TypeVar("Item")
 
-_UNPACKED = 32  # records at the end that are kept as they are: to pack the few of a short run takes a tenth of its time
+_UNPACKED = 32  # last records that are kept unpacked: packing those of a short run would take a tenth of its time
 
 
 class PackedList(Sequence[Item], Generic[Item]):
-    """Records that are made of dataclasses, lists, tuples and arrays of numbers, each made anew when it is asked for but for the last ones.
+    """List of records of dataclasses, lists, tuples and arrays; all but the last ones are stored packed and rebuilt on access.
 
-    The numbers are those that were put in, to the last digit (whole ones up to 2^53).
+    Numbers are restored exactly (integers up to 2^53).
 
     Parameters
     ----------
     *shared : type
-        Dataclasses that many records refer to: these are kept as they are.
+        Dataclasses that many records share; their instances are kept by reference.
 
     Examples
     --------
@@ -44,7 +44,7 @@ class PackedList(Sequence[Item], Generic[Item]):
         self._shared = shared
         self._numbers, self._starts = array("d"), array("q", [0])
         self._forms: list[_Form] = []
-        self._known: dict[_Form, _Form] = {}  # forms that are equal are one
+        self._known: dict[_Form, _Form] = {}  # equal forms are stored once
         self._last: list[Item] = []
 
     def append(self, item: Item) -> None:
@@ -75,7 +75,7 @@ class PackedList(Sequence[Item], Generic[Item]):
         return item
 
     def _split(self, value: Any) -> _Form:
-        """Put the numbers of a value into the buffer; return what else it is."""
+        """Append the numbers of a value to the buffer, and return its structure."""
         if isinstance(value, np.ndarray):
             self._numbers.frombytes(value.astype(np.float64).tobytes())
             return _Array(value.dtype.str, value.shape, value.size)
@@ -107,7 +107,7 @@ class _Record(NamedTuple):
 
 
 class _Same:
-    """A value that is kept as it is; equal to another only if that is the same object."""
+    """A value kept by reference; equal only to the same object."""
 
     def __init__(self, value: object) -> None:
         self.value = value
@@ -124,13 +124,13 @@ _Form = _Array | _Row | _Record | _Same
 
 
 class _Reader:
-    """Makes values of their forms and of numbers, in the order in which they were split."""
+    """Rebuilds values from their structures and the buffer, in the order of packing."""
 
     def __init__(self, numbers: Floats) -> None:
         self.numbers, self.at = numbers, 0
 
     def joined(self, form: _Form) -> Any:
-        """Return the value of a form."""
+        """Return the value with a given structure."""
         if isinstance(form, _Array):
             self.at += form.size
             return self.numbers[self.at - form.size : self.at].astype(form.kind).reshape(form.shape)
@@ -141,7 +141,7 @@ class _Reader:
             return form.value
         if isinstance(form, _Row):
             return form.kind([self.joined(part) for part in form.parts])
-        made: Any = object.__new__(form.kind)  # what was checked once is not checked again
+        made: Any = object.__new__(form.kind)  # without __init__: the values were validated before
         for name, part in zip(_names(form.kind), form.parts, strict=True):
             object.__setattr__(made, name, self.joined(part))
         return made

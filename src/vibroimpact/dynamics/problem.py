@@ -1,4 +1,4 @@
-"""The statement of a drop, or of a batch of drops: everything the simulation needs, validated."""
+"""The statement of a drop or of a batch of drops, validated."""
 
 from __future__ import annotations
 
@@ -24,12 +24,12 @@ STANDARD_GRAVITY = 9.80665
 """Standard acceleration of gravity [m/s^2], CGPM 1901."""
 
 MOST_IMPACTS = 100_000
-"""Where a run without a number of impacts is stopped, if it has not come to rest."""
+"""Number of impacts at which a run without a given number is stopped, if it has not come to rest."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Problem:
-    """A sphere that falls on a plate, once or as a batch with one value a drop.
+    """A sphere that falls on a plate: one drop, or a batch with one value per drop.
 
     Parameters
     ----------
@@ -157,7 +157,7 @@ class Problem:
 
     @property
     def vibrates(self) -> bool:
-        """Does anything but the contact itself deform, or anything but the sphere move?"""
+        """Whether a body deforms beyond its contact, or one other than the sphere moves."""
         modes = (self.sphere.modes, self.plate.modes, self.plate.rigid, self.local_element)
         return any(part is not None for part in modes) or bool(self.quasi_static)
 
@@ -193,7 +193,7 @@ class Problem:
         )
 
     def to_problem(self) -> Problem:
-        """Return itself: a problem states itself."""
+        """Return the problem itself."""
         return self
 
 

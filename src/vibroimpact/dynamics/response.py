@@ -1,4 +1,4 @@
-"""What came out of a run: impacts, histories that can be asked at any time, the energy ledger, a status."""
+"""The response of drops: impacts, motion at any time, energy ledger, signals of sensors, and status."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ from vibroimpact.errors import InputError
 
 @dataclass(frozen=True, eq=False)
 class Response:
-    """The response of one drop, or of a batch.
+    """Response of one drop, or of a batch.
 
     Attributes
     ----------
@@ -49,7 +49,7 @@ class Response:
     end_time : array, shape (B,)
         When each run ended [s].
     rest : Rest
-        How the drops that came to rest do so. `rest.left` is what they, and those that ride, have left in vibration [J], (B,).
+        State of the drops that have come to rest. `rest.left` is what they, and those that ride, have left in vibration [J], (B,).
     legs : sequence of Leg, optional
         Flights and contacts, from which histories are read; None where none are kept, as by `tabulate`.
 
@@ -104,26 +104,26 @@ class Response:
 
     @property
     def failures(self) -> dict[int, str]:
-        """Why a drop failed, in a sentence, by its number from 0; empty if none did."""
+        """Reasons of failed drops, a sentence each, by the index of the drop."""
         energies = {name: np.atleast_1d(values) for name, values in self.energy.items()}
         failed = [drop for drop, outcome in enumerate(self.outcomes) if outcome is Outcome.FAILED]
         return {drop: why_failed({name: values[drop] for name, values in energies.items()}) for drop in failed}
 
     @property
     def history_columns(self) -> dict[str, tuple[str, str]]:
-        """The columns of a history: unit and meaning."""
+        """Unit and meaning of the columns of a history."""
         return meanings({**HISTORY_COLUMNS, **(VIBRATION_HISTORY_COLUMNS if self.problem.vibrates else {})})
 
     @property
     def status(self) -> str:
-        """One sentence: why the run ended, and when.
+        """Reason and time of the end of the run, in a sentence.
 
         For a batch, how many drops ended by each rule, and the most that is left in vibration where they rest or ride.
         """
         return status_of(Ended(self.problem, self.impacts, self.energy, self.outcomes, self.end_time, self.rest))
 
     def at(self, times: Any) -> dict[str, Floats]:
-        """Return the history of one drop at any times.
+        """Return the motion, force and energies of one drop at given times.
 
         Parameters
         ----------
@@ -162,7 +162,7 @@ class Response:
         return {name: values.reshape(times.shape) for name, values in columns.items()}
 
     def sample(self, rate: float) -> dict[str, Floats]:
-        """Return the history of one drop at a constant rate, as a recorder would see it.
+        """Return the motion, force and energies of one drop at a constant sampling rate.
 
         Sampling hides what happens between samples; for peaks use `impacts`, for figures `history`.
 
@@ -201,7 +201,7 @@ class Response:
             for name, values in self._history(number, thinned(segment.grid(), count)).items():
                 history[name][begin : begin + count] = values
             begin += count
-        np.maximum.accumulate(history["time_s"], out=history["time_s"])  # the two sides of an event may differ by rounding
+        np.maximum.accumulate(history["time_s"], out=history["time_s"])  # the times of both sides of an event may differ by rounding
         return history
 
     def modal(self, times: Any) -> dict[str, Floats]:
@@ -246,7 +246,7 @@ class Response:
 
     @cached_property
     def truncation(self) -> dict[str, float]:
-        """About how far the largest force is off for the modes that were left out, as a part of it, by the name of the body."""
+        """Estimated relative error of the largest force due to modal truncation, by the name of the body."""
         return truncation_estimates(self.problem, self.impacts) if self.problem.vibrates else {}
 
     def save(self, directory: str | PathLike[str], *, force: bool = False) -> None:
@@ -266,7 +266,7 @@ class Response:
         """
         if self.problem.shape != ():
             raise InputError("save writes one drop: response.drop(0).save(...)")
-        import vibroimpact  # the one door upwards: the package's front knows the writers
+        import vibroimpact  # the only import upwards: writing lies above the dynamics
 
         vibroimpact.save_result(self, directory, force=force)
 
@@ -299,7 +299,7 @@ class Response:
 
     @cached_property
     def _segments(self) -> Sequence[VibratingSegment] | Timeline:
-        """What the history of one drop is made of, in order."""
+        """Segments of the history of one drop, in order of time."""
         if self.problem.shape != ():
             raise InputError("a history belongs to one drop: ask response.drop(0), response.drop(1), ...")
         if self.legs is None:
@@ -315,6 +315,6 @@ class Response:
 
     @cached_property
     def _starts(self) -> Floats:
-        """When each segment begins [s]."""
+        """Start times of the segments [s]."""
         segments = self._segments
         return segments.starts if isinstance(segments, Timeline) else np.array([segment.start for segment in segments])

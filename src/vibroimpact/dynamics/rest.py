@@ -1,4 +1,4 @@
-"""How drops that came to rest do so."""
+"""State of drops that have come to rest."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from vibroimpact.dynamics.vibrating.lying import Lying
 
 @dataclass(frozen=True)
 class Rest:
-    """How the drops that came to rest do so; arrays are (B,), NaN for the others.
+    """State of the drops at rest; arrays are (B,), NaN for the others.
 
-    `speed`: below which a sphere that leaves is at rest [m/s]. `time`: when the bounces that were not
-    followed any more would have ended [s]. `sag`: static indentation [m]. `stored`: energy in it [J].
+    `speed`: rest speed, below which a sphere that separates counts as at rest [m/s]. `time`: end of the remaining bounces,
+    which are not simulated [s]. `sag`: static indentation [m]. `stored`: energy in it [J].
     `written_off`: energy that the sphere still had [J]. Where a body vibrates, `left`: what the sphere and what it lies on still
     hold above their equilibrium then [J], and `lying`: how they move on.
     """

@@ -21,7 +21,7 @@ from vibroimpact.ranges import Range
 
 Law = TypeVar("Law", bound=ContactLaw)
 
-_CHUNK = 2000  # drops integrated at once: enough for arrays to pay, few enough to stay in the cache
+_CHUNK = 2000  # drops integrated together: many enough for array operations, few enough for the cache
 _INVERSE_TOLERANCE = 1e-12
 
 
@@ -102,7 +102,7 @@ def integrated_restitution(law: ContactLaw, mass: Array, speed: Array, *, tolera
 
 
 def _by_integration(law: ContactLaw, mass: Array, speed: Array, tolerance: float) -> Array:
-    """Return the restitution, NaN where the contact could not be integrated."""
+    """Return the restitution achieved, NaN where the contact could not be integrated."""
     shape = _shape(law, mass, speed)
     if isinstance(law, InstantaneousLaw):
         return np.broadcast_to(law.closed_form_restitution(mass, speed), shape)[()]
@@ -132,7 +132,7 @@ def _loss(encounter: Encounter) -> Floats:
 
 
 def law_achieving(law: Law, restitution: Array, mass: Array, speed: Array) -> Law:
-    """Return a law with its free parameter such that it achieves a restitution.
+    """Return a law whose free parameter is set so that it achieves a given restitution.
 
     Parameters
     ----------
@@ -177,7 +177,7 @@ def law_achieving(law: Law, restitution: Array, mass: Array, speed: Array) -> La
         return np.asarray(_by_integration(trial, mass, speed, _INVERSE_TOLERANCE) if found is None else found)
 
     now = np.broadcast_to(np.asarray(getattr(law, name), dtype=float), shape)
-    damps = allowed.at_least == 0.0 and not np.isfinite(allowed.at_most)  # nothing achieves more than no damping
+    damps = allowed.at_least == 0.0 and not np.isfinite(allowed.at_most)  # the undamped law achieves the most
     found = solve_monotonic(achieved, wanted, np.where(now > 0.0, now, 1.0), allowed, falls=damps)
     missed = np.isnan(found.place)
     if missed.any():
@@ -195,7 +195,7 @@ def _between(values: Array) -> str:
 
 
 def _shape(law: ContactLaw, mass: Array, speed: Array) -> tuple[int, ...]:
-    """Return the common shape, having looked at the numbers."""
+    """Return the common shape of the validated arguments."""
     if not isinstance(law, ContactLaw):
         raise InputError(f"law must be a contact law with its parameters, such as Hertz(stiffness=5e8), not {law!r}")
     for name, value, unit in (("mass", mass, "kg"), ("speed", speed, "m/s")):

@@ -1,4 +1,4 @@
-"""A run: flight, touch, contact, release of a batch, until a stop rule."""
+"""The run of a batch of drops: flight, touch, contact and release, until a stop rule."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from vibroimpact.dynamics.vibrating.bodies import VibratingBodies
 
 
 class Run:
-    """A batch of B drops between impacts; arrays are (B,). `solve_contact` takes those of rigid bodies through a contact."""
+    """State of a batch of B drops between impacts; arrays are (B,). `solve_contact`: solver of contacts of rigid bodies."""
 
     def __init__(self, problem: Problem, solve_contact: SolvesContact) -> None:
         self.problem = problem
@@ -51,7 +51,7 @@ class Run:
         self.rows = ImpactRows(self.bodies.columns, self.size)
 
     def spread(self, value: object) -> Floats:
-        """Return a value of the problem with one entry a drop."""
+        """Return a value of the problem as an array with one entry per drop."""
         return np.array(np.broadcast_to(np.asarray(value, dtype=float), (self.size,)))
 
     def mechanical_energy(self) -> Floats:
@@ -68,20 +68,20 @@ class Run:
         return np.asarray(np.maximum(np.sqrt(2.0 * self.gravity * sag), least))
 
     def fraction_done(self) -> float:
-        """Return the part of the run that is done, in [0, 1]."""
+        """Return the fraction of the run that is done, in [0, 1]."""
         if not self.moving.any():
             return 1.0
         done = len(self.rows) / (self.problem.impacts or MOST_IMPACTS)
         if self.problem.duration is not None:
             done = max(done, float(self.time[self.moving].min()) / self.problem.duration)
-        if self.problem.impacts is None and self.rows:  # to rest: the logarithm of the speed falls steadily
+        if self.problem.impacts is None and self.rows:  # up to rest: the logarithm of the speed falls about linearly
             first = self.rows.first["approach_speed_m_s"][self.moving]
             slowed = np.log(first / self.velocity[self.moving]) / np.log(first / self.rest_speed[self.moving])
             done = max(done, float(np.nanmin(np.clip(slowed, 0.0, 1.0), initial=1.0)))
         return done
 
     def law(self, drops: Drops) -> ContactLaw:
-        """Return the law of the next impact of drops, with what they remember of the last."""
+        """Return the law of the next impact of drops, with their memory of the last one."""
         law = self.problem.law_of(len(self.rows))
         if self.problem.same_spot and isinstance(law, CompliantLaw) and law.lasting:
             law = law.changed(self.memories)
@@ -90,7 +90,7 @@ class Run:
     # one flight and one contact --------------------------------------------------------------------
 
     def advance(self) -> Course[Leg]:
-        """Fly all moving drops to their next touch, take them through one contact, and return both."""
+        """Advance all moving drops to their next touch and through one contact, and return both as a leg."""
         drops = np.flatnonzero(self.moving)
         flight = Flight(self.time[drops], self.gap[drops], self.velocity[drops], self.gravity[drops])
         law = self.law(drops)
@@ -101,7 +101,7 @@ class Run:
             last = np.minimum(flight.apex()[0], end)
             outcome = Outcome.IMPACTS if len(self.rows) == self.problem.impacts else Outcome.LIMIT
         by_time = last == end
-        last = np.maximum(last, flight.start)  # a contact under way at the end was finished first
+        last = np.maximum(last, flight.start)  # a contact under way at the end of the run is finished first
         gone = np.isinf(touch) & np.isinf(last)
         stops = (touch >= last) | gone
         self.stop(drops[stops], outcome, last[stops])
@@ -119,7 +119,7 @@ class Run:
         return leg
 
     def collide(self, leg: Leg, touch: Floats, speed: Floats) -> Course[Leg]:
-        """Take drops through a contact: write the row of the impact, return the leg with its contact."""
+        """Solve the contact of drops, write the row of the impact table, and return the leg with the contact."""
         drops, law = leg.contact_drops, self.law(leg.contact_drops)
         row = self.rows.add()
         row["impact"][drops], row["time_s"][drops], row["approach_speed_m_s"][drops] = len(self.rows), touch, speed
@@ -134,7 +134,7 @@ class Run:
             closing = self.bodies.closing_speed(drops, speed, self.velocity[drops])
             leg, lost = yield from self.deform(leg, encounter_of(law, self.mass[drops], self.gravity[drops], closing), touch, row)
             lost += row["plastic_work_J"][drops]
-            law = self.law(drops)  # with what it remembers of this impact
+            law = self.law(drops)  # with its memory of this impact
         self.dissipated[drops] += lost - row["plastic_work_J"][drops]
         self.plastic[drops] += row["plastic_work_J"][drops]
         separation = row["separation_speed_m_s"][drops]
@@ -148,7 +148,7 @@ class Run:
         return leg
 
     def deform(self, leg: Leg, encounter: Encounter, touch: Floats, row: dict[str, Floats]) -> Course[tuple[Leg, Floats]]:
-        """Integrate a contact; return the leg with it, and the energy lost [J]."""
+        """Return the leg with the contact of drops, and the energy lost in it [J]."""
         drops = leg.contact_drops
         until = (np.inf if self.problem.duration is None else self.problem.duration) - touch
         place, limits = (self.gap[drops], self.velocity[drops]), (self.rest_speed[drops], until)
@@ -161,7 +161,7 @@ class Run:
         row["max_force_N"][drops], row["time_of_max_force_s"][drops] = force, touch + when
         row["max_acceleration_m_s2"][drops] = np.maximum(force / encounter.mass - encounter.gravity, encounter.gravity)
         for name, values in contact.law.memories().items():
-            self.memories[name] = self.memories[name].copy()  # contacts of the past keep their laws
+            self.memories[name] = self.memories[name].copy()  # laws of earlier contacts refer to the array before
             self.memories[name][drops] = values
         leaving = self.bodies.rigid_speed(drops, -contact.final_rate)
         failed, captured, riding = (contact.outcome == outcome for outcome in (FAILED, CAPTURED, RIDING))
@@ -179,26 +179,26 @@ class Run:
         return replace(leg, contact=contact, encounter=encounter), contact.dissipated + np.where(captured | riding, 0.0, stored)
 
     def next_law(self, drops: Drops) -> CompliantLaw:
-        """Return the law of the next impact of drops that touch by one."""
+        """Return the law under which drops will touch next."""
         law = self.law(drops)
         assert isinstance(law, CompliantLaw)
         return law
 
     def judge(self, drops: Drops, law: ContactLaw, row: dict[str, Floats]) -> None:
-        """Stop the drops that leave more slowly than the rest speed, or not at all, and that nothing can lift again."""
+        """Stop the drops that separate more slowly than the rest speed, or not at all, and cannot be lifted again."""
         resting = self.bodies.rests(drops, self.velocity[drops], self.rest_speed[drops])
         slow = drops[resting]
         if not slow.size:
             return
         with np.errstate(divide="ignore", invalid="ignore"):
-            # a geometric series of flights, each shorter than the one before by the last restitution
+            # flights are a geometric series with the ratio of the last restitution
             missing = 1.0 - row["restitution_achieved"][slow]
             limit = self.time[slow] + 2.0 * self.velocity[slow] / self.gravity[slow] / np.where(missing > 1e-6, missing, 0.0)
         self.lie_down(slow, law.take(np.flatnonzero(resting)), limit, np.zeros(len(slow)))
         self.stop(slow, Outcome.REST_SPEED, np.where(np.isfinite(limit), limit, self.time[slow]))
 
     def lie_down(self, drops: Drops, law: ContactLaw, time: Floats, stored: Floats) -> None:
-        """Lay drops that have come to rest, with energy `stored` in the contact [J], into their static indentation."""
+        """Put drops that have come to rest, with energy `stored` in the contact [J], into their static indentation."""
         weight, energy = self.mass[drops] * self.gravity[drops], self.mechanical_energy()[drops] + stored
         self.rest_time[drops] = time
         for name, values in self.bodies.laid(drops, law, weight, energy).items():
@@ -213,18 +213,18 @@ class Run:
     # the end of the run ----------------------------------------------------------------------------
 
     def response(self, legs: Sequence[Leg]) -> Response:
-        """Return the response with its history, of one drop with arrays of one."""
+        """Return the response with its history; that of a single drop without the axis of the batch."""
         response = replace(self.batch(), legs=legs)
         return response.squeezed() if self.problem.shape == () else response
 
     def batch(self) -> Response:
-        """Return the response as that of a batch, without a history."""
+        """Return the response of the batch without a history."""
         at_rest = np.array([outcome.at_rest for outcome in OUTCOMES])[self.outcomes]
         if self.problem.duration is not None:
             self.end_time[at_rest] = np.maximum(self.end_time, self.problem.duration)[at_rest]
         final_gap, final_velocity = self.final_motion(np.flatnonzero(at_rest))
         vibration = self.bodies.energies()
-        added = self.mass * self.gravity * self.deepest + np.maximum(-self.stored, 0.0)  # less than nothing is stored where it sticks
+        added = self.mass * self.gravity * self.deepest + np.maximum(-self.stored, 0.0)  # the stored energy is negative where it sticks
         energy = close_ledger(
             self.energy_in,
             added,
@@ -251,7 +251,7 @@ class Run:
         )
 
     def final_motion(self, at_rest: Drops) -> tuple[Floats, Floats]:
-        """Return gap [m] and upward velocity [m/s] at the end of the run, up to which those at rest lie."""
+        """Return gap [m] and upward velocity [m/s] at the end of the run."""
         elapsed = self.end_time - self.time
         gap, velocity = Flight(np.zeros(self.size), self.gap, self.velocity, self.gravity).at(elapsed)
         lain, parts = np.maximum(elapsed[at_rest], 0.0), (self.sag[at_rest], self.stored[at_rest])
@@ -260,6 +260,6 @@ class Run:
 
 
 def _asked(law: ContactLaw) -> Floats | float:
-    """Return the restitution asked of a law, or NaN."""
+    """Return the restitution that a law is given, or NaN."""
     asked = getattr(law, "restitution", None)
     return np.nan if asked is None else asked

@@ -1,4 +1,4 @@
-"""The loop: flight, touch, contact, release, until a stop rule."""
+"""Simulation of drops with their histories."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ from vibroimpact.dynamics.response import Response
 from vibroimpact.dynamics.run import Run
 from vibroimpact.errors import ComputationError, InputError
 
-_HISTORY = 100.0  # times: by so much what a history is read from is more exact than what the impacts are asked for
+_HISTORY = 100.0  # factor between the tolerance of impacts and that of contacts from which histories are read
 
 
 def simulate(problem: StatesProblem, progress: Callable[[float], None] | None = None) -> Response:
-    """Let the sphere fall and bounce until a stop rule.
+    """Return the response of a sphere that falls and bounces until a stop rule.
 
     Flight is exact. A contact is solved by Gauss collocation in the phase plane, speed over indentation, of order 39 at the
     default tolerance, or where that does not come out by Radau collocation in a time in which the force is smooth. A batch
@@ -61,7 +61,7 @@ def simulate(problem: StatesProblem, progress: Callable[[float], None] | None = 
 
 
 def simulate_together(problems: Sequence[StatesProblem]) -> list[Response | Exception]:
-    """Return the responses to several drops, one each, of which those on elastic bodies are computed side by side.
+    """Return the responses of several drops; those with elastic bodies are computed side by side.
 
     Parameters
     ----------
@@ -71,13 +71,13 @@ def simulate_together(problems: Sequence[StatesProblem]) -> list[Response | Exce
     Returns
     -------
     list of Response or Exception
-        In place of the response of one that failed, what it raised: the others go on.
+        The exception in place of the response where a drop failed; the others are not affected.
     """
     return computed(side_by_side(_guarded(_simulated(problem)) for problem in problems))
 
 
 def _guarded(course: Course[Response]) -> Course[Response | Exception]:
-    """Return what comes of a course, or what it raises."""
+    """Return the result of a course, or the exception that it raises."""
     try:
         return (yield from course)
     except Exception as error:
@@ -85,7 +85,7 @@ def _guarded(course: Course[Response]) -> Course[Response | Exception]:
 
 
 def _simulated(problem: StatesProblem, progress: Callable[[float], None] | None = None) -> Course[Response]:
-    """Return the response to a drop."""
+    """Return the response of a problem."""
     if not hasattr(problem, "to_problem"):
         raise InputError(f"simulate takes a Problem, or a case as vi.load_case(...) reads it, not {problem!r}")
     stated = problem.to_problem()

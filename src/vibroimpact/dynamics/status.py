@@ -1,4 +1,4 @@
-"""Why a run ended, in a sentence."""
+"""Sentences on the end of a run."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from vibroimpact.units.display import certain, certain_figures
 
 @dataclass(frozen=True)
 class Ended:
-    """What a response tells of the end of a run, under the same names."""
+    """The part of a response that concerns the end of the run, under the same names."""
 
     problem: Problem
     impacts: Mapping[str, Floats]
@@ -30,7 +30,7 @@ class Ended:
 
 
 def status_of(run: Ended) -> str:
-    """Return why the run of a drop ended, and when, in the digits that are certain; of a batch, how many drops each rule ended."""
+    """Return the reason and time of the end of a run, in certain digits; of a batch, the number of drops that each rule ended."""
     if len(run.outcomes) > 1 or run.problem.shape != ():
         return "; ".join(_ended_by(run, outcome) for outcome in Outcome if outcome in run.outcomes)
     number, end, outcome = len(run.impacts["impact"]), float(run.end_time[0]), run.outcomes[0]
@@ -57,7 +57,7 @@ def status_of(run: Ended) -> str:
 
 
 def _ended_by(run: Ended, outcome: Outcome) -> str:
-    """Say how many drops of a batch a rule ended, and what is left in vibration."""
+    """Return the number of drops of a batch that a rule ended, and the energy left in vibration, in words."""
     ended = np.array([one is outcome for one in run.outcomes])
     left = run.rest.left[ended & np.isfinite(run.rest.left)]
     counted = f"{np.count_nonzero(ended)} of {len(run.outcomes)} drops: {outcome.value}"
@@ -68,12 +68,12 @@ def _ended_by(run: Ended, outcome: Outcome) -> str:
 
 
 def _riding(run: Ended) -> str:
-    """Say that the sphere is in contact still, and not at rest."""
+    """Return the sentence on a sphere that is still in contact and not at rest."""
     return f"the sphere rides on the plate and is not at rest, with {_shown(run, float(run.rest.left[0]), 3)} J left in vibration"
 
 
 def _at_rest(run: Ended) -> str:
-    """Say by which rule the sphere is at rest, and what is left in what carries it."""
+    """Return the rule by which the sphere is at rest, and the energy left in what carries it, in words."""
     time, left = float(run.rest.time[0]), float(run.rest.left[0])
     vibration = "" if np.isnan(left) else f" {_shown(run, left, 3)} J are left in vibration, too little at the contact to lift it."
     when = _time(run, time, 7)
@@ -89,7 +89,7 @@ def _at_rest(run: Ended) -> str:
 
 
 def _time(run: Ended, time: float, significant: int) -> str:
-    """Return a time of the end in so many digits, or in the fewer that are certain: each flight is as certain as the impact before it."""
+    """Return an end time in the given number of digits, or in fewer that are certain; each flight is as certain as the impact before it."""
     change, begin = change_by_impact(run.impacts, run.problem.tolerance), run.impacts["time_s"]
     if not len(begin) or not np.isfinite(time):
         return f"{time:.{significant}g}"
@@ -98,7 +98,7 @@ def _time(run: Ended, time: float, significant: int) -> str:
 
 
 def _shown(run: Ended, value: float, significant: int) -> str:
-    """Return what the last impact left in so many digits, or in the fewer that are certain."""
+    """Return a quantity of the last impact in the given number of digits, or in fewer that are certain."""
     change = change_by_impact(run.impacts, run.problem.tolerance)
     return _digits(value, float(change[-1]) if len(change) else 0.0, significant)
 

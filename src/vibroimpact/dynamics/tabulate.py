@@ -1,4 +1,4 @@
-"""The table of a batch of drops without their histories: what a map, a sweep or a training set asks for."""
+"""Simulation of batches of drops without histories, as for maps, sweeps and training sets."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ from vibroimpact.dynamics.rest import Rest
 from vibroimpact.dynamics.run import Run
 from vibroimpact.errors import InputError
 
-_BLOCK = 2000  # drops run at once: enough for arrays to pay, few enough to stay in the cache
+_BLOCK = 2000  # drops run together: many enough for array operations, few enough for the cache
 
 
 def tabulate(problem: StatesProblem, progress: Callable[[float], None] | None = None) -> Response:
-    """Let the sphere fall and bounce until a stop rule, and keep the table of impacts alone.
+    """Return the response of drops without their histories.
 
     The numbers are those of `simulate` to the tolerance, for every problem. It keeps no histories, which are read within the
     contacts and need more nodes, and runs a large batch in blocks that stay in the cache.

@@ -1,4 +1,4 @@
-r"""How much the modes that were left out matter: an estimate from the modes that were kept."""
+r"""Estimates of the error due to modal truncation, from the modes that are kept."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def truncation_estimates(problem: Problem, impacts: dict[str, Floats]) -> dict[str, float]:
-    r"""Return about how far the largest force of the first impact is off, as a part of it, for each body that vibrates.
+    r"""Return the estimated relative error of the first impact's largest force due to modal truncation, for each body that vibrates.
 
     The compliance of the modes left out is known where the law or a static solution carries it; what is missing then is their
     inertia, :math:`\sum \chi^2 / \omega^4\,\ddot F`, and at most all of what they do. Its sum over the modes left out is not
@@ -46,7 +46,7 @@ def truncation_estimates(problem: Problem, impacts: dict[str, Floats]) -> dict[s
 
 
 def time_of_contact(impacts: Mapping[str, Any]) -> float:
-    """Return how long the first impact takes [s]; of a visit of several contacts, what Hertz's contact of its depth would.
+    """Return the contact duration of the first impact [s]; for several contacts, that of a Hertzian contact of the same depth.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""How B drops of bodies that do not vibrate fly, meet and lie."""
+"""Free flight, contact and rest of B drops whose bodies do not vibrate."""
 
 from __future__ import annotations
 
@@ -18,22 +18,22 @@ from vibroimpact.dynamics.vibrating.linear_system import FreeMotion
 from vibroimpact.dynamics.vibrating.lying import Lying
 
 Motions = tuple[FreeMotion, ...]
-"""How the bodies of drops move in a flight; none of those that do not vibrate."""
+"""Free motions of the bodies of each drop in a flight; empty for bodies that do not vibrate."""
 
 
 class RigidBodies:
-    """The bodies of B drops, as rigid ones: a sphere falls on a plate that lies still; see `VibratingBodies` for those that vibrate.
+    """Rigid bodies of B drops: a sphere falls on a plate at rest; `VibratingBodies` has the same methods for bodies that vibrate.
 
-    In methods `drops` says which of the run are meant, and the other arrays belong to these. `columns`: of the impact table. `left`: what
-    those that rest or ride, and what carries them, hold above their equilibrium [J] (B,), NaN for the others. `lying`: how those lie that
-    have come to rest.
+    In the methods `drops` are indices of drops of the run, and the other arrays have one entry for each of them. `columns`: of the impact
+    table. `left`: mechanical energy above equilibrium of drops at rest or riding, and of what carries them [J] (B,), NaN for the others.
+    `lying`: the states of those at rest.
 
     Parameters
     ----------
     size : int
-        How many drops there are.
+        Number of drops.
     solve_contact : SolvesContact
-        What takes them through a contact.
+        Solver of their contacts.
     """
 
     left: Floats
@@ -45,52 +45,52 @@ class RigidBodies:
         self.left, self.lying = np.full(size, np.nan), [None] * size
 
     def next_touch(self, drops: Drops, flight: Flight, law: ContactLaw) -> tuple[Floats, Floats, Motions]:
-        """Return when the surfaces next meet [s], the speed at which the bodies do as rigid bodies [m/s], and their motions."""
+        """Return the time of the next touch [s], the approach speed of the rigid bodies [m/s], and the free motions until then."""
         return *flight.touch(-law.touch_level if isinstance(law, CompliantLaw) else np.zeros(1)), ()
 
     def pass_flight(self, drops: Drops, motions: Motions, elapsed: Floats) -> None:
-        """Let the bodies go through flights of some time [s]."""
+        """Advance the state of the bodies through a flight of a given duration [s]."""
 
     def closing_speed(self, drops: Drops, speed: Floats, velocity: Floats) -> Floats:
-        """Return the speed at which the surfaces meet [m/s], from that of the rigid bodies, and the velocity of the spheres [m/s]."""
+        """Return the closing speed of the surfaces [m/s], from that of the rigid bodies and the velocity of the spheres [m/s]."""
         return speed
 
     def rigid_speed(self, drops: Drops, velocity: Floats) -> Floats:
-        """Return the speed at which the bodies part as rigid bodies [m/s], where the spheres have a velocity upwards [m/s]."""
+        """Return the separation speed of the rigid bodies [m/s], from the upward velocity of the spheres [m/s]."""
         return velocity
 
     def collide(
         self, drops: Drops, encounter: Encounter, place: tuple[Floats, Floats], limits: tuple[Floats, Floats], row: dict[str, Floats]
     ) -> Course[tuple[Contact, Floats, Floats]]:
-        """Take drops through a contact; return it, the largest force [N], and when that is reached since first touch [s].
+        """Return the contact of drops, its largest force [N], and the time of that since first touch [s].
 
         Parameters
         ----------
         drops : array of int, shape (b,)
-            Which drops of the run.
+            Indices in the run.
         encounter : Encounter
             Their impact.
         place : tuple of two arrays, shape (b,)
             Gaps [m] and velocities upwards [m/s] at first touch.
         limits : tuple of two arrays, shape (b,)
-            Below what speed a sphere that leaves rests [m/s], and how long a ride is followed for [s since first touch].
+            Rest speed [m/s], and the longest time for which a ride is followed, since first touch [s].
         row : dict of str to array
-            The row of the impact, which gets what only bodies that vibrate have.
+            The row of the impact table, into which further columns of bodies that vibrate are written.
         """
         yield from ()
         return self.solve_contact(encounter, drops)
 
     def falls_back(self, contact: Contact, law: CompliantLaw, gravity: Floats) -> Bools:
-        """Tell which drops fall back into the indentation they have left, before a next touch under a law would be a new one."""
+        """Return which drops fall back into the indentation before they have risen to the touch level of the law."""
         overlap = np.maximum(contact.final_delta - law.touch_level, 0.0)
         return np.asarray((contact.outcome != FAILED) & (contact.final_rate**2 < 2.0 * gravity * overlap))
 
     def rests(self, drops: Drops, velocity: Floats, rest_speed: Floats) -> Bools:
-        """Tell which drops that have left at a velocity upwards [m/s] are at rest."""
+        """Return which drops that separate with an upward velocity [m/s] count as at rest."""
         return np.asarray((velocity < rest_speed) | (velocity == 0.0))
 
     def laid(self, drops: Drops, law: ContactLaw, weight: Floats, energy: Floats) -> dict[str, Floats]:
-        """Return how drops lie under their weight [N] that had an energy [J]: `sag` [m], `stored` and `written_off` [J]."""
+        """Return the static state of drops: `sag` [m], `stored` energy [J], and `written_off`, the rest of their `energy` [J]."""
         sag = stored = np.zeros(len(drops))
         if isinstance(law, CompliantLaw):
             sag = static_indentation(law, weight)
@@ -98,14 +98,14 @@ class RigidBodies:
         return {"sag": sag, "stored": stored, "written_off": energy - (stored - weight * sag)}
 
     def follow(self, drops: Drops, elapsed: Floats, sag: Floats, stored: Floats) -> tuple[Floats, Floats, Floats]:
-        """Let drops lie for some time [s]; return their gaps [m], velocities upwards [m/s] and what the contacts hold then [J]."""
+        """Return gap [m], upward velocity [m/s] and energy stored in the contact [J] of drops that have lain for some time [s]."""
         return -sag, np.zeros(len(drops)), stored
 
     def energies(self) -> dict[str, Floats]:
-        """Return further entries of the ledger [J], (B,); `local_J` and `local_damping_J` belong to those of the contact."""
+        """Return further entries of the energy ledger [J] (B,); `local_J` and `local_damping_J` are added to those of the contact."""
         return {}
 
     def growth(self, leg: Leg) -> Course[Floats]:
-        """Return how a relative change of the drop has grown by the impact of a leg [-], one value a drop of its contact; or none."""
+        """Return the growth of a small relative change of the drop up to the contact of a leg [-], one value per drop; or nothing."""
         yield from ()
         return np.zeros(0)

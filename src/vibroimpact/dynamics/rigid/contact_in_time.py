@@ -1,12 +1,12 @@
-"""From first touch to release: the stretches of one impact, split where the force is not smooth.
+"""Integration of a contact in time, from first touch to release, in stretches that end where the force is not smooth.
 
 Each drop goes through compression (to each breakpoint of the law, then to the deepest point), restitution
-(back through the breakpoints to where the surfaces part) and, where a law's tension is cut, a glide: the
-sphere has stopped pushing but still overlaps, and moves freely until it pushes again or is out. A law with a
-memory gets it at the deepest point, and is another law from there on.
+(back through the breakpoints to separation) and, where the tension of a law is cut, a glide: the force is zero
+although the surfaces still overlap, and the sphere moves freely until the force is positive again or the surfaces
+separate. A law with memory is updated at the deepest point.
 
-A stretch is first aimed straight at its end. If that fails to converge, or its series has not converged,
-the drop advances by stretches of a given, adapted duration until the end comes within reach.
+A stretch is first solved up to its end, with its duration unknown. If Newton's method or the series does not
+converge, the drop is marched in stretches of given, adapted durations until the end can be reached in one.
 """
 
 from __future__ import annotations
@@ -20,15 +20,14 @@ from vibroimpact.dynamics.collocation import Map, Rule, collocation_rule
 from vibroimpact.dynamics.contact import CAPTURED, COMPRESSION, FAILED, GLIDE, RELEASED, RESTITUTION, Contact, Piece
 from vibroimpact.dynamics.encounter import Encounter
 from vibroimpact.dynamics.rigid.glide import glide_until_push
-from vibroimpact.dynamics.rigid.guess import first_guess, time_scale
+from vibroimpact.dynamics.rigid.starting_values import WarmStarts, first_guess, time_scale
 from vibroimpact.dynamics.rigid.stretch import Aim, Stretch, WarmStart, acceleration_unit, solve_stretch
-from vibroimpact.dynamics.rigid.tension import first_pull, pulls_before_end
-from vibroimpact.dynamics.rigid.warm_starts import WarmStarts
+from vibroimpact.dynamics.rigid.tension import first_tension, tensile_before_end
 
 _MOST_STRETCHES = 2000  # the stiffest sensible contacts need about a hundred
 
 
-def contact_phase(encounter: Encounter, tolerance: float, warm_starts: WarmStarts, ids: Drops) -> Contact:
+def integrate_contact(encounter: Encounter, tolerance: float, warm_starts: WarmStarts, ids: Drops) -> Contact:
     """Integrate the contact of B drops from first touch to release.
 
     Parameters
@@ -38,12 +37,12 @@ def contact_phase(encounter: Encounter, tolerance: float, warm_starts: WarmStart
     tolerance : float
         Relative error allowed in the state at the end of each stretch.
     warm_starts : WarmStarts
-        The solutions of the run's earlier impacts; gets this one's.
+        Solutions of the earlier impacts of the run, to which this one is added.
     ids : array of int, shape (B,)
-        Which drops of the run these are.
+        Indices of these drops in the run.
     """
-    with np.errstate(all="ignore"):  # guesses may be wild; what is not finite is found and tried again
-        return _Phase(encounter, tolerance, warm_starts, ids).run()
+    with np.errstate(all="ignore"):  # iterates far from the solution may overflow; values that are not finite are rejected below
+        return _ContactState(encounter, tolerance, warm_starts, ids).run()
 
 
 def nodes_for(tolerance: float) -> int:
@@ -51,8 +50,8 @@ def nodes_for(tolerance: float) -> int:
     return int(8 + 4 * np.ceil(-np.log10(tolerance) / 3.0))
 
 
-class _Phase:
-    """The state of all drops in one contact phase, and the rules that move it on."""
+class _ContactState:
+    """The state of B drops in a contact, and the rules that advance it."""
 
     def __init__(self, encounter: Encounter, tolerance: float, warm_starts: WarmStarts, ids: Drops) -> None:
         size = len(encounter.mass)
@@ -68,9 +67,9 @@ class _Phase:
         self.levels = self.breakpoints()
         self.within_reach = np.ones((len(self.levels), size), dtype=bool)
         self.depth = encounter.depth
-        self.march = np.zeros(size)  # duration of the next stretch of a drop that can't aim at its end yet
-        self.pace = np.zeros(size)  # the last such duration that was good
-        self.stretches = np.zeros(size, dtype=int)  # tried so far
+        self.march = np.zeros(size)  # duration of the next stretch of drops that are marched
+        self.pace = np.zeros(size)  # the last such duration that was accepted
+        self.stretches = np.zeros(size, dtype=int)  # attempted so far
 
     @property
     def law(self) -> CompliantLaw:
@@ -83,7 +82,7 @@ class _Phase:
         while (moving := np.flatnonzero(self.outcome < RELEASED)).size:
             self.stretches[moving] += 1
             self.outcome[self.stretches > _MOST_STRETCHES] = FAILED
-            for code, advance in ((COMPRESSION, self.compress), (RESTITUTION, self.restore), (GLIDE, self.glide)):
+            for code, advance in ((COMPRESSION, self.compress), (RESTITUTION, self.rebound), (GLIDE, self.glide)):
                 drops = moving[self.outcome[moving] == code]
                 if drops.size:
                     advance(drops)
@@ -104,7 +103,7 @@ class _Phase:
     # one advance of a group of drops -------------------------------------------------------------
 
     def compress(self, drops: Drops) -> None:
-        """Move drops on towards the next breakpoint that they can reach, or to the deepest point."""
+        """Advance drops in compression to the next breakpoint within reach, or to the deepest point."""
         level = np.full(len(drops), np.inf)
         for index, levels in reversed(list(enumerate(self.levels))):
             sought = self.within_reach[index, drops] | (self.march[drops] > 0.0)
@@ -118,8 +117,8 @@ class _Phase:
                 if (both := here & there).any():
                     self.advance(drops[both], time_map, aim, level[both])
 
-    def restore(self, drops: Drops) -> None:
-        """Move drops on towards the next breakpoint below, or to where the surfaces part."""
+    def rebound(self, drops: Drops) -> None:
+        """Advance drops in restitution to the next breakpoint below, or to separation."""
         level = self.encounter.floor[drops]
         for levels in self.levels:
             ahead = (levels[drops] < self.delta[drops]) & (levels[drops] > level)
@@ -131,27 +130,27 @@ class _Phase:
                 self.advance(drops[here], time_map, "indentation", level[here])
 
     def advance(self, drops: Drops, time_map: Map, aim: Aim, level: Floats) -> None:
-        """Solve one stretch, aimed at its end or, for drops that are marching, of a given duration."""
+        """Solve one stretch up to its end or, for drops that are marched, of a given duration."""
         marching = self.march[drops] > 0.0
         if marching.any():
-            self.step(drops[marching], "touch" if time_map == "touch" else "inside", aim, level[marching])
+            self.march_on(drops[marching], "touch" if time_map == "touch" else "inside", aim, level[marching])
             drops, level = drops[~marching], level[~marching]
         early = self.warm_starts.knows(("release", "force"), self.ids[drops])
         early &= (self.outcome[drops] == RESTITUTION) & (self.velocity[drops] == 0.0)
-        if early.any():  # the last impact stopped pushing at this stage: look for that first
+        if early.any():  # in the last impact the force became zero here: try that event first
             stretch = self.aimed(drops[early], "release", "force", level[early])
             good = self.good(drops[early], stretch) & (stretch.node_delta[-1] > level[early])
-            good &= ~pulls_before_end(self.encounter.take(drops[early]), stretch)  # else it is a later zero of the force
+            good &= ~tensile_before_end(self.encounter.take(drops[early]), stretch)  # otherwise it is a later zero of the force
             self.warm_starts.forget(("release", "force"), self.ids[drops[early][~good]])
             if good.any():
                 self.accept(drops[early][good], stretch.take(good), "force", level[early][good])
             early[early] = good
             drops, level = drops[~early], level[~early]
         if drops.size:
-            self.recover(drops, self.aimed(drops, time_map, aim, level), aim, level)
+            self.accept_or_march(drops, self.aimed(drops, time_map, aim, level), aim, level)
 
     def aimed(self, drops: Drops, time_map: Map, aim: Aim, level: Floats) -> Stretch:
-        """Solve a stretch to its end, from the last impact's solution or a sinusoidal guess."""
+        """Return a stretch up to its end, started from the last impact's solution or from a sinusoidal motion."""
         encounter, kind, ids = self.encounter.take(drops), (time_map, aim), self.ids[drops]
         duration = time_scale(encounter, self.delta[drops], self.velocity[drops], aim, level)
         known = self.warm_starts.knows(kind, ids)
@@ -168,7 +167,7 @@ class _Phase:
         return stretch
 
     def remember(self, drops: Drops, stretch: Stretch, aim: Aim, scale: Floats, start: WarmStart) -> None:
-        """Keep a solution for the next impact, in units of the time scale of its kind."""
+        """Store a solution for the next impact, scaled by the time scale of its kind."""
         accelerations = stretch.node_acceleration / acceleration_unit(self.encounter.take(drops), stretch.velocity, scale)
         unknowns = np.concatenate([accelerations, (stretch.duration / scale)[None]])
         solved = stretch.solved
@@ -182,19 +181,19 @@ class _Phase:
     def rule(self, time_map: Map) -> Rule:
         return collocation_rule(self.number, time_map, self.law.root)
 
-    # what becomes of a solved stretch ------------------------------------------------------------
+    # after a stretch is solved ------------------------------------------------------------
 
-    def recover(self, drops: Drops, stretch: Stretch, aim: Aim, level: Floats) -> None:
-        """Accept an aimed stretch for the drops for which it holds; let the others march."""
+    def accept_or_march(self, drops: Drops, stretch: Stretch, aim: Aim, level: Floats) -> None:
+        """Accept a stretch up to its end for the drops for which it is valid; let the others march."""
         good = self.good(drops, stretch)
         if aim == "turn":
-            for index, levels in enumerate(self.levels):  # a breakpoint that was within reach after all
+            for index, levels in enumerate(self.levels):  # a breakpoint that was passed although it was thought out of reach
                 run_over = (levels[drops] > self.delta[drops]) & (levels[drops] < stretch.node_delta[-1]) & good
                 self.within_reach[index, drops[run_over]] = True
                 good &= ~run_over
         if aim == "indentation":
             missed = ~good & (self.outcome[drops] == COMPRESSION)
-            for index, levels in enumerate(self.levels):  # a breakpoint that damping keeps out of reach
+            for index, levels in enumerate(self.levels):  # a breakpoint that is not reached because of damping
                 self.within_reach[index, drops[missed & (levels[drops] == level)]] = False
             lost = drops[~good & ~missed]
         else:
@@ -205,7 +204,7 @@ class _Phase:
             self.accept(drops[good], stretch.take(good), aim, level[good])
 
     def good(self, drops: Drops, stretch: Stretch) -> Bools:
-        """Is the stretch resolved, does the rate keep its sign, and does the indentation stay positive?"""
+        """Return whether the stretch is resolved, its indentation rate keeps its sign, and its indentation stays positive."""
         slack = 1e-12 * self.encounter.approach_speed[drops]
         down = self.outcome[drops] == COMPRESSION
         one_way = np.where(down, stretch.node_velocity.min(axis=0) >= -slack, stretch.node_velocity.max(axis=0) <= slack)
@@ -215,31 +214,31 @@ class _Phase:
     def resolved(self, drops: Drops, stretch: Stretch) -> Bools:
         return stretch.resolved(self.encounter.take(drops), self.tolerance)
 
-    def pushes_no_more(self, drops: Drops) -> Bools:
-        """Does the law pull already where the drops are, or not push?"""
+    def has_no_push(self, drops: Drops) -> Bools:
+        """Return whether the force is zero or tensile at the present state of the drops."""
         here = self.encounter.take(drops)
         return np.asarray(here.acceleration(self.delta[drops], self.velocity[drops]) >= here.gravity)
 
-    def stop_pushing(self, drops: Drops) -> None:
-        """Let drops go whose force has become zero: out of the indentation or, where the contact ends with that, out of the contact."""
+    def end_push(self, drops: Drops) -> None:
+        """Begin the glide of drops whose force has become zero, or end their contact where the law ends it there."""
         self.outcome[drops] = GLIDE if self.law.contact_end == "zero-indentation" else RELEASED
         self.march[drops] = self.pace[drops] = 0.0
 
     def accept(self, drops: Drops, stretch: Stretch, aim: Aim, level: Floats) -> None:
-        """Take a stretch into the history, unless the force that may not pull has become zero on the way."""
+        """Append a stretch to the history, unless the force of a law without tension becomes zero within it."""
         restoring = self.outcome[drops] == RESTITUTION
         if self.law.tension == "cut" and aim != "force" and restoring.any():
-            first = first_pull(self.encounter.take(drops), stretch, on_the_way_out=aim == "indentation")
+            first = first_tension(self.encounter.take(drops), stretch, on_the_way_out=aim == "indentation")
             first[~restoring] = np.inf
             early = np.isfinite(first)
-            over = early & self.pushes_no_more(drops)
-            if over.any():  # too little to be seen in the stretch before
-                self.stop_pushing(drops[over])
+            over = early & self.has_no_push(drops)
+            if over.any():  # tension too small to be resolved in the stretch before
+                self.end_push(drops[over])
                 drops, stretch, level = drops[~over], stretch.take(~over), level[~over]
                 first, early = first[~over], early[~over]
             if early.any():
                 some = stretch.take(early)
-                self.redo(drops[early], some, some.rule.map_time(first[early]), "force", level[early])
+                self.solve_to_event(drops[early], some, some.rule.map_time(first[early]), "force", level[early])
                 drops, stretch, level = drops[~early], stretch.take(~early), level[~early]
         if not drops.size:
             return
@@ -250,12 +249,12 @@ class _Phase:
         compressing = self.outcome[drops] == COMPRESSION
         if aim == "turn":
             self.turn(drops[compressing])
-            self.outcome[drops[~compressing]] = CAPTURED  # it falls back before it is out
+            self.outcome[drops[~compressing]] = CAPTURED  # it falls back before separation
         elif aim == "force":
-            self.stop_pushing(drops)
+            self.end_push(drops)
         elif aim == "indentation":
             self.outcome[drops[~compressing & (level == self.encounter.floor[drops])]] = RELEASED
-        else:  # go on marching, unless the end has come near enough to aim at
+        else:  # continue to march, unless the end is near enough to be reached in one stretch
             end = (level - self.delta[drops]) / self.velocity[drops]
             left = np.where(np.isinf(level), -self.velocity[drops] / stretch.node_acceleration[-1], end)
             near = (left > 0.0) & (left < 2.0 * self.pace[drops])
@@ -265,7 +264,7 @@ class _Phase:
         self.capture(drops)
 
     def turn(self, drops: Drops) -> None:
-        """Begin restitution at the deepest point, with a law that remembers it."""
+        """Begin restitution at the deepest point, with the memory of the law updated."""
         self.outcome[drops] = RESTITUTION
         self.max_delta[drops], self.time_of_max_delta[drops] = self.delta[drops], self.time[drops]
         self.plastic[drops] += self.encounter.take(drops).law.plastic_work(self.delta[drops])
@@ -276,22 +275,22 @@ class _Phase:
             self.encounter = self.encounter.under(law)
             self.levels = self.breakpoints()
             here = self.encounter.take(drops)
-            weak = here.acceleration(self.delta[drops], np.zeros(len(drops))) >= 0.0  # it pushes no more than the weight
+            weak = here.acceleration(self.delta[drops], np.zeros(len(drops))) >= 0.0  # the force does not exceed the weight
             self.outcome[drops[weak]] = CAPTURED
 
     def capture(self, drops: Drops) -> None:
-        """End the contact of drops that can't get out any more.
+        """End the contact of drops that cannot separate any more.
 
-        No law gives energy, so a sphere on its way out that has less than it takes to lift it out of the
-        indentation, with a separation speed of `tolerance` times the speed scale, stays. One on its way in may
-        creep towards its static indentation and never turn; it is followed until it is there, or as slow as that.
+        No law adds energy, so a sphere in restitution whose energy does not suffice to leave the indentation with a
+        separation speed of `tolerance` times the speed scale is captured. In compression a sphere may creep towards
+        its static indentation without turning; it is followed until it is there, or as slow as that.
         """
         drops = drops[self.outcome[drops] < RELEASED]
         if not drops.size:
             return
         encounter, delta = self.encounter.take(drops), self.delta[drops]
         weight = encounter.mass * encounter.gravity
-        # on the way in, what goes into plastic deformation is no loss yet: the static force is all that acts
+        # in compression plastic work is not yet a loss: only the static force matters
         energy = 0.5 * encounter.mass * self.velocity[drops] ** 2 + static_work(encounter.law, delta) - weight * delta
         way_out = encounter.law.elastic_energy(encounter.floor) - weight * encounter.floor
         held = energy < way_out + self.least_energy[drops]
@@ -306,8 +305,8 @@ class _Phase:
             held &= ~sinking | there
         self.outcome[drops[held]] = CAPTURED
 
-    def redo(self, drops: Drops, stretch: Stretch, fraction: Floats, aim: Aim, level: Floats) -> None:
-        """Solve part of a stretch again, to an event that was seen near a fraction of its duration."""
+    def solve_to_event(self, drops: Drops, stretch: Stretch, fraction: Floats, aim: Aim, level: Floats) -> None:
+        """Solve part of a stretch again, up to an event that was detected near a fraction of its duration."""
         time_map: Map = "touch" if stretch.rule.time_map == "touch" else "inside"
         if aim == "force" or (aim == "indentation" and np.all(level == self.encounter.floor[drops])):
             time_map = "release"
@@ -325,19 +324,19 @@ class _Phase:
             self.remember(drops, again, aim, scale, start)
         good = self.resolved(drops, again)
         if aim == "force":
-            good &= ~pulls_before_end(self.encounter.take(drops), again) & (again.node_delta[-1] > self.encounter.floor[drops])
-        self.refuse(drops[~good], 0.5 * duration[~good])
+            good &= ~tensile_before_end(self.encounter.take(drops), again) & (again.node_delta[-1] > self.encounter.floor[drops])
+        self.shorten(drops[~good], 0.5 * duration[~good])
         if good.any():
             self.accept(drops[good], again.take(good), aim, level[good])
 
-    def step(self, drops: Drops, time_map: Map, aim: Aim, level: Floats) -> None:
-        """Advance marching drops by a stretch of given duration, or to the event inside it."""
+    def march_on(self, drops: Drops, time_map: Map, aim: Aim, level: Floats) -> None:
+        """Advance drops that are marched by a stretch of given duration, or up to the event inside it."""
         duration, rule = self.march[drops], self.rule(time_map)
-        steady = np.zeros((self.number + 1, len(drops)))  # no acceleration: a guess that stiff damping can't send astray
+        steady = np.zeros((self.number + 1, len(drops)))  # zero acceleration: a starting value that is safe under stiff damping
         steady[-1] = 1.0
         stretch = self.solve(drops, time_map, duration, WarmStart(steady), "duration", level)
         good = self.resolved(drops, stretch)
-        self.refuse(drops[~good], 0.25 * duration[~good])
+        self.shorten(drops[~good], 0.25 * duration[~good])
 
         compressing = self.outcome[drops] == COMPRESSION
         turned = np.where(compressing, stretch.node_velocity < 0.0, stretch.node_velocity > 0.0)
@@ -356,14 +355,14 @@ class _Phase:
         for these, first, end in events:
             here = good & event & these
             if here.any():
-                self.redo(drops[here], stretch.take(here), rule.time[first[here]], end, level[here])
+                self.solve_to_event(drops[here], stretch.take(here), rule.time[first[here]], end, level[here])
 
-    def refuse(self, drops: Drops, duration: Floats) -> None:
-        """Shorten the next stretch of drops whose last was not good."""
+    def shorten(self, drops: Drops, duration: Floats) -> None:
+        """Shorten the next stretch of drops whose last one was rejected."""
         self.march[drops] = self.pace[drops] = duration
 
     def glide(self, drops: Drops) -> None:
-        """Move drops freely until the law pushes again or they are out of the indentation."""
+        """Advance drops in free motion until the force is positive again or the surfaces separate."""
         motion, pushes, stays = glide_until_push(self.encounter.take(drops), self.delta[drops], self.velocity[drops])
         self.pieces.append(Piece(drops, self.time[drops], motion, self.law))
         self.dissipated[drops] += self.encounter.take(drops).law.elastic_energy(self.delta[drops])
@@ -378,5 +377,5 @@ class _Phase:
         self.dissipated[drops] += stretch.dissipated
 
     def span(self, drops: Drops) -> Floats:
-        """Return a time scale of the contact [s], to begin marching with."""
+        """Return the time scale of the contact [s], the first duration of marching."""
         return np.asarray(self.depth[drops] / np.maximum(self.encounter.speed_scale[drops], np.abs(self.velocity[drops])))

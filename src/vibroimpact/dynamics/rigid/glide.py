@@ -1,4 +1,4 @@
-"""Free motion inside an indentation, after a law that may not pull has stopped pushing."""
+"""Free motion within the indentation, where the force of a law without tension is zero."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _STEPS = 4
 class Glide:
     """Motion under gravity alone of b drops: duration [s], indentation [m] and rate [m/s] at its start.
 
-    `floor`: the least indentation, where the bodies part [m].
+    `floor`: the indentation at separation [m].
     """
 
     duration: Floats
@@ -36,22 +36,22 @@ class Glide:
         return Glide(self.duration[drops], self.delta[drops], self.velocity[drops], self.gravity[drops], self.floor[drops])
 
     def end(self) -> tuple[Floats, Floats]:
-        """Return indentation and rate at the end; one that differs from the floor by rounding is at it."""
+        """Return indentation [m] and rate [m/s] at the end; an indentation at the floor to rounding is set to it."""
         delta, velocity = self.at(self.duration)
         return np.where(delta - self.floor < 1e-14 * (self.delta - self.floor), self.floor, delta), velocity
 
 
 def glide_until_push(encounter: Encounter, delta: Floats, velocity: Floats) -> tuple[Glide, Bools, Bools]:
-    """Follow drops freely until the law's force becomes positive again, or they are out.
+    """Return the free motion of drops until the force of the law becomes positive again, or the surfaces separate.
 
     Returns
     -------
     glide : Glide
         The motion.
     pushes : array of bool, shape (B,)
-        Whether it ended because the law pushes again.
+        Whether it ends because the force becomes positive.
     stays : array of bool, shape (B,)
-        Whether gravity turns the drop back before it is out.
+        Whether gravity turns the motion before separation.
     """
     gravity, above = encounter.gravity, delta - encounter.floor
     inside = velocity * velocity - 2.0 * gravity * above
@@ -66,14 +66,14 @@ def glide_until_push(encounter: Encounter, delta: Floats, velocity: Floats) -> t
         return np.asarray(elastic + dissipative)
 
     fraction = np.linspace(0.0, 1.0, _SAMPLES)[1:, None]
-    times = out * (fraction * (2.0 - fraction))  # dense near the end, where a law fades
+    times = out * (fraction * (2.0 - fraction))  # dense near the end, where the force is small
     positive = push(times) > 0.0
-    positive[-1] = False  # where the bodies part there is no force, only its rounding
+    positive[-1] = False  # at separation the force is zero to rounding
     pushes = positive.any(axis=0)
     index = positive.argmax(axis=0)
     column = np.arange(len(delta))
     late = times[index, column]
-    if (pushes & (index > 0)).any():  # the force is zero there, so that what the motion is off by goes with the square
+    if (pushes & (index > 0)).any():  # the force is zero there: an error of the time enters the motion with its square
         low, high = times[np.maximum(index - 1, 0), column], late
         aside, late = 1e-6 * (high - low), np.where(index > 0, 0.5 * (low + high), late)
         for _ in range(_STEPS):

@@ -10,20 +10,20 @@ from vibroimpact.dynamics.contact import Contact
 from vibroimpact.dynamics.encounter import Encounter
 from vibroimpact.dynamics.rigid.stretch import Stretch, WarmStart, acceleration_unit, solve_stretch
 
-_PARABOLAS = 8  # two or three are what it takes
-_COARSE = 1e-6  # last terms, relative, from which on the inside of a stretch is not exact enough for the peak
+_PARABOLAS = 8  # two or three suffice
+_COARSE = 1e-6  # relative size of the last coefficients above which the interpolant is not accurate enough for the peak
 _FINE = 1.0 / 256.0  # half the span of a parabola, as a part of the spacing of the interpolant
 
 
 def force_peak(contact: Contact, encounter: Encounter) -> tuple[Floats, Floats]:
-    """Return the largest contact force [N] of each drop and when it is reached, since first touch [s].
+    """Return the largest contact force of each drop [N] and its time since first touch [s].
 
     The acceleration is least there. Its interpolant says where to look, and the law, at the motion there, what
     it is: the motion is an integral, so more exact than the interpolant. Where that is not enough, the motion is
     solved anew up to there.
     """
     size = len(encounter.mass)
-    stretches = [(piece, piece.motion) for piece in contact.pieces if isinstance(piece.motion, Stretch)]  # a glide is free of force
+    stretches = [(piece, piece.motion) for piece in contact.pieces if isinstance(piece.motion, Stretch)]  # in a glide there is no force
     lows = [np.minimum(_sampled(motion).min(axis=0), motion.node_acceleration.min(axis=0)) for _, motion in stretches]
     lowest = np.full(size, np.inf)
     for (piece, _), low in zip(stretches, lows, strict=True):
@@ -52,7 +52,7 @@ def _sampled(stretch: Stretch) -> Floats:
 
 
 def _least_acceleration(stretch: Stretch, encounter: Encounter) -> tuple[Floats, Floats]:
-    """Return the least acceleration in a stretch, of each drop, and its x.
+    """Return the least acceleration of each drop in a stretch [m/s^2], and its x.
 
     Parabolas through three points home in on it from where the interpolant is least, until its vertex lies between them.
     """
@@ -60,7 +60,7 @@ def _least_acceleration(stretch: Stretch, encounter: Encounter) -> tuple[Floats,
     column, spacing = np.arange(grid.shape[1]), 1.0 / (len(grid) - 1)
     centre, finer = np.clip(grid.argmin(axis=0), 1, len(grid) - 2), spacing * _FINE
     at = centre * spacing + _vertex(grid[centre - 1, column], grid[centre, column], grid[centre + 1, column], spacing, spacing)
-    node = values.argmin(axis=0)  # at the start and the nodes the acceleration is exact
+    node = values.argmin(axis=0)  # at the start and the nodes the acceleration is that of the law
     least, x = encounter.acceleration(stretch.delta, stretch.velocity), np.zeros(len(column))
     least, x = _lower(least, x, values[node, column], rule.nodes[node])
     for _ in range(_PARABOLAS):
@@ -77,13 +77,13 @@ def _least_acceleration(stretch: Stretch, encounter: Encounter) -> tuple[Floats,
 
 
 def _lower(least: Floats, x: Floats, other: Floats, other_x: Floats) -> tuple[Floats, Floats]:
-    """Return the lower of two accelerations, and where it is."""
+    """Return the lower of two accelerations, and its place."""
     lower = other < least
     return np.where(lower, other, least), np.where(lower, other_x, x)
 
 
 def _solved_until(stretch: Stretch, encounter: Encounter, x: Floats, drops: Drops) -> Floats:
-    """Return the accelerations of some drops at their x in a stretch, from a stretch that ends there.
+    """Return the accelerations of some drops at their x in a stretch, by solving a stretch that ends there.
 
     The end of a stretch is off by the square of what its inside is off by.
     """
@@ -99,7 +99,7 @@ def _solved_until(stretch: Stretch, encounter: Encounter, x: Floats, drops: Drop
 
 
 def _accelerations(stretch: Stretch, encounter: Encounter, x: Floats) -> Floats:
-    """Return the accelerations of each drop at its own few x (k, B)."""
+    """Return the interpolated accelerations of each drop at its own places x (k, B)."""
     weights = stretch.rule.weights(x)
     delta = weights[0] * stretch.delta + (weights[1:] * stretch.node_delta[:, None]).sum(axis=0)
     velocity = weights[0] * stretch.velocity + (weights[1:] * stretch.node_velocity[:, None]).sum(axis=0)
@@ -107,7 +107,7 @@ def _accelerations(stretch: Stretch, encounter: Encounter, x: Floats) -> Floats:
 
 
 def _vertex(left: Floats, middle: Floats, right: Floats, spacing: float, most: float) -> Floats:
-    """Return how far from the middle the lowest point lies of the parabola through three points, at most `most`."""
+    """Return the distance of the minimum of a parabola through three points from the middle one, at most `most`."""
     fall, curvature = left - right, left - 2.0 * middle + right
     with np.errstate(all="ignore"):
         shift = 0.5 * spacing * fall / curvature

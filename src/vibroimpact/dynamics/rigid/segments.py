@@ -1,4 +1,4 @@
-"""The history of one drop as a row of segments, each of which can be asked at any time within it.
+"""The history of one drop as a sequence of segments, each of which gives the motion at any time within it.
 
 A segment counts time from its own start: a contact may be a billion times shorter than the run.
 """
@@ -31,7 +31,7 @@ class FlightSegment:
     flight: Flight
 
     def grid(self) -> Floats:
-        """Times since its start that draw the segment well [s]."""
+        """Return times since the start at which the segment is well resolved [s]."""
         return np.linspace(0.0, self.end - self.start, 49)
 
     def at(self, time: Floats) -> Motion:
@@ -43,7 +43,7 @@ class FlightSegment:
 
 @dataclass(frozen=True)
 class ContactSegment:
-    """A part of the contact of one drop that was solved at once, in time or in the phase plane, and its `Encounter`, of one."""
+    """A part of the contact of one drop that was solved as a whole, in time or in the phase plane, and its `Encounter`."""
 
     start: float
     end: float
@@ -52,11 +52,11 @@ class ContactSegment:
 
     @property
     def duration(self) -> Floats:
-        """How long it lasts [s], (1,)."""
+        """Return the duration [s] (1,)."""
         return self.motion.duration
 
     def grid(self) -> Floats:
-        """Times since its start that draw the segment well [s]."""
+        """Return times since the start at which the segment is well resolved [s]."""
         return self.motion.grid()
 
     def at(self, time: Floats) -> Motion:
@@ -72,7 +72,7 @@ class ContactSegment:
 
 @dataclass(frozen=True)
 class GlideSegment:
-    """Free motion of one drop inside an indentation."""
+    """Free motion of one drop within the indentation."""
 
     start: float
     end: float
@@ -81,11 +81,11 @@ class GlideSegment:
 
     @property
     def duration(self) -> Floats:
-        """How long it lasts [s], (1,)."""
+        """Return the duration [s] (1,)."""
         return self.glide.duration
 
     def grid(self) -> Floats:
-        """Times since its start that draw the segment well [s]."""
+        """Return times since the start at which the segment is well resolved [s]."""
         return np.linspace(0.0, float(self.glide.duration[0]), 17)
 
     def at(self, time: Floats) -> Motion:
@@ -107,7 +107,7 @@ class RestSegment:
     stored: float
 
     def grid(self) -> Floats:
-        """Times since its start that draw the segment well [s]."""
+        """Return times since the start at which the segment is well resolved [s]."""
         return np.array([0.0, self.end - self.start])
 
     def at(self, time: Floats) -> Motion:

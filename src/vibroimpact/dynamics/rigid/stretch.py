@@ -1,4 +1,4 @@
-"""A stretch of contact solved at once by Newton's method on the collocation equations."""
+"""A stretch of contact, solved by Newton's method on the collocation equations."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from vibroimpact.dynamics.encounter import Encounter
 from vibroimpact.dynamics.linear_equations import inverses
 
 Aim = Literal["duration", "turn", "indentation", "force"]
-"""What ends a stretch: its duration is given, or it ends where the indentation rate is zero, where the
-indentation has a given level, or where the contact force is zero."""
+"""The end of a stretch: a given duration, or the point where the indentation rate is zero, the indentation has a
+given level, or the contact force is zero."""
 
 _CONVERGED = 1e-13
-_STALLED = 1e-11  # good enough where rounding keeps the last digits from settling
+_STALLED = 1e-11  # accepted where rounding prevents further convergence
 _SHARED_SWEEPS = 30
 _REFRESHES = 5
 _OWN_SWEEPS = 12
@@ -43,7 +43,7 @@ class Stretch:
     solved: Bools
 
     def resolved(self, encounter: Encounter, tolerance: float) -> Bools:
-        """Is the stretch solved, and its error within a relative tolerance?
+        """Return whether the stretch is solved, with an error within a relative tolerance.
 
         Two measures that know nothing of each other: the last Legendre coefficients of the acceleration, with
         whose square the error at the end goes, and the balance of energy over the stretch.
@@ -56,24 +56,24 @@ class Stretch:
         scale = mass * encounter.speed_scale**2
         rounding = _rounding(encounter) * mass * np.abs(self.node_acceleration).max(axis=0)
         closes = np.abs(gain + self.dissipated) <= np.maximum(0.1 * tolerance * scale, rounding)
-        # an acceleration that changes no speed need not be resolved: of a creeping sphere it is but rounding
+        # an acceleration too small to change the speed need not be resolved: of a creeping sphere it is rounding
         needed = np.abs(self.node_velocity).max(axis=0) / self.duration
         smooth = self.rule.tail(self.node_acceleration, needed) ** 2 <= tolerance
         return np.asarray(self.solved & (self.duration > 0.0) & closes & smooth)
 
     @property
     def begins_at(self) -> float:
-        """The indentation at which it begins, of one drop [m]."""
+        """Return the indentation at its start, of one drop [m]."""
         return float(self.delta[0])
 
     def grid(self) -> Floats:
-        """Return times since its start that draw the motion of one drop well [s]."""
+        """Return times since the start at which the motion of one drop is well resolved [s]."""
         return np.asarray(self.duration[0] * self.rule.map_time(np.linspace(0.0, 1.0, 61)))
 
     def at(self, time: Floats, encounter: Encounter) -> tuple[Floats, Floats, Floats]:
-        """Return indentation [m], its rate [m/s] and the loss since the start [J] of one drop at times since then [s]."""
+        """Return indentation [m], its rate [m/s] and the energy dissipated since the start [J] of one drop at times since then [s]."""
         x = self.rule.unmap_time(time / self.duration[0])
-        # the power is a product of two that N nodes resolve: it takes 2 N
+        # the power is a product of two polynomials of degree N: it needs 2 N nodes
         finer = collocation_rule(2 * len(self.rule.nodes), self.rule.time_map, self.rule.root)
         delta, velocity = self._motion(finer.nodes, encounter)
         _, dissipative = encounter.law.forces(delta, velocity, encounter.approach_speed)
@@ -104,7 +104,7 @@ class Stretch:
 
 @dataclass
 class WarmStart:
-    """Where Newton's method starts: the dimensionless unknowns, and the inverse Jacobian of a like stretch.
+    """Starting values of Newton's method: the dimensionless unknowns, and the inverse Jacobian of a similar stretch.
 
     Impacts resemble the ones before: in units of its own speed and time scale, the solution of one is a
     good guess for the next, and so is its Jacobian.
@@ -216,7 +216,7 @@ class _Newton:
         return residual, delta, velocity, acceleration
 
     def improve_together(self, unknowns: Floats, start: WarmStart) -> Bools:
-        """Improve `unknowns` in place with one Jacobian for all; return which drops got there."""
+        """Iterate on `unknowns` in place with one Jacobian for all drops; return which drops have converged."""
         middle = unknowns.shape[1] // 2
         scale = 1.0 + np.abs(unknowns).max()
         change = np.full(unknowns.shape[1], np.inf)
@@ -240,7 +240,7 @@ class _Newton:
         return np.asarray(change < self.settled)
 
     def improve_each(self, unknowns: Floats) -> Bools:
-        """Improve `unknowns` in place with a Jacobian a drop; return which drops got there."""
+        """Iterate on `unknowns` in place with a Jacobian for each drop; return which drops have converged."""
         everyone = np.arange(unknowns.shape[1])
         change = np.full(unknowns.shape[1], np.inf)
         for _ in range(_OWN_SWEEPS):
@@ -253,7 +253,7 @@ class _Newton:
 
     @staticmethod
     def apply(unknowns: Floats, step: Floats) -> Floats:
-        """Subtract a step in place, the duration changed no more than threefold; return the size of the whole step."""
+        """Subtract a step in place, with the change of the duration limited to a factor of three; return the size of the unlimited step."""
         size = np.abs(step).max(axis=0)
         limit = unknowns[-1] * (2.0 / 3.0)
         np.minimum(step[-1], limit, out=step[-1])
@@ -295,5 +295,5 @@ class _Newton:
 
 
 def _rounding(encounter: Encounter) -> Floats:
-    """Return what rounding takes from indentations in a dent [m], which is much if it is deep and touched softly."""
+    """Return the rounding error of indentations in a dent [m], which is large where the dent is deep and the contact soft."""
     return np.asarray(16.0 * np.finfo(float).eps * np.abs(encounter.floor))

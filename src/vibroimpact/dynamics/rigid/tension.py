@@ -1,4 +1,4 @@
-"""Where in a stretch a law pulls, be it between two nodes: a law whose tension is cut has stopped pushing there."""
+"""Tension within a stretch, also between nodes: the force of a law whose tension is cut is zero from there on."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from vibroimpact.dynamics.encounter import Encounter
 from vibroimpact.dynamics.rigid.stretch import Stretch
 
 
-def first_pull(encounter: Encounter, stretch: Stretch, *, on_the_way_out: bool = False) -> Floats:
-    """Return the x at which the law first pulls in a stretch (b,), beyond rounding; infinite where nowhere.
+def first_tension(encounter: Encounter, stretch: Stretch, *, on_the_way_out: bool = False) -> Floats:
+    """Return the x of the first tension in a stretch beyond rounding (b,); infinite where there is none.
 
     With `on_the_way_out` the stretch ends at next to no indentation, where a law that ends with its force should not have come.
     """
@@ -22,8 +22,8 @@ def first_pull(encounter: Encounter, stretch: Stretch, *, on_the_way_out: bool =
     return np.asarray(np.minimum(at_node, _between_nodes(encounter, stretch)))
 
 
-def pulls_before_end(encounter: Encounter, stretch: Stretch) -> Bools:
-    """Does the law pull before the end of the stretch?"""
+def tensile_before_end(encounter: Encounter, stretch: Stretch) -> Bools:
+    """Return whether the force is tensile before the end of the stretch."""
     return np.asarray(_at_nodes(encounter, stretch)[:-1].any(axis=0) | np.isfinite(_between_nodes(encounter, stretch)))
 
 
@@ -32,7 +32,7 @@ def _at_nodes(encounter: Encounter, stretch: Stretch) -> Bools:
 
 
 def _between_nodes(encounter: Encounter, stretch: Stretch) -> Floats:
-    """Return the x where the pull has its first top; parabolas through evenly spaced points tell how high it is."""
+    """Return the x of the first maximum of the tension; its height is that of parabolas through evenly spaced points."""
     rule = stretch.rule
     delta, velocity = np.maximum(rule.dense @ stretch.node_delta, encounter.floor), rule.dense @ stretch.node_velocity
     pull = encounter.acceleration(delta, velocity) - encounter.gravity
@@ -46,5 +46,5 @@ def _between_nodes(encounter: Encounter, stretch: Stretch) -> Floats:
 
 
 def _rounding(encounter: Encounter, stretch: Stretch) -> Floats:
-    """Return what rounding can make of an acceleration [m/s^2]."""
+    """Return the rounding error of an acceleration [m/s^2]."""
     return np.asarray(1e-11 * (np.abs(stretch.node_acceleration).max(axis=0) + encounter.approach_speed / stretch.duration))

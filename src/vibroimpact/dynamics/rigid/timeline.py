@@ -1,4 +1,4 @@
-"""The history of one drop between rigid bodies, as a row of segments in order."""
+"""The history of one drop of rigid bodies as a sequence of segments in order of time."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from vibroimpact.dynamics.rigid.stretch import Stretch
 
 @dataclass(frozen=True, eq=False)
 class Timeline(Sequence[Segment]):
-    """Segments that are made of the legs of a run when they are asked for: of a hundred thousand impacts they would take 1 GB.
+    """Segments made lazily from the legs of a run, since those of a hundred thousand impacts would take 1 GB.
 
     Parameters
     ----------
@@ -55,7 +55,7 @@ class Timeline(Sequence[Segment]):
         leg = int(np.searchsorted(self._firsts, number, side="right")) - 1
         if self.rest is not None and leg == len(self.legs):
             return self.rest
-        if leg not in self._recent:  # neighbours are asked for one after the other
+        if leg not in self._recent:  # segments are mostly read in order
             self._recent.clear()
             self._recent[leg] = segments_of(self.legs[leg])
         return self._recent[leg][number - int(self._firsts[leg])]
@@ -110,5 +110,5 @@ def segments_of(leg: Leg) -> list[Segment]:
 
 
 def end_of(leg: Leg) -> float:
-    """Return when a leg of one drop ends [s]."""
+    """Return the end time of a leg of one drop [s]."""
     return segments_of(leg)[-1].end

@@ -1,17 +1,40 @@
-"""What Newton's method starts from where nothing is known: an undamped, sinusoidal motion."""
+"""Starting values of Newton's method: solutions of a run's last contacts, or an undamped, sinusoidal motion."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from vibroimpact.arrays import Floats
-from vibroimpact.dynamics.collocation import Rule
+from vibroimpact.arrays import Bools, Drops, Floats
+from vibroimpact.dynamics.collocation import Map, Rule
 from vibroimpact.dynamics.encounter import Encounter
-from vibroimpact.dynamics.rigid.stretch import Aim
+from vibroimpact.dynamics.rigid.stretch import Aim, WarmStart
+
+
+class WarmStarts:
+    """Dimensionless solutions of the last stretches of a run, one for each kind and drop."""
+
+    def __init__(self, size: int) -> None:
+        self.size = size
+        self.starts: dict[tuple[Map, Aim], WarmStart] = {}
+
+    def knows(self, kind: tuple[Map, Aim], ids: Drops) -> Bools:
+        """Return for which drops there is a solution of this kind."""
+        return np.isfinite(self.starts[kind].unknowns[-1, ids]) if kind in self.starts else np.zeros(len(ids), dtype=bool)
+
+    def forget(self, kind: tuple[Map, Aim], ids: Drops) -> None:
+        """Discard solutions that belong to a different motion."""
+        if kind in self.starts:
+            self.starts[kind].unknowns[:, ids] = np.nan
+
+    def keep(self, kind: tuple[Map, Aim], ids: Drops, unknowns: Floats, inverse: Floats | None) -> None:
+        """Store a solution."""
+        if kind not in self.starts:
+            self.starts[kind] = WarmStart(np.full((len(unknowns), self.size), np.nan))
+        self.starts[kind].unknowns[:, ids], self.starts[kind].inverse = unknowns, inverse
 
 
 def time_scale(encounter: Encounter, delta: Floats, velocity: Floats, aim: Aim, level: Floats) -> Floats:
-    """Return how long the motion would take from an indentation [m] and its rate [m/s] to the end of a stretch [s]."""
+    """Return the estimated duration of a stretch [s], from indentation [m] and rate [m/s] at its start."""
     above, depth, end = delta - encounter.floor, encounter.depth - encounter.floor, level - encounter.floor
     if aim == "turn":
         begin = np.arcsin(np.minimum(above / depth, 0.999))
@@ -23,7 +46,7 @@ def time_scale(encounter: Encounter, delta: Floats, velocity: Floats, aim: Aim, 
 
 
 def first_guess(encounter: Encounter, rule: Rule, delta: Floats, velocity: Floats, duration: Floats, aim: Aim, level: Floats) -> Floats:
-    """Return the accelerations at the nodes of a stretch of that duration [m/s^2]."""
+    """Return the estimated accelerations at the nodes of a stretch of a given duration [m/s^2]."""
     above, depth, end = delta - encounter.floor, encounter.depth - encounter.floor, level - encounter.floor
     fraction = rule.time[:, None]
     if aim == "turn":
