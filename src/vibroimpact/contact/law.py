@@ -314,12 +314,12 @@ def unit_of(item: dataclasses.Field[Any], exponent: Any) -> str:
     return unit
 
 
-def loses_nothing(law: ContactLaw) -> bool:
+def is_conservative(law: ContactLaw) -> bool:
     """Is the law conservative, so that a ball bounces for ever?
 
     Examples
     --------
-    >>> loses_nothing(find_contact_law("newton")(restitution=1.0))
+    >>> is_conservative(find_contact_law("newton")(restitution=1.0))
     True
     """
     if isinstance(law, InstantaneousLaw):
