@@ -126,6 +126,7 @@ def solve_monotonic(
         trial = allowed.clip(value)
         found = function(trial)
         least, most = np.fmin(least, found), np.fmax(most, found)
+        # the first arguments found on either side of the wanted value bracket it
         low = np.where(np.isnan(low) & (found <= wanted), trial, low)
         high = np.where(np.isnan(high) & (found > wanted), trial, high)
         exact = np.abs(found - wanted) <= _RESIDUAL
@@ -137,7 +138,7 @@ def solve_monotonic(
     missed = np.isnan(low) | np.isnan(high)
     if missed.all():
         return MonotonicRoots(np.full_like(start, np.nan), least, most)
-    low, high = (np.where(missed, start, bound) for bound in (low, high))
+    low, high = (np.where(missed, start, bound) for bound in (low, high))  # those without a bracket are discarded at the end
     place = find_root(lambda value: function(value) - wanted, low, high, close=_RESIDUAL)
     discontinuous = ~(np.abs(function(place) - wanted) <= _JUMP)
     return MonotonicRoots(np.where(missed | discontinuous, np.nan, place), least, most)

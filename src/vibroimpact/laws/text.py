@@ -26,7 +26,7 @@ _ENDS = {
     "zero-force": "The contact is over when the bodies no longer push each other apart.",
     "pull-off": "The contact is over when the bodies have been torn apart.",
 }
-_PULLS = {
+_TENSION = {
     "none": "It never pulls.",
     "cut": "The formula would pull near the end; the force is cut at zero there.",
     "kept": "It may pull before the end.",
@@ -54,11 +54,11 @@ class LawText:
     ----------
     name, title, equation, source : str
         Its name, the first paragraph of its docstring, its equation, and its source.
-    loses_by : str
+    loss_parameters : str
         The parameters that set the energy loss.
-    end, pulls : str
+    end, tension : str
         Sentences on the end of the contact and on tension.
-    lasts : str
+    persistence : str
         Sentence on whether the state persists after the contact; "" without a state.
     body, notes, references, raises : tuple of str
         Paragraphs of the docstring; one entry per reference, and per line of Raises.
@@ -70,10 +70,10 @@ class LawText:
     title: str
     equation: str
     source: str
-    loses_by: str
+    loss_parameters: str
     end: str
-    pulls: str
-    lasts: str
+    tension: str
+    persistence: str
     body: tuple[str, ...]
     notes: tuple[str, ...]
     references: tuple[str, ...]
@@ -94,16 +94,16 @@ def law_text(law: type[ContactLaw]) -> LawText:
     --------
     >>> from vibroimpact.contact.law import find_contact_law
     >>> text = law_text(find_contact_law("flores"))
-    >>> text.source, text.loses_by, text.parameters[0].default
+    >>> text.source, text.loss_parameters, text.parameters[0].default
     ('Flores et al. 2011, Multibody Syst. Dyn. 25:357', 'restitution', 'from the materials')
     """
     sections = docstring_sections(law.__doc__ or law.name)
     title, *body = _paragraphs(sections[""])
-    end, pulls, lasts = "It is over at once: it has no duration and no force.", "", ""
+    end, tension, persistence = "It is over at once: it has no duration and no force.", "", ""
     if issubclass(law, CompliantLaw):
-        end, pulls = _ENDS[law.contact_end], _PULLS[law.tension]
+        end, tension = _ENDS[law.contact_end], _TENSION[law.tension]
         if any(item.metadata["memory"] for item in fields(law)):
-            lasts = (
+            persistence = (
                 "The state lasts: the next impact on the same spot goes on with it."
                 if law.lasting
                 else "The state does not outlast the contact: the next impact begins anew."
@@ -113,10 +113,10 @@ def law_text(law: type[ContactLaw]) -> LawText:
         title=title,
         equation=law.equation,
         source=law.source,
-        loses_by=_loses_by(law),
+        loss_parameters=_loss_parameters(law),
         end=end,
-        pulls=pulls,
-        lasts=lasts,
+        tension=tension,
+        persistence=persistence,
         body=tuple(body),
         notes=tuple(_paragraphs(sections.get("Notes", ""))),
         references=tuple(_paragraphs(sections.get("References", ""))),
@@ -167,7 +167,7 @@ def short_source(law: type[ContactLaw]) -> str:
     ('Johnson, Kendall & Roberts 1971', 'MSC Adams/Solver guide')
     """
     parts = law.source.split("; ")[0].split(",")
-    dated = [number for number, part in enumerate(parts, 1) if _is_year(part.split()[-1])]
+    dated = [number for number, part in enumerate(parts, 1) if _is_year(part.rpartition(" ")[2])]
     return ",".join(parts[: dated[0] if dated else 1])
 
 
@@ -175,7 +175,7 @@ def _is_year(word: str) -> bool:
     return len(word) == 4 and word.isdigit()
 
 
-def _loses_by(law: type[ContactLaw]) -> str:
+def _loss_parameters(law: type[ContactLaw]) -> str:
     """Return the free parameter, or the alternatives of which one is given; "nothing is lost" without a free parameter."""
     free = law.example(paper_pair()).free_parameter
     if free is None:
