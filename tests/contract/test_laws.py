@@ -182,6 +182,7 @@ def test_documentation_is_complete(law: type[ContactLaw]) -> None:
     for item in dataclasses.fields(law):
         assert f"\n{item.name} : " in text, f"{law.name}: {item.name} is not documented"
         assert item.metadata["meaning"]
+    assert "\n    Parameters\n" not in inspect.getsource(law), f"{law.name}: the section is made from the declarations"
     assert law.equation
     assert law.source
     assert law.name == inspect.getmodule(law).__name__.rpartition(".")[2].replace("_", "-")

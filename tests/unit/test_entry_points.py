@@ -10,6 +10,8 @@ import pytest
 import vibroimpact as vi
 from vibroimpact.contact import law as module
 from vibroimpact.contact.hysteretic import HystereticLaw
+from vibroimpact.laws.pages import law_page
+from vibroimpact.laws.text import law_text
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -23,6 +25,23 @@ class Foreign(HystereticLaw):
     @property
     def damping_factor(self) -> float:
         return 1.0 - self.restitution
+
+
+@dataclass(frozen=True, kw_only=True)
+class Documented(Foreign):
+    """A law with a Parameters section of its own.
+
+    Parameters
+    ----------
+    stiffness, restitution, exponent : float
+        As those of Hertz's law.
+
+    References
+    ----------
+    Nobody, N. (2020). Nowhere.
+    """
+
+    name = "documented"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -42,6 +61,23 @@ def test_a_law_is_brought_by_an_entry_point(monkeypatch: pytest.MonkeyPatch) -> 
     laws = bring(monkeypatch, f"{__name__}:Foreign")
     assert laws["foreign"] is Foreign
     assert len(laws) == len(vi.contact_laws()) + 1
+
+
+def test_parameters_are_documented_from_their_declarations() -> None:
+    assert Foreign.__doc__ is not None
+    assert "\nstiffness : float or array\n    Contact stiffness :math:`K`.\n    In N/m^n, greater than 0.\n" in Foreign.__doc__
+    assert "\nexponent : float or array, default 1.5\n" in Foreign.__doc__
+    assert "| `restitution` | Restitution asked for, $`e`$. |" in law_page(Foreign)
+
+
+def test_a_parameters_section_in_the_docstring_is_kept() -> None:
+    assert Documented.__doc__ is not None
+    assert Documented.__doc__.count("Parameters") == 2
+    assert Documented.__doc__.count(" : float") == 1
+    text = law_text(Documented)
+    assert text.title == "A law with a Parameters section of its own."
+    assert text.references == ("Nobody, N. (2020). Nowhere.",)
+    assert [item.meaning for item in text.parameters] == [item.meaning for item in law_text(Foreign).parameters]
 
 
 def test_a_duplicate_name_raises(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -50,7 +50,7 @@ def test_the_dent_lasts_and_the_next_impact_on_it_is_elastic() -> None:
     impacts, energy = response.impacts, response.energy
     assert impacts["restitution_achieved"][0] < 0.7
     np.testing.assert_allclose(impacts["restitution_achieved"][1:], 1.0, rtol=1e-9)
-    dent = impacts["max_indentation_m"][0] - LAW.elastic_part(impacts["max_indentation_m"][0])
+    dent = impacts["max_indentation_m"][0] - LAW.elastic_recovery(impacts["max_indentation_m"][0])
     history = response.history()
     touch = np.searchsorted(history["time_s"], impacts["time_s"][1])
     assert history["position_m"][touch] - 0.025 == pytest.approx(-dent, rel=1e-9)

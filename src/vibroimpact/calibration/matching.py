@@ -104,7 +104,7 @@ def match(
             least, most = (bound * scales[name] + wanted[name] for bound in (np.nanmin(seen, axis=0), np.nanmax(seen, axis=0)))
             return Match(_smallest(lambda values: misses(values)[name], start, grid, seen), least, most)
         found = solve_monotonic(
-            lambda values: misses(values)[name] + 1.0, np.ones(len(speeds)), start, tunable.allowed, falls=falls, farthest=farthest
+            lambda values: misses(values)[name] + 1.0, np.ones(len(speeds)), start, tunable.allowed, falls=falls, max_steps=farthest
         )
         least, most = ((bound - 1.0) * scales[name] + wanted[name] for bound in (found.least, found.most))
         return Match(found.place, least, most)

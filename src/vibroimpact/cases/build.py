@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal
 from vibroimpact.calibration.section import calibrate_table
 from vibroimpact.cases.material_field import material_table
 from vibroimpact.cases.rigid import FALLS, contact_laws_of, deforms, elastic_names, impacts_of, is_free_sphere, rigid_problem
-from vibroimpact.contact.law import CompliantLaw, loses_nothing
+from vibroimpact.contact.law import CompliantLaw, is_conservative
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.errors import InputError
 
@@ -32,9 +32,9 @@ def check_case(case: CaseTable) -> None:
     law = contact_laws_of(case)[-1]
     if impacts_of(case) is None and case.run.duration is None:
         remedy = "give a number or a duration"
-        if loses_nothing(law):
+        if is_conservative(law):
             raise InputError(f'"all" needs a law that loses energy, and this {law.name} never comes to rest; {remedy}', "run.impacts")
-        if isinstance(law, CompliantLaw) and law.lasting and case.drop.same_spot and loses_nothing(law.after_compression(1.0)):
+        if isinstance(law, CompliantLaw) and law.lasting and case.drop.same_spot and is_conservative(law.after_compression(1.0)):
             words = f"and {law.name} loses none on a dent that it has made"
             raise InputError(f'"all" needs a law that loses energy, {words}; {remedy}, or drop.same_spot = false', "run.impacts")
     if case.sensors and case.plate.model == "rigid":

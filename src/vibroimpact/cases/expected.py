@@ -9,8 +9,8 @@ import numpy as np
 
 from vibroimpact.cases.conditions import Seen
 from vibroimpact.cases.rigid import contact_laws_of, contact_pair, first_speed
-from vibroimpact.contact.hertz_time import HERTZ_TIME
 from vibroimpact.contact.law import CompliantLaw
+from vibroimpact.contact.power_law import HERTZ_TIME
 from vibroimpact.dynamics.encounter import encounter_of
 
 if TYPE_CHECKING:

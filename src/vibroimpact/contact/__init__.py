@@ -1,1 +1,1 @@
-"""Contact laws: pure array functions of indentation, its rate and the speed at first touch."""
+"""Contact laws: forces as array functions of indentation, indentation rate and approach speed."""

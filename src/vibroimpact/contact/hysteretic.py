@@ -1,4 +1,4 @@
-"""Hysteretic damping: the dashpot that grows with the elastic force, with its restitution in closed form."""
+"""Hysteretic damping, proportional to the elastic force and the indentation rate, and its restitution."""
 
 from __future__ import annotations
 
@@ -10,23 +10,25 @@ from vibroimpact.arrays import Array
 from vibroimpact.contact.law import parameter
 from vibroimpact.contact.power_law import PowerLaw
 
-# e(D) = 1 - 2 D/3 + ..., from the equation below by comparing powers; exact to 1e-17 for D < 0.02
+# power series e(D) = 1 - 2 D/3 + ... of the equation in `hysteretic_restitution`, exact to 1e-17 for D < 0.02
 _SERIES = (1.0, -2 / 3, 4 / 9, -44 / 135, 104 / 405, -40 / 189, 7648 / 42525, -2848 / 18225, 31712 / 229635)
 _SMALL = 0.02
 
 
 @dataclass(frozen=True, kw_only=True)
 class HystereticLaw(PowerLaw):
-    r"""Base of the laws :math:`F = K \delta^n (1 + D\, \dot\delta/\dot\delta_0)`, which differ in :math:`D(e)`."""
+    r"""Base of the laws :math:`F = K \delta^n (1 + D\, \dot\delta/\dot\delta_0)`, each with its own :math:`D(e)`."""
 
     contact_end = "zero-indentation"
     tension = "none"
 
-    restitution: Array = parameter("restitution asked for, e", example=0.7, at_least=0, at_most=1)
+    restitution: Array = parameter(
+        "restitution asked for, e", detail="Restitution asked for, :math:`e`.", example=0.7, at_least=0, at_most=1
+    )
 
     @property
     def damping_factor(self) -> Array:
-        """The factor D [-], from the restitution asked for."""
+        """The damping factor D(e) [-]."""
         raise NotImplementedError
 
     def forces(self, delta: Array, delta_dot: Array, approach_speed: Array) -> tuple[Array, Array]:
@@ -35,21 +37,21 @@ class HystereticLaw(PowerLaw):
         return elastic, elastic * (self.damping_factor / approach_speed * delta_dot)
 
     def closed_form_restitution(self, mass: Array, speed: Array) -> Array:
-        """Return the restitution achieved without gravity, which depends on D alone."""
+        """Return the restitution without gravity, a function of D only."""
         return hysteretic_restitution(self.damping_factor + 0.0 * mass * speed)
 
 
 def hysteretic_restitution(damping_factor: Array) -> Array:
     r"""Return the restitution of :math:`F = K \delta^n (1 + D\, \dot\delta/\dot\delta_0)` without gravity.
 
-    It does not depend on K, n, mass or speed, and solves
+    It is independent of K, n, mass and speed, and solves
 
     .. math:: D (1 + e) = \ln \frac{1 + D}{1 - e D}
 
     Parameters
     ----------
     damping_factor : float or array
-        The factor :math:`D` [-], >= 0.
+        Damping factor :math:`D` [-], >= 0.
 
     References
     ----------
@@ -64,7 +66,8 @@ def hysteretic_restitution(damping_factor: Array) -> Array:
     factor = np.asarray(damping_factor, dtype=float)
     small = factor < _SMALL
     series = np.polynomial.polynomial.polyval(np.where(small, factor, 0.0), _SERIES)
-    # with e D = 1 - exp(-w) it reads w + exp(-w) - 1 = D - ln(1 + D); Newton's method from the right of a convex function
+    # with e D = 1 - exp(-w) the equation is w + exp(-w) - 1 = D - ln(1 + D): convex in w, so that Newton's method
+    # converges monotonically from an upper bound of the root
     large = np.where(small, 1.0, factor)
     wanted = large - np.log1p(large)
     w = np.minimum(wanted + 1.0, wanted + np.sqrt(2.0 * wanted))

@@ -1,4 +1,4 @@
-"""The linear spring with a dashpot beside it, which two laws share."""
+"""The Kelvin-Voigt model (linear spring and dashpot in parallel), and the restitution of its damping ratio."""
 
 from __future__ import annotations
 
@@ -7,22 +7,21 @@ from dataclasses import dataclass
 import numpy as np
 
 from vibroimpact.arrays import Array
-from vibroimpact.contact.damping_ratio import restitution_of
 from vibroimpact.contact.law import CompliantLaw, parameter
 
 
 @dataclass(frozen=True, kw_only=True)
 class KelvinVoigtLaw(CompliantLaw):
-    r"""Base of the laws :math:`F = k \delta + c \dot\delta`, in contact until there is no overlap."""
+    r"""Base of the laws :math:`F = k \delta + c \dot\delta`, whose contact ends at zero indentation."""
 
     contact_end = "zero-indentation"
     tension = "kept"
 
-    stiffness: Array = parameter("spring stiffness k", "N/m", example=2e6, above=0)
+    stiffness: Array = parameter("spring stiffness k", "N/m", detail="Spring stiffness :math:`k`.", example=2e6, above=0)
 
     @property
     def dashpot(self) -> Array:
-        """The dashpot c [N s/m]."""
+        """The dashpot constant c [N s/m]."""
         raise NotImplementedError
 
     def forces(self, delta: Array, delta_dot: Array, approach_speed: Array) -> tuple[Array, Array]:
@@ -34,5 +33,44 @@ class KelvinVoigtLaw(CompliantLaw):
         return 0.5 * self.stiffness * delta * delta
 
     def closed_form_restitution(self, mass: Array, speed: Array) -> Array:
-        r"""Return :math:`\exp(-\pi\beta/\sqrt{1 - \beta^2})` with :math:`\beta = c/(2\sqrt{k m})`, at any speed."""
-        return restitution_of(self.dashpot / (2.0 * np.sqrt(self.stiffness * mass)) + 0.0 * speed)
+        r"""Return :math:`\exp(-\pi\beta/\sqrt{1 - \beta^2})` with :math:`\beta = c/(2\sqrt{k m})`, independent of the speed."""
+        return restitution_from_damping_ratio(self.dashpot / (2.0 * np.sqrt(self.stiffness * mass)) + 0.0 * speed)
+
+
+def dashpot_for_restitution(restitution: Array, stiffness: Array, mass: Array) -> Array:
+    r"""Return the dashpot constant :math:`c = 2 \beta(e) \sqrt{k m}` [N s/m] that gives a mass [kg] a restitution.
+
+    Examples
+    --------
+    >>> round(float(dashpot_for_restitution(0.5, stiffness=100.0, mass=1.0)), 4)
+    4.3091
+    """
+    return 2.0 * damping_ratio_from_restitution(restitution) * np.sqrt(stiffness * mass)
+
+
+def damping_ratio_from_restitution(restitution: Array) -> Array:
+    r"""Return the damping ratio :math:`\beta = -\ln e/\sqrt{\pi^2 + \ln^2 e}` [-] of a restitution.
+
+    The contact ends at zero indentation, after half a period of the damped oscillation.
+
+    Examples
+    --------
+    >>> round(float(damping_ratio_from_restitution(0.5)), 6)
+    0.215454
+    """
+    log = np.log(np.asarray(restitution, dtype=float))
+    return -log / np.sqrt(np.pi**2 + log * log)
+
+
+def restitution_from_damping_ratio(damping_ratio: Array) -> Array:
+    r"""Return the restitution :math:`e = \exp(-\pi\beta/\sqrt{1 - \beta^2})` [-] of a damping ratio; zero at and above critical damping.
+
+    Examples
+    --------
+    >>> round(float(restitution_from_damping_ratio(0.215453)), 5)
+    0.5
+    """
+    ratio = np.asarray(damping_ratio, dtype=float)
+    under = np.minimum(ratio, 1.0)
+    with np.errstate(divide="ignore"):
+        return np.exp(-np.pi * under / np.sqrt((1.0 - under) * (1.0 + under)))[()]

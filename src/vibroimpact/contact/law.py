@@ -1,12 +1,11 @@
-"""What a contact law is: parameters with units, an equation, a source, and a force.
+"""The interface of a contact law, and the registry of all laws.
 
-A law is a frozen dataclass in a file of its own under `vibroimpact.contact.laws`; being there is
-all the registration it needs. It declares
+A law is a frozen dataclass in a file of its own under `vibroimpact.contact.laws`, where the registry finds it. It declares
 
 * `name`, `equation` and `source`, which the command line and the documentation print;
-* its parameters, each with `parameter(...)`: unit, meaning, range, where a default comes from;
-* if its force depends on what the contact has been through, that state, each with `memory(...)`;
-* and, if it is a `CompliantLaw`, how its contact ends and whether it may pull.
+* its parameters, each with `parameter(...)`: meaning, unit, range, default;
+* the state variables on which its force depends, if any, each with `memory(...)`;
+* and, if it is a `CompliantLaw`, when its contact ends and whether its force may be tensile.
 """
 
 from __future__ import annotations
@@ -21,6 +20,7 @@ from typing import Any, ClassVar, Literal, Self, cast
 import numpy as np
 
 from vibroimpact.arrays import Array
+from vibroimpact.contact.docstring import with_parameters
 from vibroimpact.contact.pair import ContactPair
 from vibroimpact.errors import InputError, did_you_mean
 from vibroimpact.ranges import Range
@@ -31,6 +31,7 @@ def parameter(
     meaning: str,
     unit: str = "",
     *,
+    detail: str = "",
     from_pair: str | None = None,
     default: Any = dataclasses.MISSING,
     example: float | None = None,
@@ -41,35 +42,86 @@ def parameter(
     Parameters
     ----------
     meaning : str
-        What it is, in a few words.
+        What it is, in a few words of plain text; messages and the JSON schema print it.
     unit : str, default ""
         SI unit; "N/m^n" follows the exponent.
+    detail : str, optional
+        What it is, in sentences with reStructuredText markup; the law's docstring, sheet and page print it. Left out, it is
+        the meaning as a sentence.
     from_pair : str, optional
-        The attribute of `ContactPair` that serves where a case leaves the parameter out.
+        The attribute of `ContactPair` from which the parameter is taken where a case leaves it out.
     default : optional
-        The value where it is left out.
+        The default value.
     example : float, optional
-        A typical value, for figures and tests, of a parameter that has neither.
+        A typical value, for figures and tests, of a parameter with neither `from_pair` nor `default`.
     **bounds : float
-        The range, as `Range` takes it.
+        The range, in the arguments of `Range`.
     """
-    metadata = {"meaning": meaning, "unit": unit, "range": Range(**bounds), "from_pair": from_pair, "example": example, "memory": False}
-    return dataclasses.field(default=default, metadata=metadata)
+    return dataclasses.field(default=default, metadata=_metadata(meaning, unit, detail, Range(**bounds), from_pair, example))
 
 
-def memory(meaning: str, unit: str = "") -> Any:
-    """Declare a state that a law carries through a contact, zero of a fresh one; takes what `parameter` takes."""
-    metadata = {"meaning": meaning, "unit": unit, "range": Range(at_least=0), "from_pair": None, "example": None, "memory": True}
-    return dataclasses.field(default=0.0, metadata=metadata)
+def memory(meaning: str, unit: str = "", *, detail: str = "") -> Any:
+    """Declare a state variable that a law carries through a contact; at least zero, and zero in a fresh contact.
+
+    Parameters
+    ----------
+    meaning, unit, detail : str
+        As those of `parameter`.
+    """
+    return dataclasses.field(default=0.0, metadata={**_metadata(meaning, unit, detail, Range(at_least=0)), "memory": True})
+
+
+def inherited_parameter(base: type[ContactLaw], name: str, *, detail: str = "", **bounds: float) -> Any:
+    """Declare a parameter or state of a base class again, with another detail or range; the rest is kept.
+
+    Parameters
+    ----------
+    base : type of ContactLaw
+        The class that declares it.
+    name : str
+        Its name.
+    detail : str, optional
+        As that of `parameter`.
+    **bounds : float
+        The new range; left out, the range is kept.
+    """
+    item = base.__dataclass_fields__[name]
+    changes = {"detail": detail or item.metadata["detail"], "range": Range(**bounds) if bounds else item.metadata["range"]}
+    return dataclasses.field(default=item.default, metadata={**item.metadata, **changes})
+
+
+def _metadata(
+    meaning: str, unit: str, detail: str, allowed: Range, from_pair: str | None = None, example: float | None = None
+) -> dict[str, Any]:
+    return {
+        "meaning": meaning,
+        "detail": detail or f"{meaning[:1].upper()}{meaning[1:]}.",
+        "unit": unit,
+        "range": allowed,
+        "from_pair": from_pair,
+        "example": example,
+        "memory": False,
+    }
 
 
 @dataclass(frozen=True, kw_only=True)
 class ContactLaw:
-    """Base of all contact laws; parameters are floats, or arrays with one value a drop."""
+    """Base of all contact laws. Parameters are floats, or arrays with one value per drop."""
 
     name: ClassVar[str]
     equation: ClassVar[str]
     source: ClassVar[str]
+
+    def __init_subclass__(cls, **options: Any) -> None:
+        super().__init_subclass__(**options)
+        items: dict[str, dataclasses.Field[Any]] = {}
+        for base in reversed(cls.__mro__[1:]):
+            items |= getattr(base, "__dataclass_fields__", {})
+        # `dataclass` decorates the class after this: its own fields are still class attributes
+        items |= {key: value for key, value in vars(cls).items() if isinstance(value, dataclasses.Field)}
+        declared = {key: item for key, item in items.items() if "meaning" in item.metadata}  # class variables are fields as well
+        if cls.__doc__:  # None under python -OO
+            cls.__doc__ = with_parameters(cls.__doc__, declared)
 
     def __post_init__(self) -> None:
         for item in fields(self):
@@ -87,18 +139,18 @@ class ContactLaw:
 
     @classmethod
     def example(cls, pair: ContactPair) -> Self:
-        """Return the law of a pair with typical values of what the pair does not tell, for figures and tests."""
-        told = {item.name for item in fields(cls) if item.metadata["from_pair"] and getattr(pair, item.metadata["from_pair"]) is not None}
+        """Return the law of a pair, with typical values of the parameters that the pair does not give, for figures and tests."""
+        given = {item.name for item in fields(cls) if item.metadata["from_pair"] and getattr(pair, item.metadata["from_pair"]) is not None}
         typical = {item.name: item.metadata["example"] for item in fields(cls) if item.metadata["example"] is not None}
-        return cls.for_pair(pair, **{name: value for name, value in typical.items() if name not in told})
+        return cls.for_pair(pair, **{name: value for name, value in typical.items() if name not in given})
 
     @property
     def free_parameter(self) -> str | None:
-        """The parameter that sets how much is lost, which `law_achieving` may change; None if there is none."""
+        """The name of the parameter that sets the energy loss, which `law_achieving` varies; None if there is none."""
         return "restitution" if getattr(self, "restitution", None) is not None else None
 
     def closed_form_restitution(self, mass: Array, speed: Array) -> Array | None:
-        """Return the restitution achieved without gravity, if there is a closed form; else None.
+        """Return the restitution without gravity where there is a closed form, else None.
 
         Parameters
         ----------
@@ -111,12 +163,12 @@ class ContactLaw:
 
     @classmethod
     def for_pair(cls, pair: ContactPair, **parameters: Any) -> Self:
-        """Make the law for two bodies: what is not given is taken from the pair where it can be.
+        """Return the law of two bodies; parameters that are not given come from the pair or from their defaults.
 
         Raises
         ------
         InputError
-            If a parameter is unknown, missing, or outside its range.
+            If a parameter is unknown, missing, outside its range, or can't be taken from the pair.
         """
         known = {item.name: item for item in fields(cls)}
         for key in parameters:
@@ -128,22 +180,22 @@ class ContactLaw:
                 given[key] = getattr(pair, item.metadata["from_pair"])
                 if given[key] is None:
                     raise InputError(
-                        f"{cls.name} needs {_described(item)}, and no yield_strength is known of the materials to take it from; "
+                        f"{cls.name} needs {_with_unit(item)}, and no yield_strength is known of the materials to take it from; "
                         f"give it here, or give one of the materials a yield_strength",
                         key,
                     )
                 if np.any(np.isinf(given[key])):
                     raise InputError("it must be given, since two rigid materials have no contact stiffness of their own", key)
             if key not in given and item.default is dataclasses.MISSING:
-                raise InputError(f"this key is missing; {cls.name} needs {_described(item)}", key)
+                raise InputError(f"this key is missing; {cls.name} needs {_with_unit(item)}", key)
         return cls(**given)
 
     def take(self, drops: Any) -> Self:
-        """Return the law of some drops of a batch: parameters that are arrays are indexed."""
+        """Return the law of selected drops of a batch: array parameters are indexed by `drops`."""
         return self.changed({item.name: value[drops] for item in fields(self) if np.ndim(value := getattr(self, item.name))})
 
     def changed(self, changes: Mapping[str, Any]) -> Self:
-        """Return the law with other values, which are known to be in range and are not checked."""
+        """Return a copy with some fields replaced; the new values are not checked."""
         if not changes:
             return self
         copy = object.__new__(type(self))
@@ -152,92 +204,91 @@ class ContactLaw:
         return copy
 
     def memories(self) -> dict[str, Array]:
-        """Return the state that the law carries, by name."""
+        """Return the state variables by name."""
         return {item.name: getattr(self, item.name) for item in fields(self) if item.metadata["memory"]}
 
 
 @dataclass(frozen=True, kw_only=True)
 class CompliantLaw(ContactLaw):
-    """A law with a force: static and dissipative part apart, so that the ledger is free.
+    """Base of the laws with a contact force, given as a static and a dissipative part, from which the energy ledger follows.
 
-    Signs: indentation `delta` >= 0 in contact, `delta_dot` > 0 on approach, a positive force pushes the
-    bodies apart. All arguments broadcast; the last axis is the drop.
+    Signs: indentation `delta` >= 0 in contact, `delta_dot` > 0 in compression, a positive force is repulsive. All arguments
+    broadcast; the last axis is the drop.
 
-    A law whose static force depends on how deep the contact has been declares that depth with `memory`
-    and returns itself with it from `after_compression`; its `forces` then follow the unloading path below
-    that depth and the loading path beyond it.
+    A law whose static force depends on the largest indentation so far declares it with `memory` and updates it in
+    `after_compression`; `forces` then follow the unloading curve below that indentation and the loading curve beyond it.
     """
 
     contact_end: ClassVar[Literal["zero-indentation", "zero-force", "pull-off"]]
-    """When the contact is over: when the bodies no longer overlap, no longer push, or have been torn apart."""
+    """When the contact ends: at zero indentation, at zero force, or at the pull-off of an adhesive contact."""
     tension: ClassVar[Literal["none", "cut", "kept"]]
-    """Does the formula pull near the end? It never does; it does and is clipped at zero; it does and may."""
+    """Is the force of the formula tensile near the end of the contact? Never; yes, and clipped at zero; yes, and kept."""
 
     root: ClassVar[int] = 2
-    """The force is smooth in this root of the indentation: 2 for powers such as 3/2, 4 where there is a power 1/4."""
+    """The force is smooth in this root of the indentation: 2 with powers such as 3/2, 4 with a power 1/4."""
 
     lasting: ClassVar[bool] = False
-    """Does the memory outlast the contact, as a dent does, when the next impact falls on the same spot?"""
+    """Does the state persist, as a dent does, for the next impact on the same spot?"""
 
     @property
     def touch_level(self) -> Array:
-        """Indentation [m] at which the surfaces meet: zero, or the depth of the dent."""
+        """Indentation [m] at which contact begins: zero, or the depth of the dent."""
         return 0.0
 
     @property
     def release_level(self) -> Array:
-        """Indentation [m] at which they part again; below zero if they stick and are drawn out."""
+        """Indentation [m] at which contact ends; negative for adhesive contacts."""
         return self.touch_level
 
     @property
     def breakpoints(self) -> tuple[Array, ...]:
-        """Indentations [m], rising, at which the force is not smooth; integration stops there."""
+        """Indentations [m], ascending, at which the force is not smooth; integration steps end there."""
         return ()
 
     def forces(self, delta: Array, delta_dot: Array, approach_speed: Array) -> tuple[Array, Array]:
-        """Return the static and the dissipative part of the force [N], before any clip at zero.
+        """Return the static and the dissipative part of the force [N], before any clipping at zero.
 
         Parameters
         ----------
         delta, delta_dot : float or array
             Indentation [m] and its rate [m/s].
         approach_speed : float or array
-            Speed at the first touch of this impact [m/s], > 0.
+            Approach speed at the beginning of this contact [m/s], > 0.
         """
         raise NotImplementedError
 
     def elastic_energy(self, delta: Array) -> Array:
-        """Return the energy stored at the indentation `delta` [J], all of which can be got back.
+        """Return the recoverable energy at the indentation `delta` [J].
 
-        With the plastic work it is the integral of the static force from `touch_level`.
+        The sum of it and the plastic work is the integral of the static force from `touch_level`.
         """
         raise NotImplementedError
 
     @property
     def yields(self) -> bool:
-        """Does it do plastic work?"""
+        """Does the law define plastic work?"""
         return type(self).plastic_work is not CompliantLaw.plastic_work
 
     def plastic_work(self, delta: Array) -> Array:
-        """Return the work spent on plastic deformation, from the state remembered to the indentation `delta` [J]."""
+        """Return the plastic work from the present state to the indentation `delta` [J]."""
         return np.zeros_like(delta)
 
     def after_compression(self, deepest: Array) -> Self:
-        """Return the law as it is once the contact has been as deep as `deepest` [m]."""
+        """Return the law with its state after compression to the indentation `deepest` [m]."""
         return self
 
 
 @dataclass(frozen=True, kw_only=True)
 class InstantaneousLaw(ContactLaw):
-    """A law without a duration: it gives the speed after the impact from the speed before."""
+    """Base of the laws of an impact without duration or force, which give the separation speed from the approach speed."""
 
     def separation_speed(self, approach_speed: Array, mass: Array) -> Array:
-        """Return the speed at which the bodies part [m/s].
+        """Return the separation speed [m/s].
 
         Parameters
         ----------
         approach_speed : float or array
-            Speed at the touch [m/s].
+            Approach speed [m/s].
         mass : float or array
             Effective mass of the pair [kg].
         """
@@ -249,7 +300,7 @@ class InstantaneousLaw(ContactLaw):
 
 
 def unit_of(item: dataclasses.Field[Any], exponent: Any) -> str:
-    """Return a parameter's SI unit, with the exponent of the force filled in.
+    """Return the SI unit of a parameter, with the force exponent inserted in "N/m^n".
 
     Examples
     --------
@@ -263,12 +314,12 @@ def unit_of(item: dataclasses.Field[Any], exponent: Any) -> str:
     return unit
 
 
-def loses_nothing(law: ContactLaw) -> bool:
-    """Is the law without any loss, so that a ball under it bounces for ever?
+def is_conservative(law: ContactLaw) -> bool:
+    """Is the law conservative, so that a ball bounces for ever?
 
     Examples
     --------
-    >>> loses_nothing(find_contact_law("newton")(restitution=1.0))
+    >>> is_conservative(find_contact_law("newton")(restitution=1.0))
     True
     """
     if isinstance(law, InstantaneousLaw):
@@ -281,15 +332,12 @@ def loses_nothing(law: ContactLaw) -> bool:
 
 @cache
 def contact_laws() -> Mapping[str, type[ContactLaw]]:
-    """Return every contact law by its name.
-
-    Those of this package, and those of any installed package that names its laws under the entry point
-    "vibroimpact.contact_laws".
+    """Return all contact laws by name: those of this package and those of the entry points "vibroimpact.contact_laws".
 
     Raises
     ------
     InputError
-        If two laws have the same name, or an entry point does not lead to a law.
+        If two laws have the same name, or an entry point can't be loaded or is not a contact law.
 
     Examples
     --------
@@ -299,7 +347,7 @@ def contact_laws() -> Mapping[str, type[ContactLaw]]:
     modules = modules_in("vibroimpact.contact.laws")
     laws = [law for module in modules for law in vars(module).values() if _is_law(law) and law.__module__ == module.__name__]
     found: dict[str, type[ContactLaw]] = {}
-    for law in laws + [_brought(point) for point in entry_points(group="vibroimpact.contact_laws")]:
+    for law in laws + [_loaded(point) for point in entry_points(group="vibroimpact.contact_laws")]:
         if law.name in found:
             raise InputError(
                 f'two contact laws are called "{law.name}": {found[law.name].__module__} and {law.__module__}; '
@@ -313,11 +361,11 @@ def _is_law(candidate: object) -> bool:
     return isinstance(candidate, type) and issubclass(candidate, ContactLaw)
 
 
-def _brought(point: EntryPoint) -> type[ContactLaw]:
-    """Return the law that an installed package brings."""
+def _loaded(point: EntryPoint) -> type[ContactLaw]:
+    """Return the contact law of an entry point."""
     try:
         law = point.load()
-    except Exception as error:  # whatever a foreign package does, say whose fault it is
+    except Exception as error:  # any error of another package is reported with the entry point's name
         raise InputError(
             f'the contact law "{point.name}" of the entry point {point.value} can\'t be loaded: {error}; mend or uninstall its package'
         ) from error
@@ -328,13 +376,13 @@ def _brought(point: EntryPoint) -> type[ContactLaw]:
     return cast("type[ContactLaw]", law)
 
 
-def _described(item: dataclasses.Field[Any]) -> str:
-    """Return a parameter's meaning and unit."""
+def _with_unit(item: dataclasses.Field[Any]) -> str:
+    """Return the meaning of a parameter with its unit, for messages."""
     return f"{item.metadata['meaning']} [{item.metadata['unit']}]" if item.metadata["unit"] else str(item.metadata["meaning"])
 
 
 def find_contact_law(name: str) -> type[ContactLaw]:
-    """Return the contact law called `name`.
+    """Return the contact law with a name.
 
     Raises
     ------

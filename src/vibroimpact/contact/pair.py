@@ -1,4 +1,4 @@
-"""What two elastic bodies bring to their contact: effective modulus, radius, mass, stiffness."""
+"""Properties of a pair of elastic bodies in contact: effective modulus, radius and mass, Hertz's stiffness, yield pressure."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def effective_modulus(first: Material, second: Material) -> Array:
 
 
 def hertz_stiffness(modulus: Array, radius: Array) -> Array:
-    r"""Return Hertz's stiffness of a sphere on a flat [N/m^1.5].
+    r"""Return the stiffness K of the Hertzian contact force :math:`K \delta^{3/2}` [N/m^1.5].
 
     .. math:: K = \tfrac{4}{3} E^* \sqrt{R}
 
@@ -43,7 +43,7 @@ def hertz_stiffness(modulus: Array, radius: Array) -> Array:
     modulus : float or array
         Effective modulus :math:`E^*` [Pa].
     radius : float or array
-        Effective radius :math:`R` [m]; on a flat, the sphere's.
+        Effective radius :math:`R` [m]; of a sphere on a flat, that of the sphere.
 
     References
     ----------
@@ -59,7 +59,7 @@ def hertz_stiffness(modulus: Array, radius: Array) -> Array:
 
 @dataclass(frozen=True)
 class ContactPair:
-    """The facts of a touching pair that a law may take its parameters from.
+    """The properties of a pair of bodies from which a law may take its parameters.
 
     Parameters
     ----------
@@ -68,9 +68,9 @@ class ContactPair:
     effective_radius : float or array
         :math:`R` [m].
     effective_mass : float or array
-        :math:`m_1 m_2 / (m_1 + m_2)` [kg]; the sphere's mass if the plate is held.
+        :math:`m_1 m_2 / (m_1 + m_2)` [kg]; the mass of the sphere if the plate is fixed.
     yield_strength, poissons_ratio : float or array, optional
-        Of the material that yields first [Pa], [-]; the sphere's ratio if no yield strength is known.
+        Of the material that yields first [Pa], [-]; Poisson's ratio of the sphere if no yield strength is known.
     """
 
     effective_modulus: Array

@@ -1,7 +1,8 @@
-"""The elastic part that most laws share: a power of the indentation."""
+"""Power-law elastic forces, with exponent 3/2 for a Hertzian contact, and the duration of an elastic Hertzian impact."""
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,13 +10,22 @@ import numpy as np
 from vibroimpact.arrays import Array
 from vibroimpact.contact.law import CompliantLaw, parameter
 
+HERTZ_TIME = 0.8 * math.gamma(0.4) * math.gamma(0.5) / math.gamma(0.9)
+r"""Contact duration of an elastic Hertzian impact over largest indentation / approach speed [-], 2.9433.
+
+:math:`2 \int_0^1 dx / \sqrt{1 - x^{5/2}} = \tfrac45 \Gamma(\tfrac25) \Gamma(\tfrac12) / \Gamma(\tfrac{9}{10})`
+(H. Hertz, J. reine angew. Math. 92:156, 1881; K. L. Johnson, Contact Mechanics, 1985, eq. 11.24 rounds it to 2.94).
+"""
+
 
 @dataclass(frozen=True, kw_only=True)
 class PowerLaw(CompliantLaw):
-    r"""Base of the laws whose elastic force is :math:`K \delta^n`."""
+    r"""Base of the laws with the elastic force :math:`K \delta^n`."""
 
-    stiffness: Array = parameter("contact stiffness K", "N/m^n", above=0, from_pair="hertz_stiffness")
-    exponent: Array = parameter("force exponent n, 1.5 for a sphere", at_least=1, default=1.5)
+    stiffness: Array = parameter(
+        "contact stiffness K", "N/m^n", detail="Contact stiffness :math:`K`.", above=0, from_pair="hertz_stiffness"
+    )
+    exponent: Array = parameter("force exponent n, 1.5 for a sphere", detail="Force exponent :math:`n`.", at_least=1, default=1.5)
 
     def elastic_force(self, delta: Array) -> Array:
         r"""Return :math:`K \delta^n` [N]."""
@@ -28,9 +38,11 @@ class PowerLaw(CompliantLaw):
 
 @dataclass(frozen=True, kw_only=True)
 class SphereLaw(CompliantLaw):
-    r"""Base of the laws that hold for a sphere alone: their elastic force is :math:`K \delta^{3/2}`."""
+    r"""Base of the laws with Hertz's elastic force of a sphere, :math:`K \delta^{3/2}`."""
 
-    stiffness: Array = parameter("contact stiffness K", "N/m^1.5", above=0, from_pair="hertz_stiffness")
+    stiffness: Array = parameter(
+        "contact stiffness K", "N/m^1.5", detail="Contact stiffness :math:`K`.", above=0, from_pair="hertz_stiffness"
+    )
 
     def elastic_force(self, delta: Array) -> Array:
         r"""Return :math:`K \delta^{3/2}` [N]."""
@@ -42,7 +54,7 @@ class SphereLaw(CompliantLaw):
 
 
 def power(delta: Array, exponent: Array) -> Array:
-    """Return delta^exponent for delta >= 0; Hertz's 3/2 by a square root, which is many times faster.
+    """Return delta^exponent for delta >= 0; 3/2 is computed with a square root, which is many times faster.
 
     Examples
     --------

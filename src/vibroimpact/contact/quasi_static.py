@@ -1,4 +1,4 @@
-r"""What a contact law does not carry of the quasi-static indentation, in series with it."""
+"""Quasi-static compliance in series with a contact law."""
 
 from __future__ import annotations
 
@@ -12,23 +12,23 @@ from vibroimpact.arrays import Array
 
 @dataclass(frozen=True)
 class QuasiStatic:
-    r"""Quasi-static compliance in series with a contact law.
+    r"""Quasi-static compliance in series with a contact law, with the indentation
 
     .. math:: s(F) = C F + c(a/R) \frac{F}{E R},\qquad c = c_0 + c_1 \ln x + c_2 x + c_3 x^2,\qquad x = a/R = (F/F_R)^{1/3}
 
-    The first term holds what compliance the modes leave out, or, where it is negative, what they carry already; the
-    second corrects Hertz's half-space to a sphere of finite size.
+    The first term is the residual compliance of the truncated modes or, where negative, the compliance that the modes already
+    contain; the second corrects Hertz's half-space for the finite size of the sphere.
 
     Parameters
     ----------
     linear : float or array
-        C [m/N], of either sign.
+        C [m/N], positive or negative.
     unit : float or array
         1/(E R) of the sphere [m/N]; zero for a rigid one.
     factors : tuple of four floats or arrays
         c0, c1, c2 and c3 [-].
     force : float or array
-        F_R, at which Hertz's contact radius would be the sphere's [N], > 0.
+        F_R, at which Hertz's contact radius equals the radius of the sphere [N], > 0.
 
     Examples
     --------
@@ -42,28 +42,28 @@ class QuasiStatic:
     force: Array = 1.0
 
     def __bool__(self) -> bool:
-        """Is there any?"""
-        return self._some
+        """Is any of the compliances nonzero?"""
+        return self._nonzero
 
     @cached_property
-    def _some(self) -> bool:
+    def _nonzero(self) -> bool:
         return bool(np.any(self.linear) or np.any(self.unit))
 
     def indentation(self, force: Array) -> Array:
         """Return s [m] at a force [N]."""
-        return force * (self.linear + self.unit * self._sum(force, 0.0, (1.0, 1.0, 1.0)))
+        return force * (self.linear + self.unit * self._compliance_factor(force, 0.0, (1.0, 1.0, 1.0)))
 
     def compliance(self, force: Array) -> Array:
         """Return ds/dF [m/N] at a force [N]."""
-        return self.linear + self.unit * self._sum(force, 1.0 / 3.0, (1.0, 4.0 / 3.0, 5.0 / 3.0))
+        return self.linear + self.unit * self._compliance_factor(force, 1.0 / 3.0, (1.0, 4.0 / 3.0, 5.0 / 3.0))
 
     def energy(self, force: Array) -> Array:
-        """Return the energy that it holds at a force, the integral of F ds [J]; negative where it is taken out."""
-        return 0.5 * force * force * (self.linear + self.unit * self._sum(force, 1.0 / 6.0, (1.0, 8.0 / 7.0, 1.25)))
+        """Return the integral of F ds from zero to a force [J]; negative for a negative compliance."""
+        return 0.5 * force * force * (self.linear + self.unit * self._compliance_factor(force, 1.0 / 6.0, (1.0, 8.0 / 7.0, 1.25)))
 
-    def _sum(self, force: Array, shift: float, weights: tuple[float, float, float]) -> Array:
-        """Return the sum of the terms of c, the logarithm shifted, and those of powers weighted."""
+    def _compliance_factor(self, force: Array, shift: float, weights: tuple[float, float, float]) -> Array:
+        """Return c(x) with a shifted logarithm and weighted terms c0, c2, c3, as s, its derivative and its integral need them."""
         constant, logarithm, linear, square = self.factors
         first, second, third = weights
-        x = np.maximum(np.cbrt(np.abs(force) / self.force), 1e-9)  # there is no contact radius below that
+        x = np.maximum(np.cbrt(np.abs(force) / self.force), 1e-9)  # the logarithm needs a positive ratio
         return first * constant + logarithm * (np.log(x) + shift) + x * (second * linear + third * square * x)

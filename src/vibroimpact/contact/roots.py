@@ -1,4 +1,4 @@
-"""Roots of one function an element, for whole arrays at once."""
+"""Vectorized root finding and maximization of scalar functions."""
 
 from __future__ import annotations
 
@@ -11,31 +11,31 @@ import numpy as np
 from vibroimpact.arrays import Array
 from vibroimpact.ranges import Range
 
-_FARTHEST = 20  # steps of four from its start in which a value is looked for
-_EXACT = 1e-11  # as near as this to what is wanted is there
-_JUMP = 1e-8  # farther than this is a jump
+_MAX_STEPS = 20  # of the search for a bracket: factors of four from the start
+_RESIDUAL = 1e-11  # a smaller residual counts as zero
+_JUMP = 1e-8  # a larger residual at the root found is a discontinuity
 
 
 def find_root(function: Callable[[Array], Array], low: Array, high: Array, *, tolerance: float = 1e-13, close: float = 0.0) -> Array:
-    """Return where a function becomes positive between `low` (it is not) and `high` (it is).
+    """Return the roots of a function, elementwise, between brackets `low` (not positive) and `high` (positive).
 
-    Inverse quadratic interpolation where three values allow it, else bisection, as Chandrupatla (1997) decides between them.
+    Inverse quadratic interpolation or bisection, by the criterion of Chandrupatla (1997).
 
     Parameters
     ----------
     function : callable
-        Takes and returns an array, element by element.
+        Takes and returns an array, elementwise.
     low, high : array
-        The brackets; which of the two is the larger does not matter.
+        The brackets, in either order.
     tolerance : float, default 1e-13
-        How near the brackets come, as a part of the larger.
+        Final width of the bracket relative to the larger of its ends.
     close : float, default 0.0
-        Where the function is less than this, it is taken for zero.
+        A smaller absolute value of the function counts as zero.
 
     Returns
     -------
     array
-        The bracket at which the function is positive, or where it is taken for zero.
+        The end of the bracket at which the function is positive, or the place at which it counts as zero.
 
     References
     ----------
@@ -47,7 +47,7 @@ def find_root(function: Callable[[Array], Array], low: Array, high: Array, *, to
     >>> find_root(lambda x: x * x - np.array([2.0, 9.0]), np.zeros(2), np.array([2.0, 10.0])).round(12).tolist()
     [1.414213562373, 3.0]
     """
-    # `new` and `far` bracket the root, and `old` is the one before
+    # `new` and `far` bracket the root; `old` is the previous point, the third of the interpolation
     new, far = (np.asarray(end, dtype=float) for end in (low, high))
     new_value, far_value = function(new), function(far)
     with np.errstate(all="ignore"):
@@ -74,14 +74,14 @@ def find_root(function: Callable[[Array], Array], low: Array, high: Array, *, to
             part += (old - new) / (far - new) * new_value / (old_value - new_value) * far_value / (old_value - far_value)
             edge = np.minimum(least / width, 0.5)
         part = np.where(curved & np.isfinite(part), np.clip(part, edge, 1.0 - edge), 0.5)
-        part = np.where(zero, np.where(np.abs(new_value) <= np.abs(far_value), 0.0, 1.0), part)  # stay there
+        part = np.where(zero, np.where(np.abs(new_value) <= np.abs(far_value), 0.0, 1.0), part)  # a root found stays
     nearer = np.abs(new_value) <= np.abs(far_value)
     zero = np.minimum(np.abs(new_value), np.abs(far_value)) < close
     return np.where(np.where(zero, nearer, new_value > 0.0), new, far)
 
 
-class Sought(NamedTuple):
-    """Where a function has the wanted values, NaN where none was found; the least and the largest of its values that were seen."""
+class MonotonicRoots(NamedTuple):
+    """Arguments at which a function has the wanted values, NaN where none was found, and the extreme values evaluated."""
 
     place: Array
     least: Array
@@ -89,28 +89,28 @@ class Sought(NamedTuple):
 
 
 def solve_monotonic(
-    function: Callable[[Array], Array], wanted: Array, start: Array, allowed: Range, *, falls: bool = False, farthest: int = _FARTHEST
-) -> Sought:
-    """Return where a function, that rises or falls with its argument, has wanted values of the order of one.
+    function: Callable[[Array], Array], wanted: Array, start: Array, allowed: Range, *, falls: bool = False, max_steps: int = _MAX_STEPS
+) -> MonotonicRoots:
+    """Return the arguments at which a monotonic function has wanted values of the order of one.
 
-    Looks at the ends of the range and in steps of four away from the start, then closes in.
+    Roots are bracketed by the ends of the range and by the start times powers of four, then refined.
 
     Parameters
     ----------
     function : callable
-        Takes and returns an array, element by element; NaN where it can't be computed.
+        Takes and returns an array, elementwise; NaN where it can't be computed.
     wanted, start : array
-        Values wanted, and arguments to begin with, other than zero.
+        Wanted values, and nonzero initial arguments.
     allowed : Range
-        Of the argument.
+        Range of the argument.
     falls : bool, default False
-        Is it known to fall? Then what is above its value at the lower end of the range is not looked for.
-    farthest : int, default 20
-        How many steps of four to look to either side.
+        Is the function known to decrease? Values above that at the lower end of the range are then not searched for.
+    max_steps : int, default 20
+        Largest number of steps, by a factor of four each, in either direction.
 
     Notes
     -----
-    Where the function jumps over what is wanted, nothing is found.
+    Where the function jumps across the wanted value, the result is NaN.
 
     Examples
     --------
@@ -119,36 +119,37 @@ def solve_monotonic(
     """
     low, high = np.full_like(start, np.nan), np.full_like(start, np.nan)
     least, most = np.full_like(start, np.inf), np.full_like(start, -np.inf)
-    hopeless = np.zeros(start.shape, dtype=bool)
+    unreachable = np.zeros(start.shape, dtype=bool)
     ends = [end + 0.0 * start for end in (allowed.at_least, allowed.at_most) if np.isfinite(end)]
-    steps = (start * 4.0**power for count in range(farthest) for power in ((-count, count) if count else (0,)))
+    steps = (start * 4.0**power for count in range(max_steps) for power in ((-count, count) if count else (0,)))
     for number, value in enumerate(itertools.chain(ends, steps)):
         trial = allowed.clip(value)
         found = function(trial)
         least, most = np.fmin(least, found), np.fmax(most, found)
+        # the first arguments found on either side of the wanted value bracket it
         low = np.where(np.isnan(low) & (found <= wanted), trial, low)
         high = np.where(np.isnan(high) & (found > wanted), trial, high)
-        exact = np.abs(found - wanted) <= _EXACT
+        exact = np.abs(found - wanted) <= _RESIDUAL
         low, high = np.where(exact, trial, low), np.where(exact, trial, high)
         if falls and number == 0 and np.isfinite(allowed.at_least):
-            hopeless = found < wanted - _EXACT
-        if not (np.isnan(low) | np.isnan(high))[~hopeless].any():
+            unreachable = found < wanted - _RESIDUAL
+        if not (np.isnan(low) | np.isnan(high))[~unreachable].any():
             break
     missed = np.isnan(low) | np.isnan(high)
     if missed.all():
-        return Sought(np.full_like(start, np.nan), least, most)
-    low, high = (np.where(missed, start, bound) for bound in (low, high))
-    place = find_root(lambda value: function(value) - wanted, low, high, close=_EXACT)
-    jumps = ~(np.abs(function(place) - wanted) <= _JUMP)
-    return Sought(np.where(missed | jumps, np.nan, place), least, most)
+        return MonotonicRoots(np.full_like(start, np.nan), least, most)
+    low, high = (np.where(missed, start, bound) for bound in (low, high))  # those without a bracket are discarded at the end
+    place = find_root(lambda value: function(value) - wanted, low, high, close=_RESIDUAL)
+    discontinuous = ~(np.abs(function(place) - wanted) <= _JUMP)
+    return MonotonicRoots(np.where(missed | discontinuous, np.nan, place), least, most)
 
 
-def highest(values: Callable[[Array], Array]) -> float:
-    """Return where a smooth function on [0, 1] is largest, to 1e-6.
+def locate_maximum(values: Callable[[Array], Array]) -> float:
+    """Return the argument in [0, 1] at which a smooth function is largest, to 1e-6.
 
     Examples
     --------
-    >>> round(highest(lambda x: x * (0.8 - x)), 5)
+    >>> round(locate_maximum(lambda x: x * (0.8 - x)), 5)
     0.4
     """
     low, high = 0.0, 1.0
@@ -157,7 +158,7 @@ def highest(values: Callable[[Array], Array]) -> float:
         found = values(x)
         best = int(found.argmax())
         low, high = x[max(best - 1, 0)], x[min(best + 1, 32)]
-    if 0 < best < 32:  # the top of the parabola through three points, which rounding hardly moves
+    if 0 < best < 32:  # vertex of the parabola through three points, insensitive to rounding
         before, top, after = found[best - 1 : best + 2]
         bend = 2.0 * top - before - after
         return float(x[best] + 0.25 * (high - low) * (after - before) / bend) if bend > 0.0 else float(x[best])

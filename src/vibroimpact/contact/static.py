@@ -1,4 +1,4 @@
-"""What a law does without motion: the indentation that carries a weight, and that stores an energy."""
+"""Indentation of a contact law without damping: under a constant force, and at the turning point of an impact."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from vibroimpact.contact.roots import find_root
 
 
 def static_indentation(law: CompliantLaw, weight: Array) -> Array:
-    """Return the indentation [m] at which the static force carries a weight [N].
+    """Return the indentation [m] at which the static force equals a weight [N].
 
-    Exact for a power law; for others the force at the result is within 1e-12 of the weight.
+    Exact for a power law; for others the relative error of the force is within 1e-12.
 
     Examples
     --------
@@ -31,8 +31,8 @@ def static_indentation(law: CompliantLaw, weight: Array) -> Array:
     return _solve(force_and_power, lambda _: weight, law.release_level, 1e-14)
 
 
-def free_depth(law: CompliantLaw, energy: Array, weight: Array) -> Array:
-    """Return how deep the contact would get if its damping took nothing [m], to 1e-3.
+def undamped_depth(law: CompliantLaw, energy: Array, weight: Array) -> Array:
+    """Return the largest indentation of an impact without damping [m], to a relative 1e-3.
 
     Parameters
     ----------
@@ -41,7 +41,7 @@ def free_depth(law: CompliantLaw, energy: Array, weight: Array) -> Array:
     energy : array
         Kinetic energy at first touch [J], > 0.
     weight : array
-        A constant force that presses, and adds its own work [N].
+        A constant force in the direction of the indentation [N], whose work adds to the energy.
     """
     touch = law.touch_level
 
@@ -57,39 +57,41 @@ def _force(law: CompliantLaw, delta: Array) -> Array:
 
 
 def static_work(law: CompliantLaw, delta: Array) -> Array:
-    """Return the integral of the static force from `touch_level` [J]: the elastic energy and the plastic work."""
+    """Return the integral of the static force from `touch_level` [J], the sum of elastic energy and plastic work."""
     return law.elastic_energy(delta) + law.plastic_work(delta) if law.yields else law.elastic_energy(delta)
 
 
 def _solve(function: Callable[[Array], tuple[Array, Array]], wanted: Callable[[Array], Array], least: Array, within: float) -> Array:
-    """Return the indentation, at least `least`, at which a rising function of it has the value that is wanted.
+    """Return the indentation, at least `least`, at which an increasing function of it has the value `wanted`.
 
-    `function` also gives the power with which it locally goes: steps by it are exact at once for a power law; where they
-    lead astray, a bracket is found.
+    `function` returns the value and an estimate of the local exponent d ln(value) / d ln(delta): the iteration is exact after one
+    step for a power law. Where it does not converge, the root is bracketed.
     """
 
     def excess(delta: Array) -> Array:
         return function(delta)[0] - wanted(delta)
 
     least = least + np.zeros_like(wanted(np.zeros(1)))
-    delta, idle = least + 1e-6, wanted(least) <= 0.0
+    delta, unloaded = least + 1e-6, wanted(least) <= 0.0
     with np.errstate(all="ignore"):
+        # fixed-point iteration with the local exponent
         for _ in range(30):
             value, power = function(delta)
             step = (wanted(delta) / value) ** (1.0 / power)
-            delta = delta * np.where(idle, 1.0, step)
-            settled = np.abs(step - 1.0) < within
-            if np.all(settled | idle | ~np.isfinite(delta)):
+            delta = delta * np.where(unloaded, 1.0, step)
+            converged = np.abs(step - 1.0) < within
+            if np.all(converged | unloaded | ~np.isfinite(delta)):
                 break
-        lost = ~(settled & (delta > least))
-        if np.any(lost):
-            lost &= ~idle | (excess(least) < 0.0)
-        if np.any(lost):
+        # where it failed, the bracket is extended by factors of four from `least` until it holds the root
+        failed = ~(converged & (delta > least))
+        if np.any(failed):
+            failed &= ~unloaded | (excess(least) < 0.0)
+        if np.any(failed):
             low, high = least, least + 1e-9
             for _ in range(60):
                 short = ~(excess(high) > 0.0)
-                if not np.any(short & lost):
+                if not np.any(short & failed):
                     break
                 low, high = np.where(short, high, low), np.where(short, least + 4.0 * (high - least), high)
-            delta = np.where(lost, find_root(excess, low, high, tolerance=within), delta)
-    return np.asarray(np.where(lost | ~idle, delta, least))
+            delta = np.where(failed, find_root(excess, low, high, tolerance=within), delta)
+    return np.asarray(np.where(failed | ~unloaded, delta, least))

@@ -8,7 +8,7 @@ import numpy as np
 
 from vibroimpact.arrays import Floats, Indices
 from vibroimpact.contact.law import CompliantLaw
-from vibroimpact.contact.static import free_depth, static_indentation
+from vibroimpact.contact.static import static_indentation, undamped_depth
 
 
 @dataclass(frozen=True)
@@ -49,7 +49,7 @@ class Encounter:
 def encounter_of(law: CompliantLaw, mass: Floats, gravity: Floats, approach_speed: Floats) -> Encounter:
     """Return the encounter of B drops, with the undamped depth from the balance of energy."""
     weight = mass * gravity
-    depth = free_depth(law, 0.5 * mass * approach_speed**2, weight)
+    depth = undamped_depth(law, 0.5 * mass * approach_speed**2, weight)
     squared = approach_speed**2 + gravity * (depth - law.touch_level)
     if law.contact_end == "pull-off":
         squared = squared - 2.0 * law.elastic_energy(static_indentation(law, weight)) / mass  # negative: the energy of adhesion

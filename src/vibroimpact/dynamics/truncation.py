@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.contact.hertz_time import HERTZ_TIME
+from vibroimpact.contact.power_law import HERTZ_TIME
 from vibroimpact.dynamics.problem import Problem
 
 if TYPE_CHECKING:

@@ -1,1 +1,1 @@
-"""The contact laws shown: sheets, curves, and pages of the documentation."""
+"""Presentation of the contact laws: sheets in the terminal, curves, and documentation pages."""

@@ -1,4 +1,4 @@
-"""The documentation of the contact laws: a page a law, and the table that leads to them, from the laws themselves."""
+"""Documentation of the contact laws in markdown: one page per law, and the table of laws with links to them."""
 
 from __future__ import annotations
 
@@ -14,24 +14,24 @@ from vibroimpact.laws.text import SPEED, ParameterText, asked_and_achieved, law_
 from vibroimpact.report.markdown_table import markdown_table
 
 BEGIN, END = "<!-- laws: begin (written by make docs) -->", "<!-- laws: end -->"
-"""What stands around the table in laws.md."""
+"""The marker lines before and after the table in laws.md."""
 
 _ENDS = {"zero-indentation": "at zero indentation", "zero-force": "at zero force", "pull-off": "when torn apart"}
-_PULLS = {"none": "never", "cut": "would, and is cut", "kept": "does, before the end"}
+_TENSION = {"none": "never", "cut": "would, and is cut", "kept": "does, before the end"}
 
 
 def law_pages(laws_page: str) -> dict[str, str]:
-    """Return the documentation of the contact laws, by file name within the documentation's folder.
+    """Return the documentation of this package's contact laws by file name, relative to the documentation folder.
 
     Parameters
     ----------
     laws_page : str
-        The text of laws.md as it is; what lies between its two markers is replaced.
+        The present text of laws.md; the table between its two markers is replaced.
 
     Raises
     ------
     InputError
-        If the markers are not there.
+        If a marker is missing.
 
     Examples
     --------
@@ -49,7 +49,7 @@ def law_pages(laws_page: str) -> dict[str, str]:
 
 
 def law_page(law: type[ContactLaw]) -> str:
-    """Return the page of one contact law, in GitHub's markdown."""
+    """Return the documentation page of a contact law in GitHub markdown."""
     text = law_text(law)
     parts = [
         f"# `{law.name}`",
@@ -62,8 +62,8 @@ def law_page(law: type[ContactLaw]) -> str:
     ]
     if text.state:
         rows = ((f"`{item.name}`", _cell(item.meaning), item.unit or "-") for item in text.state)
-        parts += ["## State", "Zero of a fresh contact.", _table(("state", "meaning", "unit"), rows), text.lasts]
-    parts += ["## End of the contact", f"{text.end} {text.pulls}".strip()]
+        parts += ["## State", "Zero of a fresh contact.", _table(("state", "meaning", "unit"), rows), text.persistence]
+    parts += ["## End of the contact", f"{text.end} {text.tension}".strip()]
     parts += ["## Notes", *map(_marked, text.notes)] if text.notes else []
     pairs = asked_and_achieved(law)
     if pairs:
@@ -80,7 +80,7 @@ def law_page(law: type[ContactLaw]) -> str:
 
 
 def write_law_pages(docs_dir: str | PathLike[str]) -> list[Path]:
-    """Write the pages of the contact laws, and the table in laws.md, into the folder of the documentation.
+    """Write the pages of the contact laws and the table in laws.md into the documentation folder.
 
     Parameters
     ----------
@@ -90,7 +90,7 @@ def write_law_pages(docs_dir: str | PathLike[str]) -> list[Path]:
     Returns
     -------
     list of pathlib.Path
-        The files.
+        The files written.
     """
     folder = Path(docs_dir)
     pages = law_pages((folder / "laws.md").read_text(encoding="utf-8"))
@@ -103,9 +103,9 @@ def write_law_pages(docs_dir: str | PathLike[str]) -> list[Path]:
 def _table_of(laws: Iterable[type[ContactLaw]]) -> str:
     rows = []
     for law in laws:
-        end, pulls = (_ENDS[law.contact_end], _PULLS[law.tension]) if issubclass(law, CompliantLaw) else ("at once", "")
+        end, tension = (_ENDS[law.contact_end], _TENSION[law.tension]) if issubclass(law, CompliantLaw) else ("at once", "")
         equation = law.equation.replace("|", r"\|")
-        rows.append((f"[`{law.name}`](laws/{law.name}.md)", f"`{equation}`", end, pulls, law.source))
+        rows.append((f"[`{law.name}`](laws/{law.name}.md)", f"`{equation}`", end, tension, law.source))
     return _table(("law", "force, or restitution", "contact ends", "pulls?", "source"), rows)
 
 
@@ -122,7 +122,7 @@ def _cell(text: str) -> str:
 
 
 def _marked(paragraph: str) -> str:
-    """Return a paragraph of a docstring with its mathematics as GitHub reads it."""
+    """Return a paragraph of a docstring with its formulas in GitHub markdown."""
     if paragraph.startswith(".. math::"):
         return f"```math\n{paragraph.removeprefix('.. math::').strip()}\n```"
     return re.sub(r":math:`([^`]*)`", r"$`\1`$", paragraph)

@@ -1,4 +1,4 @@
-"""Mathematics of docstrings as plain text, for a terminal, in the notation of the laws' equations."""
+"""Conversion of LaTeX formulas in docstrings to plain text for the terminal, in the notation of the laws' equations."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ _NAMES = {r"\dot\delta_0": " v0 ", r"\dot\delta": " delta_dot ", r"\le": " <= ",
 
 
 def plain_text(text: str) -> str:
-    """Return a paragraph of a docstring without markup: roles of mathematics made plain, no backquotes.
+    """Return a paragraph of a docstring as plain text: formulas converted, backquotes removed.
 
     Examples
     --------
@@ -21,7 +21,7 @@ def plain_text(text: str) -> str:
 
 
 def plain_math(latex: str) -> str:
-    """Return a formula in LaTeX, as the docstrings use it, as plain text.
+    """Return a LaTeX formula as plain text; the subset of LaTeX that the docstrings use.
 
     Examples
     --------
@@ -43,7 +43,7 @@ def plain_math(latex: str) -> str:
     text = re.sub(r"\\[,; ]", " ", text)
     text = re.sub(r"\^\{\*(\d)\}", r"*^\1", text)
     before = ""
-    while text != before:  # from the inside out
+    while text != before:  # nested braces are resolved from the innermost
         before = text
         text = re.sub(r"_" + _PART, r"_\1", text)
         text = re.sub(r"\^" + _PART, lambda match: f"^{_grouped(match[1])}", text)

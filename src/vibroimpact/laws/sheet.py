@@ -1,4 +1,4 @@
-"""What the command line prints of the contact laws: the table of all, and the sheet of one."""
+"""Terminal output of the command `laws`: the table of all contact laws, and the sheet of one law."""
 
 from __future__ import annotations
 
@@ -14,17 +14,17 @@ from vibroimpact.laws.text import SPEED, LawText, ParameterText, asked_and_achie
 from vibroimpact.report.terminal_table import Column, TerminalTable
 
 _ENDS = {"zero-indentation": "no overlap", "zero-force": "no force", "pull-off": "torn apart"}
-_PULLS = {"none": "never", "cut": "cut", "kept": "yes"}
-_WIDE = 130  # columns of a terminal, from which sources are printed in full
+_TENSION = {"none": "never", "cut": "cut", "kept": "yes"}
+_WIDE = 130  # terminal width in columns from which sources are printed in full
 
 
 def law_table(width: int) -> RenderableType:
-    """Return the table of contact laws for a terminal of a width."""
+    """Return the table of contact laws for a terminal width in columns."""
     rows = []
     for name, law in contact_laws().items():
-        end, pulls = ("at once", "-") if not issubclass(law, CompliantLaw) else (_ENDS[law.contact_end], _PULLS[law.tension])
+        end, tension = ("at once", "-") if not issubclass(law, CompliantLaw) else (_ENDS[law.contact_end], _TENSION[law.tension])
         source = law.source if width >= _WIDE else short_source(law)
-        rows.append((name, law_text(law).loses_by.replace("nothing is lost", "-"), end, pulls, source))
+        rows.append((name, law_text(law).loss_parameters.replace("nothing is lost", "-"), end, tension, source))
     headings = ("law", "loses by", "ends at", "pulls", "source")
     table = TerminalTable(
         [Column(words, cells, words=True) for words, cells in zip(headings, zip(*rows, strict=True), strict=True)], indent=0
@@ -34,7 +34,7 @@ def law_table(width: int) -> RenderableType:
 
 
 def law_sheet(name: str) -> RenderableType:
-    """Return what there is to know of one contact law.
+    """Return the sheet of a contact law: equation, parameters, state, end of the contact, notes and references.
 
     Raises
     ------
@@ -43,7 +43,7 @@ def law_sheet(name: str) -> RenderableType:
     """
     law = find_contact_law(name)
     text = law_text(law)
-    body = text.body[1:] if text.body and text.body[0].startswith(".. math::") else text.body  # the equation stands for it
+    body = text.body[1:] if text.body and text.body[0].startswith(".. math::") else text.body  # the sheet prints `equation`
     parts: list[RenderableType] = [
         Text(f"{name}: {plain_paragraph(text.title)}", style="bold"),
         Text(),
@@ -55,7 +55,7 @@ def law_sheet(name: str) -> RenderableType:
         *(_indented(f"Refused {plain_paragraph(line)[:1].lower()}{plain_paragraph(line)[1:]}") for line in text.raises),
         *_state(text),
         *_heading("End of the contact"),
-        _indented(f"{text.end} {text.pulls}".strip()),
+        _indented(f"{text.end} {text.tension}".strip()),
         *(_heading("Notes") if text.notes else []),
         *_prose(text.notes),
         *_achieved(law),
@@ -78,7 +78,7 @@ def _prose(paragraphs: Iterable[str]) -> list[RenderableType]:
 
 
 def _parameters(parameters: Iterable[ParameterText], *, given: bool = True) -> RenderableType:
-    """Return a table of names and meanings; below a meaning its unit and, of what a case may give, range and default."""
+    """Return a table of names and meanings, each with its unit and, for parameters (`given`), range and default."""
     table = Table.grid(padding=(0, 2, 0, 0))
     table.add_column(no_wrap=True)
     for item in parameters:
@@ -95,7 +95,7 @@ def _left_out(default: str) -> str:
 def _state(text: LawText) -> list[RenderableType]:
     if not text.state:
         return []
-    return [*_heading("State, zero of a fresh contact"), _parameters(text.state, given=False), _indented(text.lasts)]
+    return [*_heading("State, zero of a fresh contact"), _parameters(text.state, given=False), _indented(text.persistence)]
 
 
 def _achieved(law: type[ContactLaw]) -> list[RenderableType]:

@@ -1,26 +1,24 @@
-"""A contact law in words: what the command line and the documentation print, from the law's own declarations."""
+"""The description of a contact law that the command line and the documentation print, from its declarations and docstring."""
 
 from __future__ import annotations
 
-import inspect
-import re
-from collections.abc import Iterator
 from dataclasses import MISSING, Field, dataclass, fields
 from functools import cache
 from typing import Any
 
 from vibroimpact.cases.reader import load_case
 from vibroimpact.cases.rigid import contact_pair
+from vibroimpact.contact.docstring import docstring_sections
 from vibroimpact.contact.law import CompliantLaw, ContactLaw
 from vibroimpact.contact.pair import ContactPair
 from vibroimpact.dynamics.restitution import achieved_restitution
-from vibroimpact.laws.plain_math import plain_text
+from vibroimpact.laws.plain_math import plain_math, plain_text
 
 ASKED = (0.9, 0.7, 0.5, 0.3)
-"""The restitutions asked for, of which the one achieved is shown."""
+"""The restitutions asked for at which the achieved restitution is shown."""
 
 SPEED = 8.8
-"""The approach speed at which that is shown [m/s]: the paper's."""
+"""The approach speed at which the achieved restitution is shown [m/s], that of the paper."""
 
 _OF_BODIES = ("effective_radius", "effective_mass")
 _ENDS = {
@@ -28,17 +26,16 @@ _ENDS = {
     "zero-force": "The contact is over when the bodies no longer push each other apart.",
     "pull-off": "The contact is over when the bodies have been torn apart.",
 }
-_PULLS = {
+_TENSION = {
     "none": "It never pulls.",
     "cut": "The formula would pull near the end; the force is cut at zero there.",
     "kept": "It may pull before the end.",
 }
-_AUTHORS = re.compile(r"[A-Z][\w-]+, [A-Z]\.[^()]*\(\d{4}\)")
 
 
 @dataclass(frozen=True)
 class ParameterText:
-    """What there is to say of one parameter, or of one state, of a law."""
+    """The description of a parameter or a state variable of a law."""
 
     name: str
     meaning: str
@@ -49,35 +46,34 @@ class ParameterText:
 
 @dataclass(frozen=True)
 class LawText:
-    """A contact law in words.
+    """The description of a contact law.
 
-    Texts keep the markup of the docstring; displayed formulas in `body` and `notes` are paragraphs that begin
-    with ".. math::".
+    Texts keep the reStructuredText markup; displayed formulas in `body` and `notes` are paragraphs that begin with ".. math::".
 
     Parameters
     ----------
     name, title, equation, source : str
-        Its name, the first line of its docstring, its force in one line, and who published it.
-    loses_by : str
-        The parameters that set how much is lost.
-    end, pulls : str
-        How its contact ends and whether it pulls, in sentences.
-    lasts : str
-        Whether what it remembers outlasts the contact; "" if it remembers nothing.
+        Its name, the first paragraph of its docstring, its equation, and its source.
+    loss_parameters : str
+        The parameters that set the energy loss.
+    end, tension : str
+        Sentences on the end of the contact and on tension.
+    persistence : str
+        Sentence on whether the state persists after the contact; "" without a state.
     body, notes, references, raises : tuple of str
-        Paragraphs of the docstring; one entry a reference.
+        Paragraphs of the docstring; one entry per reference, and per line of Raises.
     parameters, state : tuple of ParameterText
-        What a case may give, and what the law remembers.
+        The parameters that a case may give, and the state variables.
     """
 
     name: str
     title: str
     equation: str
     source: str
-    loses_by: str
+    loss_parameters: str
     end: str
-    pulls: str
-    lasts: str
+    tension: str
+    persistence: str
     body: tuple[str, ...]
     notes: tuple[str, ...]
     references: tuple[str, ...]
@@ -87,7 +83,7 @@ class LawText:
 
 
 def law_text(law: type[ContactLaw]) -> LawText:
-    """Return a contact law in words.
+    """Return the description of a contact law.
 
     Parameters
     ----------
@@ -98,54 +94,55 @@ def law_text(law: type[ContactLaw]) -> LawText:
     --------
     >>> from vibroimpact.contact.law import find_contact_law
     >>> text = law_text(find_contact_law("flores"))
-    >>> text.source, text.loses_by, text.parameters[0].default
+    >>> text.source, text.loss_parameters, text.parameters[0].default
     ('Flores et al. 2011, Multibody Syst. Dyn. 25:357', 'restitution', 'from the materials')
     """
-    sections = _sections(inspect.cleandoc(law.__doc__ or law.name))
-    first, *body = _paragraphs(sections[""])
-    described = _described(sections.get("Parameters", ""))
-    end, pulls, lasts = "It is over at once: it has no duration and no force.", "", ""
+    sections = docstring_sections(law.__doc__ or law.name)
+    title, *body = _paragraphs(sections[""])
+    end, tension, persistence = "It is over at once: it has no duration and no force.", "", ""
     if issubclass(law, CompliantLaw):
-        end, pulls = _ENDS[law.contact_end], _PULLS[law.tension]
+        end, tension = _ENDS[law.contact_end], _TENSION[law.tension]
         if any(item.metadata["memory"] for item in fields(law)):
-            lasts = (
+            persistence = (
                 "The state lasts: the next impact on the same spot goes on with it."
                 if law.lasting
                 else "The state does not outlast the contact: the next impact begins anew."
             )
     return LawText(
         name=law.name,
-        title=re.sub(r"[:,] :math:`[^`]*`\.?$", ".", first),
+        title=title,
         equation=law.equation,
         source=law.source,
-        loses_by=_loses_by(law),
+        loss_parameters=_loss_parameters(law),
         end=end,
-        pulls=pulls,
-        lasts=lasts,
+        tension=tension,
+        persistence=persistence,
         body=tuple(body),
         notes=tuple(_paragraphs(sections.get("Notes", ""))),
-        references=tuple(_references(sections.get("References", ""))),
+        references=tuple(_paragraphs(sections.get("References", ""))),
         raises=tuple(line.strip() for line in sections.get("Raises", "").splitlines() if line.startswith(" ")),
-        parameters=tuple(_parameter(item, described) for item in fields(law) if not item.metadata["memory"]),
-        state=tuple(_parameter(item, described) for item in fields(law) if item.metadata["memory"]),
+        parameters=tuple(_parameter_text(item) for item in fields(law) if not item.metadata["memory"]),
+        state=tuple(_parameter_text(item) for item in fields(law) if item.metadata["memory"]),
     )
 
 
 def plain_paragraph(paragraph: str) -> str:
     """Return a paragraph of a `LawText` as plain text."""
-    return plain_text(re.sub(r"^\.\. math:: *(.*)$", r":math:`\1`", paragraph, flags=re.S))
+    if paragraph.startswith(".. math::"):
+        return plain_math(paragraph.removeprefix(".. math::"))
+    return plain_text(paragraph)
 
 
 @cache
 def paper_pair() -> ContactPair:
-    """Return the paper's pair: a rock sphere of 25 mm on a steel plate."""
+    """Return the contact pair of the paper: a rock sphere of radius 25 mm on a steel plate."""
     return contact_pair(load_case("paper:type1-theory"))
 
 
 def asked_and_achieved(law: type[ContactLaw]) -> list[tuple[float, float]]:
-    """Return the restitutions that a law is asked for and achieves, for the paper's sphere at 8.8 m/s.
+    """Return pairs of restitution asked for and achieved, of the paper's sphere at 8.8 m/s without gravity.
 
-    Empty for a law that has no parameter `restitution`.
+    Empty for a law without the parameter `restitution`.
 
     Examples
     --------
@@ -161,7 +158,7 @@ def asked_and_achieved(law: type[ContactLaw]) -> list[tuple[float, float]]:
 
 
 def short_source(law: type[ContactLaw]) -> str:
-    """Return the authors and the year of a law's source, or what comes before the first comma.
+    """Return the authors and the year of a law's source, or, without a year, the text before the first comma.
 
     Examples
     --------
@@ -169,27 +166,31 @@ def short_source(law: type[ContactLaw]) -> str:
     >>> short_source(find_contact_law("jkr")), short_source(find_contact_law("adams-poisson"))
     ('Johnson, Kendall & Roberts 1971', 'MSC Adams/Solver guide')
     """
-    found = re.match(r"[^\d;]*\b\d{4}\b", law.source)
-    return found[0] if found else law.source.split(",")[0]
+    parts = law.source.split("; ")[0].split(",")
+    dated = [number for number, part in enumerate(parts, 1) if _is_year(part.rpartition(" ")[2])]
+    return ",".join(parts[: dated[0] if dated else 1])
 
 
-def _loses_by(law: type[ContactLaw]) -> str:
-    """Return the name of the free parameter, and of what may be given in its place."""
+def _is_year(word: str) -> bool:
+    return len(word) == 4 and word.isdigit()
+
+
+def _loss_parameters(law: type[ContactLaw]) -> str:
+    """Return the free parameter, or the alternatives of which one is given; "nothing is lost" without a free parameter."""
     free = law.example(paper_pair()).free_parameter
     if free is None:
         return "nothing is lost"
-    instead = [item.name for item in fields(law) if item.default is None and not item.metadata["from_pair"]]
-    return " or ".join(instead) if free in instead else free
+    alternatives = [item.name for item in fields(law) if item.default is None and not item.metadata["from_pair"]]
+    return " or ".join(alternatives) if free in alternatives else free
 
 
-def _parameter(item: Field[Any], described: dict[str, str]) -> ParameterText:
+def _parameter_text(item: Field[Any]) -> ParameterText:
     metadata = item.metadata
-    meaning = described.get(item.name) or f"{metadata['meaning'][0].upper()}{metadata['meaning'][1:]}."
-    return ParameterText(item.name, meaning, metadata["unit"], metadata["range"].words, _default(item))
+    return ParameterText(item.name, metadata["detail"], metadata["unit"], metadata["range"].words, _default(item))
 
 
 def _default(item: Field[Any]) -> str:
-    """Return where a parameter comes from if a case leaves it out."""
+    """Return the origin or value of a parameter that a case leaves out, or whether it is required."""
     source = item.metadata["from_pair"]
     if source:
         return "from the bodies" if source in _OF_BODIES else "from the materials"
@@ -199,37 +200,6 @@ def _default(item: Field[Any]) -> str:
     return "optional" if item.default is None else f"{item.default:g}"
 
 
-def _sections(doc: str) -> dict[str, str]:
-    """Return the sections of a numpydoc docstring by their headings; what comes first has none."""
-    parts = re.split(r"^(\w[\w ]*)\n-{3,}\n", doc, flags=re.M)
-    return {"": parts[0], **dict(zip(parts[1::2], parts[2::2], strict=True))}
-
-
 def _paragraphs(text: str) -> list[str]:
-    """Return the paragraphs, each in one line."""
-    return [" ".join(line.strip() for line in part.splitlines()) for part in re.split(r"\n\s*\n", text.strip()) if part.strip()]
-
-
-def _references(text: str) -> Iterator[str]:
-    """Yield the references, each in one line: a new one begins with its authors and a year."""
-    lines: list[str] = []
-    for line in text.strip().splitlines():
-        if _AUTHORS.match(line) and lines:
-            yield " ".join(lines)
-            lines = []
-        lines.append(line.strip())
-    if lines:
-        yield " ".join(lines)
-
-
-def _described(text: str) -> dict[str, str]:
-    """Return the meaning of each parameter, without unit and range, which are declared and printed apart."""
-    parts = re.split(r"^(\w[\w, ]*) : .*\n", text, flags=re.M)
-    found = {}
-    for names, part in zip(parts[1::2], parts[2::2], strict=True):
-        meaning = " ".join(line.strip() for line in part.splitlines()).strip().removeprefix("State: ")
-        meaning = re.sub(r" \[[^\]`]*\](?=[ ,.;(:])", "", meaning, count=1)
-        meaning = re.sub(r", (?:(?:>=?|<=?) [\d.]*\d|in [\[(][^\])]*[\])])(?=[ ,.;:])", "", meaning, count=1)
-        for name in names.split(", "):
-            found[name] = f"{meaning[:1].upper()}{meaning[1:]}"
-    return found
+    """Return the paragraphs of a text, each in one line."""
+    return [" ".join(line.strip() for line in part.splitlines()) for part in text.strip().split("\n\n") if part.strip()]

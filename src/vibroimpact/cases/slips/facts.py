@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 
 from vibroimpact.cases.conditions import Conditions, Seen
-from vibroimpact.contact.hertz_time import HERTZ_TIME
 from vibroimpact.contact.pair import hertz_stiffness
+from vibroimpact.contact.power_law import HERTZ_TIME
 from vibroimpact.materials import Material
 
 

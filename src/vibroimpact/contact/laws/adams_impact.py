@@ -1,4 +1,4 @@
-"""The IMPACT function of MSC Adams: a power-law spring and a dashpot that fades in."""
+"""The IMPACT function of MSC Adams: power-law spring and a dashpot that grows with the penetration."""
 
 from __future__ import annotations
 
@@ -7,26 +7,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from vibroimpact.arrays import Array
-from vibroimpact.contact.law import parameter
+from vibroimpact.contact.law import inherited_parameter, parameter
 from vibroimpact.contact.power_law import PowerLaw
 
 
 @dataclass(frozen=True, kw_only=True)
 class AdamsImpact(PowerLaw):
-    r"""Adams' IMPACT: :math:`F = \max(0,\ K \delta^n + \mathrm{STEP}(\delta; 0, 0; d, C)\, \dot\delta)`.
+    r"""Adams' IMPACT.
 
     STEP is the cubic :math:`C s^2 (3 - 2 s)` in :math:`s = \delta/d`, and C beyond :math:`d`.
-
-    Parameters
-    ----------
-    stiffness : float or array
-        Contact stiffness :math:`K` [N/m^n], > 0. From N/mm^n it is multiplied by 1000^n.
-    damping_max : float or array
-        Largest damping :math:`C` [N s/m], >= 0.
-    full_damping_penetration : float or array
-        Indentation :math:`d` at which the damping is full [m], > 0; Adams' own default is 0.1 mm.
-    exponent : float or array, default 1.5
-        Force exponent :math:`n` [-] (Adams calls it e), >= 1.
 
     Notes
     -----
@@ -51,22 +40,28 @@ class AdamsImpact(PowerLaw):
     source = "MSC Adams/Solver guide, functions IMPACT and STEP"
     contact_end = "zero-indentation"
     tension = "cut"
+    free_parameter = "damping_max"
 
-    damping_max: Array = parameter("largest damping C", "N s/m", example=150.0, at_least=0)
-    full_damping_penetration: Array = parameter("indentation d at which the damping is full", "m", above=0, default=1e-4)
-
-    @property
-    def free_parameter(self) -> str:
-        """The largest damping."""
-        return "damping_max"
+    stiffness: Array = inherited_parameter(
+        PowerLaw, "stiffness", detail="Contact stiffness :math:`K`. From N/mm^n it is multiplied by 1000^n."
+    )
+    exponent: Array = inherited_parameter(PowerLaw, "exponent", detail="Force exponent :math:`n` (Adams calls it e).")
+    damping_max: Array = parameter("largest damping C", "N s/m", detail="Largest damping :math:`C`.", example=150.0, at_least=0)
+    full_damping_penetration: Array = parameter(
+        "indentation d at which the damping is full",
+        "m",
+        detail="Indentation :math:`d` at which the damping is full; Adams' own default is 0.1 mm.",
+        above=0,
+        default=1e-4,
+    )
 
     @property
     def breakpoints(self) -> tuple[Array, ...]:
-        """The penetration of full damping, where STEP has a jump in its second derivative."""
+        """The penetration of full damping, at which the second derivative of STEP jumps."""
         return (self.full_damping_penetration,)
 
     def forces(self, delta: Array, delta_dot: Array, approach_speed: Array) -> tuple[Array, Array]:
-        """Return the elastic and the dissipative force [N], before the clip at zero."""
+        """Return the elastic and the dissipative force [N], before the clipping at zero."""
         s = np.minimum(delta / self.full_damping_penetration, 1.0)
         damping = self.damping_max * (s * s * (3.0 - 2.0 * s))
         return self.elastic_force(delta), damping * delta_dot

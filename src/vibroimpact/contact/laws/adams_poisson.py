@@ -1,4 +1,4 @@
-"""The restitution-based contact of MSC Adams: a penalty and Poisson's hypothesis."""
+"""The restitution-based contact of MSC Adams: penalty spring and Poisson's hypothesis."""
 
 from __future__ import annotations
 
@@ -6,23 +6,14 @@ from dataclasses import dataclass
 
 from vibroimpact.arrays import Array
 from vibroimpact.contact.law import parameter
-from vibroimpact.contact.one_way import OneWayLaw
+from vibroimpact.contact.mixins import TwoPhaseLaw
 
 
 @dataclass(frozen=True, kw_only=True)
-class AdamsPoisson(OneWayLaw):
+class AdamsPoisson(TwoPhaseLaw):
     r"""Penalty spring with Poisson's hypothesis: the impulse of restitution is e times that of compression.
 
     .. math:: F = p\, \delta \ \text{on approach},\qquad F = e^2 p\, \delta \ \text{on the way out}
-
-    Parameters
-    ----------
-    penalty : float or array
-        Penalty :math:`p` [N/m], > 0.
-    restitution : float or array
-        Restitution :math:`e` [-], in (0, 1].
-    turned : float or array, default 0
-        State: 1 once the contact has passed its deepest point [-].
 
     Notes
     -----
@@ -49,18 +40,18 @@ class AdamsPoisson(OneWayLaw):
     contact_end = "zero-indentation"
     tension = "none"
 
-    penalty: Array = parameter("penalty p", "N/m", example=2e6, above=0)
-    restitution: Array = parameter("restitution e", example=0.7, above=0, at_most=1)
+    penalty: Array = parameter("penalty p", "N/m", detail="Penalty :math:`p`.", example=2e6, above=0)
+    restitution: Array = parameter("restitution e", detail="Restitution :math:`e`.", example=0.7, above=0, at_most=1)
 
     def forces(self, delta: Array, delta_dot: Array, approach_speed: Array) -> tuple[Array, Array]:
-        """Return the penalty's force, and what the way out lacks of it [N]."""
+        """Return the penalty force and its reduction in restitution [N]."""
         force = self.penalty * delta
         return force, (self.restitution * self.restitution - 1.0) * self.turned * force
 
     def elastic_energy(self, delta: Array) -> Array:
-        r"""Return :math:`p \delta^2/2` [J], of which the way out loses a part."""
+        r"""Return :math:`p \delta^2/2` [J], a part of which is lost in restitution."""
         return 0.5 * self.penalty * delta * delta
 
     def closed_form_restitution(self, mass: Array, speed: Array) -> Array:
-        """Return the restitution that was asked for."""
+        """Return the restitution asked for."""
         return self.restitution + 0.0 * mass * speed

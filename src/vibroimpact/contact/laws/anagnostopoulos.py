@@ -1,31 +1,20 @@
-"""Anagnostopoulos's law: the linear spring and dashpot of buildings that pound."""
+"""Anagnostopoulos's law: linear spring and dashpot for structural pounding."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-
 from vibroimpact.arrays import Array
-from vibroimpact.contact.damping_ratio import damping_ratio_of
-from vibroimpact.contact.kelvin_voigt import KelvinVoigtLaw
-from vibroimpact.contact.law import parameter
+from vibroimpact.contact.kelvin_voigt import KelvinVoigtLaw, dashpot_for_restitution
+from vibroimpact.contact.law import inherited_parameter
+from vibroimpact.contact.mixins import RestitutionForMassLaw
 
 
 @dataclass(frozen=True, kw_only=True)
-class Anagnostopoulos(KelvinVoigtLaw):
+class Anagnostopoulos(RestitutionForMassLaw, KelvinVoigtLaw):
     r"""Linear viscoelastic impact element of earthquake engineering (Anagnostopoulos 1988).
 
     .. math:: F = k \delta + 2 \xi \sqrt{k m}\, \dot\delta,\qquad \xi = -\ln e / \sqrt{\pi^2 + \ln^2 e}
-
-    Parameters
-    ----------
-    stiffness : float or array
-        Stiffness of the impact element :math:`k` [N/m], > 0.
-    restitution : float or array
-        Restitution asked for, :math:`e` [-], in (0, 1].
-    effective_mass : float or array
-        Effective mass of the pair :math:`m` [kg], > 0.
 
     Notes
     -----
@@ -36,6 +25,7 @@ class Anagnostopoulos(KelvinVoigtLaw):
     ----------
     Anagnostopoulos, S. A. (1988). Pounding of buildings in series during earthquakes. Earthquake Eng. Struct.
     Dyn. 16, 443-456.
+
     Anagnostopoulos, S. A. (2004). Equivalent viscous damping for modeling inelastic impacts in earthquake
     pounding problems. Earthquake Eng. Struct. Dyn. 33, 897-902.
 
@@ -51,10 +41,9 @@ class Anagnostopoulos(KelvinVoigtLaw):
     equation = "F = k delta + 2 xi sqrt(k m) delta_dot, xi = -ln e / sqrt(pi^2 + ln^2 e)"
     source = "Anagnostopoulos 1988, Earthquake Eng. Struct. Dyn. 16:443"
 
-    restitution: Array = parameter("restitution asked for, e", example=0.7, above=0, at_most=1)
-    effective_mass: Array = parameter("mass for which the restitution is asked", "kg", above=0, from_pair="effective_mass")
+    stiffness: Array = inherited_parameter(KelvinVoigtLaw, "stiffness", detail="Stiffness of the impact element :math:`k`.")
 
     @property
     def dashpot(self) -> Array:
-        """The dashpot c [N s/m]."""
-        return 2.0 * damping_ratio_of(self.restitution) * np.sqrt(self.stiffness * self.effective_mass)
+        """The dashpot constant c [N s/m]."""
+        return dashpot_for_restitution(self.restitution, self.stiffness, self.effective_mass)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from vibroimpact.arrays import Array
 from vibroimpact.contact.hysteretic import HystereticLaw
-from vibroimpact.contact.law import parameter
+from vibroimpact.contact.law import inherited_parameter
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -16,15 +16,6 @@ class Flores(HystereticLaw):
     .. math:: F = K \delta^n \left[1 + \frac{8 (1 - e)}{5 e}\, \dot\delta / \dot\delta_0\right]
 
     with :math:`\dot\delta_0` the speed at the first touch of this impact.
-
-    Parameters
-    ----------
-    stiffness : float or array
-        Contact stiffness :math:`K` [N/m^n], > 0.
-    restitution : float or array
-        Restitution asked for, :math:`e` [-], in (0, 1].
-    exponent : float or array, default 1.5
-        Force exponent :math:`n` [-], >= 1.
 
     Notes
     -----
@@ -48,9 +39,9 @@ class Flores(HystereticLaw):
     equation = "F = K delta^n [1 + 8 (1 - e) / (5 e) delta_dot / v0]"
     source = "Flores et al. 2011, Multibody Syst. Dyn. 25:357"
 
-    restitution: Array = parameter("restitution asked for, e", example=0.7, above=0, at_most=1)
+    restitution: Array = inherited_parameter(HystereticLaw, "restitution", above=0, at_most=1)
 
     @property
     def damping_factor(self) -> Array:
-        """The factor D [-] of the approach speed's share in the force."""
+        """The damping factor D(e) [-]."""
         return 1.6 * (1.0 - self.restitution) / self.restitution

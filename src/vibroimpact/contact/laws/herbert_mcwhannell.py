@@ -16,15 +16,6 @@ class HerbertMcWhannell(HystereticLaw):
 
     with :math:`\dot\delta_0` the speed at the first touch of this impact.
 
-    Parameters
-    ----------
-    stiffness : float or array
-        Contact stiffness :math:`K` [N/m^n], > 0.
-    restitution : float or array
-        Restitution asked for, :math:`e` [-], in [0, 1].
-    exponent : float or array, default 1.5
-        Force exponent :math:`n` [-], >= 1.
-
     Notes
     -----
     Derived for e near 1. The restitution achieved is larger than the one asked for below 0.9: 0.7 gives 0.723,
@@ -49,5 +40,5 @@ class HerbertMcWhannell(HystereticLaw):
 
     @property
     def damping_factor(self) -> Array:
-        """The factor D [-] of the approach speed's share in the force."""
+        """The damping factor D(e) [-]."""
         return 6.0 * (1.0 - self.restitution) / ((2.0 * self.restitution - 1.0) ** 2 + 3.0)

@@ -1,4 +1,4 @@
-"""Hertz's law: a purely elastic sphere."""
+"""Hertz's law: elastic sphere."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from vibroimpact.arrays import Array
+from vibroimpact.contact.law import inherited_parameter
 from vibroimpact.contact.power_law import PowerLaw
 
 
@@ -16,13 +17,6 @@ class Hertz(PowerLaw):
 
     .. math:: F = K \delta^n
 
-    Parameters
-    ----------
-    stiffness : float or array
-        Contact stiffness :math:`K` [N/m^n], > 0.
-    exponent : float or array, default 1.5
-        Force exponent :math:`n` [-], >= 1; 1.5 for a sphere.
-
     Notes
     -----
     Nothing is lost, so the restitution is 1. Valid while the contact radius is small beside the sphere's
@@ -31,6 +25,7 @@ class Hertz(PowerLaw):
     References
     ----------
     Hertz, H. (1881). Ueber die Beruehrung fester elastischer Koerper. J. reine angew. Math. 92, 156-171.
+
     Johnson, K. L. (1985). Contact Mechanics. Cambridge University Press, eq. (4.23).
 
     Examples
@@ -46,10 +41,12 @@ class Hertz(PowerLaw):
     contact_end = "zero-indentation"
     tension = "none"
 
+    exponent: Array = inherited_parameter(PowerLaw, "exponent", detail="Force exponent :math:`n`; 1.5 for a sphere.")
+
     def forces(self, delta: Array, delta_dot: Array, approach_speed: Array) -> tuple[Array, Array]:
         """Return the elastic force and zero [N]."""
         return self.elastic_force(delta), np.zeros_like(delta)
 
     def closed_form_restitution(self, mass: Array, speed: Array) -> Array:
-        """Return 1: nothing is lost."""
+        """Return 1, since no energy is lost."""
         return np.ones_like(mass * speed)

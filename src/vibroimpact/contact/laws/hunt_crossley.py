@@ -16,15 +16,6 @@ class HuntCrossley(HystereticLaw):
 
     with :math:`\dot\delta_0` the speed at the first touch of this impact.
 
-    Parameters
-    ----------
-    stiffness : float or array
-        Contact stiffness :math:`K` [N/m^n], > 0.
-    restitution : float or array
-        Restitution asked for, :math:`e` [-], in [0, 1].
-    exponent : float or array, default 1.5
-        Force exponent :math:`n` [-], >= 1.
-
     Notes
     -----
     Derived for e near 1, from an energy loss that is small. The restitution achieved is larger than the one
@@ -49,5 +40,5 @@ class HuntCrossley(HystereticLaw):
 
     @property
     def damping_factor(self) -> Array:
-        """The factor D [-] of the approach speed's share in the force."""
+        """The damping factor D(e) [-]."""
         return 1.5 * (1.0 - self.restitution)

@@ -1,4 +1,4 @@
-"""Jackson, Green and Marghitu's restitution: a fit to finite elements of elastic-plastic spheres."""
+"""Jackson, Green and Marghitu's restitution: fit to finite-element results of elastic-plastic spheres."""
 
 from __future__ import annotations
 
@@ -8,12 +8,13 @@ import numpy as np
 
 from vibroimpact.arrays import Array
 from vibroimpact.contact.law import InstantaneousLaw, parameter
+from vibroimpact.contact.mixins import ElasticPairLaw
 
-_CHANGE = 60.0
+_CHANGE = 60.0  # dimensionless approach speed at which the fit changes its form
 
 
 @dataclass(frozen=True, kw_only=True)
-class JacksonGreenMarghitu(InstantaneousLaw):
+class JacksonGreenMarghitu(ElasticPairLaw, InstantaneousLaw):
     r"""Restitution of an elastic-perfectly-plastic sphere (Jackson, Green and Marghitu 2010).
 
     .. math:: e = \begin{cases} 1 & V^* \le 1 \\
@@ -23,17 +24,6 @@ class JacksonGreenMarghitu(InstantaneousLaw):
     with :math:`V^* = v/v_c`, :math:`v_c = \sqrt{4 \omega_c P_c/(5 m)}`,
     :math:`\omega_c = R\, (\pi C S_y/2 E^*)^2`, :math:`P_c = \tfrac43 (R/E^*)^2 (\pi C S_y/2)^3` and
     :math:`C = 1.295\, \mathrm{e}^{0.736 \nu}`.
-
-    Parameters
-    ----------
-    effective_modulus : float or array
-        Effective modulus :math:`E^*` [Pa], > 0.
-    effective_radius : float or array
-        Effective radius :math:`R` [m], > 0.
-    yield_strength : float or array
-        Yield strength :math:`S_y` of the body that yields [Pa], > 0.
-    poissons_ratio : float or array
-        Poisson's ratio :math:`\nu` of the body that yields [-], in [0, 0.5).
 
     Notes
     -----
@@ -58,28 +48,34 @@ class JacksonGreenMarghitu(InstantaneousLaw):
         "e = 1 - 0.1 ln(V) ((V - 1)/59)^0.156 for 1 < V <= 60, 1 - 0.1 ln(60) - 0.11 ln(V/60) (V - 60)^(2.36 Sy/E*) beyond, V = v/v_c"
     )
     source = "Jackson, Green & Marghitu 2010, Nonlinear Dynamics 60:217"
+    free_parameter = "yield_strength"
 
-    effective_modulus: Array = parameter("effective modulus E*", "Pa", above=0, from_pair="effective_modulus")
-    effective_radius: Array = parameter("effective radius R", "m", above=0, from_pair="effective_radius")
-    yield_strength: Array = parameter("yield strength Sy", "Pa", example=1e8, above=0, from_pair="yield_strength")
+    yield_strength: Array = parameter(
+        "yield strength Sy",
+        "Pa",
+        detail="Yield strength :math:`S_y` of the body that yields.",
+        example=1e8,
+        above=0,
+        from_pair="yield_strength",
+    )
     poissons_ratio: Array = parameter(
-        "Poisson's ratio of the body that yields", example=0.3, at_least=0, below=0.5, from_pair="poissons_ratio"
+        "Poisson's ratio of the body that yields",
+        detail=r"Poisson's ratio :math:`\nu` of the body that yields.",
+        example=0.3,
+        at_least=0,
+        below=0.5,
+        from_pair="poissons_ratio",
     )
 
-    @property
-    def free_parameter(self) -> str:
-        """The yield strength."""
-        return "yield_strength"
-
     def critical_speed(self, mass: Array) -> Array:
-        """Return the speed at which a sphere of a mass [kg] begins to yield [m/s]."""
+        """Return the approach speed at which a sphere of a mass [kg] begins to yield [m/s]."""
         pressure = 0.5 * np.pi * 1.295 * np.exp(0.736 * self.poissons_ratio) * self.yield_strength
         indentation = self.effective_radius * (pressure / self.effective_modulus) ** 2
         force = 4.0 / 3.0 * (self.effective_radius / self.effective_modulus) ** 2 * pressure**3
         return np.sqrt(0.8 * indentation * force / mass)
 
     def separation_speed(self, approach_speed: Array, mass: Array) -> Array:
-        """Return the restitution of the fit times the approach speed [m/s]."""
+        """Return the fitted restitution times the approach speed [m/s]."""
         ratio = approach_speed / self.critical_speed(mass)
         low = np.clip(ratio, 1.0, _CHANGE)
         high = np.maximum(ratio, _CHANGE)

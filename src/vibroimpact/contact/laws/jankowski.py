@@ -1,4 +1,4 @@
-"""Jankowski's law: Hertz with a dashpot that acts on approach alone."""
+"""Jankowski's law: Hertz's force with a nonlinear dashpot in compression only."""
 
 from __future__ import annotations
 
@@ -7,30 +7,18 @@ from dataclasses import dataclass
 import numpy as np
 
 from vibroimpact.arrays import Array
-from vibroimpact.contact.law import parameter
-from vibroimpact.contact.one_way import OneWayLaw
+from vibroimpact.contact.mixins import RestitutionForMassLaw, TwoPhaseLaw
 from vibroimpact.contact.power_law import SphereLaw
 
 
 @dataclass(frozen=True, kw_only=True)
-class Jankowski(SphereLaw, OneWayLaw):
+class Jankowski(RestitutionForMassLaw, SphereLaw, TwoPhaseLaw):
     r"""Nonlinear viscoelastic pounding (Jankowski 2005, 2006).
 
     .. math:: F = K \delta^{3/2} + 2 \xi \sqrt{m K \sqrt\delta}\, \dot\delta,\qquad
               \xi = \frac{9 \sqrt5}{2}\, \frac{1 - e^2}{e\, [e\, (9\pi - 16) + 16]}
 
     on approach, and :math:`F = K \delta^{3/2}` on the way out.
-
-    Parameters
-    ----------
-    stiffness : float or array
-        Contact stiffness :math:`K` [N/m^1.5], > 0.
-    restitution : float or array
-        Restitution asked for, :math:`e` [-], in (0, 1].
-    effective_mass : float or array
-        Effective mass of the pair :math:`m` [kg], > 0.
-    turned : float or array, default 0
-        State: 1 once the contact has passed its deepest point [-].
 
     Notes
     -----
@@ -41,6 +29,7 @@ class Jankowski(SphereLaw, OneWayLaw):
     ----------
     Jankowski, R. (2005). Non-linear viscoelastic modelling of earthquake-induced structural pounding. Earthquake
     Eng. Struct. Dyn. 34, 595-611.
+
     Jankowski, R. (2006). Analytical expression between the impact damping ratio and the coefficient of restitution
     in the non-linear viscoelastic model of structural pounding. Earthquake Eng. Struct. Dyn. 35, 517-524.
 
@@ -58,9 +47,6 @@ class Jankowski(SphereLaw, OneWayLaw):
     contact_end = "zero-indentation"
     tension = "none"
     root = 4
-
-    restitution: Array = parameter("restitution asked for, e", example=0.7, above=0, at_most=1)
-    effective_mass: Array = parameter("mass for which the restitution is asked", "kg", above=0, from_pair="effective_mass")
 
     def forces(self, delta: Array, delta_dot: Array, approach_speed: Array) -> tuple[Array, Array]:
         """Return the elastic and the dissipative force [N]."""

@@ -1,4 +1,4 @@
-"""Johnson, Kendall and Roberts's law: an elastic sphere that sticks."""
+"""Johnson, Kendall and Roberts's law: adhesive elastic sphere."""
 
 from __future__ import annotations
 
@@ -7,24 +7,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from vibroimpact.arrays import Array
-from vibroimpact.contact.sticking import StickingLaw
+from vibroimpact.contact.adhesion import AdhesiveLaw
+from vibroimpact.contact.law import inherited_parameter
 
 
 @dataclass(frozen=True, kw_only=True)
-class JKR(StickingLaw):
+class JKR(AdhesiveLaw):
     r"""Elastic sphere with adhesion (Johnson, Kendall and Roberts 1971).
 
     .. math:: F = \frac{4 E^* a^3}{3 R} - \sqrt{8 \pi w E^* a^3},\qquad \delta = \frac{a^2}{R} - \sqrt{\frac{2 \pi w a}{E^*}}
-
-    Parameters
-    ----------
-    effective_modulus : float or array
-        Effective modulus :math:`E^*` [Pa], > 0.
-    effective_radius : float or array
-        Effective radius :math:`R` [m], > 0.
-    work_of_adhesion : float or array
-        Work of adhesion :math:`w` [J/m^2], > 0: what it takes to part a unit of area, for equal materials twice the
-        surface energy of each.
 
     Notes
     -----
@@ -38,6 +29,7 @@ class JKR(StickingLaw):
     ----------
     Johnson, K. L., Kendall, K. and Roberts, A. D. (1971). Surface energy and the contact of elastic solids. Proc. R.
     Soc. Lond. A 324, 301-313.
+
     Thornton, C. and Ning, Z. (1998). A theoretical model for the stick/bounce behaviour of adhesive, elastic-plastic
     spheres. Powder Technology 99, 154-162.
 
@@ -52,18 +44,20 @@ class JKR(StickingLaw):
     name = "jkr"
     equation = "F = 4 E* a^3 / (3 R) - sqrt(8 pi w E* a^3), delta = a^2 / R - sqrt(2 pi w a / E*)"
     source = "Johnson, Kendall & Roberts 1971, Proc. R. Soc. Lond. A 324:301"
+    free_parameter = "work_of_adhesion"
 
-    @property
-    def free_parameter(self) -> str:
-        """The work of adhesion."""
-        return "work_of_adhesion"
+    work_of_adhesion: Array = inherited_parameter(
+        AdhesiveLaw,
+        "work_of_adhesion",
+        detail="Work of adhesion :math:`w`: what it takes to part a unit of area, for equal materials twice the surface energy of each.",
+    )
 
     def forces(self, delta: Array, delta_dot: Array, approach_speed: Array) -> tuple[Array, Array]:
-        """Return the static force, and zero [N]."""
+        """Return the static force and zero [N]."""
         force = self.adhesive_force(self.contact_radius(delta))
         return force, np.zeros_like(force)
 
     def closed_form_restitution(self, mass: Array, speed: Array) -> Array:
-        r"""Return :math:`\sqrt{1 - v_s^2/v^2}`, with :math:`v_s` the speed below which the sphere sticks; then zero."""
+        r"""Return :math:`\sqrt{1 - v_s^2/v^2}`, with the sticking speed :math:`v_s`, below which it is zero."""
         lost = self.elastic_energy(self.release_level) / (0.5 * mass * speed * speed)
         return np.sqrt(np.maximum(1.0 - lost, 0.0))

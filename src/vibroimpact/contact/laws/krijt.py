@@ -1,33 +1,22 @@
-"""Krijt and others' law: a viscoelastic sphere that sticks."""
+"""Krijt and others' law: adhesive viscoelastic sphere."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
 from vibroimpact.arrays import Array
-from vibroimpact.contact.law import parameter
-from vibroimpact.contact.sticking import StickingLaw
+from vibroimpact.contact.adhesion import AdhesiveLaw
+from vibroimpact.contact.law import inherited_parameter
+from vibroimpact.contact.mixins import ViscoelasticLaw
 
 
 @dataclass(frozen=True, kw_only=True)
-class Krijt(StickingLaw):
+class Krijt(ViscoelasticLaw, AdhesiveLaw):
     r"""Adhesion with viscoelastic loss in the bulk (after Krijt and others 2013).
 
     .. math:: F = F_\mathrm{JKR}(a) + 2 E^* A\, a\, \dot\delta
 
     with the contact radius a of Johnson, Kendall and Roberts.
-
-    Parameters
-    ----------
-    effective_modulus : float or array
-        Effective modulus :math:`E^*` [Pa], > 0.
-    effective_radius : float or array
-        Effective radius :math:`R` [m], > 0.
-    work_of_adhesion : float or array
-        Work of adhesion :math:`w` [J/m^2], > 0.
-    dissipation_time : float or array
-        Dissipative constant :math:`A` [s], >= 0; in the paper's terms the relaxation time over the square of
-        Poisson's ratio.
 
     Notes
     -----
@@ -51,12 +40,11 @@ class Krijt(StickingLaw):
     equation = "F = F_JKR(a) + 2 E* A a delta_dot"
     source = "Krijt et al. 2013, J. Phys. D 46:435303 (the loss in the bulk)"
 
-    dissipation_time: Array = parameter("dissipative constant A", "s", example=1e-5, at_least=0)
-
-    @property
-    def free_parameter(self) -> str:
-        """The dissipative constant."""
-        return "dissipation_time"
+    dissipation_time: Array = inherited_parameter(
+        ViscoelasticLaw,
+        "dissipation_time",
+        detail="Dissipative constant :math:`A`; in the paper's terms the relaxation time over the square of Poisson's ratio.",
+    )
 
     def forces(self, delta: Array, delta_dot: Array, approach_speed: Array) -> tuple[Array, Array]:
         """Return the static and the dissipative force [N]."""

@@ -1,4 +1,4 @@
-"""Kuwabara and Kono's law: a viscoelastic sphere."""
+"""Kuwabara and Kono's law: viscoelastic sphere."""
 
 from __future__ import annotations
 
@@ -7,22 +7,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from vibroimpact.arrays import Array
-from vibroimpact.contact.law import parameter
+from vibroimpact.contact.mixins import ViscoelasticLaw
 from vibroimpact.contact.power_law import SphereLaw
 
 
 @dataclass(frozen=True, kw_only=True)
-class KuwabaraKono(SphereLaw):
+class KuwabaraKono(ViscoelasticLaw, SphereLaw):
     r"""Viscoelastic spheres (Kuwabara and Kono 1987; Brilliantov and others 1996).
 
     .. math:: F = \max\left(0,\ K \left[\delta^{3/2} + \tfrac32 A \sqrt\delta\, \dot\delta\right]\right)
-
-    Parameters
-    ----------
-    stiffness : float or array
-        Contact stiffness :math:`K` [N/m^1.5], > 0.
-    dissipation_time : float or array
-        Dissipative constant :math:`A` [s], >= 0.
 
     Notes
     -----
@@ -35,6 +28,7 @@ class KuwabaraKono(SphereLaw):
     ----------
     Kuwabara, G. and Kono, K. (1987). Restitution coefficient in a collision between two spheres. Jpn. J. Appl.
     Phys. 26, 1230-1233.
+
     Brilliantov, N. V., Spahn, F., Hertzsch, J.-M. and Poeschel, T. (1996). Model for collisions in granular gases.
     Phys. Rev. E 53, 5382-5392.
 
@@ -52,13 +46,6 @@ class KuwabaraKono(SphereLaw):
     contact_end = "zero-force"
     tension = "cut"
 
-    dissipation_time: Array = parameter("dissipative constant A", "s", example=1e-5, at_least=0)
-
-    @property
-    def free_parameter(self) -> str:
-        """The dissipative constant."""
-        return "dissipation_time"
-
     def forces(self, delta: Array, delta_dot: Array, approach_speed: Array) -> tuple[Array, Array]:
-        """Return the elastic and the dissipative force [N], before the clip at zero."""
+        """Return the elastic and the dissipative force [N], before the clipping at zero."""
         return self.elastic_force(delta), 1.5 * self.stiffness * self.dissipation_time * np.sqrt(delta) * delta_dot

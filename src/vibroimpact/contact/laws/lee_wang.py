@@ -16,15 +16,6 @@ class LeeWang(HystereticLaw):
 
     with :math:`\dot\delta_0` the speed at the first touch of this impact.
 
-    Parameters
-    ----------
-    stiffness : float or array
-        Contact stiffness :math:`K` [N/m^n], > 0.
-    restitution : float or array
-        Restitution asked for, :math:`e` [-], in [0, 1].
-    exponent : float or array, default 1.5
-        Force exponent :math:`n` [-], >= 1.
-
     Notes
     -----
     Loses about half of what is asked: 0.7 gives 0.869, and no value gives less than 0.66.
@@ -48,5 +39,5 @@ class LeeWang(HystereticLaw):
 
     @property
     def damping_factor(self) -> Array:
-        """The factor D [-] of the approach speed's share in the force."""
+        """The damping factor D(e) [-]."""
         return 0.75 * (1.0 - self.restitution)

@@ -1,36 +1,22 @@
-"""The linear spring and dashpot of discrete-element programs (Kelvin and Voigt)."""
+"""The linear spring-dashpot (Kelvin-Voigt) model of discrete-element programs."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-
 from vibroimpact.arrays import Array
-from vibroimpact.contact.damping_ratio import damping_ratio_of
-from vibroimpact.contact.kelvin_voigt import KelvinVoigtLaw
+from vibroimpact.contact.kelvin_voigt import KelvinVoigtLaw, dashpot_for_restitution
 from vibroimpact.contact.law import parameter
 from vibroimpact.errors import InputError
 
 
 @dataclass(frozen=True, kw_only=True)
 class LinearSpringDashpot(KelvinVoigtLaw):
-    r"""Linear spring and dashpot in parallel, :math:`F = k \delta + c \dot\delta`.
+    r"""Linear spring and dashpot in parallel.
 
     Give either the dashpot's `damping` or the `restitution` wanted and the `effective_mass` m; then
 
     .. math:: c = 2 \beta \sqrt{k m},\qquad \beta = -\ln e / \sqrt{\pi^2 + \ln^2 e}
-
-    Parameters
-    ----------
-    stiffness : float or array
-        Spring stiffness :math:`k` [N/m], > 0.
-    damping : float or array, optional
-        Dashpot :math:`c` [N s/m], >= 0.
-    restitution : float or array, optional
-        Restitution asked for, :math:`e` [-], in (0, 1].
-    effective_mass : float or array, optional
-        Effective mass of the pair [kg], > 0.
 
     Raises
     ------
@@ -60,10 +46,24 @@ class LinearSpringDashpot(KelvinVoigtLaw):
     equation = "F = k delta + c delta_dot"
     source = "Garg et al. 2012, Powder Technology 220:122"
 
-    damping: Array | None = parameter("dashpot c, unless a restitution is given", "N s/m", at_least=0, default=None)
-    restitution: Array | None = parameter("restitution asked for, instead of damping", example=0.7, above=0, at_most=1, default=None)
+    damping: Array | None = parameter(
+        "dashpot c, unless a restitution is given", "N s/m", detail="Dashpot :math:`c`.", at_least=0, default=None
+    )
+    restitution: Array | None = parameter(
+        "restitution asked for, instead of damping",
+        detail="Restitution asked for, :math:`e`.",
+        example=0.7,
+        above=0,
+        at_most=1,
+        default=None,
+    )
     effective_mass: Array | None = parameter(
-        "mass for which the restitution is asked", "kg", above=0, from_pair="effective_mass", default=None
+        "mass for which the restitution is asked",
+        "kg",
+        detail="Effective mass of the pair.",
+        above=0,
+        from_pair="effective_mass",
+        default=None,
     )
 
     def __post_init__(self) -> None:
@@ -75,12 +75,12 @@ class LinearSpringDashpot(KelvinVoigtLaw):
 
     @property
     def free_parameter(self) -> str:
-        """The damping, or the restitution if that is given."""
+        """The name of the parameter given, damping or restitution."""
         return "damping" if self.restitution is None else "restitution"
 
     @property
     def dashpot(self) -> Array:
-        """The dashpot's damping [N s/m], given or from the restitution."""
+        """The dashpot constant c [N s/m], given or computed from the restitution."""
         if self.damping is not None:
             return self.damping
-        return 2.0 * damping_ratio_of(self.restitution) * np.sqrt(self.stiffness * self.effective_mass)
+        return dashpot_for_restitution(self.restitution, self.stiffness, self.effective_mass)

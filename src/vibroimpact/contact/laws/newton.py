@@ -1,4 +1,4 @@
-"""Newton's restitution: an impact without a duration."""
+"""Newton's restitution: instantaneous impact."""
 
 from __future__ import annotations
 
@@ -10,12 +10,7 @@ from vibroimpact.contact.law import InstantaneousLaw, parameter
 
 @dataclass(frozen=True, kw_only=True)
 class Newton(InstantaneousLaw):
-    r"""Instantaneous impact of hard bodies (Newton 1687): :math:`v_+ = e\, v_-`.
-
-    Parameters
-    ----------
-    restitution : float or array
-        Coefficient of restitution :math:`e` [-], in [0, 1].
+    r"""Instantaneous impact of hard bodies (Newton 1687).
 
     Notes
     -----
@@ -36,7 +31,9 @@ class Newton(InstantaneousLaw):
     equation = "v+ = e v-"
     source = "Newton 1687, Principia, scholium to the laws of motion"
 
-    restitution: Array = parameter("coefficient of restitution e", example=0.7, at_least=0, at_most=1)
+    restitution: Array = parameter(
+        "coefficient of restitution e", detail="Coefficient of restitution :math:`e`.", example=0.7, at_least=0, at_most=1
+    )
 
     def separation_speed(self, approach_speed: Array, mass: Array) -> Array:
         """Return e times the approach speed [m/s]."""

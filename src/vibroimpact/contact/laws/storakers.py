@@ -1,4 +1,4 @@
-"""Thornton's contact for a material that hardens by a power law, with Storakers and others' pressure."""
+"""Elastic-plastic sphere of a power-law-hardening material: Thornton's law with the pressure of Storakers and others."""
 
 from __future__ import annotations
 
@@ -26,20 +26,6 @@ class Storakers(YieldingSphereLaw):
 
     and :math:`\delta_y` is where the two slopes agree. It unloads as Hertz's contact of a flatter sphere.
 
-    Parameters
-    ----------
-    effective_modulus : float or array
-        Effective modulus :math:`E^*` [Pa], > 0.
-    effective_radius : float or array
-        Effective radius :math:`R` [m], > 0.
-    yield_strength : float or array
-        Yield strength :math:`Y` of the body that yields [Pa], > 0; the power law goes through it at the strain
-        :math:`Y/E^*`.
-    hardening_exponent : float or array, default 10
-        Hardening exponent :math:`m` [-], >= 1.01; large for a perfectly plastic material.
-    loaded_to : float or array, default 0
-        State: deepest indentation so far [m].
-
     Notes
     -----
     The mean pressure is published, and so is the rest of the law, for a constant pressure; putting them together is this
@@ -52,6 +38,7 @@ class Storakers(YieldingSphereLaw):
     ----------
     Storakers, B., Biwa, S. and Larsson, P.-L. (1997). Similarity analysis of inelastic contact. Int. J. Solids
     Struct. 34, 3061-3083.
+
     Thornton, C. (1997). Coefficient of restitution for collinear collisions of elastic-perfectly plastic spheres.
     J. Appl. Mech. 64, 383-386.
 
@@ -68,31 +55,41 @@ class Storakers(YieldingSphereLaw):
         "p = 3 Y (E*/Y)^(1/m) (a/6R)^(1/m), a^2 = R delta; unloading Hertz's, of a flatter sphere"
     )
     source = "Storakers, Biwa & Larsson 1997, Int. J. Solids Struct. 34:3061, in Thornton 1997, J. Appl. Mech. 64:383"
+    free_parameter = "yield_strength"
 
-    yield_strength: Array = parameter("yield strength Y", "Pa", example=2e7, above=0, from_pair="yield_strength")
-    hardening_exponent: Array = parameter("hardening exponent m", at_least=1.01, default=10.0)
-
-    @property
-    def free_parameter(self) -> str:
-        """The yield strength."""
-        return "yield_strength"
+    yield_strength: Array = parameter(
+        "yield strength Y",
+        "Pa",
+        detail="Yield strength :math:`Y` of the body that yields; the power law goes through it at the strain :math:`Y/E^*`.",
+        example=2e7,
+        above=0,
+        from_pair="yield_strength",
+    )
+    hardening_exponent: Array = parameter(
+        "hardening exponent m",
+        detail="Hardening exponent :math:`m`; large for a perfectly plastic material.",
+        at_least=1.01,
+        default=10.0,
+    )
 
     @property
     def yield_indentation(self) -> Array:
-        """Indentation at which Hertz's force grows as the plastic one does [m]."""
+        """Indentation at which Hertz's force and the plastic force have the same slope [m]."""
         slope = self._power * self._plastic_stiffness
         return (slope / (1.5 * self.stiffness)) ** (1.0 / (1.5 - self._power))
 
     def plastic_force(self, delta: Array) -> Array:
-        """Return the loading force beyond yield [N]."""
-        at = self.yield_indentation
-        return self.stiffness * at**1.5 + self._plastic_stiffness * (delta**self._power - at**self._power)
+        """Return the loading force beyond the yield indentation [N]."""
+        at_yield = self.yield_indentation
+        return self.stiffness * at_yield**1.5 + self._plastic_stiffness * (delta**self._power - at_yield**self._power)
 
     def plastic_loading_work(self, delta: Array) -> Array:
-        """Return its integral from yield [J]."""
-        at, power = self.yield_indentation, self._power
-        constant = self.stiffness * at**1.5 - self._plastic_stiffness * at**power
-        return constant * (delta - at) + self._plastic_stiffness * (delta ** (power + 1.0) - at ** (power + 1.0)) / (power + 1.0)
+        """Return the integral of the plastic force from the yield indentation [J]."""
+        at_yield, power = self.yield_indentation, self._power
+        constant = self.stiffness * at_yield**1.5 - self._plastic_stiffness * at_yield**power
+        return constant * (delta - at_yield) + self._plastic_stiffness * (delta ** (power + 1.0) - at_yield ** (power + 1.0)) / (
+            power + 1.0
+        )
 
     @property
     def _power(self) -> Array:

@@ -1,4 +1,4 @@
-"""Thornton's law: an elastic-perfectly-plastic sphere."""
+"""Thornton's law: elastic-perfectly-plastic sphere."""
 
 from __future__ import annotations
 
@@ -21,17 +21,6 @@ class Thornton(YieldingSphereLaw):
 
     with unloading as Hertz's contact of a flatter sphere, from the deepest point to the dent that remains.
 
-    Parameters
-    ----------
-    effective_modulus : float or array
-        Effective modulus :math:`E^*` [Pa], > 0.
-    effective_radius : float or array
-        Effective radius :math:`R` [m], > 0.
-    yield_pressure : float or array
-        Limiting contact pressure :math:`p_y` [Pa], > 0; from the materials, 1.6 times the smaller yield strength.
-    loaded_to : float or array, default 0
-        State: deepest indentation so far [m].
-
     Notes
     -----
     The pressure is Hertz's, cut off at :math:`p_y`. Below the yield speed
@@ -44,6 +33,7 @@ class Thornton(YieldingSphereLaw):
     ----------
     Thornton, C. (1997). Coefficient of restitution for collinear collisions of elastic-perfectly plastic spheres.
     J. Appl. Mech. 64, 383-386.
+
     Johnson, K. L. (1985). Contact Mechanics. Cambridge University Press, section 6.1 (1.6 times the yield strength).
 
     Examples
@@ -56,28 +46,31 @@ class Thornton(YieldingSphereLaw):
     name = "thornton"
     equation = "F = 4/3 E* sqrt(R) delta^1.5 up to yield, F_y + pi R p_y (delta - delta_y) beyond; unloading Hertz's, of a flatter sphere"
     source = "Thornton 1997, J. Appl. Mech. 64:383"
+    free_parameter = "yield_pressure"
 
-    yield_pressure: Array = parameter("limiting contact pressure p_y", "Pa", example=1e8, above=0, from_pair="yield_pressure")
-
-    @property
-    def free_parameter(self) -> str:
-        """The limiting contact pressure."""
-        return "yield_pressure"
+    yield_pressure: Array = parameter(
+        "limiting contact pressure p_y",
+        "Pa",
+        detail="Limiting contact pressure :math:`p_y`; from the materials, 1.6 times the smaller yield strength.",
+        example=1e8,
+        above=0,
+        from_pair="yield_pressure",
+    )
 
     @property
     def yield_indentation(self) -> Array:
-        r"""Indentation :math:`\delta_y` at which it yields [m]."""
+        r"""Indentation :math:`\delta_y` at yield [m]."""
         return self.effective_radius * (np.pi * self.yield_pressure / (2.0 * self.effective_modulus)) ** 2
 
     def plastic_force(self, delta: Array) -> Array:
-        """Return the loading force beyond yield [N]."""
-        at = self.yield_indentation
-        return self.stiffness * at * np.sqrt(at) + self._slope * (delta - at)
+        """Return the loading force beyond the yield indentation [N]."""
+        at_yield = self.yield_indentation
+        return self.stiffness * at_yield * np.sqrt(at_yield) + self._slope * (delta - at_yield)
 
     def plastic_loading_work(self, delta: Array) -> Array:
-        """Return its integral from yield [J]."""
-        at = self.yield_indentation
-        return (self.stiffness * at * np.sqrt(at) + 0.5 * self._slope * (delta - at)) * (delta - at)
+        """Return the integral of the plastic force from the yield indentation [J]."""
+        at_yield = self.yield_indentation
+        return (self.stiffness * at_yield * np.sqrt(at_yield) + 0.5 * self._slope * (delta - at_yield)) * (delta - at_yield)
 
     @property
     def _slope(self) -> Array:

@@ -1,4 +1,4 @@
-"""Tsuji and others' law: Hertz with a dashpot whose restitution does not depend on the speed."""
+"""Tsuji and others' law: Hertz's force with a dashpot that makes the restitution independent of the speed."""
 
 from __future__ import annotations
 
@@ -7,26 +7,17 @@ from dataclasses import dataclass
 import numpy as np
 
 from vibroimpact.arrays import Array
-from vibroimpact.contact.damping_ratio import damping_ratio_of, restitution_of
-from vibroimpact.contact.law import parameter
+from vibroimpact.contact.kelvin_voigt import damping_ratio_from_restitution, restitution_from_damping_ratio
+from vibroimpact.contact.mixins import RestitutionForMassLaw
 from vibroimpact.contact.power_law import SphereLaw
 
 
 @dataclass(frozen=True, kw_only=True)
-class Tsuji(SphereLaw):
+class Tsuji(RestitutionForMassLaw, SphereLaw):
     r"""Damped Hertz contact (Tsuji and others 1992), with the damping of Antypov and Elliott (2011).
 
     .. math:: F = K \delta^{3/2} + \alpha \sqrt{m K}\, \delta^{1/4}\, \dot\delta,
               \qquad \alpha = -\sqrt5 \ln e / \sqrt{\pi^2 + \ln^2 e}
-
-    Parameters
-    ----------
-    stiffness : float or array
-        Contact stiffness :math:`K` [N/m^1.5], > 0.
-    restitution : float or array
-        Restitution asked for, :math:`e` [-], in (0, 1].
-    effective_mass : float or array
-        Effective mass of the pair :math:`m` [kg], > 0.
 
     Notes
     -----
@@ -38,6 +29,7 @@ class Tsuji(SphereLaw):
     ----------
     Tsuji, Y., Tanaka, T. and Ishida, T. (1992). Lagrangian numerical simulation of plug flow of cohesionless
     particles in a horizontal pipe. Powder Technology 71, 239-250.
+
     Antypov, D. and Elliott, J. A. (2011). On an analytical solution for the damped Hertzian spring. EPL 94, 50004.
 
     Examples
@@ -55,17 +47,14 @@ class Tsuji(SphereLaw):
     tension = "kept"
     root = 4
 
-    restitution: Array = parameter("restitution asked for, e", example=0.7, above=0, at_most=1)
-    effective_mass: Array = parameter("mass for which the restitution is asked", "kg", above=0, from_pair="effective_mass")
-
     @property
     def _dashpot(self) -> Array:
-        return np.sqrt(5.0 * self.effective_mass * self.stiffness) * damping_ratio_of(self.restitution)
+        return np.sqrt(5.0 * self.effective_mass * self.stiffness) * damping_ratio_from_restitution(self.restitution)
 
     def forces(self, delta: Array, delta_dot: Array, approach_speed: Array) -> tuple[Array, Array]:
         """Return the elastic and the dissipative force [N]."""
         return self.elastic_force(delta), self._dashpot * np.sqrt(np.sqrt(delta)) * delta_dot
 
     def closed_form_restitution(self, mass: Array, speed: Array) -> Array:
-        """Return Antypov and Elliott's restitution, the same at every speed."""
-        return restitution_of(self._dashpot / np.sqrt(5.0 * mass * self.stiffness) + 0.0 * speed)
+        """Return Antypov and Elliott's restitution, independent of the speed."""
+        return restitution_from_damping_ratio(self._dashpot / np.sqrt(5.0 * mass * self.stiffness) + 0.0 * speed)

@@ -1,4 +1,4 @@
-"""Walton and Braun's law: two linear springs, one for loading and a stiffer one for unloading."""
+"""Walton and Braun's law: linear loading, and linear unloading with a higher stiffness."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 
 from vibroimpact.arrays import Array
 from vibroimpact.contact.elastic_plastic import ElasticPlasticLaw
-from vibroimpact.contact.law import parameter
+from vibroimpact.contact.law import inherited_parameter, parameter
 from vibroimpact.errors import InputError
 
 
@@ -20,17 +20,6 @@ class WaltonBraun(ElasticPlasticLaw):
               \qquad \delta_r = \delta_m (1 - k_1/k_2)
 
     with :math:`k_2 = k_1/e^2`, if a `restitution` is given, or :math:`k_2 = k_1 + S F_m`, if `stiffening` is.
-
-    Parameters
-    ----------
-    stiffness : float or array
-        Stiffness of loading :math:`k_1` [N/m], > 0.
-    restitution : float or array, optional
-        Restitution asked for, :math:`e` [-], in (0, 1].
-    stiffening : float or array, optional
-        Growth of the unloading stiffness with the largest force, :math:`S` [1/m], >= 0.
-    loaded_to : float or array, default 0
-        State: deepest indentation of this contact so far [m].
 
     Raises
     ------
@@ -64,11 +53,23 @@ class WaltonBraun(ElasticPlasticLaw):
     lasting = False
     unloading_exponent = 1.0
 
-    stiffness: Array = parameter("stiffness of loading k1", "N/m", example=2e6, above=0)
+    loaded_to: Array = inherited_parameter(ElasticPlasticLaw, "loaded_to", detail="Deepest indentation of this contact so far.")
+    stiffness: Array = parameter("stiffness of loading k1", "N/m", detail="Stiffness of loading :math:`k_1`.", example=2e6, above=0)
     restitution: Array | None = parameter(
-        "restitution asked for, unless stiffening is given", example=0.7, above=0, at_most=1, default=None
+        "restitution asked for, unless stiffening is given",
+        detail="Restitution asked for, :math:`e`.",
+        example=0.7,
+        above=0,
+        at_most=1,
+        default=None,
     )
-    stiffening: Array | None = parameter("growth S of the unloading stiffness with the largest force", "1/m", at_least=0, default=None)
+    stiffening: Array | None = parameter(
+        "growth S of the unloading stiffness with the largest force",
+        "1/m",
+        detail="Growth of the unloading stiffness with the largest force, :math:`S`.",
+        at_least=0,
+        default=None,
+    )
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -77,7 +78,7 @@ class WaltonBraun(ElasticPlasticLaw):
 
     @property
     def free_parameter(self) -> str:
-        """The stiffening, or the restitution if that is given."""
+        """The name of the parameter given, restitution or stiffening."""
         return "stiffening" if self.restitution is None else "restitution"
 
     def loading_force(self, delta: Array) -> Array:
@@ -88,14 +89,14 @@ class WaltonBraun(ElasticPlasticLaw):
         r"""Return :math:`k_1 \delta^2/2` [J]."""
         return 0.5 * self.stiffness * delta * delta
 
-    def elastic_part(self, deepest: Array) -> Array:
+    def elastic_recovery(self, deepest: Array) -> Array:
         r"""Return :math:`\delta_m k_1/k_2` [m]."""
         if self.restitution is not None:
             return self.restitution**2 * deepest
         return deepest / (1.0 + self.stiffening * deepest)
 
     def closed_form_restitution(self, mass: Array, speed: Array) -> Array:
-        """Return the published restitution."""
+        """Return the published restitution of a fresh contact, that of the energy balance otherwise."""
         if np.any(self.loaded_to):
             return super().closed_form_restitution(mass, speed)
         if self.restitution is not None:

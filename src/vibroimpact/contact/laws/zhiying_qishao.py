@@ -18,15 +18,6 @@ class ZhiyingQishao(HystereticLaw):
 
     with :math:`\dot\delta_0` the speed at the first touch of this impact.
 
-    Parameters
-    ----------
-    stiffness : float or array
-        Contact stiffness :math:`K` [N/m^n], > 0.
-    restitution : float or array
-        Restitution asked for, :math:`e` [-], in [0, 1].
-    exponent : float or array, default 1.5
-        Force exponent :math:`n` [-], >= 1.
-
     Notes
     -----
     For e above about 0.5: 0.7 gives 0.680, 0.3 gives 0.327, and no value gives less than 0.17.
@@ -50,5 +41,5 @@ class ZhiyingQishao(HystereticLaw):
 
     @property
     def damping_factor(self) -> Array:
-        """The factor D [-] of the approach speed's share in the force."""
+        """The damping factor D(e) [-]."""
         return 0.75 * (1.0 - self.restitution * self.restitution) * np.exp(2.0 * (1.0 - self.restitution))

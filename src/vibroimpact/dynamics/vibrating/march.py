@@ -16,7 +16,7 @@ import numpy as np
 from vibroimpact.arrays import Floats
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.roots import find_root
-from vibroimpact.contact.static import free_depth
+from vibroimpact.contact.static import undamped_depth
 from vibroimpact.dynamics.collocation import Map
 from vibroimpact.dynamics.lockstep import Course, asked
 from vibroimpact.dynamics.vibrating.ending import before_event, broken, end_at, growth
@@ -178,7 +178,7 @@ class March:
     def _scale(self, number: int, law: CompliantLaw, closing: float) -> tuple[float, float]:
         """Return the speed of the motion in a contact [m/s], and about how long it lasts [s]."""
         mass, speed = float(self.system.mass[number]), motion_speed(self.system, number, law, closing)
-        depth = float(free_depth(law, np.array([0.5 * mass * speed**2]), np.zeros(1))[0] - law.touch_level)
+        depth = float(undamped_depth(law, np.array([0.5 * mass * speed**2]), np.zeros(1))[0] - law.touch_level)
         return speed, 3.0 * depth / speed
 
     def part(self, touch: Touching) -> None:

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.contact.roots import highest
+from vibroimpact.contact.roots import locate_maximum
 from vibroimpact.dynamics.lockstep import Course, asked, side_by_side
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.vibrating.free_motion import Apart
@@ -156,7 +156,7 @@ class _Neighbour:
             return float("nan")
         stretch, pressed = visit.strongest
         (contact,) = stretch.contacts
-        top = np.array([highest(contact.force_at)])
+        top = np.array([locate_maximum(contact.force_at)])
         stronger = float(stretch.rule.interpolate(top, pressed)[0]) / float(contact.force_at(top)[0])
         slower = float(stretch.system.rigid_motion(self.difference)[1][0]) / max(abs(speed), _SLOW * visit.speed)
         return max(abs(visit.closing) / visit.speed, abs(stronger), abs(slower))

@@ -10,7 +10,7 @@ import numpy as np
 from vibroimpact.arrays import Floats
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.quasi_static import QuasiStatic
-from vibroimpact.contact.roots import highest
+from vibroimpact.contact.roots import locate_maximum
 from vibroimpact.contact.static import static_indentation
 from vibroimpact.dynamics.vibrating.linear_system import LinearSystem, State
 from vibroimpact.dynamics.vibrating.local import LocalContact
@@ -50,7 +50,7 @@ class Peak:
         found = (0.0, 0.0)
         for near, start, stretch, values in self._candidates:
             if near >= _PEAK * self.near:
-                x = np.array([highest(values)])
+                x = np.array([locate_maximum(values)])
                 if (value := float(values(x)[0])) > found[0]:
                     found = value, start + stretch.length * float(stretch.rule.map_time(x)[0])
         return found

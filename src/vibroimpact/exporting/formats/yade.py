@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from vibroimpact.arrays import Array
-from vibroimpact.contact.damping_ratio import damping_ratio_of
+from vibroimpact.contact.kelvin_voigt import damping_ratio_from_restitution
 from vibroimpact.contact.law import ContactLaw
 from vibroimpact.contact.laws.hertz import Hertz
 from vibroimpact.contact.laws.tsuji import Tsuji
@@ -50,7 +50,7 @@ def _damping(law: ContactLaw, drop: Drop, speed: float) -> float:
         return clipped_dashpot(stiffness, exponent, restitution, drop.mass, speed)
     clipped = _Clipped(stiffness=stiffness, restitution=restitution, effective_mass=drop.mass)
     # they take the critical damping of the spring's slope, 3/2 K sqrt(delta)
-    return math.sqrt(5.0 / 6.0) * float(damping_ratio_of(law_achieving(clipped, restitution, drop.mass, speed).restitution))
+    return math.sqrt(5.0 / 6.0) * float(damping_ratio_from_restitution(law_achieving(clipped, restitution, drop.mass, speed).restitution))
 
 
 def _linear(drop: Drop) -> bool:

@@ -1,0 +1,57 @@
+"""Mixins with the parameters or the state that laws of different families share."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Self
+
+import numpy as np
+
+from vibroimpact.arrays import Array
+from vibroimpact.contact.law import CompliantLaw, ContactLaw, memory, parameter
+
+
+@dataclass(frozen=True, kw_only=True)
+class ElasticPairLaw(ContactLaw):
+    """Mixin of the laws that take the effective modulus and radius of the two bodies."""
+
+    effective_modulus: Array = parameter(
+        "effective modulus E*", "Pa", detail="Effective modulus :math:`E^*`.", above=0, from_pair="effective_modulus"
+    )
+    effective_radius: Array = parameter(
+        "effective radius R", "m", detail="Effective radius :math:`R`.", above=0, from_pair="effective_radius"
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class RestitutionForMassLaw(CompliantLaw):
+    """Mixin of the laws whose dashpot is computed from the restitution asked for and the effective mass."""
+
+    restitution: Array = parameter("restitution asked for, e", detail="Restitution asked for, :math:`e`.", example=0.7, above=0, at_most=1)
+    effective_mass: Array = parameter(
+        "mass for which the restitution is asked",
+        "kg",
+        detail="Effective mass of the pair :math:`m`.",
+        above=0,
+        from_pair="effective_mass",
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class ViscoelasticLaw(CompliantLaw):
+    """Mixin of the laws of viscoelastic spheres, whose energy loss is set by the dissipative constant A."""
+
+    dissipation_time: Array = parameter("dissipative constant A", "s", detail="Dissipative constant :math:`A`.", example=1e-5, at_least=0)
+
+    free_parameter = "dissipation_time"
+
+
+@dataclass(frozen=True, kw_only=True)
+class TwoPhaseLaw(CompliantLaw):
+    """Mixin of the laws whose force differs in compression and restitution; the state tells the phase."""
+
+    turned: Array = memory("has the contact passed its deepest point? 1 if so", detail="1 once the contact has passed its deepest point.")
+
+    def after_compression(self, deepest: Array) -> Self:
+        """Return the law for the restitution phase, of the drops whose indentation has been positive."""
+        return self.changed({"turned": np.where(deepest > 0.0, 1.0, self.turned)})
