@@ -1,0 +1,85 @@
+"""The rooms of the package, from the ground up, each with what it holds and its number of lines.
+
+Makes the picture of docs/architecture.md.
+"""
+
+from pathlib import Path
+
+import matplotlib
+
+matplotlib.use("Agg")  # no window
+import matplotlib.pyplot as plt
+from matplotlib.patches import FancyBboxPatch
+
+import vibroimpact
+
+PACKAGE = Path(vibroimpact.__file__).parent
+FLOORS = {  # top to bottom: what a floor is, its colour, its rooms and what they hold
+    "the command line": ("#e4e4e4", {"cli": "commands, help,\nexit status"}),
+    "what people do": (
+        "#a9c4dc",
+        {
+            "runs": "one case: folder,\nreport, animation",
+            "comparison": "one case under\nseveral laws",
+            "calibration": "parameters from\nmeasurements",
+            "studies": "many drops,\ndataset, report",
+            "modes": "frequencies,\nshapes",
+            "laws": "sheets, curves,\npages",
+            "exporting": "files for other\nprograms",
+            "paper": "the paper,\nreproduced",
+        },
+    ),
+    "in, out, and shown": (
+        "#cfe0d1",
+        {
+            "cases": "the case file: sections,\nlimits, slips of units",
+            "results": "the result of a run\nand its folder",
+            "report": "style of figures, page,\ntables, progress",
+            "meshes": "mesh files in and out",
+            "measurements": "records and tables in",
+        },
+    ),
+    "physics": (
+        "#f1d9b5",
+        {
+            "dynamics": "problem, simulate, response;\nrigid, phase_plane, vibrating, sensors",
+            "bodies": "sphere, plate",
+            "structures": "meshes, supports, modes,\nreduction, store",
+            "contact": "24 laws, pair, statics",
+        },
+    ),
+    "ground": (
+        "#e6bfa8",
+        {"materials": "library", "units": "read and shown", "files": "atomic writing,\nchecksums", "errors": "and arrays, ranges,\nregistry"},
+    ),
+}
+
+
+def lines_of(room: str) -> int:
+    """Return the number of lines of a room."""
+    place = PACKAGE / room
+    files = sorted(place.rglob("*.py")) if place.is_dir() else [PACKAGE / f"{room}.py"]
+    return sum(len(file.read_text(encoding="utf-8").splitlines()) for file in files)
+
+
+figure, axes = plt.subplots(figsize=(11.0, 6.2))
+axes.set(xlim=(-0.17, 1.0), ylim=(0.0, len(FLOORS)))
+axes.axis("off")
+total = 0
+for number, (floor, (colour, rooms)) in enumerate(reversed(FLOORS.items())):
+    axes.text(-0.165, number + 0.5, floor, va="center", fontsize=10, style="italic")
+    width = 1.0 / len(rooms)
+    for place, (room, holds) in enumerate(rooms.items()):
+        size = lines_of(room)
+        total += size
+        box = FancyBboxPatch(
+            (place * width + 0.006, number + 0.1), width - 0.012, 0.8, boxstyle="round,pad=0,rounding_size=0.012", fc=colour, ec="#6b6b6b"
+        )
+        axes.add_patch(box)
+        middle = (place + 0.5) * width
+        axes.text(middle, number + 0.72, room, ha="center", va="center", fontsize=10, weight="bold")
+        axes.text(middle, number + 0.45, holds, ha="center", va="center", fontsize=7.5)
+        axes.text(middle, number + 0.2, f"{size:,} lines", ha="center", va="center", fontsize=7, color="#444444")
+figure.tight_layout(pad=0.3)
+figure.savefig("architecture.png", dpi=110)
+print(f"architecture.png: {total:,} lines in {sum(len(rooms) for _, rooms in FLOORS.values())} rooms")
