@@ -15,7 +15,7 @@ from vibroimpact.contact.law import ContactLaw, contact_laws
 from vibroimpact.contact.laws.adams_impact import AdamsImpact
 from vibroimpact.contact.laws.hertz import Hertz
 from vibroimpact.errors import InputError
-from vibroimpact.exporting.contact_alone import approach_speeds
+from vibroimpact.exporting.contact_parameters import approach_speeds
 from vibroimpact.exporting.drop import Drop
 
 _ANY_PENETRATION = 1e-4
@@ -67,15 +67,15 @@ class AdamsContact:
 
     def gap(self, names: Names) -> str:
         """Return the distance of the surfaces [mm], negative in contact."""
-        return f"{names.height} - {number(self.radius)}"
+        return f"{names.height} - {adams_number(self.radius)}"
 
     def coming_speed(self, names: Names) -> str:
         """Return the speed that the sphere will next touch with [mm/s], right at any moment of a flight: its energy does not change."""
-        return f"SQRT({names.velocity}**2 + {number(2.0 * self.gravity)} * MAX({self.gap(names)}, 0.0))"
+        return f"SQRT({names.velocity}**2 + {adams_number(2.0 * self.gravity)} * MAX({self.gap(names)}, 0.0))"
 
     def held_speed(self, names: Names) -> str:
         """Return the approach speed of the contact under way [mm/s]; the first one as long as the sensor has not fired."""
-        first = number(self.first_speed)
+        first = adams_number(self.first_speed)
         return f"IF(SENVAL({names.sensor}): {first}, {first}, SENVAL({names.sensor}))"
 
     def damping_now(self, names: Names) -> str:
@@ -85,10 +85,10 @@ class AdamsContact:
     def force(self, names: Names) -> str:
         """Return the contact force [N]."""
         height, velocity = names.height, names.velocity
-        stiffness, exponent, radius = number(self.stiffness), number(self.exponent), number(self.radius)
+        stiffness, exponent, radius = adams_number(self.stiffness), adams_number(self.exponent), adams_number(self.radius)
         damping = f"VARVAL({names.damping})" if self.varies else self.damping
         if self.penetration is not None:
-            return f"IMPACT({height}, {velocity}, {radius}, {stiffness}, {exponent}, {damping}, {number(self.penetration)})"
+            return f"IMPACT({height}, {velocity}, {radius}, {stiffness}, {exponent}, {damping}, {adams_number(self.penetration)})"
         return f"{stiffness} * MAX({radius} - {height}, 0.0)**{exponent} * (1.0 - {damping} * {velocity} / VARVAL({names.speed}))"
 
     def readings(self, names: Names, force: str) -> dict[int, tuple[str, str]]:
@@ -136,7 +136,7 @@ def adams_contact(drop: Drop) -> AdamsContact:
     elif varies:
         damping, meaning = _by_steps([_damping(one) for one in laws], speeds)
     else:
-        damping, meaning = number(_damping(law)), "the same in every impact"
+        damping, meaning = adams_number(_damping(law)), "the same in every impact"
     for one in laws[1:]:
         if _spring(one) != _spring(law):
             raise InputError("Adams' contact can change its damping from impact to impact, and nothing else", "laws")
@@ -154,24 +154,24 @@ def adams_contact(drop: Drop) -> AdamsContact:
     )
 
 
-def number(value: float) -> str:
+def adams_number(value: float) -> str:
     """Return a number in 15 digits as Adams takes it: with a point, and an exponent in capitals.
 
     Examples
     --------
-    >>> number(1e-05), number(25.0), number(0.1 + 0.2), number(5), number(1e22)
+    >>> adams_number(1e-05), adams_number(25.0), adams_number(0.1 + 0.2), adams_number(5), adams_number(1e22)
     ('1.0E-05', '25.0', '0.3', '5.0', '1.0E+22')
     """
     mantissa, _, exponent = repr(float(f"{value:.15g}")).partition("e")
     return (mantissa if "." in mantissa else f"{mantissa}.0") + (f"E{exponent}" if exponent else "")
 
 
-def numbers(values: Sequence[float]) -> str:
+def adams_numbers(values: Sequence[float]) -> str:
     """Return numbers as a list."""
-    return ", ".join(map(number, values))
+    return ", ".join(map(adams_number, values))
 
 
-def titles(readings: Mapping[int, tuple[str, str]]) -> str:
+def column_titles(readings: Mapping[int, tuple[str, str]]) -> str:
     """Return the titles of all columns up to the last that is read, empty where none is."""
     return ", ".join(f'"{readings.get(column, ("",))[0]}"' for column in range(1, max(readings) + 1))
 
@@ -198,9 +198,9 @@ def _by_function(law: ContactLaw, name: str, function: SpeedFunction) -> tuple[s
         )
     # from N s/m over (m/s)^k to N s/mm over (mm/s)^k
     factors = [coefficient / 1000.0 ** (power + 1) for power, coefficient in enumerate(function.coefficients)]
-    polynomial = number(factors[-1])
+    polynomial = adams_number(factors[-1])
     for factor in factors[-2::-1]:
-        polynomial = f"{number(factor)} + speed * ({polynomial})"
+        polynomial = f"{adams_number(factor)} + speed * ({polynomial})"
     fitted = f"{function.slowest:.4g} to {function.fastest:.4g} m/s"
     return f"MAX({polynomial}, 0.0)", f"a polynomial of the approach speed, fitted over {fitted}"
 
@@ -214,8 +214,8 @@ def _by_steps(dampings: Sequence[float], speeds: Sequence[float]) -> tuple[str, 
                 "approach speed; give one damping for all, or a function of the speed",
                 "laws",
             )
-    steps = number(dampings[-1])
+    steps = adams_number(dampings[-1])
     for damping, (fast, slow) in reversed(list(zip(dampings[:-1], pairwise(speeds), strict=False))):
-        edge = number(1000.0 * 0.5 * (fast + slow))
-        steps = f"IF(speed - {edge}: {steps}, {number(damping)}, {number(damping)})"
+        edge = adams_number(1000.0 * 0.5 * (fast + slow))
+        steps = f"IF(speed - {edge}: {steps}, {adams_number(damping)}, {adams_number(damping)})"
     return steps, "one value an impact, told apart by the approach speed; the edges lie midway between the speeds of neighbouring impacts"

@@ -8,7 +8,7 @@ from textwrap import wrap
 from typing import NamedTuple
 
 from vibroimpact.exporting.adams_contact import AdamsContact, adams_contact
-from vibroimpact.exporting.contact_alone import first_contact, laws_of_impacts, shared_notes
+from vibroimpact.exporting.contact_parameters import first_contact, laws_of_impacts, shared_notes
 from vibroimpact.exporting.drop import Drop
 from vibroimpact.files.plain_names import identifier, plain_words
 from vibroimpact.materials import Material
@@ -141,17 +141,17 @@ def legal_name(text: str) -> str:
     return f"drop_{name}" if name[0].isdigit() else name
 
 
-def comments(model: AdamsModel) -> list[str]:
+def header_comments(model: AdamsModel) -> list[str]:
     """Return the comment lines at the head of a file."""
     return [f"! {line}" for remark in (model.title, *remarks(model)) for line in wrap(remark, LINE - 2, break_on_hyphens=False)]
 
 
-def broken(text: str, width: int) -> list[str]:
+def wrap_expression(text: str, width: int) -> list[str]:
     """Return an expression in lines of at most `width` columns, broken at its blanks.
 
     Examples
     --------
-    >>> broken("A + B * (C - D)", 8)
+    >>> wrap_expression("A + B * (C - D)", 8)
     ['A + B *', '(C - D)']
     """
     lines = [""]

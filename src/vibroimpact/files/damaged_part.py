@@ -9,7 +9,7 @@ from pathlib import Path
 import h5py
 
 from vibroimpact.files.check_sums import CHANGED, DamageError, check_file
-from vibroimpact.files.hdf5 import read_array, why
+from vibroimpact.files.hdf5 import read_array, short_reason
 
 _PATIENCE = 20.0  # seconds
 
@@ -51,7 +51,7 @@ def _in_group(group: h5py.Group) -> str:
         try:
             found = group[name]
         except Exception as error:  # of many kinds, as the file is damaged in many ways
-            return f"{group.name.strip('/')}/{name}".lstrip("/") + f" is damaged ({why(error)})"
+            return f"{group.name.strip('/')}/{name}".lstrip("/") + f" is damaged ({short_reason(error)})"
         try:
             told = _in_group(found) if isinstance(found, h5py.Group) else ""
             if isinstance(found, h5py.Dataset):

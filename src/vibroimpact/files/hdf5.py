@@ -115,10 +115,10 @@ def read_array(data: h5py.Dataset, place: Any = ()) -> NDArray[Any]:
     try:
         return np.asarray(data[place])
     except Exception as error:  # of many kinds, as the file is damaged in many ways
-        raise DamageError(f"{data.name.lstrip('/')} is damaged ({why(error)})") from None
+        raise DamageError(f"{data.name.lstrip('/')} is damaged ({short_reason(error)})") from None
 
 
-def why(error: Exception) -> str:
+def short_reason(error: Exception) -> str:
     """Return in few words why HDF5 could not read."""
     text = " ".join(str(error).split())
     if any(word in text for word in ("checksum", "fletcher32", "inflate", "filter")):

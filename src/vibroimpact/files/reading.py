@@ -125,7 +125,7 @@ def decoded(data: bytes, kind: FileKind) -> str:
         raise InputError(f"the file is not UTF-8 text; {kind.what}") from None
 
 
-def file_digest(path: str | PathLike[str], kind: FileKind) -> str:
+def input_file_digest(path: str | PathLike[str], kind: FileKind) -> str:
     """Return the SHA-256 of what a file holds, in hexadecimal digits.
 
     Raises
@@ -139,12 +139,12 @@ def file_digest(path: str | PathLike[str], kind: FileKind) -> str:
     return found.hexdigest()
 
 
-def about(path: str | PathLike[str], error: InputError, key: str = "") -> InputError:
+def with_path(path: str | PathLike[str], error: InputError, key: str = "") -> InputError:
     """Return an error with the name of the file before it.
 
     Examples
     --------
-    >>> about("drop.csv", InputError("there is no such file")).message
+    >>> with_path("drop.csv", InputError("there is no such file")).message
     'drop.csv: there is no such file'
     """
     return InputError(f"{shortened(str(path), _LONG_NAME)}: {error}", key)

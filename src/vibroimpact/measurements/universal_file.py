@@ -13,7 +13,7 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.errors import InputError
-from vibroimpact.files.reading import FileKind, about, beginning, read_bytes
+from vibroimpact.files.reading import FileKind, beginning, read_bytes, with_path
 
 UNIVERSAL = FileKind("a universal file holds datasets between lines of -1", 100_000_000, "keep the functions that are needed")
 """What is asked of a universal file."""
@@ -99,7 +99,7 @@ def read_universal_file(path: str | Path) -> UniversalFile:
     try:
         raw = read_bytes(file, UNIVERSAL)
     except InputError as error:
-        raise about(file, error) from None
+        raise with_path(file, error) from None
     functions: list[Function] = []
     factors, number = None, 0
     for header, place in _datasets(raw):

@@ -12,7 +12,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from vibroimpact.errors import InputError
-from vibroimpact.files.reading import FileKind, about, beginning
+from vibroimpact.files.reading import FileKind, beginning, with_path
 from vibroimpact.meshes.geometry_process import MARK
 from vibroimpact.meshes.read_gmsh import read_gmsh
 from vibroimpact.shown import shortened
@@ -71,7 +71,7 @@ def mesh_geometry(path: str | PathLike[str], size: float | None = None, order: i
         if not beginning(path, GEOMETRY, 1):
             raise InputError(f"the file is empty; {GEOMETRY.what}")
     except InputError as error:
-        raise about(path, error) from None
+        raise with_path(path, error) from None
     with TemporaryDirectory() as folder:
         made = Path(folder, "mesh.msh")
         # a bare file name that starts with a dash, or a link, is no trouble when the path is whole

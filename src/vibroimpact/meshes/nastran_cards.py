@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
-from vibroimpact.files.lines import Line, real
+from vibroimpact.meshes.text_files import TextLine, parse_real
 from vibroimpact.shown import shown
 
 _EXPONENT = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+))(?:[dD]([+-]?\d+)|([+-]\d+))")
@@ -16,24 +16,24 @@ _INCLUDE = re.compile(r"""\s*INCLUDE\s+(?:'([^']+)'|"([^"]+)"|([^'"$\s]+))\s*(?:
 class Card(NamedTuple):
     """A card: its name in capitals, and its fields from the second on."""
 
-    line: Line
+    line: TextLine
     name: str
     fields: list[str]
 
 
-def included_file(text: str) -> str | None:
+def nastran_include(text: str) -> str | None:
     """Return the file that a line of a Nastran file includes.
 
     Examples
     --------
-    >>> included_file("include 'mesh/plate.bdf'  $ the plate")
+    >>> nastran_include("include 'mesh/plate.bdf'  $ the plate")
     'mesh/plate.bdf'
     """
     found = _INCLUDE.fullmatch(text) if "NCLUDE" in text[:40].upper() else None
     return next(name for name in found.groups() if name) if found else None
 
 
-def nastran_real(text: str, line: Line) -> float:
+def nastran_real(text: str, line: TextLine) -> float:
     """Return a number that may lack the letter of its exponent or have a D; a blank is zero.
 
     Examples
@@ -44,10 +44,10 @@ def nastran_real(text: str, line: Line) -> float:
     if not text:
         return 0.0
     found = _EXPONENT.fullmatch(text)
-    return float(f"{found[1]}e{found[2] or found[3]}") if found else real(text, line)
+    return float(f"{found[1]}e{found[2] or found[3]}") if found else parse_real(text, line)
 
 
-def cards(lines: Iterable[Line]) -> Iterator[Card]:
+def cards(lines: Iterable[TextLine]) -> Iterator[Card]:
     """Yield the cards of bulk data, up to ENDDATA and with it.
 
     Raises
@@ -58,7 +58,7 @@ def cards(lines: Iterable[Line]) -> Iterator[Card]:
     card, goes_on = None, ""
     for line in lines:
         text = line.text.split("$", 1)[0].rstrip()
-        if not text or included_file(text) is not None:
+        if not text or nastran_include(text) is not None:
             continue
         head, fields, end = _split(text.expandtabs(8))
         if not head or head[0] in "+*":

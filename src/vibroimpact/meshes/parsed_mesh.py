@@ -11,8 +11,8 @@ import numpy as np
 
 from vibroimpact.arrays import Floats, Integers
 from vibroimpact.errors import InputError
-from vibroimpact.files.lines import Line
 from vibroimpact.meshes.node_order import to_ours
+from vibroimpact.meshes.text_files import TextLine
 from vibroimpact.shown import shown
 from vibroimpact.structures.element_kinds import ELEMENT_KINDS
 from vibroimpact.structures.mesh import ElementBlock, Mesh
@@ -67,7 +67,7 @@ class Selection:
 class _Elements:
     """The elements of one kind as the file numbers them."""
 
-    lines: list[Line] = field(default_factory=list)
+    lines: list[TextLine] = field(default_factory=list)
     numbers: list[int] = field(default_factory=list)
     nodes: list[Sequence[int]] = field(default_factory=list)
 
@@ -90,12 +90,12 @@ class Parts:
     element_sets: defaultdict[str, Selection] = field(default_factory=lambda: defaultdict(Selection))
     skipped: Counter[str] = field(default_factory=Counter)
     _copied: int = 0
-    _node_lines: list[Line] = field(default_factory=list)
+    _node_lines: list[TextLine] = field(default_factory=list)
     _node_numbers: list[int] = field(default_factory=list)
     _points: list[tuple[float, float, float]] = field(default_factory=list)
     _elements: defaultdict[str, _Elements] = field(default_factory=lambda: defaultdict(_Elements))
 
-    def add_node(self, line: Line, number: int, point: tuple[float, float, float]) -> None:
+    def add_node(self, line: TextLine, number: int, point: tuple[float, float, float]) -> None:
         """Add a node.
 
         Raises
@@ -110,7 +110,7 @@ class Parts:
         self._node_numbers.append(number)
         self._points.append(point)
 
-    def add_members(self, line: Line, chosen: Selection, more: Selection) -> None:
+    def add_members(self, line: TextLine, chosen: Selection, more: Selection) -> None:
         """Add to a set what another one selects.
 
         Raises
@@ -123,7 +123,7 @@ class Parts:
             raise line.wrong(_too_many_members())
         chosen.update(more)
 
-    def add_element(self, line: Line, kind: str, number: int, nodes: Sequence[int]) -> None:
+    def add_element(self, line: TextLine, kind: str, number: int, nodes: Sequence[int]) -> None:
         """Add an element with as many nodes as its kind has, in the file's order."""
         found = self._elements[kind]
         found.lines.append(line)

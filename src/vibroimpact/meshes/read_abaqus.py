@@ -7,10 +7,10 @@ from os import PathLike
 from pathlib import Path
 
 from vibroimpact.errors import did_you_mean
-from vibroimpact.files.lines import Line, lines_with_includes, real, whole
-from vibroimpact.meshes.abaqus_blocks import Block, blocks, included_file
+from vibroimpact.meshes.abaqus_blocks import Block, abaqus_include, blocks
 from vibroimpact.meshes.node_order import ABAQUS
 from vibroimpact.meshes.parsed_mesh import Parts, Selection
+from vibroimpact.meshes.text_files import TextLine, parse_integer, parse_real, read_lines_with_includes
 from vibroimpact.shown import shown
 from vibroimpact.structures.element_kinds import ELEMENT_KINDS
 from vibroimpact.structures.mesh import Mesh
@@ -51,7 +51,7 @@ def read_abaqus(path: str | PathLike[str]) -> Mesh:
     ('tet4', ['all'])
     """
     reader = _Reader(Path(path))
-    for block in blocks(lines_with_includes(Path(path), included_file)):
+    for block in blocks(read_lines_with_includes(Path(path), abaqus_include)):
         reader.take(block)
     return reader.mesh()
 
@@ -62,14 +62,14 @@ class _Reader:
     def __init__(self, path: Path) -> None:
         self.parts = Parts(path, ABAQUS)
         self.names: dict[tuple[str, str], str] = {}
-        self.seen: dict[str, Line] = {}
-        self.open: dict[str, Line] = {}
+        self.seen: dict[str, TextLine] = {}
+        self.open: dict[str, TextLine] = {}
         self.in_assembly = False
 
     def take(self, block: Block) -> None:
         keyword = block.keyword
         # a file that is not read here would be missed without a word
-        if (keyword == "INCLUDE" or "INPUT" in block.parameters) and included_file(block.line.text) is None and keyword in _INPUTS:
+        if (keyword == "INCLUDE" or "INPUT" in block.parameters) and abaqus_include(block.line.text) is None and keyword in _INPUTS:
             raise block.line.wrong(f"the file to include can't be told; *{keyword} must have INPUT=file on its first line")
         if keyword in _MAKES_MESH:
             raise block.line.wrong(f"*{keyword} makes nodes or elements by a rule, which is not read; write each one out")
@@ -106,7 +106,7 @@ class _Reader:
             first = self.seen[block.keyword].number
             raise block.line.wrong(f"this is a second *{block.keyword}, after that in line {first}; the file must hold one body")
         self.seen[block.keyword] = block.line
-        moves = [line for line in block.data if any(real(field, line) for field in line.text.split(",") if field.strip())]
+        moves = [line for line in block.data if any(parse_real(field, line) for field in line.text.split(",") if field.strip())]
         if moves and block.keyword == "INSTANCE":
             raise moves[0].wrong("the instance is moved or turned, which is not read; it must stand where the part was drawn")
 
@@ -123,8 +123,8 @@ class _Reader:
             fields = line.text.split(",")
             if len(fields) < 4:
                 raise line.wrong("a node must have a number and three coordinates, with commas between them")
-            number = whole(fields[0], line, "the number of a node")
-            x, y, z = (real(text, line) if text.strip() else 0.0 for text in fields[1:4])
+            number = parse_integer(fields[0], line, "the number of a node")
+            x, y, z = (parse_real(text, line) if text.strip() else 0.0 for text in fields[1:4])
             self.parts.add_node(line, number, (x, y, z))
             chosen.numbers.add(number)
 
@@ -152,7 +152,7 @@ class _Reader:
                 first = line
             texts = line.text.split(",")
             goes_on = not texts[-1].strip()
-            numbers += [whole(text, line, "the number of an element or node") for text in (texts[:-1] if goes_on else texts)]
+            numbers += [parse_integer(text, line, "the number of an element or node") for text in (texts[:-1] if goes_on else texts)]
             if len(numbers) == wanted:
                 self.parts.add_element(first, kind, numbers[0], numbers[1:])
                 chosen.numbers.add(numbers[0])
@@ -180,12 +180,12 @@ class _Reader:
             for text in texts:
                 number = text.rpartition(".")[2]  # a set of the assembly may say instance.number
                 if number.isdigit():
-                    chosen.numbers.add(whole(number, line, "the number of a member"))
+                    chosen.numbers.add(parse_integer(number, line, "the number of a member"))
                 elif text not in included:
                     included.add(text)
                     self.parts.add_members(line, chosen, self._known(kind, text.strip('"'), line))
 
-    def _known(self, kind: str, name: str, line: Line) -> Selection:
+    def _known(self, kind: str, name: str, line: TextLine) -> Selection:
         exact = next((key for key in (name.upper(), name.rpartition(".")[2].upper()) if (kind, key) in self.names), None)
         if exact is None:
             suggestion = did_you_mean(name.upper(), [key for of, key in self.names if of == kind and len(key) < 100][:1000])
@@ -193,8 +193,8 @@ class _Reader:
         return self._selection(kind, exact)
 
 
-def _range(texts: list[str], line: Line) -> tuple[int, int, int]:
-    numbers = [whole(text, line, "the bound of a range") for text in texts]
+def _range(texts: list[str], line: TextLine) -> tuple[int, int, int]:
+    numbers = [parse_integer(text, line, "the bound of a range") for text in texts]
     first, last, step = [*numbers, 1][:3] if len(numbers) in (2, 3) else (1, 0, 1)
     if last < first or step < 1:
         raise line.wrong("GENERATE needs first, last and step; last must be at least first, and step at least 1")

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from vibroimpact.errors import InputError
-from vibroimpact.meshes.exported import write_text
+from vibroimpact.meshes.deck_mesh import write_text_file
 from vibroimpact.meshes.write_vtu import cells_of, checked_values, vtu_text
 from vibroimpact.structures.mesh import Mesh
 
@@ -62,10 +62,10 @@ def write_vtu_series(mesh: Mesh, path: str | PathLike[str], times: ArrayLike, po
     for number, values in zip(range(len(instants)), data, strict=False):
         single = {name: checked_values(name, given, len(points)).astype(np.float32) for name, given in values.items()}
         files.append(target.parent / target.stem / f"{target.stem}_{number:03d}.vtu")
-        write_text(files[-1], vtu_text(points, *cells, single))
+        write_text_file(files[-1], vtu_text(points, *cells, single))
     if len(files) < len(instants) or next(data, None) is not None:
         raise InputError(f"there must be values for each of the {len(instants)} times, and no more", "point_data")
-    write_text(target, collection_text(instants.tolist(), [f"{target.stem}/{file.name}" for file in files]))
+    write_text_file(target, collection_text(instants.tolist(), [f"{target.stem}/{file.name}" for file in files]))
     return files
 
 

@@ -7,7 +7,7 @@ from os import PathLike
 
 from vibroimpact.files.plain_names import one_line
 from vibroimpact.materials import Material
-from vibroimpact.meshes.exported import check_elastic, check_thickness, exported, write_text
+from vibroimpact.meshes.deck_mesh import check_deck_material, check_shell_thickness, deck_mesh, write_text_file
 from vibroimpact.structures.mesh import Mesh
 
 _TYPES = {"tet4": "C3D4", "tet10": "C3D10", "hex8": "C3D8", "hex20": "C3D20", "quad8": "S8R"}
@@ -48,8 +48,8 @@ def write_abaqus(mesh: Mesh, path: str | PathLike[str], material: Material | Non
     ...     print(Path(folder, "tet.inp").read_text().splitlines()[-1])
     1, 4, 1, 2, 3
     """
-    export = exported(mesh)
-    check_thickness(thickness)
+    export = deck_mesh(mesh)
+    check_shell_thickness(thickness)
     rows = ["*NODE"]
     rows += [f"{number}, {x!r}, {y!r}, {z!r}" for number, (x, y, z) in enumerate(export.points.tolist(), 1)]
     number = 0
@@ -64,7 +64,7 @@ def write_abaqus(mesh: Mesh, path: str | PathLike[str], material: Material | Non
         for name, members in sets.items():
             rows += [f"*{keyword}, {keyword}={_quoted(name)}", *_rows(members.tolist())]
     if material is not None:
-        check_elastic(material)
+        check_deck_material(material)
         name = _quoted(material.name or "material")
         rows += [
             f"*MATERIAL, NAME={name}",
@@ -77,7 +77,7 @@ def write_abaqus(mesh: Mesh, path: str | PathLike[str], material: Material | Non
             if made_of[part] and data is not None:
                 rows += [f"*ELSET, ELSET={part}, GENERATE", *(f"{first}, {last}, 1" for first, last in made_of[part])]
                 rows += [f"*{part[:-1]} SECTION, ELSET={part}, MATERIAL={name}", *([data] if data else [])]
-    write_text(path, "\n".join([*rows, ""]))
+    write_text_file(path, "\n".join([*rows, ""]))
 
 
 def _rows(numbers: Sequence[int]) -> Iterator[str]:

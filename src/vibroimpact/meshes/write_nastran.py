@@ -10,7 +10,7 @@ import numpy as np
 from vibroimpact.arrays import Integers
 from vibroimpact.files.plain_names import one_line
 from vibroimpact.materials import Material
-from vibroimpact.meshes.exported import check_elastic, check_thickness, exported, write_text
+from vibroimpact.meshes.deck_mesh import check_deck_material, check_shell_thickness, deck_mesh, write_text_file
 from vibroimpact.meshes.node_order import NASTRAN, from_ours
 from vibroimpact.structures.mesh import Mesh
 
@@ -55,8 +55,8 @@ def write_nastran(
     ...     print(Path(folder, "tet.bdf").read_text().splitlines()[-2])
     CTETRA         1       1       4       1       2       3
     """
-    export = exported(mesh)
-    check_thickness(thickness)
+    export = deck_mesh(mesh)
+    check_shell_thickness(thickness)
     rows = ["CEND"]
     if title:
         rows.append(f"TITLE = {_one_line(title)[:60]}")
@@ -64,7 +64,7 @@ def write_nastran(
         rows += [f"$ node set {number}: {_one_line(name)}", *_set(number, nodes)]
     rows.append("BEGIN BULK")
     if material is not None:
-        check_elastic(material)
+        check_deck_material(material)
         youngs, poisson, density = (nastran_number(value) for value in (material.youngs_modulus, material.poissons_ratio, material.density))
         rows += [f"MAT1*   {1:16d}{youngs:>16}{'':16}{poisson:>16}", f"*       {density:>16}"]
     shapes = {shape for shape, _ in export.blocks}
@@ -82,7 +82,7 @@ def write_nastran(
         for members in theirs.tolist():
             number += 1
             rows += _card(card, [number, pid, *members])
-    write_text(path, "\n".join([*rows, "ENDDATA", ""]))
+    write_text_file(path, "\n".join([*rows, "ENDDATA", ""]))
 
 
 def nastran_number(value: float) -> str:

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from vibroimpact.arrays import Floats, Integers
 from vibroimpact.errors import InputError
-from vibroimpact.meshes.exported import nine_node_shells, write_text
+from vibroimpact.meshes.deck_mesh import nine_node_shells, write_text_file
 from vibroimpact.structures.mesh import Mesh
 
 _CELLS = {"tet4": 10, "tet10": 24, "hex8": 12, "hex20": 25, "hex27": 29, "quad25": 28}
@@ -50,7 +50,7 @@ def write_vtu(mesh: Mesh, path: str | PathLike[str], point_data: Mapping[str, Ar
     True
     """
     values = {name: checked_values(name, data, len(mesh.nodes)) for name, data in (point_data or {}).items()}
-    write_text(path, vtu_text(np.asarray(mesh.nodes, dtype=float), *cells_of(mesh), values))
+    write_text_file(path, vtu_text(np.asarray(mesh.nodes, dtype=float), *cells_of(mesh), values))
 
 
 def cells_of(mesh: Mesh) -> tuple[Integers, Integers, NDArray[np.uint8]]:

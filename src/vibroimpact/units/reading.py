@@ -111,7 +111,7 @@ def to_si(value: float | str, unit: str = "") -> float:
         raise InputError(f"{_long(value)} is too large for a number") from None
 
 
-def read_quantity(text: str) -> tuple[float, str]:
+def parse_quantity(text: str) -> tuple[float, str]:
     """Return the number and the unit of a text such as "5.115e8 N/m^1.5".
 
     Raises
@@ -121,7 +121,7 @@ def read_quantity(text: str) -> tuple[float, str]:
 
     Examples
     --------
-    >>> read_quantity("179.75 N s/m")
+    >>> parse_quantity("179.75 N s/m")
     (179.75, 'N s/m')
     """
     parts = _split(text)

@@ -9,11 +9,10 @@ from dataclasses import fields
 from vibroimpact.contact.law import ContactLaw
 from vibroimpact.contact.laws.linear_spring_dashpot import LinearSpringDashpot
 from vibroimpact.errors import InputError
-from vibroimpact.exporting.contact_alone import approach_speeds, first_contact, shared_notes
+from vibroimpact.exporting.contact_parameters import approach_speeds, first_contact, shared_notes
 from vibroimpact.exporting.drop import Drop
-from vibroimpact.exporting.export_format import ExportFormat
+from vibroimpact.exporting.export_format import ExportFormat, comment_lines, file_name
 from vibroimpact.exporting.rigid_drop import as_rigid
-from vibroimpact.exporting.script_text import comment_lines, file_name
 from vibroimpact.files.plain_names import plain_words
 from vibroimpact.ranges import Range
 
@@ -225,5 +224,5 @@ FORMAT = ExportFormat(
     tested="run with EXUDYN 1.13.6, beside vibroimpact's drops between rigid bodies",
     write=_write,
     notes=shared_notes,
-    told=as_rigid,
+    prepare=as_rigid,
 )

@@ -13,7 +13,7 @@ from vibroimpact.contact.laws.hertz import Hertz
 from vibroimpact.contact.laws.kuwabara_kono import KuwabaraKono
 from vibroimpact.contact.laws.tsuji import Tsuji
 from vibroimpact.dynamics.restitution import achieved_restitution
-from vibroimpact.exporting.contact_alone import (
+from vibroimpact.exporting.contact_parameters import (
     approach_speeds,
     clipped_dashpot,
     first_contact,
@@ -22,9 +22,8 @@ from vibroimpact.exporting.contact_alone import (
     shared_notes,
 )
 from vibroimpact.exporting.drop import Drop
-from vibroimpact.exporting.export_format import ExportFormat
+from vibroimpact.exporting.export_format import ExportFormat, comment_lines, file_name
 from vibroimpact.exporting.rigid_drop import as_rigid
-from vibroimpact.exporting.script_text import comment_lines, file_name
 from vibroimpact.files.plain_names import plain_words
 
 _STEPS = 20_000
@@ -155,5 +154,5 @@ FORMAT = ExportFormat(
     tested="run with LAMMPS 22 Jul 2025, update 4, beside vibroimpact's drops between rigid bodies",
     write=_write,
     notes=_notes,
-    told=as_rigid,
+    prepare=as_rigid,
 )

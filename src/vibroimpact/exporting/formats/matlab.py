@@ -14,8 +14,7 @@ from vibroimpact._version import __version__
 from vibroimpact.contact.law import unit_of
 from vibroimpact.exporting.drop import Drop
 from vibroimpact.exporting.drop_tables import Table, tables_of
-from vibroimpact.exporting.export_format import ExportFormat
-from vibroimpact.exporting.script_text import file_name
+from vibroimpact.exporting.export_format import ExportFormat, file_name
 from vibroimpact.files.plain_names import one_line, plain_names
 
 _LONGEST = 63

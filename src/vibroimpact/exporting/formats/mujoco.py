@@ -9,11 +9,17 @@ from xml.sax.saxutils import quoteattr
 
 from vibroimpact.contact.laws.adams_impact import AdamsImpact
 from vibroimpact.dynamics.restitution import achieved_restitution
-from vibroimpact.exporting.contact_alone import approach_speeds, clipped_dashpot, first_contact, laws_of_impacts, shared_notes, spring
+from vibroimpact.exporting.contact_parameters import (
+    approach_speeds,
+    clipped_dashpot,
+    first_contact,
+    laws_of_impacts,
+    power_law_spring,
+    shared_notes,
+)
 from vibroimpact.exporting.drop import Drop
-from vibroimpact.exporting.export_format import ExportFormat
+from vibroimpact.exporting.export_format import ExportFormat, comment_lines, file_name
 from vibroimpact.exporting.rigid_drop import as_rigid
-from vibroimpact.exporting.script_text import comment_lines, file_name
 from vibroimpact.files.plain_names import plain_words
 
 _STEPS = 1000
@@ -26,7 +32,7 @@ _IMPEDANCE = 0.9999
 def _linear(drop: Drop) -> AdamsImpact:
     """Return the linear spring and dashpot, which never pulls, with restitution and duration of the drop's first contact."""
     law, speed = laws_of_impacts(drop)[0], approach_speeds(drop)[0]
-    spring(law, "MuJoCo")
+    power_law_spring(law, "MuJoCo")
     restitution = float(achieved_restitution(law, drop.mass, speed))
     duration, _ = first_contact(law, drop)
 
@@ -83,7 +89,7 @@ The sphere's height above the plate is qpos[0], its velocity qvel[0]."""
 
 def _notes(drop: Drop) -> list[str]:
     laws, notes = laws_of_impacts(drop), shared_notes(drop)
-    _, exponent = spring(laws[0], "MuJoCo")
+    _, exponent = power_law_spring(laws[0], "MuJoCo")
     speed = approach_speeds(drop)[0]
     notes.append(
         f"MuJoCo's contact is a linear spring and dashpot that does not pull; it stands for {laws[0].name} and has its restitution and "
@@ -103,5 +109,5 @@ FORMAT = ExportFormat(
     tested="run with MuJoCo 3.2.7 and 3.17.0, the first impact beside vibroimpact's between rigid bodies",
     write=_write,
     notes=_notes,
-    told=as_rigid,
+    prepare=as_rigid,
 )

@@ -16,9 +16,8 @@ from vibroimpact._version import __version__
 from vibroimpact.arrays import Floats
 from vibroimpact.errors import InputError
 from vibroimpact.exporting.drop import Drop
-from vibroimpact.exporting.export_format import ExportFormat
+from vibroimpact.exporting.export_format import ExportFormat, file_name
 from vibroimpact.exporting.resample import motion_at
-from vibroimpact.exporting.script_text import file_name
 from vibroimpact.files.plain_names import one_line, plain_words
 from vibroimpact.measurements.universal_file import SPHERE_FUNCTIONS
 

@@ -12,7 +12,7 @@ from vibroimpact.contact.law import ContactLaw
 from vibroimpact.contact.laws.hertz import Hertz
 from vibroimpact.contact.laws.tsuji import Tsuji
 from vibroimpact.dynamics.restitution import achieved_restitution, law_achieving
-from vibroimpact.exporting.contact_alone import (
+from vibroimpact.exporting.contact_parameters import (
     approach_speeds,
     clipped_dashpot,
     first_contact,
@@ -21,9 +21,8 @@ from vibroimpact.exporting.contact_alone import (
     shared_notes,
 )
 from vibroimpact.exporting.drop import Drop
-from vibroimpact.exporting.export_format import ExportFormat
+from vibroimpact.exporting.export_format import ExportFormat, comment_lines, file_name
 from vibroimpact.exporting.rigid_drop import as_rigid
-from vibroimpact.exporting.script_text import comment_lines, file_name
 from vibroimpact.files.plain_names import plain_words
 
 _STEPS = 10_000
@@ -156,5 +155,5 @@ FORMAT = ExportFormat(
     tested="run with YADE 2023.02a, beside vibroimpact's drops between rigid bodies",
     write=_write,
     notes=_notes,
-    told=as_rigid,
+    prepare=as_rigid,
 )

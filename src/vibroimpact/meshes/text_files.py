@@ -7,14 +7,14 @@ from pathlib import Path
 from typing import NamedTuple
 
 from vibroimpact.errors import InputError
-from vibroimpact.files.reading import FileKind, about, read_text_bytes
+from vibroimpact.files.reading import FileKind, read_text_bytes, with_path
 from vibroimpact.shown import shortened, shown
 
 MESH = FileKind("a mesh is a file of nodes and elements, in plain text (UTF-8 or Latin-1)", 2_000_000_000, "write a coarser mesh")
 """What is asked of the file of a mesh."""
 
 
-class Line(NamedTuple):
+class TextLine(NamedTuple):
     """One line of a file; lines are counted from 1."""
 
     path: Path
@@ -26,7 +26,7 @@ class Line(NamedTuple):
         return InputError(f"{shortened(str(self.path), 200)}:{self.number}: {message}")
 
 
-def read_lines(path: Path) -> list[Line]:
+def read_lines(path: Path) -> list[TextLine]:
     """Return the lines of a text file in UTF-8, or else in Latin-1, which older programs write.
 
     Raises
@@ -37,7 +37,7 @@ def read_lines(path: Path) -> list[Line]:
     try:
         data = read_text_bytes(path, MESH)
     except InputError as error:
-        raise about(path, error) from None
+        raise with_path(path, error) from None
     if not data.strip():
         raise InputError(f"{path}: the file is empty; a mesh file holds nodes and elements")
     try:
@@ -45,10 +45,10 @@ def read_lines(path: Path) -> list[Line]:
     except UnicodeDecodeError:
         text = data.decode("latin-1")
     rows = text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
-    return [Line(path, number, row) for number, row in enumerate(rows, 1)]
+    return [TextLine(path, number, row) for number, row in enumerate(rows, 1)]
 
 
-def lines_with_includes(path: Path, included: Callable[[str], str | None]) -> Iterator[Line]:
+def read_lines_with_includes(path: Path, included: Callable[[str], str | None]) -> Iterator[TextLine]:
     """Yield the lines of a file and, after a line that includes another file, the lines of that one.
 
     No file is read twice, which ends loops and keeps small files from growing without bound.
@@ -78,7 +78,7 @@ def lines_with_includes(path: Path, included: Callable[[str], str | None]) -> It
             stack.append(iter(_included_lines(line, name, path.parent, seen)))
 
 
-def _included_lines(line: Line, name: str, root: Path, seen: set[Path]) -> list[Line]:
+def _included_lines(line: TextLine, name: str, root: Path, seen: set[Path]) -> list[TextLine]:
     """Return the lines of a file next to the one that includes it, or next to the first one."""
     name = name.replace("\\", "/")
     try:
@@ -93,7 +93,7 @@ def _included_lines(line: Line, name: str, root: Path, seen: set[Path]) -> list[
     return lines
 
 
-def whole(text: str, line: Line, what: str) -> int:
+def parse_integer(text: str, line: TextLine, what: str) -> int:
     """Return the whole number from 0 on that `text` is.
 
     Raises
@@ -107,7 +107,7 @@ def whole(text: str, line: Line, what: str) -> int:
     return int(text)
 
 
-def real(text: str, line: Line) -> float:
+def parse_real(text: str, line: TextLine) -> float:
     """Return the number that `text` is; whether it is finite is checked where it is used.
 
     Raises

@@ -11,7 +11,7 @@ import numpy as np
 
 from vibroimpact.arrays import Floats, Integers
 from vibroimpact.errors import InputError
-from vibroimpact.files.write_file import write_file
+from vibroimpact.files.atomic_write import write_file
 from vibroimpact.materials import Material
 from vibroimpact.structures.element_kinds import PLATE_ORDER
 from vibroimpact.structures.mesh import ElementBlock, Mesh
@@ -21,7 +21,7 @@ _SQUARE = np.array([(0, 0), (0, 2), (2, 2), (2, 0), (0, 1), (1, 2), (2, 1), (1, 
 
 
 @dataclass(frozen=True)
-class Export:
+class DeckMesh:
     """What is written: the nodes in use, and for each block a shape and its nodes, all counted from 1.
 
     A shape is the kind of the block, except for "hex20" in place of hex27 and "quad8" in place of quad25.
@@ -33,7 +33,7 @@ class Export:
     element_sets: Mapping[str, Integers]
 
 
-def exported(mesh: Mesh) -> Export:
+def deck_mesh(mesh: Mesh) -> DeckMesh:
     """Return a mesh as it is written; sets lose the nodes that no shape uses.
 
     Raises
@@ -49,7 +49,7 @@ def exported(mesh: Mesh) -> Export:
         np.arange(mesh.number_of_elements),
         np.concatenate([np.full(len(block.connectivity), 4 if block.kind == "quad25" else 1) for block in mesh.blocks]),
     )
-    return Export(
+    return DeckMesh(
         np.asarray(mesh.nodes, dtype=float)[used],
         [(shape, np.searchsorted(used, nodes) + 1) for shape, nodes in shapes],
         _without_empty({name: np.flatnonzero(np.isin(used, nodes)) + 1 for name, nodes in mesh.node_sets.items()}),
@@ -71,7 +71,7 @@ def nine_node_shells(connectivity: Integers) -> Integers:
     return np.stack(squares, axis=1).reshape(-1, len(_SQUARE))
 
 
-def check_elastic(material: Material) -> None:
+def check_deck_material(material: Material) -> None:
     """Check that another program can take a material.
 
     Raises
@@ -83,7 +83,7 @@ def check_elastic(material: Material) -> None:
         raise InputError(f'the material "{material.name}" is rigid or has no density; one that is written to a file must have both')
 
 
-def check_thickness(thickness: float | None) -> None:
+def check_shell_thickness(thickness: float | None) -> None:
     """Check the thickness of shells.
 
     Raises
@@ -95,7 +95,7 @@ def check_thickness(thickness: float | None) -> None:
         raise InputError(f"{thickness:g} m is not allowed; it must be greater than 0 and finite", "thickness")
 
 
-def write_text(path: str | PathLike[str], text: str) -> None:
+def write_text_file(path: str | PathLike[str], text: str) -> None:
     """Write a text file, whole or not at all.
 
     Raises
