@@ -1,4 +1,4 @@
-"""The blocks of an Abaqus input file: a keyword, its parameters and its data lines."""
+"""Keyword blocks of an Abaqus input file: keyword line, parameters and data lines."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _INCLUDED = re.compile(r"\*\s*(?:INCLUDE|NODE|ELEMENT|NSET|ELSET)\s*,.*?\bINPUT\
 
 @dataclass
 class Block:
-    """A keyword in capitals, without its star; its parameters by their names in capitals; its data."""
+    """A keyword in capitals, without its asterisk; its parameters, by name in capitals; its data lines."""
 
     line: TextLine
     keyword: str
@@ -23,7 +23,7 @@ class Block:
 
 
 def abaqus_include(text: str) -> str | None:
-    """Return the file from which a keyword line takes lines.
+    """Return the name of the file that a keyword line reads with INPUT; None if it reads none.
 
     Examples
     --------
@@ -35,12 +35,12 @@ def abaqus_include(text: str) -> str | None:
 
 
 def blocks(lines: Iterable[TextLine]) -> Iterator[Block]:
-    """Yield the blocks of an input file.
+    """Yield the keyword blocks of an input file.
 
     Raises
     ------
     InputError
-        If data come before the first keyword.
+        If data lines precede the first keyword.
     """
     block, goes_on = None, False
     for line in lines:

@@ -1,4 +1,4 @@
-"""The sections of a mesh file of Gmsh: from $Name to $EndName."""
+"""Sections of a Gmsh mesh file, from $Name to $EndName."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from vibroimpact.shown import shown
 
 
 class GmshSection:
-    """The lines of a section, taken one after the other as words."""
+    """The lines of a section, read in turn and split into words."""
 
     def __init__(self, line: TextLine) -> None:
         self.line = line
@@ -19,7 +19,7 @@ class GmshSection:
 
     @property
     def has_more(self) -> bool:
-        """Is there a line that was not taken?"""
+        """Whether lines remain to be read."""
         return self._at < len(self.body)
 
     def words(self, least: int) -> tuple[TextLine, list[str]]:
@@ -56,12 +56,12 @@ class GmshSection:
             yield self.words(least)
 
     def end(self) -> None:
-        """Check that all lines were taken.
+        """Check that all lines were read.
 
         Raises
         ------
         InputError
-            If there are more.
+            If lines remain.
         """
         if self.has_more:
             raise self.body[self._at].wrong(f"{self.line.text.strip()} has more lines than it says; the two must agree")
@@ -73,7 +73,7 @@ def sections(lines: Iterable[TextLine], known: Collection[str], skipped: Counter
     Raises
     ------
     InputError
-        If a section has no end or comes twice, or there is text outside.
+        If a section has no end or occurs twice, or there is text outside sections.
     """
     found: dict[str, GmshSection] = {}
     name, section = "", None

@@ -1,4 +1,4 @@
-"""The cards of a Nastran file: free, small and large fields, and lines that go on."""
+"""Cards of a Nastran file: free, small-field and large-field format, with continuation lines."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _INCLUDE = re.compile(r"""\s*INCLUDE\s+(?:'([^']+)'|"([^"]+)"|([^'"$\s]+))\s*(?:
 
 
 class Card(NamedTuple):
-    """A card: its name in capitals, and its fields from the second on."""
+    """A card: its name in capitals, and its data fields, from the second on."""
 
     line: TextLine
     name: str
@@ -22,7 +22,7 @@ class Card(NamedTuple):
 
 
 def nastran_include(text: str) -> str | None:
-    """Return the file that a line of a Nastran file includes.
+    """Return the name of the file that an INCLUDE line of a Nastran file includes; None for other lines.
 
     Examples
     --------
@@ -34,7 +34,7 @@ def nastran_include(text: str) -> str | None:
 
 
 def nastran_real(text: str, line: TextLine) -> float:
-    """Return a number that may lack the letter of its exponent or have a D; a blank is zero.
+    """Return a real number, whose exponent may have a D or no letter; a blank field is zero.
 
     Examples
     --------
@@ -48,12 +48,12 @@ def nastran_real(text: str, line: TextLine) -> float:
 
 
 def cards(lines: Iterable[TextLine]) -> Iterator[Card]:
-    """Yield the cards of bulk data, up to ENDDATA and with it.
+    """Yield the cards of bulk data, up to and including ENDDATA.
 
     Raises
     ------
     InputError
-        If a continuation has no card, or belongs to another one.
+        If a continuation line has no card before it, or its label does not match.
     """
     card, goes_on = None, ""
     for line in lines:
@@ -83,7 +83,7 @@ def cards(lines: Iterable[TextLine]) -> Iterator[Card]:
 
 
 def _split(text: str) -> tuple[str, list[str], str]:
-    """Return the first field, the data, filled up to 8 (or to 4 large ones), and the field that names what follows."""
+    """Return the first field, the data fields, padded to 8 (4 in large-field format), and the continuation field."""
     if "," in text:
         head, *fields = (field.strip() for field in text.split(","))
         width = 4 if "*" in head else 8

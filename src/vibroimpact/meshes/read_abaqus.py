@@ -1,4 +1,4 @@
-"""Abaqus input files, read."""
+"""Reading of Abaqus input files."""
 
 from __future__ import annotations
 
@@ -26,18 +26,18 @@ _QUIET = {"HEADING", "INCLUDE", "PART", "END PART", "ASSEMBLY", "END ASSEMBLY", 
 def read_abaqus(path: str | PathLike[str]) -> Mesh:
     """Read the solid elements of an Abaqus input file with one part.
 
-    C3D4, C3D8, C3D10, C3D20 and C3D27 of every formulation make the mesh, with the sets of *NSET, *ELSET, *NODE and
+    The mesh consists of C3D4, C3D8, C3D10, C3D20 and C3D27 elements of every formulation, and the sets of *NSET, *ELSET, *NODE and
     *ELEMENT. Other keywords, and elements that are not solid, are counted in `Mesh.skipped`.
 
     Parameters
     ----------
     path : path
-        The file; what it includes is read too.
+        The file; included files are read too.
 
     Raises
     ------
     InputError
-        If it is not such a file, has solid elements that are not read, or more than one part.
+        If it is not such a file, has unsupported solid elements, or more than one part.
 
     Examples
     --------
@@ -57,7 +57,7 @@ def read_abaqus(path: str | PathLike[str]) -> Mesh:
 
 
 class _Reader:
-    """Takes block after block; knows what the part and the assembly around them are."""
+    """Parser of keyword blocks into `Parts`; tracks the open part, assembly and instance."""
 
     def __init__(self, path: Path) -> None:
         self.parts = Parts(path, ABAQUS)
@@ -68,7 +68,7 @@ class _Reader:
 
     def take(self, block: Block) -> None:
         keyword = block.keyword
-        # a file that is not read here would be missed without a word
+        # an included file that is not recognized must not be ignored silently
         if (keyword == "INCLUDE" or "INPUT" in block.parameters) and abaqus_include(block.line.text) is None and keyword in _INPUTS:
             raise block.line.wrong(f"the file to include can't be told; *{keyword} must have INPUT=file on its first line")
         if keyword in _MAKES_MESH:
@@ -81,7 +81,7 @@ class _Reader:
             self.open[keyword] = block.line
         elif keyword.startswith("END "):
             self.open.pop(keyword.removeprefix("END "), None)
-        # reference points of an assembly have numbers of their own, which may be those of nodes of the part
+        # reference points of an assembly are numbered separately: their numbers may coincide with those of nodes of the part
         self.in_assembly = keyword in ("ASSEMBLY", "END INSTANCE") or (
             self.in_assembly and keyword not in ("END ASSEMBLY", "INSTANCE", "PART")
         )
@@ -101,7 +101,7 @@ class _Reader:
         return self.parts.mesh()
 
     def _once(self, block: Block) -> None:
-        """One part, standing where it was drawn."""
+        """Check that there is one part and one instance, and that the instance is not moved or rotated."""
         if block.keyword in self.seen:
             first = self.seen[block.keyword].number
             raise block.line.wrong(f"this is a second *{block.keyword}, after that in line {first}; the file must hold one body")
@@ -111,7 +111,7 @@ class _Reader:
             raise moves[0].wrong("the instance is moved or turned, which is not read; it must stand where the part was drawn")
 
     def _selection(self, kind: str, name: str) -> Selection:
-        """Return the set of that name, whatever its case."""
+        """Return the set of a name, ignoring case."""
         sets = self.parts.node_sets if kind == "NSET" else self.parts.element_sets
         return sets[self.names.setdefault((kind, name.upper()), name)]
 
@@ -139,6 +139,7 @@ class _Reader:
                 )
             if not given:
                 raise block.line.wrong("*ELEMENT has no TYPE; it must say one, such as TYPE=C3D10")
+            # an element continues on the next line after a trailing comma, so that the other lines count the elements
             ends = sum(not line.text.rstrip().endswith(",") for line in block.data)
             self.parts.skipped[given] += max(ends, 1)
             return
@@ -146,6 +147,7 @@ class _Reader:
         name = block.parameters.get("ELSET")
         chosen = self._selection("ELSET", name) if name else Selection()
         wanted = 1 + len(ELEMENT_KINDS[kind].reference)
+        # the entries of an element are collected over its continuation lines
         numbers: list[int] = []
         for line in block.data:
             if not numbers:
@@ -178,7 +180,7 @@ class _Reader:
                 chosen.ranges.add(_range(texts, line))
                 continue
             for text in texts:
-                number = text.rpartition(".")[2]  # a set of the assembly may say instance.number
+                number = text.rpartition(".")[2]  # in a set of the assembly, members may be written instance.number
                 if number.isdigit():
                     chosen.numbers.add(parse_integer(number, line, "the number of a member"))
                 elif text not in included:

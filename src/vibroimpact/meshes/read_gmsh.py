@@ -1,4 +1,4 @@
-"""Gmsh's mesh files (.msh, ASCII, versions 2, 4.0 and 4.1), read."""
+"""Reading of Gmsh mesh files (.msh, ASCII, versions 2, 4.0 and 4.1)."""
 
 from __future__ import annotations
 
@@ -18,18 +18,18 @@ from vibroimpact.structures.mesh import Mesh
 
 _SOLIDS = {4: "tet4", 11: "tet10", 5: "hex8", 17: "hex20", 12: "hex27"}
 _PRISMS = {6: "prism", 13: "prism", 18: "prism", 7: "pyramid", 14: "pyramid", 19: "pyramid"}
-# the elements of points, lines and surfaces: their dimension and how many nodes they have
+# elements of points, lines and surfaces: dimension and number of nodes
 _SKINS = {15: (0, 1), 1: (1, 2), 8: (1, 3), 2: (2, 3), 9: (2, 6), 3: (2, 4), 16: (2, 8), 10: (2, 9)}
-_MOST_GROUPS = 100  # of an entity: each of its elements is put into all of them
+_MOST_GROUPS = 100  # per entity: each of its elements is added to all of them
 _BINARY = re.compile(rb"\s*\$MeshFormat\s+[\d.]+\s+1\s")
 _VERSIONS = re.compile(r"2(\.\d+)?|4(\.[01]0*)?")
 
 
 def read_gmsh(path: str | PathLike[str]) -> Mesh:
-    """Read the solid elements of a mesh file of Gmsh in ASCII, version 2, 4.0 or 4.1.
+    """Read the solid elements of an ASCII Gmsh mesh file, version 2, 4.0 or 4.1.
 
-    Physical groups of points, lines and surfaces become sets of nodes, those of volumes sets of elements; a group n
-    without a name is called `group<n>`.
+    Physical groups of points, lines and surfaces become node sets, those of volumes element sets; an unnamed group n is called
+    `group<n>`.
 
     Parameters
     ----------
@@ -39,7 +39,7 @@ def read_gmsh(path: str | PathLike[str]) -> Mesh:
     Raises
     ------
     InputError
-        If it is not such a file, is binary, or has prisms, pyramids or elements above the second order.
+        If it is not such a file, is binary, or has prisms, pyramids or elements of higher than second order.
 
     Examples
     --------
@@ -67,6 +67,8 @@ def read_gmsh(path: str | PathLike[str]) -> Mesh:
 
 
 class _Reader:
+    """Parser of the sections of a file into `Parts`."""
+
     def __init__(self, path: Path) -> None:
         self.parts = Parts(path, GMSH)
         self.version = ""
@@ -113,7 +115,7 @@ class _Reader:
             self.names[dimension, tag] = name or f"group{tag}"
 
     def _entities(self, section: GmshSection) -> None:
-        """Note which physical groups a point, line, surface or volume belongs to."""
+        """Record the physical groups of each point, line, surface and volume."""
         first, counts = section.words(4)
         for dimension, word in enumerate(counts[:4]):
             box = 3 if dimension == 0 and not self.is_40 else 6
@@ -189,7 +191,7 @@ class _Reader:
                 self.parts.node_sets[name].numbers.update(nodes)
             return
         element = parse_integer(number, line, "the number of an element")
-        # version 2 writes an element of several groups several times, under several numbers
+        # version 2 repeats an element of several groups under several numbers
         again = self.known.setdefault(tuple(nodes), element) if self.version.startswith("2") else element
         for name in names:
             self.parts.element_sets[name].numbers.add(again)

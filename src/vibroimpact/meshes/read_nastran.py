@@ -1,4 +1,4 @@
-"""Nastran bulk data, read."""
+"""Reading of Nastran bulk data."""
 
 from __future__ import annotations
 
@@ -25,19 +25,19 @@ _SET_NAME = re.compile(r"\$ node set (\d{1,18}): (\S.*)")
 def read_nastran(path: str | PathLike[str]) -> Mesh:
     """Read the solid elements of a Nastran file (bulk data, with or without executive and case control).
 
-    CTETRA, CHEXA and their GRIDs make the mesh. The elements of property n are the set `PIDn`, the nodes of SPC1 cards the
-    set `SPCn`, and those of `SET n` in case control the set `SETn`, or as a comment "$ node set n: name" calls it. Other
-    cards are counted in `Mesh.skipped`.
+    The mesh consists of CTETRA, CHEXA and GRID cards. The elements of property n form the set `PIDn`, the nodes of SPC1 cards the set
+    `SPCn`, and those of `SET n` in case control the set `SETn`, or the name in a comment "$ node set n: name". Other cards are
+    counted in `Mesh.skipped`.
 
     Parameters
     ----------
     path : path
-        The file; what it includes is read too.
+        The file; included files are read too.
 
     Raises
     ------
     InputError
-        If it is not such a file, or has solid elements that are not read.
+        If it is not such a file, or has unsupported solid elements.
 
     Examples
     --------
@@ -117,7 +117,7 @@ def _read_solid(card: Card, parts: Parts) -> None:
 
 
 def _read_sets(lines: Iterable[TextLine], parts: Parts) -> None:
-    """Read the sets of case control; those that are not plain lists of numbers are counted as skipped."""
+    """Read the sets of case control; sets that are not lists of numbers and ranges are counted as skipped."""
     names: dict[str, str] = {}
     listed: dict[str, list[str]] = {}
     open_set = ""
@@ -140,7 +140,7 @@ def _read_sets(lines: Iterable[TextLine], parts: Parts) -> None:
 
 
 def _selection(words: Sequence[str]) -> Selection | None:
-    """Return what a list such as "1 5 THRU 10" selects; None if there is anything else in it."""
+    """Return the selection of a list such as "1 5 THRU 10"; None if the list has other entries."""
     found = Selection()
     words = [word.upper() for word in words]
     numbers = [int(word) if word.isascii() and word.isdigit() and len(word) <= 18 else -1 for word in words]

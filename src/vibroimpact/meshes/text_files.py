@@ -1,38 +1,40 @@
-"""The lines of a text file, each knowing where it stands, and the numbers in them."""
+"""Text files of meshes: lines with their file and line number, included files, and numbers."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from os import PathLike
 from pathlib import Path
 from typing import NamedTuple
 
 from vibroimpact.errors import InputError
+from vibroimpact.files.atomic_write import write_file
 from vibroimpact.files.reading import FileKind, read_text_bytes, with_path
 from vibroimpact.shown import shortened, shown
 
 MESH = FileKind("a mesh is a file of nodes and elements, in plain text (UTF-8 or Latin-1)", 2_000_000_000, "write a coarser mesh")
-"""What is asked of the file of a mesh."""
+"""Requirements on a mesh file."""
 
 
 class TextLine(NamedTuple):
-    """One line of a file; lines are counted from 1."""
+    """A line of a file, with its line number from 1."""
 
     path: Path
     number: int
     text: str
 
     def wrong(self, message: str) -> InputError:
-        """Return the error that says where and what."""
+        """Return an error that names file, line number and fault."""
         return InputError(f"{shortened(str(self.path), 200)}:{self.number}: {message}")
 
 
 def read_lines(path: Path) -> list[TextLine]:
-    """Return the lines of a text file in UTF-8, or else in Latin-1, which older programs write.
+    """Return the lines of a text file in UTF-8, or if it is not UTF-8, in Latin-1, which older programs write.
 
     Raises
     ------
     InputError
-        If there is no such file, or it is not text.
+        If the file does not exist, is empty or is not text.
     """
     try:
         data = read_text_bytes(path, MESH)
@@ -49,16 +51,16 @@ def read_lines(path: Path) -> list[TextLine]:
 
 
 def read_lines_with_includes(path: Path, included: Callable[[str], str | None]) -> Iterator[TextLine]:
-    """Yield the lines of a file and, after a line that includes another file, the lines of that one.
+    """Yield the lines of a file, with the lines of an included file after the line that includes it.
 
-    No file is read twice, which ends loops and keeps small files from growing without bound.
+    A file may be included once, which rules out cycles and exponential growth.
 
     Parameters
     ----------
     path : Path
-        The file to start with.
+        The main file.
     included : callable
-        From a line to the name of the file that it includes, relative to its own or the first one; None if it includes none.
+        Returns the name of the file that a line includes, relative to the including or the main file; None if it includes none.
 
     Raises
     ------
@@ -79,7 +81,7 @@ def read_lines_with_includes(path: Path, included: Callable[[str], str | None]) 
 
 
 def _included_lines(line: TextLine, name: str, root: Path, seen: set[Path]) -> list[TextLine]:
-    """Return the lines of a file next to the one that includes it, or next to the first one."""
+    """Return the lines of an included file, found relative to the including file or to the main file."""
     name = name.replace("\\", "/")
     try:
         inner = next((folder / name for folder in (line.path.parent, root) if (folder / name).is_file()), root / name)
@@ -93,13 +95,27 @@ def _included_lines(line: TextLine, name: str, root: Path, seen: set[Path]) -> l
     return lines
 
 
-def parse_integer(text: str, line: TextLine, what: str) -> int:
-    """Return the whole number from 0 on that `text` is.
+def write_text_file(path: str | PathLike[str], text: str) -> None:
+    """Write a text file atomically.
 
     Raises
     ------
     InputError
-        If it is none, or has more than 18 digits.
+        If it can't be written.
+    """
+    try:
+        write_file(Path(path), text.encode())
+    except OSError as error:
+        raise InputError(f"{path}: the file can't be written: {error.strerror}") from None
+
+
+def parse_integer(text: str, line: TextLine, what: str) -> int:
+    """Return `text` as a non-negative integer.
+
+    Raises
+    ------
+    InputError
+        If it is not one, or has more than 18 digits.
     """
     text = text.strip()
     if not (text.isascii() and text.isdigit() and len(text) <= 18):
@@ -108,12 +124,12 @@ def parse_integer(text: str, line: TextLine, what: str) -> int:
 
 
 def parse_real(text: str, line: TextLine) -> float:
-    """Return the number that `text` is; whether it is finite is checked where it is used.
+    """Return `text` as a float; the caller checks that it is finite.
 
     Raises
     ------
     InputError
-        If it is none.
+        If it is not a number.
     """
     try:
         if "_" in text:

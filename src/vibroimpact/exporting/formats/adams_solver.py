@@ -25,12 +25,12 @@ _GROUND, _SPHERE, _CORNER = 1, 2, 2  # parts, and the marker at the plate's corn
 
 
 def write(drop: Drop) -> dict[str, bytes]:
-    """Return dataset and commands.
+    """Return the dataset and the command file.
 
     Raises
     ------
     InputError
-        If Adams can't take the contact law.
+        If the contact law is not supported.
     """
     model = adams_model(drop)
     commands = [
@@ -44,7 +44,7 @@ def write(drop: Drop) -> dict[str, bytes]:
 
 def _dataset(model: AdamsModel) -> Iterator[str]:
     contact = model.contact
-    # the first line is always taken as the title; Adams View takes the model's name from it, and others from comments
+    # the first line is the title; Adams View takes the model's name from it, and other names from comments
     yield f"Adams View model name: {model.name}"
     yield from header_comments(model)
     yield from _statement("UNITS/", FORCE="NEWTON", MASS="KILOGRAM", LENGTH="MILLIMETER", TIME="SECOND")
@@ -113,7 +113,7 @@ def _dataset(model: AdamsModel) -> Iterator[str]:
 
 
 def _requests(model: AdamsModel) -> Iterator[str]:
-    """Yield the statement that asks for what a run shows."""
+    """Yield the REQUEST statement for the output of a run."""
     readings = model.contact.readings(_NAMES, "1")
     last = max(readings)
     functions = {f"F{column}": expression + ("" if column == last else "\\") for column, (_, expression) in readings.items()}
@@ -121,15 +121,15 @@ def _requests(model: AdamsModel) -> Iterator[str]:
 
 
 def _headed(name: str, kind: str, identifier: int, *flags: str, **arguments: str) -> Iterator[str]:
-    """Yield a statement under the comment from which Adams View takes its name."""
+    """Yield a statement after the comment from which Adams View takes its name."""
     yield f"! adams_view_name='{name}'"
     yield from _statement(f"{kind}/{identifier}", *flags, **arguments)
 
 
 def _statement(head: str, *flags: str, **arguments: str) -> Iterator[str]:
-    """Yield the lines of a statement: an argument a line, each with the comma of continuation in the first column.
+    """Yield the lines of a statement: one argument per line, each with the continuation comma in the first column.
 
-    A function is followed by nothing or by a backslash, in place of the comma between arguments.
+    A function expression ends with a backslash instead of a comma if another argument follows.
     """
     yield head
     yield from (f", {flag}" for flag in flags)

@@ -1,4 +1,4 @@
-"""Adams View: the commands that build the model (.cmd)."""
+"""Adams View: a command file that builds the model (.cmd)."""
 
 from __future__ import annotations
 
@@ -24,12 +24,12 @@ _UPRIGHT = "0.0d, 0.0d, 0.0d"
 
 
 def write(drop: Drop) -> dict[str, bytes]:
-    """Return the commands.
+    """Return the command file.
 
     Raises
     ------
     InputError
-        If Adams can't take the contact law.
+        If the contact law is not supported.
     """
     model = adams_model(drop)
     return {f"{model.name}.cmd": "\n".join([*_commands(model), ""]).encode("ascii")}
@@ -123,7 +123,7 @@ def _commands(model: AdamsModel) -> Iterator[str]:
 
 
 def _request(model: AdamsModel, names: Names) -> Iterator[str]:
-    """Yield the command that asks for what a run shows."""
+    """Yield the command that creates the request for the output of a run."""
     readings = model.contact.readings(names, f".{model.name}.contact")
     yield from _command(
         "output_control create request",
@@ -135,7 +135,7 @@ def _request(model: AdamsModel, names: Names) -> Iterator[str]:
 
 
 def _inside(part: str) -> Iterator[str]:
-    """Yield the command after which locations are those in a part's own coordinates."""
+    """Yield the command that makes a part's coordinate system the default one for locations."""
     return _command("defaults coordinate_system", default_coordinate_system=part)
 
 
@@ -148,7 +148,7 @@ def _variable(name: str, function: str) -> Iterator[str]:
 
 
 def _command(words: str, **parameters: str) -> Iterator[str]:
-    """Yield the lines of a command: a parameter a line, each but the last continued by an ampersand."""
+    """Yield the lines of a command: one parameter per line, all but the last continued by an ampersand."""
     lines = [line for name, value in parameters.items() for line in f"{name} = {value}".split("\n")]
     yield "!"
     yield f"{words}  &"
@@ -157,7 +157,7 @@ def _command(words: str, **parameters: str) -> Iterator[str]:
 
 
 def _quoted(function: str) -> str:
-    """Return a function as a series of quoted strings, a line each; Adams View joins them."""
+    """Return a function as a series of quoted strings, one per line, which Adams View concatenates."""
     *first, last = wrap_expression(function, LINE - 20)
     return ",\n".join([*(f'"{line} "' for line in first), f'"{last}"'])
 

@@ -26,21 +26,21 @@ from vibroimpact.exporting.rigid_drop import as_rigid
 from vibroimpact.files.plain_names import plain_words
 
 _STEPS = 10_000
-"""Steps in the first contact: restitutions and largest forces are then right to 1e-4, but for gravity: damping is calibrated without."""
+"""Steps in the first contact: accuracy 1e-4 of restitution and peak force, gravity apart, which the damping is calibrated without."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class _Clipped(Tsuji):
-    """Tsuji's law as YADE has it: it does not pull."""
+    """Tsuji's law as in YADE: without tension."""
 
     tension = "cut"  # type: ignore[assignment]
 
     def closed_form_restitution(self, mass: Array, speed: Array) -> None:
-        """Return None: integrate."""
+        """Return None: no closed form; the law is integrated."""
 
 
 def _damping(law: ContactLaw, drop: Drop, speed: float) -> float:
-    """Return the damping ratio betan of Mindlin's law in YADE, or the linear law's dashpot [N s/m], that has the restitution."""
+    """Return the damping ratio betan of YADE's Mindlin law, or the dashpot of the linear law [N s/m], with the law's restitution."""
     stiffness, exponent = linear_or_hertzian(drop, "YADE")
     if isinstance(law, Hertz):
         return 0.0
@@ -48,7 +48,7 @@ def _damping(law: ContactLaw, drop: Drop, speed: float) -> float:
     if exponent == 1.0:
         return clipped_dashpot(stiffness, exponent, restitution, drop.mass, speed)
     clipped = _Clipped(stiffness=stiffness, restitution=restitution, effective_mass=drop.mass)
-    # they take the critical damping of the spring's slope, 3/2 K sqrt(delta)
+    # YADE refers the damping ratio to the tangent stiffness 3/2 K sqrt(delta)
     return math.sqrt(5.0 / 6.0) * float(damping_ratio_of(law_achieving(clipped, restitution, drop.mass, speed).restitution))
 
 
@@ -61,7 +61,9 @@ def _write(drop: Drop) -> Mapping[str, bytes]:
     stiffness, _ = linear_or_hertzian(drop, "YADE")
     dampings = [_damping(law, drop, speed) for law, speed in zip(laws, speeds, strict=False)]
     duration, _ = first_contact(laws[0], drop)
+    # YADE computes the mass from the density
     density = drop.mass / (4.0 / 3.0 * math.pi * drop.radius**3)
+    # YADE combines the properties of two bodies; sphere and wall get values whose combination is the contact's stiffness and damping
     if _linear(drop):
         comment = "# springs and dashpots of sphere and wall are in series: each is twice the contact's"
         material = f"ViscElMat(kn={2.0 * stiffness!r}, cn=2.0 * DAMPING[0], ks=0.0, cs=0.0, density={density!r}, frictionAngle=0.0)"
