@@ -53,9 +53,8 @@ def write(drop: Drop) -> dict[str, bytes]:
     found["drop"], units["drop"] = _facts(drop)
     file = BytesIO()
     savemat(file, {**found, "units": units}, long_field_names=True, oned_as="column", do_compression=True)
-    text = f"MATLAB 5.0 MAT-file, written by vibroimpact {__version__}".encode().ljust(
-        _HEADER
-    )  # replaces the header with the time of day, so that files are reproducible
+    # replaces the header with the time of day, so that files are reproducible
+    text = f"MATLAB 5.0 MAT-file, written by vibroimpact {__version__}".encode().ljust(_HEADER)
     return {file_name(drop, ".mat"): text + file.getvalue()[_HEADER:]}
 
 
