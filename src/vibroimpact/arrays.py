@@ -1,4 +1,4 @@
-"""Types of arrays, by what they hold."""
+"""Type aliases of arrays, by element type."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ Complex = NDArray[np.complex128]
 Bools = NDArray[np.bool_]
 Integers = NDArray[np.int64]
 Indices = NDArray[np.intp]
-"""Places in other arrays."""
+"""Indices into other arrays."""
 
 Drops = Indices
-"""Which drops of a batch."""
+"""Indices of drops in a batch."""
 
 Array = Any
-"""A float, or an array of any library that follows NumPy's operators and ufuncs."""
+"""A float, or an array of any library that supports NumPy's operators and ufuncs."""

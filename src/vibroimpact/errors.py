@@ -1,4 +1,4 @@
-"""The errors of the package, and the "did you mean" of their messages."""
+"""Exceptions of the package, and the "did you mean" suggestions of their messages."""
 
 from __future__ import annotations
 
@@ -9,28 +9,28 @@ from itertools import islice
 from vibroimpact.shown import shortened, visible
 
 _LONGEST_WORD = 100
-_LOOKED_AT = 200  # faults; to put each of a hundred thousand into words takes long
+_LARGEST_COUNT = 200  # faults that are formatted; a hundred thousand would take long
 
 
 LONGEST_LINE = 480
-"""Characters of a line of a message."""
+"""Largest length of a line of a message."""
 
 MOST_LINES = 10
-"""Faults that are told, a line each; how many more there are is told in one line more."""
+"""Largest number of faults in a message, one line each; another line gives the number of further faults."""
 
 
 class VibroimpactError(Exception):
-    """Base of every error the package raises on purpose.
+    """Base class of the exceptions of the package.
 
     Parameters
     ----------
     *faults : str
-        What is wrong, one or more; each becomes one line, whatever it holds.
+        One or more descriptions of faults; each becomes one line.
 
     Attributes
     ----------
     lines : tuple of str
-        A line a fault: printable, of at most `LONGEST_LINE` characters, and at most `MOST_LINES` of them with one that counts the rest.
+        One line per fault: printable, of at most `LONGEST_LINE` characters; at most `MOST_LINES` lines, and one that counts the rest.
     """
 
     def __init__(self, *faults: str) -> None:
@@ -42,14 +42,14 @@ class VibroimpactError(Exception):
 
 
 class InputError(VibroimpactError, ValueError):
-    """A wrong case, argument or file: the message says where, what, and what is allowed.
+    """An invalid case, argument or file; the message states the location, the fault, and what is allowed.
 
     Parameters
     ----------
     message : str
-        What is wrong, and what is allowed.
+        The fault, and what is allowed.
     key : str, optional
-        The dotted key of the value it is about.
+        The dotted key of the invalid value.
     """
 
     def __init__(self, message: str, key: str = "") -> None:
@@ -58,7 +58,7 @@ class InputError(VibroimpactError, ValueError):
 
     @classmethod
     def of_several(cls, faults: Iterable[str]) -> InputError:
-        """Return one error of several faults, a line each.
+        """Return one error for several faults, one line each.
 
         Examples
         --------
@@ -74,11 +74,11 @@ class InputError(VibroimpactError, ValueError):
 
 
 class ComputationError(VibroimpactError, RuntimeError):
-    """A valid problem whose computation failed or did not close its energy ledger."""
+    """A failed computation of a valid problem, or one whose energy balance does not close."""
 
 
 def lines_of(faults: Iterable[str]) -> tuple[str, ...]:
-    r"""Return faults as a terminal can show them: different ones, a printable line each, few and not long.
+    r"""Return faults without duplicates, as printable lines of limited number and length.
 
     Examples
     --------
@@ -88,9 +88,9 @@ def lines_of(faults: Iterable[str]) -> tuple[str, ...]:
     'and more than 190 other faults'
     """
     first = iter(faults)
-    found = list(dict.fromkeys(shortened(visible(fault), LONGEST_LINE) for fault in islice(first, _LOOKED_AT)))
+    found = list(dict.fromkeys(shortened(visible(fault), LONGEST_LINE) for fault in islice(first, _LARGEST_COUNT)))
     rest, all_seen = len(found) - MOST_LINES, next(first, None) is None
-    if all_seen and rest <= 1:  # a line that counts one takes as much room as the one
+    if all_seen and rest <= 1:  # a line that counts one fault would be as long as the fault
         return tuple(found)
     return (*found[:MOST_LINES], f"and {'' if all_seen else 'more than '}{rest} other faults")
 

@@ -1,4 +1,4 @@
-"""Isotropic materials, and the library of them that ships with the package."""
+"""Isotropic linear-elastic materials, and the material library of the package."""
 
 from __future__ import annotations
 
@@ -34,26 +34,26 @@ class Material:
     Parameters
     ----------
     density : float
-        Density [kg/m^3], > 0; NaN where the mass plays no part (a body held fixed).
+        Density [kg/m^3], > 0; NaN if the mass is not needed (a fixed body).
     youngs_modulus : float
         Young's modulus [Pa], > 0; infinite for a rigid material.
     poissons_ratio : float
         Poisson's ratio [-], in (-1, 0.5).
     yield_strength : float, optional
-        Yield strength in uniaxial compression or tension [Pa], > 0; of a ductile material.
+        Yield strength of a ductile material in uniaxial compression or tension [Pa], > 0.
     compressive_strength, tensile_strength : float, optional
-        Strength in uniaxial compression and tension [Pa], > 0; of a brittle material.
+        Strength of a brittle material in uniaxial compression and tension [Pa], > 0.
     loss_factor : float, optional
         Loss factor of vibration [-], >= 0.
     name, description, note : str
-        How the library calls it, what it is, and how far its numbers can be trusted.
+        Name in the library, description, and a note on the reliability of the values.
     sources : mapping of str to str
-        For each number, where it comes from.
+        Source of each value.
 
     Raises
     ------
     InputError
-        If a number is outside its range.
+        If a value is outside its range.
 
     Examples
     --------
@@ -86,19 +86,19 @@ class Material:
 
     @property
     def plane_strain_modulus(self) -> float:
-        """Young's modulus over 1 - nu^2 [Pa], what a Hertz contact feels of a material."""
+        """Plane-strain modulus E / (1 - nu^2) [Pa], as in Hertz contact."""
         return self.youngs_modulus / (1.0 - self.poissons_ratio**2)
 
 
 _OTHER = "other_names"
-"""The key of the library's file with what people call a material elsewhere."""
+"""Key of the library file for other common names of a material."""
 
 RIGID = Material(density=math.nan, youngs_modulus=math.inf, poissons_ratio=0.0, name="rigid", description="a material of infinite modulus")
 
 
 @cache
 def material_library() -> Mapping[str, Material]:
-    """Return the shipped materials by name; each number has an entry in `sources`.
+    """Return the materials of the library by name; each value has an entry in `sources`.
 
     Examples
     --------
@@ -116,7 +116,7 @@ def _library_file() -> Mapping[str, Mapping[str, Any]]:
 
 @cache
 def _known_by() -> Mapping[str, str]:
-    """Return the names of the materials by all that people call them, in lower case letters and digits alone."""
+    """Return the library name for each known name of a material, reduced to lower-case letters and digits."""
     names = {name: (name, *entry.get(_OTHER, ())) for name, entry in _library_file().items()}
     return {_plain(one): name for name, several in names.items() for one in (*several, name)}
 
@@ -126,18 +126,18 @@ def _plain(name: str) -> str:
 
 
 def _meant(name: str) -> str:
-    """Return " Did you mean ...?" for the material that is called so elsewhere, or whose name is closest."""
+    """Return " Did you mean ...?" for the material with this other name, or with the closest name; "" if there is none."""
     found = _known_by().get(_plain(name))
     return f' Did you mean "{found}"?' if found else did_you_mean(name.lower(), material_library())
 
 
 def find_material(name: str) -> Material:
-    """Return the shipped material called `name`, or `RIGID` for "rigid".
+    """Return the library material called `name`, or `RIGID` for "rigid".
 
     Raises
     ------
     InputError
-        If there is none; the message names the one that is called so elsewhere ("PMMA", "alu"), or the closest.
+        If there is none; the message suggests the one with this other name ("PMMA", "alu"), or the closest name.
 
     Examples
     --------

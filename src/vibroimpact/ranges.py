@@ -1,4 +1,4 @@
-"""The range a number may lie in, and how to say so."""
+"""Ranges of allowed numbers, with their description in words."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from vibroimpact.errors import InputError
 
 @dataclass(frozen=True)
 class Range:
-    """An interval; a bound that is left out does not hold. NaN and infinities are never inside.
+    """An interval, unbounded where no bound is given. NaN and infinities are never inside.
 
     Examples
     --------
@@ -33,7 +33,7 @@ class Range:
         return " and ".join(f"{word} {bound:g}" for word, bound in bounds if math.isfinite(bound))
 
     def clip(self, values: Any) -> Any:
-        """Return values moved into the range, just inside where an end of it is left out.
+        """Return values clipped to the range, just inside an open end.
 
         Examples
         --------
@@ -45,7 +45,7 @@ class Range:
         return np.clip(values, low, high)
 
     def bounded(self, values: Any) -> Any:
-        """Return values moved into the range, onto its ends even where these are left out: of an interval, say.
+        """Return values clipped to the closed interval, including its open ends.
 
         Examples
         --------
@@ -55,15 +55,15 @@ class Range:
         return np.clip(values, max(self.above, self.at_least), min(self.below, self.at_most))
 
     def check(self, values: Any, unit: str = "", shown: str = "") -> None:
-        """Raise unless all `values` are finite and inside.
+        """Raise unless all `values` are finite and inside the range.
 
         Raises
         ------
         InputError
-            With the first value that is not (as `shown`, where given), and what is allowed.
+            With the first invalid value (as `shown`, if given), and the allowed range.
         """
         if isinstance(values, float) and self.above < values < self.below and self.at_least <= values <= self.at_most:
-            return  # as most are: an array of one takes ten times as long
+            return  # fast path: an array of one element takes ten times as long
         try:
             array = np.asarray(values, dtype=float)
         except (TypeError, ValueError):

@@ -1,4 +1,4 @@
-"""Registries: the modules of a package, each of which registers something by being there, and what is found by its name."""
+"""Registries of plug-in modules: all modules of a package, and look-up of registered entries by name."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Found = TypeVar("Found")
 
 
 def modules_in(package: str) -> list[ModuleType]:
-    """Return the modules of a package, by name.
+    """Import and return the modules of a package, sorted by name.
 
     Examples
     --------
@@ -27,21 +27,21 @@ def modules_in(package: str) -> list[ModuleType]:
 
 
 def find_named(kind: str, name: str, known: Mapping[str, Found]) -> Found:
-    """Return the entry of a registry that has a name.
+    """Return the entry of a registry with a given name.
 
     Parameters
     ----------
     kind : str
-        What it is, for people.
+        The kind of entry, for messages.
     name : str
-        As it is called.
+        The name.
     known : mapping
-        The registry: all of its kind, by their names.
+        The registry: entries by name.
 
     Raises
     ------
     InputError
-        If there is none; the message names the closest.
+        If there is none; the message suggests the closest name.
 
     Examples
     --------

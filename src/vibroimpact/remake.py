@@ -1,4 +1,4 @@
-"""Make the report of a folder again: of a run, a study or a reproduction of the paper."""
+"""Regeneration of the report of a run, a study or a reproduction of the paper."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ from vibroimpact.runs.page import write_report
 
 
 def remake_report(directory: str | PathLike[str]) -> Path:
-    """Make figures and report of a result folder again, from its data; its other files stay as they are.
+    """Regenerate figures and report of a result folder from its data; other files are left unchanged.
 
-    Of a reproduction of the paper, the report is made again from the parts that are there; of a study, from its dataset.
+    The report of a reproduction of the paper is regenerated from its existing parts, that of a study from its dataset.
 
     Raises
     ------
     InputError
         If it is not a result folder, its data are damaged, or it can't be written to.
     """
-    # which load what a run does not need
+    # imported here, since a run does not need them
     from vibroimpact.paper.report.folder import is_reproduction, write_reproduction_report
     from vibroimpact.studies.report.page import write_study_report
     from vibroimpact.studies.study import is_study, read_study

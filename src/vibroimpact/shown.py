@@ -1,4 +1,4 @@
-"""What people and files give, as it is shown to people: printable, and no longer than can be read."""
+"""Formatting of user input for messages: printable and of limited length."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 
 
 def visible(text: str) -> str:
-    r"""Return a text in which nothing steers a terminal: control characters, line breaks and their like stand as escapes.
+    r"""Return a text with control characters, line breaks and other unprintable characters as escape sequences.
 
     Examples
     --------
@@ -23,13 +23,13 @@ def visible(text: str) -> str:
 def _visible(character: str) -> str:
     if character.isprintable():
         return character
-    if unicodedata.category(character) == "Zs":  # a blank that does not break, and the other widths
+    if unicodedata.category(character) == "Zs":  # no-break space and spaces of other widths
         return " "
     return character.encode("unicode_escape").decode()
 
 
 def shortened(text: str, most: int) -> str:
-    """Return a text of at most so many characters, without its middle if it is longer.
+    """Return a text of at most `most` characters, with its middle omitted if it is longer.
 
     Examples
     --------
@@ -43,7 +43,7 @@ def shortened(text: str, most: int) -> str:
 
 
 def shown(value: Any, most: int = 60) -> str:
-    r"""Return a value of a case as a message shows it: a text in quotes, other things as they are, no more than can be read.
+    r"""Return a value for a message: a text in quotes, other values as their representation, of limited length.
 
     Examples
     --------
@@ -58,7 +58,7 @@ def shown(value: Any, most: int = 60) -> str:
 
 
 class _Short(reprlib.Repr):
-    """Looks into no more of a value than is shown: one from Python may be without end."""
+    """Representation of limited depth and length: a value from Python may be arbitrarily large."""
 
     def __init__(self) -> None:
         super().__init__()

@@ -16,7 +16,7 @@ from vibroimpact.contact.laws.lankarani_nikravesh import LankaraniNikravesh
 from vibroimpact.contact.pair import ContactPair
 from vibroimpact.exporting.drop import Drop
 from vibroimpact.exporting.export_format import ExportFormat, export_formats, find_export_format
-from vibroimpact.exporting.exported import drop_of_result
+from vibroimpact.exporting.load_drop import drop_of_result
 from vibroimpact.results.result import result_of
 
 FORMATS = list(export_formats().values())
@@ -53,7 +53,7 @@ class Strange(CompliantLaw):
 
 def written(format: ExportFormat, drop: Drop) -> dict[str, bytes] | None:
     """Return the files, or None if the drop is refused as it should be: in one clear line."""
-    files, message, drop = {}, "", format.told(drop)
+    files, message, drop = {}, "", format.prepare(drop)
     try:
         files = dict(format.write(drop))
     except vi.InputError as error:

@@ -21,7 +21,7 @@ import vibroimpact as vi
 from support import plain_case
 from vibroimpact.dynamics.sensors.recording import Signal
 from vibroimpact.dynamics.sensors.sensor import Sensor
-from vibroimpact.exporting.exported import drop_of
+from vibroimpact.exporting.load_drop import load_drop
 from vibroimpact.paper.report.folder import read_parts, reproduce_paper
 from vibroimpact.results.deflection import Deflection
 from vibroimpact.results.folder import write_result
@@ -177,7 +177,7 @@ def test_studies(tmp_path: Path) -> None:
 
 
 def read_calibration(folder: Path) -> Any:
-    drop = drop_of(folder)
+    drop = load_drop(folder)
     return [drop.impacts, drop.radius, drop.mass, drop.height, drop.function]
 
 

@@ -6,7 +6,7 @@ import random
 
 from attack import failures, number, seed
 from vibroimpact.errors import InputError
-from vibroimpact.units.reading import convert_units, dimension_of, read_quantity, to_si
+from vibroimpact.units.reading import convert_units, dimension_of, parse_quantity, to_si
 
 UNITS = [
     "m", "mm", "kg", "s", "N", "Pa", "GPa", "Hz", "J", "rad", "deg", "%", "degC", "dB", "byte", "lbf", "inch", "µm", "kkg", "e", "pi",
@@ -43,7 +43,7 @@ def test_hostile_units() -> None:
             lambda: convert_units(1.0, unit, choose.choice(UNITS)),
             lambda: convert_units(1.0, choose.choice(UNITS), unit),
             lambda: dimension_of(unit),
-            lambda: read_quantity(f"1 {unit}"),
+            lambda: parse_quantity(f"1 {unit}"),
         ):
             try:
                 action()

@@ -11,7 +11,7 @@ import pytest
 import vibroimpact as vi
 from support import plain_case
 from vibroimpact.calibration.case import ToCalibrate
-from vibroimpact.exporting.exported import drop_of
+from vibroimpact.exporting.load_drop import load_drop
 
 ADAMS = {"law": "adams-impact"}
 PAPER = {"drop": {"height": 4.0, "gravity": 9.8}, "contact": ADAMS}
@@ -145,7 +145,7 @@ def test_the_folder(tmp_path: Path) -> None:
     assert vi.load_case(folder / "case.toml").contact.parameters["damping_max"] == tuple(found.values)
     assert {file.name for file in (folder / "figures").iterdir()} >= {"parameter.png", "differences.png"}
     assert "139.408" in (folder / "report.html").read_text()
-    drop = drop_of(folder)
+    drop = load_drop(folder)
     assert drop.function is not None
     assert drop.function[1](5.0) == pytest.approx(found.fit.function(5.0), rel=1e-15)
     with pytest.raises(vi.InputError, match="this is a calibration"):
@@ -165,7 +165,7 @@ def test_the_damping_of_modes_is_found_again_and_is_no_function_of_the_law(tmp_p
     assert found.values[0] == pytest.approx(0.3, rel=1e-5)
     folder = vi.save_calibration(what.case, found, tmp_path / "calibrated")
     assert vi.load_case(folder / "case.toml").sphere.damping.ratio == pytest.approx(0.3, rel=1e-5)
-    assert drop_of(folder).function is None
+    assert load_drop(folder).function is None
 
 
 @pytest.mark.slow

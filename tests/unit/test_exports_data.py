@@ -28,9 +28,9 @@ from vibroimpact.dynamics.sensors.sensor import Sensor
 from vibroimpact.exporting import export_result as module
 from vibroimpact.exporting.drop import Drop
 from vibroimpact.exporting.export_format import find_export_format
-from vibroimpact.exporting.exported import drop_of, drop_of_result
 from vibroimpact.exporting.formats.matlab import legal_names
 from vibroimpact.exporting.formats.uff58 import history_rate
+from vibroimpact.exporting.load_drop import drop_of_result, load_drop
 from vibroimpact.exporting.resample import motion_at
 from vibroimpact.results.folder import write_result
 from vibroimpact.results.result import result_of
@@ -70,7 +70,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
 
 @pytest.fixture(scope="module")
 def elastic(folder: Path) -> Drop:
-    return drop_of(folder)
+    return load_drop(folder)
 
 
 @pytest.fixture(scope="module")
@@ -133,7 +133,7 @@ def test_a_calibration_folder_is_a_drop(coefficients: list[float], tmp_path: Pat
     (tmp_path / "calibration.json").write_text(json.dumps({"parameter": "restitution", "fit": fit}))
     (tmp_path / "case.toml").write_text(tomli_w.dumps(plain_case()))
     (tmp_path / "summary.json").write_text(json.dumps({"calibration": {}}))
-    drop = drop_of(tmp_path)
+    drop = load_drop(tmp_path)
     assert drop.function == (("restitution", SpeedFunction((138.9, 6.0), 3.2, 8.8)) if len(coefficients) > 1 else None)
     assert len(drop.impacts["impact"]) == 3
     assert len(drop.history["time_s"]) > 100
@@ -143,21 +143,21 @@ def test_a_calibration_folder_is_a_drop(coefficients: list[float], tmp_path: Pat
 def test_a_damaged_calibration_is_named(text: str, tmp_path: Path) -> None:
     (tmp_path / "calibration.json").write_text(text)
     with pytest.raises(vi.InputError, match=r"calibration\.json: the file is (missing or )?damaged"):
-        drop_of(tmp_path)
+        load_drop(tmp_path)
 
 
 def test_other_folders_are_refused(variable: vi.Response, tmp_path: Path) -> None:
     with pytest.raises(vi.InputError, match="this is not a result folder"):
-        drop_of(tmp_path)
+        load_drop(tmp_path)
     for key, words in (("laws", "a comparison of contact laws"), ("modes", "modes of elastic bodies")):
         (tmp_path / "summary.json").write_text(json.dumps({key: {}}))
         with pytest.raises(vi.InputError, match=words):
-            drop_of(tmp_path)
+            load_drop(tmp_path)
     made = tmp_path / "made"
     made.mkdir()
     write_result(result_of(vi.simulate(replace(variable.problem, source=None))), made)
     with pytest.raises(vi.InputError, match="its problem was made in Python"):
-        drop_of(made)
+        load_drop(made)
 
 
 # tables ----------------------------------------------------------------------------------------------

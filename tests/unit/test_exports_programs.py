@@ -25,7 +25,7 @@ from vibroimpact.contact.laws.tsuji import Tsuji
 from vibroimpact.contact.pair import ContactPair
 from vibroimpact.dynamics.restitution import achieved_restitution
 from vibroimpact.errors import InputError
-from vibroimpact.exporting.contact_alone import clipped_dashpot
+from vibroimpact.exporting.contact_parameters import clipped_dashpot
 from vibroimpact.exporting.drop import Drop
 from vibroimpact.exporting.formats import exudyn, lammps, mujoco, yade
 

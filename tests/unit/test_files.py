@@ -14,10 +14,10 @@ import vibroimpact as vi
 from attack import attack
 from support import plain_case
 from vibroimpact.calibration.case import read_calibration
-from vibroimpact.files.lines import MESH
-from vibroimpact.files.reading import FileKind, beginning, file_digest, read_bytes, read_text
+from vibroimpact.files.reading import FileKind, beginning, input_file_digest, read_bytes, read_text
 from vibroimpact.measurements.table_file import read_table_file
 from vibroimpact.meshes.mesh_file import read_mesh
+from vibroimpact.meshes.text_files import MESH
 
 KIND = FileKind("a note is a text file", 1_000_000, "write less")
 
@@ -124,4 +124,4 @@ def test_texts(tmp_path: Path) -> None:
 def test_digests(tmp_path: Path) -> None:
     file = tmp_path / "data"
     file.write_bytes(b"abc")  # of which FIPS 180-2, appendix B.1, gives the digest
-    assert file_digest(file, MESH) == "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad"
+    assert input_file_digest(file, MESH) == "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad"

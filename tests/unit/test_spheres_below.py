@@ -12,7 +12,7 @@ import vibroimpact as vi
 from vibroimpact.cases.build import resolved
 from vibroimpact.cases.conditions import Conditions, Seen
 from vibroimpact.cases.rigid import contact_pair
-from vibroimpact.exporting.exported import drop_of
+from vibroimpact.exporting.load_drop import load_drop
 from vibroimpact.studies.compute_study import compute_study
 
 STEEL, GLASS = "steel-paper", "glass-chung-ooi"
@@ -127,7 +127,7 @@ def test_its_radius_can_be_swept(supports: dict[str, str], tmp_path: Path) -> No
 def test_it_is_not_exported(tmp_path: Path) -> None:
     folder = vi.save_result(vi.simulate(case_of({"radius": 0.02})), tmp_path / "run")
     with pytest.raises(vi.InputError, match=r"plate.radius: what is exported falls on a flat plate, and this sphere falls on another"):
-        drop_of(folder)
+        load_drop(folder)
 
 
 @pytest.mark.parametrize(

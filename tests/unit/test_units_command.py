@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 import vibroimpact as vi
 from vibroimpact.cli import main
 from vibroimpact.cli.unit_table import in_unit_systems, number_text
-from vibroimpact.units.reading import dimension_of, read_quantity, unit_text
+from vibroimpact.units.reading import dimension_of, parse_quantity, unit_text
 
 POWERS = st.floats(1.0, 3.0).map(lambda power: round(power, 3))
 
@@ -104,11 +104,11 @@ def test_numbers_have_no_noise() -> None:
 
 
 def test_quantities_are_read() -> None:
-    assert read_quantity("5.115e8 N/m^1.5") == (5.115e8, "N/m^1.5")
-    assert read_quantity("-3mm") == (-3.0, "mm")
+    assert parse_quantity("5.115e8 N/m^1.5") == (5.115e8, "N/m^1.5")
+    assert parse_quantity("-3mm") == (-3.0, "mm")
     for text in ("N/m", "3", "", "x" * 99, "1e999 m"):
         with pytest.raises(vi.InputError):
-            read_quantity(text)
+            parse_quantity(text)
 
 
 @pytest.mark.parametrize(

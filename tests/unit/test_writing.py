@@ -9,13 +9,10 @@ from pathlib import Path
 
 import pytest
 
-import vibroimpact.files.write_folder as folders
-from vibroimpact.files.exchange import exchange
-from vibroimpact.files.leftovers import NEW, OLD, WHOLE, inner_path, working_path
+from vibroimpact.files import atomic_write
+from vibroimpact.files.atomic_write import atomic_file, atomic_folder, exchange, write_file, write_into
 from vibroimpact.files.recover import recover
-from vibroimpact.files.write_file import new_file, write_file
-from vibroimpact.files.write_folder import whole_folder
-from vibroimpact.files.write_into_folder import write_into
+from vibroimpact.files.working_files import COMPLETE, NEW, OLD, inner_path, working_path
 
 
 def nothing() -> None:
@@ -23,7 +20,7 @@ def nothing() -> None:
 
 
 def make(folder: Path, text: str) -> None:
-    with whole_folder(folder, nothing) as working:
+    with atomic_folder(folder, nothing) as working:
         (working / "a.txt").write_text(text)
 
 
@@ -34,7 +31,7 @@ def leaves(folder: Path) -> dict[str, str]:
 @pytest.mark.parametrize("can_exchange", [True, False])
 def test_a_folder_takes_the_place_of_another(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, can_exchange: bool) -> None:
     if not can_exchange:
-        monkeypatch.setattr(folders, "exchange", lambda first, second: False)
+        monkeypatch.setattr(atomic_write, "exchange", lambda first, second: False)
     for text in ("one", "two"):
         make(tmp_path / "out", text)
         assert leaves(tmp_path) == {"out/a.txt": text}
@@ -52,7 +49,7 @@ def test_names_are_exchanged(tmp_path: Path) -> None:
 
 def test_two_renames_that_fail_half_way_are_undone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     make(tmp_path / "out", "old")
-    monkeypatch.setattr(folders, "exchange", lambda first, second: False)
+    monkeypatch.setattr(atomic_write, "exchange", lambda first, second: False)
     rename, calls = Path.rename, []
 
     def second_fails(self: Path, target: Path) -> Path:
@@ -85,9 +82,9 @@ def test_what_a_living_process_writes_is_not_touched(tmp_path: Path) -> None:
     code = f"""
 import sys
 from pathlib import Path
-from vibroimpact.files.write_folder import whole_folder
-from vibroimpact.files.write_file import new_file
-with whole_folder(Path({str(tmp_path / "out")!r}), lambda: None) as a, new_file(Path({str(tmp_path / "file")!r})) as b:
+from vibroimpact.files.atomic_write import atomic_folder
+from vibroimpact.files.atomic_write import atomic_file
+with atomic_folder(Path({str(tmp_path / "out")!r}), lambda: None) as a, atomic_file(Path({str(tmp_path / "file")!r})) as b:
     print("ready", flush=True)
     sys.stdin.read()
 """
@@ -144,7 +141,7 @@ def test_files_go_into_a_folder_all_or_none(tmp_path: Path) -> None:
 
 def test_files_that_were_whole_reach_their_places_after_a_death(tmp_path: Path) -> None:
     (tmp_path / "old.txt").write_text("before")
-    whole = inner_path(tmp_path, WHOLE)
+    whole = inner_path(tmp_path, COMPLETE)
     (whole / "put" / "sub").mkdir(parents=True)
     (whole / "gone").mkdir()
     (whole / "put" / "sub" / "b.txt").write_text("new")
@@ -159,7 +156,7 @@ def test_nothing_leaves_a_folder_by_its_links(tmp_path: Path) -> None:
     home.mkdir()
     (home / "profile").write_text("mine")
     for part in ("put", "gone"):
-        whole = inner_path(folder, WHOLE)
+        whole = inner_path(folder, COMPLETE)
         (whole / part / "figures").mkdir(parents=True)
         (whole / part / "figures" / "profile").write_text("theirs")
     (folder / "figures").symlink_to(home)
@@ -176,7 +173,7 @@ def test_a_file_is_replaced_whole_or_not_at_all(tmp_path: Path) -> None:
     assert (tmp_path / "link").is_symlink()
 
     def interrupted() -> None:
-        with new_file(tmp_path / "a") as working:
+        with atomic_file(tmp_path / "a") as working:
             working.write_text("half")
             raise KeyboardInterrupt
 

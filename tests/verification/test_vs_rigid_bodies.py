@@ -24,7 +24,7 @@ from vibroimpact.calibration.file import CALIBRATION, calibration_table
 from vibroimpact.cases.build import resolved
 from vibroimpact.cli import main
 from vibroimpact.exporting.export_format import find_export_format
-from vibroimpact.exporting.exported import drop_of_result
+from vibroimpact.exporting.load_drop import drop_of_result
 from vibroimpact.results.folder import write_result
 from vibroimpact.results.result import result_of
 
@@ -188,7 +188,7 @@ def test_a_function_is_taken_at_the_speeds_of_rigid_bodies(to: str, model: str, 
     case = vi.read_case(ELASTIC if model == "elastic" else rigid(ELASTIC))
     function = ("damping_max", vi.SpeedFunction((40.0, 30.0), 1.0, 5.0))
     format = find_export_format(to)
-    drop = format.told(drop_of_result(vi.read_result(place / model), case, function))
+    drop = format.prepare(drop_of_result(vi.read_result(place / model), case, function))
     bounces = moved_by_adams({Path(name).suffix: text.decode() for name, text in format.write(drop).items()})
     assert len(bounces) == 4
     assert [bounce.approach_speed for bounce in bounces] == pytest.approx(drop.impacts["approach_speed_m_s"], rel=1e-7)

@@ -21,7 +21,7 @@ from vibroimpact.cases.case import Case
 from vibroimpact.cases.rigid import contact_pair, mass_of_sphere
 from vibroimpact.errors import InputError
 from vibroimpact.measurements.record_file import SPHERE_ACCELERATION, is_universal, read_universal_record
-from vibroimpact.measurements.table_file import TableFile, read_table_file, rising
+from vibroimpact.measurements.table_file import TableFile, read_table_file, strictly_increasing
 
 _OUTCOMES = {name: outcome.unit for name, outcome in OUTCOMES.items()}
 _DEVIATION = "_standard_deviation"
@@ -91,7 +91,7 @@ def of_file(case: Case, target: FileTarget, by_rebound: bool) -> Measurement:
             raise InputError(_WHOSE)
         if "time" not in columns or not set(_RECORDED) & set(columns):
             raise InputError(f"the columns {', '.join(columns)} do not tell of impacts; a file has {_KINDS}")
-        table = rising(table, "time")
+        table = strictly_increasing(table, "time")
         values = {name: table.columns[name] for name in _RECORDED if name in table.columns}
         return _named(target.file, _of_record(case, Recorded(table.columns["time"], values, table.lines), by_rebound))
     except InputError as error:

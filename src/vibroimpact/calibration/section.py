@@ -13,7 +13,7 @@ from vibroimpact.cases.contact_section import ContactSection, law_schema, read_c
 from vibroimpact.cases.quantities import Quantity
 from vibroimpact.cases.section import Section, read_table
 from vibroimpact.errors import InputError, did_you_mean
-from vibroimpact.files.reading import FileKind, about, beginning
+from vibroimpact.files.reading import FileKind, beginning, with_path
 from vibroimpact.ranges import Range
 from vibroimpact.shown import shown
 
@@ -226,4 +226,4 @@ def check_target(section: CalibrateSection | None) -> None:
         try:
             beginning(section.target.file, _MEASURED, 1)
         except InputError as error:
-            raise about(section.target.file, error, "calibrate.target") from None
+            raise with_path(section.target.file, error, "calibrate.target") from None

@@ -11,8 +11,8 @@ from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
 from vibroimpact.cases.quantities import Quantity
 from vibroimpact.cases.section import Section, read_table
 from vibroimpact.errors import InputError
-from vibroimpact.files.lines import MESH
-from vibroimpact.files.reading import about, file_digest
+from vibroimpact.files.reading import input_file_digest, with_path
+from vibroimpact.meshes.text_files import MESH
 from vibroimpact.ranges import Range
 from vibroimpact.shown import shown
 
@@ -52,9 +52,9 @@ class BroughtMeshTable(Section):
         from vibroimpact.structures.recipe import BroughtMesh
 
         try:
-            content = file_digest(self.file, MESH)
+            content = input_file_digest(self.file, MESH)
         except InputError as error:
-            raise about(self.file, error, "mesh") from None
+            raise with_path(self.file, error, "mesh") from None
         return BroughtMesh(json.dumps([content, Path(self.file).suffix.lower(), self.unit, self.element_size]), self.read)
 
     def read(self) -> Mesh:

@@ -28,7 +28,7 @@ def export(
     """
     from vibroimpact.exporting.export_format import find_export_format
     from vibroimpact.exporting.export_result import default_output, save_export
-    from vibroimpact.exporting.exported import drop_of
+    from vibroimpact.exporting.load_drop import load_drop
     from vibroimpact.exporting.text import export_summary, format_table
 
     if formats and (to is not None or output is not None or force):
@@ -41,6 +41,6 @@ def export(
     found = find_export_format(to)
     if directory is None:
         raise InputError(f"name the folder that is to be exported: vibroimpact export DIR --to {to}")
-    drop = found.told(drop_of(directory))
+    drop = found.prepare(load_drop(directory))
     written = save_export(drop, found, default_output(directory, to) if output is None else output, force=force)
     console().print(export_summary(drop, found, written))

@@ -23,10 +23,10 @@ def units(
     A stiffness in N/m^n is 1000^n times one in N/mm^n, not 1000 times.
     """
     from vibroimpact.cli.unit_table import converted, unit_table
-    from vibroimpact.units.reading import read_quantity
+    from vibroimpact.units.reading import parse_quantity
 
     try:
-        value, unit = read_quantity(" ".join(quantity))
+        value, unit = parse_quantity(" ".join(quantity))
         shown = unit_table(value, unit) if to is None else converted(value, unit, to)
     except InputError as error:
         hint = '; a unit with blanks needs quotes, as in --to "N s/mm"' if to and " " not in to and len(quantity) > 2 else ""

@@ -1,1 +1,1 @@
-"""What is written for other programs: multibody and discrete-element codes, data formats, sound and pictures."""
+"""Export to other programs: multibody and discrete-element codes, data formats, audio and visualization."""

@@ -1,4 +1,4 @@
-"""The contact of a drop as expressions that Adams evaluates at run time, in millimetres, kilograms, newtons and seconds."""
+"""The contact force of a drop as Adams run-time expressions, in millimetres, kilograms, newtons and seconds."""
 
 from __future__ import annotations
 
@@ -15,15 +15,15 @@ from vibroimpact.contact.law import ContactLaw, contact_laws
 from vibroimpact.contact.laws.adams_impact import AdamsImpact
 from vibroimpact.contact.laws.hertz import Hertz
 from vibroimpact.errors import InputError
-from vibroimpact.exporting.contact_alone import approach_speeds
+from vibroimpact.exporting.contact_parameters import approach_speeds
 from vibroimpact.exporting.drop import Drop
 
 _ANY_PENETRATION = 1e-4
-"""Of full damping where there is no damping [m]; IMPACT asks for one above zero."""
+"""Penetration of full damping of laws without damping [m]; IMPACT requires a positive one."""
 
 
 class Names(NamedTuple):
-    """How a file refers to what the expressions read: by number in a dataset, by name in Adams View."""
+    """References to markers, sensor and variables in the expressions: numbers in a dataset, names in Adams View."""
 
     centre: str
     spot: str
@@ -33,21 +33,22 @@ class Names(NamedTuple):
 
     @property
     def height(self) -> str:
-        """The height of the sphere's centre over the plate [mm]."""
+        """Height of the sphere's centre above the plate [mm]."""
         return f"DZ({self.centre}, {self.spot}, {self.spot})"
 
     @property
     def velocity(self) -> str:
-        """Its velocity upwards [mm/s]."""
+        """Upward velocity of the sphere's centre [mm/s]."""
         return f"VZ({self.centre}, {self.spot}, {self.spot}, {self.spot})"
 
 
 @dataclass(frozen=True)
 class AdamsContact:
-    """A contact law in Adams' units, its expressions still without names.
+    """A contact law in Adams' units; its methods return expressions for given `Names`.
 
     `damping` is the coefficient C [N s/mm] of IMPACT, or the factor D [-] of a hysteretic law: a number, or an expression of
-    `speed`, the held approach speed [mm/s]; `meaning` says which and how it came about. `penetration` [mm] is None of a hysteretic law.
+    `speed`, the stored approach speed [mm/s]; `meaning` describes it in words. `penetration`, that of full damping [mm], is None for a
+    hysteretic law.
     """
 
     radius: float
@@ -62,55 +63,55 @@ class AdamsContact:
 
     @property
     def holds_speed(self) -> bool:
-        """Does the force need the approach speed of the contact under way?"""
+        """Whether the force depends on the approach speed of the current contact, which a sensor then stores."""
         return self.varies or self.penetration is None
 
     def gap(self, names: Names) -> str:
-        """Return the distance of the surfaces [mm], negative in contact."""
-        return f"{names.height} - {number(self.radius)}"
+        """Return the gap between the surfaces [mm], negative in contact."""
+        return f"{names.height} - {adams_number(self.radius)}"
 
     def coming_speed(self, names: Names) -> str:
-        """Return the speed that the sphere will next touch with [mm/s], right at any moment of a flight: its energy does not change."""
-        return f"SQRT({names.velocity}**2 + {number(2.0 * self.gravity)} * MAX({self.gap(names)}, 0.0))"
+        """Return the approach speed of the next contact [mm/s], from the energy, which is constant during free flight."""
+        return f"SQRT({names.velocity}**2 + {adams_number(2.0 * self.gravity)} * MAX({self.gap(names)}, 0.0))"
 
     def held_speed(self, names: Names) -> str:
-        """Return the approach speed of the contact under way [mm/s]; the first one as long as the sensor has not fired."""
-        first = number(self.first_speed)
+        """Return the stored approach speed of the current contact [mm/s]; that of the first contact until the sensor fires."""
+        first = adams_number(self.first_speed)
         return f"IF(SENVAL({names.sensor}): {first}, {first}, SENVAL({names.sensor}))"
 
     def damping_now(self, names: Names) -> str:
-        """Return the damping as an expression of the held approach speed."""
+        """Return the damping as an expression of the stored approach speed."""
         return self.damping.replace("speed", f"VARVAL({names.speed})")
 
     def force(self, names: Names) -> str:
         """Return the contact force [N]."""
         height, velocity = names.height, names.velocity
-        stiffness, exponent, radius = number(self.stiffness), number(self.exponent), number(self.radius)
+        stiffness, exponent, radius = adams_number(self.stiffness), adams_number(self.exponent), adams_number(self.radius)
         damping = f"VARVAL({names.damping})" if self.varies else self.damping
         if self.penetration is not None:
-            return f"IMPACT({height}, {velocity}, {radius}, {stiffness}, {exponent}, {damping}, {number(self.penetration)})"
+            return f"IMPACT({height}, {velocity}, {radius}, {stiffness}, {exponent}, {damping}, {adams_number(self.penetration)})"
         return f"{stiffness} * MAX({radius} - {height}, 0.0)**{exponent} * (1.0 - {damping} * {velocity} / VARVAL({names.speed}))"
 
     def readings(self, names: Names, force: str) -> dict[int, tuple[str, str]]:
-        """Return title and expression of what a run is asked for, by the column of a request; the first and fifth are magnitudes.
+        """Return title and expression of each output, by the column of an Adams request, whose first and fifth are magnitudes.
 
-        Height [mm], velocity [mm/s] and the force [N], which the file calls `force`; approach speed and damping where they are held.
+        Height [mm], velocity [mm/s] and contact force [N] (the force element `force`); approach speed and damping if they are stored.
         """
-        asked = {2: ("height", names.height), 3: ("velocity", names.velocity), 4: ("force", f"SFORCE({force}, 0, 4, {names.spot})")}
+        outputs = {2: ("height", names.height), 3: ("velocity", names.velocity), 4: ("force", f"SFORCE({force}, 0, 4, {names.spot})")}
         if self.holds_speed:
-            asked[6] = ("approach_speed", f"VARVAL({names.speed})")
+            outputs[6] = ("approach_speed", f"VARVAL({names.speed})")
         if self.varies:
-            asked[7] = ("damping", f"VARVAL({names.damping})")
-        return asked
+            outputs[7] = ("damping", f"VARVAL({names.damping})")
+        return outputs
 
 
 def adams_contact(drop: Drop) -> AdamsContact:
-    """Return the contact of a drop for Adams.
+    """Return the contact law of a drop for Adams.
 
     Raises
     ------
     InputError
-        If its law can't be written, or changes from impact to impact in another way than by its damping.
+        If its law is not supported, or changes from impact to impact in more than its damping.
 
     Examples
     --------
@@ -130,17 +131,19 @@ def adams_contact(drop: Drop) -> AdamsContact:
             f"{law.name} can't be written for Adams; adams-impact, hertz and the laws with hysteretic damping ({hysteretic}) can. "
             '"vibroimpact calibrate" finds the damping of adams-impact that achieves the same restitution'
         )
+    # damping that changes from impact to impact becomes an expression of the approach speed, by which the impacts are distinguished
     varies = drop.function is not None or len({_damping(one) for one in laws}) > 1
     if drop.function is not None:
         damping, meaning = _by_function(law, *drop.function)
     elif varies:
         damping, meaning = _by_steps([_damping(one) for one in laws], speeds)
     else:
-        damping, meaning = number(_damping(law)), "the same in every impact"
+        damping, meaning = adams_number(_damping(law)), "the same in every impact"
     for one in laws[1:]:
-        if _spring(one) != _spring(law):
+        if _stiffness_terms(one) != _stiffness_terms(law):
             raise InputError("Adams' contact can change its damping from impact to impact, and nothing else", "laws")
-    stiffness, exponent, penetration = _spring(law)
+    stiffness, exponent, penetration = _stiffness_terms(law)
+    # from SI to mm, N and s
     return AdamsContact(
         radius=1e3 * drop.radius,
         gravity=1e3 * drop.gravity,
@@ -154,29 +157,29 @@ def adams_contact(drop: Drop) -> AdamsContact:
     )
 
 
-def number(value: float) -> str:
-    """Return a number in 15 digits as Adams takes it: with a point, and an exponent in capitals.
+def adams_number(value: float) -> str:
+    """Return a number in Adams' syntax with 15 digits: with a decimal point, and an exponent with capital E.
 
     Examples
     --------
-    >>> number(1e-05), number(25.0), number(0.1 + 0.2), number(5), number(1e22)
+    >>> adams_number(1e-05), adams_number(25.0), adams_number(0.1 + 0.2), adams_number(5), adams_number(1e22)
     ('1.0E-05', '25.0', '0.3', '5.0', '1.0E+22')
     """
     mantissa, _, exponent = repr(float(f"{value:.15g}")).partition("e")
     return (mantissa if "." in mantissa else f"{mantissa}.0") + (f"E{exponent}" if exponent else "")
 
 
-def numbers(values: Sequence[float]) -> str:
-    """Return numbers as a list."""
-    return ", ".join(map(number, values))
+def adams_numbers(values: Sequence[float]) -> str:
+    """Return numbers as a comma-separated list."""
+    return ", ".join(map(adams_number, values))
 
 
-def titles(readings: Mapping[int, tuple[str, str]]) -> str:
-    """Return the titles of all columns up to the last that is read, empty where none is."""
+def column_titles(readings: Mapping[int, tuple[str, str]]) -> str:
+    """Return the titles of the columns of a request up to the last one used, empty for unused columns."""
     return ", ".join(f'"{readings.get(column, ("",))[0]}"' for column in range(1, max(readings) + 1))
 
 
-def _spring(law: ContactLaw) -> tuple[float, float, float | None]:
+def _stiffness_terms(law: ContactLaw) -> tuple[float, float, float | None]:
     """Return stiffness [N/m^n], exponent and penetration of full damping [m]."""
     assert isinstance(law, (AdamsImpact, Hertz, HystereticLaw))
     penetration = None if isinstance(law, HystereticLaw) else float(getattr(law, "full_damping_penetration", _ANY_PENETRATION))
@@ -184,29 +187,29 @@ def _spring(law: ContactLaw) -> tuple[float, float, float | None]:
 
 
 def _damping(law: ContactLaw) -> float:
-    """Return the largest damping [N s/mm], or the factor of a hysteretic law."""
+    """Return the largest damping coefficient [N s/mm], or the damping factor of a hysteretic law [-]."""
     if isinstance(law, HystereticLaw):
         return float(law.damping_factor)
     return float(getattr(law, "damping_max", 0.0)) / 1000.0
 
 
 def _by_function(law: ContactLaw, name: str, function: SpeedFunction) -> tuple[str, str]:
-    """Return the damping as a polynomial of the held approach speed; never below zero, which IMPACT does not take."""
+    """Return the damping as a polynomial of the stored approach speed, clipped at zero since IMPACT requires it."""
     if not (isinstance(law, AdamsImpact) and name == "damping_max"):
         raise InputError(
             f"of {law.name}, {name} as a function of the approach speed can't be written for Adams; damping_max of adams-impact can"
         )
     # from N s/m over (m/s)^k to N s/mm over (mm/s)^k
     factors = [coefficient / 1000.0 ** (power + 1) for power, coefficient in enumerate(function.coefficients)]
-    polynomial = number(factors[-1])
+    polynomial = adams_number(factors[-1])
     for factor in factors[-2::-1]:
-        polynomial = f"{number(factor)} + speed * ({polynomial})"
+        polynomial = f"{adams_number(factor)} + speed * ({polynomial})"
     fitted = f"{function.slowest:.4g} to {function.fastest:.4g} m/s"
     return f"MAX({polynomial}, 0.0)", f"a polynomial of the approach speed, fitted over {fitted}"
 
 
 def _by_steps(dampings: Sequence[float], speeds: Sequence[float]) -> tuple[str, str]:
-    """Return the damping as steps of the held approach speed, with edges midway between the speeds of the impacts."""
+    """Return the damping as a step function of the stored approach speed, with edges midway between the speeds of the impacts."""
     for impact, (fast, slow) in enumerate(pairwise(speeds[: len(dampings)]), 1):
         if not slow < fast:
             raise InputError(
@@ -214,8 +217,8 @@ def _by_steps(dampings: Sequence[float], speeds: Sequence[float]) -> tuple[str, 
                 "approach speed; give one damping for all, or a function of the speed",
                 "laws",
             )
-    steps = number(dampings[-1])
+    steps = adams_number(dampings[-1])
     for damping, (fast, slow) in reversed(list(zip(dampings[:-1], pairwise(speeds), strict=False))):
-        edge = number(1000.0 * 0.5 * (fast + slow))
-        steps = f"IF(speed - {edge}: {steps}, {number(damping)}, {number(damping)})"
+        edge = adams_number(1000.0 * 0.5 * (fast + slow))
+        steps = f"IF(speed - {edge}: {steps}, {adams_number(damping)}, {adams_number(damping)})"
     return steps, "one value an impact, told apart by the approach speed; the edges lie midway between the speeds of neighbouring impacts"

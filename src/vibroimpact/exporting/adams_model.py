@@ -1,4 +1,4 @@
-"""What an Adams model of a drop holds, in Adams' units MMKS: millimetres, kilograms, newtons and seconds."""
+"""The Adams model of a drop, in Adams' units MMKS: millimetres, kilograms, newtons and seconds."""
 
 from __future__ import annotations
 
@@ -8,28 +8,28 @@ from textwrap import wrap
 from typing import NamedTuple
 
 from vibroimpact.exporting.adams_contact import AdamsContact, adams_contact
-from vibroimpact.exporting.contact_alone import first_contact, laws_of_impacts, shared_notes
+from vibroimpact.exporting.contact_parameters import first_contact, laws_of_impacts, shared_notes
 from vibroimpact.exporting.drop import Drop
 from vibroimpact.files.plain_names import identifier, plain_words
 from vibroimpact.materials import Material
 
-_STEPS, _OUTPUTS = 50, 20  # a contact, at least
+_STEPS, _OUTPUTS = 50, 20  # least numbers of integration steps and of outputs per contact
 _LONGEST_NAME = 40
 
 _OWN_NAMES = {
     *("ground", "spot", "corner", "plate", "sphere", "cm", "ball"),
     *("touch", "approach_speed", "damping", "contact", "gravity", "motion", "drop"),
 }
-"""What else has a name in the model."""
+"""Names of the other elements of the model, which a material may not have."""
 
 LINE = 80
-"""Columns of a line, at most."""
+"""Largest length of a line."""
 
 ACCURACY = 1e-6
-"""Error that the integrator is allowed; of displacements [mm]."""
+"""Error tolerance of the integrator; of displacements [mm]."""
 
 SENSOR_ERROR = 1e-4
-"""How far from first touch the sensor may still fire [mm]: 1/1000 of Adams' penetration of full damping."""
+"""Tolerance of the sensor on the gap [mm]: 1/1000 of Adams' penetration of full damping."""
 
 TESTED = (
     "a strict parser of the documented syntax, which integrates the contact of what it reads; restitution, peak force and rebound "
@@ -48,7 +48,7 @@ class MaterialData(NamedTuple):
 
 @dataclass(frozen=True)
 class AdamsModel:
-    """The model, with the plate's upper surface at z = 0 and z upwards; `plate` [mm] is None where its size is not known."""
+    """The model; the plate's upper surface is z = 0, z upwards; `plate` is its size [mm], None if unknown."""
 
     name: str
     title: str
@@ -82,12 +82,12 @@ class AdamsModel:
 
 
 def adams_model(drop: Drop) -> AdamsModel:
-    """Return the model of a drop.
+    """Return the Adams model of a drop.
 
     Raises
     ------
     InputError
-        If its contact law can't be written, or it has no impact.
+        If its contact law is not supported, or it has no impact.
     """
     contact = adams_contact(drop)
     duration, _ = first_contact(laws_of_impacts(drop)[0], drop)
@@ -95,7 +95,7 @@ def adams_model(drop: Drop) -> AdamsModel:
     x, y = drop.position
     return AdamsModel(
         name=legal_name(drop.name),
-        # without underscores, for the remark adams_view_name='...' names what comes next
+        # without underscores: Adams View takes a comment adams_view_name='...' as the name of the next element
         title=f'the case "{plain_words(drop.name).replace("_", " ")}"',
         contact=contact,
         mass=drop.mass,
@@ -111,7 +111,7 @@ def adams_model(drop: Drop) -> AdamsModel:
 
 
 def remarks(model: AdamsModel) -> list[str]:
-    """Return what the file says of itself, a line each."""
+    """Return the remarks at the head of the file, one line each."""
     contact = model.contact
     lines = [
         "written by vibroimpact; units: mm, kg, N, s (MMKS); z is up, the plate's upper surface is z = 0",
@@ -130,7 +130,7 @@ def remarks(model: AdamsModel) -> list[str]:
 
 
 def legal_name(text: str) -> str:
-    """Return a name that Adams takes: letters, digits and underscores, no digit first.
+    """Return a valid Adams name: letters, digits and underscores, not starting with a digit.
 
     Examples
     --------
@@ -141,17 +141,17 @@ def legal_name(text: str) -> str:
     return f"drop_{name}" if name[0].isdigit() else name
 
 
-def comments(model: AdamsModel) -> list[str]:
+def header_comments(model: AdamsModel) -> list[str]:
     """Return the comment lines at the head of a file."""
     return [f"! {line}" for remark in (model.title, *remarks(model)) for line in wrap(remark, LINE - 2, break_on_hyphens=False)]
 
 
-def broken(text: str, width: int) -> list[str]:
-    """Return an expression in lines of at most `width` columns, broken at its blanks.
+def wrap_expression(text: str, width: int) -> list[str]:
+    """Return an expression as lines of at most `width` characters, broken at blanks.
 
     Examples
     --------
-    >>> broken("A + B * (C - D)", 8)
+    >>> wrap_expression("A + B * (C - D)", 8)
     ['A + B *', '(C - D)']
     """
     lines = [""]
@@ -168,7 +168,7 @@ def _is_elastic(material: Material) -> bool:
 
 
 def _material_data(materials: list[Material]) -> tuple[MaterialData, ...]:
-    """Return materials under names that differ from each other, and from what else the model has, however they are written."""
+    """Return materials with names distinct from each other and from those of other elements, ignoring case."""
     names: list[str] = []
     for material in materials:
         name = legal_name(material.name or "material")
@@ -179,7 +179,7 @@ def _material_data(materials: list[Material]) -> tuple[MaterialData, ...]:
 
 
 def _round_down(value: float) -> float:
-    """Return a number with two digits that is not larger.
+    """Return a number rounded down to two digits.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""A drop and what came of it as plain data in SI: what every export format writes from."""
+"""A drop and its computed response as plain data in SI units: the input of every export format."""
 
 from __future__ import annotations
 
@@ -15,52 +15,52 @@ from vibroimpact.materials import Material
 
 @dataclass(frozen=True, kw_only=True)
 class Drop:
-    """A sphere that falls on a plate which is held, as another program is told of it.
+    """A sphere that falls on a fixed plate, and the computed response, as they are exported.
 
     Parameters
     ----------
     name : str
-        What the case is called.
+        Name of the case.
     radius, mass : float
-        Of the sphere [m], [kg].
+        Radius [m] and mass [kg] of the sphere.
     sphere_material, plate_material : Material
-        What they are made of; the plate's modulus may be infinite.
+        Their materials; the plate's modulus may be infinite.
     plate_size : tuple of three floats, optional
         Length (x), width (y) and thickness (z) [m].
     position : tuple of two floats
-        Where it falls, from the plate's centre [m].
+        Point of impact, relative to the plate's centre [m].
     height : float
-        Height of the sphere's centre above the plate's upper surface at the start [m]; the radius if it starts at first touch.
+        Initial height of the sphere's centre above the plate's upper surface [m]; the radius if the run starts at first touch.
     speed : float
-        Its downward speed at the start [m/s]; zero if it is let go.
+        Initial downward speed [m/s]; zero if the sphere is released from rest.
     gravity : float
         Acceleration of gravity [m/s^2].
     laws : tuple of ContactLaw
-        The contact law of the first impact, the second, ...; the last one goes on.
+        The contact law of the first impact, the second, ...; the last one holds for all further impacts.
     function : tuple of str and SpeedFunction, optional
-        A parameter of the law, and its value as a function of the approach speed; then it stands in place of the laws' values.
+        Name of a parameter of the law, and its value as a function of the approach speed, which replaces the value in `laws`.
     elastic : tuple of str
-        Which of "sphere" and "plate" deform in the case.
+        Which of "sphere" and "plate" are elastic in the case.
     local_element : bool
-        Is a local element, which stands for the sphere's deformation, in series with the contact law?
+        Whether a local element, which represents the sphere's deformation, is in series with the contact law.
     finite_sphere : bool
-        Was Hertz's half space corrected to a sphere of finite size?
+        Whether Hertz's half-space solution was corrected for the finite size of the sphere.
     rigid : Problem, optional
-        The same drop between rigid bodies, under the contact law alone, where `impacts` are not those of it: `as_rigid` runs it for
-        programs that can be told of nothing else.
-    here : mapping of str to array
-        The impact table of the drop of which this one was made by taking what deforms as rigid; empty if it is as it was.
+        The same drop between rigid bodies under the contact law alone, where `impacts` do not already come from it; `as_rigid`
+        simulates it for programs that support rigid bodies only.
+    original_impacts : mapping of str to array
+        The impact table of the drop with elastic bodies from which `as_rigid` derived this one; empty otherwise.
     end_time : float
-        When the run ends [s].
+        End of the run [s].
     impacts : mapping of str to array
-        The impact table as computed here, (impacts,) a column, named as in `impacts.csv`.
+        The computed impact table, columns of shape (impacts,), named as in `impacts.csv`.
     history : mapping of str to array
-        The history, (times,) a column.
+        The history, columns of shape (times,).
     signals : mapping of str to Signal
-        What the sensors recorded.
+        The signals of the sensors.
     surface : mapping of str to array
-        Of an elastic plate's upper side: `time` [s] (frames,), `x` [m] (columns,) and `y` [m] (rows,) of a grid in the plate's
-        coordinates, `height`: its upward displacement [m] (frames, rows, columns), NaN beside the plate, and `sphere_position`: height
+        Motion of an elastic plate's upper surface: `time` [s] (frames,), grid coordinates `x` [m] (columns,) and `y` [m] (rows,) in the
+        plate's frame, `height`: upward displacement [m] (frames, rows, columns), NaN outside the plate, and `sphere_position`: height
         of the sphere's centre [m] (frames,). Empty if there is none.
     """
 
@@ -80,7 +80,7 @@ class Drop:
     local_element: bool = False
     finite_sphere: bool = False
     rigid: Problem | None = None
-    here: Mapping[str, Floats] = field(default_factory=dict, repr=False)
+    original_impacts: Mapping[str, Floats] = field(default_factory=dict, repr=False)
     end_time: float
     impacts: Mapping[str, Floats] = field(repr=False)
     history: Mapping[str, Floats] = field(default_factory=dict, repr=False)

@@ -1,4 +1,4 @@
-"""The tables of a drop with their units: what CSV, Parquet and MATLAB files hold alike."""
+"""The tables of a drop with units, as CSV, Parquet and MATLAB files hold them."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ Table = dict[str, TableColumn]
 
 
 def tables_of(drop: Drop) -> dict[str, Table]:
-    """Return "impacts", "history", and "sensors/NAME" of each sensor; what the drop does not have is not among them.
+    """Return the tables "impacts", "history", and "sensors/NAME" of each sensor, as far as the drop has them.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""The registry of export formats: one file of this package each, which names itself with an `ExportFormat`."""
+"""The registry of export formats: each module of `vibroimpact.exporting.formats` defines one `ExportFormat`."""
 
 from __future__ import annotations
 
@@ -7,30 +7,31 @@ from dataclasses import dataclass
 from functools import cache
 
 from vibroimpact.exporting.drop import Drop
+from vibroimpact.files.plain_names import identifier
 from vibroimpact.registry import find_named, modules_in
 
 
 @dataclass(frozen=True)
 class ExportFormat:
-    """A format that a drop can be written in.
+    """A file format for drops.
 
     Parameters
     ----------
     name : str
-        As `vibroimpact export --to` takes it.
+        The argument of `vibroimpact export --to`.
     program : str
-        What reads it.
+        The programs that read it.
     files : str
-        What is written, in a few words.
+        The files that are written, in a few words.
     tested : str
         What the writer was tested against.
     write : callable
         Takes a `Drop`, returns the bytes of each file by its name. Raises InputError if the format can't hold the drop.
     notes : callable
-        Takes a `Drop`, returns what the format can't represent of it, one sentence each.
-    told : callable
-        Takes a `Drop`, returns the one that the program can be told of, which `write` and `notes` take: `as_rigid` of a program that
-        is to move the bodies itself and knows rigid ones alone; the drop itself by default.
+        Takes a `Drop`, returns the limitations of the format for it, one sentence each.
+    prepare : callable
+        Takes a `Drop`, returns the one that is passed to `write` and `notes`: `as_rigid` for programs that simulate the motion of rigid
+        bodies; by default the drop unchanged.
     """
 
     name: str
@@ -39,12 +40,12 @@ class ExportFormat:
     tested: str
     write: Callable[[Drop], Mapping[str, bytes]]
     notes: Callable[[Drop], list[str]] = lambda drop: []
-    told: Callable[[Drop], Drop] = lambda drop: drop
+    prepare: Callable[[Drop], Drop] = lambda drop: drop
 
 
 @cache
 def export_formats() -> Mapping[str, ExportFormat]:
-    """Return every export format by its name.
+    """Return all export formats by name.
 
     Examples
     --------
@@ -62,6 +63,29 @@ def find_export_format(name: str) -> ExportFormat:
     Raises
     ------
     InputError
-        If there is none; the message names the closest.
+        If there is none; the message suggests the closest name.
     """
     return find_named("export format", name, export_formats())
+
+
+def file_name(drop: Drop, ending: str) -> str:
+    """Return the name of a file: the drop's name in plain characters, and an ending.
+
+    Examples
+    --------
+    >>> from types import SimpleNamespace
+    >>> file_name(SimpleNamespace(name="the paper's Type 1"), ".in")
+    'the-paper-s-type-1.in'
+    """
+    return f"{identifier(drop.name.lower(), 'a-z0-9', 'drop', '-')}{ending}"
+
+
+def comment_lines(notes: list[str]) -> str:
+    """Return notes as comment lines of a script.
+
+    Examples
+    --------
+    >>> comment_lines(["one thing", "another"])
+    '# one thing\\n# another'
+    """
+    return "\n".join(f"# {note}" for note in notes)

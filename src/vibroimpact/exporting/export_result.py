@@ -1,4 +1,4 @@
-"""Write a drop in a format of another program: all files, or none."""
+"""Export of a result folder to a format of another program, atomically."""
 
 from __future__ import annotations
 
@@ -11,11 +11,9 @@ from pathlib import Path
 from vibroimpact.errors import InputError
 from vibroimpact.exporting.drop import Drop
 from vibroimpact.exporting.export_format import ExportFormat, find_export_format
-from vibroimpact.exporting.exported import drop_of
+from vibroimpact.exporting.load_drop import load_drop
+from vibroimpact.files.atomic_write import atomic_folder, write_file, write_into
 from vibroimpact.files.recover import recover
-from vibroimpact.files.write_file import write_file
-from vibroimpact.files.write_folder import whole_folder
-from vibroimpact.files.write_into_folder import write_into
 
 _MOST_NAMED = 3
 
@@ -23,7 +21,7 @@ _MOST_NAMED = 3
 def export_result(
     directory: str | PathLike[str], format: str, output: str | PathLike[str] | None = None, *, force: bool = False
 ) -> list[Path]:
-    """Write a result folder, or a calibration folder, in a format of another program.
+    """Export a result folder or a calibration folder to a format of another program.
 
     Parameters
     ----------
@@ -32,10 +30,10 @@ def export_result(
     format : str
         Name of the format; `export_formats()` lists them.
     output : path, optional
-        The folder to write to, which may be there; by default one beside `directory`, called `DIRECTORY-FORMAT`. Where the format
-        writes one file and the name has a suffix, it is the name of the file.
+        The folder to write to, which may exist; by default `DIRECTORY-FORMAT`, next to `directory`. If the format writes a single file
+        and the name has a suffix, it is the name of that file.
     force : bool, default False
-        Replace files of the same names. Other files in the folder are left as they are.
+        Replace existing files of the same names. Other files in the folder are left unchanged.
 
     Returns
     -------
@@ -45,8 +43,8 @@ def export_result(
     Raises
     ------
     InputError
-        If there is no such format, the folder holds no drop, the format can't hold the drop, or a file is there already or can't be
-        written; then nothing is written.
+        If the format is unknown, the folder holds no drop, the format can't represent it, or a file exists already or can't be written;
+        then nothing is written.
 
     Examples
     --------
@@ -58,12 +56,12 @@ def export_result(
     ['impacts.csv', 'history.csv']
     """
     found = find_export_format(format)
-    drop = found.told(drop_of(directory))
+    drop = found.prepare(load_drop(directory))
     return save_export(drop, found, default_output(directory, format) if output is None else Path(output), force=force)
 
 
 def default_output(directory: str | PathLike[str], format: str) -> Path:
-    """Return the folder that an export goes to if nothing is said: beside the one that is exported.
+    """Return the default output folder of an export, next to the exported folder.
 
     Examples
     --------
@@ -76,7 +74,7 @@ def default_output(directory: str | PathLike[str], format: str) -> Path:
 
 
 def save_export(drop: Drop, format: ExportFormat, output: Path, *, force: bool = False) -> list[Path]:
-    """Write a drop that the format's program can be told of; as `export_result`.
+    """Write a drop, already prepared for the format, as `export_result` does.
 
     Raises
     ------
@@ -95,7 +93,7 @@ def save_export(drop: Drop, format: ExportFormat, output: Path, *, force: bool =
 
 
 def _targets(contents: Mapping[str, bytes], output: Path) -> dict[str, Path]:
-    """Return where each file goes."""
+    """Return the destination of each file."""
     suffixes = {Path(name).suffix.lower() for name in contents}
     if output.suffix and not output.is_dir():
         if len(contents) == 1:
@@ -108,6 +106,7 @@ def _targets(contents: Mapping[str, bytes], output: Path) -> dict[str, Path]:
 
 
 def _check_free(targets: Iterable[Path], *, force: bool) -> None:
+    """Raise if a destination is a folder, or a file that may not be replaced."""
     for target in targets:
         if target.is_dir():
             raise InputError(f"{target}: this is a folder, and a file of that name is to be written; name another place")
@@ -116,7 +115,7 @@ def _check_free(targets: Iterable[Path], *, force: bool) -> None:
 
 
 def _write(contents: Mapping[str, bytes], targets: Mapping[str, Path], output: Path) -> None:
-    """Write one file, a new folder, or files into a folder that is there: all of them or none."""
+    """Write one file, a new folder, or files into an existing folder, atomically."""
     output.parent.mkdir(parents=True, exist_ok=True)
     if list(targets.values()) == [output]:
         write_file(output, *contents.values())
@@ -124,7 +123,7 @@ def _write(contents: Mapping[str, bytes], targets: Mapping[str, Path], output: P
     if output.exists():
         write_into(output, partial(_fill, contents))
         return
-    with whole_folder(output, partial(_check_free, targets.values(), force=False)) as working:
+    with atomic_folder(output, partial(_check_free, targets.values(), force=False)) as working:
         _fill(contents, working)
 
 

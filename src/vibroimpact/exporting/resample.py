@@ -1,4 +1,4 @@
-"""The motion of the sphere at times of one's own, from a history that is dense in contact and sparse in flight."""
+"""Interpolation of the sphere's motion at given times, from a history that is dense in contact and sparse in flight."""
 
 from __future__ import annotations
 
@@ -10,17 +10,17 @@ from vibroimpact.arrays import Floats, Indices
 
 
 def motion_at(history: Mapping[str, Floats], times: Floats) -> dict[str, Floats]:
-    """Return position, velocity, acceleration and force of the sphere, by the names of their columns.
+    """Return position, velocity, acceleration and force of the sphere, by column name.
 
-    Position and velocity follow cubics that keep their slopes, so that free flight is exact; acceleration and force are
-    straight between the points of the history.
+    Position and velocity are cubic Hermite interpolants, exact in free flight; acceleration and force are interpolated linearly
+    between the points of the history.
 
     Parameters
     ----------
     history : mapping of str to array
-        As in a `Drop`; time does not decrease, and is twice in it where something jumps.
+        As in a `Drop`; times do not decrease, and a time occurs twice where a quantity is discontinuous.
     times : array, shape (times,)
-        Within the history [s].
+        Times within the history [s].
 
     Examples
     --------
@@ -31,24 +31,24 @@ def motion_at(history: Mapping[str, Floats], times: Floats) -> dict[str, Floats]
     time = history["time_s"]
     before = np.clip(np.searchsorted(time, times, side="right") - 1, 0, len(time) - 2)
     step = time[before + 1] - time[before]
-    # a step of no length is only met at the end, where its later side counts
+    # a step of zero length is met only at the end, where the value after the jump holds
     part = np.divide(times - time[before], step, out=np.ones_like(times), where=step > 0.0)
     position, velocity = history["position_m"], history["velocity_m_s"]
     acceleration, force = history["acceleration_m_s2"], history["force_N"]
     return {
         "position_m": _cubic(position, velocity, before, step, part),
         "velocity_m_s": _cubic(velocity, acceleration, before, step, part),
-        "acceleration_m_s2": _straight(acceleration, before, part),
-        "force_N": _straight(force, before, part),
+        "acceleration_m_s2": _linear(acceleration, before, part),
+        "force_N": _linear(force, before, part),
     }
 
 
-def _straight(values: Floats, before: Indices, part: Floats) -> Floats:
+def _linear(values: Floats, before: Indices, part: Floats) -> Floats:
     return values[before] + part * (values[before + 1] - values[before])
 
 
 def _cubic(values: Floats, slopes: Floats, before: Indices, step: Floats, part: Floats) -> Floats:
-    """Return the cubic that has the values and slopes of both ends of each step."""
+    """Return the cubic Hermite interpolant of values and slopes at both ends of each step."""
     rise = values[before + 1] - values[before]
     bend, twist = step * slopes[before] - rise, step * slopes[before + 1] - rise
     return values[before] + part * (rise + (1.0 - part) * ((1.0 - part) * bend - part * twist))

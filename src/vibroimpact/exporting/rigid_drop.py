@@ -1,4 +1,4 @@
-"""The drop that a program with rigid bodies can be told of: the same case, in which nothing but the contact deforms."""
+"""The rigid-body version of a drop, for programs that support rigid bodies only: all deformation is in the contact law."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from vibroimpact.calibration.speed_function import SpeedFunction
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.response import Response
 from vibroimpact.dynamics.simulate import simulate
-from vibroimpact.exporting.contact_alone import law_at
+from vibroimpact.exporting.contact_parameters import law_at
 from vibroimpact.exporting.drop import Drop
 
 _PASSES = 50
@@ -19,11 +19,11 @@ _SAME = 1e-11
 
 
 def as_rigid(drop: Drop) -> Drop:
-    """Return a drop with its bodies taken as rigid, simulated anew, as a program that knows rigid bodies alone will move it.
+    """Return the same drop between rigid bodies, simulated anew.
 
-    The values of the contact law stay in the order of the impacts: the first goes with the first impact of the rigid bodies, and so
-    on, whose approach speeds are other ones than those of bodies that take up energy. A drop of rigid bodies is returned as it is,
-    unless a parameter follows a function of the approach speed; then its impacts are those under the function.
+    The contact laws keep the order of the impacts: the first law is that of the first impact of the rigid bodies, and so on, though
+    the approach speeds differ from those of elastic bodies, which absorb energy. A drop of rigid bodies is returned unchanged, unless
+    a parameter is a function of the approach speed; then it is simulated with that function.
     """
     if drop.rigid is None:
         return drop
@@ -33,7 +33,7 @@ def as_rigid(drop: Drop) -> Drop:
         drop,
         name=f"{drop.name}, rigid" if deforms else drop.name,
         rigid=None,
-        here=drop.impacts if deforms else {},
+        original_impacts=drop.impacts if deforms else {},
         end_time=float(response.end_time[0]),
         impacts=response.impacts,
         history={},
@@ -43,10 +43,10 @@ def as_rigid(drop: Drop) -> Drop:
 
 
 def _by_function(problem: Problem, name: str, function: SpeedFunction) -> Response:
-    """Return the run in which each impact has the value of the function at its own approach speed.
+    """Return the response in which the parameter of each impact is the function at its own approach speed.
 
-    The speed of an impact depends on the values of those before it alone, so that each pass makes one more of them right; most of
-    them it makes right much sooner, as the value changes little with the speed.
+    Fixed-point iteration: the speed of an impact depends on the impacts before it only, so that each pass fixes at least one more.
+    Convergence is usually much faster, since the parameter varies slowly with the speed.
     """
     law, speeds = problem.laws[0], np.array([first_speed(problem)])
     for _ in range(_PASSES):

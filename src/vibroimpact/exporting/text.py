@@ -1,4 +1,4 @@
-"""What the export command prints: the formats there are, and what was written."""
+"""Console output of the export command: the table of formats, and the summary of an export."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from vibroimpact.exporting.export_format import ExportFormat, export_formats
 from vibroimpact.report.terminal_table import Column, TerminalTable
 
 _MOST = 6
-"""Files that are named; of more, the first ones, and how many there are."""
+"""Largest number of files that are listed; of more files, the first ones and a count."""
 
 
 def format_table() -> RenderableType:
@@ -27,7 +27,7 @@ def format_table() -> RenderableType:
 
 
 def export_summary(drop: Drop, format: ExportFormat, files: Sequence[Path]) -> RenderableType:
-    """Return what was written, what the format can't represent, and what its writer was tested against."""
+    """Return the files written, the limitations of the format, and what its writer was tested against."""
     shown = files if len(files) <= _MOST else files[: _MOST - 1]
     more = f"and {len(files) - len(shown)} more files in {commonpath(files)}"
     return Group(

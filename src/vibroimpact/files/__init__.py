@@ -1,1 +1,1 @@
-"""Files and folders: read whole or refused with a sentence, written whole or not at all, with check sums on what is read back."""
+"""Files and folders: checked reading, atomic writing, recovery after a crash, and checksums."""

@@ -1,4 +1,4 @@
-"""Check sums of what is read back, so that a number which was damaged on disk is never believed."""
+"""Checksums of files and JSON tables, to detect damage on disk."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ from typing import Any
 import numpy as np
 
 SHA256, CHECK_SUMS = "sha256", "check_sums"
-"""The keys of a JSON file that hold the check sum of all else in it, and those of other files."""
+"""Keys of a JSON file: the checksum of the rest of its content, and the checksums of other files."""
 
 
 class DamageError(ValueError):
-    """What was read is not what was written."""
+    """A file or dataset whose content differs from what was written."""
 
 
 def digest(content: Any) -> str:
-    """Return a check sum of numbers, texts, and tables and lists of them; it does not depend on how they are written down.
+    """Return the SHA-256 of numbers, texts, and nested tables and lists of them; independent of the order of keys.
 
     Examples
     --------
@@ -30,20 +30,20 @@ def digest(content: Any) -> str:
 
 
 def sealed(table: Mapping[str, Any]) -> str:
-    """Return a table as JSON that holds its own check sum."""
+    """Return a table as JSON text that includes its own checksum."""
     plain = json.loads(json.dumps(table, allow_nan=False))
     return json.dumps({**plain, SHA256: digest(plain)}, indent=2) + "\n"
 
 
 def read_sealed(path: Path) -> dict[str, Any]:
-    """Read a table that was written as `sealed` gives it; one without a check sum, of an earlier version, is taken as it is.
+    """Read a table written by `sealed` and verify its checksum; one without checksum, from an earlier version, is not verified.
 
     Raises
     ------
     OSError
         If it can't be read.
     ValueError
-        If it is no JSON, no table, or not what was written.
+        If it is not JSON, not a table, or its checksum does not match (`DamageError`).
     """
     table = json.loads(path.read_text(encoding="utf-8"))
     if not isinstance(table, dict):
@@ -61,23 +61,23 @@ def file_digest(path: Path) -> str:
 
 
 def check_file(path: Path, expected: str | None) -> None:
-    """Raise unless a file is as it was written, before anything tries to read it; None knows of no check sum.
+    """Verify the SHA-256 of a file before it is parsed; None skips the check.
 
     Raises
     ------
     OSError
         If it can't be read.
     DamageError
-        If it is another.
+        If it does not match.
     """
     if expected is not None and file_digest(path) != expected:
         raise DamageError(CHANGED)
 
 
 CHANGED = "the file is damaged, or was changed after it was written (its check sum does not match)"
-"""What is told of a file that is not as it was written."""
+"""Message for a file whose checksum does not match."""
 
 
 def _plain(value: Any) -> Any:
-    """Return what JSON does not know as what it does."""
+    """Return a value that JSON can't represent as one that it can."""
     return value.tolist() if isinstance(value, (np.ndarray, np.generic)) else str(value)

@@ -1,4 +1,4 @@
-"""Which part of an HDF5 file is damaged: looked for in a process of its own, for HDF5 may work on a damaged file for ever, or die of it."""
+"""Locate the damaged part of an HDF5 file, in a separate process, since HDF5 may hang or crash on a damaged file."""
 
 from __future__ import annotations
 
@@ -9,20 +9,20 @@ from pathlib import Path
 import h5py
 
 from vibroimpact.files.check_sums import CHANGED, DamageError, check_file
-from vibroimpact.files.hdf5 import read_array, why
+from vibroimpact.files.hdf5 import read_array, short_reason
 
-_PATIENCE = 20.0  # seconds
+_TIMEOUT = 20.0  # seconds
 
 
 def check_hdf5(path: Path, expected: str | None) -> None:
-    """Raise unless an HDF5 file is as it was written; None knows of no check sum.
+    """Verify the SHA-256 of an HDF5 file; None skips the check.
 
     Raises
     ------
     OSError
         If it can't be read.
     DamageError
-        If it is another; names the part of it, where that can be found.
+        If it does not match; the message names the damaged part, if it can be located.
     """
     try:
         check_file(path, expected)
@@ -31,35 +31,36 @@ def check_hdf5(path: Path, expected: str | None) -> None:
 
 
 def damaged_part(path: Path) -> str:
-    """Return what is damaged in an HDF5 file, in words that begin with its name; "" if that can't be told."""
+    """Return a description of the damaged part of an HDF5 file, beginning with its name; "" if it can't be located."""
     command = [sys.executable, "-m", __name__, str(path)]
     try:
-        done = subprocess.run(command, capture_output=True, text=True, timeout=_PATIENCE, check=False)
+        done = subprocess.run(command, capture_output=True, text=True, timeout=_TIMEOUT, check=False)
     except (OSError, subprocess.SubprocessError):
         return ""
     return done.stdout.strip() if done.returncode == 0 else ""
 
 
 def first_damaged(path: Path) -> str:
-    """Return the same, in this process."""
+    """Return the description of the first damaged group or dataset, found in this process; "" if there is none."""
     with h5py.File(path, "r") as file:
         return _in_group(file)
 
 
 def _in_group(group: h5py.Group) -> str:
+    """Return the description of the first damaged part of a group, searched recursively; "" if there is none."""
     for name in group:
         try:
             found = group[name]
-        except Exception as error:  # of many kinds, as the file is damaged in many ways
-            return f"{group.name.strip('/')}/{name}".lstrip("/") + f" is damaged ({why(error)})"
+        except Exception as error:  # of any type, depending on the damage
+            return f"{group.name.strip('/')}/{name}".lstrip("/") + f" is damaged ({short_reason(error)})"
         try:
-            told = _in_group(found) if isinstance(found, h5py.Group) else ""
+            description = _in_group(found) if isinstance(found, h5py.Group) else ""
             if isinstance(found, h5py.Dataset):
                 read_array(found)
         except DamageError as error:
             return str(error)
-        if told:
-            return told
+        if description:
+            return description
     return ""
 
 

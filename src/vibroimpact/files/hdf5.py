@@ -1,4 +1,4 @@
-"""HDF5 files whose damage shows: a check sum on every dataset, and a format that has them on all that describes the data."""
+"""HDF5 files with checksums on every dataset and on all metadata, so that damage is detected."""
 
 from __future__ import annotations
 
@@ -17,24 +17,24 @@ from numpy.typing import NDArray
 from vibroimpact.files.check_sums import DamageError
 
 FORMAT = ("v110", "v110")
-"""Of HDF5 1.10 (2016): its headers have check sums, and a small dataset costs no more than its data."""
+"""File format of HDF5 1.10 (2016): object headers have checksums, and small datasets have little overhead."""
 
 CHECKED: dict[str, Any] = {"fletcher32": True}
-"""For arrays: HDF5's own check sum."""
+"""Dataset options of arrays: HDF5's Fletcher-32 checksum."""
 
 PACKED: dict[str, Any] = {"compression": "gzip", "compression_opts": 1, "shuffle": True, **CHECKED}
-"""For what is smooth: it gets several times smaller, in little time. Blocks of zeros, whose Fletcher sum is zero too, do not unpack."""
+"""Dataset options of smooth data: fast compression. A block of zeros, whose Fletcher sum is zero too, fails to decompress."""
 
 _CHUNK = 2**18  # bytes
 
 
-class _Patient(FileIO):
-    """A file whose writes never fail while HDF5 is at it, which would end the process: the first error waits in `error`."""
+class _ErrorStoringFile(FileIO):
+    """A file that stores its first write error in `error` instead of raising it: raised inside HDF5, it would end the process."""
 
     error: OSError | None = None
 
     def write(self, data: Any) -> int:
-        """Write all of it, or nothing more once that could not be done."""
+        """Write all data; after the first error, write nothing more."""
         left = memoryview(data).cast("B")
         size = len(left)
         while left and self.error is None:
@@ -45,7 +45,7 @@ class _Patient(FileIO):
         return size
 
     def truncate(self, size: int | None = None) -> int:
-        """Set the length, unless the file is given up."""
+        """Set the length of the file; an error is stored."""
         try:
             return super().truncate(size)
         except OSError as error:
@@ -55,26 +55,26 @@ class _Patient(FileIO):
 
 @contextmanager
 def new_hdf5(path: Path) -> Iterator[h5py.File]:
-    """Give an HDF5 file to fill, which goes to the disk as it grows; where that is full, an error says so, and the process lives.
+    """Yield a new HDF5 file, written to the disk as it grows; a full disk raises OSError instead of ending the process.
 
     Raises
     ------
     OSError
         If it can't be written.
     """
-    with _Patient(path, "w+") as disk:
+    with _ErrorStoringFile(path, "w+") as disk:
         try:
             with h5py.File(disk, "w", track_order=True, libver=FORMAT) as file:
                 yield file
         except Exception:
-            if disk.error is None:  # else that is the cause of whatever HDF5 says
+            if disk.error is None:  # otherwise the stored error is the cause
                 raise
         if disk.error is not None:
             raise disk.error
 
 
 def new_array(group: h5py.Group, name: str, values: Any, **packing: Any) -> h5py.Dataset:
-    """Write an array, `packing` as CHECKED or PACKED; one number, or none at all, lies in its header, which has a check sum."""
+    """Write an array with the dataset options CHECKED or PACKED; scalars are stored in the object header, which has a checksum."""
     values = np.asarray(values)
     if values.size and values.ndim:
         return group.create_dataset(name, data=values, chunks=chunk_shape(values.shape, values.dtype.itemsize), **(packing or CHECKED))
@@ -89,7 +89,7 @@ def new_array(group: h5py.Group, name: str, values: Any, **packing: Any) -> h5py
 
 
 def chunk_shape(shape: Sequence[int], itemsize: int) -> tuple[int, ...]:
-    """Return the shape of the chunks of an array: runs of it as it lies in memory, so that what is written in order is written once.
+    """Return the chunk shape of an array: contiguous in memory, so that data written in order touch each chunk once.
 
     Examples
     --------
@@ -100,26 +100,26 @@ def chunk_shape(shape: Sequence[int], itemsize: int) -> tuple[int, ...]:
     for place, length in enumerate(shape):
         inner = itemsize * prod(shape[place + 1 :])
         most = max(1, min(length, _CHUNK // max(1, inner)))
-        found.append(-(-length // -(-length // most)))  # as even as can be: the last is stored as large as the others
+        found.append(-(-length // -(-length // most)))  # of even size, since the last chunk is stored in full size
     return tuple(found)
 
 
 def read_array(data: h5py.Dataset, place: Any = ()) -> NDArray[Any]:
-    """Return an array, or a part of it.
+    """Return a dataset, or a part of it, as an array.
 
     Raises
     ------
     DamageError
-        If it is not as it was written.
+        If it can't be read, because its checksum does not match for instance.
     """
     try:
         return np.asarray(data[place])
-    except Exception as error:  # of many kinds, as the file is damaged in many ways
-        raise DamageError(f"{data.name.lstrip('/')} is damaged ({why(error)})") from None
+    except Exception as error:  # of any type, depending on the damage
+        raise DamageError(f"{data.name.lstrip('/')} is damaged ({short_reason(error)})") from None
 
 
-def why(error: Exception) -> str:
-    """Return in few words why HDF5 could not read."""
+def short_reason(error: Exception) -> str:
+    """Return a short reason why HDF5 could not read."""
     text = " ".join(str(error).split())
     if any(word in text for word in ("checksum", "fletcher32", "inflate", "filter")):
         return "its check sum does not match"

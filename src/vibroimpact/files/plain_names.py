@@ -1,7 +1,7 @@
-"""Names that people give to cases, sensors and materials, made so that no other program takes more from them than a name.
+"""Sanitizing of names of cases, sensors and materials for files of other programs, which must not interpret them as syntax.
 
-Every name on its way to a file of another program goes through here: `plain_words` where it is a remark, `plain_names` where it is a
-file's, a group's or a column's, `identifier` where the program calls something by it, and `one_line` where people alone read it.
+`plain_words` is for comments, `plain_names` for names of files, groups and columns, `identifier` for identifiers of a program, and
+`one_line` for text that only people read.
 """
 
 from __future__ import annotations
@@ -10,14 +10,14 @@ import re
 from collections.abc import Iterable
 
 _LONGEST = 80
-# files of these names can't be made on Windows, whatever their endings
+# reserved file names of Windows, with any suffix
 _DEVICES = {"con", "prn", "aux", "nul", *(f"{port}{number}" for port in ("com", "lpt") for number in range(10))}
 
 
 def plain_names(names: Iterable[str]) -> dict[str, str]:
-    """Return for each name one that can be a file's and a group's: letters, digits and a few signs, and no two alike.
+    """Return for each name a distinct name for a file or a group, of letters, digits and a few signs.
 
-    Two that differ in capitals alone are alike, as they are to some file systems.
+    Names are distinct ignoring case, as some file systems require.
 
     Examples
     --------
@@ -28,7 +28,7 @@ def plain_names(names: Iterable[str]) -> dict[str, str]:
 
 
 def _apart(wanted: dict[str, str]) -> dict[str, str]:
-    """Return the names that are wanted, numbered where another has it already."""
+    """Return the wanted names, with a number appended where a name is taken already."""
     found: dict[str, str] = {}
     taken: set[str] = set()
     numbers: dict[str, int] = {}
@@ -43,20 +43,20 @@ def _apart(wanted: dict[str, str]) -> dict[str, str]:
 
 
 def identifier(name: str, allowed: str, otherwise: str, between: str = "_", longest: int = _LONGEST) -> str:
-    """Return a name in letters that a program allows, and not too many of them.
+    """Return a name in the characters that a program allows, of limited length.
 
     Parameters
     ----------
     name : str
-        The name that was given.
+        The given name.
     allowed : str
-        ASCII letters that may be in it, as in a set of a regular expression.
+        Allowed ASCII characters, as in a character set of a regular expression.
     otherwise : str
-        What it is called where nothing is left of the name; also put before a name that Windows keeps for a device.
+        Replacement for a name without allowed characters; also the prefix of a name that Windows reserves for a device.
     between : str, default "_"
-        What stands for all else.
+        Replacement for other characters.
     longest : int, default 80
-        How many letters it has at most; it ends with a whole word where it can.
+        Largest length; the name is cut at the end of a word if possible.
 
     Examples
     --------
@@ -64,16 +64,16 @@ def identifier(name: str, allowed: str, otherwise: str, between: str = "_", long
     ('the-paper-s-Type-1', 'drop_NUL', 'drop')
     """
     plain = re.sub(f"[^{allowed}]+", between, name, flags=re.ASCII).strip("_-") or otherwise
-    if len(plain) > longest:  # where a word ends, if there is one
+    if len(plain) > longest:  # at the end of a word if possible
         plain = plain[:longest].rpartition(between)[0].rstrip("_-") or plain[:longest]
     return f"{otherwise}{between}{plain}" if plain.lower() in _DEVICES else plain
 
 
 def plain_words(name: str) -> str:
-    """Return a name for a remark in a file: what could mean anything to any program is left out, and what is longer than 80 letters.
+    """Return a name for a comment in a file, without characters that any of the programs could interpret, of at most 80 characters.
 
-    There remain ASCII letters and digits with `.,'()+=%/_-` between them. So there are no line breaks, no quotes that a program would
-    pair, no `$` and `&` (variables and continued lines of LAMMPS and Adams), no `<`, `--` and `*/` (ends of comments).
+    ASCII letters, digits and `.,'()+=%/_-` remain. So there are no line breaks, double quotes, `$` and `&` (variables and continuation
+    lines of LAMMPS and Adams), `<`, `--` and `*/` (ends of comments).
 
     Examples
     --------
@@ -85,7 +85,7 @@ def plain_words(name: str) -> str:
 
 
 def one_line(name: str) -> str:
-    """Return a name as people read it: in its own letters, on one line, no longer than 80 letters.
+    """Return a name on one line, with its printable characters, of at most 80 characters.
 
     Examples
     --------

@@ -1,6 +1,6 @@
-"""A file that somebody names, read whole: or refused with a sentence, and never waited for.
+"""Checked reading of input files: regular files of limited size; everything else is an InputError.
 
-What a path leads to is looked at before it is opened: a pipe has no end that is known, a device may have none at all.
+The file type is checked before opening, since reading a pipe or a device may block or never end.
 """
 
 from __future__ import annotations
@@ -18,13 +18,13 @@ from vibroimpact.errors import InputError
 from vibroimpact.shown import shortened
 
 _BLOCK = 4_000_000
-"""Bytes that are read at once."""
+"""Bytes per read."""
 
 _LONG_NAME = 200
-"""Letters of a path that messages show."""
+"""Largest length of a path in messages."""
 
 _OPENING = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_CLOEXEC", 0) | getattr(os, "O_BINARY", 0)
-"""Without waiting: between the look at a path and the opening of it there may have come a pipe."""
+"""Non-blocking, since a pipe may have taken the place of the file since its type was checked."""
 
 _NO_FILES = {
     stat.S_IFDIR: "a directory",
@@ -36,16 +36,16 @@ _NO_FILES = {
 
 
 class FileKind(NamedTuple):
-    """What is asked of a file.
+    """Requirements on an input file.
 
     Parameters
     ----------
     what : str
-        What it should be, as messages say it: "a case is a TOML file".
+        What the file should be, for messages: "a case is a TOML file".
     largest : int
-        Bytes that it may have.
+        Largest size [bytes].
     smaller : str
-        What to do where it has more: "keep the part with the impacts".
+        Remedy for a larger file, for messages: "keep the part with the impacts".
     """
 
     what: str
@@ -54,12 +54,12 @@ class FileKind(NamedTuple):
 
 
 def read_bytes(path: str | PathLike[str], kind: FileKind) -> bytes:
-    """Return what a file holds.
+    """Return the content of a file.
 
     Raises
     ------
     InputError
-        If it is not a regular file, can't be read or is too large; the message does not name it.
+        If it is not a regular file, can't be read or is too large; the message does not include the path.
 
     Examples
     --------
@@ -83,23 +83,23 @@ def beginning(path: str | PathLike[str], kind: FileKind, size: int) -> bytes:
 
 
 def read_text(path: str | PathLike[str], kind: FileKind) -> str:
-    """Return the text of a file in UTF-8, with or without a byte-order mark.
+    """Return the text of a UTF-8 file, with or without byte-order mark.
 
     Raises
     ------
     InputError
-        As `read_bytes`; and if it is not text in UTF-8.
+        As `read_bytes`, or if it is not UTF-8 text.
     """
     return decoded(read_text_bytes(path, kind), kind)
 
 
 def read_text_bytes(path: str | PathLike[str], kind: FileKind) -> bytes:
-    """Return the bytes of a text file; one that holds a zero is read no further.
+    """Return the bytes of a text file; reading stops at a block with a zero byte.
 
     Raises
     ------
     InputError
-        As `read_bytes`; and if it is not text of single bytes.
+        As `read_bytes`, or if it has a zero byte, as binary files and UTF-16 text have.
     """
     blocks = []
     for block in _blocks(path, kind):
@@ -112,7 +112,7 @@ def read_text_bytes(path: str | PathLike[str], kind: FileKind) -> bytes:
 
 
 def decoded(data: bytes, kind: FileKind) -> str:
-    """Return bytes as text.
+    """Return UTF-8 bytes as text.
 
     Raises
     ------
@@ -125,8 +125,8 @@ def decoded(data: bytes, kind: FileKind) -> str:
         raise InputError(f"the file is not UTF-8 text; {kind.what}") from None
 
 
-def file_digest(path: str | PathLike[str], kind: FileKind) -> str:
-    """Return the SHA-256 of what a file holds, in hexadecimal digits.
+def input_file_digest(path: str | PathLike[str], kind: FileKind) -> str:
+    """Return the SHA-256 of an input file, in hexadecimal digits.
 
     Raises
     ------
@@ -139,12 +139,12 @@ def file_digest(path: str | PathLike[str], kind: FileKind) -> str:
     return found.hexdigest()
 
 
-def about(path: str | PathLike[str], error: InputError, key: str = "") -> InputError:
-    """Return an error with the name of the file before it.
+def with_path(path: str | PathLike[str], error: InputError, key: str = "") -> InputError:
+    """Return an error with the path of the file prepended to its message.
 
     Examples
     --------
-    >>> about("drop.csv", InputError("there is no such file")).message
+    >>> with_path("drop.csv", InputError("there is no such file")).message
     'drop.csv: there is no such file'
     """
     return InputError(f"{shortened(str(path), _LONG_NAME)}: {error}", key)
@@ -155,14 +155,14 @@ def _blocks(path: str | PathLike[str], kind: FileKind) -> Iterator[bytes]:
         left = kind.largest
         while block := file.read(min(_BLOCK, left + 1)):
             left -= len(block)
-            if left < 0:  # it may have grown
+            if left < 0:  # the file may have grown since it was checked
                 raise _too_large(kind)
             yield block
 
 
 @contextmanager
 def _opened(path: str | PathLike[str], kind: FileKind) -> Iterator[FileIO]:
-    """Give a regular file that is not too large; what goes wrong in reading it is an InputError too."""
+    """Yield a regular file of allowed size, opened for reading; errors in the block are raised as InputError too."""
     try:
         _check(os.stat(path), kind)
         with open(path, "rb", opener=lambda name, _: os.open(name, _OPENING), buffering=0) as file:
@@ -174,11 +174,12 @@ def _opened(path: str | PathLike[str], kind: FileKind) -> Iterator[FileIO]:
         raise InputError(f"there is no such file; {kind.what}") from None
     except OSError as error:
         raise InputError(f"the file can't be read: {error.strerror or error}") from None
-    except ValueError:  # a NUL, or half a surrogate pair
+    except ValueError:  # a NUL character, or an unpaired surrogate
         raise InputError("no file can have such a name: it holds a character that names of files can't hold") from None
 
 
 def _check(found: os.stat_result, kind: FileKind) -> None:
+    """Raise unless it is a regular file of allowed size."""
     if not stat.S_ISREG(found.st_mode):
         raise InputError(f"this is {_NO_FILES.get(stat.S_IFMT(found.st_mode), 'no regular file')}; {kind.what}")
     if found.st_size > kind.largest:

@@ -1,4 +1,4 @@
-"""Put right what processes that died while they wrote have left: the next command that meets a place does."""
+"""Recovery after a process died while it wrote: run by the next command that uses the file or folder."""
 
 from __future__ import annotations
 
@@ -6,25 +6,25 @@ import os
 from contextlib import suppress
 from pathlib import Path
 
-from vibroimpact.files.leftovers import OLD, WHOLE, all_leftovers, inner_leftovers, left_over, leftovers, remove
-from vibroimpact.files.write_into_folder import check_places, finish
+from vibroimpact.files.atomic_write import check_destinations, move_files
+from vibroimpact.files.working_files import COMPLETE, OLD, abandoned, all_working_paths, inner_working_paths, remove, working_paths
 
 
 def recover(target: Path) -> None:
-    """Clear what dead processes left of a file or a folder, beside it and in it; what a living one writes stays.
+    """Clear or complete the leftovers of a file or a folder, next to it and inside it; those of running processes stay.
 
-    A folder that made way for a new one which never came gets its name back. Files that were whole and on their way into the folder
-    get there. Where nothing can be written, all stays as it is.
+    A replaced folder whose successor is missing gets its name back. Files of a complete working folder are moved to their destinations.
+    Where nothing can be written, everything stays as it is.
 
     Parameters
     ----------
     target : pathlib.Path
-        The file or the folder, which need not be there.
+        The file or the folder; it need not exist.
     """
     target = Path(os.path.abspath(target))
-    for path, kind in leftovers(target):
-        with left_over(path) as dead:
-            if not dead:
+    for path, kind in working_paths(target):
+        with abandoned(path) as is_abandoned:
+            if not is_abandoned:
                 continue
             if kind == OLD and not os.path.lexists(target):
                 with suppress(OSError):
@@ -32,29 +32,29 @@ def recover(target: Path) -> None:
             else:
                 remove(path)
     if target.is_dir():
-        for path, kind in inner_leftovers(target):
-            with left_over(path) as dead:
-                if dead:
-                    _finish(path, kind, target)
+        for path, kind in inner_working_paths(target):
+            with abandoned(path) as is_abandoned:
+                if is_abandoned:
+                    _complete(path, kind, target)
 
 
-def _finish(path: Path, kind: str, folder: Path) -> None:
-    """Have files that were whole go to their places, if they can; what was not whole goes."""
-    if kind == WHOLE:
+def _complete(path: Path, kind: str, folder: Path) -> None:
+    """Move the files of a complete working folder to their destinations if all can be; remove an incomplete one."""
+    if kind == COMPLETE:
         try:
-            check_places(path, folder)
+            check_destinations(path, folder)
         except OSError:
             remove(path)
             return
         with suppress(OSError):
-            finish(path, folder)
+            move_files(path, folder)
     else:
         remove(path)
 
 
 def clear(folder: Path) -> None:
-    """Clear all that dead processes left of files in a folder."""
-    for path, _ in all_leftovers(folder):
-        with left_over(path) as dead:
-            if dead:
+    """Remove all leftovers of files in a folder."""
+    for path, _ in all_working_paths(folder):
+        with abandoned(path) as is_abandoned:
+            if is_abandoned:
                 remove(path)

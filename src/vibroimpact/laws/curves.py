@@ -21,8 +21,8 @@ from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.restitution import achieved_restitution
 from vibroimpact.dynamics.simulate import simulate
 from vibroimpact.errors import InputError
+from vibroimpact.files.atomic_write import write_file
 from vibroimpact.files.recover import recover
-from vibroimpact.files.write_file import write_file
 from vibroimpact.laws.text import paper_pair
 from vibroimpact.report.figure_files import render_png
 from vibroimpact.report.layout import label_vertical, new_figure, row_of_axes

@@ -1,1 +1,1 @@
-"""Files that measurements come in: tables in CSV, and universal files."""
+"""Reading of measurement files: CSV tables and universal files."""

@@ -1,4 +1,4 @@
-"""A measured record in a universal file: which of its functions it is, in SI."""
+"""Selection of a measured record from the functions of a universal file, converted to SI units."""
 
 from __future__ import annotations
 
@@ -25,14 +25,14 @@ _KINDS: dict[int, tuple[Quantity, str]] = {
 _DIMENSIONS = {"m": "m", "N": "N", "m/s^2": "m"}
 _OWN = {words for words, *_ in SPHERE_FUNCTIONS.values()}
 SPHERE_ACCELERATION = SPHERE_FUNCTIONS["acceleration_m_s2"][0]
-"""What this program calls the sphere's own acceleration."""
+"""Identification line of the sphere's acceleration in files written by this program."""
 
 _SAME = 1e-6
 _MOST_NAMED = 8
 
 
 class UniversalRecord(NamedTuple):
-    """A record: what it is called and what it is, times [s], and values in SI."""
+    """A record: identification, quantity, times [s], and values in SI units."""
 
     words: str
     quantity: Quantity
@@ -48,20 +48,20 @@ def read_universal_record(path: str | Path, which: str | None, by_rebound: bool)
     path : path
         The file.
     which : str, optional
-        The first line of identification of the function that is meant, or its number in the file. By default the only one of its
-        kind, or the one that this program writes of its sphere.
+        First identification line of the function, or its number in the file. By default the only function of its kind, or the one that
+        this program writes for its sphere.
     by_rebound : bool
-        Is a position better than a force?
+        Whether a position is preferred to a force.
 
     Raises
     ------
     InputError
-        If the file can't be read, or has no such function, or several.
+        If the file can't be read, has no such function, or more than one.
     """
     file = read_universal_file(path)
     functions = [one for one in file.functions if one.kind in _KINDS]
     if which is not None:
-        one = _asked(path, file.functions, which)
+        one = _requested(path, file.functions, which)
     else:
         order: tuple[Quantity, ...] = ("position", "force") if by_rebound else ("force", "position")
         groups = ([one for one in functions if _KINDS[one.kind][0] == quantity] for quantity in (*order, "acceleration"))
@@ -80,7 +80,7 @@ def read_universal_record(path: str | Path, which: str | None, by_rebound: bool)
     return UniversalRecord(one.words, quantity, one.time, one.values * _in_si(path, one, unit, file))
 
 
-def _asked(path: str | Path, functions: list[Function], which: str) -> Function:
+def _requested(path: str | Path, functions: list[Function], which: str) -> Function:
     found = [one for one in functions if which in (one.words, str(one.number))]
     if len(found) != 1:
         several = "there are several functions" if found else "there is no function"
@@ -98,7 +98,7 @@ def _there(functions: list[Function]) -> str:
 
 
 def _in_si(path: str | Path, one: Function, unit: str, file: UniversalFile) -> float:
-    """Return the factor to SI, which dataset 164 tells, or the label of the unit; they must agree."""
+    """Return the conversion factor to SI, from the unit label or from dataset 164; if both are given, they must agree."""
     by_label, by_file = _by_label(one.unit, unit), None if file.factors is None else 1.0 / file.factors[_DIMENSIONS[unit]]
     if by_label is None and by_file is None:
         label = f'the label "{one.unit}" of its unit is not known' if one.unit else "it has no unit"

@@ -1,4 +1,4 @@
-"""A table of measurements from a CSV file: columns with units, read with the row of every fault."""
+"""Tables of measurements from CSV files: columns with units; errors name the line."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ from vibroimpact.shown import shortened, shown
 from vibroimpact.units.reading import to_si
 
 TABLE = FileKind("a table is a CSV file", 500_000_000, "keep the part with the impacts")
-"""What is asked of the file of a table."""
+"""Requirements on a table file."""
 
 MOST_LINES = 10_000_000
-"""Of a table: five seconds at 2 MHz."""
+"""Largest number of lines of a table: five seconds at 2 MHz."""
 
-_LARGEST_NUMBER = 1e30  # whose powers are numbers too
+_LARGEST_NUMBER = 1e30  # so that powers of the values do not overflow
 _LONGEST = 100_000  # characters of a line
 _MOST_COLUMNS = 1000
 _MOST_NAMED = 12  # columns that a message names
@@ -47,7 +47,7 @@ _ENDINGS = {
 
 @dataclass(frozen=True)
 class TableFile:
-    """What a file holds: columns (rows,) in SI by their names, the line that each row stands on, and empty lines before the last."""
+    """Content of a file: columns (rows,) in SI units by name, the line number of each row, and empty lines before the last row."""
 
     path: Path
     columns: Mapping[str, Floats]
@@ -56,9 +56,9 @@ class TableFile:
 
 
 def read_table_file(path: str | PathLike[str], units: Mapping[str, str]) -> TableFile:
-    """Read those columns of a CSV file that are known.
+    """Read the known columns of a CSV file.
 
-    The first line that is not a comment (#) names the columns with their units: `time_s`, `time [ms]`, `force (kN)`. Fields are
+    The first line that is not a comment (#) is the header, with column names and units: `time_s`, `time [ms]`, `force (kN)`. Fields are
     separated by commas, semicolons or tabs; with semicolons or tabs a comma may be the decimal point.
 
     Parameters
@@ -66,12 +66,12 @@ def read_table_file(path: str | PathLike[str], units: Mapping[str, str]) -> Tabl
     path : path
         The file.
     units : mapping of str to str
-        The SI unit of each column that is known; "" of a plain number.
+        The SI unit of each known column; "" for a plain number.
 
     Raises
     ------
     InputError
-        If it can't be read, a column has no unit or one of another kind, or a cell is not a finite number; with the line.
+        If the file can't be read, a column has no unit or one of another dimension, or a cell is not a finite number.
 
     Examples
     --------
@@ -113,13 +113,13 @@ def read_table_file(path: str | PathLike[str], units: Mapping[str, str]) -> Tabl
     return TableFile(file, columns, lines.tolist(), [number for number in empty if number < last])
 
 
-def rising(table: TableFile, column: str) -> TableFile:
-    """Return a table without the rows at which a column stands still; raise if it goes backwards, or stands still throughout.
+def strictly_increasing(table: TableFile, column: str) -> TableFile:
+    """Return a table without the rows at which a column does not increase; raise if it decreases or is constant.
 
     Raises
     ------
     InputError
-        With the line where it does not.
+        If the column decreases, with the line, or is constant throughout.
     """
     steps = np.diff(table.columns[column])
     back = np.flatnonzero(steps < 0.0)
@@ -135,7 +135,7 @@ def rising(table: TableFile, column: str) -> TableFile:
 
 
 def _rows(text: str) -> Iterator[tuple[int, str]]:
-    """Yield the number and the text of each line without its comment: from the first on that is not empty, and "" for an empty one."""
+    """Yield number and text of each line from the first non-empty one, without comments; an empty line gives ""."""
     begun = False
     for number, whole in enumerate(StringIO(text, newline=None), 1):
         if number > MOST_LINES:
@@ -151,7 +151,7 @@ def _rows(text: str) -> Iterator[tuple[int, str]]:
 
 
 def _header(number: int, line: str) -> tuple[list[str], str]:
-    """Return the cells of the line that names the columns, and what separates them."""
+    """Return the cells of the header line, and the field separator."""
     mark = next((mark for mark in ("\t", ";", ",") if mark in line), ",")
     header = [cell.strip() for cell in next(csv.reader([line], delimiter=mark))]
     if len(header) > _MOST_COLUMNS:
@@ -160,7 +160,7 @@ def _header(number: int, line: str) -> tuple[list[str], str]:
 
 
 def _places(number: int, header: Sequence[str], units: Mapping[str, str]) -> tuple[dict[str, int], list[float]]:
-    """Return where the columns stand that are known, and what their numbers are multiplied by."""
+    """Return the positions of the known columns, and their conversion factors to SI."""
     places: dict[str, int] = {}
     factors = []
     for place, cell in enumerate(header):
@@ -174,13 +174,13 @@ def _places(number: int, header: Sequence[str], units: Mapping[str, str]) -> tup
     if not places:
         names = [name_and_unit(cell)[0] for cell in header[:_MOST_NAMED]]
         hint = next((words for name in names if len(name) < _LONG_NAME and (words := did_you_mean(name, units))), "")
-        told = ", ".join(shortened(name, _LONG_NAME) for name in names) + (", ..." if len(header) > _MOST_NAMED else "")
-        raise InputError(f"line {number}: no column is known among {told}; {_allowed(units)}.{hint}")
+        listed = ", ".join(shortened(name, _LONG_NAME) for name in names) + (", ..." if len(header) > _MOST_NAMED else "")
+        raise InputError(f"line {number}: no column is known among {listed}; {_allowed(units)}.{hint}")
     return places, factors
 
 
 def name_and_unit(cell: str) -> tuple[str, str | None]:
-    """Return name and unit of a header's cell; None where it has no unit.
+    """Return name and unit of a header cell; None if it has no unit.
 
     Examples
     --------
@@ -189,7 +189,7 @@ def name_and_unit(cell: str) -> tuple[str, str | None]:
     """
     whole = cell.strip()
     if whole.endswith(("]", ")")):
-        # the unit stands between the last two brackets; a search for that as a pattern takes minutes for a long line of brackets
+        # the unit is between the last two brackets; a regular expression for that takes minutes on a long line of brackets
         inside = whole[:-1]
         start = max(inside.rfind("]"), inside.rfind(")")) + 1
         opening = min((at for at in (inside.find("[", start), inside.find("(", start)) if at >= 0), default=-1)
@@ -227,7 +227,7 @@ def _number(line: int, column: str, row: list[str], place: int, mark: str) -> fl
         raise InputError(f"line {line}, column {shown(column)}: the cell is missing; the line has {len(row)}")
     text = row[place]
     try:
-        if "_" in text:  # which Python takes in a number
+        if "_" in text:  # allowed in numbers by Python
             raise ValueError(text)
         value = float(text.replace(",", ".") if mark != "," else text)
     except ValueError:

@@ -1,4 +1,4 @@
-"""Functions of time in a universal file: its datasets 58, as text or binary, and the units of dataset 164."""
+"""Reading of universal files (UFF): functions of time in datasets 58, text or binary, and the units of dataset 164."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.errors import InputError
-from vibroimpact.files.reading import FileKind, about, beginning, read_bytes
+from vibroimpact.files.reading import FileKind, beginning, read_bytes, with_path
 
 UNIVERSAL = FileKind("a universal file holds datasets between lines of -1", 100_000_000, "keep the functions that are needed")
-"""What is asked of a universal file."""
+"""Requirements on a universal file."""
 
 SPHERE_FUNCTIONS = {
     "position_m": ("height of the sphere's centre", 8, "m"),
@@ -24,17 +24,17 @@ SPHERE_FUNCTIONS = {
     "acceleration_m_s2": ("acceleration of the sphere", 12, "m/s2"),
     "force_N": ("contact force on the sphere", 13, "N"),
 }
-"""The motion of the sphere as this program writes it, and finds it again: first line of identification, kind of data, unit."""
+"""The motion of the sphere as this program writes and recognizes it: first identification line, data type, unit."""
 
 _LARGEST = 1e30
-"""What measurements are less than, whose powers are numbers too."""
+"""Bound of measured values, so that their powers do not overflow."""
 
 _MARK = b"-1"
-_HERE = re.compile(rb"[ \t]*-1[ \t\r]*(?:\n|\Z)")  # behind binary data, which no line ends
+_HERE = re.compile(rb"[ \t]*-1[ \t\r]*(?:\n|\Z)")  # at the current position: binary data does not end with a line break
 _MARKED = re.compile(rb"^" + _HERE.pattern, re.MULTILINE)
 _HEADER_LINES = 11
 _REAL, _TIME = (2, 4), 17
-_WIDTHS = {2: 13, 4: 20}  # of a number in text, single and double
+_WIDTHS = {2: 13, 4: 20}  # columns of a number in text, single and double precision
 _ENDS = {1: "<", 2: ">"}
 _IEEE = 2
 
@@ -46,15 +46,15 @@ class Function:
     Parameters
     ----------
     number : int
-        Which of the functions of the file it is, from 1.
+        Number of the function in the file, from 1.
     words : str
-        Its first line of identification.
+        First identification line.
     kind : int
-        What its values are, as dataset 58 numbers them: 8 a displacement, 9 and 13 forces, 11 a velocity, 12 an acceleration.
+        Data type of the ordinate in dataset 58: 8 displacement, 9 and 13 force, 11 velocity, 12 acceleration.
     unit : str
-        The label of its unit; "" if there is none.
+        Unit label; "" if there is none.
     time, values : array, shape (n,)
-        Times [s], and values as the file has them.
+        Times [s], and values in the units of the file.
     """
 
     number: int
@@ -66,8 +66,8 @@ class Function:
 
 
 class UniversalFile(NamedTuple):
-    """What a universal file holds: its functions of time; and by what its lengths ("m") and forces ("N") are divided for SI, None if
-    it does not say.
+    """Functions of time of a universal file, and the divisors that convert its lengths ("m") and forces ("N") to SI, None if the
+    file does not state them.
     """
 
     functions: list[Function]
@@ -75,10 +75,10 @@ class UniversalFile(NamedTuple):
 
 
 def is_universal(path: str | Path) -> bool:
-    """Return whether a file begins as universal files do, with a line of -1."""
+    """Return whether a file begins with a line of -1, as universal files do."""
     try:
         return beginning(path, UNIVERSAL, 200).lstrip().split(b"\n")[0].strip() == _MARK
-    except InputError:  # whoever reads it says what is wrong
+    except InputError:  # the reader of the file reports the error
         return False
 
 
@@ -93,13 +93,13 @@ def read_universal_file(path: str | Path) -> UniversalFile:
     Raises
     ------
     InputError
-        If it can't be read, or a dataset is not whole.
+        If it can't be read, or a dataset is incomplete.
     """
     file = Path(path)
     try:
         raw = read_bytes(file, UNIVERSAL)
     except InputError as error:
-        raise about(file, error) from None
+        raise with_path(file, error) from None
     functions: list[Function] = []
     factors, number = None, 0
     for header, place in _datasets(raw):
@@ -119,7 +119,7 @@ def read_universal_file(path: str | Path) -> UniversalFile:
 
 
 def _datasets(raw: bytes) -> Iterator[tuple[bytes, int]]:
-    """Yield the first line of each dataset, and the place behind it."""
+    """Yield the first line of each dataset, and the offset after it."""
     place, inside = 0, False
     while (mark := _HERE.match(raw, place) or _MARKED.search(raw, place)) is not None:
         inside, place = not inside, mark.end()
@@ -127,7 +127,7 @@ def _datasets(raw: bytes) -> Iterator[tuple[bytes, int]]:
             header, place = _line(raw, place)
             yield header, place
             words = header.split()
-            if words and words[0] == b"58b":  # binary data may hold what looks like a mark
+            if words and words[0] == b"58b":  # skip binary data, which may contain the bytes of a mark
                 place = _binary_end(raw, words, place)
 
 
@@ -139,7 +139,7 @@ def _binary_end(raw: bytes, words: list[bytes], place: int) -> int:
 
 
 def _line(raw: bytes, place: int) -> tuple[bytes, int]:
-    """Return the line at a place, and the place behind it."""
+    """Return the line at an offset, and the offset after it."""
     end = raw.find(b"\n", place)
     return (raw[place:], len(raw)) if end < 0 else (raw[place:end].rstrip(b"\r"), end + 1)
 
@@ -161,7 +161,7 @@ def _factors(raw: bytes, place: int) -> dict[str, float]:
 
 
 def _function(raw: bytes, header: bytes, place: int, number: int) -> Function | None:
-    """Return a function of time; None of another kind: complex, or over something else."""
+    """Return a function of time; None if it is complex, or a function of another variable."""
     lines, place = _lines(raw, place, _HEADER_LINES)
     ordinate, count, even = (int(lines[6][at : at + 10]) for at in (0, 10, 20))
     start, step = (float(lines[6][at : at + 13]) for at in (30, 43))
@@ -188,7 +188,7 @@ def _binary(raw: bytes, header: bytes, place: int, ordinate: int, count: int, ev
         raise ValueError
     if even:
         return None, np.frombuffer(raw, f"{end}{values}", count, place).astype(float)
-    # times of single and of double precision are in use with double values, and sizes that leave them out
+    # with double-precision values, times occur in single and in double precision, and the stated size may omit them
     wide = raw[place + (8 + int(values[1])) * count :][:12].lstrip().startswith(_MARK)
     times = "f8" if wide else "f4"
     pairs = np.frombuffer(raw, [("x", f"{end}{times}"), ("y", f"{end}{values}")], count, place)
@@ -197,7 +197,7 @@ def _binary(raw: bytes, header: bytes, place: int, ordinate: int, count: int, ev
 
 def _text(raw: bytes, place: int, ordinate: int, count: int, even: bool) -> tuple[Floats | None, Floats]:
     width = _WIDTHS[ordinate]
-    # columns of fixed width, between which there need be no blank
+    # columns of fixed width, not necessarily separated by blanks
     widths = ([width] * (6 if ordinate == 2 else 4)) if even else [13, width] * (3 if ordinate == 2 else 2)
     edges = np.concatenate([[0], np.cumsum(widths)])
     found: list[float] = []

@@ -1,1 +1,1 @@
-"""Mesh files of other programs, read and written, and meshes of geometry."""
+"""Reading and writing mesh files of other programs, and meshing geometry files."""

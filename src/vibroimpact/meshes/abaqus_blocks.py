@@ -1,4 +1,4 @@
-"""The blocks of an Abaqus input file: a keyword, its parameters and its data lines."""
+"""Keyword blocks of an Abaqus input file: keyword line, parameters and data lines."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
-from vibroimpact.files.lines import Line
+from vibroimpact.meshes.text_files import TextLine
 
 _PARAMETER = re.compile(r'(?:"[^"]*"|[^,])+')
 _INCLUDED = re.compile(r"\*\s*(?:INCLUDE|NODE|ELEMENT|NSET|ELSET)\s*,.*?\bINPUT\s*=\s*(?:\"([^\"]+)\"|([^,\"]+))", re.IGNORECASE)
@@ -14,33 +14,33 @@ _INCLUDED = re.compile(r"\*\s*(?:INCLUDE|NODE|ELEMENT|NSET|ELSET)\s*,.*?\bINPUT\
 
 @dataclass
 class Block:
-    """A keyword in capitals, without its star; its parameters by their names in capitals; its data."""
+    """A keyword in capitals, without its asterisk; its parameters, by name in capitals; its data lines."""
 
-    line: Line
+    line: TextLine
     keyword: str
     parameters: dict[str, str]
-    data: list[Line] = field(default_factory=list)
+    data: list[TextLine] = field(default_factory=list)
 
 
-def included_file(text: str) -> str | None:
-    """Return the file from which a keyword line takes lines.
+def abaqus_include(text: str) -> str | None:
+    """Return the name of the file that a keyword line reads with INPUT; None if it reads none.
 
     Examples
     --------
-    >>> included_file("*Include, input=mesh/plate.inp")
+    >>> abaqus_include("*Include, input=mesh/plate.inp")
     'mesh/plate.inp'
     """
     found = _INCLUDED.match(text.strip()) if text.lstrip().startswith("*") else None
     return (found[1] or found[2]).strip() if found else None
 
 
-def blocks(lines: Iterable[Line]) -> Iterator[Block]:
-    """Yield the blocks of an input file.
+def blocks(lines: Iterable[TextLine]) -> Iterator[Block]:
+    """Yield the keyword blocks of an input file.
 
     Raises
     ------
     InputError
-        If data come before the first keyword.
+        If data lines precede the first keyword.
     """
     block, goes_on = None, False
     for line in lines:

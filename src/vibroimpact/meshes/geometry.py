@@ -1,4 +1,4 @@
-"""Meshes of geometry (STEP and BREP), made by Gmsh."""
+"""Meshing of geometry files (STEP and BREP) with Gmsh."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from vibroimpact.errors import InputError
-from vibroimpact.files.reading import FileKind, about, beginning
+from vibroimpact.files.reading import FileKind, beginning, with_path
 from vibroimpact.meshes.geometry_process import MARK
 from vibroimpact.meshes.read_gmsh import read_gmsh
 from vibroimpact.shown import shortened
@@ -21,33 +21,33 @@ from vibroimpact.structures.mesh import Mesh
 STEP, BREP = (".step", ".stp"), (".brep",)
 
 GEOMETRY = FileKind("a geometry is a STEP or BREP file with one solid", 500_000_000, "leave out details that an impact does not feel")
-"""What is asked of the file of a geometry."""
+"""Requirements on a geometry file."""
 
 MOST_SECONDS = 1200.0
-"""That Gmsh may take: more than three million elements need; on some damaged geometries it works for ever."""
+"""Time limit of Gmsh: more than three million elements take; on some damaged geometries it never ends."""
 
 
 def mesh_geometry(path: str | PathLike[str], size: float | None = None, order: int = 2, unit_in_metres: float = 1.0) -> Mesh:
-    """Return a mesh of tetrahedra of the solid in a STEP or BREP file; Gmsh must be installed.
+    """Mesh the solid in a STEP or BREP file with tetrahedra; requires Gmsh.
 
-    The nodes of the second order lie on the geometry. Its faces are the node sets `face1`, `face2`, ... or as the file names
-    them. Gmsh runs in a process of its own, so that its messages, its settings and its crashes stay there.
+    Mid-edge nodes of second-order elements lie on the geometry. Its faces become node sets, named as in the file or `face1`, `face2`,
+    ... Gmsh runs in a separate process, which isolates its messages, settings and crashes.
 
     Parameters
     ----------
     path : path
         The file: .step, .stp or .brep.
     size : float, optional
-        About the largest length of an element [m]; by default a twelfth of the largest extent.
+        Approximate maximum element size [m]; by default a twelfth of the largest extent.
     order : int, default 2
-        Order of the elements, 1 or 2.
+        Element order, 1 or 2.
     unit_in_metres : float, default 1
-        The unit of a BREP file [m]; a STEP file names its own.
+        Length unit of a BREP file [m]; a STEP file states its own.
 
     Raises
     ------
     InputError
-        If Gmsh is not there, or can't mesh the file.
+        If Gmsh is not installed, or can't mesh the file.
 
     Examples
     --------
@@ -65,23 +65,23 @@ def mesh_geometry(path: str | PathLike[str], size: float | None = None, order: i
         raise InputError(f"{order} is not allowed; it must be 1 or 2", "order")
     if suffix in STEP and unit_in_metres != 1.0:
         raise InputError(f"{path}: a STEP file names its own unit; leave unit_in_metres at 1")
-    # STEP is read in millimetres, as the tolerances of the geometry kernel are made for
+    # STEP is read in millimetres, for which the tolerances of the geometry kernel are intended
     unit = 1e-3 if suffix in STEP else unit_in_metres
     try:
         if not beginning(path, GEOMETRY, 1):
             raise InputError(f"the file is empty; {GEOMETRY.what}")
     except InputError as error:
-        raise about(path, error) from None
+        raise with_path(path, error) from None
     with TemporaryDirectory() as folder:
         made = Path(folder, "mesh.msh")
-        # a bare file name that starts with a dash, or a link, is no trouble when the path is whole
+        # an absolute path, since a file name that starts with a dash would be taken for an option
         _run_gmsh(path, [str(path.resolve()), str(made), repr(0.0 if size is None else size / unit), str(order)])
         mesh = read_gmsh(made)
     return replace(mesh, nodes=mesh.nodes * unit)
 
 
 def _run_gmsh(path: Path, arguments: list[str]) -> None:
-    """Run Gmsh, and say what went wrong."""
+    """Run Gmsh in a separate process; raise InputError with the cause if it fails."""
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
     command = [sys.executable, "-m", "vibroimpact.meshes.geometry_process", *arguments]
     try:

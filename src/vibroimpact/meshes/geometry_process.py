@@ -1,6 +1,6 @@
-"""Gmsh at work in a process of its own: `python -m vibroimpact.meshes.geometry_process geometry mesh size order`.
+"""The separate Gmsh process: `python -m vibroimpact.meshes.geometry_process geometry mesh size order`.
 
-It writes the mesh as a file; what goes wrong it writes to standard error, after the mark that tells it from other output.
+It writes the mesh to a file, and an error message to standard error, after a mark that separates it from other output.
 """
 
 from __future__ import annotations
@@ -13,12 +13,12 @@ DEFAULT_FRACTION = 12
 
 
 def make_mesh(geometry: str, mesh: str, size: float, order: int) -> None:
-    """Mesh the one solid of a geometry; a size of 0 stands for a twelfth of the largest extent.
+    """Mesh the single solid of a geometry; a size of 0 means a twelfth of the largest extent.
 
     Raises
     ------
     RuntimeError
-        If there is no solid, or more than one; if the elements would be too many, or some are inside out.
+        If there is not exactly one solid, there would be too many elements, or some have a negative Jacobian.
     """
     import gmsh  # type: ignore[import-untyped, unused-ignore]
 
@@ -28,7 +28,7 @@ def make_mesh(geometry: str, mesh: str, size: float, order: int) -> None:
         "General.NumThreads": 1,
         "Mesh.MeshSizeMin": 0,
         "Mesh.ElementOrder": order,
-        "Mesh.HighOrderOptimize": 2 if order > 1 else 0,  # moves nodes until no curved element is inside out
+        "Mesh.HighOrderOptimize": 2 if order > 1 else 0,  # moves nodes until no curved element has a negative Jacobian
         "Mesh.MshFileVersion": 4.1,
         "Mesh.Binary": 0,
     }
@@ -56,7 +56,7 @@ def make_mesh(geometry: str, mesh: str, size: float, order: int) -> None:
 
 
 def _expected_elements(gmsh: object, size: float) -> float:
-    """Regular tetrahedra fill the volume, triangles the surface; edges count where a part is thin."""
+    """Estimate the number of elements from the volume (regular tetrahedra), the surface (triangles) and the edges (thin parts)."""
     occ = gmsh.model.occ  # type: ignore[attr-defined]
     measure = [sum(occ.getMass(dimension, tag) for _, tag in occ.getEntities(dimension)) for dimension in (1, 2, 3)]
     return float(max(measure[0] / size, 2.3 * measure[1] / size**2, 8.5 * measure[2] / size**3))

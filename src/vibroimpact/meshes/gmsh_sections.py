@@ -1,28 +1,28 @@
-"""The sections of a mesh file of Gmsh: from $Name to $EndName."""
+"""Sections of a Gmsh mesh file, from $Name to $EndName."""
 
 from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Collection, Iterable, Iterator
 
-from vibroimpact.files.lines import Line
+from vibroimpact.meshes.text_files import TextLine
 from vibroimpact.shown import shown
 
 
-class Section:
-    """The lines of a section, taken one after the other as words."""
+class GmshSection:
+    """The lines of a section, read in turn and split into words."""
 
-    def __init__(self, line: Line) -> None:
+    def __init__(self, line: TextLine) -> None:
         self.line = line
-        self.body: list[Line] = []
+        self.body: list[TextLine] = []
         self._at = 0
 
     @property
     def has_more(self) -> bool:
-        """Is there a line that was not taken?"""
+        """Whether lines remain to be read."""
         return self._at < len(self.body)
 
-    def words(self, least: int) -> tuple[Line, list[str]]:
+    def words(self, least: int) -> tuple[TextLine, list[str]]:
         """Return the next line and its words.
 
         Raises
@@ -39,7 +39,7 @@ class Section:
             raise line.wrong(f"the line has {len(words)} of the {least} entries that it must have")
         return line, words
 
-    def take(self, count: int, least: int) -> Iterator[tuple[Line, list[str]]]:
+    def take(self, count: int, least: int) -> Iterator[tuple[TextLine, list[str]]]:
         """Yield the next `count` lines and their words.
 
         Raises
@@ -56,26 +56,26 @@ class Section:
             yield self.words(least)
 
     def end(self) -> None:
-        """Check that all lines were taken.
+        """Check that all lines were read.
 
         Raises
         ------
         InputError
-            If there are more.
+            If lines remain.
         """
         if self.has_more:
             raise self.body[self._at].wrong(f"{self.line.text.strip()} has more lines than it says; the two must agree")
 
 
-def sections(lines: Iterable[Line], known: Collection[str], skipped: Counter[str]) -> dict[str, Section]:
+def sections(lines: Iterable[TextLine], known: Collection[str], skipped: Counter[str]) -> dict[str, GmshSection]:
     """Return the known sections by name, and count the others.
 
     Raises
     ------
     InputError
-        If a section has no end or comes twice, or there is text outside.
+        If a section has no end or occurs twice, or there is text outside sections.
     """
-    found: dict[str, Section] = {}
+    found: dict[str, GmshSection] = {}
     name, section = "", None
     for line in lines:
         text = line.text.strip()
@@ -84,7 +84,7 @@ def sections(lines: Iterable[Line], known: Collection[str], skipped: Counter[str
         if section is None:
             if not text.startswith("$"):
                 raise line.wrong(f"{shown(text)} stands outside a section; a mesh file of Gmsh has sections from $Name to $EndName")
-            name, section = text[1:], Section(line)
+            name, section = text[1:], GmshSection(line)
         elif text == f"$End{name}":
             if name not in known:
                 skipped[f"${name}"] += 1

@@ -1,4 +1,4 @@
-"""A mesh from any file that is known by its suffix."""
+"""Reading of mesh and geometry files, by suffix."""
 
 from __future__ import annotations
 
@@ -26,21 +26,21 @@ READERS: Mapping[str, Callable[[str | PathLike[str]], Mesh]] = {
 
 
 def read_mesh(path: str | PathLike[str], unit_in_metres: float = 1.0, size: float | None = None) -> Mesh:
-    """Read a mesh (Nastran, Abaqus, Gmsh) or make one of a geometry (STEP, BREP), by the suffix of the file.
+    """Read a mesh file (Nastran, Abaqus, Gmsh) or mesh a geometry file (STEP, BREP), by suffix.
 
     Parameters
     ----------
     path : path
         The file: .bdf, .dat, .nas, .fem, .inp, .msh, .step, .stp or .brep.
     unit_in_metres : float, default 1
-        The unit of its coordinates [m], such as 0.001 for millimetres; a STEP file names its own.
+        Unit of the coordinates [m], such as 0.001 for millimetres; a STEP file states its own.
     size : float, optional
-        About the largest length of an element of a geometry [m]; by default a twelfth of the largest extent.
+        Approximate maximum element size of a geometry [m]; by default a twelfth of the largest extent.
 
     Raises
     ------
     InputError
-        If the file is not such a file, or can't be read.
+        If the file is of another kind, or can't be read.
 
     Examples
     --------

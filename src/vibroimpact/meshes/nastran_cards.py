@@ -1,4 +1,4 @@
-"""The cards of a Nastran file: free, small and large fields, and lines that go on."""
+"""Cards of a Nastran file: free, small-field and large-field format, with continuation lines."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
-from vibroimpact.files.lines import Line, real
+from vibroimpact.meshes.text_files import TextLine, parse_real
 from vibroimpact.shown import shown
 
 _EXPONENT = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+))(?:[dD]([+-]?\d+)|([+-]\d+))")
@@ -14,27 +14,27 @@ _INCLUDE = re.compile(r"""\s*INCLUDE\s+(?:'([^']+)'|"([^"]+)"|([^'"$\s]+))\s*(?:
 
 
 class Card(NamedTuple):
-    """A card: its name in capitals, and its fields from the second on."""
+    """A card: its name in capitals, and its data fields, from the second on."""
 
-    line: Line
+    line: TextLine
     name: str
     fields: list[str]
 
 
-def included_file(text: str) -> str | None:
-    """Return the file that a line of a Nastran file includes.
+def nastran_include(text: str) -> str | None:
+    """Return the name of the file that an INCLUDE line of a Nastran file includes; None for other lines.
 
     Examples
     --------
-    >>> included_file("include 'mesh/plate.bdf'  $ the plate")
+    >>> nastran_include("include 'mesh/plate.bdf'  $ the plate")
     'mesh/plate.bdf'
     """
     found = _INCLUDE.fullmatch(text) if "NCLUDE" in text[:40].upper() else None
     return next(name for name in found.groups() if name) if found else None
 
 
-def nastran_real(text: str, line: Line) -> float:
-    """Return a number that may lack the letter of its exponent or have a D; a blank is zero.
+def nastran_real(text: str, line: TextLine) -> float:
+    """Return a real number, whose exponent may have a D or no letter; a blank field is zero.
 
     Examples
     --------
@@ -44,21 +44,21 @@ def nastran_real(text: str, line: Line) -> float:
     if not text:
         return 0.0
     found = _EXPONENT.fullmatch(text)
-    return float(f"{found[1]}e{found[2] or found[3]}") if found else real(text, line)
+    return float(f"{found[1]}e{found[2] or found[3]}") if found else parse_real(text, line)
 
 
-def cards(lines: Iterable[Line]) -> Iterator[Card]:
-    """Yield the cards of bulk data, up to ENDDATA and with it.
+def cards(lines: Iterable[TextLine]) -> Iterator[Card]:
+    """Yield the cards of bulk data, up to and including ENDDATA.
 
     Raises
     ------
     InputError
-        If a continuation has no card, or belongs to another one.
+        If a continuation line has no card before it, or its label does not match.
     """
     card, goes_on = None, ""
     for line in lines:
         text = line.text.split("$", 1)[0].rstrip()
-        if not text or included_file(text) is not None:
+        if not text or nastran_include(text) is not None:
             continue
         head, fields, end = _split(text.expandtabs(8))
         if not head or head[0] in "+*":
@@ -83,7 +83,7 @@ def cards(lines: Iterable[Line]) -> Iterator[Card]:
 
 
 def _split(text: str) -> tuple[str, list[str], str]:
-    """Return the first field, the data, filled up to 8 (or to 4 large ones), and the field that names what follows."""
+    """Return the first field, the data fields, padded to 8 (4 in large-field format), and the continuation field."""
     if "," in text:
         head, *fields = (field.strip() for field in text.split(","))
         width = 4 if "*" in head else 8

@@ -1,4 +1,4 @@
-"""Other programs' orders of the nodes of an element, told by the corners that each node lies between."""
+"""Node numbering of elements in other programs, each node given by the corners whose midpoint it is."""
 
 from __future__ import annotations
 
@@ -17,23 +17,23 @@ GMSH = {
 }
 NASTRAN = {"hex20": f"0 1 2 3 4 5 6 7 {_HEX_BOTTOM} {_HEX_UP} {_HEX_TOP}"}
 ABAQUS = {"hex27": f"0 1 2 3 4 5 6 7 {_HEX_BOTTOM} {_HEX_TOP} {_HEX_UP} 01234567 0123 4567 0154 1265 2376 0374"}
-"""Abaqus and we differ in hex27 only: its node in the middle comes before those of the faces."""
+"""Abaqus differs from this package in hex27 only: the centre node precedes the face nodes."""
 
 
 def from_ours(kind: str, foreign: str) -> Integers:
-    """Return where each node of another order stands in ours: `theirs = ours[from_ours(...)]`."""
+    """Return the permutation from our node order to another one: `theirs = ours[from_ours(...)]`."""
     return np.argsort(to_ours(kind, foreign)).astype(np.int64)
 
 
 def to_ours(kind: str, foreign: str) -> Integers:
-    """Return where each of our nodes stands in another order: `ours = theirs[to_ours(...)]`.
+    """Return the permutation from another node order to ours: `ours = theirs[to_ours(...)]`.
 
     Parameters
     ----------
     kind : str
         A name in `ELEMENT_KINDS`.
     foreign : str
-        For each node in turn the corners that it is the middle of.
+        The other order: for each node in turn, the corners whose midpoint it is.
 
     Examples
     --------

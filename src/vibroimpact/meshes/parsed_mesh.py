@@ -1,4 +1,4 @@
-"""What a reader finds in a file, and the mesh it makes."""
+"""Nodes, elements and sets as read from a file, and their assembly into a mesh."""
 
 from __future__ import annotations
 
@@ -11,24 +11,24 @@ import numpy as np
 
 from vibroimpact.arrays import Floats, Integers
 from vibroimpact.errors import InputError
-from vibroimpact.files.lines import Line
 from vibroimpact.meshes.node_order import to_ours
+from vibroimpact.meshes.text_files import TextLine
 from vibroimpact.shown import shown
 from vibroimpact.structures.element_kinds import ELEMENT_KINDS
 from vibroimpact.structures.mesh import ElementBlock, Mesh
 
 LARGEST_COORDINATE = 1e15
 MOST_MEMBERS = 10_000_000
-"""Of all sets of nodes, or of elements, together: with sets of sets and ranges a short file can ask for more than fits into memory."""
+"""Limit for all node sets, or all element sets, together: with nested sets and ranges a short file could exhaust the memory."""
 
 EMPTY_SET = "set without solid elements or their nodes"
 
 
 @dataclass
 class Selection:
-    """Single numbers, and ranges of numbers as (first, last, step).
+    """A selection of node or element numbers: single numbers, and ranges (first, last, step).
 
-    A range stays a range until the numbers that exist are known: "1 to 10^12" costs nothing.
+    Ranges are expanded only against the existing numbers, so that "1 to 10^12" costs nothing.
 
     Examples
     --------
@@ -40,48 +40,49 @@ class Selection:
     ranges: set[tuple[int, int, int]] = field(default_factory=set)
 
     def places(self, known: Integers) -> Integers:
-        """Return where the selected ones stand among the numbers `known`, which ascend."""
+        """Return the indices of the selected numbers in `known`, which is sorted."""
         numbers = np.fromiter(self.numbers, np.int64, len(self.numbers))
         places = np.minimum(np.searchsorted(known, numbers), len(known) - 1).astype(np.int64)
         places = np.sort(places[known[places] == numbers])
-        if not self.ranges:  # nothing here costs as much as all that is known: there may be many small sets
+        if not self.ranges:  # avoid arrays of the size of `known`: there may be many small sets
             return places
         ranges = np.array(list(self.ranges), dtype=np.int64)
         starts, stops = np.searchsorted(known, ranges[:, 0]), np.searchsorted(known, ranges[:, 1], side="right")
-        whole = ranges[:, 2] == 1
-        # where ranges without gaps begin and end: thousands of them cost as much as one
-        ends = np.bincount(starts[whole], minlength=len(known) + 1) - np.bincount(stops[whole], minlength=len(known) + 1)
+        unit_step = ranges[:, 2] == 1
+        # ranges of step 1 by the cumulative sum of their starts and ends: thousands cost as much as one
+        ends = np.bincount(starts[unit_step], minlength=len(known) + 1) - np.bincount(stops[unit_step], minlength=len(known) + 1)
         chosen = np.cumsum(ends[:-1]) > 0
         chosen[places] = True
-        for (first, _, step), start, stop in zip(ranges[~whole].tolist(), starts[~whole].tolist(), stops[~whole].tolist(), strict=True):
+        others = (part[~unit_step].tolist() for part in (ranges, starts, stops))
+        for (first, _, step), start, stop in zip(*others, strict=True):
             chosen[start:stop] |= (known[start:stop] - first) % step == 0
         return np.flatnonzero(chosen)
 
     def update(self, other: Selection) -> None:
-        """Add what another selection selects."""
+        """Add another selection."""
         self.numbers |= other.numbers
         self.ranges |= other.ranges
 
 
 @dataclass
 class _Elements:
-    """The elements of one kind as the file numbers them."""
+    """The elements of one kind, with the numbers of the file."""
 
-    lines: list[Line] = field(default_factory=list)
+    lines: list[TextLine] = field(default_factory=list)
     numbers: list[int] = field(default_factory=list)
     nodes: list[Sequence[int]] = field(default_factory=list)
 
 
 @dataclass
 class Parts:
-    """Nodes, elements and sets under the numbers that the file gives them.
+    """Nodes, elements and sets with the numbers of the file.
 
     Parameters
     ----------
     path : Path
-        The file, for the messages.
+        The file, for messages.
     orders : mapping of str to str
-        The file's order of the nodes, for the kinds where it differs from ours.
+        The file's node order of the element kinds where it differs from ours.
     """
 
     path: Path
@@ -90,12 +91,12 @@ class Parts:
     element_sets: defaultdict[str, Selection] = field(default_factory=lambda: defaultdict(Selection))
     skipped: Counter[str] = field(default_factory=Counter)
     _copied: int = 0
-    _node_lines: list[Line] = field(default_factory=list)
+    _node_lines: list[TextLine] = field(default_factory=list)
     _node_numbers: list[int] = field(default_factory=list)
     _points: list[tuple[float, float, float]] = field(default_factory=list)
     _elements: defaultdict[str, _Elements] = field(default_factory=lambda: defaultdict(_Elements))
 
-    def add_node(self, line: Line, number: int, point: tuple[float, float, float]) -> None:
+    def add_node(self, line: TextLine, number: int, point: tuple[float, float, float]) -> None:
         """Add a node.
 
         Raises
@@ -110,33 +111,33 @@ class Parts:
         self._node_numbers.append(number)
         self._points.append(point)
 
-    def add_members(self, line: Line, chosen: Selection, more: Selection) -> None:
-        """Add to a set what another one selects.
+    def add_members(self, line: TextLine, chosen: Selection, more: Selection) -> None:
+        """Add a selection to a set.
 
         Raises
         ------
         InputError
-            If there are too many in all.
+            If all sets together have too many members.
         """
         self._copied += len(more.numbers) + len(more.ranges)
         if self._copied > MOST_MEMBERS:
             raise line.wrong(_too_many_members())
         chosen.update(more)
 
-    def add_element(self, line: Line, kind: str, number: int, nodes: Sequence[int]) -> None:
-        """Add an element with as many nodes as its kind has, in the file's order."""
+    def add_element(self, line: TextLine, kind: str, number: int, nodes: Sequence[int]) -> None:
+        """Add an element of a kind, its nodes in the order of the file; their number must be that of the kind."""
         found = self._elements[kind]
         found.lines.append(line)
         found.numbers.append(number)
         found.nodes.append(nodes)
 
     def mesh(self) -> Mesh:
-        """Return the mesh: numbered from 0, without nodes that no element uses.
+        """Return the mesh, numbered from 0, without nodes that no element uses.
 
         Raises
         ------
         InputError
-            If a number is given twice, a node is missing or there is no element.
+            If an element number occurs twice, a node number with other coordinates, a node is missing or there is no element.
         """
         if not self._elements:
             left_out = ", ".join(f"{shown(name)[1:-1]} ({count})" for name, count in self.skipped.most_common(5))
@@ -157,7 +158,7 @@ class Parts:
         )
 
     def _distinct_nodes(self) -> tuple[Integers, Floats]:
-        """Return the numbers of the nodes, ascending, and where they are."""
+        """Return the node numbers, sorted, and the coordinates; raise if a node is given twice with different coordinates."""
         numbers, points = np.array(self._node_numbers, dtype=np.int64), np.array(self._points, dtype=float).reshape(-1, 3)
         order = np.argsort(numbers, kind="stable")
         numbers, points = numbers[order], points[order]
@@ -173,7 +174,7 @@ class Parts:
         return numbers[once], points[once]
 
     def _places_of_nodes(self, kind: str, numbers: Integers) -> Integers:
-        """Return the nodes of the elements as places in `numbers`, in our order."""
+        """Return the connectivity as indices into `numbers`, in our node order."""
         found = self._elements[kind]
         wanted = np.array(found.nodes, dtype=np.int64)
         places = np.minimum(np.searchsorted(numbers, wanted), max(len(numbers) - 1, 0)).astype(np.int64)
@@ -187,7 +188,7 @@ class Parts:
         return places[:, to_ours(kind, self.orders[kind])] if kind in self.orders else places
 
     def _distinct_elements(self, kinds: list[str]) -> tuple[Integers, Integers]:
-        """Return the numbers of the elements, ascending, and their places through all blocks."""
+        """Return the element numbers, sorted, and their indices counted through all blocks."""
         numbers = np.concatenate([np.array(self._elements[kind].numbers, dtype=np.int64) for kind in kinds])
         order = np.argsort(numbers, kind="stable")
         again = np.flatnonzero(np.diff(numbers[order]) == 0)
@@ -198,7 +199,7 @@ class Parts:
         return numbers[order], order
 
     def _sets(self, sets: Mapping[str, Selection], numbers: Integers, places: Integers) -> dict[str, Integers]:
-        """Return the sets as places; what the mesh does not have is left out of them."""
+        """Return the sets as indices; members that the mesh does not have are dropped."""
         found: dict[str, Integers] = {}
         total = 0
         for name, selection in sets.items():

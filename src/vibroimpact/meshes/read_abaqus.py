@@ -1,4 +1,4 @@
-"""Abaqus input files, read."""
+"""Reading of Abaqus input files."""
 
 from __future__ import annotations
 
@@ -7,10 +7,10 @@ from os import PathLike
 from pathlib import Path
 
 from vibroimpact.errors import did_you_mean
-from vibroimpact.files.lines import Line, lines_with_includes, real, whole
-from vibroimpact.meshes.abaqus_blocks import Block, blocks, included_file
+from vibroimpact.meshes.abaqus_blocks import Block, abaqus_include, blocks
 from vibroimpact.meshes.node_order import ABAQUS
 from vibroimpact.meshes.parsed_mesh import Parts, Selection
+from vibroimpact.meshes.text_files import TextLine, parse_integer, parse_real, read_lines_with_includes
 from vibroimpact.shown import shown
 from vibroimpact.structures.element_kinds import ELEMENT_KINDS
 from vibroimpact.structures.mesh import Mesh
@@ -26,18 +26,18 @@ _QUIET = {"HEADING", "INCLUDE", "PART", "END PART", "ASSEMBLY", "END ASSEMBLY", 
 def read_abaqus(path: str | PathLike[str]) -> Mesh:
     """Read the solid elements of an Abaqus input file with one part.
 
-    C3D4, C3D8, C3D10, C3D20 and C3D27 of every formulation make the mesh, with the sets of *NSET, *ELSET, *NODE and
+    The mesh consists of C3D4, C3D8, C3D10, C3D20 and C3D27 elements of every formulation, and the sets of *NSET, *ELSET, *NODE and
     *ELEMENT. Other keywords, and elements that are not solid, are counted in `Mesh.skipped`.
 
     Parameters
     ----------
     path : path
-        The file; what it includes is read too.
+        The file; included files are read too.
 
     Raises
     ------
     InputError
-        If it is not such a file, has solid elements that are not read, or more than one part.
+        If it is not such a file, has unsupported solid elements, or more than one part.
 
     Examples
     --------
@@ -51,25 +51,25 @@ def read_abaqus(path: str | PathLike[str]) -> Mesh:
     ('tet4', ['all'])
     """
     reader = _Reader(Path(path))
-    for block in blocks(lines_with_includes(Path(path), included_file)):
+    for block in blocks(read_lines_with_includes(Path(path), abaqus_include)):
         reader.take(block)
     return reader.mesh()
 
 
 class _Reader:
-    """Takes block after block; knows what the part and the assembly around them are."""
+    """Parser of keyword blocks into `Parts`; tracks the open part, assembly and instance."""
 
     def __init__(self, path: Path) -> None:
         self.parts = Parts(path, ABAQUS)
         self.names: dict[tuple[str, str], str] = {}
-        self.seen: dict[str, Line] = {}
-        self.open: dict[str, Line] = {}
+        self.seen: dict[str, TextLine] = {}
+        self.open: dict[str, TextLine] = {}
         self.in_assembly = False
 
     def take(self, block: Block) -> None:
         keyword = block.keyword
-        # a file that is not read here would be missed without a word
-        if (keyword == "INCLUDE" or "INPUT" in block.parameters) and included_file(block.line.text) is None and keyword in _INPUTS:
+        # an included file that is not recognized must not be ignored silently
+        if (keyword == "INCLUDE" or "INPUT" in block.parameters) and abaqus_include(block.line.text) is None and keyword in _INPUTS:
             raise block.line.wrong(f"the file to include can't be told; *{keyword} must have INPUT=file on its first line")
         if keyword in _MAKES_MESH:
             raise block.line.wrong(f"*{keyword} makes nodes or elements by a rule, which is not read; write each one out")
@@ -81,7 +81,7 @@ class _Reader:
             self.open[keyword] = block.line
         elif keyword.startswith("END "):
             self.open.pop(keyword.removeprefix("END "), None)
-        # reference points of an assembly have numbers of their own, which may be those of nodes of the part
+        # reference points of an assembly are numbered separately: their numbers may coincide with those of nodes of the part
         self.in_assembly = keyword in ("ASSEMBLY", "END INSTANCE") or (
             self.in_assembly and keyword not in ("END ASSEMBLY", "INSTANCE", "PART")
         )
@@ -101,17 +101,17 @@ class _Reader:
         return self.parts.mesh()
 
     def _once(self, block: Block) -> None:
-        """One part, standing where it was drawn."""
+        """Check that there is one part and one instance, and that the instance is not moved or rotated."""
         if block.keyword in self.seen:
             first = self.seen[block.keyword].number
             raise block.line.wrong(f"this is a second *{block.keyword}, after that in line {first}; the file must hold one body")
         self.seen[block.keyword] = block.line
-        moves = [line for line in block.data if any(real(field, line) for field in line.text.split(",") if field.strip())]
+        moves = [line for line in block.data if any(parse_real(field, line) for field in line.text.split(",") if field.strip())]
         if moves and block.keyword == "INSTANCE":
             raise moves[0].wrong("the instance is moved or turned, which is not read; it must stand where the part was drawn")
 
     def _selection(self, kind: str, name: str) -> Selection:
-        """Return the set of that name, whatever its case."""
+        """Return the set of a name, ignoring case."""
         sets = self.parts.node_sets if kind == "NSET" else self.parts.element_sets
         return sets[self.names.setdefault((kind, name.upper()), name)]
 
@@ -123,8 +123,8 @@ class _Reader:
             fields = line.text.split(",")
             if len(fields) < 4:
                 raise line.wrong("a node must have a number and three coordinates, with commas between them")
-            number = whole(fields[0], line, "the number of a node")
-            x, y, z = (real(text, line) if text.strip() else 0.0 for text in fields[1:4])
+            number = parse_integer(fields[0], line, "the number of a node")
+            x, y, z = (parse_real(text, line) if text.strip() else 0.0 for text in fields[1:4])
             self.parts.add_node(line, number, (x, y, z))
             chosen.numbers.add(number)
 
@@ -139,6 +139,7 @@ class _Reader:
                 )
             if not given:
                 raise block.line.wrong("*ELEMENT has no TYPE; it must say one, such as TYPE=C3D10")
+            # an element continues on the next line after a trailing comma, so that the other lines count the elements
             ends = sum(not line.text.rstrip().endswith(",") for line in block.data)
             self.parts.skipped[given] += max(ends, 1)
             return
@@ -146,13 +147,14 @@ class _Reader:
         name = block.parameters.get("ELSET")
         chosen = self._selection("ELSET", name) if name else Selection()
         wanted = 1 + len(ELEMENT_KINDS[kind].reference)
+        # the entries of an element are collected over its continuation lines
         numbers: list[int] = []
         for line in block.data:
             if not numbers:
                 first = line
             texts = line.text.split(",")
             goes_on = not texts[-1].strip()
-            numbers += [whole(text, line, "the number of an element or node") for text in (texts[:-1] if goes_on else texts)]
+            numbers += [parse_integer(text, line, "the number of an element or node") for text in (texts[:-1] if goes_on else texts)]
             if len(numbers) == wanted:
                 self.parts.add_element(first, kind, numbers[0], numbers[1:])
                 chosen.numbers.add(numbers[0])
@@ -178,14 +180,14 @@ class _Reader:
                 chosen.ranges.add(_range(texts, line))
                 continue
             for text in texts:
-                number = text.rpartition(".")[2]  # a set of the assembly may say instance.number
+                number = text.rpartition(".")[2]  # in a set of the assembly, members may be written instance.number
                 if number.isdigit():
-                    chosen.numbers.add(whole(number, line, "the number of a member"))
+                    chosen.numbers.add(parse_integer(number, line, "the number of a member"))
                 elif text not in included:
                     included.add(text)
                     self.parts.add_members(line, chosen, self._known(kind, text.strip('"'), line))
 
-    def _known(self, kind: str, name: str, line: Line) -> Selection:
+    def _known(self, kind: str, name: str, line: TextLine) -> Selection:
         exact = next((key for key in (name.upper(), name.rpartition(".")[2].upper()) if (kind, key) in self.names), None)
         if exact is None:
             suggestion = did_you_mean(name.upper(), [key for of, key in self.names if of == kind and len(key) < 100][:1000])
@@ -193,8 +195,8 @@ class _Reader:
         return self._selection(kind, exact)
 
 
-def _range(texts: list[str], line: Line) -> tuple[int, int, int]:
-    numbers = [whole(text, line, "the bound of a range") for text in texts]
+def _range(texts: list[str], line: TextLine) -> tuple[int, int, int]:
+    numbers = [parse_integer(text, line, "the bound of a range") for text in texts]
     first, last, step = [*numbers, 1][:3] if len(numbers) in (2, 3) else (1, 0, 1)
     if last < first or step < 1:
         raise line.wrong("GENERATE needs first, last and step; last must be at least first, and step at least 1")

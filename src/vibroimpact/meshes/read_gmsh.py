@@ -1,4 +1,4 @@
-"""Gmsh's mesh files (.msh, ASCII, versions 2, 4.0 and 4.1), read."""
+"""Reading of Gmsh mesh files (.msh, ASCII, versions 2, 4.0 and 4.1)."""
 
 from __future__ import annotations
 
@@ -7,29 +7,29 @@ from os import PathLike
 from pathlib import Path
 
 from vibroimpact.errors import InputError
-from vibroimpact.files.lines import MESH, Line, read_lines, real, whole
-from vibroimpact.files.reading import about, beginning
-from vibroimpact.meshes.gmsh_sections import Section, sections
+from vibroimpact.files.reading import beginning, with_path
+from vibroimpact.meshes.gmsh_sections import GmshSection, sections
 from vibroimpact.meshes.node_order import GMSH
 from vibroimpact.meshes.parsed_mesh import Parts
+from vibroimpact.meshes.text_files import MESH, TextLine, parse_integer, parse_real, read_lines
 from vibroimpact.shown import shown
 from vibroimpact.structures.element_kinds import ELEMENT_KINDS
 from vibroimpact.structures.mesh import Mesh
 
 _SOLIDS = {4: "tet4", 11: "tet10", 5: "hex8", 17: "hex20", 12: "hex27"}
 _PRISMS = {6: "prism", 13: "prism", 18: "prism", 7: "pyramid", 14: "pyramid", 19: "pyramid"}
-# the elements of points, lines and surfaces: their dimension and how many nodes they have
+# elements of points, lines and surfaces: dimension and number of nodes
 _SKINS = {15: (0, 1), 1: (1, 2), 8: (1, 3), 2: (2, 3), 9: (2, 6), 3: (2, 4), 16: (2, 8), 10: (2, 9)}
-_MOST_GROUPS = 100  # of an entity: each of its elements is put into all of them
+_MOST_GROUPS = 100  # per entity: each of its elements is added to all of them
 _BINARY = re.compile(rb"\s*\$MeshFormat\s+[\d.]+\s+1\s")
 _VERSIONS = re.compile(r"2(\.\d+)?|4(\.[01]0*)?")
 
 
 def read_gmsh(path: str | PathLike[str]) -> Mesh:
-    """Read the solid elements of a mesh file of Gmsh in ASCII, version 2, 4.0 or 4.1.
+    """Read the solid elements of an ASCII Gmsh mesh file, version 2, 4.0 or 4.1.
 
-    Physical groups of points, lines and surfaces become sets of nodes, those of volumes sets of elements; a group n
-    without a name is called `group<n>`.
+    Physical groups of points, lines and surfaces become node sets, those of volumes element sets; an unnamed group n is called
+    `group<n>`.
 
     Parameters
     ----------
@@ -39,7 +39,7 @@ def read_gmsh(path: str | PathLike[str]) -> Mesh:
     Raises
     ------
     InputError
-        If it is not such a file, is binary, or has prisms, pyramids or elements above the second order.
+        If it is not such a file, is binary, or has prisms, pyramids or elements of higher than second order.
 
     Examples
     --------
@@ -57,7 +57,7 @@ def read_gmsh(path: str | PathLike[str]) -> Mesh:
     try:
         start = beginning(path, MESH, 200)
     except InputError as error:
-        raise about(path, error) from None
+        raise with_path(path, error) from None
     if _BINARY.match(start):
         raise InputError(f"{path}: this is a binary file; save the mesh as ASCII (in Gmsh the option Mesh.Binary = 0)")
     reader = _Reader(path)
@@ -67,6 +67,8 @@ def read_gmsh(path: str | PathLike[str]) -> Mesh:
 
 
 class _Reader:
+    """Parser of the sections of a file into `Parts`."""
+
     def __init__(self, path: Path) -> None:
         self.parts = Parts(path, GMSH)
         self.version = ""
@@ -74,7 +76,7 @@ class _Reader:
         self.groups: dict[tuple[int, int], list[int]] = {}
         self.known: dict[tuple[int, ...], int] = {}
 
-    def read(self, found: dict[str, Section]) -> None:
+    def read(self, found: dict[str, GmshSection]) -> None:
         for wanted in ("MeshFormat", "Nodes", "Elements"):
             if wanted not in found:
                 raise InputError(
@@ -104,37 +106,37 @@ class _Reader:
     def is_40(self) -> bool:
         return self.version.startswith("4") and not self.version.startswith("4.1")
 
-    def _names(self, section: Section) -> None:
+    def _names(self, section: GmshSection) -> None:
         section.words(1)
         while section.has_more:
             line, words = section.words(3)
             name = " ".join(words[2:]).strip('"')
-            dimension, tag = (whole(word, line, "the dimension or number of a group") for word in words[:2])
+            dimension, tag = (parse_integer(word, line, "the dimension or number of a group") for word in words[:2])
             self.names[dimension, tag] = name or f"group{tag}"
 
-    def _entities(self, section: Section) -> None:
-        """Note which physical groups a point, line, surface or volume belongs to."""
+    def _entities(self, section: GmshSection) -> None:
+        """Record the physical groups of each point, line, surface and volume."""
         first, counts = section.words(4)
         for dimension, word in enumerate(counts[:4]):
             box = 3 if dimension == 0 and not self.is_40 else 6
-            for line, entity in section.take(whole(word, first, "the number of entities"), 2 + box):
-                count = whole(entity[1 + box], line, "the number of groups")
+            for line, entity in section.take(parse_integer(word, first, "the number of entities"), 2 + box):
+                count = parse_integer(entity[1 + box], line, "the number of groups")
                 if count > _MOST_GROUPS:
                     raise line.wrong(f"the entity belongs to {count} groups; it may belong to {_MOST_GROUPS}")
-                tags = [whole(tag.lstrip("-"), line, "the number of a group") for tag in entity[2 + box : 2 + box + count]]
-                self.groups[dimension, whole(entity[0], line, "the number of an entity")] = tags
+                tags = [parse_integer(tag.lstrip("-"), line, "the number of a group") for tag in entity[2 + box : 2 + box + count]]
+                self.groups[dimension, parse_integer(entity[0], line, "the number of an entity")] = tags
 
-    def _nodes_2(self, section: Section) -> None:
+    def _nodes_2(self, section: GmshSection) -> None:
         first, counts = section.words(1)
-        for line, words in section.take(whole(counts[0], first, "the number of nodes"), 4):
+        for line, words in section.take(parse_integer(counts[0], first, "the number of nodes"), 4):
             self._node(line, words[0], words[1:])
 
-    def _nodes_4(self, section: Section) -> None:
+    def _nodes_4(self, section: GmshSection) -> None:
         line, words = section.words(2)
-        left = whole(words[1], line, "the number of nodes")
+        left = parse_integer(words[1], line, "the number of nodes")
         while section.has_more:
             line, words = section.words(4)
-            count = whole(words[3], line, "the number of nodes")
+            count = parse_integer(words[3], line, "the number of nodes")
             left -= count
             if self.is_40:
                 for line, words in section.take(count, 4):
@@ -146,23 +148,27 @@ class _Reader:
         if left:
             raise section.line.wrong("$Nodes holds another number of nodes than it says; the two must agree")
 
-    def _node(self, line: Line, number: str, point: list[str]) -> None:
+    def _node(self, line: TextLine, number: str, point: list[str]) -> None:
         x, y, z = point[:3]
-        self.parts.add_node(line, whole(number, line, "the number of a node"), (real(x, line), real(y, line), real(z, line)))
+        self.parts.add_node(
+            line, parse_integer(number, line, "the number of a node"), (parse_real(x, line), parse_real(y, line), parse_real(z, line))
+        )
 
-    def _elements_2(self, section: Section) -> None:
+    def _elements_2(self, section: GmshSection) -> None:
         first, counts = section.words(1)
-        for line, words in section.take(whole(counts[0], first, "the number of elements"), 4):
-            count = whole(words[2], line, "the number of tags")
-            tags = [whole(word.lstrip("-"), line, "a tag") for word in words[3 : 3 + count]]
-            self._element(line, whole(words[1], line, "a type of element"), words[0], words[3 + count :], tags[:1])
+        for line, words in section.take(parse_integer(counts[0], first, "the number of elements"), 4):
+            count = parse_integer(words[2], line, "the number of tags")
+            tags = [parse_integer(word.lstrip("-"), line, "a tag") for word in words[3 : 3 + count]]
+            self._element(line, parse_integer(words[1], line, "a type of element"), words[0], words[3 + count :], tags[:1])
 
-    def _elements_4(self, section: Section) -> None:
+    def _elements_4(self, section: GmshSection) -> None:
         line, words = section.words(2)
-        left = whole(words[1], line, "the number of elements")
+        left = parse_integer(words[1], line, "the number of elements")
         while section.has_more:
             line, words = section.words(4)
-            dimension, entity, kind, count = (whole(word, line, "the dimension, entity, type or number of elements") for word in words[:4])
+            dimension, entity, kind, count = (
+                parse_integer(word, line, "the dimension, entity, type or number of elements") for word in words[:4]
+            )
             left -= count
             tags = self.groups.get((entity, dimension) if self.is_40 else (dimension, entity), [])
             for line, words in section.take(count, 2):
@@ -170,7 +176,7 @@ class _Reader:
         if left:
             raise section.line.wrong("$Elements holds another number of elements than it says; the two must agree")
 
-    def _element(self, line: Line, gmsh_type: int, number: str, words: list[str], tags: list[int]) -> None:
+    def _element(self, line: TextLine, gmsh_type: int, number: str, words: list[str], tags: list[int]) -> None:
         if gmsh_type not in _SOLIDS and gmsh_type not in _SKINS:
             what = f"is a {_PRISMS[gmsh_type]}" if gmsh_type in _PRISMS else f"is of type {gmsh_type}"
             raise line.wrong(f"the element {what}, which is not read; the solids must be tetrahedra or bricks of first or second order")
@@ -178,14 +184,14 @@ class _Reader:
         dimension, count = (3, len(ELEMENT_KINDS[solid].reference)) if solid else _SKINS[gmsh_type]
         if len(words) != count:
             raise line.wrong(f"the element has {len(words)} nodes; its type {gmsh_type} must have {count}")
-        nodes = [whole(word, line, "the number of a node") for word in words]
+        nodes = [parse_integer(word, line, "the number of a node") for word in words]
         names = [self.names.get((dimension, tag), f"group{tag}") for tag in tags if tag]
         if not solid:
             for name in names:
                 self.parts.node_sets[name].numbers.update(nodes)
             return
-        element = whole(number, line, "the number of an element")
-        # version 2 writes an element of several groups several times, under several numbers
+        element = parse_integer(number, line, "the number of an element")
+        # version 2 repeats an element of several groups under several numbers
         again = self.known.setdefault(tuple(nodes), element) if self.version.startswith("2") else element
         for name in names:
             self.parts.element_sets[name].numbers.add(again)

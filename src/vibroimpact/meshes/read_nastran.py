@@ -1,4 +1,4 @@
-"""Nastran bulk data, read."""
+"""Reading of Nastran bulk data."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ from os import PathLike
 from pathlib import Path
 
 from vibroimpact.errors import InputError
-from vibroimpact.files.lines import Line, lines_with_includes, whole
-from vibroimpact.meshes.nastran_cards import Card, cards, included_file, nastran_real
+from vibroimpact.meshes.nastran_cards import Card, cards, nastran_include, nastran_real
 from vibroimpact.meshes.node_order import NASTRAN
 from vibroimpact.meshes.parsed_mesh import Parts, Selection
+from vibroimpact.meshes.text_files import TextLine, parse_integer, read_lines_with_includes
 from vibroimpact.shown import shown
 from vibroimpact.structures.mesh import Mesh
 
@@ -25,19 +25,19 @@ _SET_NAME = re.compile(r"\$ node set (\d{1,18}): (\S.*)")
 def read_nastran(path: str | PathLike[str]) -> Mesh:
     """Read the solid elements of a Nastran file (bulk data, with or without executive and case control).
 
-    CTETRA, CHEXA and their GRIDs make the mesh. The elements of property n are the set `PIDn`, the nodes of SPC1 cards the
-    set `SPCn`, and those of `SET n` in case control the set `SETn`, or as a comment "$ node set n: name" calls it. Other
-    cards are counted in `Mesh.skipped`.
+    The mesh consists of CTETRA, CHEXA and GRID cards. The elements of property n form the set `PIDn`, the nodes of SPC1 cards the set
+    `SPCn`, and those of `SET n` in case control the set `SETn`, or the name in a comment "$ node set n: name". Other cards are
+    counted in `Mesh.skipped`.
 
     Parameters
     ----------
     path : path
-        The file; what it includes is read too.
+        The file; included files are read too.
 
     Raises
     ------
     InputError
-        If it is not such a file, or has solid elements that are not read.
+        If it is not such a file, or has unsupported solid elements.
 
     Examples
     --------
@@ -52,7 +52,7 @@ def read_nastran(path: str | PathLike[str]) -> Mesh:
     """
     path = Path(path)
     parts = Parts(path, NASTRAN)
-    lines = list(lines_with_includes(path, included_file))
+    lines = list(read_lines_with_includes(path, nastran_include))
     begin = next((index for index, line in enumerate(lines) if _BEGIN.match(line.text)), None)
     if begin is not None:
         _check_begin(lines[begin])
@@ -68,7 +68,7 @@ def read_nastran(path: str | PathLike[str]) -> Mesh:
     return parts.mesh()
 
 
-def _check_begin(line: Line) -> None:
+def _check_begin(line: TextLine) -> None:
     section = _BEGIN.match(line.text)
     if section and section[1].upper() not in ("", "BULK"):
         raise line.wrong(f'"BEGIN {section[1]}" is not read; the mesh must stand after BEGIN BULK')
@@ -79,7 +79,7 @@ def _read_card(card: Card, parts: Parts) -> None:
     if name == "GRID":
         if fields[1] not in ("", "0"):
             raise line.wrong(f"the GRID is in coordinate system {shown(fields[1])}; only the basic one (0 or blank) is read")
-        number = whole(fields[0], line, "the number of a node")
+        number = parse_integer(fields[0], line, "the number of a node")
         if len(fields) < 5:
             raise line.wrong(f"GRID* {number} has two coordinates; the third must stand in a second line, which starts with *")
         x, y, z = fields[2:5]
@@ -94,7 +94,7 @@ def _read_card(card: Card, parts: Parts) -> None:
         chosen = _selection([field for field in fields[2:] if field])
         if chosen is None:
             raise line.wrong("the nodes of SPC1 can't be read; they must be numbers, or a number, THRU and a number")
-        parts.node_sets[f"SPC{whole(fields[0], line, 'the number of a set')}"].update(chosen)
+        parts.node_sets[f"SPC{parse_integer(fields[0], line, 'the number of a set')}"].update(chosen)
     else:
         if name == "GRDSET" and fields[1] not in ("", "0"):
             raise line.wrong(f"GRDSET puts nodes in coordinate system {shown(fields[1])}; only the basic one (0 or blank) is read")
@@ -103,8 +103,8 @@ def _read_card(card: Card, parts: Parts) -> None:
 
 def _read_solid(card: Card, parts: Parts) -> None:
     line, name, fields = card
-    number = whole(fields[0], line, "the number of an element")
-    nodes = [whole(field, line, "the number of a node") if field else 0 for field in fields[2:]]
+    number = parse_integer(fields[0], line, "the number of an element")
+    nodes = [parse_integer(field, line, "the number of a node") if field else 0 for field in fields[2:]]
     while nodes and nodes[-1] == 0:
         nodes.pop()
     kinds = _KINDS[name]
@@ -112,12 +112,12 @@ def _read_solid(card: Card, parts: Parts) -> None:
         takes = " or ".join(map(str, kinds))
         raise line.wrong(f"{name} {number} has {len(nodes) - nodes.count(0)} nodes; it must have {takes}, with none left blank")
     parts.add_element(line, kinds[len(nodes)], number, nodes)
-    pid = whole(fields[1], line, "the number of a property") if fields[1] else number
+    pid = parse_integer(fields[1], line, "the number of a property") if fields[1] else number
     parts.element_sets[f"PID{pid}"].numbers.add(number)
 
 
-def _read_sets(lines: Iterable[Line], parts: Parts) -> None:
-    """Read the sets of case control; those that are not plain lists of numbers are counted as skipped."""
+def _read_sets(lines: Iterable[TextLine], parts: Parts) -> None:
+    """Read the sets of case control; sets that are not lists of numbers and ranges are counted as skipped."""
     names: dict[str, str] = {}
     listed: dict[str, list[str]] = {}
     open_set = ""
@@ -140,7 +140,7 @@ def _read_sets(lines: Iterable[Line], parts: Parts) -> None:
 
 
 def _selection(words: Sequence[str]) -> Selection | None:
-    """Return what a list such as "1 5 THRU 10" selects; None if there is anything else in it."""
+    """Return the selection of a list such as "1 5 THRU 10"; None if the list has other entries."""
     found = Selection()
     words = [word.upper() for word in words]
     numbers = [int(word) if word.isascii() and word.isdigit() and len(word) <= 18 else -1 for word in words]

@@ -1,4 +1,4 @@
-"""A mesh that moves, as ParaView opens it: a file of VTK (.vtu) for each time, and one (.pvd) that names them all."""
+"""Time series of a mesh for ParaView: a .vtu file for each time, and a .pvd file that lists them."""
 
 from __future__ import annotations
 
@@ -11,34 +11,34 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from vibroimpact.errors import InputError
-from vibroimpact.meshes.exported import write_text
+from vibroimpact.meshes.text_files import write_text_file
 from vibroimpact.meshes.write_vtu import cells_of, checked_values, vtu_text
 from vibroimpact.structures.mesh import Mesh
 
 
 def write_vtu_series(mesh: Mesh, path: str | PathLike[str], times: ArrayLike, point_data: Iterable[Mapping[str, ArrayLike]]) -> list[Path]:
-    """Write values at the nodes of a mesh over time, in single precision.
+    """Write nodal values of a mesh over time, in single precision.
 
     Parameters
     ----------
     mesh : Mesh
-        What moves.
+        The mesh.
     path : path
-        The .pvd file to open in ParaView; the others lie beside it, in a folder of its name.
+        The .pvd file to open in ParaView; the .vtu files are written to a folder of the same name next to it.
     times : array_like
-        [s].
+        Times [s].
     point_data : iterable of mapping of str to array
-        For each time, values at all nodes by name, of shape (nodes,) or (nodes, 3).
+        For each time, nodal values by name, of shape (nodes,) or (nodes, 3).
 
     Returns
     -------
     list of pathlib.Path
-        The files of each time.
+        The .vtu files, one for each time.
 
     Raises
     ------
     InputError
-        If there are not as many values as times, values have another shape, or a file can't be written.
+        If the numbers of values and times differ, values have a wrong shape, or a file can't be written.
 
     Examples
     --------
@@ -62,21 +62,21 @@ def write_vtu_series(mesh: Mesh, path: str | PathLike[str], times: ArrayLike, po
     for number, values in zip(range(len(instants)), data, strict=False):
         single = {name: checked_values(name, given, len(points)).astype(np.float32) for name, given in values.items()}
         files.append(target.parent / target.stem / f"{target.stem}_{number:03d}.vtu")
-        write_text(files[-1], vtu_text(points, *cells, single))
+        write_text_file(files[-1], vtu_text(points, *cells, single))
     if len(files) < len(instants) or next(data, None) is not None:
         raise InputError(f"there must be values for each of the {len(instants)} times, and no more", "point_data")
-    write_text(target, collection_text(instants.tolist(), [f"{target.stem}/{file.name}" for file in files]))
+    write_text_file(target, collection_text(instants.tolist(), [f"{target.stem}/{file.name}" for file in files]))
     return files
 
 
 def collection_text(times: Iterable[float], files: Iterable[str]) -> str:
-    """Return the .pvd file that names a file for each time [s]."""
+    """Return the content of a .pvd file that lists a file for each time [s]."""
     rows = [f'<DataSet timestep="{time!r}" part="0" file={quoteattr(file)}/>' for time, file in zip(times, files, strict=True)]
     head = '<?xml version="1.0"?>\n<VTKFile type="Collection" version="0.1" byte_order="LittleEndian">\n<Collection>'
     return "\n".join([head, *rows, "</Collection>", "</VTKFile>", ""])
 
 
 def series_size(mesh: Mesh, vectors: int) -> int:
-    """Return about how many bytes a file of one time takes, with so many vectors at the nodes."""
+    """Return the approximate size of the file of one time [bytes], with a given number of nodal vectors."""
     nodes, ends, _ = cells_of(mesh)
     return int((4 * len(nodes) + 5 * len(ends) + 12 * (1 + vectors) * len(mesh.nodes)) * 4 / 3) + 2000

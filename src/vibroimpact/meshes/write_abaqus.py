@@ -1,4 +1,4 @@
-"""Abaqus input files, written."""
+"""Writing of Abaqus input files."""
 
 from __future__ import annotations
 
@@ -7,29 +7,30 @@ from os import PathLike
 
 from vibroimpact.files.plain_names import one_line
 from vibroimpact.materials import Material
-from vibroimpact.meshes.exported import check_elastic, check_thickness, exported, write_text
+from vibroimpact.meshes.deck_mesh import check_deck_material, check_shell_thickness, deck_mesh
+from vibroimpact.meshes.text_files import write_text_file
 from vibroimpact.structures.mesh import Mesh
 
 _TYPES = {"tet4": "C3D4", "tet10": "C3D10", "hex8": "C3D8", "hex20": "C3D20", "quad8": "S8R"}
 _A_LINE = 16
-"""How many numbers a line may hold."""
+"""Largest number of entries on a line."""
 
 
 def write_abaqus(mesh: Mesh, path: str | PathLike[str], material: Material | None = None, thickness: float | None = None) -> None:
     """Write a mesh with its sets as an Abaqus input file in metres, kilograms and seconds.
 
-    Bricks of 27 nodes become C3D20, which other programs read too; each plate element becomes four S8R.
+    27-node bricks become C3D20, which other programs read too; each plate element becomes four S8R.
 
     Parameters
     ----------
     mesh : Mesh
-        What to write.
+        The mesh.
     path : path
-        The file; one that is there is replaced.
+        The file; an existing one is replaced.
     material : Material, optional
-        Written with the sections that use it.
+        Material, written with the section definitions that use it.
     thickness : float, optional
-        Thickness of the shells [m]; without it their section is left out.
+        Thickness of the shells [m]; without it the shell section is omitted.
 
     Raises
     ------
@@ -48,15 +49,16 @@ def write_abaqus(mesh: Mesh, path: str | PathLike[str], material: Material | Non
     ...     print(Path(folder, "tet.inp").read_text().splitlines()[-1])
     1, 4, 1, 2, 3
     """
-    export = exported(mesh)
-    check_thickness(thickness)
+    export = deck_mesh(mesh)
+    check_shell_thickness(thickness)
     rows = ["*NODE"]
     rows += [f"{number}, {x!r}, {y!r}, {z!r}" for number, (x, y, z) in enumerate(export.points.tolist(), 1)]
     number = 0
-    made_of: dict[str, list[tuple[int, int]]] = {"SOLIDS": [], "SHELLS": []}
+    # element numbers of solids and shells, whose sections need element sets
+    section_ranges: dict[str, list[tuple[int, int]]] = {"SOLIDS": [], "SHELLS": []}
     for shape, nodes in export.blocks:
         rows.append(f"*ELEMENT, TYPE={_TYPES[shape]}")
-        made_of["SHELLS" if shape == "quad8" else "SOLIDS"].append((number + 1, number + len(nodes)))
+        section_ranges["SHELLS" if shape == "quad8" else "SOLIDS"].append((number + 1, number + len(nodes)))
         for members in nodes.tolist():
             number += 1
             rows += _rows([number, *members])
@@ -64,7 +66,7 @@ def write_abaqus(mesh: Mesh, path: str | PathLike[str], material: Material | Non
         for name, members in sets.items():
             rows += [f"*{keyword}, {keyword}={_quoted(name)}", *_rows(members.tolist())]
     if material is not None:
-        check_elastic(material)
+        check_deck_material(material)
         name = _quoted(material.name or "material")
         rows += [
             f"*MATERIAL, NAME={name}",
@@ -74,10 +76,10 @@ def write_abaqus(mesh: Mesh, path: str | PathLike[str], material: Material | Non
             f"{float(material.youngs_modulus)!r}, {float(material.poissons_ratio)!r}",
         ]
         for part, data in (("SOLIDS", ""), ("SHELLS", None if thickness is None else repr(float(thickness)))):
-            if made_of[part] and data is not None:
-                rows += [f"*ELSET, ELSET={part}, GENERATE", *(f"{first}, {last}, 1" for first, last in made_of[part])]
+            if section_ranges[part] and data is not None:
+                rows += [f"*ELSET, ELSET={part}, GENERATE", *(f"{first}, {last}, 1" for first, last in section_ranges[part])]
                 rows += [f"*{part[:-1]} SECTION, ELSET={part}, MATERIAL={name}", *([data] if data else [])]
-    write_text(path, "\n".join([*rows, ""]))
+    write_text_file(path, "\n".join([*rows, ""]))
 
 
 def _rows(numbers: Sequence[int]) -> Iterator[str]:
@@ -87,7 +89,7 @@ def _rows(numbers: Sequence[int]) -> Iterator[str]:
 
 
 def _quoted(name: str) -> str:
-    """Return a name as a label: in quotes if it is not a plain word."""
-    label = one_line(name.replace('"', "'"))  # as long as Abaqus takes it
+    """Return a name as an Abaqus label, quoted unless it consists of letters, digits, "_" and "-" only."""
+    label = one_line(name.replace('"', "'"))  # at most 80 characters, the limit of Abaqus
     plain = label.isascii() and label.replace("_", "").replace("-", "").isalnum() and label[0].isalpha()
     return label if plain else f'"{label}"'

@@ -1,4 +1,4 @@
-"""Nastran bulk data, written."""
+"""Writing of Nastran bulk data."""
 
 from __future__ import annotations
 
@@ -10,8 +10,9 @@ import numpy as np
 from vibroimpact.arrays import Integers
 from vibroimpact.files.plain_names import one_line
 from vibroimpact.materials import Material
-from vibroimpact.meshes.exported import check_elastic, check_thickness, exported, write_text
+from vibroimpact.meshes.deck_mesh import check_deck_material, check_shell_thickness, deck_mesh
 from vibroimpact.meshes.node_order import NASTRAN, from_ours
+from vibroimpact.meshes.text_files import write_text_file
 from vibroimpact.structures.mesh import Mesh
 
 _CARDS = {"tet4": "CTETRA", "tet10": "CTETRA", "hex8": "CHEXA", "hex20": "CHEXA", "quad8": "CQUAD8"}
@@ -23,17 +24,17 @@ def write_nastran(
 ) -> None:
     """Write a mesh as Nastran bulk data in metres, kilograms and seconds.
 
-    Bricks of 27 nodes become CHEXA of 20, each plate element four CQUAD8. Solids have property 1, shells property 2. Sets of
-    nodes become SETs of case control, named in comments; sets of elements are left out.
+    27-node bricks become 20-node CHEXA, each plate element four CQUAD8. Solids have property 1, shells property 2. Node sets become
+    SETs of case control, named in comments; element sets are omitted.
 
     Parameters
     ----------
     mesh : Mesh
-        What to write.
+        The mesh.
     path : path
-        The file; one that is there is replaced.
+        The file; an existing one is replaced.
     material : Material, optional
-        Written as MAT1, with PSOLID.
+        Material, written as MAT1, with PSOLID.
     title : str, optional
         The title of the analysis.
     thickness : float, optional
@@ -55,8 +56,8 @@ def write_nastran(
     ...     print(Path(folder, "tet.bdf").read_text().splitlines()[-2])
     CTETRA         1       1       4       1       2       3
     """
-    export = exported(mesh)
-    check_thickness(thickness)
+    export = deck_mesh(mesh)
+    check_shell_thickness(thickness)
     rows = ["CEND"]
     if title:
         rows.append(f"TITLE = {_one_line(title)[:60]}")
@@ -64,7 +65,7 @@ def write_nastran(
         rows += [f"$ node set {number}: {_one_line(name)}", *_set(number, nodes)]
     rows.append("BEGIN BULK")
     if material is not None:
-        check_elastic(material)
+        check_deck_material(material)
         youngs, poisson, density = (nastran_number(value) for value in (material.youngs_modulus, material.poissons_ratio, material.density))
         rows += [f"MAT1*   {1:16d}{youngs:>16}{'':16}{poisson:>16}", f"*       {density:>16}"]
     shapes = {shape for shape, _ in export.blocks}
@@ -82,18 +83,18 @@ def write_nastran(
         for members in theirs.tolist():
             number += 1
             rows += _card(card, [number, pid, *members])
-    write_text(path, "\n".join([*rows, "ENDDATA", ""]))
+    write_text_file(path, "\n".join([*rows, "ENDDATA", ""]))
 
 
 def nastran_number(value: float) -> str:
-    """Return a number with a point in at most 16 characters, with as many digits as fit: 12 or more.
+    """Return a number with a decimal point in at most 16 characters, with as many digits as fit.
 
     Examples
     --------
     >>> nastran_number(0.1), nastran_number(-1 / 3), nastran_number(-1.2345678901234567e-12), nastran_number(2e11)
     ('.1', '-.33333333333333', '-1.2345678901-12', '200000000000.')
     """
-    # the shortest text that means the same number comes first: 0.1 rather than 0.10000000000000001
+    # try the shortest text that gives the same number first: 0.1 rather than 0.10000000000000001
     form = "e" if abs(value) < 1e-3 else "g"
     for text in (repr(value), *(f"{value:.{digits}{form}}" for digits in range(15, 8, -1))):
         mantissa, _, exponent = text.partition("e")
@@ -116,7 +117,7 @@ def _card(name: str, numbers: Sequence[int]) -> Iterator[str]:
 
 
 def _set(number: int, nodes: Integers) -> Iterator[str]:
-    """Yield the lines of a set of case control, with ranges where numbers follow each other."""
+    """Yield the lines of a SET of case control; runs of consecutive numbers are written as ranges (THRU)."""
     runs = np.split(nodes, np.flatnonzero(np.diff(nodes) != 1) + 1)
     items = [f"{run[0]} THRU {run[-1]}" if len(run) > 2 else ", ".join(map(str, run)) for run in runs]
     for start in range(0, len(items), 3):

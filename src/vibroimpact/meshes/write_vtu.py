@@ -1,4 +1,4 @@
-"""VTK's files of unstructured grids (.vtu), written; ParaView opens them."""
+"""Writing of VTK unstructured grids (.vtu), for ParaView."""
 
 from __future__ import annotations
 
@@ -12,7 +12,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from vibroimpact.arrays import Floats, Integers
 from vibroimpact.errors import InputError
-from vibroimpact.meshes.exported import nine_node_shells, write_text
+from vibroimpact.meshes.deck_mesh import nine_node_shells
+from vibroimpact.meshes.text_files import write_text_file
 from vibroimpact.structures.mesh import Mesh
 
 _CELLS = {"tet4": 10, "tet10": 24, "hex8": 12, "hex20": 25, "hex27": 29, "quad25": 28}
@@ -20,23 +21,23 @@ _TYPES = {"float64": "Float64", "float32": "Float32", "int64": "Int64", "int32":
 
 
 def write_vtu(mesh: Mesh, path: str | PathLike[str], point_data: Mapping[str, ArrayLike] | None = None) -> None:
-    """Write a mesh, and values at its nodes, as a file that ParaView opens.
+    """Write a mesh, and values at its nodes, as a VTK unstructured grid (.vtu), which ParaView opens.
 
     Each plate element becomes four biquadratic quadrilaterals.
 
     Parameters
     ----------
     mesh : Mesh
-        What to write.
+        The mesh.
     path : path
-        The file; one that is there is replaced.
+        The file; an existing one is replaced.
     point_data : mapping of str to array, optional
         Values at all nodes by name, of shape (nodes,) or (nodes, 3).
 
     Raises
     ------
     InputError
-        If values have another shape, or the file can't be written.
+        If values have a wrong shape, or the file can't be written.
 
     Examples
     --------
@@ -50,11 +51,11 @@ def write_vtu(mesh: Mesh, path: str | PathLike[str], point_data: Mapping[str, Ar
     True
     """
     values = {name: checked_values(name, data, len(mesh.nodes)) for name, data in (point_data or {}).items()}
-    write_text(path, vtu_text(np.asarray(mesh.nodes, dtype=float), *cells_of(mesh), values))
+    write_text_file(path, vtu_text(np.asarray(mesh.nodes, dtype=float), *cells_of(mesh), values))
 
 
 def cells_of(mesh: Mesh) -> tuple[Integers, Integers, NDArray[np.uint8]]:
-    """Return the cells of a mesh as VTK has them: their nodes one after another, where each ends, and of which type they are."""
+    """Return the cells of a mesh as VTK arrays: connectivity, offsets and cell types."""
     cells: list[tuple[int, Integers]] = [
         (_CELLS[block.kind], nine_node_shells(block.connectivity) if block.kind == "quad25" else block.connectivity)
         for block in mesh.blocks
@@ -72,7 +73,7 @@ def vtu_text(
     types: NDArray[np.uint8],
     point_data: Mapping[str, NDArray[np.floating]],
 ) -> str:
-    """Return a whole file; each array is written in the precision that it has."""
+    """Return the content of a .vtu file; each array is written with its own precision."""
     rows = [
         '<?xml version="1.0"?>',
         '<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian" header_type="UInt64">',
@@ -98,12 +99,12 @@ def vtu_text(
 
 
 def checked_values(name: str, data: ArrayLike, nodes: int) -> Floats:
-    """Return values at all nodes.
+    """Return nodal values as an array of floats.
 
     Raises
     ------
     InputError
-        If they are no real numbers, or have another shape than (nodes,) or (nodes, 3).
+        If they are not real numbers, or their shape is neither (nodes,) nor (nodes, 3).
     """
     try:
         values = np.asarray(data)
@@ -118,7 +119,7 @@ def checked_values(name: str, data: ArrayLike, nodes: int) -> Floats:
 
 
 def _array(name: str, values: NDArray[np.generic]) -> str:
-    """Return an array as VTK wants it: how many bytes there are, then the bytes, both in base64."""
+    """Return an array as a VTK DataArray element: number of bytes and bytes, both in base64."""
     raw = values.astype(values.dtype.newbyteorder("<")).tobytes()
     text = base64.b64encode(len(raw).to_bytes(8, "little") + raw).decode("ascii")
     label = quoteattr("".join(letter for letter in name if letter.isprintable()))

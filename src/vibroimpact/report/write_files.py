@@ -6,7 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from vibroimpact.errors import InputError
-from vibroimpact.files.write_into_folder import write_into
+from vibroimpact.files.atomic_write import write_into
 
 
 def write_beside(folder: Path, write: Callable[[Path], None], goes: tuple[str, ...] = ()) -> None:

@@ -18,11 +18,11 @@ import tomli_w
 
 from vibroimpact.dynamics.columns import IMPACT_COLUMNS, history_columns, impact_columns
 from vibroimpact.errors import InputError
+from vibroimpact.files.atomic_write import atomic_folder
 from vibroimpact.files.check_sums import CHECK_SUMS, DamageError, check_file, file_digest, read_sealed, sealed
 from vibroimpact.files.damaged_part import check_hdf5
-from vibroimpact.files.hdf5 import why
+from vibroimpact.files.hdf5 import short_reason
 from vibroimpact.files.recover import recover
-from vibroimpact.files.write_folder import whole_folder
 from vibroimpact.results.netcdf import read_groups, write_groups
 from vibroimpact.results.result import Result
 from vibroimpact.results.signal_csv import write_signal_files
@@ -67,7 +67,7 @@ def new_folder(directory: str | PathLike[str], *, force: bool = False) -> Iterat
     with ExitStack() as stack:
         try:
             target.parent.mkdir(parents=True, exist_ok=True)
-            working = stack.enter_context(whole_folder(target, partial(check_free, target, force=force)))
+            working = stack.enter_context(atomic_folder(target, partial(check_free, target, force=force)))
         except OSError as error:
             raise InputError(f"{target}: the folder can't be made: {error.strerror}") from None
         yield working
@@ -179,7 +179,7 @@ def _result(case: Mapping[str, Any], summary: Mapping[str, Any], groups: Mapping
 def _why(error: Exception) -> str:
     if isinstance(error, KeyError):
         return f"it has no {error.args[0]}" if error.args and not str(error.args[0]).startswith("no ") else str(error.args[0])
-    return why(error)
+    return short_reason(error)
 
 
 def _anew(folder: Path, name: str) -> str:

@@ -17,8 +17,8 @@ import numpy as np
 
 from vibroimpact._version import __version__
 from vibroimpact.errors import InputError
+from vibroimpact.files.atomic_write import write_file
 from vibroimpact.files.recover import clear
-from vibroimpact.files.write_file import write_file
 from vibroimpact.structures.geometry import MassProperties
 from vibroimpact.structures.mesh import ElementBlock, Mesh
 from vibroimpact.structures.modal_model import ModalModel

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vibroimpact.errors import ComputationError
-from vibroimpact.files.write_file import write_file
+from vibroimpact.files.atomic_write import write_file
 from vibroimpact.studies.ledger import Span
 
 FOLDER, CHUNK = "chunks", ".h5"

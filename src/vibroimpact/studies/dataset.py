@@ -16,9 +16,9 @@ from numpy.typing import NDArray
 from vibroimpact._version import __version__
 from vibroimpact.cases.limit import limits
 from vibroimpact.dynamics.outcome import OUTCOMES, Outcome
+from vibroimpact.files.atomic_write import atomic_file, write_file
 from vibroimpact.files.check_sums import CHECK_SUMS, file_digest, read_sealed, sealed
 from vibroimpact.files.hdf5 import CHECKED, chunk_shape, new_array, new_hdf5
-from vibroimpact.files.write_file import new_file, write_file
 from vibroimpact.results.folder import SUMMARY
 from vibroimpact.studies.chunk_file import chunk_layout, read_chunk
 from vibroimpact.studies.columns import DOUBTS, LIMIT, OUTCOME, SIGNAL
@@ -75,7 +75,7 @@ def write_dataset(
         for variable, ((_, *wide), dtype) in chunk_layout(folder, chunk.number).items():
             before = layout.get(variable, (wide, dtype))[0]
             layout[variable] = (tuple(map(max, before, wide)), dtype)
-    with new_file(folder / DATASET) as working:  # last: once it is there, all is
+    with atomic_file(folder / DATASET) as working:  # last: once it is there, all is
         columns = sum(values.nbytes for values in plan.columns.values()) + 8 * plan.size
         _see_that_there_is_room(working, columns + plan.size * sum(prod(wide) * dtype.itemsize for wide, dtype in layout.values()))
         with new_hdf5(working) as file:

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from vibroimpact.errors import ComputationError, InputError
-from vibroimpact.files.write_file import new_file
+from vibroimpact.files.atomic_write import atomic_file
 
 LEDGER = "ledger.sqlite"
 
@@ -69,7 +69,7 @@ class Ledger:
 
 def make_ledger(folder: Path, facts: Mapping[str, str], size: int, chunk: int) -> None:
     """Make, whole or not at all, the ledger of a study of `size` points in chunks of `chunk`, none of them done."""
-    with _told(folder / LEDGER), new_file(folder / LEDGER) as working, closing(sqlite3.connect(working)) as connection:
+    with _told(folder / LEDGER), atomic_file(folder / LEDGER) as working, closing(sqlite3.connect(working)) as connection:
         connection.execute("PRAGMA journal_mode = MEMORY")  # it is whole or not at all, and nothing is beside it
         with connection:
             connection.executescript(_SCHEMA)

@@ -20,9 +20,9 @@ from vibroimpact.arrays import Floats
 from vibroimpact.errors import InputError
 from vibroimpact.files.check_sums import CHECK_SUMS, DamageError, read_sealed
 from vibroimpact.files.damaged_part import check_hdf5
-from vibroimpact.files.hdf5 import read_array, why
-from vibroimpact.files.leftovers import remove
+from vibroimpact.files.hdf5 import read_array, short_reason
 from vibroimpact.files.recover import clear, recover
+from vibroimpact.files.working_files import remove
 from vibroimpact.results.folder import SUMMARY
 from vibroimpact.studies.chunk_file import CHUNK
 from vibroimpact.studies.chunk_file import FOLDER as CHUNKS
@@ -219,7 +219,7 @@ def _check_sum(folder: Path) -> str | None:
         return None
     except (OSError, ValueError, TypeError) as error:
         words = "delete it, and the dataset is read without being checked"
-        raise InputError(f"{folder / SUMMARY}: the file is damaged: {why(error)}; {words}") from None
+        raise InputError(f"{folder / SUMMARY}: the file is damaged: {short_reason(error)}; {words}") from None
 
 
 @contextmanager
@@ -230,7 +230,7 @@ def _damage_told(path: Path) -> Iterator[None]:
     except InputError:
         raise
     except Exception as error:  # of many kinds, as files are damaged in many ways
-        words = str(error) if isinstance(error, DamageError) else f"the file is damaged: {why(error)}"
+        words = str(error) if isinstance(error, DamageError) else f"the file is damaged: {short_reason(error)}"
         folder = shlex.quote(str(path.parent))
         command = f"vibroimpact sweep {shlex.quote(str(path.parent / STUDY))} -o {folder} --force"
         raise InputError(f"{path}: {words}; make it anew with: {command}") from None

@@ -22,8 +22,8 @@ from vibroimpact.cases.rigid import deforms, impacts_of
 from vibroimpact.cases.section import read_table
 from vibroimpact.dynamics.columns import ALL_IMPACT_COLUMNS, IMPACT_COLUMNS, meanings
 from vibroimpact.errors import InputError
-from vibroimpact.files.lines import MESH
-from vibroimpact.files.reading import file_digest
+from vibroimpact.files.reading import input_file_digest
+from vibroimpact.meshes.text_files import MESH
 from vibroimpact.shown import shortened, shown, visible
 from vibroimpact.studies.axes import Axis, Listed, Values
 from vibroimpact.studies.columns import OUTCOME, PEAKS, SENSOR_PEAK, SIGNAL
@@ -147,7 +147,7 @@ class Sweep:
     @cached_property
     def digest(self) -> str:
         """A fingerprint of the case, its meshes, the points and what is kept."""
-        meshes = [file_digest(file, MESH) for file in _meshes(self.table)]
+        meshes = [input_file_digest(file, MESH) for file in _meshes(self.table)]
         rest = json.dumps([self.table, meshes, self.section.keep], sort_keys=True, default=str)
         return sha256(f"{self.plan.digest()} {rest}".encode()).hexdigest()
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from vibroimpact.cases.limit import limits
 from vibroimpact.dynamics.outcome import OUTCOMES, Outcome
-from vibroimpact.files.write_file import new_file
+from vibroimpact.files.atomic_write import atomic_file
 from vibroimpact.studies.chunk_file import ChunkResult, chunk_layout, read_chunk
 from vibroimpact.studies.columns import DOUBTS, OUTCOME, PEAKS, SENSOR_PEAK
 from vibroimpact.studies.dataset import Meanings, as_text
@@ -40,7 +40,7 @@ def write_drops(folder: Path, chunks: Sequence[Span], study: str, plan: Plan, me
     kept = {name for chunk in chunks for name in chunk_layout(folder, chunk.number)}
     peaks = [name for name in meanings if name in kept and (name in PEAKS or name.endswith(SENSOR_PEAK))]
     keys = [key if meanings[key][0] == "1" else f"{key} [{meanings[key][0]}]" for key in plan.columns]
-    with new_file(folder / TABLE) as working, working.open("w", newline="", encoding="utf-8") as file:
+    with atomic_file(folder / TABLE) as working, working.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(["drop", *keys, *peaks, OUTCOME, DOUBTS, "reason"])
         for chunk in chunks:

@@ -1,1 +1,1 @@
-"""Quantities and their units: read where people write them, and shown as people read them."""
+"""Quantities and units: parsing, conversion and formatting."""

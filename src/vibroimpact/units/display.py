@@ -1,4 +1,4 @@
-"""Numbers as people read them: multiples of units chosen from the data, and significant digits."""
+"""Formatting of numbers for reports: unit prefixes chosen from the data, and significant digits."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from vibroimpact.arrays import Indices
 
 
 class Multiple(NamedTuple):
-    """A multiple of an SI unit: its name and its size in SI."""
+    """A multiple of an SI unit: name, and size in the SI unit."""
 
     unit: str
     size: float
 
 
 MISSING = "\u2013"
-"""What stands for a value that does not exist: an en dash."""
+"""Text of a missing value: an en dash."""
 
 _MINUS = "\u2212"
 
@@ -48,7 +48,7 @@ _MULTIPLES: dict[str, tuple[Multiple, ...]] = {
     "1": (Multiple("", 1.0),),
     "": (Multiple("", 1.0),),
 }
-"""The multiples of each SI unit that are in use, largest first; the other units have none."""
+"""The usual multiples of each SI unit, largest first; other units have none."""
 
 
 def largest(values: ArrayLike) -> float:
@@ -63,9 +63,9 @@ def multiple(unit: str, values: ArrayLike) -> Multiple:
     Parameters
     ----------
     unit : str
-        SI unit as in `dynamics.columns`, or as a case has it, with "^" before powers. One that has no multiples stays as it is.
+        SI unit as in `dynamics.columns`, or as in a case, with "^" before powers. A unit without multiples is returned unchanged.
     values : array_like
-        Values in that unit; NaN is passed over.
+        Values in that unit; NaN is ignored.
 
     Examples
     --------
@@ -81,12 +81,12 @@ def multiple(unit: str, values: ArrayLike) -> Multiple:
         return Multiple(re.sub(r"\^([\d.]+)", lambda power: _superscript(power[1]), unit), 1.0)
     if size == 0.0:
         return next(choice for choice in choices if choice.size == 1.0)
-    # 0.9995 reads as 1.000 in the four digits that are printed
+    # 0.9995 is printed as 1.000 with four digits
     return next((choice for choice in choices if size >= 0.9995 * choice.size), choices[-1])
 
 
 def digits(value: float, significant: int = 4) -> str:
-    """Return a number in significant digits, with a dash for NaN and a true minus sign.
+    """Return a number in significant digits, with an en dash for NaN and a true minus sign.
 
     Examples
     --------
@@ -107,7 +107,7 @@ def digits(value: float, significant: int = 4) -> str:
 
 
 def certain(shown: str, value: float, figures: int) -> str:
-    """Return a number in at most so many significant figures: as it was shown, or in fewer; a question mark for none.
+    """Return a number in at most `figures` significant figures: the text `shown`, or a shorter one; a question mark for none.
 
     Examples
     --------
@@ -128,16 +128,16 @@ def certain(shown: str, value: float, figures: int) -> str:
 
 
 ALL_FIGURES = 17
-"""Significant figures of a number that nothing takes digits from."""
+"""Significant figures of a number without uncertainty."""
 
 
 def certain_figures(change: ArrayLike) -> Indices:
-    """Return how many significant figures of numbers are certain, given their relative changes; the last may be off by three.
+    """Return the number of certain significant figures, from the relative change of each number; the last may be off by three.
 
     Parameters
     ----------
     change : array_like
-        Relative change of each number [-] for one in the drop that nobody can rule out; NaN where it has grown beyond all numbers.
+        Relative change of each number [-] under an unavoidable perturbation of the drop; NaN if it is unbounded.
 
     Examples
     --------
@@ -149,21 +149,21 @@ def certain_figures(change: ArrayLike) -> Indices:
     return np.asarray(np.clip(figures, 0, ALL_FIGURES), dtype=np.intp)
 
 
-_LEAST, _MORE = 3, 2  # significant digits of the smallest of a column; decimals that are added for it
+_LEAST, _MORE = 3, 2  # least significant digits of the smallest number of a column; largest number of decimals added for it
 
 
 def column_texts(values: ArrayLike, significant: int = 5) -> list[str]:
-    """Return the numbers of a column, all with the same decimals, so that they are compared at sight.
+    """Return the numbers of a column as texts with the same number of decimals.
 
-    The largest has so many significant digits, or up to two more where the smallest would have fewer than three. Where that is not
-    enough, as the numbers differ by powers of ten, each has its own significant digits.
+    The largest number has `significant` digits, or up to two more if the smallest would have fewer than three. If that is not enough,
+    because the numbers differ by orders of magnitude, each number has its own significant digits.
 
     Parameters
     ----------
     values : array_like
         Numbers in one unit; NaN becomes a dash.
     significant : int
-        Significant digits of the largest.
+        Significant digits of the largest number.
 
     Examples
     --------
@@ -185,10 +185,10 @@ def column_texts(values: ArrayLike, significant: int = 5) -> list[str]:
 
 
 def fixed(value: float, decimals: int) -> str:
-    """Return a number with so many decimals, with a dash for NaN and a true minus sign."""
+    """Return a number with a given number of decimals, an en dash for NaN and a true minus sign."""
     if not math.isfinite(value):
         return MISSING
-    # + 0.0 makes a plain zero of what rounds to minus zero
+    # + 0.0 turns a minus zero from rounding into a plain zero
     return f"{round(value, decimals) + 0.0:.{decimals}f}".replace("-", _MINUS)
 
 

@@ -1,6 +1,6 @@
-"""What may stand in a unit.
+"""Grammar of unit texts, checked before pint parses them.
 
-pint computes what it is given, and a power of a power of a number, such as s^9^9^9, is computed for ever.
+pint evaluates any expression, and a tower of powers such as s^9^9^9 would never end.
 """
 
 from __future__ import annotations
@@ -21,9 +21,9 @@ _MOST_GROUPS = 2
 
 
 def is_unit(text: str) -> bool:
-    """Tell whether a text is a product of names with at most one power each, which is a small number or a ratio of two.
+    """Return whether a text is a product of names, each with at most one exponent, a small number or a ratio of two.
 
-    Whether the names are those of units is not looked at. Brackets may stand in brackets, and no further.
+    The names are not checked to be units. Parentheses may be nested once.
 
     Examples
     --------

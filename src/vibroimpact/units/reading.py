@@ -1,7 +1,6 @@
-"""Read a quantity at the file's edge: a bare number is SI, a string carries its unit.
+"""Parsing of quantities and conversion of units: a bare number is in SI, a string has a unit.
 
-Everything inside the package is a float in SI; nothing below the case reader calls this module.
-pint is imported when the first unit is met.
+Inside the package every quantity is a float in SI; only the readers of input convert units. pint is imported with the first unit.
 """
 
 from __future__ import annotations
@@ -71,10 +70,9 @@ def to_si(value: float | str, unit: str = "") -> float:
     Parameters
     ----------
     value : float or str
-        A bare number is taken to be in `unit` already; a string must carry a unit of the same
-        dimension.
+        A bare number is in `unit` already; a string must have a unit of the same dimension.
     unit : str, default ""
-        The SI unit wanted, as pint reads it; "" for a plain number.
+        The SI unit of the result, as pint reads it; "" for a plain number.
 
     Returns
     -------
@@ -84,7 +82,7 @@ def to_si(value: float | str, unit: str = "") -> float:
     Raises
     ------
     InputError
-        If the value is not finite, not a number, has no unit or one of another dimension.
+        If the value is not a finite number, or has no unit or one of another dimension.
 
     Examples
     --------
@@ -111,7 +109,7 @@ def to_si(value: float | str, unit: str = "") -> float:
         raise InputError(f"{_long(value)} is too large for a number") from None
 
 
-def read_quantity(text: str) -> tuple[float, str]:
+def parse_quantity(text: str) -> tuple[float, str]:
     """Return the number and the unit of a text such as "5.115e8 N/m^1.5".
 
     Raises
@@ -121,7 +119,7 @@ def read_quantity(text: str) -> tuple[float, str]:
 
     Examples
     --------
-    >>> read_quantity("179.75 N s/m")
+    >>> parse_quantity("179.75 N s/m")
     (179.75, 'N s/m')
     """
     parts = _split(text)
@@ -160,8 +158,8 @@ def convert_units(value: float, unit: str, to: str) -> float:
     have, want = _known_unit(unit), _known_unit(to)
     number = _finite(to_si(value), value)
     if have.dimensionality != want.dimensionality:
-        told = " and ".join(f"{shown(name)} is {_dimension_words(one)}" for name, one in ((unit, have), (to, want)))
-        raise InputError(f"{told}; one can't be converted to the other")
+        both = " and ".join(f"{shown(name)} is {_dimension_words(one)}" for name, one in ((unit, have), (to, want)))
+        raise InputError(f"{both}; one can't be converted to the other")
     try:
         found = float(_registry().Quantity(number, have).to(want).magnitude)
     except OverflowError:
@@ -170,7 +168,7 @@ def convert_units(value: float, unit: str, to: str) -> float:
 
 
 def dimension_of(unit: str) -> dict[str, float]:
-    """Return the powers of "force", "length" and "time" in a unit; of "mass" in place of "force" where it holds no time.
+    """Return the exponents of "force", "length" and "time" in a unit; of "mass" instead of "force" if the unit has no time.
 
     Raises
     ------
@@ -191,7 +189,7 @@ def _dimension(unit: pint.Unit) -> dict[str, float]:
     powers = {str(name).strip("[]"): float(str(power)) for name, power in unit.dimensionality.items()}
     mass = powers.get("mass", 0.0)
     if mass and powers.get("time", 0.0):
-        # what holds mass and time is thought of as force: programs differ in whether theirs is mass length / time^2
+        # a unit with mass and time is expressed by force, since not every program has mass length / time^2 as its unit of force
         del powers["mass"]
         powers |= {"force": mass, "length": powers.get("length", 0.0) - mass, "time": powers["time"] + 2.0 * mass}
     order = ("force", "mass", "length", "time")
@@ -200,7 +198,7 @@ def _dimension(unit: pint.Unit) -> dict[str, float]:
 
 
 def unit_text(powers: Iterable[tuple[str, float]]) -> str:
-    """Return a product of powers as a unit is written.
+    """Return a product of powers as a unit text.
 
     Examples
     --------
@@ -217,7 +215,7 @@ def _power(name: str, power: float) -> str:
 
 
 def _dimension_words(unit: pint.Unit) -> str:
-    """Return what a unit measures, in words where it has a name, and of what dimension that is."""
+    """Return the kind of quantity of a unit in words, and its dimension."""
     registry = _registry()
     if not unit.dimensionality:
         return "a plain number"
@@ -253,7 +251,7 @@ def _parse(text: str, unit: str) -> float:
 
 
 def _split(text: str) -> tuple[float, str] | None:
-    """Return number and unit of a text, "" without one; None if it begins with no number."""
+    """Return number and unit of a text, "" for no unit; None if it does not begin with a number."""
     match = _QUANTITY.fullmatch(text) if len(text) <= 80 else None
     if match is None:
         return None
@@ -264,24 +262,24 @@ def _split(text: str) -> tuple[float, str] | None:
 
 
 def _parse_unit(text: str) -> pint.Unit:
-    """Return a unit; raises ValueError, and whatever pint does for one that it can't read."""
+    """Return a unit; raises ValueError, or any error of pint for a unit that it can't read."""
     if not is_unit(text):
         raise ValueError(text)
     return _registry().parse_units(text)
 
 
 _GRAVITIES = {"g": "g0", "mg": "mg0", "ug": "ug0", "µg": "ug0", "μg": "ug0"}
-"""What accelerometers' data sheets write for standard gravity, 9.80665 m/s^2, and its multiples, by what pint calls it."""
+"""Symbols of standard gravity, 9.80665 m/s^2, and its multiples in accelerometers' data sheets, and pint's names of them."""
 
 
 @lru_cache(maxsize=1000)
 def _factor(given: str, unit: str, text: str) -> float:
-    """Return how many `unit` there are in one `given`."""
+    """Return the conversion factor from `given` to `unit`."""
     import pint
 
     registry = _registry()
     try:
-        spelled = _GRAVITIES.get(given, given) if unit == "m/s^2" else given  # no mass can be meant by 500 g of acceleration
+        spelled = _GRAVITIES.get(given, given) if unit == "m/s^2" else given  # of an acceleration, g is standard gravity and not the gram
         have, want = registry.Quantity(1.0, _parse_unit(spelled)), registry.parse_units(unit)
         return float(have.to(want).magnitude)
     except pint.DimensionalityError:
@@ -295,7 +293,7 @@ def _factor(given: str, unit: str, text: str) -> float:
 
 
 def _long(number: float) -> str:
-    """Return the first digits of a whole number, which may have more than Python writes."""
+    """Return the first digits of an integer, which may have more digits than Python converts to text."""
     try:
         return f"{str(number)[:20]}..."
     except ValueError:

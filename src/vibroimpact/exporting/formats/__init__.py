@@ -1,1 +1,1 @@
-"""The export formats: one file each."""
+"""The export formats, one module each."""

@@ -4,9 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from vibroimpact.exporting.adams_contact import Names, number, numbers, titles
-from vibroimpact.exporting.adams_model import ACCURACY, LINE, SENSOR_ERROR, TESTED, AdamsModel, adams_model, broken, comments
-from vibroimpact.exporting.contact_alone import shared_notes
+from vibroimpact.exporting.adams_contact import Names, adams_number, adams_numbers, column_titles
+from vibroimpact.exporting.adams_model import (
+    ACCURACY,
+    LINE,
+    SENSOR_ERROR,
+    TESTED,
+    AdamsModel,
+    adams_model,
+    header_comments,
+    wrap_expression,
+)
+from vibroimpact.exporting.contact_parameters import shared_notes
 from vibroimpact.exporting.drop import Drop
 from vibroimpact.exporting.export_format import ExportFormat
 from vibroimpact.exporting.rigid_drop import as_rigid
@@ -16,44 +25,49 @@ _GROUND, _SPHERE, _CORNER = 1, 2, 2  # parts, and the marker at the plate's corn
 
 
 def write(drop: Drop) -> dict[str, bytes]:
-    """Return dataset and commands.
+    """Return the dataset and the command file.
 
     Raises
     ------
     InputError
-        If Adams can't take the contact law.
+        If the contact law is not supported.
     """
     model = adams_model(drop)
-    commands = [f"FILE/MODEL={model.name}", f"SIMULATE/DYNAMICS, END={number(model.end)}, DTOUT={number(model.output_step)}", "STOP", ""]
+    commands = [
+        f"FILE/MODEL={model.name}",
+        f"SIMULATE/DYNAMICS, END={adams_number(model.end)}, DTOUT={adams_number(model.output_step)}",
+        "STOP",
+        "",
+    ]
     return {f"{model.name}.adm": "\n".join(_dataset(model)).encode("ascii"), f"{model.name}.acf": "\n".join(commands).encode("ascii")}
 
 
 def _dataset(model: AdamsModel) -> Iterator[str]:
     contact = model.contact
-    # the first line is always taken as the title; Adams View takes the model's name from it, and others from comments
+    # the first line is the title; Adams View takes the model's name from it, and other names from comments
     yield f"Adams View model name: {model.name}"
-    yield from comments(model)
+    yield from header_comments(model)
     yield from _statement("UNITS/", FORCE="NEWTON", MASS="KILOGRAM", LENGTH="MILLIMETER", TIME="SECOND")
     yield from _headed("ground", "PART", _GROUND, "GROUND")
     x, y, z = model.centre
-    yield from _headed("spot", "MARKER", int(_NAMES.spot), PART=str(_GROUND), QP=numbers((x, y, 0.0)))
+    yield from _headed("spot", "MARKER", int(_NAMES.spot), PART=str(_GROUND), QP=adams_numbers((x, y, 0.0)))
     if model.plate is not None:
-        yield from _headed("corner", "MARKER", _CORNER, PART=str(_GROUND), QP=numbers(model.corner))
-        size = dict(zip("XYZ", map(number, model.plate), strict=True))
+        yield from _headed("corner", "MARKER", _CORNER, PART=str(_GROUND), QP=adams_numbers(model.corner))
+        size = dict(zip("XYZ", map(adams_number, model.plate), strict=True))
         yield from _headed("plate", "GRAPHICS", 1, "BOX", CORNER=str(_CORNER), **size)
-    velocity = {"VZ": number(model.velocity)} if model.velocity else {}
+    velocity = {"VZ": adams_number(model.velocity)} if model.velocity else {}
     yield from _headed(
         "sphere",
         "PART",
         _SPHERE,
-        QG=numbers((x, y, z)),
+        QG=adams_numbers((x, y, z)),
         **velocity,
-        MASS=number(model.mass),
+        MASS=adams_number(model.mass),
         CM=_NAMES.centre,
-        IP=numbers([model.inertia] * 3),
+        IP=adams_numbers([model.inertia] * 3),
     )
-    yield from _headed("cm", "MARKER", int(_NAMES.centre), PART=str(_SPHERE), QP=numbers((0.0, 0.0, 0.0)))
-    diameter = number(2.0 * model.radius)
+    yield from _headed("cm", "MARKER", int(_NAMES.centre), PART=str(_SPHERE), QP=adams_numbers((0.0, 0.0, 0.0)))
+    diameter = adams_number(2.0 * model.radius)
     yield from _headed("ball", "GRAPHICS", 2, "ELLIPSOID", CM=_NAMES.centre, XSCALE=diameter, YSCALE=diameter, ZSCALE=diameter)
     for identifier, material in enumerate(model.materials, 1):
         yield from _headed(
@@ -61,9 +75,9 @@ def _dataset(model: AdamsModel) -> Iterator[str]:
             "MATERIAL",
             identifier,
             NAME=material.name,
-            DENSITY=number(material.density),
-            YOUNGS_MODULUS=number(material.youngs_modulus),
-            POISSONS_RATIO=number(material.poissons_ratio),
+            DENSITY=adams_number(material.density),
+            YOUNGS_MODULUS=adams_number(material.youngs_modulus),
+            POISSONS_RATIO=adams_number(material.poissons_ratio),
         )
     if contact.holds_speed:
         yield from _headed(
@@ -72,7 +86,7 @@ def _dataset(model: AdamsModel) -> Iterator[str]:
             int(_NAMES.sensor),
             "GE",
             VALUE="0.0",
-            ERROR=number(SENSOR_ERROR),
+            ERROR=adams_number(SENSOR_ERROR),
             FUNCTION=contact.gap(_NAMES) + "\\",
             EVALUATE=contact.coming_speed(_NAMES),
         )
@@ -91,36 +105,36 @@ def _dataset(model: AdamsModel) -> Iterator[str]:
         FUNCTION=contact.force(_NAMES),
     )
     yield from _requests(model)
-    yield from _statement("ACCGRAV/", IGRAV="0.0", JGRAV="0.0", KGRAV=number(-contact.gravity))
-    yield from _statement("INTEGRATOR/", "GSTIFF", "SI2", ERROR=number(ACCURACY), HMAX=number(model.longest_step))
+    yield from _statement("ACCGRAV/", IGRAV="0.0", JGRAV="0.0", KGRAV=adams_number(-contact.gravity))
+    yield from _statement("INTEGRATOR/", "GSTIFF", "SI2", ERROR=adams_number(ACCURACY), HMAX=adams_number(model.longest_step))
     yield from _statement("OUTPUT/", "REQSAVE", "GRSAVE")
     yield from _statement("RESULTS/", "XRF")
     yield from ("END", "")
 
 
 def _requests(model: AdamsModel) -> Iterator[str]:
-    """Yield the statement that asks for what a run shows."""
+    """Yield the REQUEST statement for the output of a run."""
     readings = model.contact.readings(_NAMES, "1")
     last = max(readings)
     functions = {f"F{column}": expression + ("" if column == last else "\\") for column, (_, expression) in readings.items()}
-    yield from _headed("motion", "REQUEST", 1, CNAMES=titles(readings), **functions)
+    yield from _headed("motion", "REQUEST", 1, CNAMES=column_titles(readings), **functions)
 
 
 def _headed(name: str, kind: str, identifier: int, *flags: str, **arguments: str) -> Iterator[str]:
-    """Yield a statement under the comment from which Adams View takes its name."""
+    """Yield a statement after the comment from which Adams View takes its name."""
     yield f"! adams_view_name='{name}'"
     yield from _statement(f"{kind}/{identifier}", *flags, **arguments)
 
 
 def _statement(head: str, *flags: str, **arguments: str) -> Iterator[str]:
-    """Yield the lines of a statement: an argument a line, each with the comma of continuation in the first column.
+    """Yield the lines of a statement: one argument per line, each with the continuation comma in the first column.
 
-    A function is followed by nothing or by a backslash, in place of the comma between arguments.
+    A function expression ends with a backslash instead of a comma if another argument follows.
     """
     yield head
     yield from (f", {flag}" for flag in flags)
     for name, value in arguments.items():
-        yield from (f", {line}" for line in broken(f"{name} = {value}", LINE - 2))
+        yield from (f", {line}" for line in wrap_expression(f"{name} = {value}", LINE - 2))
 
 
 FORMAT = ExportFormat(
@@ -130,5 +144,5 @@ FORMAT = ExportFormat(
     tested=TESTED,
     write=write,
     notes=shared_notes,
-    told=as_rigid,
+    prepare=as_rigid,
 )

@@ -1,12 +1,21 @@
-"""Adams View: the commands that build the model (.cmd)."""
+"""Adams View: a command file that builds the model (.cmd)."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from vibroimpact.exporting.adams_contact import Names, number, numbers, titles
-from vibroimpact.exporting.adams_model import ACCURACY, LINE, SENSOR_ERROR, TESTED, AdamsModel, adams_model, broken, comments
-from vibroimpact.exporting.contact_alone import shared_notes
+from vibroimpact.exporting.adams_contact import Names, adams_number, adams_numbers, column_titles
+from vibroimpact.exporting.adams_model import (
+    ACCURACY,
+    LINE,
+    SENSOR_ERROR,
+    TESTED,
+    AdamsModel,
+    adams_model,
+    header_comments,
+    wrap_expression,
+)
+from vibroimpact.exporting.contact_parameters import shared_notes
 from vibroimpact.exporting.drop import Drop
 from vibroimpact.exporting.export_format import ExportFormat
 from vibroimpact.exporting.rigid_drop import as_rigid
@@ -15,12 +24,12 @@ _UPRIGHT = "0.0d, 0.0d, 0.0d"
 
 
 def write(drop: Drop) -> dict[str, bytes]:
-    """Return the commands.
+    """Return the command file.
 
     Raises
     ------
     InputError
-        If Adams can't take the contact law.
+        If the contact law is not supported.
     """
     model = adams_model(drop)
     return {f"{model.name}.cmd": "\n".join([*_commands(model), ""]).encode("ascii")}
@@ -30,7 +39,7 @@ def _commands(model: AdamsModel) -> Iterator[str]:
     contact, top = model.contact, f".{model.name}"
     ground, sphere = f"{top}.ground", f"{top}.sphere"
     names = Names(f"{sphere}.cm", f"{ground}.spot", f"{top}.touch", f"{top}.approach_speed", f"{top}.damping")
-    yield from comments(model)
+    yield from header_comments(model)
     yield from _command("defaults units", length="mm", angle="deg", force="newton", mass="kg", time="sec")
     yield from _command("defaults units", coordinate_system_type="cartesian", orientation_type="body313")
     yield from _command("model create", model_name=model.name)
@@ -38,9 +47,9 @@ def _commands(model: AdamsModel) -> Iterator[str]:
         yield from _command(
             "material create",
             material_name=f"{top}.{material.name}",
-            density=number(material.density),
-            youngs_modulus=number(material.youngs_modulus),
-            poissons_ratio=number(material.poissons_ratio),
+            density=adams_number(material.density),
+            youngs_modulus=adams_number(material.youngs_modulus),
+            poissons_ratio=adams_number(material.poissons_ratio),
         )
     yield from _inside(ground)
     x, y, z = model.centre
@@ -51,18 +60,24 @@ def _commands(model: AdamsModel) -> Iterator[str]:
             "geometry create shape block",
             block_name=f"{ground}.plate",
             corner_marker=f"{ground}.corner",
-            diag_corner_coords=numbers(model.plate),
+            diag_corner_coords=adams_numbers(model.plate),
         )
-    yield from _command("part create rigid_body name_and_position", part_name=sphere, location=numbers((x, y, z)), orientation=_UPRIGHT)
+    yield from _command(
+        "part create rigid_body name_and_position", part_name=sphere, location=adams_numbers((x, y, z)), orientation=_UPRIGHT
+    )
     yield from _inside(sphere)
     yield from _marker(names.centre, (0.0, 0.0, 0.0))
-    moments = dict.fromkeys(("ixx", "iyy", "izz"), number(model.inertia)) | dict.fromkeys(("ixy", "izx", "iyz"), "0.0")
+    moments = dict.fromkeys(("ixx", "iyy", "izz"), adams_number(model.inertia)) | dict.fromkeys(("ixy", "izx", "iyz"), "0.0")
     yield from _command(
-        "part create rigid_body mass_properties", part_name=sphere, mass=number(model.mass), center_of_mass_marker=names.centre, **moments
+        "part create rigid_body mass_properties",
+        part_name=sphere,
+        mass=adams_number(model.mass),
+        center_of_mass_marker=names.centre,
+        **moments,
     )
     if model.velocity:
-        yield from _command("part create rigid_body initial_velocity", part_name=sphere, vz=number(model.velocity))
-    scale = {f"{axis}_scale_factor": number(2.0 * model.radius) for axis in "xyz"}
+        yield from _command("part create rigid_body initial_velocity", part_name=sphere, vz=adams_number(model.velocity))
+    scale = {f"{axis}_scale_factor": adams_number(2.0 * model.radius) for axis in "xyz"}
     yield from _command("geometry create shape ellipsoid", ellipsoid_name=f"{sphere}.ball", center_marker=names.centre, **scale)
     if contact.holds_speed:
         yield from _command(
@@ -70,7 +85,7 @@ def _commands(model: AdamsModel) -> Iterator[str]:
             sensor_name=names.sensor,
             compare="ge",
             value="0.0",
-            error=number(SENSOR_ERROR),
+            error=adams_number(SENSOR_ERROR),
             **dict.fromkeys(("codgen", "halt", "print", "restart", "return", "yydump"), "off"),
             function=_quoted(contact.gap(names)),
             evaluate=_quoted(contact.coming_speed(names)),
@@ -93,39 +108,39 @@ def _commands(model: AdamsModel) -> Iterator[str]:
         gravity_field_name="gravity",
         x_component_gravity="0.0",
         y_component_gravity="0.0",
-        z_component_gravity=number(-contact.gravity),
+        z_component_gravity=adams_number(-contact.gravity),
     )
     yield from _request(model, names)
     yield from _command(
         "executive_control set numerical_integration_parameters",
         model_name=top,
         integrator_type="si2_gstiff",
-        error_tolerance=number(ACCURACY),
-        hmax_time_step=number(model.longest_step),
+        error_tolerance=adams_number(ACCURACY),
+        hmax_time_step=adams_number(model.longest_step),
     )
-    run = f"SIMULATE/DYNAMICS, END={number(model.end)}, DTOUT={number(model.output_step)}"
+    run = f"SIMULATE/DYNAMICS, END={adams_number(model.end)}, DTOUT={adams_number(model.output_step)}"
     yield from _command("simulation script create", sim_script_name=f"{top}.drop", solver_commands=f'"{run}"')
 
 
 def _request(model: AdamsModel, names: Names) -> Iterator[str]:
-    """Yield the command that asks for what a run shows."""
+    """Yield the command that creates the request for the output of a run."""
     readings = model.contact.readings(names, f".{model.name}.contact")
     yield from _command(
         "output_control create request",
         request_name=f".{model.name}.motion",
-        component_names=titles(readings),
+        component_names=column_titles(readings),
         results_name='"motion"',
         **{f"f{column}": _quoted(expression) for column, (_, expression) in readings.items()},
     )
 
 
 def _inside(part: str) -> Iterator[str]:
-    """Yield the command after which locations are those in a part's own coordinates."""
+    """Yield the command that makes a part's coordinate system the default one for locations."""
     return _command("defaults coordinate_system", default_coordinate_system=part)
 
 
 def _marker(name: str, location: Sequence[float]) -> Iterator[str]:
-    return _command("marker create", marker_name=name, location=numbers(location), orientation=_UPRIGHT)
+    return _command("marker create", marker_name=name, location=adams_numbers(location), orientation=_UPRIGHT)
 
 
 def _variable(name: str, function: str) -> Iterator[str]:
@@ -133,7 +148,7 @@ def _variable(name: str, function: str) -> Iterator[str]:
 
 
 def _command(words: str, **parameters: str) -> Iterator[str]:
-    """Yield the lines of a command: a parameter a line, each but the last continued by an ampersand."""
+    """Yield the lines of a command: one parameter per line, all but the last continued by an ampersand."""
     lines = [line for name, value in parameters.items() for line in f"{name} = {value}".split("\n")]
     yield "!"
     yield f"{words}  &"
@@ -142,8 +157,8 @@ def _command(words: str, **parameters: str) -> Iterator[str]:
 
 
 def _quoted(function: str) -> str:
-    """Return a function as a series of quoted strings, a line each; Adams View joins them."""
-    *first, last = broken(function, LINE - 20)
+    """Return a function as a series of quoted strings, one per line, which Adams View concatenates."""
+    *first, last = wrap_expression(function, LINE - 20)
     return ",\n".join([*(f'"{line} "' for line in first), f'"{last}"'])
 
 
@@ -154,5 +169,5 @@ FORMAT = ExportFormat(
     tested=TESTED,
     write=write,
     notes=shared_notes,
-    told=as_rigid,
+    prepare=as_rigid,
 )

@@ -1,4 +1,4 @@
-"""CSV: the impact table, the history and the signals, as spreadsheets and every program read them."""
+"""CSV: the impact table, the history and the signals."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from vibroimpact.results.signal_csv import signal_csv
 
 
 def write(drop: Drop) -> dict[str, bytes]:
-    """Return a file each table.
+    """Return one file per table.
 
     Raises
     ------
@@ -23,7 +23,7 @@ def write(drop: Drop) -> dict[str, bytes]:
 
 
 def _text(table: Table) -> str:
-    """Return a table with every digit; an empty cell where there is no value."""
+    """Return a table with full precision; missing values are empty cells."""
     columns = [[_cell(value) for value in column.values.tolist()] for column in table.values()]
     return "\n".join([",".join(table), *(",".join(row) for row in zip(*columns, strict=True)), ""])
 

@@ -1,4 +1,4 @@
-"""EXUDYN: a Python script with a mass above a contact that is a function of the user's, exact for most laws."""
+"""EXUDYN: a Python script with a point mass and a contact force as user function, exact for most laws."""
 
 from __future__ import annotations
 
@@ -9,15 +9,14 @@ from dataclasses import fields
 from vibroimpact.contact.law import ContactLaw
 from vibroimpact.contact.laws.linear_spring_dashpot import LinearSpringDashpot
 from vibroimpact.errors import InputError
-from vibroimpact.exporting.contact_alone import approach_speeds, first_contact, shared_notes
+from vibroimpact.exporting.contact_parameters import approach_speeds, first_contact, shared_notes
 from vibroimpact.exporting.drop import Drop
-from vibroimpact.exporting.export_format import ExportFormat
+from vibroimpact.exporting.export_format import ExportFormat, comment_lines, file_name
 from vibroimpact.exporting.rigid_drop import as_rigid
-from vibroimpact.exporting.script_text import comment_lines, file_name
 from vibroimpact.files.plain_names import plain_words
 from vibroimpact.ranges import Range
 
-# the damping factor D of the laws F = K delta^n (1 + D rate / approach), by the restitution e that is asked for
+# damping factor D of the laws F = K delta^n (1 + D rate / approach), as a function of the requested restitution e
 _FACTORS = {
     "flores": "1.6 * (1.0 - e) / e",
     "gonthier": "(1.0 - e * e) / e",
@@ -33,7 +32,7 @@ _FACTORS = {
 _DAMPING_RATIO = "ratio = -math.log(p.restitution) / math.hypot(math.pi, math.log(p.restitution))"
 _LINEAR = f"{_DAMPING_RATIO}\nreturn p.stiffness * delta + 2.0 * ratio * math.sqrt(p.stiffness * p.effective_mass) * rate"
 
-# without adams-poisson: its force jumps at the deepest point, where an integrator with adaptive steps is caught
+# without adams-poisson: its force jumps at maximum compression, where an integrator with adaptive steps gets stuck
 _FORCES = {
     "adams-impact": """\
 s = min(delta / p.full_damping_penetration, 1.0)
@@ -60,7 +59,7 @@ return p.stiffness * delta**1.5 + damping * rate""",
 
 
 def _force(law: ContactLaw) -> str:
-    """Return the body of the function that gives the force of a law."""
+    """Return the body of the Python function of a law's contact force."""
     if isinstance(law, LinearSpringDashpot) and law.damping is not None:
         return "return p.stiffness * delta + p.damping * rate"
     if law.name not in _FORCES:
@@ -72,7 +71,7 @@ def _force(law: ContactLaw) -> str:
 
 
 def _parameters(drop: Drop) -> str:
-    """Return the lines that tell the parameters of the law: of each the values of the impacts, and a function if it has one."""
+    """Return the lines of the law's parameters: the values of each parameter, one for all impacts or one for each."""
     rows = []
     for item in fields(drop.laws[0]):
         values = [getattr(law, item.name) for law in drop.laws]
@@ -84,6 +83,7 @@ def _parameters(drop: Drop) -> str:
 
 
 def _function(drop: Drop) -> str:
+    """Return the line that evaluates a parameter as function of the approach speed, clipped to its range; "" if there is none."""
     if drop.function is None:
         return ""
     name, polynomial = drop.function
@@ -99,6 +99,7 @@ def _write(drop: Drop) -> Mapping[str, bytes]:
     law, speeds = drop.laws[0], approach_speeds(drop)
     body = "\n".join(f"    {line}" for line in _force(law).splitlines())
     duration, _ = first_contact(law, drop)
+    # in the script a fall is integrated to the known time of first touch, and each contact separately, with steps of its scale
     return {
         file_name(drop, "-exudyn.py"): f'''\
 """A sphere that falls on a plate, for EXUDYN 1.13 or later. Units: m, kg, s, N."""
@@ -225,5 +226,5 @@ FORMAT = ExportFormat(
     tested="run with EXUDYN 1.13.6, beside vibroimpact's drops between rigid bodies",
     write=_write,
     notes=shared_notes,
-    told=as_rigid,
+    prepare=as_rigid,
 )

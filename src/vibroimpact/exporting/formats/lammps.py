@@ -13,7 +13,7 @@ from vibroimpact.contact.laws.hertz import Hertz
 from vibroimpact.contact.laws.kuwabara_kono import KuwabaraKono
 from vibroimpact.contact.laws.tsuji import Tsuji
 from vibroimpact.dynamics.restitution import achieved_restitution
-from vibroimpact.exporting.contact_alone import (
+from vibroimpact.exporting.contact_parameters import (
     approach_speeds,
     clipped_dashpot,
     first_contact,
@@ -22,18 +22,17 @@ from vibroimpact.exporting.contact_alone import (
     shared_notes,
 )
 from vibroimpact.exporting.drop import Drop
-from vibroimpact.exporting.export_format import ExportFormat
+from vibroimpact.exporting.export_format import ExportFormat, comment_lines, file_name
 from vibroimpact.exporting.rigid_drop import as_rigid
-from vibroimpact.exporting.script_text import comment_lines, file_name
 from vibroimpact.files.plain_names import plain_words
 
 _STEPS = 20_000
-"""Steps in the first contact: restitution and largest force are then right to 5e-5 (LAMMPS takes the damping half a step late)."""
+"""Steps in the first contact: restitution and peak force are then accurate to 5e-5 (LAMMPS damps half a step late)."""
 
 
 @dataclass(frozen=True)
 class _Normal:
-    """How LAMMPS is told of a law: its damping model, the number it takes, whether the force is clipped at zero."""
+    """A law in LAMMPS: damping model, its coefficient, whether the force is clipped at zero, and whether it is the same law."""
 
     damping: str
     coefficient: float
@@ -42,18 +41,18 @@ class _Normal:
 
 
 def _normal(law: ContactLaw, drop: Drop, speed: float) -> _Normal:
-    """Return the damping model that is the law's own, else the nearest, with its restitution at a speed."""
+    """Return the damping model of a law; if LAMMPS lacks it, the nearest one with the same restitution at a speed."""
     stiffness, exponent = linear_or_hertzian(drop, "LAMMPS")
     if isinstance(law, Hertz):
         return _Normal("velocity", 0.0, False, True)
     if isinstance(law, KelvinVoigtLaw):
         return _Normal("velocity", float(law.dashpot), False, True)
     if isinstance(law, KuwabaraKono):
-        # theirs is eta m a v with the contact radius a = sqrt(R delta)
+        # LAMMPS' damping force is eta m a v with the contact radius a = sqrt(R delta)
         eta = 1.5 * stiffness * float(law.dissipation_time) / (drop.mass * math.sqrt(drop.radius))
         return _Normal("viscoelastic", eta, True, True)
     restitution = float(achieved_restitution(law, drop.mass, speed))
-    if isinstance(law, AdamsImpact):  # its dashpot is constant but for the first tenth of a millimetre
+    if isinstance(law, AdamsImpact):  # its dashpot is constant except over the penetration of full damping (typically 0.1 mm)
         return _Normal("velocity", clipped_dashpot(stiffness, exponent, restitution, drop.mass, speed), True, False)
     return _Normal("coeff_restitution", restitution, False, isinstance(law, Tsuji))
 
@@ -65,11 +64,13 @@ def _normals(drop: Drop) -> list[_Normal]:
 def _write(drop: Drop) -> Mapping[str, bytes]:
     laws, normals, speeds = laws_of_impacts(drop), _normals(drop), approach_speeds(drop)
     stiffness, exponent = linear_or_hertzian(drop, "LAMMPS")
+    # the stiffness of "hertz" is multiplied by sqrt(R) in LAMMPS
     model, spring = ("hooke", stiffness) if exponent == 1.0 else ("hertz", stiffness / math.sqrt(drop.radius))
     duration, _ = first_contact(laws[0], drop)
     coefficients = [normal.coefficient for normal in normals]
     coefficients += coefficients[-1:] * (len(speeds) - len(coefficients))
     clip = " limit_damping" if normals[0].clipped else ""
+    # the box must contain the sphere at its largest height
     top = max(drop.height, drop.radius + max(speeds) ** 2 / (2.0 * drop.gravity)) + drop.radius
     density = drop.mass / (4.0 / 3.0 * math.pi * drop.radius**3)
     text = f"""\
@@ -155,5 +156,5 @@ FORMAT = ExportFormat(
     tested="run with LAMMPS 22 Jul 2025, update 4, beside vibroimpact's drops between rigid bodies",
     write=_write,
     notes=_notes,
-    told=as_rigid,
+    prepare=as_rigid,
 )

@@ -1,4 +1,4 @@
-"""MATLAB: one .mat file with structs of everything that a drop is and what came of it, and their units."""
+"""MATLAB: one .mat file with structs of a drop, its response and the units."""
 
 from __future__ import annotations
 
@@ -14,18 +14,17 @@ from vibroimpact._version import __version__
 from vibroimpact.contact.law import unit_of
 from vibroimpact.exporting.drop import Drop
 from vibroimpact.exporting.drop_tables import Table, tables_of
-from vibroimpact.exporting.export_format import ExportFormat
-from vibroimpact.exporting.script_text import file_name
+from vibroimpact.exporting.export_format import ExportFormat, file_name
 from vibroimpact.files.plain_names import one_line, plain_names
 
 _LONGEST = 63
-"""Of a name in MATLAB."""
+"""Largest length of a name in MATLAB."""
 _KEYWORDS = (
     *("break", "case", "catch", "classdef", "continue", "else", "elseif", "end", "for", "function", "global", "if", "otherwise"),
     *("parfor", "persistent", "return", "spmd", "switch", "try", "while"),
 )
 _HEADER = 116
-"""Bytes of text at the start of a file."""
+"""Length of the text header of a file [bytes]."""
 
 
 def write(drop: Drop) -> dict[str, bytes]:
@@ -54,12 +53,13 @@ def write(drop: Drop) -> dict[str, bytes]:
     found["drop"], units["drop"] = _facts(drop)
     file = BytesIO()
     savemat(file, {**found, "units": units}, long_field_names=True, oned_as="column", do_compression=True)
-    text = f"MATLAB 5.0 MAT-file, written by vibroimpact {__version__}".encode().ljust(_HEADER)  # in place of one with the time of day
+    # replaces the header with the time of day, so that files are reproducible
+    text = f"MATLAB 5.0 MAT-file, written by vibroimpact {__version__}".encode().ljust(_HEADER)
     return {file_name(drop, ".mat"): text + file.getvalue()[_HEADER:]}
 
 
 def legal_names(names: list[str]) -> dict[str, str]:
-    """Return for each name one that a field of a struct can have in MATLAB, no two alike.
+    """Return for each name a distinct valid name of a struct field in MATLAB.
 
     Examples
     --------
@@ -98,8 +98,8 @@ def _signal(drop: Drop, name: str, table: Table) -> dict[str, Any]:
 
 
 def _facts(drop: Drop) -> tuple[dict[str, Any], dict[str, Any]]:
-    """Return what is dropped on what, and the units."""
-    told: Mapping[str, tuple[Any, str]] = {
+    """Return the data of the drop (bodies, initial state, contact law), and their units."""
+    stated: Mapping[str, tuple[Any, str]] = {
         "name": (one_line(drop.name), ""),
         "radius": (drop.radius, "m"),
         "mass": (drop.mass, "kg"),
@@ -112,12 +112,13 @@ def _facts(drop: Drop) -> tuple[dict[str, Any], dict[str, Any]]:
         "elastic": (", ".join(drop.elastic), ""),
         "contact_law": (drop.laws[0].name, ""),
     }
-    facts = {name: value for name, (value, _) in told.items()}
-    units: dict[str, Any] = {name: unit for name, (_, unit) in told.items() if unit}
+    facts = {name: value for name, (value, _) in stated.items()}
+    units: dict[str, Any] = {name: unit for name, (_, unit) in stated.items() if unit}
     for name in ("sphere", "plate"):
         material = getattr(drop, f"{name}_material")
         for key, unit in (("density", "kg/m3"), ("youngs_modulus", "Pa"), ("poissons_ratio", "1")):
             facts[f"{name}_{key}"], units[f"{name}_{key}"] = getattr(material, key), unit
+    # each parameter of the law as an array over the laws of the impacts
     law, law_units = {}, {}
     for item in fields(drop.laws[0]):
         values = [getattr(one, item.name) for one in drop.laws]

@@ -1,4 +1,4 @@
-"""MuJoCo: a model in MJCF with a sphere above a plane, whose soft contact is a linear spring and dashpot."""
+"""MuJoCo: an MJCF model of a sphere above a plane; its soft contact is a linear spring and dashpot."""
 
 from __future__ import annotations
 
@@ -9,24 +9,30 @@ from xml.sax.saxutils import quoteattr
 
 from vibroimpact.contact.laws.adams_impact import AdamsImpact
 from vibroimpact.dynamics.restitution import achieved_restitution
-from vibroimpact.exporting.contact_alone import approach_speeds, clipped_dashpot, first_contact, laws_of_impacts, shared_notes, spring
+from vibroimpact.exporting.contact_parameters import (
+    approach_speeds,
+    clipped_dashpot,
+    first_contact,
+    laws_of_impacts,
+    power_law_spring,
+    shared_notes,
+)
 from vibroimpact.exporting.drop import Drop
-from vibroimpact.exporting.export_format import ExportFormat
+from vibroimpact.exporting.export_format import ExportFormat, comment_lines, file_name
 from vibroimpact.exporting.rigid_drop import as_rigid
-from vibroimpact.exporting.script_text import comment_lines, file_name
 from vibroimpact.files.plain_names import plain_words
 
 _STEPS = 1000
-"""Steps in the first contact: its restitution is then right to 1e-3."""
+"""Steps in the first contact: the error of its restitution is then 1e-3."""
 
 _IMPEDANCE = 0.9999
-"""The largest that MuJoCo allows; what is missing to 1 is left to the free motion."""
+"""Largest impedance that MuJoCo allows; the remainder to 1 is unconstrained motion."""
 
 
 def _linear(drop: Drop) -> AdamsImpact:
-    """Return the linear spring and dashpot, which never pulls, with restitution and duration of the drop's first contact."""
+    """Return the linear spring-dashpot without tension that has the restitution and duration of the drop's first contact."""
     law, speed = laws_of_impacts(drop)[0], approach_speeds(drop)[0]
-    spring(law, "MuJoCo")
+    power_law_spring(law, "MuJoCo")
     restitution = float(achieved_restitution(law, drop.mass, speed))
     duration, _ = first_contact(law, drop)
 
@@ -35,7 +41,7 @@ def _linear(drop: Drop) -> AdamsImpact:
         depth = speed * math.sqrt(drop.mass / stiffness)
         return AdamsImpact(stiffness=stiffness, exponent=1.0, damping_max=dashpot, full_damping_penetration=1e-7 * depth)
 
-    # the damping ratio is told by the restitution, so the duration goes with the period
+    # the restitution fixes the damping ratio, so the duration is proportional to the period
     trial = drop.mass * (math.pi / duration) ** 2
     return achieving(trial * (first_contact(achieving(trial), drop)[0] / duration) ** 2)
 
@@ -44,7 +50,7 @@ def _write(drop: Drop) -> Mapping[str, bytes]:
     linear, laws = _linear(drop), laws_of_impacts(drop)
     duration, force = first_contact(linear, drop)
     _, own_force = first_contact(laws[0], drop)
-    length, width, _ = drop.plate_size or (0.0, 0.0, 0.0)  # zero: without an edge
+    length, width, _ = drop.plate_size or (0.0, 0.0, 0.0)  # zero means infinite extent
     x, y = (float(value) for value in drop.position)
     inertia = 0.4 * drop.mass * drop.radius**2
     comment = f"""\
@@ -54,7 +60,7 @@ The contact law is {laws[0].name}: {laws[0].equation}
 solref = -(stiffness / mass), -(damping / mass) of the contact: {linear.stiffness:.9g} N/m and {linear.damping_max:.9g} N s/m.
 Duration of the first contact {duration:.6g} s; largest force {force:.6g} N, where the law has {own_force:.6g} N.
 The sphere's height above the plate is qpos[0], its velocity qvel[0]."""
-    comment = re.sub("-(?=-)", "- ", comment)  # two of them end a comment
+    comment = re.sub("-(?=-)", "- ", comment)  # two hyphens would end the XML comment
     text = f"""\
 <!--
 {comment}
@@ -83,7 +89,7 @@ The sphere's height above the plate is qpos[0], its velocity qvel[0]."""
 
 def _notes(drop: Drop) -> list[str]:
     laws, notes = laws_of_impacts(drop), shared_notes(drop)
-    _, exponent = spring(laws[0], "MuJoCo")
+    _, exponent = power_law_spring(laws[0], "MuJoCo")
     speed = approach_speeds(drop)[0]
     notes.append(
         f"MuJoCo's contact is a linear spring and dashpot that does not pull; it stands for {laws[0].name} and has its restitution and "
@@ -103,5 +109,5 @@ FORMAT = ExportFormat(
     tested="run with MuJoCo 3.2.7 and 3.17.0, the first impact beside vibroimpact's between rigid bodies",
     write=_write,
     notes=_notes,
-    told=as_rigid,
+    prepare=as_rigid,
 )

@@ -12,7 +12,7 @@ from vibroimpact.files.plain_names import one_line
 
 
 def write(drop: Drop) -> dict[str, bytes]:
-    """Return a file each table.
+    """Return one file per table.
 
     Raises
     ------
@@ -28,12 +28,12 @@ def _bytes(table: Table, title: str) -> bytes:
         import pyarrow.parquet
     except ImportError:
         raise InputError('Parquet needs pyarrow, which is not installed: pip install "vibroimpact[parquet]"') from None
-    arrays = [pyarrow.array(column.values, from_pandas=True) for column in table.values()]  # which takes NaN as no value
-    told = [{"unit": column.unit, "long_name": column.meaning} for column in table.values()]
-    fields = [pyarrow.field(name, array.type, metadata=words) for name, array, words in zip(table, arrays, told, strict=True)]
-    whole = pyarrow.Table.from_arrays(arrays, schema=pyarrow.schema(fields, metadata={"title": title}))
+    arrays = [pyarrow.array(column.values, from_pandas=True) for column in table.values()]  # NaN becomes null
+    metadata = [{"unit": column.unit, "long_name": column.meaning} for column in table.values()]
+    fields = [pyarrow.field(name, array.type, metadata=words) for name, array, words in zip(table, arrays, metadata, strict=True)]
+    result = pyarrow.Table.from_arrays(arrays, schema=pyarrow.schema(fields, metadata={"title": title}))
     file = BytesIO()
-    pyarrow.parquet.write_table(whole, file)
+    pyarrow.parquet.write_table(result, file)
     return file.getvalue()
 
 

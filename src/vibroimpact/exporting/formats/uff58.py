@@ -1,4 +1,4 @@
-"""Universal file, dataset 58: signals, and the sphere's motion and force, as functions of time for programs of vibration testing."""
+"""Universal file, dataset 58: signals, motion and force of the sphere as functions of time, for vibration-testing programs."""
 
 from __future__ import annotations
 
@@ -16,22 +16,21 @@ from vibroimpact._version import __version__
 from vibroimpact.arrays import Floats
 from vibroimpact.errors import InputError
 from vibroimpact.exporting.drop import Drop
-from vibroimpact.exporting.export_format import ExportFormat
+from vibroimpact.exporting.export_format import ExportFormat, file_name
 from vibroimpact.exporting.resample import motion_at
-from vibroimpact.exporting.script_text import file_name
 from vibroimpact.files.plain_names import one_line, plain_words
 from vibroimpact.measurements.universal_file import SPHERE_FUNCTIONS
 
 _IN_CONTACT = 20
-"""Samples of the history in the shortest contact, at least: then a half-sine's peak is read to 0.3 %."""
+"""Least number of history samples in the shortest contact: the peak of a half-sine is then accurate to 0.3 %."""
 _MOST_SAMPLES = 2_000_000
-"""Of a function of the history."""
+"""Largest number of samples of the history."""
 _SPHERE, _FIRST_SENSOR = 1, 2  # nodes
-_UP = 3  # the direction +z
+_UP = 3  # direction +z
 _LINE = 80
-"""Letters of a line of text."""
+"""Characters of a line of text."""
 _MOST_NAMED = 10
-"""Sensors that are told by name."""
+"""Largest number of sensors that a note names."""
 _QUANTITIES = {"displacement": 8, "velocity": 11, "acceleration": 12}
 
 
@@ -40,7 +39,7 @@ class _Function:
     words: str
     node: int
     direction: int
-    kind: int  # of data, as dataset 58 numbers them
+    kind: int  # data type of the ordinate in dataset 58
     unit: str
     rate: float
     values: Floats
@@ -63,18 +62,18 @@ def write(drop: Drop) -> dict[str, bytes]:
         import pyuff
     except ImportError:
         raise InputError('universal files need pyuff, which is not installed: pip install "vibroimpact[uff]"') from None
-    with TemporaryDirectory() as folder, warnings.catch_warnings():  # pyuff writes to files alone
-        warnings.simplefilter("ignore", ResourceWarning)  # and leaves it to Python to close them after binary data
+    with TemporaryDirectory() as folder, warnings.catch_warnings():  # pyuff writes only to files
+        warnings.simplefilter("ignore", ResourceWarning)  # pyuff does not close a file after binary data
         path = Path(folder, "drop.uff")
         pyuff.UFF(str(path)).write_sets([_header(drop), _si(), *(_dataset(one, drop) for one in functions)], "overwrite")
         return {file_name(drop, ".uff"): path.read_bytes()}
 
 
 def history_rate(drop: Drop) -> float | None:
-    """Return at how many samples a second the history is written [Hz]: enough for the shortest contact, on the sensors' times.
+    """Return the sampling rate of the history [Hz], which resolves the shortest contact.
 
-    It is a whole multiple of the rate of the fastest sensor; without sensors 1, 2 or 5 times a power of ten, so that the step is
-    exact in the few digits that the format gives it. None if no contact has a duration, or there would be too many samples.
+    An integer multiple of the rate of the fastest sensor; without sensors 1, 2 or 5 times a power of ten, so that the step is exact in
+    the few digits of the format. None if no contact has a positive duration, or there would be too many samples.
     """
     durations = drop.impacts["duration_s"][drop.impacts["duration_s"] > 0.0] if drop.impacts else np.zeros(0)
     if not len(durations) or not len(drop.history.get("time_s", ())):
@@ -107,7 +106,7 @@ def _of_history(drop: Drop) -> Iterator[_Function]:
 
 
 def _direction(along: tuple[float, float, float]) -> int:
-    """Return the number of an axis, negative against it; 0 if it is none."""
+    """Return the number of the axis along a direction, negative for the opposite direction; 0 if it is not along an axis."""
     for axis, part in enumerate(along, 1):
         if abs(part) > 1.0 - 1e-9:
             return axis if part > 0.0 else -axis
@@ -145,7 +144,7 @@ def _dataset(one: _Function, drop: Drop) -> dict[str, Any]:
         "orddenom_spec_data_type": 0,
         "z_axis_spec_data_type": 0,
         **labels,
-        "x": np.array([0.0, 1.0 / one.rate]),  # of which the start and the step are written
+        "x": np.array([0.0, 1.0 / one.rate]),  # only the start and the step are written
         "data": one.values,
     }
 

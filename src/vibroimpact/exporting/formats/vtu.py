@@ -1,4 +1,4 @@
-"""VTU: the sphere and the plate's upper side over time, as ParaView plays them."""
+"""VTU: animation of the sphere and the plate's upper surface for ParaView."""
 
 from __future__ import annotations
 
@@ -15,22 +15,22 @@ from vibroimpact.exporting.resample import motion_at
 from vibroimpact.files.plain_names import one_line
 
 Cells = tuple[NDArray[np.float32], NDArray[np.int32]]
-"""Points (points, 3) [m], and the corners (cells, 4) of quadrilaterals; at the poles they have no width."""
+"""Points (points, 3) [m], and connectivity (cells, 4) of quadrilaterals, degenerate at the poles."""
 
 _EVEN, _IMPACTS = 200, 20
-"""Frames of the history spread evenly, and impacts whose touch, deepest point and release are frames too."""
+"""Number of equidistant frames, and of impacts whose first touch, maximum indentation and release are further frames."""
 _AROUND, _DOWN = 32, 16
-"""Quadrilaterals of the sphere, around it and from pole to pole."""
+"""Quadrilaterals of the sphere around its axis and from pole to pole."""
 _QUADRILATERAL, _BRICK = 9, 12
 
 
 def write(drop: Drop) -> dict[str, bytes]:
-    """Return `sphere.pvd` and `plate.pvd`, and a file each frame; of a flat plate `plate.vtu` alone.
+    """Return `sphere.pvd` and `plate.pvd`, with one file per frame; a plate without deflection is `plate.vtu`.
 
     Raises
     ------
     InputError
-        If the drop has neither a history nor a deflected surface.
+        If the drop has neither a history nor the motion of the plate's surface.
     """
     times, height = _sphere_path(drop)
     points, cells = _sphere(drop)
@@ -54,12 +54,12 @@ def _sphere_path(drop: Drop) -> tuple[Floats, Floats]:
     if drop.impacts:
         touch, duration, deepest = (drop.impacts[name][:_IMPACTS] for name in ("time_s", "duration_s", "time_of_max_indentation_s"))
         events = np.concatenate([touch, touch + duration, deepest])
-        times = np.union1d(times, events[(events >= 0.0) & (events <= times[-1])])  # which leaves out what is no number
+        times = np.union1d(times, events[(events >= 0.0) & (events <= times[-1])])  # without NaN
     return times, motion_at(drop.history, times)["position_m"]
 
 
 def _series(name: str, times: Floats, texts: list[bytes]) -> dict[str, bytes]:
-    from vibroimpact.meshes.vtu_series import collection_text  # which loads sparse matrices
+    from vibroimpact.meshes.vtu_series import collection_text  # imported here, since it loads scipy.sparse
 
     files = {f"{name}/{name}_{number:03d}.vtu": text for number, text in enumerate(texts)}
     return {f"{name}.pvd": collection_text(times.tolist(), files).encode(), **files}
@@ -70,14 +70,14 @@ def _text(points: NDArray[np.float32], cells: NDArray[np.int32], moved: NDArray[
 
 
 def _file(points: NDArray[np.float32], cells: NDArray[np.int32], kind: int, values: dict[str, NDArray[np.float32]]) -> bytes:
-    from vibroimpact.meshes.write_vtu import vtu_text  # which loads sparse matrices
+    from vibroimpact.meshes.write_vtu import vtu_text  # imported here, since it loads scipy.sparse
 
     ends = np.cumsum(np.full(len(cells), cells.shape[1], dtype=np.int32), dtype=np.int32)
     return vtu_text(points, cells.ravel(), ends, np.full(len(cells), kind, dtype=np.uint8), values).encode()
 
 
 def _sphere(drop: Drop) -> Cells:
-    """Return the sphere around the place where its centre is when its height is zero."""
+    """Return the surface mesh of the sphere with its centre at height zero."""
     around = np.linspace(0.0, 2.0 * np.pi, _AROUND, endpoint=False)
     down = np.linspace(0.0, np.pi, _DOWN + 1)
     ring = np.stack([np.cos(around), np.sin(around), np.zeros(_AROUND)], axis=1)
@@ -90,24 +90,24 @@ def _sphere(drop: Drop) -> Cells:
 
 
 def _surface(drop: Drop) -> tuple[NDArray[np.float32], NDArray[np.int32], Bools]:
-    """Return the points of the plate's upper side at rest, its cells, and which points of the grid lie on the plate."""
+    """Return points and cells of the plate's upper surface at rest, and a mask of the grid points on the plate."""
     x, y = np.meshgrid(drop.surface["x"], drop.surface["y"])
     on_plate = np.isfinite(drop.surface["height"][0])
     number = np.cumsum(on_plate.ravel()).reshape(on_plate.shape) - 1
     squares = [part.ravel() for part in _corners(on_plate)]
-    whole = np.logical_and.reduce(squares)
-    cells = np.stack([part.ravel()[whole] for part in _corners(number)], axis=1)
+    inside = np.logical_and.reduce(squares)
+    cells = np.stack([part.ravel()[inside] for part in _corners(number)], axis=1)
     points = np.stack([x, y, np.zeros_like(x)], axis=-1).reshape(-1, 3)[on_plate.ravel()]
     return points.astype(np.float32), cells.astype(np.int32), on_plate.ravel()
 
 
 def _corners(grid: NDArray[np.generic]) -> Iterator[NDArray[np.generic]]:
-    """Yield a grid at the four corners of its squares, around them."""
+    """Yield the values of a grid at the four corners of its cells, in cyclic order."""
     yield from (grid[:-1, :-1], grid[:-1, 1:], grid[1:, 1:], grid[1:, :-1])
 
 
 def _box(size: tuple[float, float, float]) -> bytes:
-    """Return a plate that does not move; its upper side lies at z = 0."""
+    """Return a plate at rest as one brick; its upper surface is z = 0."""
     corners = [(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)]
     points = np.array([(x, y, z) for z in (-1.0, 0.0) for x, y in corners]) * np.array(size)
     return _file(points.astype(np.float32), np.arange(8, dtype=np.int32)[None, :], _BRICK, {})

@@ -1,4 +1,4 @@
-"""WAV: the signals of the sensors, to be heard, and for programs that analyse sound."""
+"""WAV: the signals of the sensors as audio files."""
 
 from __future__ import annotations
 
@@ -14,17 +14,17 @@ from vibroimpact.exporting.export_format import ExportFormat
 from vibroimpact.files.plain_names import one_line, plain_names
 
 _HIGHEST_RATE = 2**32 // 4 - 1
-"""Samples a second: the header holds the bytes a second in 32 bits."""
+"""Largest sampling rate [Hz]: the header stores bytes per second in 32 bits."""
 _MOST_BYTES = 2**32 - 1024
 
 
 def write(drop: Drop) -> dict[str, bytes]:
-    """Return a file each sensor.
+    """Return one file per sensor.
 
     Raises
     ------
     InputError
-        If there is no sensor, or WAV can't hold its rate or its length.
+        If there is no sensor, or WAV can't represent its rate or its length.
     """
     if not drop.signals:
         raise InputError(f'"{one_line(drop.name)}" has no sensors, and a WAV file holds the signal of one; add [[sensors]] to the case')
@@ -32,7 +32,7 @@ def write(drop: Drop) -> dict[str, bytes]:
 
 
 def full_scale(signal: Signal) -> float:
-    """Return the value that stands as 1 in the file: the largest magnitude of the signal; 1 if it is zero throughout."""
+    """Return the value scaled to 1 in the file: the largest magnitude of the signal; 1 if the signal is zero throughout."""
     return float(np.abs(signal.value).max(initial=0.0)) or 1.0
 
 
@@ -58,10 +58,10 @@ def _file(signal: Signal) -> bytes:
 def _with_comment(wave: bytes, words: str) -> bytes:
     """Return a WAV file with a comment, as the chunk LIST INFO ICMT at its end."""
     text = words.encode("utf-8") + b"\0"
-    text += b"\0" * (len(text) % 2)  # chunks begin at even places
+    text += b"\0" * (len(text) % 2)  # chunks start at even offsets
     chunk = b"INFO" + b"ICMT" + struct.pack("<I", len(text)) + text
-    whole = wave[8:] + b"\0" * (len(wave) % 2) + b"LIST" + struct.pack("<I", len(chunk)) + chunk
-    return b"RIFF" + struct.pack("<I", len(whole)) + whole
+    content = wave[8:] + b"\0" * (len(wave) % 2) + b"LIST" + struct.pack("<I", len(chunk)) + chunk
+    return b"RIFF" + struct.pack("<I", len(content)) + content
 
 
 def _notes(drop: Drop) -> list[str]:

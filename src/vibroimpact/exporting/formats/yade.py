@@ -12,7 +12,7 @@ from vibroimpact.contact.law import ContactLaw
 from vibroimpact.contact.laws.hertz import Hertz
 from vibroimpact.contact.laws.tsuji import Tsuji
 from vibroimpact.dynamics.restitution import achieved_restitution, law_achieving
-from vibroimpact.exporting.contact_alone import (
+from vibroimpact.exporting.contact_parameters import (
     approach_speeds,
     clipped_dashpot,
     first_contact,
@@ -21,27 +21,26 @@ from vibroimpact.exporting.contact_alone import (
     shared_notes,
 )
 from vibroimpact.exporting.drop import Drop
-from vibroimpact.exporting.export_format import ExportFormat
+from vibroimpact.exporting.export_format import ExportFormat, comment_lines, file_name
 from vibroimpact.exporting.rigid_drop import as_rigid
-from vibroimpact.exporting.script_text import comment_lines, file_name
 from vibroimpact.files.plain_names import plain_words
 
 _STEPS = 10_000
-"""Steps in the first contact: restitutions and largest forces are then right to 1e-4, but for gravity: damping is calibrated without."""
+"""Steps in the first contact: accuracy 1e-4 of restitution and peak force, gravity apart, which the damping is calibrated without."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class _Clipped(Tsuji):
-    """Tsuji's law as YADE has it: it does not pull."""
+    """Tsuji's law as in YADE: without tension."""
 
     tension = "cut"  # type: ignore[assignment]
 
     def closed_form_restitution(self, mass: Array, speed: Array) -> None:
-        """Return None: integrate."""
+        """Return None: no closed form; the law is integrated."""
 
 
 def _damping(law: ContactLaw, drop: Drop, speed: float) -> float:
-    """Return the damping ratio betan of Mindlin's law in YADE, or the linear law's dashpot [N s/m], that has the restitution."""
+    """Return the damping ratio betan of YADE's Mindlin law, or the dashpot of the linear law [N s/m], with the law's restitution."""
     stiffness, exponent = linear_or_hertzian(drop, "YADE")
     if isinstance(law, Hertz):
         return 0.0
@@ -49,7 +48,7 @@ def _damping(law: ContactLaw, drop: Drop, speed: float) -> float:
     if exponent == 1.0:
         return clipped_dashpot(stiffness, exponent, restitution, drop.mass, speed)
     clipped = _Clipped(stiffness=stiffness, restitution=restitution, effective_mass=drop.mass)
-    # they take the critical damping of the spring's slope, 3/2 K sqrt(delta)
+    # YADE refers the damping ratio to the tangent stiffness 3/2 K sqrt(delta)
     return math.sqrt(5.0 / 6.0) * float(damping_ratio_from_restitution(law_achieving(clipped, restitution, drop.mass, speed).restitution))
 
 
@@ -62,7 +61,9 @@ def _write(drop: Drop) -> Mapping[str, bytes]:
     stiffness, _ = linear_or_hertzian(drop, "YADE")
     dampings = [_damping(law, drop, speed) for law, speed in zip(laws, speeds, strict=False)]
     duration, _ = first_contact(laws[0], drop)
+    # YADE computes the mass from the density
     density = drop.mass / (4.0 / 3.0 * math.pi * drop.radius**3)
+    # YADE combines the properties of two bodies; sphere and wall get values whose combination is the contact's stiffness and damping
     if _linear(drop):
         comment = "# springs and dashpots of sphere and wall are in series: each is twice the contact's"
         material = f"ViscElMat(kn={2.0 * stiffness!r}, cn=2.0 * DAMPING[0], ks=0.0, cs=0.0, density={density!r}, frictionAngle=0.0)"
@@ -156,5 +157,5 @@ FORMAT = ExportFormat(
     tested="run with YADE 2023.02a, beside vibroimpact's drops between rigid bodies",
     write=_write,
     notes=_notes,
-    told=as_rigid,
+    prepare=as_rigid,
 )

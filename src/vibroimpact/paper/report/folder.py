@@ -13,9 +13,9 @@ from typing import Any
 
 from vibroimpact._version import __version__
 from vibroimpact.errors import InputError
+from vibroimpact.files.atomic_write import write_into
 from vibroimpact.files.check_sums import read_sealed, sealed
 from vibroimpact.files.recover import recover
-from vibroimpact.files.write_into_folder import write_into
 from vibroimpact.paper.report.markdown import FIGURES
 from vibroimpact.paper.report.outline import PARTS, Part, find_parts
 from vibroimpact.paper.report.page import report_html, report_text

@@ -1,43 +1,45 @@
-"""The lines of a text file, each knowing where it stands, and the numbers in them."""
+"""Text files of meshes: lines with their file and line number, included files, and numbers."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from os import PathLike
 from pathlib import Path
 from typing import NamedTuple
 
 from vibroimpact.errors import InputError
-from vibroimpact.files.reading import FileKind, about, read_text_bytes
+from vibroimpact.files.atomic_write import write_file
+from vibroimpact.files.reading import FileKind, read_text_bytes, with_path
 from vibroimpact.shown import shortened, shown
 
 MESH = FileKind("a mesh is a file of nodes and elements, in plain text (UTF-8 or Latin-1)", 2_000_000_000, "write a coarser mesh")
-"""What is asked of the file of a mesh."""
+"""Requirements on a mesh file."""
 
 
-class Line(NamedTuple):
-    """One line of a file; lines are counted from 1."""
+class TextLine(NamedTuple):
+    """A line of a file, with its line number from 1."""
 
     path: Path
     number: int
     text: str
 
     def wrong(self, message: str) -> InputError:
-        """Return the error that says where and what."""
+        """Return an error that names file, line number and fault."""
         return InputError(f"{shortened(str(self.path), 200)}:{self.number}: {message}")
 
 
-def read_lines(path: Path) -> list[Line]:
-    """Return the lines of a text file in UTF-8, or else in Latin-1, which older programs write.
+def read_lines(path: Path) -> list[TextLine]:
+    """Return the lines of a text file in UTF-8, or if it is not UTF-8, in Latin-1, which older programs write.
 
     Raises
     ------
     InputError
-        If there is no such file, or it is not text.
+        If the file does not exist, is empty or is not text.
     """
     try:
         data = read_text_bytes(path, MESH)
     except InputError as error:
-        raise about(path, error) from None
+        raise with_path(path, error) from None
     if not data.strip():
         raise InputError(f"{path}: the file is empty; a mesh file holds nodes and elements")
     try:
@@ -45,20 +47,20 @@ def read_lines(path: Path) -> list[Line]:
     except UnicodeDecodeError:
         text = data.decode("latin-1")
     rows = text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
-    return [Line(path, number, row) for number, row in enumerate(rows, 1)]
+    return [TextLine(path, number, row) for number, row in enumerate(rows, 1)]
 
 
-def lines_with_includes(path: Path, included: Callable[[str], str | None]) -> Iterator[Line]:
-    """Yield the lines of a file and, after a line that includes another file, the lines of that one.
+def read_lines_with_includes(path: Path, included: Callable[[str], str | None]) -> Iterator[TextLine]:
+    """Yield the lines of a file, with the lines of an included file after the line that includes it.
 
-    No file is read twice, which ends loops and keeps small files from growing without bound.
+    A file may be included once, which rules out cycles and exponential growth.
 
     Parameters
     ----------
     path : Path
-        The file to start with.
+        The main file.
     included : callable
-        From a line to the name of the file that it includes, relative to its own or the first one; None if it includes none.
+        Returns the name of the file that a line includes, relative to the including or the main file; None if it includes none.
 
     Raises
     ------
@@ -78,8 +80,8 @@ def lines_with_includes(path: Path, included: Callable[[str], str | None]) -> It
             stack.append(iter(_included_lines(line, name, path.parent, seen)))
 
 
-def _included_lines(line: Line, name: str, root: Path, seen: set[Path]) -> list[Line]:
-    """Return the lines of a file next to the one that includes it, or next to the first one."""
+def _included_lines(line: TextLine, name: str, root: Path, seen: set[Path]) -> list[TextLine]:
+    """Return the lines of an included file, found relative to the including file or to the main file."""
     name = name.replace("\\", "/")
     try:
         inner = next((folder / name for folder in (line.path.parent, root) if (folder / name).is_file()), root / name)
@@ -93,13 +95,27 @@ def _included_lines(line: Line, name: str, root: Path, seen: set[Path]) -> list[
     return lines
 
 
-def whole(text: str, line: Line, what: str) -> int:
-    """Return the whole number from 0 on that `text` is.
+def write_text_file(path: str | PathLike[str], text: str) -> None:
+    """Write a text file atomically.
 
     Raises
     ------
     InputError
-        If it is none, or has more than 18 digits.
+        If it can't be written.
+    """
+    try:
+        write_file(Path(path), text.encode())
+    except OSError as error:
+        raise InputError(f"{path}: the file can't be written: {error.strerror}") from None
+
+
+def parse_integer(text: str, line: TextLine, what: str) -> int:
+    """Return `text` as a non-negative integer.
+
+    Raises
+    ------
+    InputError
+        If it is not one, or has more than 18 digits.
     """
     text = text.strip()
     if not (text.isascii() and text.isdigit() and len(text) <= 18):
@@ -107,13 +123,13 @@ def whole(text: str, line: Line, what: str) -> int:
     return int(text)
 
 
-def real(text: str, line: Line) -> float:
-    """Return the number that `text` is; whether it is finite is checked where it is used.
+def parse_real(text: str, line: TextLine) -> float:
+    """Return `text` as a float; the caller checks that it is finite.
 
     Raises
     ------
     InputError
-        If it is none.
+        If it is not a number.
     """
     try:
         if "_" in text:

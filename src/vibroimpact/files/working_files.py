@@ -1,7 +1,9 @@
-"""What is being written has a name of its own beside its place, and is locked by who writes it: what no living process holds is left over.
+"""Working files and folders of atomic writes: their names, their locks, and the leftovers of processes that died.
 
-A working file or folder is called `.vibroimpact-PLACE-NUMBER.KIND`: a digest of the name that it is to have, a random number, and
-what it is. The kernel frees the lock of a process that dies, whatever ended it, and no number of a process can be mistaken for another's.
+A working file or folder is called `.vibroimpact-PLACE-NUMBER.KIND`: a digest of the name of its target, a random number, and its kind.
+The writing process holds an advisory lock (flock) on the working file or folder itself; the kernel releases the lock when the process
+ends, however it ends. A working file that nobody has locked is a leftover. This needs no lock file and no process number (which may be
+reused), and the lock stays in force when the file or folder is renamed.
 """
 
 from __future__ import annotations
@@ -21,16 +23,16 @@ try:
 except ImportError:  # Windows
     fcntl = None  # type: ignore[assignment]
 
-NEW, OLD, WHOLE = "new", "old", "whole"
-"""What is not whole yet; what made way for it, and is needed until that is in place; and what is whole, and on its way."""
+NEW, OLD, COMPLETE = "new", "old", "whole"
+"""Kinds: not yet complete; the replaced folder, kept until the new one is in place; complete, its files being moved."""
 
-_NAME = re.compile(rf"\.vibroimpact-([0-9a-f]{{16}})-[0-9a-f]{{12}}\.({NEW}|{OLD}|{WHOLE})")
+_NAME = re.compile(rf"\.vibroimpact-([0-9a-f]{{16}})-[0-9a-f]{{12}}\.({NEW}|{OLD}|{COMPLETE})")
 _TRIES = 100
-_ABANDONED = 86_400.0  # seconds without a change after which it is left over, where a file system knows no locks
+_ABANDONED = 86_400.0  # seconds without a change after which it counts as a leftover, on file systems without locks
 
 
 def working_path(target: Path, kind: str) -> Path:
-    """Return a path beside `target` that nothing else has.
+    """Return an unused path in the folder of `target`.
 
     Examples
     --------
@@ -41,49 +43,50 @@ def working_path(target: Path, kind: str) -> Path:
 
 
 def inner_path(folder: Path, kind: str) -> Path:
-    """Return a path in a folder, for files that are on their way into it, that nothing else has."""
+    """Return an unused path inside a folder, for files to be written into that folder."""
     return folder / f".vibroimpact-{_place('')}-{secrets.token_hex(6)}.{kind}"
 
 
-def leftovers(target: Path) -> list[tuple[Path, str]]:
-    """Return what is being written, or was left over, beside `target`, each with its kind."""
+def working_paths(target: Path) -> list[tuple[Path, str]]:
+    """Return the working files and folders of `target`, each with its kind, in use or left over."""
     return _found(target.parent, _place(target.name))
 
 
-def inner_leftovers(folder: Path) -> list[tuple[Path, str]]:
-    """Return what is on its way, or was left over, in a folder, each with its kind."""
+def inner_working_paths(folder: Path) -> list[tuple[Path, str]]:
+    """Return the working folders of files to be written into a folder, each with its kind, in use or left over."""
     return _found(folder, _place(""))
 
 
-def all_leftovers(folder: Path) -> list[tuple[Path, str]]:
-    """Return all that is being written, or was left over, in a folder, whatever it is to be."""
+def all_working_paths(folder: Path) -> list[tuple[Path, str]]:
+    """Return all working files and folders in a folder, whatever their target, each with its kind."""
     return _found(folder, None)
 
 
 @contextmanager
-def begun(name: Callable[[], Path], make: Callable[[Path], object], target: Path) -> Iterator[Path]:
-    """Make a working file or folder and hold it; remove it if the block ends with an error.
+def new_working_path(name: Callable[[], Path], make: Callable[[Path], object], target: Path) -> Iterator[Path]:
+    """Create a working file or folder, lock it for the duration of the block, and remove it if the block raises.
 
     Parameters
     ----------
     name : callable
-        Returns a path that nothing has.
+        Returns an unused path.
     make : callable
-        Makes an empty file or folder there.
+        Creates an empty file or folder at a path.
     target : pathlib.Path
-        What it is for; errors of the disk name this, and not the working name.
+        The destination; an OSError names it in place of the working path.
 
     Raises
     ------
     OSError
-        If it can't be made, or what is written in the block can't be.
+        If it can't be created, or the block raises one.
     """
+    # another process may clear a working file between its creation and its lock: then try the next name
     for _ in range(_TRIES):
         working = name()
         try:
             make(working)
-            with held(working) as mine:
-                if mine:
+            with locked(working) as is_locked:
+                if is_locked:
                     yield working
                     return
         except OSError as error:
@@ -98,10 +101,10 @@ def begun(name: Callable[[], Path], make: Callable[[Path], object], target: Path
 
 
 @contextmanager
-def held(path: Path) -> Iterator[bool]:
-    """Hold a file or a folder for as long as the block lasts, by whatever name it goes then.
+def locked(path: Path) -> Iterator[bool]:
+    """Lock a file or a folder for the duration of the block, also if it is renamed there.
 
-    Gives False if another process has just taken it for left over: it is gone, or going.
+    Yields False if another process is clearing it as a leftover, or has done so.
     """
     descriptor = _opened(path)
     if descriptor is None:
@@ -114,10 +117,10 @@ def held(path: Path) -> Iterator[bool]:
 
 
 @contextmanager
-def left_over(path: Path) -> Iterator[bool]:
-    """Is it left over? Then no other process takes it for its own, or clears it, within the block."""
+def abandoned(path: Path) -> Iterator[bool]:
+    """Yield whether a working file or folder is a leftover; if so, it is locked against other processes during the block."""
     if path.is_symlink():
-        yield True  # it stood for a folder until that was replaced
+        yield True  # the replaced target was a symbolic link
         return
     descriptor = _opened(path)
     if descriptor is None:
@@ -131,7 +134,7 @@ def left_over(path: Path) -> Iterator[bool]:
 
 
 def remove(path: Path) -> None:
-    """Remove a file, a link or a folder as far as that can be done."""
+    """Remove a file, a link or a folder, ignoring errors."""
     with suppress(OSError):
         if path.is_dir() and not path.is_symlink():
             shutil.rmtree(path, ignore_errors=True)
@@ -140,10 +143,12 @@ def remove(path: Path) -> None:
 
 
 def _place(name: str) -> str:
+    """Return the digest of a target's name; "" stands for the folder itself."""
     return sha256(name.encode("utf-8", "surrogateescape")).hexdigest()[:16]
 
 
 def _found(folder: Path, place: str | None) -> list[tuple[Path, str]]:
+    """Return the working files in a folder, each with its kind: those of one target, or of all if `place` is None."""
     try:
         names = os.listdir(folder)
     except OSError:
@@ -153,7 +158,7 @@ def _found(folder: Path, place: str | None) -> list[tuple[Path, str]]:
 
 
 def _opened(path: Path) -> int | None:
-    """Return a descriptor to be locked; None where there are no locks, or nothing to open."""
+    """Return a descriptor to lock; None if the system has no flock, or the path can't be opened."""
     if fcntl is None:
         return None
     try:
@@ -163,7 +168,7 @@ def _opened(path: Path) -> int | None:
 
 
 def _lock(descriptor: int, *, shared: bool) -> bool | None:
-    """Lock, and return whether that was possible; None where the file system knows no such lock."""
+    """Try to lock a descriptor without waiting; return whether it succeeded, or None if the file system does not support the lock."""
     try:
         fcntl.flock(descriptor, (fcntl.LOCK_SH if shared else fcntl.LOCK_EX) | fcntl.LOCK_NB)
     except BlockingIOError:
@@ -174,7 +179,7 @@ def _lock(descriptor: int, *, shared: bool) -> bool | None:
 
 
 def _is_still(path: Path, descriptor: int) -> bool:
-    """Does a name still stand for what was opened?"""
+    """Return whether a path still refers to the file that was opened."""
     try:
         return os.path.samestat(os.lstat(path), os.fstat(descriptor))
     except OSError:
@@ -182,6 +187,7 @@ def _is_still(path: Path, descriptor: int) -> bool:
 
 
 def _is_old(path: Path) -> bool:
+    """Return whether a file or folder has not changed for `_ABANDONED` seconds."""
     try:
         return time.time() - os.lstat(path).st_mtime > _ABANDONED
     except OSError:

@@ -1,30 +1,27 @@
-"""A mesh as Nastran and Abaqus can take it: shapes that they know, numbered from 1."""
+"""A mesh prepared for Nastran and Abaqus input decks: element shapes that both support, numbered from 1."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from os import PathLike
-from pathlib import Path
 
 import numpy as np
 
 from vibroimpact.arrays import Floats, Integers
 from vibroimpact.errors import InputError
-from vibroimpact.files.write_file import write_file
 from vibroimpact.materials import Material
 from vibroimpact.structures.element_kinds import PLATE_ORDER
 from vibroimpact.structures.mesh import ElementBlock, Mesh
 
-# a square of 3 x 3 nodes, as (row, column): corners, middles of the edges, centre
+# local node order of a 9-node quadrilateral on a 3 x 3 lattice, as (row, column): corners, mid-edge nodes, centre
 _SQUARE = np.array([(0, 0), (0, 2), (2, 2), (2, 0), (0, 1), (1, 2), (2, 1), (1, 0), (1, 1)])
 
 
 @dataclass(frozen=True)
-class Export:
-    """What is written: the nodes in use, and for each block a shape and its nodes, all counted from 1.
+class DeckMesh:
+    """Nodes in use, and element shapes with connectivity, numbered from 1.
 
-    A shape is the kind of the block, except for "hex20" in place of hex27 and "quad8" in place of quad25.
+    The shape is the element kind of the block, except for "hex20" in place of hex27 and "quad8" in place of quad25.
     """
 
     points: Floats
@@ -33,8 +30,8 @@ class Export:
     element_sets: Mapping[str, Integers]
 
 
-def exported(mesh: Mesh) -> Export:
-    """Return a mesh as it is written; sets lose the nodes that no shape uses.
+def deck_mesh(mesh: Mesh) -> DeckMesh:
+    """Return a mesh with the element shapes of the decks; nodes that no shape uses are dropped, also from the sets.
 
     Raises
     ------
@@ -49,7 +46,7 @@ def exported(mesh: Mesh) -> Export:
         np.arange(mesh.number_of_elements),
         np.concatenate([np.full(len(block.connectivity), 4 if block.kind == "quad25" else 1) for block in mesh.blocks]),
     )
-    return Export(
+    return DeckMesh(
         np.asarray(mesh.nodes, dtype=float)[used],
         [(shape, np.searchsorted(used, nodes) + 1) for shape, nodes in shapes],
         _without_empty({name: np.flatnonzero(np.isin(used, nodes)) + 1 for name, nodes in mesh.node_sets.items()}),
@@ -58,7 +55,7 @@ def exported(mesh: Mesh) -> Export:
 
 
 def nine_node_shells(connectivity: Integers) -> Integers:
-    """Return four shells of nine nodes (corners, edges, centre) for each plate element of five by five nodes.
+    """Return the connectivity of four 9-node shells (corners, edges, centre) for each plate element of 5 by 5 nodes.
 
     Examples
     --------
@@ -71,8 +68,8 @@ def nine_node_shells(connectivity: Integers) -> Integers:
     return np.stack(squares, axis=1).reshape(-1, len(_SQUARE))
 
 
-def check_elastic(material: Material) -> None:
-    """Check that another program can take a material.
+def check_deck_material(material: Material) -> None:
+    """Check that a material can be written to a deck.
 
     Raises
     ------
@@ -83,7 +80,7 @@ def check_elastic(material: Material) -> None:
         raise InputError(f'the material "{material.name}" is rigid or has no density; one that is written to a file must have both')
 
 
-def check_thickness(thickness: float | None) -> None:
+def check_shell_thickness(thickness: float | None) -> None:
     """Check the thickness of shells.
 
     Raises
@@ -93,20 +90,6 @@ def check_thickness(thickness: float | None) -> None:
     """
     if thickness is not None and not 0 < thickness < np.inf:
         raise InputError(f"{thickness:g} m is not allowed; it must be greater than 0 and finite", "thickness")
-
-
-def write_text(path: str | PathLike[str], text: str) -> None:
-    """Write a text file, whole or not at all.
-
-    Raises
-    ------
-    InputError
-        If it can't be written.
-    """
-    try:
-        write_file(Path(path), text.encode())
-    except OSError as error:
-        raise InputError(f"{path}: the file can't be written: {error.strerror}") from None
 
 
 def _shape(block: ElementBlock) -> tuple[str, Integers]:

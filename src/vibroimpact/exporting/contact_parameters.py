@@ -1,12 +1,14 @@
-"""The contact of a drop for programs that have laws of their own: its spring, and what it loses."""
+"""Contact parameters of a drop for programs with contact laws of their own, and the limitations of such an export."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import fields
 from functools import cache
 
 import numpy as np
 
+from vibroimpact.arrays import Floats
 from vibroimpact.bodies.body import Body
 from vibroimpact.bodies.plate import rigid_plate
 from vibroimpact.calibration.speed_function import SpeedFunction
@@ -20,17 +22,19 @@ from vibroimpact.dynamics.restitution import law_achieving
 from vibroimpact.dynamics.simulate import simulate
 from vibroimpact.errors import InputError
 from vibroimpact.exporting.drop import Drop
-from vibroimpact.exporting.rigid_notes import rigid_notes
 from vibroimpact.ranges import Range
+
+_SHOWN = 5
+"""Impacts whose restitution a note gives."""
 
 
 def approach_speeds(drop: Drop) -> list[float]:
-    """Return the approach speed of each impact of a drop of rigid bodies [m/s].
+    """Return the approach speed of each impact of a drop between rigid bodies [m/s].
 
     Raises
     ------
     InputError
-        If it has no impact, or there is no gravity.
+        If it has no impact, or gravity is zero.
     """
     assert drop.rigid is None, "the approach speeds of what deforms are not those that rigid bodies have: take as_rigid(drop)"
     if drop.gravity == 0.0:
@@ -42,9 +46,9 @@ def approach_speeds(drop: Drop) -> list[float]:
 
 
 def laws_of_impacts(drop: Drop) -> list[ContactLaw]:
-    """Return the contact law of the first impact, the second, ..., with the value that a function has at its approach speed.
+    """Return the contact law of the first impact, the second, ..., with a fitted function evaluated at each approach speed.
 
-    There is one law if it is the same for all.
+    One law if it is the same for all impacts.
     """
     speeds = approach_speeds(drop)
     if drop.function is None:
@@ -53,23 +57,23 @@ def laws_of_impacts(drop: Drop) -> list[ContactLaw]:
 
 
 def law_at(law: ContactLaw, name: str, function: SpeedFunction, speed: float) -> ContactLaw:
-    """Return a law with the value that the function of its parameter `name` has at an approach speed [m/s], or the nearest allowed."""
+    """Return a law whose parameter `name` is a function of the approach speed [m/s], evaluated there and clipped to its range."""
     allowed: Range = next(item for item in fields(law) if item.name == name).metadata["range"]
     return law.changed({name: float(allowed.clip(function(speed)))})
 
 
-def spring(law: ContactLaw, program: str) -> tuple[float, float]:
-    """Return stiffness [N/m^n] and exponent n of the spring of a law.
+def power_law_spring(law: ContactLaw, program: str) -> tuple[float, float]:
+    """Return stiffness [N/m^n] and exponent n of the elastic part K delta^n of a law.
 
     Raises
     ------
     InputError
-        If it has none, or one that is not a power of the indentation.
+        If its elastic part is not a power law of the indentation.
 
     Examples
     --------
     >>> from vibroimpact.contact.laws.hertz import Hertz
-    >>> spring(Hertz(stiffness=5e8), "LAMMPS")
+    >>> power_law_spring(Hertz(stiffness=5e8), "LAMMPS")
     (500000000.0, 1.5)
     """
     if isinstance(law, PowerLaw):
@@ -87,14 +91,14 @@ def spring(law: ContactLaw, program: str) -> tuple[float, float]:
 
 
 def linear_or_hertzian(drop: Drop, program: str) -> tuple[float, float]:
-    """Return stiffness and exponent of the spring of all impacts, for a program that has the exponents 1 and 1.5 alone.
+    """Return stiffness and exponent of the spring of all impacts, for a program that supports only the exponents 1 and 1.5.
 
     Raises
     ------
     InputError
         If the exponent is neither, or the spring changes from impact to impact.
     """
-    springs = {spring(law, program) for law in laws_of_impacts(drop)}
+    springs = {power_law_spring(law, program) for law in laws_of_impacts(drop)}
     if len(springs) > 1:
         raise InputError(f"the spring changes from impact to impact, which can't be written for {program}; give it one value", "stiffness")
     stiffness, exponent = springs.pop()
@@ -104,7 +108,7 @@ def linear_or_hertzian(drop: Drop, program: str) -> tuple[float, float]:
 
 
 def first_contact(law: ContactLaw, drop: Drop) -> tuple[float, float]:
-    """Return how long a contact at the drop's first approach speed takes [s], and its largest force [N]; bodies rigid, no gravity."""
+    """Return duration [s] and peak force [N] of a contact at the drop's first approach speed, between rigid bodies without gravity."""
     ball = Body(mass=drop.mass, contact_offset=drop.radius)
     impacts = simulate(
         Problem(sphere=ball, plate=rigid_plate(), laws=(law,), speed=approach_speeds(drop)[0], gravity=0.0, impacts=1)
@@ -113,8 +117,8 @@ def first_contact(law: ContactLaw, drop: Drop) -> tuple[float, float]:
 
 
 def shared_notes(drop: Drop) -> list[str]:
-    """Return what no program with rigid bodies takes of a drop, and where its function is used beyond its speeds."""
-    notes = rigid_notes(drop)
+    """Return the limitations shared by all exports to rigid-body programs, among them a function used beyond its fitted speeds."""
+    notes = _rigid_notes(drop)
     if drop.function is not None and drop.function[1].degree:
         name, function = drop.function
         speeds = function.beyond(np.array(approach_speeds(drop)))
@@ -122,6 +126,37 @@ def shared_notes(drop: Drop) -> list[str]:
             fitted = f"the function of {name} was fitted over {function.slowest:.4g} to {function.fastest:.4g} m/s"
             notes.append(f"{fitted}, and this drop has impacts at {speeds.min():.4g} to {speeds.max():.4g} m/s.")
     return notes
+
+
+def _rigid_notes(drop: Drop) -> list[str]:
+    """Return what the rigid-body version of a drop neglects, how that changes the restitution, and a remedy."""
+    lost, remedy = [], []
+    if drop.elastic:
+        verb = "is" if len(drop.elastic) == 1 else "are"
+        lost.append(f"The {' and '.join(drop.elastic)} {verb} written as rigid, and the contact law alone, without what vibrates.")
+        remedy.append('model = "rigid"')
+    if drop.local_element:
+        lost.append("The local element in series with the contact law, which stands for the sphere's deformation, is left out.")
+        remedy.append("no contact.local_compliance")
+    if drop.finite_sphere:
+        lost.append("The contact law is written with Hertz's half space for the sphere, whose finite size was corrected here.")
+        remedy.append("no contact.finite_sphere")
+    if not drop.original_impacts:
+        return lost
+    written, here = (_restitutions(impacts) for impacts in (drop.impacts, drop.original_impacts))
+    return [
+        *lost,
+        "So what is written is another drop than the one that was run: the same case between rigid bodies, with the first "
+        "value of the contact law at its first impact, and so on.",
+        f"Restitution from impact to impact: {written} as written, {here} in the run.",
+        f"For rigid bodies that rebound as in the run, calibrate the case with {' and '.join(remedy)} to the run's impacts.csv as "
+        "[calibrate] target, and export the calibration.",
+    ]
+
+
+def _restitutions(impacts: Mapping[str, Floats]) -> str:
+    values = impacts["restitution_achieved"].tolist()
+    return ", ".join(f"{value:.3f}" for value in values[:_SHOWN]) + (", ..." if len(values) > _SHOWN else "") if values else "none"
 
 
 def clipped_dashpot(stiffness: float, exponent: float, restitution: float, mass: float, speed: float) -> float:
@@ -138,7 +173,7 @@ def clipped_dashpot(stiffness: float, exponent: float, restitution: float, mass:
 
 @cache
 def _unit_dashpot(exponent: float, restitution: float) -> float:
-    """Return the same where stiffness, mass and speed are one, to which all others are alike."""
-    # IMPACT, faded in over so little that it can't be seen
+    """Return the dashpot for unit stiffness, mass and speed, from which `clipped_dashpot` scales."""
+    # Adams' IMPACT with a negligible penetration of full damping is this clipped law
     law = AdamsImpact(stiffness=1.0, exponent=exponent, damping_max=1.0, full_damping_penetration=1e-7)
     return float(law_achieving(law, restitution, 1.0, 1.0).damping_max)

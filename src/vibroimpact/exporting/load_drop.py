@@ -1,4 +1,4 @@
-"""What is exported of a folder: the drop that it holds, as plain data."""
+"""Load the drop of a result folder or of a calibration folder, for export."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from vibroimpact.cases.rigid import contact_laws_of, deforms, elastic_names, mas
 from vibroimpact.errors import InputError
 from vibroimpact.exporting.drop import Drop
 from vibroimpact.files.check_sums import CHECK_SUMS, DamageError, check_file, read_sealed
-from vibroimpact.files.hdf5 import why
+from vibroimpact.files.hdf5 import short_reason
 from vibroimpact.files.recover import recover
 from vibroimpact.results.folder import read_result
 from vibroimpact.results.result import Result, result_of
 
 
-def drop_of(directory: str | PathLike[str]) -> Drop:
-    """Return the drop that a result folder holds, or the one that a calibration folder states, simulated.
+def load_drop(directory: str | PathLike[str]) -> Drop:
+    """Return the drop of a result folder, or of the calibrated case of a calibration folder, which is simulated.
 
     Parameters
     ----------
@@ -31,7 +31,7 @@ def drop_of(directory: str | PathLike[str]) -> Drop:
     Raises
     ------
     InputError
-        If it is neither, a file of it is missing or damaged, or it is the result of a problem made in Python, which has no case.
+        If it is neither, a file is missing or damaged, or the result is that of a problem defined in Python, which has no case.
     """
     folder = Path(directory)
     recover(folder)
@@ -47,14 +47,14 @@ def drop_of(directory: str | PathLike[str]) -> Drop:
 
 
 def drop_of_result(result: Result, case: Case, function: tuple[str, SpeedFunction] | None = None) -> Drop:
-    """Return a run as a drop, with the same between rigid bodies where the run is not one of them, or not one under the function.
+    """Return the drop of a run, with the corresponding rigid-body problem if bodies deform or a function of the speed is given.
 
     Parameters
     ----------
     result : Result
-        What came of it.
+        The result of the run.
     case : Case
-        What was run.
+        The case of the run.
     function : tuple of str and SpeedFunction, optional
         A parameter of the contact law as a function of the approach speed.
     """
@@ -70,7 +70,7 @@ def drop_of_result(result: Result, case: Case, function: tuple[str, SpeedFunctio
         sphere_material=case.sphere.material,
         plate_material=case.plate.material,
         plate_size=case.plate.size,
-        position=dropped.position if found is None else found.contact,  # which may be a set of a mesh that was brought
+        position=dropped.position if found is None else found.contact,  # the impact point may be given as a node set of an imported mesh
         height=case.sphere.radius if dropped.height is None else dropped.height,
         speed=dropped.speed or 0.0,
         gravity=dropped.gravity,
@@ -89,13 +89,13 @@ def drop_of_result(result: Result, case: Case, function: tuple[str, SpeedFunctio
 
 
 def _check_flat(case: Case) -> None:
-    """Raise if a sphere falls on another one, which no format here holds."""
+    """Raise if the sphere falls on another sphere, which no export format supports."""
     if case.plate.radius is not None:
         raise InputError("what is exported falls on a flat plate, and this sphere falls on another", "plate.radius")
 
 
 def _of_calibration(folder: Path) -> Drop:
-    """Return the drop of a calibration: its case, simulated, and the function that was fitted."""
+    """Return the drop of a calibration: its case, simulated, and the fitted function."""
     from vibroimpact.dynamics.simulate import simulate
 
     name = CALIBRATION
@@ -109,14 +109,14 @@ def _of_calibration(folder: Path) -> Drop:
     except KeyError as error:
         raise InputError(f"{folder / name}: the file is damaged: it has no {error}; make the calibration anew") from None
     except (OSError, ValueError, TypeError, AttributeError) as error:
-        raise InputError(f"{folder / name}: the file is missing or damaged: {why(error)}; make the calibration anew") from None
+        raise InputError(f"{folder / name}: the file is missing or damaged: {short_reason(error)}; make the calibration anew") from None
     case = load_case(folder / name)
     _check_flat(case)
     return drop_of_result(result_of(simulate(case.to_problem())), case, function)
 
 
 def _fitted(found: dict[str, Any]) -> tuple[str, SpeedFunction] | None:
-    """Return the function of a calibration; None where it is one number, which the case has, or of no parameter of the law."""
+    """Return the fitted function; None if it is a constant, which the case holds, or not of a parameter of the contact law."""
     fit = found["fit"]
     coefficients = tuple(float(one) for one in fit["coefficients"])
     if len(coefficients) == 1 or "." in found["parameter"]:

@@ -1,0 +1,251 @@
+"""Atomic writes of a file, of a folder, and of several files into an existing folder: complete, or not at all.
+
+Everything is written under a working name on the same file system (`vibroimpact.files.working_files`) and renamed at the end. What a
+process that died has left is cleared or completed by `vibroimpact.files.recover`.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import sys
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
+from errno import EACCES, EISDIR, ELOOP
+from functools import cache, partial
+from pathlib import Path
+from typing import Any
+
+from vibroimpact.files.working_files import COMPLETE, NEW, OLD, inner_path, locked, new_working_path, remove, working_path
+
+_PUT, _GONE = "put", "gone"
+"""Subfolders of a working folder: files to be moved to their destinations, and empty files named as those to be deleted."""
+
+_CURRENT_FOLDER = -100  # AT_FDCWD of Linux: relative paths start from the current directory
+_EXCHANGE = 2  # RENAME_EXCHANGE of renameat2(2)
+
+
+# one file
+
+
+@contextmanager
+def atomic_file(target: Path) -> Iterator[Path]:
+    """Yield the path of an empty working file, which replaces `target` when the block ends without an error.
+
+    The working file is locked; HDF5 locks the files that it writes too, so open it there with `locking=False`.
+
+    Parameters
+    ----------
+    target : pathlib.Path
+        The destination, unchanged until then. If it is a symbolic link, the file that it points to is replaced.
+
+    Raises
+    ------
+    OSError
+        If it can't be written.
+    """
+    place = target.resolve() if target.is_symlink() else target
+    with new_working_path(partial(working_path, place, NEW), _make_empty_file, target) as working:
+        yield working
+        os.replace(working, place)
+
+
+def write_file(target: Path, content: bytes | Iterable[bytes], *, durable: bool = False) -> None:
+    """Write a file atomically.
+
+    Parameters
+    ----------
+    target : pathlib.Path
+        The destination; an existing file is replaced. A device or a pipe is written to directly.
+    content : bytes or iterable of bytes
+        The content of the file.
+    durable : bool, default False
+        Flush it to the disk (fsync) before it is renamed, so that a loss of power leaves no incomplete file.
+
+    Raises
+    ------
+    OSError
+        If it can't be written.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> with TemporaryDirectory() as folder:
+    ...     write_file(Path(folder, "a.txt"), b"all of it")
+    ...     Path(folder, "a.txt").read_text()
+    'all of it'
+    """
+    pieces = [content] if isinstance(content, bytes) else content
+    if target.exists() and not target.is_file():
+        with target.open("wb") as stream:
+            stream.writelines(pieces)
+        return
+    with atomic_file(target) as working, working.open("wb") as file:
+        file.writelines(pieces)
+        file.flush()
+        if durable:
+            os.fsync(file.fileno())
+
+
+def _make_empty_file(path: Path) -> None:
+    os.close(os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666))
+
+
+# one folder
+
+
+@contextmanager
+def atomic_folder(target: Path, check: Callable[[], None]) -> Iterator[Path]:
+    """Yield the path of an empty working folder, which replaces `target` when the block ends without an error.
+
+    Parameters
+    ----------
+    target : pathlib.Path
+        The destination; an existing folder stays until then.
+    check : callable
+        Raises if the folder may not be placed there. Called just before the replacement, since another process may have created
+        `target` in the meantime.
+
+    Raises
+    ------
+    OSError
+        If it can't be written.
+    """
+    with new_working_path(partial(working_path, target, NEW), Path.mkdir, target) as working:
+        yield working
+        check()
+        _put_in_place(working, target)
+
+
+def _put_in_place(working: Path, target: Path) -> None:
+    """Rename a folder to `target`, or exchange it with the existing one, which is then removed."""
+    if not os.path.lexists(target):
+        working.rename(target)
+        return
+    _flush(working)  # before the old folder is removed
+    if exchange(working, target):
+        remove(working)
+        return
+    # between the two renames nothing has the name `target`; if this process dies then, `recover` restores the old folder
+    aside = working_path(target, OLD)
+    with locked(target):
+        target.rename(aside)
+        try:
+            working.rename(target)
+        except OSError:
+            aside.rename(target)
+            raise
+        remove(aside)
+
+
+def _flush(folder: Path) -> None:
+    """Flush the files of a folder to the disk (fsync), so that either the old or the new folder survives a loss of power."""
+    for place, _, names in os.walk(folder):
+        for name in names:
+            descriptor = os.open(os.path.join(place, name), os.O_RDWR)
+            try:
+                os.fsync(descriptor)
+            finally:
+                os.close(descriptor)
+
+
+def exchange(first: Path, second: Path) -> bool:
+    """Exchange two names of a file system in one atomic step.
+
+    Returns
+    -------
+    bool
+        False, with nothing changed, if the system or the file system does not support it, or one of the names does not exist.
+
+    Examples
+    --------
+    >>> exchange(Path("neither of these"), Path("is there"))
+    False
+    """
+    rename = _renameat2()
+    return rename is not None and rename(_CURRENT_FOLDER, os.fsencode(first), _CURRENT_FOLDER, os.fsencode(second), _EXCHANGE) == 0
+
+
+@cache
+def _renameat2() -> Any:
+    """Return `renameat2` of the C library; None if it has none."""
+    if not sys.platform.startswith("linux"):
+        return None
+    function = getattr(ctypes.CDLL(None), "renameat2", None)
+    if function is not None:
+        function.argtypes = (ctypes.c_int, ctypes.c_char_p, ctypes.c_int, ctypes.c_char_p, ctypes.c_uint)
+    return function
+
+
+# several files into an existing folder
+
+
+def write_into(folder: Path, write: Callable[[Path], None], goes: tuple[str, ...] = ()) -> None:
+    """Write files into an existing folder: all of them or none.
+
+    They are written into a working folder inside it, which is renamed once all are complete; then each file is moved to its
+    destination. If the process dies in between, `recover` moves the rest, so that files of two writes never stay mixed.
+
+    Parameters
+    ----------
+    folder : pathlib.Path
+        The destination.
+    write : callable
+        Writes the files into an empty folder, and into subfolders of it.
+    goes : tuple of str
+        Glob patterns of the files of `folder` that are deleted unless they are written again.
+
+    Raises
+    ------
+    OSError
+        If the folder can't be written to.
+    """
+    with new_working_path(partial(inner_path, folder, NEW), Path.mkdir, folder) as working:
+        (working / _PUT).mkdir()
+        write(working / _PUT)
+        written = _files(working / _PUT)
+        for name in {file.relative_to(folder) for pattern in goes for file in folder.glob(pattern)} - set(written):
+            (working / _GONE / name).parent.mkdir(parents=True, exist_ok=True)
+            (working / _GONE / name).touch()
+        check_destinations(working, folder)
+        complete = working.with_suffix(f".{COMPLETE}")
+        working.rename(complete)
+        move_files(complete, folder)
+
+
+def check_destinations(working: Path, folder: Path) -> None:
+    """Raise OSError unless all files of a working folder can be moved to, or deleted from, their places inside `folder`.
+
+    A link that leads out of `folder` is refused: nothing outside of it is written or deleted.
+    """
+    inside = folder.resolve()
+    for part in (_PUT, _GONE):
+        for name in _files(working / part):
+            place = folder / name
+            if place.is_dir():
+                raise IsADirectoryError(EISDIR, os.strerror(EISDIR), str(place))
+            if not place.parent.resolve().is_relative_to(inside):
+                raise OSError(ELOOP, "this is a link that leads out of the folder", str(place.parent))
+            if place.parent.exists() and not os.access(place.parent, os.W_OK):
+                raise PermissionError(EACCES, os.strerror(EACCES), str(place.parent))
+
+
+def move_files(complete: Path, folder: Path) -> None:
+    """Move the files of a complete working folder to their destinations, delete the files it lists for deletion, and remove it.
+
+    Raises
+    ------
+    OSError
+        If a file can't be moved; the others remain in the working folder.
+    """
+    for name in _files(complete / _PUT):
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        os.replace(complete / _PUT / name, folder / name)
+    for name in _files(complete / _GONE):
+        (folder / name).unlink(missing_ok=True)
+    remove(complete)
+
+
+def _files(folder: Path) -> list[Path]:
+    """Return the relative paths of all files below a folder, sorted."""
+    return [path.relative_to(folder) for path in sorted(folder.rglob("*")) if not path.is_dir() or path.is_symlink()]
