@@ -50,7 +50,12 @@ FLOORS = {  # top to bottom: what a floor is, its colour, its rooms and what the
     ),
     "ground": (
         "#e6bfa8",
-        {"materials": "library", "units": "read and shown", "files": "atomic writing,\nchecksums", "errors": "and arrays, ranges,\nregistry"},
+        {
+            "materials": "library",
+            "units": "read and shown",
+            "files": "atomic writing,\nchecksums",
+            "errors": "and arrays, ranges,\nregistry",
+        },
     ),
 }
 
