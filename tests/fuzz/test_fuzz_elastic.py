@@ -21,7 +21,7 @@ def run_unless_told(table: Table) -> None:
 
 @pytest.mark.slow
 def test_hostile_elastic_cases_run_or_are_told() -> None:
-    import_module("vibroimpact.cases.build_elastic")  # once, and not in each process
+    import_module("vibroimpact.cases.elastic.bodies")  # once, and not in each process
     cases = list(elastic_cases(number(40), seed(4)))
     outcomes = [attack(run_unless_told, [case])[0] for case in cases]  # each in a process of its own: modes are remembered there
     print(Counter(one.kind for one in outcomes))

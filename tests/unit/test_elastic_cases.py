@@ -17,10 +17,10 @@ import pytest
 import vibroimpact as vi
 from support import plain_case
 from vibroimpact.cases.build import resolved
-from vibroimpact.cases.build_elastic import elastic_bodies
-from vibroimpact.cases.elastic_fields import Kind
-from vibroimpact.cases.meshes import meshes_of
-from vibroimpact.cases.supports_field import EdgeName
+from vibroimpact.cases.elastic.bodies import elastic_bodies
+from vibroimpact.cases.elastic.meshes import meshes_of
+from vibroimpact.cases.fields.elastic_body import Kind
+from vibroimpact.cases.fields.supports import EdgeName
 from vibroimpact.cli import main
 from vibroimpact.structures.lattice import SOLID_KINDS, box_mesh, mesh_of_blocks
 from vibroimpact.structures.supports.bar import Bar

@@ -18,8 +18,8 @@ from vibroimpact.calibration.targets import target_of
 from vibroimpact.calibration.tunables import law_parameter, modal_damping
 from vibroimpact.cases.build import problem_of, resolved
 from vibroimpact.cases.case import Case
-from vibroimpact.cases.contact_section import read_contact
-from vibroimpact.cases.local_section import LocalSection
+from vibroimpact.cases.fields.contact import read_contact
+from vibroimpact.cases.fields.local import LocalSection
 from vibroimpact.cases.reader import load_table, named, read_case
 from vibroimpact.cases.slips.find import slips
 from vibroimpact.contact.law import find_contact_law

@@ -13,7 +13,7 @@ from vibroimpact.calibration.observations import Observations, from_table
 from vibroimpact.calibration.outcomes import REBOUND, REBOUNDS
 from vibroimpact.calibration.section import CalibrateSection, FileTarget, HeightsTarget, ImpactTarget, RestitutionTarget
 from vibroimpact.cases.case import Case
-from vibroimpact.cases.contact_section import ContactSection
+from vibroimpact.cases.fields.contact import ContactSection
 from vibroimpact.cases.rigid import contact_laws_of, first_speed
 from vibroimpact.contact.laws.newton import Newton
 from vibroimpact.dynamics.problem import Problem

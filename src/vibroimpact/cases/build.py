@@ -7,7 +7,7 @@ from dataclasses import fields, replace
 from typing import TYPE_CHECKING, Any, Literal
 
 from vibroimpact.calibration.section import calibrate_table
-from vibroimpact.cases.material_field import material_table
+from vibroimpact.cases.fields.material import material_table
 from vibroimpact.cases.rigid import FALLS, contact_laws_of, deforms, elastic_names, impacts_of, is_free_sphere, rigid_problem
 from vibroimpact.contact.law import CompliantLaw, loses_nothing
 from vibroimpact.dynamics.problem import Problem
@@ -49,8 +49,8 @@ def check_case(case: CaseTable) -> None:
     if local.finite_sphere and not isinstance(law, CompliantLaw):
         raise InputError(f"{law.name} gives no force that a finite sphere would change; leave this out", "contact.finite_sphere")
     if elastic_names(case):
-        from vibroimpact.cases.build_elastic import elastic_bodies  # which loads sparse matrices
-        from vibroimpact.cases.places import check_places
+        from vibroimpact.cases.elastic.bodies import elastic_bodies  # which loads sparse matrices
+        from vibroimpact.cases.elastic.positions import check_places
 
         check_places(case)
         elastic_bodies(case)
@@ -91,7 +91,7 @@ def problem_of(case: CaseTable, progress: Callable[[float], None] | None = None,
     problem = replace(rigid_problem(case), source=resolved(case))
     if not deforms(case):
         return problem
-    from vibroimpact.cases.coupling import coupled  # which loads finite elements
+    from vibroimpact.cases.elastic.coupling import coupled  # which loads finite elements
 
     return coupled(case, problem, progress, tell)
 
@@ -127,7 +127,7 @@ def _body(case: CaseTable, name: Literal["sphere", "plate"]) -> dict[str, Any]:
         found = {key: found[key] for key in ("radius", "size", "model") if key in found}
         found |= {"supports": "free"} if name == "plate" and is_free_sphere(case) else {}
     else:
-        from vibroimpact.cases.build_elastic import elastic_table  # which loads sparse matrices
+        from vibroimpact.cases.elastic.bodies import elastic_table  # which loads sparse matrices
 
         found |= elastic_table(case, name)
     if "size" in found:

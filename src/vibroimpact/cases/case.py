@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 from vibroimpact.cases.build import problem_of
-from vibroimpact.cases.contact_section import contact_schema
+from vibroimpact.cases.fields.contact import contact_schema
 from vibroimpact.cases.schema import CaseTable
 from vibroimpact.dynamics.problem import Problem
 

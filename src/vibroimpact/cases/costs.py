@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, NamedTuple
 
-from vibroimpact.cases.build_elastic import elastic_bodies
+from vibroimpact.cases.elastic.bodies import elastic_bodies
 from vibroimpact.cases.rigid import contact_laws_of, contact_pair, deforms, first_speed, impacts_of
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.static import static_indentation

@@ -14,12 +14,12 @@ from typing import Any, TypeVar
 from pydantic import BaseModel, ValidationError
 
 from vibroimpact.calibration.section import CalibrateSection, SpeedsTable
-from vibroimpact.cases.bounds import MOST_BYTES, check_bounds, check_text
 from vibroimpact.cases.build import check_case
 from vibroimpact.cases.case import Case
-from vibroimpact.cases.explain import explained
-from vibroimpact.cases.item_labels import place_in_words
-from vibroimpact.cases.material_field import InlineMaterial
+from vibroimpact.cases.fields.bounds import MOST_BYTES, check_bounds, check_text
+from vibroimpact.cases.fields.explain import explained
+from vibroimpact.cases.fields.item_labels import place_in_words
+from vibroimpact.cases.fields.material import InlineMaterial
 from vibroimpact.cases.schema import AccelerometerTable, DropSection, PlateSection, RunSection, SensorSection, SphereSection
 from vibroimpact.errors import InputError, did_you_mean
 from vibroimpact.files.reading import FileKind, read_text

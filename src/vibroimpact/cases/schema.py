@@ -9,10 +9,10 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import BeforeValidator, Field, StrictBool, model_validator
 
 from vibroimpact.calibration.section import CalibrateSection
-from vibroimpact.cases.bounds import MOST_ITEMS, Name, at_most
-from vibroimpact.cases.contact_section import ContactSection, read_contact
-from vibroimpact.cases.damping_field import DampingField
-from vibroimpact.cases.elastic_fields import (
+from vibroimpact.cases.fields.bounds import MOST_ITEMS, Name, at_most
+from vibroimpact.cases.fields.contact import ContactSection, read_contact
+from vibroimpact.cases.fields.damping import DampingField
+from vibroimpact.cases.fields.elastic_body import (
     BroughtMeshTable,
     FrequencyField,
     MethodField,
@@ -23,11 +23,11 @@ from vibroimpact.cases.elastic_fields import (
     check_elastic,
     check_plate,
 )
-from vibroimpact.cases.material_field import MaterialField
-from vibroimpact.cases.quantities import Quantity
-from vibroimpact.cases.section import Section
+from vibroimpact.cases.fields.material import MaterialField
+from vibroimpact.cases.fields.quantities import Quantity
+from vibroimpact.cases.fields.section import Section
+from vibroimpact.cases.fields.supports import SupportsField
 from vibroimpact.cases.slips.lengths import likely_lengths
-from vibroimpact.cases.supports_field import SupportsField
 from vibroimpact.dynamics.problem import MOST_IMPACTS, STANDARD_GRAVITY
 from vibroimpact.dynamics.sensors.sensor import FILTERS, Accelerometer, Sensor
 from vibroimpact.errors import InputError, did_you_mean

@@ -96,7 +96,7 @@ def modes(
     The folder holds a table of frequencies, pictures of the first modes, and the meshes for ParaView, Nastran and Abaqus.
     """
     from vibroimpact.cases.costs import costs_told
-    from vibroimpact.cases.modes import compute_modes
+    from vibroimpact.cases.elastic.modes import compute_modes
     from vibroimpact.cases.reader import load_case, named
     from vibroimpact.modes.folder import save_modes
     from vibroimpact.modes.text import modes_summary

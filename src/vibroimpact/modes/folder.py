@@ -13,7 +13,7 @@ import tomli_w
 from vibroimpact._version import __version__
 from vibroimpact.cases.build import resolved
 from vibroimpact.cases.case import Case
-from vibroimpact.cases.modes import BodyModes
+from vibroimpact.cases.elastic.modes import BodyModes
 from vibroimpact.meshes.write_abaqus import write_abaqus
 from vibroimpact.meshes.write_nastran import write_nastran
 from vibroimpact.meshes.write_vtu import write_vtu

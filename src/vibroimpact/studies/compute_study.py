@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from vibroimpact._version import __version__
-from vibroimpact.cases.coupling import carried_modes
+from vibroimpact.cases.elastic.coupling import carried_modes
 from vibroimpact.cases.rigid import impacts_of
 from vibroimpact.errors import ComputationError, InputError
 from vibroimpact.files.check_sums import sealed

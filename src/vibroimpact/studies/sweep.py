@@ -14,12 +14,12 @@ from typing import Any
 
 import numpy as np
 
-from vibroimpact.cases.bounds import MOST_ITEMS, check_bounds, check_count
 from vibroimpact.cases.case import Case
-from vibroimpact.cases.quantities import Quantity
+from vibroimpact.cases.fields.bounds import MOST_ITEMS, check_bounds, check_count
+from vibroimpact.cases.fields.quantities import Quantity
+from vibroimpact.cases.fields.section import read_table
 from vibroimpact.cases.reader import load_table, named
 from vibroimpact.cases.rigid import deforms, impacts_of
-from vibroimpact.cases.section import read_table
 from vibroimpact.dynamics.columns import ALL_IMPACT_COLUMNS, IMPACT_COLUMNS, meanings
 from vibroimpact.errors import InputError
 from vibroimpact.files.lines import MESH

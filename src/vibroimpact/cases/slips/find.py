@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from vibroimpact.cases.item_labels import NUMBERS, in_list
+from vibroimpact.cases.fields.item_labels import NUMBERS, in_list
 from vibroimpact.cases.slips.facts import Facts
 from vibroimpact.cases.slips.plausible import Place, Plausible, Words, number
 from vibroimpact.cases.slips.rules import stiffness_unit

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vibroimpact.bodies.elastic import ElasticBody
-from vibroimpact.cases.build_elastic import elastic_bodies
-from vibroimpact.cases.meshes import meshes_of
+from vibroimpact.cases.elastic.bodies import elastic_bodies
+from vibroimpact.cases.elastic.meshes import meshes_of
 from vibroimpact.errors import InputError
 from vibroimpact.structures.damping import ConstantRatio, RatioOfEach, RatioTable
 from vibroimpact.structures.frequency_error import MESH, REDUCTION, SUPPORTS, THEORY

@@ -7,7 +7,7 @@ from typing import Any, TypeVar
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 
-from vibroimpact.cases.explain import explained
+from vibroimpact.cases.fields.explain import explained
 from vibroimpact.errors import InputError, did_you_mean
 from vibroimpact.shown import shown
 

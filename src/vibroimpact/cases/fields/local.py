@@ -6,8 +6,8 @@ from typing import Annotated, Literal
 
 from pydantic import Field, StrictBool, model_validator
 
-from vibroimpact.cases.quantities import Quantity
-from vibroimpact.cases.section import Section
+from vibroimpact.cases.fields.quantities import Quantity
+from vibroimpact.cases.fields.section import Section
 from vibroimpact.errors import InputError
 from vibroimpact.ranges import Range
 

@@ -11,9 +11,9 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.bodies.sphere import rigid_sphere
-from vibroimpact.cases.local_section import MeasuredImpact
-from vibroimpact.cases.modes import BodyModes, compute_modes
-from vibroimpact.cases.residuals import residual_key, with_residuals
+from vibroimpact.cases.elastic.modes import BodyModes, compute_modes
+from vibroimpact.cases.elastic.residuals import residual_key, with_residuals
+from vibroimpact.cases.fields.local import MeasuredImpact
 from vibroimpact.cases.rigid import FALLS, contact_laws_of, contact_pair, elastic_names, first_speed, is_free_sphere
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.quasi_static import QuasiStatic

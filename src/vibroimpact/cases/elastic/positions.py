@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-from vibroimpact.cases.elastic_fields import BroughtMeshTable
-from vibroimpact.cases.item_labels import in_list
+from vibroimpact.cases.fields.elastic_body import BroughtMeshTable
+from vibroimpact.cases.fields.item_labels import in_list
 from vibroimpact.cases.slips.lengths import likely_lengths
 from vibroimpact.errors import InputError
 from vibroimpact.structures.rectangle import CLOSEST

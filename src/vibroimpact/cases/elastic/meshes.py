@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.sparse import csr_array
 
-from vibroimpact.cases.build_elastic import elastic_bodies
-from vibroimpact.cases.item_labels import in_list
+from vibroimpact.cases.elastic.bodies import elastic_bodies
+from vibroimpact.cases.fields.item_labels import in_list
 from vibroimpact.errors import InputError
 from vibroimpact.structures.geometry import check_mesh, mass_properties
 from vibroimpact.structures.mesh import Mesh

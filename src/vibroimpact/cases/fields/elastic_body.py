@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
 
-from vibroimpact.cases.quantities import Quantity
-from vibroimpact.cases.section import Section, read_table
+from vibroimpact.cases.fields.quantities import Quantity
+from vibroimpact.cases.fields.section import Section, read_table
 from vibroimpact.errors import InputError
 from vibroimpact.files.lines import MESH
 from vibroimpact.files.reading import about, file_digest

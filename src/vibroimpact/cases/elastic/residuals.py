@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
-from vibroimpact.cases.modes import BodyModes
+from vibroimpact.cases.elastic.modes import BodyModes
 from vibroimpact.structures.modal_model import ModalBasis
 from vibroimpact.structures.surface import Side, place_of
 from vibroimpact.structures.transfer_compliance import Point, transfer_compliances, transfer_key

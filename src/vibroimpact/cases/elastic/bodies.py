@@ -6,10 +6,10 @@ import math
 from typing import TYPE_CHECKING, Any, Literal
 
 from vibroimpact.bodies.elastic import ElasticBody, plate_recipe, recipe_of, sphere_recipe
-from vibroimpact.cases.damping_field import damping_of, damping_table
-from vibroimpact.cases.elastic_fields import BroughtMeshTable, PlateMeshTable, SphereMeshTable, reduction_of
+from vibroimpact.cases.fields.damping import damping_of, damping_table
+from vibroimpact.cases.fields.elastic_body import BroughtMeshTable, PlateMeshTable, SphereMeshTable, reduction_of
+from vibroimpact.cases.fields.supports import supports_of, supports_table
 from vibroimpact.cases.rigid import elastic_names
-from vibroimpact.cases.supports_field import supports_of, supports_table
 from vibroimpact.errors import InputError
 from vibroimpact.structures.recipe import BroughtMesh, Recipe, to_follow
 from vibroimpact.structures.rectangle import rectangle_blocks

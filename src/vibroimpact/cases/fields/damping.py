@@ -6,7 +6,7 @@ from typing import Annotated, Any
 
 from pydantic import BeforeValidator, WithJsonSchema
 
-from vibroimpact.cases.quantities import read_quantity
+from vibroimpact.cases.fields.quantities import read_quantity
 from vibroimpact.errors import InputError, did_you_mean
 from vibroimpact.ranges import Range
 from vibroimpact.shown import shown
