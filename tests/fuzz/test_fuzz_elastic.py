@@ -10,12 +10,12 @@ import pytest
 import vibroimpact as vi
 from attack import attack, number, seed
 from mutations import Table, elastic_cases
-from vibroimpact.cases.costs import costs_told
+from vibroimpact.cases.costs import describe_costs
 
 
 def run_unless_told(table: Table) -> None:
     case = vi.read_case(table)
-    if not costs_told(case):
+    if not describe_costs(case):
         vi.simulate(case)
 
 

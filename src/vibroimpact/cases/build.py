@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from vibroimpact.calibration.section import calibrate_table
 from vibroimpact.cases.fields.material import material_table
-from vibroimpact.cases.rigid import FALLS, contact_laws_of, deforms, elastic_names, impacts_of, is_free_sphere, rigid_problem
+from vibroimpact.cases.rigid import PLATE_FALLS, contact_laws_of, deforms, elastic_names, impact_limit, is_free_sphere, rigid_problem
 from vibroimpact.contact.law import CompliantLaw, loses_nothing
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.errors import InputError
@@ -30,7 +30,7 @@ def check_case(case: CaseTable) -> None:
         lie on the plate does not.
     """
     law = contact_laws_of(case)[-1]
-    if impacts_of(case) is None and case.run.duration is None:
+    if impact_limit(case) is None and case.run.duration is None:
         remedy = "give a number or a duration"
         if loses_nothing(law):
             raise InputError(f'"all" needs a law that loses energy, and this {law.name} never comes to rest; {remedy}', "run.impacts")
@@ -50,9 +50,9 @@ def check_case(case: CaseTable) -> None:
         raise InputError(f"{law.name} gives no force that a finite sphere would change; leave this out", "contact.finite_sphere")
     if elastic_names(case):
         from vibroimpact.cases.elastic.bodies import elastic_bodies  # which loads sparse matrices
-        from vibroimpact.cases.elastic.positions import check_places
+        from vibroimpact.cases.elastic.positions import check_positions
 
-        check_places(case)
+        check_positions(case)
         elastic_bodies(case)
 
 
@@ -65,7 +65,7 @@ def check_drop(case: CaseTable) -> None:
         If nothing holds the plate, and gravity would let it fall.
     """
     if case.plate.supports == "free" and case.drop.gravity:
-        raise InputError(FALLS if case.plate.radius is None else _BALL_FALLS, "plate.supports")
+        raise InputError(PLATE_FALLS if case.plate.radius is None else _BALL_FALLS, "plate.supports")
 
 
 def problem_of(case: CaseTable, progress: Callable[[float], None] | None = None, tell: Callable[[str], None] | None = None) -> Problem:
@@ -88,15 +88,15 @@ def problem_of(case: CaseTable, progress: Callable[[float], None] | None = None,
     """
     check_case(case)
     check_drop(case)
-    problem = replace(rigid_problem(case), source=resolved(case))
+    problem = replace(rigid_problem(case), source=resolved_case(case))
     if not deforms(case):
         return problem
-    from vibroimpact.cases.elastic.coupling import coupled  # which loads finite elements
+    from vibroimpact.cases.elastic.coupling import couple_bodies  # which loads finite elements
 
-    return coupled(case, problem, progress, tell)
+    return couple_bodies(case, problem, progress, tell)
 
 
-def resolved(case: CaseTable) -> dict[str, Any]:
+def resolved_case(case: CaseTable) -> dict[str, Any]:
     """Return a case in full, in SI: what is written as `case.toml`, and reads back as the same case."""
     laws = contact_laws_of(case)
     contact: dict[str, Any] = {"law": case.contact.law}
@@ -104,7 +104,7 @@ def resolved(case: CaseTable) -> dict[str, Any]:
         values = [getattr(law, item.name) for law in laws]
         if item.name in case.contact.parameters or values[0] is not None:
             contact[item.name] = values if len(values) > 1 and len(set(values)) > 1 else values[0]
-    number = impacts_of(case)
+    number = impact_limit(case)
     return {
         "schema_version": case.schema_version,
         "name": case.name,

@@ -20,7 +20,7 @@ _LIKE_HERTZ = 0.01  # a stiffness that is off by more was measured, or fitted, a
 
 
 @dataclass(frozen=True)
-class Seen:
+class DropSummary:
     """What came of a drop, or is expected of it; arrays have one value a drop, NaN where there is none.
 
     Parameters
@@ -58,12 +58,12 @@ class Conditions:
     ----------
     case : mapping
         A resolved case; any number in it may be an array with one value a drop.
-    seen : Seen
+    summary : DropSummary
         What came of it.
     """
 
     case: Mapping[str, Any]
-    seen: Seen
+    summary: DropSummary
 
     @cached_property
     def materials(self) -> dict[str, Material]:
@@ -103,19 +103,19 @@ class Conditions:
     @cached_property
     def contact_radius(self) -> Array:
         """Hertz's contact radius at the largest force [m]."""
-        return np.cbrt(0.75 * self.seen.force * self.effective_radius / self.modulus)
+        return np.cbrt(0.75 * self.summary.force * self.effective_radius / self.modulus)
 
     @cached_property
     def peak_pressure(self) -> Array:
         """Hertz's peak pressure at the largest force [Pa]."""
-        return 1.5 * self.seen.force / (math.pi * self.contact_radius**2)
+        return 1.5 * self.summary.force / (math.pi * self.contact_radius**2)
 
     @cached_property
     def law(self) -> type[ContactLaw]:
         """The contact law."""
         return find_contact_law(self.case["contact"]["law"])
 
-    def of_law(self, name: str, otherwise: Any = math.nan) -> Array:
+    def law_parameter(self, name: str, otherwise: Any = math.nan) -> Array:
         """Return a parameter of the law at the first impact."""
         value = self.case["contact"].get(name, otherwise)
         return value[0] if isinstance(value, (list, tuple)) else value
@@ -137,8 +137,8 @@ class Conditions:
             "exponent" not in contact and "1.5" not in self.law.__dataclass_fields__["stiffness"].metadata["unit"]
         ):
             return False
-        ratio = self.of_law("stiffness") / hertz_stiffness(self.modulus, self.effective_radius)
-        return (abs(ratio - 1.0) < _LIKE_HERTZ) & (self.of_law("exponent", 1.5) == 1.5)
+        ratio = self.law_parameter("stiffness") / hertz_stiffness(self.modulus, self.effective_radius)
+        return (abs(ratio - 1.0) < _LIKE_HERTZ) & (self.law_parameter("exponent", 1.5) == 1.5)
 
     def model(self, body: str) -> str:
         """Return whether "sphere" or "plate" is "rigid" or "elastic"."""

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, NamedTuple
 
 from vibroimpact.cases.elastic.bodies import elastic_bodies
-from vibroimpact.cases.rigid import contact_laws_of, contact_pair, deforms, first_speed, impacts_of
+from vibroimpact.cases.rigid import contact_laws_of, contact_pair, deforms, impact_limit, touch_speed
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.static import static_indentation
 from vibroimpact.dynamics.history_grid import MOST_POINTS
@@ -57,7 +57,7 @@ def costs_of(case: Case, *, modes_alone: bool = False) -> list[Cost]:
     return [*_of_modes(case), *(() if modes_alone else (*_of_impacts(case), *_of_signals(case)))]
 
 
-def costs_told(case: Case, *, modes_alone: bool = False) -> list[str]:
+def describe_costs(case: Case, *, modes_alone: bool = False) -> list[str]:
     """Return a sentence for each part of a run that takes more than ten seconds, 1 GB of memory or 500 MB on disk.
 
     Raises
@@ -79,8 +79,8 @@ def impacts_expected(case: Case) -> int:
     The restitution e of the first is taken for that of all: from a speed :math:`v` to :math:`v_r` there are
     :math:`\ln(v_r/v)/\ln e`, and in a time :math:`T` those whose flights, :math:`2 v e^k / g`, fill it.
     """
-    most = impacts_of(case) or MOST_IMPACTS
-    law, pair, speed, gravity = contact_laws_of(case)[-1], contact_pair(case), first_speed(case), case.drop.gravity
+    most = impact_limit(case) or MOST_IMPACTS
+    law, pair, speed, gravity = contact_laws_of(case)[-1], contact_pair(case), touch_speed(case), case.drop.gravity
     mass = float(pair.effective_mass)
     kept = float(achieved_restitution(law, mass, speed))
     if kept <= 0.0 or not (speed > 0.0 and gravity > 0.0):
@@ -107,7 +107,7 @@ def _of_impacts(case: Case) -> Iterator[Cost]:
         _IMPACT_BYTES * number + _POINT_BYTES * points,
         _IMPACT_ON_DISK * number + _POINT_ON_DISK * points,
         f"{'up to ' if vibrate else ''}about {float(f'{number:.2g}'):,.0f} impacts",
-        "give fewer run.impacts, or a higher run.rest_speed" if impacts_of(case) is None else "give fewer run.impacts",
+        "give fewer run.impacts, or a higher run.rest_speed" if impact_limit(case) is None else "give fewer run.impacts",
     )
 
 

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vibroimpact.cases.conditions import Seen
-from vibroimpact.cases.rigid import contact_laws_of, contact_pair, first_speed
+from vibroimpact.cases.conditions import DropSummary
+from vibroimpact.cases.rigid import contact_laws_of, contact_pair, touch_speed
 from vibroimpact.contact.hertz_time import HERTZ_TIME
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.dynamics.encounter import encounter_of
@@ -20,16 +20,16 @@ _SUPPORTED, _CLAMPED = 0.0116, 0.0056
 """Deflection of a square plate under a force at its centre over F a^2 / D: Timoshenko and Woinowsky-Krieger 1959, Tables 23 and 37."""
 
 
-def expected_of(case: Case) -> Seen:
+def expected_of(case: Case) -> DropSummary:
     """Return what to expect of the first impact of a case if nothing were lost; NaN of a law that gives no force."""
-    law, speed = contact_laws_of(case)[0], first_speed(case)
+    law, speed = contact_laws_of(case)[0], touch_speed(case)
     if not isinstance(law, CompliantLaw):
-        return Seen(speed=speed)
+        return DropSummary(speed=speed)
     one = np.ones(1)
     encounter = encounter_of(law, contact_pair(case).effective_mass * one, case.drop.gravity * one, speed * one)
     depth = float(encounter.depth[0])
     force = float(np.asarray(law.forces(encounter.depth, 0.0 * one, encounter.approach_speed)[0])[0])
-    return Seen(force, depth, HERTZ_TIME * depth / speed, speed, _deflection(case, speed))
+    return DropSummary(force, depth, HERTZ_TIME * depth / speed, speed, _deflection(case, speed))
 
 
 def _deflection(case: Case, speed: float) -> float:

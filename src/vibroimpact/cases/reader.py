@@ -17,8 +17,8 @@ from vibroimpact.calibration.section import CalibrateSection, SpeedsTable
 from vibroimpact.cases.build import check_case
 from vibroimpact.cases.case import Case
 from vibroimpact.cases.fields.bounds import MOST_BYTES, check_bounds, check_text
-from vibroimpact.cases.fields.explain import explained
-from vibroimpact.cases.fields.item_labels import place_in_words
+from vibroimpact.cases.fields.explain import fault_messages
+from vibroimpact.cases.fields.item_labels import path_in_words
 from vibroimpact.cases.fields.material import InlineMaterial
 from vibroimpact.cases.schema import AccelerometerTable, DropSection, PlateSection, RunSection, SensorSection, SphereSection
 from vibroimpact.errors import InputError, did_you_mean
@@ -66,7 +66,7 @@ def load_case(source: str | PathLike[str]) -> Case:
     >>> load_case("paper:type1-theory").sphere.radius
     0.025
     """
-    return named(source, lambda: _read_to_run(load_table(source)))
+    return prefix_errors(source, lambda: _read_to_run(load_table(source)))
 
 
 def _read_to_run(table: dict[str, Any]) -> Case:
@@ -115,7 +115,7 @@ def _toml_hint(text: str, fault: str) -> str:
     return "; close the quotes on the line where they are opened" if "Illegal character '\\n'" in fault else ""
 
 
-def named(source: str | PathLike[str], read: Callable[[], Read]) -> Read:
+def prefix_errors(source: str | PathLike[str], read: Callable[[], Read]) -> Read:
     """Return what is read from a source, whose name stands before each line of an error."""
     try:
         return read()
@@ -142,9 +142,9 @@ def _case_of(table: Mapping[str, Any]) -> Case:
         case = Case.model_validate(dict(table))
         check_case(case)
     except ValidationError as error:
-        faults = explained(error, _section)
+        faults = fault_messages(error, _section)
         raise InputError.of_several(
-            f"{shortened(place_in_words(path, table), 160)}: {message}" if path else message for path, message in faults
+            f"{shortened(path_in_words(path, table), 160)}: {message}" if path else message for path, message in faults
         ) from None
     return case
 

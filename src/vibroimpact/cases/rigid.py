@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 _DEFAULT_IMPACTS = 5
 
-FALLS = (
+PLATE_FALLS = (
     "the supports let the plate fall or tilt: under gravity it falls away from under the sphere; hold it vertically, leave it rigid, or "
     "hit it in free space, with drop.gravity = 0 and drop.speed"
 )
@@ -71,7 +71,7 @@ def contact_laws_of(case: CaseTable) -> tuple[ContactLaw, ...]:
         raise InputError(error.message, f"contact.{error.key}".rstrip(".")) from None
 
 
-def impacts_of(case: CaseTable) -> int | None:
+def impact_limit(case: CaseTable) -> int | None:
     """Return after how many impacts a case stops; None if it goes on to rest."""
     if case.run.impacts is None:
         return _DEFAULT_IMPACTS if case.run.duration is None else None
@@ -99,7 +99,7 @@ def rigid_problem(case: CaseTable) -> Problem:
         height=case.drop.height,
         speed=case.drop.speed,
         gravity=case.drop.gravity,
-        impacts=impacts_of(case),
+        impacts=impact_limit(case),
         duration=case.run.duration,
         rest_speed=case.run.rest_speed,
         same_spot=case.drop.same_spot,
@@ -114,7 +114,7 @@ def _rigid_below(case: CaseTable) -> Body:
     return rigid_plate(case.plate.size[2] if case.plate.size else 0.0)
 
 
-def first_speed(case: CaseTable) -> float:
+def touch_speed(case: CaseTable) -> float:
     """Return the speed of the first touch [m/s] of a case."""
     if case.drop.speed is not None:
         return case.drop.speed

@@ -19,9 +19,9 @@ from vibroimpact.cases.fields.elastic_body import (
     ModesField,
     PlateMeshField,
     SphereMeshField,
-    check_below,
     check_elastic,
     check_plate,
+    check_sphere_below,
 )
 from vibroimpact.cases.fields.material import MaterialField
 from vibroimpact.cases.fields.quantities import Quantity
@@ -213,7 +213,7 @@ class CaseTable(Section):
         if height is not None and self.drop.gravity == 0:
             raise InputError("without gravity a sphere does not fall; give drop.speed instead of drop.height", "drop.gravity")
         if self.plate.radius is not None:
-            check_below(self)
+            check_sphere_below(self)
         in_own_coordinates = isinstance(self.plate.mesh, BroughtMeshTable)
         reach = [0.5 * length for length in size[:2]] if size and not in_own_coordinates else [math.inf, math.inf]
         if any(abs(at) > end for at, end in zip(self.drop.position, reach, strict=True)):

@@ -14,7 +14,7 @@ from vibroimpact.bodies.sphere import rigid_sphere
 from vibroimpact.cases.elastic.modes import BodyModes, compute_modes
 from vibroimpact.cases.elastic.residuals import residual_key, with_residuals
 from vibroimpact.cases.fields.local import MeasuredImpact
-from vibroimpact.cases.rigid import FALLS, contact_laws_of, contact_pair, elastic_names, first_speed, is_free_sphere
+from vibroimpact.cases.rigid import PLATE_FALLS, contact_laws_of, contact_pair, elastic_names, is_free_sphere, touch_speed
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.quasi_static import QuasiStatic
 from vibroimpact.dynamics.encounter import encounter_of
@@ -86,7 +86,7 @@ def coupling_of(case: CaseTable, progress: Callable[[float], None] | None = None
     linear, finite, rigid = 0.0, QuasiStatic(), None
     if "plate" in bodies:
         if not bodies["plate"].model.is_held_vertically and case.drop.gravity:
-            raise InputError(FALLS, "plate.supports")
+            raise InputError(PLATE_FALLS, "plate.supports")
         if not bodies["plate"].model.is_held_vertically:
             rigid = bodies["plate"].body.rigid_motions(bodies["plate"].model)
         if treatment != "superposed":  # which is to be what a multibody program has: the motion of a node
@@ -209,7 +209,7 @@ def _first_contact(case: CaseTable) -> tuple[CompliantLaw, float]:
     law = contact_laws_of(case)[0]
     if not isinstance(law, CompliantLaw):
         raise InputError(f"{law.name} gives no force, and bodies that deform need one; take another law", "contact.law")
-    mass, gravity, speed = (np.array([value]) for value in (contact_pair(case).effective_mass, case.drop.gravity, first_speed(case)))
+    mass, gravity, speed = (np.array([value]) for value in (contact_pair(case).effective_mass, case.drop.gravity, touch_speed(case)))
     return law, float(encounter_of(law, mass, gravity, speed).depth[0])
 
 
@@ -227,7 +227,7 @@ def _refuse_ill_posed(case: CaseTable, series: QuasiStatic, facts: Mapping[str, 
         With the reason, and what can be done.
     """
     law, depth = _first_contact(case)
-    local = LocalContact(law, series, first_speed(case))
+    local = LocalContact(law, series, touch_speed(case))
     delta = np.linspace(0.0, 1.2 * depth, 200)[1:]
     slopes = np.gradient(local.approach_at(delta), delta)
     if slopes.min() >= _LEAST_SLOPE:
@@ -247,7 +247,7 @@ def _rebound(case: CaseTable, measured: MeasuredImpact) -> dict[str, float]:
     if measured.separation_speed is not None:
         return {"separation_speed": measured.separation_speed}
     if measured.restitution is not None:
-        return {"separation_speed": measured.restitution * first_speed(case)}
+        return {"separation_speed": measured.restitution * touch_speed(case)}
     height = measured.rebound_height or 0.0
     if height <= case.sphere.radius:
         words = f"{height:g} m is no rebound: it is the height of the centre, which rests at {case.sphere.radius:g} m"
@@ -255,7 +255,7 @@ def _rebound(case: CaseTable, measured: MeasuredImpact) -> dict[str, float]:
     return {"rebound_height": height}
 
 
-def coupled(
+def couple_bodies(
     case: CaseTable, problem: Problem, progress: Callable[[float], None] | None = None, tell: Callable[[str], None] | None = None
 ) -> Problem:
     """Return the problem of a case with its bodies deforming; `problem` is that of rigid ones.

@@ -8,7 +8,7 @@ import numpy as np
 from scipy.sparse import csr_array
 
 from vibroimpact.cases.elastic.bodies import elastic_bodies
-from vibroimpact.cases.fields.item_labels import in_list
+from vibroimpact.cases.fields.item_labels import item_label
 from vibroimpact.errors import InputError
 from vibroimpact.structures.geometry import check_mesh, mass_properties
 from vibroimpact.structures.mesh import Mesh
@@ -43,7 +43,7 @@ def meshes_of(case: CaseTable) -> dict[str, Mesh]:
         _check_spot(mesh, body.contact, body.side, at)
         names = [{"name": one} for one in body.watched]
         for number, (spot, face) in enumerate(body.watched.values()):
-            _check_spot(mesh, spot, face, f"{in_list('sensors', names, number)}.position")
+            _check_spot(mesh, spot, face, f"{item_label('sensors', names, number)}.position")
         if name == "plate":
             _check_supports(case, body, mesh)
         found[name] = mesh
@@ -70,4 +70,4 @@ def _check_supports(case: CaseTable, body: ElasticBody, mesh: Mesh) -> None:
             try:
                 support.hold(constraints)
             except InputError as error:
-                raise InputError(error.message, in_list("plate.supports", kinds, number)) from None
+                raise InputError(error.message, item_label("plate.supports", kinds, number)) from None

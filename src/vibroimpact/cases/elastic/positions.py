@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from vibroimpact.cases.fields.elastic_body import BroughtMeshTable
-from vibroimpact.cases.fields.item_labels import in_list
+from vibroimpact.cases.fields.item_labels import item_label
 from vibroimpact.cases.slips.lengths import likely_lengths
 from vibroimpact.errors import InputError
 from vibroimpact.structures.rectangle import CLOSEST
@@ -18,7 +18,7 @@ _ROUNDING = 1.0 + 1e-9
 _RIGID = ("patch", "patches", "bar", "bars")  # whose rim is an edge of elements
 
 
-def check_places(case: CaseTable) -> None:
+def check_positions(case: CaseTable) -> None:
     """Raise unless the supports and the sensors of an elastic plate that is meshed here lie on it.
 
     Raises
@@ -37,14 +37,14 @@ def check_places(case: CaseTable) -> None:
             _check_point(sensor.position, half, "position")
         except InputError as error:
             names = [{"name": sensor.name} for sensor in case.sensors]
-            raise InputError(error.message, f"{in_list('sensors', names, number)}.position") from None
+            raise InputError(error.message, f"{item_label('sensors', names, number)}.position") from None
     tables = plate.supports if isinstance(plate.supports, tuple) else ()
     for number, table in enumerate(tables):
         try:
             _check_support(table, half)
         except InputError as error:
             kinds = [{"type": table.type} for table in tables]
-            raise InputError(error.message, f"{in_list('plate.supports', kinds, number)}.{error.key}".rstrip(".")) from None
+            raise InputError(error.message, f"{item_label('plate.supports', kinds, number)}.{error.key}".rstrip(".")) from None
 
 
 def _check_point(position: Sequence[float], half: tuple[float, float], key: str) -> None:

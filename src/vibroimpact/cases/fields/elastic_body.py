@@ -25,7 +25,7 @@ DEFAULT_MODES = {"sphere": 20, "plate": 100}
 
 _Size = Annotated[float, Quantity("m", "largest side of an element", Range(above=0))]
 _Count = Annotated[int, Field(ge=1, strict=True)]
-Kind = Literal["hex8", "hex20", "hex27", "tet4", "tet10"]
+ElementKind = Literal["hex8", "hex20", "hex27", "tet4", "tet10"]
 
 
 def _one_of_a_unit(value: Any) -> Any:
@@ -74,7 +74,7 @@ class SphereMeshTable(Section):
     elements_across: Annotated[int, Field(ge=4, multiple_of=2, strict=True)] | None = Field(
         None, description="elements from pole to pole, even and at least 4"
     )
-    kind: Kind = Field("hex27", description="kind of element")
+    kind: ElementKind = Field("hex27", description="kind of element")
     grading: Annotated[float, Quantity("", "how many times smaller elements are at the contact point", Range(at_least=1))] = 1.0
 
 
@@ -84,7 +84,7 @@ class PlateMeshTable(Section):
     element_size: _Size | None = None
     elements: _Count | None = Field(None, description='about how many elements in all, instead of element_size; only of element = "solid"')
     layers: _Count | None = Field(None, description='elements through the thickness; only of element = "solid"')
-    kind: Kind | None = Field(None, description='kind of element; only of element = "solid"')
+    kind: ElementKind | None = Field(None, description='kind of element; only of element = "solid"')
     splits: Annotated[int, Field(ge=0, le=6, strict=True)] | None = Field(
         None, description='how often elements along edges and at the rims of patches are split in four; only of element = "solid"'
     )
@@ -189,7 +189,7 @@ def check_plate(section: Any) -> None:
                 raise InputError(f'element = "{section.element or "plate"}" does not take it', f"mesh.{key}")
 
 
-def check_below(case: Any) -> None:
+def check_sphere_below(case: Any) -> None:
     """Check how a sphere that takes the place of the plate is met.
 
     Raises

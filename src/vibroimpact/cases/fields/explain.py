@@ -13,7 +13,7 @@ SectionAt = Callable[[tuple[str, ...]], type[BaseModel] | None]
 """Which section of a case lies at a place, if one does."""
 
 
-def explained(error: ValidationError, section_at: SectionAt) -> Iterator[tuple[str, str]]:
+def fault_messages(error: ValidationError, section_at: SectionAt) -> Iterator[tuple[str, str]]:
     """Yield the dotted place of each fault, and a sentence about it."""
     for fault in error.errors():
         where = tuple(str(part) for part in fault["loc"] if not _is_branch(str(part)))
@@ -33,7 +33,7 @@ def explained(error: ValidationError, section_at: SectionAt) -> Iterator[tuple[s
         elif kind == "missing":
             yield path, f"this {'section' if len(where) == 1 else 'key'} is missing{_about(where, section_at)}"
         elif kind == "value_error" and isinstance(cause, ValidationError):
-            yield from ((f"{path}.{inner}" if path else inner, message) for inner, message in explained(cause, section_at))
+            yield from ((f"{path}.{inner}" if path else inner, message) for inner, message in fault_messages(cause, section_at))
         elif kind == "value_error":
             key = getattr(cause, "key", "")
             yield ".".join(part for part in (path, key) if part), getattr(cause, "message", str(cause))

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-NUMBERS: dict[str, tuple[str, ...]] = {"position": ("x", "y"), "size": ("length", "width", "thickness")}
+NUMBER_LABELS: dict[str, tuple[str, ...]] = {"position": ("x", "y"), "size": ("length", "width", "thickness")}
 """What the numbers of a list are called, such as in "drop.position.x"."""
 
 _LONGEST = 40  # of a name that is shown
 
 
-def in_list(key: str, items: Sequence[Any], number: int) -> str:
+def item_label(key: str, items: Sequence[Any], number: int) -> str:
     """Return the key of one of a list: by its name, such as sensors."a1", or by its place, counted from 1, if there are several.
 
     Parameters
@@ -25,13 +25,13 @@ def in_list(key: str, items: Sequence[Any], number: int) -> str:
 
     Examples
     --------
-    >>> in_list("sensors", [{"name": "a1"}, {"rate": 5e4}], 0), in_list("sensors", [{"name": "a1"}, {"rate": 5e4}], 1)
+    >>> item_label("sensors", [{"name": "a1"}, {"rate": 5e4}], 0), item_label("sensors", [{"name": "a1"}, {"rate": 5e4}], 1)
     ('sensors."a1"', 'sensors (the 2nd)')
-    >>> in_list("drop.position", [0.1, 0.0], 1), in_list("plate.supports", [{"type": "point"}], 0)
+    >>> item_label("drop.position", [0.1, 0.0], 1), item_label("plate.supports", [{"type": "point"}], 0)
     ('drop.position.y', 'plate.supports')
     """
     item = items[number] if number < len(items) else None
-    names = NUMBERS.get(key.rpartition(".")[2], ())
+    names = NUMBER_LABELS.get(key.rpartition(".")[2], ())
     if not isinstance(item, dict) and number < len(names):
         return f"{key}.{names[number]}"
     name = item.get("name") if isinstance(item, dict) else None
@@ -53,7 +53,7 @@ def ordinal(number: int) -> str:
     return f"{number}{ending}"
 
 
-def place_in_words(path: str, table: Any) -> str:
+def path_in_words(path: str, table: Any) -> str:
     """Return a dotted place in a case with lists' own names and places counted from 1, in place of numbers from 0.
 
     Parameters
@@ -65,13 +65,13 @@ def place_in_words(path: str, table: Any) -> str:
 
     Examples
     --------
-    >>> place_in_words("sensors.1.filter", {"sensors": [{"name": "a1"}, {"name": "b"}]})
+    >>> path_in_words("sensors.1.filter", {"sensors": [{"name": "a1"}, {"name": "b"}]})
     'sensors."b".filter'
     """
     words, inside = "", table
     for part in path.split("."):
         if isinstance(inside, (list, tuple)) and part.isdigit():
-            words = in_list(words, inside, int(part))
+            words = item_label(words, inside, int(part))
             inside = inside[int(part)] if int(part) < len(inside) else None
         else:
             words = f"{words}.{part}" if words else part

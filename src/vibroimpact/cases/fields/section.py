@@ -7,7 +7,7 @@ from typing import Any, TypeVar
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 
-from vibroimpact.cases.fields.explain import explained
+from vibroimpact.cases.fields.explain import fault_messages
 from vibroimpact.errors import InputError, did_you_mean
 from vibroimpact.shown import shown
 
@@ -18,10 +18,10 @@ class Section(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True, arbitrary_types_allowed=True)
 
 
-Kind = TypeVar("Kind", bound=Section)
+Table = TypeVar("Table", bound=Section)
 
 
-def read_table(kind: type[Kind], value: Mapping[str, Any]) -> Kind:
+def read_table(kind: type[Table], value: Mapping[str, Any]) -> Table:
     """Read a table that is one of several possible; an unknown key is named with those that this one takes.
 
     Raises
@@ -36,5 +36,5 @@ def read_table(kind: type[Kind], value: Mapping[str, Any]) -> Kind:
     try:
         return kind.model_validate(dict(value))
     except ValidationError as error:
-        path, message = next(explained(error, lambda where: kind if not where else None))
+        path, message = next(fault_messages(error, lambda where: kind if not where else None))
         raise InputError(message.replace("this section is missing", "this key is missing"), path) from None

@@ -42,7 +42,7 @@ def sticking_speed(radius: Array, modulus: Array, mass: Array, work_of_adhesion:
 def _number(drops: Conditions) -> Array:
     if "work_of_adhesion" in drops.case["contact"]:
         return np.nan
-    ratio = sticking_speed(drops.effective_radius, drops.modulus, drops.effective_mass) / drops.seen.speed
+    ratio = sticking_speed(drops.effective_radius, drops.modulus, drops.effective_mass) / drops.summary.speed
     return 1.0 - np.sqrt(1.0 - np.minimum(ratio, 1.0) ** 2)
 
 

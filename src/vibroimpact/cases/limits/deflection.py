@@ -17,7 +17,7 @@ under a force at the centre: w/h + A (w/h)^3 is proportional to the force.
 
 
 def _number(drops: Conditions) -> Array:
-    return drops.seen.deflection / drops.size[2] if drops.size is not None and drops.model("plate") == "elastic" else math.nan
+    return drops.summary.deflection / drops.size[2] if drops.size is not None and drops.model("plate") == "elastic" else math.nan
 
 
 def stiffening(ratio: float, *, clamped: bool) -> tuple[float, float]:

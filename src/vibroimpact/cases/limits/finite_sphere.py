@@ -74,7 +74,7 @@ def _number(drops: Conditions) -> Array:
     if drops.model("sphere") == "elastic" or contact.get("finite_sphere") or contact.get("local_compliance") == "identified":
         return np.nan  # they have it, or count what is local twice
     sphere = drops.materials["sphere"]
-    lacking = force_lacking(drops.seen.force, drops.radius, drops.modulus, sphere.youngs_modulus, sphere.poissons_ratio)
+    lacking = force_lacking(drops.summary.force, drops.radius, drops.modulus, sphere.youngs_modulus, sphere.poissons_ratio)
     return np.where(drops.is_hertzian, lacking, np.nan)
 
 

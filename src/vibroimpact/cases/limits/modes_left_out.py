@@ -17,14 +17,14 @@ _CYCLES, _ENOUGH = 1.5, 3.0  # periods of the highest mode in a contact: too few
 
 
 def _number(body: str, drops: Conditions) -> Array:
-    if body not in drops.seen.modes or (body == "sphere" and drops.case.get("contact", {}).get("local_compliance") == "superposed"):
+    if body not in drops.summary.modes or (body == "sphere" and drops.case.get("contact", {}).get("local_compliance") == "superposed"):
         return math.nan  # of a superposed sphere more modes would only make it softer
-    part, highest = drops.seen.modes[body]
-    return np.fmax(part / _TRUNCATED, np.divide(_CYCLES, highest * drops.seen.duration))
+    part, highest = drops.summary.modes[body]
+    return np.fmax(part / _TRUNCATED, np.divide(_CYCLES, highest * drops.summary.duration))
 
 
 def _sentence(body: str, drop: Conditions, _: float) -> str:
-    (part, highest), duration = drop.seen.modes[body], float(drop.seen.duration)
+    (part, highest), duration = drop.summary.modes[body], float(drop.summary.duration)
     return (
         f"the modes of the {body} end at {text(highest, 'Hz')}, and the contact lasts {text(duration, 's', 3)}: those left out may "
         f"change the largest force by up to {float(f'{100.0 * part:.2g}'):g} %, and rebound and vibration by more; ask for "

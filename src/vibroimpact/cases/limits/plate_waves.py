@@ -44,7 +44,7 @@ def plate_theory_error(facts: Mapping[str, Any], impacts: Mapping[str, Any]) -> 
 
 def _sentence(drop: Conditions, error: float) -> str:
     return (
-        f"the contact lasts {float(drop.seen.duration):.3g} s, and waves through the thickness of the plate, which plate elements do not "
+        f"the contact lasts {float(drop.summary.duration):.3g} s, and waves through the thickness of the plate, which plate elements do not "
         f'have, change the largest force by about {percent_less(error)}; take element = "solid"'
     )
 
@@ -55,7 +55,7 @@ LIMITS = (
         title="waves through the thickness of the plate",
         meaning="part by which the first largest force is too large, as plate elements only bend",
         threshold=0.005,
-        number=lambda drops: drops.seen.plate_theory,
+        number=lambda drops: drops.summary.plate_theory,
         sentence=_sentence,
         shown=percent_less,
         without_case=True,

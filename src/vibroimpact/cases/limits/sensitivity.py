@@ -16,12 +16,12 @@ _LOST = 0.3  # a larger one leaves no digit
 
 
 def _number(drops: Conditions) -> Array:
-    changes = np.asarray(drops.seen.changes, dtype=float)
+    changes = np.asarray(drops.summary.changes, dtype=float)
     return float(np.nan_to_num(changes, nan=np.inf).max()) if changes.any() else math.nan
 
 
 def _sentence(drop: Conditions, _: float) -> str:
-    changes = np.asarray(drop.seen.changes, dtype=float)
+    changes = np.asarray(drop.summary.changes, dtype=float)
     first, lost = np.flatnonzero(~(changes <= _PREDICTED))[0], np.flatnonzero(~(changes <= _LOST))
     grown = [] if lost.size and lost[0] == first else [f"to {100.0 * changes[first]:.2g} % of impact {first + 1}"]
     grown += [f"to all of impact {lost[0] + 1}"] if lost.size else []

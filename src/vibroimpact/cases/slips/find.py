@@ -11,11 +11,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from vibroimpact.cases.fields.item_labels import NUMBERS, in_list
-from vibroimpact.cases.slips.facts import Facts
-from vibroimpact.cases.slips.plausible import Place, Plausible, Words, number
+from vibroimpact.cases.fields.item_labels import NUMBER_LABELS, item_label
+from vibroimpact.cases.slips.hertz_estimate import HertzEstimate
+from vibroimpact.cases.slips.plausible import CheckedKey, PlausibleRange, Words, number_text
 from vibroimpact.cases.slips.rules import stiffness_unit
-from vibroimpact.cases.slips.table import PLACES
+from vibroimpact.cases.slips.table import CHECKED_KEYS
 from vibroimpact.errors import InputError
 from vibroimpact.units.reading import to_si
 
@@ -31,7 +31,7 @@ class _Number(NamedTuple):
     name: Any
 
 
-class _Meant(NamedTuple):
+class _Correction(NamedTuple):
     """What was likely meant by a value: the value [SI], and how it is written."""
 
     value: float
@@ -51,17 +51,17 @@ def slips(case: Mapping[str, Any], aside: Container[str] = ()) -> list[str]:
     Examples
     --------
     >>> import vibroimpact as vi
-    >>> from vibroimpact.cases.build import resolved
+    >>> from vibroimpact.cases.build import resolved_case
     >>> case = vi.read_case({
     ...     "sphere": {"radius": 25, "material": "granite"}, "plate": {"material": "steel"},
     ...     "drop": {"speed": 1.0}, "contact": {"law": "hertz"},
     ... })
-    >>> slips(resolved(case))
+    >>> slips(resolved_case(case))
     ['sphere.radius: 25 m is larger than a boulder; was 25 mm meant? Write "25 mm"']
     """
     found = []
-    for place, at, facts in _numbers(case):
-        said, meant = _said(place, facts, at.key, at.table, at.table[at.name])
+    for place, at, estimate in _checked_numbers(case):
+        said, meant = _assess(place, estimate, at.key, at.table, at.table[at.name])
         if said and at.key not in aside:
             found.append(said)
         at.table[at.name] = meant  # so that nothing else is held to what is wrong
@@ -81,86 +81,88 @@ def swept_slips(case: Mapping[str, Any], swept: Mapping[str, Any]) -> list[str]:
     Examples
     --------
     >>> import numpy as np, vibroimpact as vi
-    >>> from vibroimpact.cases.build import resolved
-    >>> case = resolved(vi.load_case("paper:type1-theory"))
+    >>> from vibroimpact.cases.build import resolved_case
+    >>> case = resolved_case(vi.load_case("paper:type1-theory"))
     >>> swept_slips(case, {"sphere.radius": np.array([0.005, 10.0, 25.0])})
     ['sphere.radius: 2 of 3 values, such as 10 m, which is larger than a boulder; was 10 mm meant? Write "10 mm"']
     """
     found = []
-    for place, at, facts in _numbers(case, swept):
+    for place, at, estimate in _checked_numbers(case, swept):
         values = swept.get(at.key)
         if values is not None and np.asarray(values).dtype.kind == "f":
-            said, _ = _said(place, facts, at.key, at.table, np.unique(values).tolist())
+            said, _ = _assess(place, estimate, at.key, at.table, np.unique(values).tolist())
             found += [said] if said else []
-        at.table[at.name] = _said(place, facts, at.key, at.table, at.table[at.name])[1]
+        at.table[at.name] = _assess(place, estimate, at.key, at.table, at.table[at.name])[1]
     return found
 
 
-def _numbers(case: Mapping[str, Any], swept: Container[str] = ()) -> Iterator[tuple[Place, _Number, Facts]]:
-    """Yield the numbers of a case that are there, each with the facts of the case, in which those before may have been put right."""
+def _checked_numbers(case: Mapping[str, Any], swept: Container[str] = ()) -> Iterator[tuple[CheckedKey, _Number, HertzEstimate]]:
+    """Yield the numbers of a case that are there, each with the estimate of the case, in which those before may have been put right."""
     table = copy.deepcopy(dict(case))
     with np.errstate(all="ignore"):
-        told = Facts(case).told_by_the_bodies
+        told = HertzEstimate(case).derived_parameters
     table["contact"] = {key: value for key, value in table["contact"].items() if f"contact.{key}" in swept or key not in told}
     with np.errstate(all="ignore"):
-        for place in PLACES:
-            for at in _at(table, place.key.split("."), ""):
-                yield place, at, Facts(table)
+        for place in CHECKED_KEYS:
+            for at in _numbers_at(table, place.key.split("."), ""):
+                yield place, at, HertzEstimate(table)
 
 
-def _at(table: Any, way: Sequence[str], above: str) -> Iterator[_Number]:
+def _numbers_at(table: Any, way: Sequence[str], above: str) -> Iterator[_Number]:
     """Yield the numbers at a way into a table."""
     part, *rest = way
     if part == "#":
         for count, one in enumerate(table if isinstance(table, list) else ()):
-            yield from _at(one, rest, in_list(above, table, count))
+            yield from _numbers_at(one, rest, item_label(above, table, count))
         return
     if isinstance(table, list):
-        name: Any = next((names.index(part) for names in NUMBERS.values() if part in names), None)
+        name: Any = next((names.index(part) for names in NUMBER_LABELS.values() if part in names), None)
     else:
         name = part if isinstance(table, dict) and part in table else None
     if name is None:
         return
     key = f"{above}.{part}" if above else part
     if rest:
-        yield from _at(table[name], rest, key)
+        yield from _numbers_at(table[name], rest, key)
     elif isinstance(table[name], (int, float, list)):
         yield _Number(key, table, name)
 
 
-def _said(place: Place, facts: Facts, key: str, table: Mapping[Any, Any], given: Any) -> tuple[str, Any]:
+def _assess(place: CheckedKey, estimate: HertzEstimate, key: str, table: Mapping[Any, Any], given: Any) -> tuple[str, Any]:
     """Return what is said of a value, or of several, "" if nothing; and the same with what was likely meant."""
     try:
-        return _judged(place, facts, key, table, given)
+        return _assess_values(place, estimate, key, table, given)
     except (ArithmeticError, InputError):  # numbers beyond all bounds, to which nothing can be held: N/m^1e-200 is no unit
         return "", given
 
 
-def _judged(place: Place, facts: Facts, key: str, table: Mapping[Any, Any], given: Any) -> tuple[str, Any]:
+def _assess_values(place: CheckedKey, estimate: HertzEstimate, key: str, table: Mapping[Any, Any], given: Any) -> tuple[str, Any]:
     values = [float(one) for one in given] if isinstance(given, list) else [float(given)]
-    bounds = place.rule(facts, table if isinstance(table, Mapping) else {})
+    bounds = place.rule(estimate, table if isinstance(table, Mapping) else {})
     strange = [value for value in values if value != 0.0 and (abs(value) < bounds.low or abs(value) > bounds.high)]
     if not strange:
         return "", given
-    unit = place.unit.replace("N/m^n", stiffness_unit(facts.exponent))
-    units = tuple(one.replace("^n", f"^{facts.exponent:g}") if facts.exponent != 1.0 else one.replace("^n", "") for one in place.units)
-    meant = {value: _meant(abs(value), bounds, unit, units) for value in strange}
+    unit = place.unit.replace("N/m^n", stiffness_unit(estimate.exponent))
+    units = tuple(
+        one.replace("^n", f"^{estimate.exponent:g}") if estimate.exponent != 1.0 else one.replace("^n", "") for one in place.units
+    )
+    meant = {value: _most_likely(abs(value), bounds, unit, units) for value in strange}
     first = next((value for value in strange if meant[value] is not None), strange[0])
     likely = meant[first]
-    remedy = _of(bounds.remedy, first) if likely is None else f'was {likely.text} meant? Write "{likely.text}"'
+    remedy = _text(bounds.remedy, first) if likely is None else f'was {likely.text} meant? Write "{likely.text}"'
     if not remedy:
         return "", given
-    words = _of(bounds.below if abs(first) < bounds.low else bounds.above, first)
-    shown = f"{number(first)} {unit}"
+    words = _text(bounds.below if abs(first) < bounds.low else bounds.above, first)
+    shown = f"{number_text(first)} {unit}"
     many = f"{shown} {words}" if len(values) == 1 else f"{len(strange)} of {len(values)} values, such as {shown}, which {words}"
     repaired = [value if (one := meant.get(value)) is None else one.value for value in values]
     return f"{key}: {many}; {remedy}", repaired if isinstance(given, list) else repaired[0]
 
 
-def _meant(value: float, bounds: Plausible, unit: str, units: tuple[str, ...]) -> _Meant | None:
+def _most_likely(value: float, bounds: PlausibleRange, unit: str, units: tuple[str, ...]) -> _Correction | None:
     """Return what was likely meant by a value that is not plausible, if a unit explains it."""
-    sizes = {one: _size(one, unit) for one in units}
-    likely = [one for one in _slipped(value, unit, sizes) if bounds.low <= one.value <= bounds.high]
+    sizes = {one: _si_factor(one, unit) for one in units}
+    likely = [one for one in _corrections(value, unit, sizes) if bounds.low <= one.value <= bounds.high]
     if bounds.reference is None:
         return likely[0] if likely else None
     near = math.log10(bounds.within)
@@ -169,28 +171,28 @@ def _meant(value: float, bounds: Plausible, unit: str, units: tuple[str, ...]) -
     return min(((off + rare, place, one) for off, rare, place, one in scored if off <= near), default=(0.0, 0, None))[2]
 
 
-def _of(words: Words, value: float) -> str:
+def _text(words: Words, value: float) -> str:
     return words if isinstance(words, str) else words(abs(value))
 
 
-def _slipped(value: float, unit: str, sizes: Mapping[str, float]) -> Iterator[_Meant]:
+def _corrections(value: float, unit: str, sizes: Mapping[str, float]) -> Iterator[_Correction]:
     """Yield what a value may have been meant to be: a unit was forgotten, or given where SI was meant, or another one was."""
     natural = sorted([(1.0, unit), *((size, one) for one, size in sizes.items())], reverse=True)
 
     def written(meant: float) -> str:
         size, name = next(((size, one) for size, one in natural if meant >= 0.999 * size), natural[-1])
-        return f"{number(meant / size)} {name}"
+        return f"{number_text(meant / size)} {name}"
 
     for one, size in sizes.items():
-        yield _Meant(value * size, f"{number(value)} {one}" if value < _SHORT else written(value * size))
+        yield _Correction(value * size, f"{number_text(value)} {one}" if value < _SHORT else written(value * size))
     for size in sizes.values():
         meant = value / size
-        yield _Meant(meant, written(meant) if meant >= _SHORT and unit in _PREFIXED else f"{number(meant)} {unit}")
+        yield _Correction(meant, written(meant) if meant >= _SHORT and unit in _PREFIXED else f"{number_text(meant)} {unit}")
     for size, other in permutations(sizes.values(), 2):
-        yield _Meant(value * size / other, written(value * size / other))
+        yield _Correction(value * size / other, written(value * size / other))
 
 
 @cache
-def _size(one: str, unit: str) -> float:
+def _si_factor(one: str, unit: str) -> float:
     """Return the size of a unit in the SI unit."""
     return to_si(f"1 {one}", unit)

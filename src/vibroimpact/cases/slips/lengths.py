@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from vibroimpact.cases.slips.plausible import number
+from vibroimpact.cases.slips.plausible import number_text
 
 _UNITS = {"mm": 1e-3, "cm": 1e-2, "um": 1e-6}
 _FAR = 5.0  # times too long: nearer ones are no slip of a unit
@@ -29,6 +29,6 @@ def likely_lengths(values: Sequence[float], most: Sequence[float]) -> str:
         return ""
     for unit, size in _UNITS.items():
         if all(abs(value) * size <= end for value, end in zip(values, most, strict=True)):
-            texts = [f'"{number(value)} {unit}"' for value in values]
+            texts = [f'"{number_text(value)} {unit}"' for value in values]
             return f"; were {unit} meant? Write {texts[0] if len(texts) == 1 else '[' + ', '.join(texts) + ']'}"
     return ""

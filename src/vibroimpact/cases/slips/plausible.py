@@ -8,14 +8,14 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from vibroimpact.cases.slips.facts import Facts
+from vibroimpact.cases.slips.hertz_estimate import HertzEstimate
 
 Words = str | Callable[[float], str]
 """What is said of a value: as it stands, or made for the value."""
 
 
 @dataclass(frozen=True, kw_only=True)
-class Plausible:
+class PlausibleRange:
     """Where a number is plausible; NaN bounds nothing.
 
     Parameters
@@ -42,12 +42,12 @@ class Plausible:
     remedy: Words = ""
 
 
-Rule = Callable[[Facts, Mapping[str, Any]], Plausible]
-"""Gives what is plausible under the facts of a case, for a number that stands in a table."""
+Rule = Callable[[HertzEstimate, Mapping[str, Any]], PlausibleRange]
+"""Gives what is plausible under the estimate of a case, for a number that stands in a table."""
 
 
 @dataclass(frozen=True)
-class Place:
+class CheckedKey:
     """A key of a case, or keys alike, and what is plausible there.
 
     Parameters
@@ -70,52 +70,52 @@ class Place:
 
 def between(low: float = 0.0, high: float = math.inf, *, below: str = "", above: str = "") -> Rule:
     """Return the rule of a number that lies in a range whatever else the case says."""
-    bounds = Plausible(low=low, high=high, below=below, above=above)
-    return lambda facts, table: bounds
+    bounds = PlausibleRange(low=low, high=high, below=below, above=above)
+    return lambda estimate, table: bounds
 
 
-def about(what: Callable[[Facts], float], words: str, unit: str, *, factor: float = 300.0, within: float = 30.0) -> Rule:
+def near(what: Callable[[HertzEstimate], float], words: str, unit: str, *, factor: float = 300.0, within: float = 30.0) -> Rule:
     """Return the rule of a number that physics gives: by which factor it may be off, and one in another unit."""
 
-    def rule(facts: Facts, table: Mapping[str, Any]) -> Plausible:
-        reference = what(facts)
+    def rule(estimate: HertzEstimate, table: Mapping[str, Any]) -> PlausibleRange:
+        reference = what(estimate)
 
         def said(value: float) -> str:
-            return f"is {times(value / reference)} than {words} {number(reference, 4)} {unit}"
+            return f"is {ratio_text(value / reference)} than {words} {number_text(reference, 4)} {unit}"
 
-        return Plausible(low=reference / factor, high=reference * factor, below=said, above=said, reference=reference, within=within)
+        return PlausibleRange(low=reference / factor, high=reference * factor, below=said, above=said, reference=reference, within=within)
 
     return rule
 
 
-def times(ratio: float) -> str:
+def ratio_text(ratio: float) -> str:
     """Return how many times more or less something is.
 
     Examples
     --------
-    >>> times(64.3), times(1 / 31622.8)
+    >>> ratio_text(64.3), ratio_text(1 / 31622.8)
     ('64 times more', '31,623 times less')
     """
-    return f"{count(ratio)} times more" if ratio > 1.0 else f"{count(1.0 / ratio)} times less"
+    return f"{count_text(ratio)} times more" if ratio > 1.0 else f"{count_text(1.0 / ratio)} times less"
 
 
-def count(value: float) -> str:
+def count_text(value: float) -> str:
     """Return a whole number with commas; a very large one with an exponent.
 
     Examples
     --------
-    >>> count(31622.8), count(6.4e12)
+    >>> count_text(31622.8), count_text(6.4e12)
     ('31,623', '6.4e12')
     """
-    return f"{value:,.0f}" if value < 1e9 else number(value, 2)
+    return f"{value:,.0f}" if value < 1e9 else number_text(value, 2)
 
 
-def number(value: float, digits: int = 6) -> str:
+def number_text(value: float, digits: int = 6) -> str:
     """Return a number as people type it.
 
     Examples
     --------
-    >>> number(16176.0), number(5.115e8), number(7.85e-9), number(2786.0, 2)
+    >>> number_text(16176.0), number_text(5.115e8), number_text(7.85e-9), number_text(2786.0, 2)
     ('16176', '5.115e8', '7.85e-9', '2800')
     """
     rounded = float(f"{value:.{digits}g}")

@@ -10,14 +10,14 @@ from typing import Any
 
 import numpy as np
 
-from vibroimpact.cases.conditions import Conditions, Seen
+from vibroimpact.cases.conditions import Conditions, DropSummary
 from vibroimpact.contact.hertz_time import HERTZ_TIME
 from vibroimpact.contact.pair import hertz_stiffness
 from vibroimpact.materials import Material
 
 
 @dataclass(frozen=True)
-class Facts:
+class HertzEstimate:
     """What follows from a case by Hertz's undamped contact of its two bodies; NaN of what does not.
 
     Parameters
@@ -30,7 +30,7 @@ class Facts:
 
     @cached_property
     def _conditions(self) -> Conditions:
-        return Conditions(self.case, Seen())
+        return Conditions(self.case, DropSummary())
 
     @property
     def plate(self) -> Material:
@@ -102,11 +102,11 @@ class Facts:
         """Exponent of the law's elastic force."""
         known: Mapping[str, Any] = self._conditions.law.__dataclass_fields__
         if "exponent" in known:
-            return float(self._conditions.of_law("exponent", 1.5))
+            return float(self._conditions.law_parameter("exponent", 1.5))
         return 1.5 if "stiffness" in known and "1.5" in known["stiffness"].metadata["unit"] else 1.0
 
     @property
-    def told_by_the_bodies(self) -> set[str]:
+    def derived_parameters(self) -> set[str]:
         """Parameters of the law that have the values which the two bodies give, so that nobody wrote them."""
         bodies = self._conditions.materials.values()
         strengths = [material.yield_strength for material in bodies if material.yield_strength is not None]
