@@ -66,7 +66,7 @@ def _check_supports(case: CaseTable, body: ElasticBody, mesh: Mesh) -> None:
     constraints = Constraints(Structure(mesh, nothing, nothing, mass_properties(mesh, 1.0, thickness or 1.0), thickness))
     kinds = [{"type": table.type} for table in tables]
     for number, table in enumerate(tables):
-        for support in table.made():
+        for support in table.supports():
             try:
                 support.hold(constraints)
             except InputError as error:

@@ -1,4 +1,4 @@
-"""What the numbers and tables of lists in a case are called, so that nobody has to count from 0."""
+"""Labels of list items in messages: names or ordinals in place of indices counted from 0."""
 
 from __future__ import annotations
 
@@ -6,22 +6,22 @@ from collections.abc import Sequence
 from typing import Any
 
 NUMBER_LABELS: dict[str, tuple[str, ...]] = {"position": ("x", "y"), "size": ("length", "width", "thickness")}
-"""What the numbers of a list are called, such as in "drop.position.x"."""
+"""Labels of the numbers of a list, such as in "drop.position.x"."""
 
-_LONGEST = 40  # of a name that is shown
+_LONGEST = 40  # characters of a name that serves as a label
 
 
 def item_label(key: str, items: Sequence[Any], number: int) -> str:
-    """Return the key of one of a list: by its name, such as sensors."a1", or by its place, counted from 1, if there are several.
+    """Return the key of a list item with its name, such as sensors."a1", or with its ordinal if the list has several items.
 
     Parameters
     ----------
     key : str
-        That of the list.
+        Key of the list.
     items : sequence
-        What is in it.
+        Items of the list.
     number : int
-        Which one is meant, from 0.
+        Index of the item, from 0.
 
     Examples
     --------
@@ -42,7 +42,7 @@ def item_label(key: str, items: Sequence[Any], number: int) -> str:
 
 
 def ordinal(number: int) -> str:
-    """Return 1st, 2nd, 3rd, 4th, ... 11th, ...
+    """Return an ordinal number, such as "1st".
 
     Examples
     --------
@@ -54,14 +54,14 @@ def ordinal(number: int) -> str:
 
 
 def path_in_words(path: str, table: Any) -> str:
-    """Return a dotted place in a case with lists' own names and places counted from 1, in place of numbers from 0.
+    """Return a dotted key path in which the indices of list items are replaced by their labels.
 
     Parameters
     ----------
     path : str
-        As pydantic gives it: "sensors.1.filter".
+        Path as pydantic gives it: "sensors.1.filter".
     table : any
-        The case that it is a place in.
+        The case to which the path belongs.
 
     Examples
     --------

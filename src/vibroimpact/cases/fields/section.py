@@ -1,4 +1,4 @@
-"""What all sections of a case are: frozen, and closed to unknown keys."""
+"""The base class of the sections of a case, and the validation of their tables."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from vibroimpact.shown import shown
 
 
 class Section(BaseModel):
-    """A table of a case."""
+    """A table of a case."""  # the docstrings of sections are the descriptions in the JSON schema
 
     model_config = ConfigDict(extra="forbid", frozen=True, arbitrary_types_allowed=True)
 
@@ -22,12 +22,12 @@ Table = TypeVar("Table", bound=Section)
 
 
 def read_table(kind: type[Table], value: Mapping[str, Any]) -> Table:
-    """Read a table that is one of several possible; an unknown key is named with those that this one takes.
+    """Return a validated table of the given kind, for fields that accept several kinds of tables.
 
     Raises
     ------
     InputError
-        With the first key that is wrong.
+        For the first invalid key; the message for an unknown key lists the keys of this kind.
     """
     known = [info.alias or name for name, info in kind.model_fields.items() if name != "type"]
     for key in value:
@@ -38,3 +38,16 @@ def read_table(kind: type[Table], value: Mapping[str, Any]) -> Table:
     except ValidationError as error:
         path, message = next(fault_messages(error, lambda where: kind if not where else None))
         raise InputError(message.replace("this section is missing", "this key is missing"), path) from None
+
+
+def check_alternatives(table: Section, one: str, other: str, *, needed: bool, key: str = "") -> None:
+    """Check that at most one of two alternative keys of a table is given, and, if `needed`, that one is.
+
+    Raises
+    ------
+    InputError
+        With `key`, if both are given, or none of those needed.
+    """
+    given = [name for name in (one, other) if getattr(table, name) is not None]
+    if len(given) == 2 or (needed and not given):
+        raise InputError(f"give either {one} or {other}; {'both are' if given else 'neither is'} given", key)

@@ -43,8 +43,9 @@ def plate_theory_error(facts: Mapping[str, Any], impacts: Mapping[str, Any]) -> 
 
 
 def _sentence(drop: Conditions, error: float) -> str:
+    duration = float(drop.summary.duration)
     return (
-        f"the contact lasts {float(drop.summary.duration):.3g} s, and waves through the thickness of the plate, which plate elements do not "
+        f"the contact lasts {duration:.3g} s, and waves through the thickness of the plate, which plate elements do not "
         f'have, change the largest force by about {percent_less(error)}; take element = "solid"'
     )
 

@@ -184,13 +184,14 @@ def rest_speed(estimate: HertzEstimate, table: Mapping[str, Any]) -> PlausibleRa
 def modal_frequency(estimate: HertzEstimate, table: Mapping[str, Any]) -> PlausibleRange:
     """Return up to which frequency modes may be asked for: those whose periods are like the contact or shorter."""
     lasts = estimate.contact_time
+    contact = f"about {number_text(lasts, 2)} s"
     return PlausibleRange(
         low=0.05 / lasts,
         high=1e5 / lasts,
         below=lambda value: (
-            f"has a period of {number_text(1.0 / value, 2)} s, and the contact lasts about {number_text(lasts, 2)} s: it excites much higher ones"
+            f"has a period of {number_text(1.0 / value, 2)} s, and the contact lasts {contact}: it excites much higher ones"
         ),
-        above=lambda value: f"is far higher than a contact of about {number_text(lasts, 2)} s excites",
+        above=lambda value: f"is far higher than a contact of {contact} excites",
     )
 
 
