@@ -1,4 +1,4 @@
-"""What to doubt of a drop: numbers that look like a slip of a unit, and where its assumptions are strained."""
+"""Doubts about a drop: values that look like a slip of a unit, and limits of the theory that are exceeded."""
 
 from __future__ import annotations
 
@@ -11,16 +11,16 @@ from vibroimpact.cases.slips.find import slips
 
 
 def doubts(case: Mapping[str, Any], summary: DropSummary, aside: Container[str] = ()) -> list[str]:
-    """Return what to doubt of a drop of a case: slips of units, and limits that it is beyond, each with a cause and a remedy.
+    """Return a sentence for each doubt about a drop: slips of units and limits exceeded, each with its cause and a remedy.
 
     Parameters
     ----------
     case : mapping
-        A resolved case; empty of a problem made in Python, of which less can be told.
+        A resolved case; empty for a problem made in Python, for which only limits that do not need the case are checked.
     summary : DropSummary
-        What came of the drop, or is expected of it.
+        Computed or expected peak values of the drop.
     aside : container of str
-        Dotted keys whose slips are told elsewhere.
+        Dotted keys whose slips are reported elsewhere.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""What to expect of the first impact of a case before it is run: from the undamped contact between rigid bodies."""
+"""Expected peak values of the first impact before a case is run, from the undamped contact of rigid bodies."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _SUPPORTED, _CLAMPED = 0.0116, 0.0056
 
 
 def expected_of(case: Case) -> DropSummary:
-    """Return what to expect of the first impact of a case if nothing were lost; NaN of a law that gives no force."""
+    """Return the expected peak values of the first impact without losses; NaN for a law that gives no force."""
     law, speed = contact_laws_of(case)[0], touch_speed(case)
     if not isinstance(law, CompliantLaw):
         return DropSummary(speed=speed)
@@ -33,10 +33,11 @@ def expected_of(case: Case) -> DropSummary:
 
 
 def _deflection(case: Case, speed: float) -> float:
-    """Return about how far an elastic plate gives way [m]; NaN of another.
+    """Return the estimated deflection of an elastic plate at the contact point [m]; NaN for a rigid plate.
 
-    The sphere rebounds before waves come back from the edges, so that the plate takes up twice its momentum as an infinite plate would,
-    with 8 sqrt(D rho h) of force over speed; or, if it is heavy, the plate stops it like a spring. It can't be more than either.
+    It is the smaller of two bounds. A light sphere rebounds before flexural waves return from the edges: the plate takes up twice the
+    momentum of the sphere like an infinite plate, of impedance 8 sqrt(D rho h). A heavy sphere is stopped by the plate as by a spring of
+    the static stiffness.
     """
     size, material = case.plate.size, case.plate.material
     if case.plate.model == "rigid" or size is None:

@@ -1,4 +1,4 @@
-"""The meshes of the elastic bodies of a case, made or read, with all that must lie on them: told by the keys at which it stands."""
+"""Meshes of the elastic bodies of a case, generated or read, with checks that contact, sensors and supports lie on them."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 def meshes_of(case: CaseTable) -> dict[str, Mesh]:
-    """Return the mesh of each elastic body of a case; nothing is assembled.
+    """Return the mesh of each elastic body of a case by name; no matrices are assembled.
 
     Raises
     ------
@@ -34,7 +34,7 @@ def meshes_of(case: CaseTable) -> dict[str, Mesh]:
     for name, body in elastic_bodies(case).items():
         try:
             mesh = body.recipe.shape.mesh(body.recipe.supports)
-            if isinstance(body.recipe.shape, BroughtMesh):  # what is meshed here is sound
+            if isinstance(body.recipe.shape, BroughtMesh):  # generated meshes are valid
                 check_mesh(mesh)
         except InputError as error:
             raise InputError(error.message, f"{name}.{error.key}".rstrip(".")) from None
@@ -51,6 +51,7 @@ def meshes_of(case: CaseTable) -> dict[str, Mesh]:
 
 
 def _check_spot(mesh: Mesh, spot: Spot, side: Side, key: str) -> None:
+    """Check that a point lies on a side of a mesh."""
     try:
         surface_motion(mesh, np.array([place_of(mesh, spot, side)]), side)
     except InputError as error:
@@ -58,8 +59,9 @@ def _check_spot(mesh: Mesh, spot: Spot, side: Side, key: str) -> None:
 
 
 def _check_supports(case: CaseTable, body: ElasticBody, mesh: Mesh) -> None:
-    """Raise unless each support finds something to hold, that no other one holds."""
+    """Check that each support finds degrees of freedom to constrain that no other support constrains."""
     tables = case.plate.supports if isinstance(case.plate.supports, tuple) else ()
+    # constraints depend on the mesh and its mass properties only, so zero matrices and unit density serve
     dofs = mesh.dofs_per_node * len(mesh.nodes)
     nothing = csr_array((dofs, dofs))
     thickness = case.plate.size[2] if case.plate.size is not None and mesh.is_flat else 0.0

@@ -1,4 +1,4 @@
-"""Are the supports and the sensors of a plate on it? Told by the keys at which they stand, before anything is computed."""
+"""Checks that the supports and sensors of a plate lie on it, before it is meshed."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from vibroimpact.structures.rectangle import CLOSEST
 if TYPE_CHECKING:
     from vibroimpact.cases.schema import CaseTable
 
-_ROUNDING = 1.0 + 1e-9
-_RIGID = ("patch", "patches", "bar", "bars")  # whose rim is an edge of elements
+_ROUNDING = 1.0 + 1e-9  # relative tolerance
+_RIGID = ("patch", "patches", "bar", "bars")  # the mesh follows their rims
 
 
 def check_positions(case: CaseTable) -> None:
-    """Raise unless the supports and the sensors of an elastic plate that is meshed here lie on it.
+    """Check that the supports and sensors of an elastic plate with a generated mesh lie on it.
 
     Raises
     ------
@@ -53,7 +53,7 @@ def _check_point(position: Sequence[float], half: tuple[float, float], key: str)
 
 
 def _check_support(table: Any, half: tuple[float, float]) -> None:
-    """Raise unless a support lies on the plate: its centre, or those of four, and its rim."""
+    """Check that a support lies on the plate: its centre, or those of a group of four, and its rim."""
     if table.type == "set":
         raise InputError(f'a plate that is meshed here has no set "{table.name}"; give patches, bars, edges, points or springs')
     centre = getattr(table, "position", None)
@@ -74,7 +74,7 @@ def _check_support(table: Any, half: tuple[float, float]) -> None:
         return
     radius = getattr(table, "radius", None) or 0.0
     is_rigid = table.type in _RIGID
-    least = CLOSEST * radius if is_rigid else radius - 1e-9 * max(half)  # rims are held to it as exactly as meshes hold them
+    least = CLOSEST * radius if is_rigid else radius - 1e-9 * max(half)  # with the tolerance of supports on meshes
     if least > min(room):
         margin = f"; between it and the edge must be at least {CLOSEST - 1.0:.2g} radii" if is_rigid else ""
         words = f"{radius:g} m around {_shown(centre)} m reaches beyond the plate, {_reaches(half)}{margin}"
@@ -82,7 +82,7 @@ def _check_support(table: Any, half: tuple[float, float]) -> None:
 
 
 def _reaches(half: Sequence[float]) -> str:
-    """Return how far a plate reaches from its centre, in words."""
+    """Return the extent of a plate from its centre in words."""
     return f"which reaches to {_shown(half)} m from its centre"
 
 

@@ -1,48 +1,45 @@
-"""How the points of a plate that are watched move with the modes that were left out."""
+"""Residual compliance of truncated modes between the contact point and the sensors of a plate."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
 
-from vibroimpact.cases.elastic.modes import BodyModes
+from vibroimpact.cases.elastic.modes import BodyModes, contact_place
 from vibroimpact.structures.modal_model import ModalBasis
-from vibroimpact.structures.surface import Side, place_of
+from vibroimpact.structures.surface import place_of
 from vibroimpact.structures.transfer_compliance import Point, transfer_compliances, transfer_key
 
 _FACES = 2
-"""At how many of both points, of the contact and of those watched, the modal shapes are those of the face of a plate."""
+"""Number of points, out of contact and sensor, at which the mode shapes are those at the face of the plate."""
 
 
 def with_residuals(body: BodyModes, basis: ModalBasis, tell: Callable[[str], None] | None = None) -> ModalBasis:
-    """Return the modes of a plate with what they lack of the static compliance between the contact and the points that are watched.
+    """Return the modes of a plate with the residual static compliance between the contact point and each sensor.
 
     Parameters
     ----------
     body : BodyModes
         The plate.
     basis : ModalBasis
-        Its modes as the contact sees them.
+        Its modes at the contact point and the sensors.
     tell : callable, optional
-        Called with a sentence if something is wrong with the store.
+        Called with a warning if the mode store can't be read or written.
     """
     if not body.body.watched:
         return basis
-    whole = transfer_compliances(body.body.recipe, *_force(body), _points(body), _FACES, tell)
+    compliances = transfer_compliances(body.body.recipe, *contact_place(body), _points(body), _FACES, tell)
     weights = basis.contact / basis.angular_frequencies**2
     return replace(
-        basis, residuals={name: found - weights @ basis.points[name] for name, found in zip(body.body.watched, whole, strict=True)}
+        basis, residuals={name: found - weights @ basis.points[name] for name, found in zip(body.body.watched, compliances, strict=True)}
     )
 
 
 def residual_key(body: BodyModes) -> str:
-    """Return the key under which the store has what `with_residuals` needs of a plate."""
-    return transfer_key(body.body.recipe, *_force(body), _points(body), _FACES)
-
-
-def _force(body: BodyModes) -> tuple[tuple[float, float], Side]:
-    return place_of(body.model.mesh, body.body.contact, body.body.side), body.body.side
+    """Return the key of the compliances of `with_residuals` in the mode store."""
+    return transfer_key(body.body.recipe, *contact_place(body), _points(body), _FACES)
 
 
 def _points(body: BodyModes) -> list[Point]:
+    """Return the position and face of each sensor."""
     return [(place_of(body.model.mesh, spot, face), face) for spot, face in body.body.watched.values()]

@@ -174,6 +174,7 @@ def check_plate(section: Any) -> None:
             raise InputError('"rigid" has no density, and a sphere that is free needs a mass', "material")
     if section.model == "rigid":
         return
+    # an elastic plate: its size, supports and mesh keys must suit its elements
     mesh = section.mesh
     brought = isinstance(mesh, BroughtMeshTable)
     if section.size is None and not brought:

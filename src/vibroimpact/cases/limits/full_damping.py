@@ -1,4 +1,4 @@
-"""Full damping: Adams' penetration at which the damping acts in full is never reached."""
+"""Full-damping penetration of the Adams impact law, which the indentation may never reach."""
 
 from __future__ import annotations
 

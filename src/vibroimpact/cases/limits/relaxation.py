@@ -1,4 +1,4 @@
-r"""Relaxation: viscoelastic laws are of first order in their time."""
+r"""Relaxation: viscoelastic contact laws are of first order in the dissipation time."""
 
 from __future__ import annotations
 

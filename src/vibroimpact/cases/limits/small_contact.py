@@ -1,4 +1,4 @@
-"""Small contacts: Hertz's theory is one of small strains."""
+"""Size of the contact: Hertz's theory assumes small strains."""
 
 from __future__ import annotations
 

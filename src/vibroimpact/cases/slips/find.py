@@ -1,4 +1,4 @@
-"""Find slips of units in a case, and say which unit was likely meant."""
+"""Detection of slips of units in a case or a study, with the unit that was likely meant."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ from vibroimpact.cases.slips.table import CHECKED_KEYS
 from vibroimpact.errors import InputError
 from vibroimpact.units.reading import to_si
 
-_SHORT = 1e6  # what people type without an exponent
-_PREFIXED = ("Pa", "N", "Hz")  # which are hardly written without k, M or G where there are many
+_SHORT = 1e6  # numbers below it are written without an exponent
+_PREFIXED = ("Pa", "N", "Hz")  # large values of these units are written with k, M or G
 
 
 class _Number(NamedTuple):
-    """A number of a case, or a list of one value an impact: its key in words, and where it stands."""
+    """A number of a case, or a list with one value per impact: its key in words, and the table and the name that hold it."""
 
     key: str
     table: MutableMapping[Any, Any]
@@ -32,21 +32,21 @@ class _Number(NamedTuple):
 
 
 class _Correction(NamedTuple):
-    """What was likely meant by a value: the value [SI], and how it is written."""
+    """A possible correction of a value: the corrected value [SI] and its text with a unit."""
 
     value: float
     text: str
 
 
 def slips(case: Mapping[str, Any], aside: Container[str] = ()) -> list[str]:
-    """Return a sentence for each number of a case that is not plausible, with the unit that was likely meant.
+    """Return a sentence for each implausible value of a case, with the unit that was likely meant.
 
     Parameters
     ----------
     case : mapping
         A resolved case, in SI.
     aside : container of str
-        Dotted keys of which nothing is said.
+        Dotted keys that are not reported.
 
     Examples
     --------
@@ -60,23 +60,23 @@ def slips(case: Mapping[str, Any], aside: Container[str] = ()) -> list[str]:
     ['sphere.radius: 25 m is larger than a boulder; was 25 mm meant? Write "25 mm"']
     """
     found = []
-    for place, at, estimate in _checked_numbers(case):
-        said, meant = _assess(place, estimate, at.key, at.table, at.table[at.name])
+    for checked, at, estimate in _checked_numbers(case):
+        said, meant = _assess(checked, estimate, at.key, at.table, at.table[at.name])
         if said and at.key not in aside:
             found.append(said)
-        at.table[at.name] = meant  # so that nothing else is held to what is wrong
+        at.table[at.name] = meant  # later ranges are evaluated with the corrected value
     return found
 
 
 def swept_slips(case: Mapping[str, Any], swept: Mapping[str, Any]) -> list[str]:
-    """Return a sentence for each swept key with values that are not plausible: how many, one of them, and the unit likely meant.
+    """Return a sentence for each swept key with implausible values: how many, an example, and the unit that was likely meant.
 
     Parameters
     ----------
     case : mapping
         The resolved case at the first point.
     swept : mapping of str to array
-        By the dotted key its values, in SI.
+        Values of each swept key in SI.
 
     Examples
     --------
@@ -87,30 +87,34 @@ def swept_slips(case: Mapping[str, Any], swept: Mapping[str, Any]) -> list[str]:
     ['sphere.radius: 2 of 3 values, such as 10 m, which is larger than a boulder; was 10 mm meant? Write "10 mm"']
     """
     found = []
-    for place, at, estimate in _checked_numbers(case, swept):
+    for checked, at, estimate in _checked_numbers(case, swept):
         values = swept.get(at.key)
         if values is not None and np.asarray(values).dtype.kind == "f":
-            said, _ = _assess(place, estimate, at.key, at.table, np.unique(values).tolist())
+            said, _ = _assess(checked, estimate, at.key, at.table, np.unique(values).tolist())
             found += [said] if said else []
-        at.table[at.name] = _assess(place, estimate, at.key, at.table, at.table[at.name])[1]
+        at.table[at.name] = _assess(checked, estimate, at.key, at.table, at.table[at.name])[1]
     return found
 
 
 def _checked_numbers(case: Mapping[str, Any], swept: Container[str] = ()) -> Iterator[tuple[CheckedKey, _Number, HertzEstimate]]:
-    """Yield the numbers of a case that are there, each with the estimate of the case, in which those before may have been put right."""
+    """Yield the checked numbers that a case contains, each with an estimate of the case.
+
+    The caller may correct a number in its table; the following estimates then use the corrected value. Parameters of the law that are
+    derived from the bodies are left out, unless they are swept.
+    """
     table = copy.deepcopy(dict(case))
     with np.errstate(all="ignore"):
-        told = HertzEstimate(case).derived_parameters
-    table["contact"] = {key: value for key, value in table["contact"].items() if f"contact.{key}" in swept or key not in told}
+        derived = HertzEstimate(case).derived_parameters
+    table["contact"] = {key: value for key, value in table["contact"].items() if f"contact.{key}" in swept or key not in derived}
     with np.errstate(all="ignore"):
-        for place in CHECKED_KEYS:
-            for at in _numbers_at(table, place.key.split("."), ""):
-                yield place, at, HertzEstimate(table)
+        for checked in CHECKED_KEYS:
+            for at in _numbers_at(table, checked.key.split("."), ""):
+                yield checked, at, HertzEstimate(table)
 
 
-def _numbers_at(table: Any, way: Sequence[str], above: str) -> Iterator[_Number]:
-    """Yield the numbers at a way into a table."""
-    part, *rest = way
+def _numbers_at(table: Any, path: Sequence[str], above: str) -> Iterator[_Number]:
+    """Yield the numbers at a key path below a table."""
+    part, *rest = path
     if part == "#":
         for count, one in enumerate(table if isinstance(table, list) else ()):
             yield from _numbers_at(one, rest, item_label(above, table, count))
@@ -128,23 +132,24 @@ def _numbers_at(table: Any, way: Sequence[str], above: str) -> Iterator[_Number]
         yield _Number(key, table, name)
 
 
-def _assess(place: CheckedKey, estimate: HertzEstimate, key: str, table: Mapping[Any, Any], given: Any) -> tuple[str, Any]:
-    """Return what is said of a value, or of several, "" if nothing; and the same with what was likely meant."""
+def _assess(checked: CheckedKey, estimate: HertzEstimate, key: str, table: Mapping[Any, Any], given: Any) -> tuple[str, Any]:
+    """Return the message for a value or a list of values, "" if plausible; and the values with their corrections."""
     try:
-        return _assess_values(place, estimate, key, table, given)
-    except (ArithmeticError, InputError):  # numbers beyond all bounds, to which nothing can be held: N/m^1e-200 is no unit
+        return _assess_values(checked, estimate, key, table, given)
+    except (ArithmeticError, InputError):  # extreme values for which no range or unit exists, such as N/m^1e-200
         return "", given
 
 
-def _assess_values(place: CheckedKey, estimate: HertzEstimate, key: str, table: Mapping[Any, Any], given: Any) -> tuple[str, Any]:
+def _assess_values(checked: CheckedKey, estimate: HertzEstimate, key: str, table: Mapping[Any, Any], given: Any) -> tuple[str, Any]:
+    """Return what `_assess` returns, without its protection against extreme values."""
     values = [float(one) for one in given] if isinstance(given, list) else [float(given)]
-    bounds = place.rule(estimate, table if isinstance(table, Mapping) else {})
+    bounds = checked.rule(estimate, table if isinstance(table, Mapping) else {})
     strange = [value for value in values if value != 0.0 and (abs(value) < bounds.low or abs(value) > bounds.high)]
     if not strange:
         return "", given
-    unit = place.unit.replace("N/m^n", stiffness_unit(estimate.exponent))
+    unit = checked.unit.replace("N/m^n", stiffness_unit(estimate.exponent))
     units = tuple(
-        one.replace("^n", f"^{estimate.exponent:g}") if estimate.exponent != 1.0 else one.replace("^n", "") for one in place.units
+        one.replace("^n", f"^{estimate.exponent:g}") if estimate.exponent != 1.0 else one.replace("^n", "") for one in checked.units
     )
     meant = {value: _most_likely(abs(value), bounds, unit, units) for value in strange}
     first = next((value for value in strange if meant[value] is not None), strange[0])
@@ -160,13 +165,13 @@ def _assess_values(place: CheckedKey, estimate: HertzEstimate, key: str, table: 
 
 
 def _most_likely(value: float, bounds: PlausibleRange, unit: str, units: tuple[str, ...]) -> _Correction | None:
-    """Return what was likely meant by a value that is not plausible, if a unit explains it."""
+    """Return the most likely correction of an implausible value; None if no unit explains it."""
     sizes = {one: _si_factor(one, unit) for one in units}
     likely = [one for one in _corrections(value, unit, sizes) if bounds.low <= one.value <= bounds.high]
     if bounds.reference is None:
         return likely[0] if likely else None
     near = math.log10(bounds.within)
-    # a unit is likelier by far the more usual it is, and the closer it comes
+    # score: decades between corrected value and reference, plus half a decade for each step down the order of likelihood
     scored = [(abs(math.log10(one.value / bounds.reference)), 0.5 * place, place, one) for place, one in enumerate(likely)]
     return min(((off + rare, place, one) for off, rare, place, one in scored if off <= near), default=(0.0, 0, None))[2]
 
@@ -176,7 +181,7 @@ def _text(words: Words, value: float) -> str:
 
 
 def _corrections(value: float, unit: str, sizes: Mapping[str, float]) -> Iterator[_Correction]:
-    """Yield what a value may have been meant to be: a unit was forgotten, or given where SI was meant, or another one was."""
+    """Yield the possible corrections of a value: a unit was omitted, given in place of SI, or confused with another."""
     natural = sorted([(1.0, unit), *((size, one) for one, size in sizes.items())], reverse=True)
 
     def written(meant: float) -> str:
@@ -194,5 +199,5 @@ def _corrections(value: float, unit: str, sizes: Mapping[str, float]) -> Iterato
 
 @cache
 def _si_factor(one: str, unit: str) -> float:
-    """Return the size of a unit in the SI unit."""
+    """Return the conversion factor of a unit to the SI unit."""
     return to_si(f"1 {one}", unit)

@@ -1,4 +1,4 @@
-"""What is plausible for one number of a case: where it may lie, and in which units people write it."""
+"""Plausible ranges of the values of a case, and the units in which they are usually written."""
 
 from __future__ import annotations
 
@@ -11,26 +11,26 @@ from typing import Any
 from vibroimpact.cases.slips.hertz_estimate import HertzEstimate
 
 Words = str | Callable[[float], str]
-"""What is said of a value: as it stands, or made for the value."""
+"""A part of a message: fixed, or a function of the value."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class PlausibleRange:
-    """Where a number is plausible; NaN bounds nothing.
+    """The plausible range of a value; a bound of NaN is no bound.
 
     Parameters
     ----------
     low, high : float
-        Beyond these it is doubted [SI].
+        Bounds of the magnitude [SI].
     below, above : str or callable
-        What is said of one that is too small, and of one that is too large.
+        Message for a value below or above the range.
     reference : float, optional
-        What physics gives for it: of several units the likely one is that which comes close, and is usual. Without it the first
-        that leads into the range is.
+        Physical estimate of the value: of several units, the one that brings the value close to it and is common is taken. Without it,
+        the first unit that brings the value into the range.
     within : float, default 100
-        By which factor the closest may still be off.
+        Largest ratio between the corrected value and the reference.
     remedy : str or callable, optional
-        What to do where no unit explains it; if that is "", nothing is said then.
+        Advice if no unit explains the value; if it is "", the value is then not reported.
     """
 
     low: float = 0.0
@@ -43,23 +43,23 @@ class PlausibleRange:
 
 
 Rule = Callable[[HertzEstimate, Mapping[str, Any]], PlausibleRange]
-"""Gives what is plausible under the estimate of a case, for a number that stands in a table."""
+"""Returns the plausible range of a value, from the estimate of the case and the table that holds the value."""
 
 
 @dataclass(frozen=True)
 class CheckedKey:
-    """A key of a case, or keys alike, and what is plausible there.
+    """A key of a case whose value is checked for plausibility.
 
     Parameters
     ----------
     key : str
-        Dotted; "#" stands for each of a list, such as in "sensors.#.rate".
+        Dotted key; "#" stands for each item of a list, such as in "sensors.#.rate".
     unit : str
-        Its SI unit; "N/m^n" has the exponent of the law.
+        Its SI unit; the n of "N/m^n" is the exponent of the law.
     units : tuple of str
-        Others in which it is usually written, the likeliest first.
+        Other common units, the likeliest first.
     rule : callable
-        What is plausible.
+        Returns the plausible range.
     """
 
     key: str
@@ -69,13 +69,27 @@ class CheckedKey:
 
 
 def between(low: float = 0.0, high: float = math.inf, *, below: str = "", above: str = "") -> Rule:
-    """Return the rule of a number that lies in a range whatever else the case says."""
+    """Return the rule of a fixed range."""
     bounds = PlausibleRange(low=low, high=high, below=below, above=above)
     return lambda estimate, table: bounds
 
 
 def near(what: Callable[[HertzEstimate], float], words: str, unit: str, *, factor: float = 300.0, within: float = 30.0) -> Rule:
-    """Return the rule of a number that physics gives: by which factor it may be off, and one in another unit."""
+    """Return the rule of a value with a physical estimate.
+
+    Parameters
+    ----------
+    what : callable
+        Returns the estimate [SI].
+    words : str
+        Name of the estimate in messages.
+    unit : str
+        Its SI unit.
+    factor : float
+        Largest ratio of a plausible value to the estimate, or its inverse.
+    within : float
+        Largest ratio, or its inverse, of a value that is corrected for its unit.
+    """
 
     def rule(estimate: HertzEstimate, table: Mapping[str, Any]) -> PlausibleRange:
         reference = what(estimate)
@@ -89,7 +103,7 @@ def near(what: Callable[[HertzEstimate], float], words: str, unit: str, *, facto
 
 
 def ratio_text(ratio: float) -> str:
-    """Return how many times more or less something is.
+    """Return a ratio in words.
 
     Examples
     --------
@@ -100,7 +114,7 @@ def ratio_text(ratio: float) -> str:
 
 
 def count_text(value: float) -> str:
-    """Return a whole number with commas; a very large one with an exponent.
+    """Return an integer with thousands separators; a very large one with an exponent.
 
     Examples
     --------
@@ -111,7 +125,7 @@ def count_text(value: float) -> str:
 
 
 def number_text(value: float, digits: int = 6) -> str:
-    """Return a number as people type it.
+    """Return a number in its shortest usual notation.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""What is plausible where the other numbers of a case tell more than a range does."""
+"""Plausible ranges that depend on the other values of a case."""
 
 from __future__ import annotations
 
@@ -11,22 +11,23 @@ import numpy as np
 from vibroimpact.cases.slips.hertz_estimate import HertzEstimate
 from vibroimpact.cases.slips.plausible import PlausibleRange, Rule, count_text, number_text, ratio_text
 
-_GRAVITY = 9.8  # that weighs on springs, whatever the drop has
+_GRAVITY = 9.8  # m/s^2, for the weight on springs, independent of drop.gravity
 
-_DENSITY = (10.0, 25_000.0)  # foams; osmium has 22 590
-_MODULUS = (2e4, 2e12)  # gels; diamond has 1.1e12
-_LIGHTEST = 3.5e8  # Young's modulus over density [m^2/s^2]: diamond has 3e8
+_DENSITY = (10.0, 25_000.0)  # kg/m^3: foams; osmium has 22 590
+_MODULUS = (2e4, 2e12)  # Pa: gels; diamond has 1.1e12
+_LIGHTEST = 3.5e8  # largest Young's modulus over density [m^2/s^2]: diamond has 3e8
 _SOFTEST = ((1400.0, _MODULUS[0]), (2300.0, 1e6), (4000.0, 1e8), (math.inf, 2e9))
-"""Below which density [kg/m^3] a Young's modulus [Pa] is how low: gels and rubber; soils and filled rubber; rock and glass; metals."""
+"""Upper end of a range of densities [kg/m^3], and its least Young's modulus [Pa]: gels and rubber; soils and filled rubber; rock and glass;
+metals."""
 
 
 def _nan_outside(value: float, ends: tuple[float, float]) -> float:
-    """Return a value between two ends, else NaN: what is wrong itself tells nothing of another."""
+    """Return a value, or NaN if it lies outside its range, so that an implausible value does not affect the range of another."""
     return value if ends[0] <= value <= ends[1] else math.nan
 
 
 def density(estimate: HertzEstimate, table: Mapping[str, Any]) -> PlausibleRange:
-    """Return what a material may weigh: not so little that sound would be faster in it than in diamond."""
+    """Return the range of a density, so high that sound is hardly faster than in diamond."""
     least = _nan_outside(table["youngs_modulus"], _MODULUS) / _LIGHTEST
     return PlausibleRange(
         low=float(np.fmax(_DENSITY[0], least)),
@@ -37,7 +38,7 @@ def density(estimate: HertzEstimate, table: Mapping[str, Any]) -> PlausibleRange
 
 
 def elastic_modulus(estimate: HertzEstimate, table: Mapping[str, Any]) -> PlausibleRange:
-    """Return how stiff a material of its density may be."""
+    """Return the range of a Young's modulus for the density of the material."""
     weight = _nan_outside(table.get("density", math.nan), _DENSITY)
     return PlausibleRange(
         low=next((least for end, least in _SOFTEST if weight < end), _MODULUS[0]),
@@ -48,7 +49,7 @@ def elastic_modulus(estimate: HertzEstimate, table: Mapping[str, Any]) -> Plausi
 
 
 def strength(estimate: HertzEstimate, table: Mapping[str, Any]) -> PlausibleRange:
-    """Return how weak a material of its stiffness may be; there is no upper end, as one that is never to yield is given any strength."""
+    """Return the range of a strength for the stiffness of the material; unbounded above, as a huge strength is used to exclude yielding."""
     stiff = _nan_outside(table.get("youngs_modulus", table.get("effective_modulus", math.nan)), _MODULUS)
     return PlausibleRange(
         low=float(np.fmax(1e3, 5e-6 * stiff)),
@@ -57,7 +58,7 @@ def strength(estimate: HertzEstimate, table: Mapping[str, Any]) -> PlausibleRang
 
 
 def plate_thickness(estimate: HertzEstimate, table: Mapping[str, Any]) -> PlausibleRange:
-    """Return how thick a plate may be."""
+    """Return the range of the thickness of a plate."""
     return PlausibleRange(
         high=float(np.fmin(5.0, 4.0 * estimate.across)),
         above=lambda value: "is thicker than any plate" if value > 5.0 else f"is much more than the plate is long, {estimate.across:g} m",
@@ -65,7 +66,7 @@ def plate_thickness(estimate: HertzEstimate, table: Mapping[str, Any]) -> Plausi
 
 
 def sphere_radius(estimate: HertzEstimate, table: Mapping[str, Any]) -> PlausibleRange:
-    """Return how large a sphere may be."""
+    """Return the range of the radius of a sphere."""
     return PlausibleRange(
         high=float(np.fmin(3.0, 4.0 * estimate.across)),
         above=lambda value: "is larger than a boulder" if value > 3.0 else f"is far more than the plate is long, {estimate.across:g} m",
@@ -73,12 +74,12 @@ def sphere_radius(estimate: HertzEstimate, table: Mapping[str, Any]) -> Plausibl
 
 
 def part_of_plate(part: float, words: str) -> Rule:
-    """Return the rule of a length that is at most so much of the longer side of the plate."""
+    """Return the rule of a length that is at most a fraction `part` of the longer side of the plate."""
     return lambda estimate, table: PlausibleRange(high=part * estimate.across, above=words)
 
 
 def support_stiffness(estimate: HertzEstimate, table: Mapping[str, Any]) -> PlausibleRange:
-    """Return how stiff a spring under a plate may be: the softest lets it sag by several times its length."""
+    """Return the range of the stiffness of a spring under a plate; at its lower end the plate sags by four times its longer side."""
     weight = _GRAVITY * estimate.plate.density * math.prod(estimate.size)
     return PlausibleRange(
         low=weight / (4.0 * estimate.across),
@@ -89,9 +90,9 @@ def support_stiffness(estimate: HertzEstimate, table: Mapping[str, Any]) -> Plau
 
 
 def contact_stiffness(estimate: HertzEstimate, table: Mapping[str, Any]) -> PlausibleRange:
-    """Return how stiff a contact may be, beside Hertz's: as stiff as gives the same force at his largest indentation.
+    """Return the range of a contact stiffness around the value that gives Hertz's force at his largest indentation.
 
-    Linear springs are made soft on purpose to save steps: they are doubted only if the sphere sinks in by a third of its radius.
+    Linear springs are often chosen soft to save time steps, so they are doubted only if the indentation reaches 0.3 of the radius.
     """
     exponent, at = estimate.exponent, f" at his largest indentation, {number_text(estimate.depth, 2)} m,"
     reference = estimate.stiffness * estimate.depth ** (1.5 - exponent)
@@ -108,12 +109,12 @@ def contact_stiffness(estimate: HertzEstimate, table: Mapping[str, Any]) -> Plau
 
 
 def stiffness_unit(exponent: float) -> str:
-    """Return the SI unit of a stiffness of an exponent."""
+    """Return the SI unit of a contact stiffness for an exponent of the law."""
     return "N/m" if exponent == 1.0 else f"N/m^{exponent:g}"
 
 
 def contact_damping(estimate: HertzEstimate, table: Mapping[str, Any]) -> PlausibleRange:
-    """Return how much damping a contact may have, beside critical damping."""
+    """Return the range of the damping coefficient of a contact, relative to critical damping."""
     critical = estimate.critical_damping
     said = f"the critical damping of this contact, {number_text(critical, 2)} N s/m"
     return PlausibleRange(
@@ -127,7 +128,7 @@ def contact_damping(estimate: HertzEstimate, table: Mapping[str, Any]) -> Plausi
 
 
 def full_damping_penetration(estimate: HertzEstimate, table: Mapping[str, Any]) -> PlausibleRange:
-    """Return how deep a contact may get before its damping acts in full."""
+    """Return the range of the full-damping penetration of the Adams impact law."""
     return PlausibleRange(
         high=float(np.fmax(0.3 * estimate.radius, 10.0 * estimate.depth)),
         above=lambda value: f"is {count_text(value / estimate.depth)} times the largest indentation, {number_text(estimate.depth, 2)} m",
@@ -136,7 +137,7 @@ def full_damping_penetration(estimate: HertzEstimate, table: Mapping[str, Any]) 
 
 
 def dissipation_time(estimate: HertzEstimate, table: Mapping[str, Any]) -> PlausibleRange:
-    """Return how long the dissipative constant of a viscoelastic contact may be."""
+    """Return the range of the dissipation time of a viscoelastic contact, relative to the contact duration."""
     lasts = estimate.contact_time
     return PlausibleRange(
         high=10.0 * lasts,
@@ -146,12 +147,12 @@ def dissipation_time(estimate: HertzEstimate, table: Mapping[str, Any]) -> Plaus
 
 
 def gravitational_acceleration(estimate: HertzEstimate, table: Mapping[str, Any]) -> PlausibleRange:
-    """Return how strong gravity may be; if it is not, it was meant to be that of the earth."""
+    """Return the range of the acceleration of gravity; an implausible value is corrected only to that of the earth."""
     return PlausibleRange(high=300.0, above="is more than that of the sun", reference=9.8, within=1.05)
 
 
 def run_duration(estimate: HertzEstimate, table: Mapping[str, Any]) -> PlausibleRange:
-    """Return how long a run may be: to the end of the first contact at least."""
+    """Return the range of the duration of a run, which ends after the first contact at the earliest."""
     touch, lasts = estimate.touch, float(np.nan_to_num(estimate.contact_time))
 
     def below(value: float) -> str:
@@ -171,18 +172,18 @@ def run_duration(estimate: HertzEstimate, table: Mapping[str, Any]) -> Plausible
 
 
 def _rounded_up(value: float) -> str:
-    """Return a little more than a value, in two digits."""
+    """Return a value with two significant digits that exceeds the given one by at least 2 %."""
     step = 10.0 ** (math.floor(math.log10(value)) - 1)
     return f"{math.ceil(1.02 * value / step) * step:.2g}"
 
 
 def rest_speed(estimate: HertzEstimate, table: Mapping[str, Any]) -> PlausibleRange:
-    """Return how fast a sphere may be that is taken to be at rest."""
+    """Return the range of the rest speed, less than the approach speed of the first impact."""
     return PlausibleRange(high=0.9 * estimate.speed, above=f"is no less than the speed of the first touch, {estimate.speed:.3g} m/s")
 
 
 def modal_frequency(estimate: HertzEstimate, table: Mapping[str, Any]) -> PlausibleRange:
-    """Return up to which frequency modes may be asked for: those whose periods are like the contact or shorter."""
+    """Return the range of the upper frequency of modes, relative to the inverse of the contact duration."""
     lasts = estimate.contact_time
     contact = f"about {number_text(lasts, 2)} s"
     return PlausibleRange(
@@ -196,7 +197,7 @@ def modal_frequency(estimate: HertzEstimate, table: Mapping[str, Any]) -> Plausi
 
 
 def sampling_rate(estimate: HertzEstimate, table: Mapping[str, Any]) -> PlausibleRange:
-    """Return how fast a sensor may sample: accelerations as fast as a contact, other motions like a camera at least."""
+    """Return the range of a sampling rate: it resolves the contact for accelerations, and is at least that of a camera otherwise."""
     lasts = estimate.contact_time
     return PlausibleRange(
         low=float(np.fmin(1000.0, 0.1 / lasts)) if table["quantity"] == "acceleration" else 10.0,
@@ -207,10 +208,10 @@ def sampling_rate(estimate: HertzEstimate, table: Mapping[str, Any]) -> Plausibl
 
 
 def filter_corner(estimate: HertzEstimate, table: Mapping[str, Any]) -> PlausibleRange:
-    """Return how low a filter of samples may let pass."""
+    """Return the range of the corner frequency of a filter, relative to the sampling rate."""
     return PlausibleRange(low=1e-3 * table["rate"], below=f"leaves next to nothing of {table['rate']:g} samples per second")
 
 
 def below_sensor_range(estimate: HertzEstimate, table: Mapping[str, Any]) -> PlausibleRange:
-    """Return how coarse an accelerometer may be: less than its range."""
+    """Return the range of the noise or resolution of an accelerometer: less than its measuring range."""
     return PlausibleRange(high=table.get("range", math.nan), above=f"is more than its range, {table.get('range', math.nan):g} m/s^2")

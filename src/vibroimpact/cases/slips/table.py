@@ -1,7 +1,7 @@
-"""The table of what is plausible, key by key: the numbers of a case that a slip of a unit can spoil.
+"""The table of the keys that are checked for slips of units, with their plausible ranges.
 
-The ranges are far wider than anything in use (rubber to diamond, dust to boulders, foils to slabs), and narrower only where the other
-numbers of the case tell more: Hertz's stiffness for a stiffness, critical damping for a damping, the fall for a duration.
+The ranges are far wider than those in use (rubber to diamond, dust to boulders, foils to slabs), and narrower only where other values of
+the case give an estimate: Hertz's stiffness for a stiffness, critical damping for a damping, the fall for a duration.
 """
 
 from __future__ import annotations
@@ -23,6 +23,7 @@ _ACCELERATIONS = ("mm/s^2", "cm/s^2")
 
 
 def _material(at: str) -> tuple[CheckedKey, ...]:
+    """Return the checked keys of the material at a key."""
     return (
         CheckedKey(f"{at}.density", "kg/m^3", ("g/cm^3", "kg/mm^3", "t/mm^3"), rules.density),
         CheckedKey(f"{at}.youngs_modulus", "Pa", _MODULI, rules.elastic_modulus),
@@ -99,4 +100,4 @@ CHECKED_KEYS: tuple[CheckedKey, ...] = (
     CheckedKey("sensors.#.accelerometer.noise", "m/s^2", _ACCELERATIONS, rules.below_sensor_range),
     CheckedKey("sensors.#.accelerometer.resolution", "m/s^2", _ACCELERATIONS, rules.below_sensor_range),
 )
-"""What is plausible at each key; what others are held to stands before them."""
+"""Checked keys, in an order in which a value precedes those whose range depends on it."""
