@@ -21,7 +21,7 @@ _BALL_FALLS = "under gravity a sphere that is free falls away from under the oth
 
 
 def check_case(case: CaseTable) -> None:
-    """Check across sections that a case describes a problem, without computing modes.
+    """Check the sections of a case against each other, without computing modes.
 
     Raises
     ------
@@ -58,7 +58,7 @@ def check_case(case: CaseTable) -> None:
 
 
 def check_drop(case: CaseTable) -> None:
-    """Check that no plate without supports is hit under gravity; this does not prevent the computation of its modes.
+    """Check that no free plate is hit under gravity; the modes of such a plate may still be computed.
 
     Raises
     ------
@@ -79,7 +79,7 @@ def problem_of(case: CaseTable, progress: Callable[[float], None] | None = None,
     progress : callable, optional
         Called with the fraction done, 0 to 1, while modes of elastic bodies are computed.
     tell : callable, optional
-        Called with a warning if the mode store can't be read or written.
+        Called with a warning if the mode store is faulty.
 
     Raises
     ------

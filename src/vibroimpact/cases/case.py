@@ -25,7 +25,7 @@ class Case(CaseTable):
         progress : callable, optional
             Called with the fraction done, 0 to 1, while modes are computed.
         tell : callable, optional
-            Called with a warning if the mode store can't be read or written.
+            Called with a warning if the mode store is faulty.
 
         Raises
         ------

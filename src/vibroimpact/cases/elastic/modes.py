@@ -62,7 +62,7 @@ def compute_modes(
     progress : callable, optional
         Called with the fraction done, 0 to 1.
     tell : callable, optional
-        Called with a warning if the mode store can't be read or written.
+        Called with a warning if the mode store is faulty.
 
     Raises
     ------

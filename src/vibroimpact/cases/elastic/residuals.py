@@ -24,7 +24,7 @@ def with_residuals(body: BodyModes, basis: ModalBasis, tell: Callable[[str], Non
     basis : ModalBasis
         Its modes at the contact point and the sensors.
     tell : callable, optional
-        Called with a warning if the mode store can't be read or written.
+        Called with a warning if the mode store is faulty.
     """
     if not body.body.watched:
         return basis
