@@ -58,10 +58,10 @@ CASES: dict[str, dict[str, Any]] = {
 def measure(name: str) -> None:
     """Run a case, and print what it took."""
     import vibroimpact as vi
-    from vibroimpact.cases.costs import costs_told
+    from vibroimpact.cases.costs import describe_costs
 
     case = vi.read_case(CASES[name])
-    told = costs_told(case)
+    told = describe_costs(case)
     begun = time.process_time()
     with tempfile.TemporaryDirectory() as folder:
         vi.save_result(vi.simulate(case), Path(folder, "result"))

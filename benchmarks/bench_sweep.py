@@ -22,7 +22,7 @@ from pathlib import Path
 from typing import Any
 
 import vibroimpact as vi
-from vibroimpact.cases.coupling import carried_modes
+from vibroimpact.cases.elastic.coupling import carried_modes
 from vibroimpact.structures.store import receive
 from vibroimpact.studies.compute_points import compute_points
 from vibroimpact.studies.dask_workers import dask_workers

@@ -34,8 +34,8 @@ if TYPE_CHECKING:
     from vibroimpact.calibration.tunables import modal_damping as modal_damping
     from vibroimpact.cases.case import Case as Case
     from vibroimpact.cases.case import case_schema as case_schema
-    from vibroimpact.cases.modes import BodyModes as BodyModes
-    from vibroimpact.cases.modes import compute_modes as compute_modes
+    from vibroimpact.cases.elastic.modes import BodyModes as BodyModes
+    from vibroimpact.cases.elastic.modes import compute_modes as compute_modes
     from vibroimpact.cases.reader import load_case as load_case
     from vibroimpact.cases.reader import read_case as read_case
     from vibroimpact.cases.reader import shipped_cases as shipped_cases
@@ -97,7 +97,7 @@ if TYPE_CHECKING:
 _HOME = {
     "Accelerometer": "dynamics.sensors.sensor",
     "Body": "bodies.body",
-    "BodyModes": "cases.modes",
+    "BodyModes": "cases.elastic.modes",
     "BodyMotion": "dynamics.simulate_system",
     "Calibration": "calibration.calibration",
     "Case": "cases.case",
@@ -130,7 +130,7 @@ _HOME = {
     "calibrated_case": "calibration.case",
     "case_schema": "cases.case",
     "compare_laws": "comparison.comparison",
-    "compute_modes": "cases.modes",
+    "compute_modes": "cases.elastic.modes",
     "contact_laws": "contact.law",
     "convert_units": "units.reading",
     "export_formats": "exporting.export_format",

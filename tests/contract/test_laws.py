@@ -10,7 +10,7 @@ import pytest
 
 import vibroimpact as vi
 from support import plain_case
-from vibroimpact.cases.build import resolved
+from vibroimpact.cases.build import resolved_case
 from vibroimpact.contact.law import CompliantLaw, ContactLaw, contact_laws
 from vibroimpact.contact.static import static_indentation
 from vibroimpact.dynamics.columns import LEDGER
@@ -160,8 +160,8 @@ def test_restitution_and_ledger(law: type[ContactLaw]) -> None:
 @pytest.mark.parametrize("law", LAWS, ids=lambda law: law.name)
 def test_round_trip_through_a_case(law: type[ContactLaw]) -> None:
     case = case_of(law)
-    again = vi.read_case(resolved(case))
-    assert resolved(again) == resolved(case)
+    again = vi.read_case(resolved_case(case))
+    assert resolved_case(again) == resolved_case(case)
     assert again.to_problem().laws == case.to_problem().laws
 
 

@@ -15,11 +15,11 @@ import pytest
 import vibroimpact as vi
 from support import one_in
 from vibroimpact.calibration.case import read_calibration
-from vibroimpact.cases.build import resolved
+from vibroimpact.cases.build import resolved_case
 from vibroimpact.cases.reader import load_table, shipped_cases
 from vibroimpact.cases.rigid import contact_pair
-from vibroimpact.cases.slips.facts import Facts
 from vibroimpact.cases.slips.find import slips, swept_slips
+from vibroimpact.cases.slips.hertz_estimate import HertzEstimate
 from vibroimpact.studies.sweep import read_sweep
 
 ROOT = Path(__file__).parents[2]
@@ -51,10 +51,10 @@ def said_of(table: dict[str, Any]) -> list[str]:
     """What is taken for a slip in a case, and in the values of a study."""
     alone = {key: value for key, value in table.items() if key != "sweep"}
     case, given = read_calibration(alone) if "calibrate" in alone else (vi.read_case(alone), True)
-    found = slips(resolved(case), () if given else ("contact.damping_max",))
+    found = slips(resolved_case(case), () if given else ("contact.damping_max",))
     if "sweep" in table:
         study = read_sweep(table)
-        found += swept_slips(resolved(study.case), study.plan.columns)
+        found += swept_slips(resolved_case(study.case), study.plan.columns)
     return found
 
 
@@ -90,9 +90,9 @@ def test_every_material_size_and_height(plate: str) -> None:
             "contact": {"law": "lankarani-nikravesh", "restitution": 0.7},
             "run": {"impacts": 3},
         }
-        assert slips(resolved(vi.read_case(table))) == [], table
+        assert slips(resolved_case(vi.read_case(table))) == [], table
         table["sphere"]["material"], table["plate"]["material"] = table["plate"]["material"], material
-        assert slips(resolved(vi.read_case(table))) == [], table
+        assert slips(resolved_case(vi.read_case(table))) == [], table
 
 
 @pytest.mark.parametrize("law", vi.contact_laws())
@@ -112,10 +112,10 @@ def test_every_law_as_its_figures_have_it(law: str) -> None:
         if value is not None and not example.__dataclass_fields__[name].metadata["memory"]
     }
     table["contact"] = {"law": law, **values}
-    assert slips(resolved(vi.read_case(table))) == []
+    assert slips(resolved_case(vi.read_case(table))) == []
     if "stiffness" in values:
         table["contact"]["stiffness"] = values["stiffness"] / 20.0
-        assert slips(resolved(vi.read_case(table))) == []
+        assert slips(resolved_case(vi.read_case(table))) == []
 
 
 def test_adams_damping_from_nearly_none_to_critical() -> None:
@@ -127,7 +127,7 @@ def test_adams_damping_from_nearly_none_to_critical() -> None:
             "contact": {"law": "adams-impact", "damping_max": 0.0, "full_damping_penetration": 1e-6},
             "run": {"impacts": 1},
         }
-        facts = Facts(resolved(vi.read_case(table)))
+        facts = HertzEstimate(resolved_case(vi.read_case(table)))
         for part in (1e-3, 0.05, 1.0, 5.0):
             table["contact"] |= {"damping_max": part * facts.critical_damping, "full_damping_penetration": 0.1 * facts.depth}
-            assert slips(resolved(vi.read_case(table))) == []
+            assert slips(resolved_case(vi.read_case(table))) == []

@@ -10,7 +10,7 @@ import pytest
 import vibroimpact as vi
 from attack import failures, number, seed
 from mutations import case_files
-from vibroimpact.cases.reader import load_table, named
+from vibroimpact.cases.reader import load_table, prefix_errors
 from vibroimpact.cases.rigid import deforms
 from vibroimpact.report.terminal import TerminalConsole
 from vibroimpact.runs.console import case_explained
@@ -29,11 +29,11 @@ def check(data: bytes, folder: Path) -> vi.Case:
     """Do what `vibroimpact check` does with a file."""
     file = folder / "case.toml"
     file.write_bytes(data)
-    table = named(file, lambda: load_table(file))
+    table = prefix_errors(file, lambda: load_table(file))
     if "sweep" not in table:
         case = vi.load_case(file)
     else:
-        study = named(file, lambda: vi.read_sweep(table))
+        study = prefix_errors(file, lambda: vi.read_sweep(table))
         shown(sweep_explained(study))
         case = study.case
     shown(case_explained(case))

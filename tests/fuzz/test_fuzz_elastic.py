@@ -10,18 +10,18 @@ import pytest
 import vibroimpact as vi
 from attack import attack, number, seed
 from mutations import Table, elastic_cases
-from vibroimpact.cases.costs import costs_told
+from vibroimpact.cases.costs import describe_costs
 
 
 def run_unless_told(table: Table) -> None:
     case = vi.read_case(table)
-    if not costs_told(case):
+    if not describe_costs(case):
         vi.simulate(case)
 
 
 @pytest.mark.slow
 def test_hostile_elastic_cases_run_or_are_told() -> None:
-    import_module("vibroimpact.cases.build_elastic")  # once, and not in each process
+    import_module("vibroimpact.cases.elastic.bodies")  # once, and not in each process
     cases = list(elastic_cases(number(40), seed(4)))
     outcomes = [attack(run_unless_told, [case])[0] for case in cases]  # each in a process of its own: modes are remembered there
     print(Counter(one.kind for one in outcomes))

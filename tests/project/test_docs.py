@@ -188,10 +188,10 @@ def test_help_is_light() -> None:
 def test_schema_accepts_the_shipped_cases() -> None:
     import jsonschema
 
-    from vibroimpact.cases.build import resolved
+    from vibroimpact.cases.build import resolved_case
 
     schema = jsonschema.Draft202012Validator(vi.case_schema())
     for name in vi.shipped_cases():
-        schema.validate(resolved(vi.load_case(name)))
+        schema.validate(resolved_case(vi.load_case(name)))
     with pytest.raises(jsonschema.ValidationError):
-        schema.validate({**resolved(vi.load_case(name)), "contact": {"law": "hertz", "damping": 1}})
+        schema.validate({**resolved_case(vi.load_case(name)), "contact": {"law": "hertz", "damping": 1}})

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import vibroimpact as vi
-from vibroimpact.cases.coupling import carried_modes
+from vibroimpact.cases.elastic.coupling import carried_modes
 from vibroimpact.errors import InputError
 from vibroimpact.structures.store import carry, entries, receive
 

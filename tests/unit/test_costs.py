@@ -12,7 +12,7 @@ from typer.testing import CliRunner
 import vibroimpact as vi
 from support import plain_case
 from vibroimpact.cases import costs
-from vibroimpact.cases.costs import costs_of, costs_told, impacts_expected
+from vibroimpact.cases.costs import costs_of, describe_costs, impacts_expected
 from vibroimpact.cli import app
 from vibroimpact.errors import InputError
 
@@ -34,7 +34,7 @@ def test_about_as_many_impacts_as_there_are(restitution: float, run: dict[str, A
 
 
 def test_a_run_of_tens_of_thousands_of_impacts_is_told() -> None:
-    (told,) = costs_told(bouncing(0.9999))
+    (told,) = describe_costs(bouncing(0.9999))
     assert told.startswith("about 6")
     assert "impacts take about 5 minutes, " in told
     assert told.endswith("; give fewer run.impacts, or a higher run.rest_speed")
@@ -49,25 +49,25 @@ def test_an_elastic_bounce_goes_on_to_the_end_or_to_the_most_impacts(law: str) -
 
 
 def test_a_short_run_is_not_worth_a_word() -> None:
-    assert costs_told(vi.read_case(plain_case())) == []
-    assert costs_told(vi.load_case("paper:type1-theory")) == []
+    assert describe_costs(vi.read_case(plain_case())) == []
+    assert describe_costs(vi.load_case("paper:type1-theory")) == []
 
 
 def test_samples_of_a_long_run_are_told_and_refused_where_they_do_not_fit(monkeypatch: pytest.MonkeyPatch) -> None:
     sensors = [{"name": name, "position": [0.1, 0.0], "rate": "50 kHz"} for name in "abcdef"]
     case = vi.read_case(plain_case(plate=PLATE, run={"duration": "600 s"}, sensors=sensors))
-    (told,) = (one for one in costs_told(case) if "samples" in one)
+    (told,) = (one for one in describe_costs(case) if "samples" in one)
     assert told.startswith("the samples of 6 sensors, 1.8e+08, take about")
     assert "GB of memory and 1.6 GB on disk" in told
     monkeypatch.setattr("vibroimpact.structures.factor.free_memory", lambda: 1e9)
     with pytest.raises(InputError, match=r"about 1\.7 GB of memory, and 1 GB are free; give a shorter run\.duration or a lower rate"):
-        costs_told(case)
+        describe_costs(case)
 
 
 def test_modes_that_take_long_are_told_until_they_are_stored(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setenv("VIBROIMPACT_STORE", str(tmp_path))
     case = vi.read_case(plain_case(sphere=ELASTIC_SPHERE))
-    (told,) = costs_told(case, modes_alone=True)
+    (told,) = describe_costs(case, modes_alone=True)
     assert told.startswith("the modes of the sphere take about 40 s, 1 GB of memory")
     monkeypatch.setattr(costs, "has_model", lambda key: True)
     assert costs_of(case, modes_alone=True) == []
@@ -75,7 +75,7 @@ def test_modes_that_take_long_are_told_until_they_are_stored(monkeypatch: pytest
 
 def test_many_impacts_of_bodies_that_vibrate_are_told() -> None:
     sphere = {**ELASTIC_SPHERE, "modes": 5, "damping": 1e-6}
-    told = costs_told(vi.read_case(plain_case(sphere=sphere, contact__restitution=0.9999, run={"impacts": 1000})))
+    told = describe_costs(vi.read_case(plain_case(sphere=sphere, contact__restitution=0.9999, run={"impacts": 1000})))
     assert any(one.startswith("up to about 1,000 impacts take about 20 s") for one in told), told
 
 

@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 import vibroimpact as vi
-from vibroimpact.cases.build import resolved
+from vibroimpact.cases.build import resolved_case
 
 SPHERE = {"radius": "25 mm", "material": "rock-paper"}
 PLATE = {"size": [0.52, 0.42, 0.008], "material": "steel-paper", "model": "elastic", "modes": 10, "supports": "clamped"}
@@ -90,7 +90,7 @@ def test_a_basis_that_leaves_nothing_of_the_law_is_refused() -> None:
 @pytest.mark.parametrize("name", [f"paper:type{number}{kind}" for number in (2, 3) for kind in ("", "-superposed", "-identified")])
 def test_shipped_cases_come_back_from_their_resolved_form(name: str) -> None:
     shipped = vi.load_case(name)
-    assert resolved(vi.read_case(resolved(shipped))) == resolved(shipped)
+    assert resolved_case(vi.read_case(resolved_case(shipped))) == resolved_case(shipped)
 
 
 def test_consistent_bodies_tell_what_was_done() -> None:

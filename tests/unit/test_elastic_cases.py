@@ -16,11 +16,11 @@ import pytest
 
 import vibroimpact as vi
 from support import plain_case
-from vibroimpact.cases.build import resolved
-from vibroimpact.cases.build_elastic import elastic_bodies
-from vibroimpact.cases.elastic_fields import Kind
-from vibroimpact.cases.meshes import meshes_of
-from vibroimpact.cases.supports_field import EdgeName
+from vibroimpact.cases.build import resolved_case
+from vibroimpact.cases.elastic.bodies import elastic_bodies
+from vibroimpact.cases.elastic.meshes import meshes_of
+from vibroimpact.cases.fields.elastic_body import ElementKind
+from vibroimpact.cases.fields.supports import EdgeName
 from vibroimpact.cli import main
 from vibroimpact.structures.lattice import SOLID_KINDS, box_mesh, mesh_of_blocks
 from vibroimpact.structures.supports.bar import Bar
@@ -173,7 +173,7 @@ def test_a_rigid_case_loads_no_finite_elements() -> None:
 
 
 def test_the_words_of_a_case_are_those_of_the_structures() -> None:
-    assert set(get_args(Kind)) == set(SOLID_KINDS)
+    assert set(get_args(ElementKind)) == set(SOLID_KINDS)
     assert get_args(EdgeName) == EDGES
 
 
@@ -197,9 +197,9 @@ def test_supports_and_back(supports: Any, number: int, kind: type | None) -> Non
     found = elastic_bodies(case)["plate"].recipe.supports
     assert len(found) == number
     assert kind is None or all(isinstance(support, kind) for support in found)
-    again = vi.read_case(resolved(case))
+    again = vi.read_case(resolved_case(case))
     assert elastic_bodies(again)["plate"] == elastic_bodies(case)["plate"]
-    assert resolved(case)["plate"]["mesh"]["element_size"] > 0  # what was chosen is said
+    assert resolved_case(case)["plate"]["mesh"]["element_size"] > 0  # what was chosen is said
 
 
 @pytest.mark.parametrize(
@@ -215,7 +215,7 @@ def test_supports_and_back(supports: Any, number: int, kind: type | None) -> Non
 )
 def test_damping_and_back(damping: Any) -> None:
     case = vi.read_case(plate_case(damping=damping))
-    assert elastic_bodies(vi.read_case(resolved(case)))["plate"].damping == elastic_bodies(case)["plate"].damping
+    assert elastic_bodies(vi.read_case(resolved_case(case)))["plate"].damping == elastic_bodies(case)["plate"].damping
 
 
 def test_as_many_elements_as_asked() -> None:

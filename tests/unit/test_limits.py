@@ -17,8 +17,8 @@ import vibroimpact as vi
 from studies import study_table
 from support import plain_case
 from vibrating import STIFFNESS, drop_on, modes_of
-from vibroimpact.cases.build import resolved
-from vibroimpact.cases.conditions import Conditions, Seen
+from vibroimpact.cases.build import resolved_case
+from vibroimpact.cases.conditions import Conditions, DropSummary
 from vibroimpact.cases.doubts import doubts
 from vibroimpact.cases.expected import expected_of
 from vibroimpact.cases.limit import limits, numbers_of
@@ -44,7 +44,7 @@ def told(case: dict[str, Any], **seen: float) -> list[str]:
     """What is doubted of a case, expected or with what is given."""
     read = vi.read_case(case)
     expected = expected_of(read)
-    return doubts(resolved(read), Seen(**{**vars(expected), **seen}))
+    return doubts(resolved_case(read), DropSummary(**{**vars(expected), **seen}))
 
 
 def test_there_is_nothing_to_doubt_of_a_calm_drop() -> None:
@@ -54,7 +54,7 @@ def test_there_is_nothing_to_doubt_of_a_calm_drop() -> None:
 
 def number(case: dict[str, Any], name: str, **seen: float) -> float:
     read = vi.read_case(case)
-    return float(numbers_of(Conditions(resolved(read), Seen(**{**vars(expected_of(read)), **seen}))).get(name, math.nan))
+    return float(numbers_of(Conditions(resolved_case(read), DropSummary(**{**vars(expected_of(read)), **seen}))).get(name, math.nan))
 
 
 ROCK = {"density": 2600, "youngs_modulus": 5e10, "poissons_ratio": 0.25}
@@ -178,7 +178,7 @@ def test_laws_that_know_of_it_are_not_doubted() -> None:
 def test_materials_take_strengths_and_refuse_what_is_none() -> None:
     case = vi.read_case(quiet(sphere__material={**ROCK, "tensile_strength": "12 MPa", "compressive_strength": "140 MPa"}))
     assert (case.sphere.material.tensile_strength, case.sphere.material.compressive_strength) == (12e6, 140e6)
-    assert resolved(vi.read_case(resolved(case))) == resolved(case)
+    assert resolved_case(vi.read_case(resolved_case(case))) == resolved_case(case)
     with pytest.raises(vi.InputError, match=r"sphere\.material\.tensile_strength: -12 is not allowed; it must be greater than 0 Pa"):
         vi.read_case(quiet(sphere__material={**ROCK, "tensile_strength": -12}))
 

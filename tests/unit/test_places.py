@@ -11,7 +11,7 @@ from typer.testing import CliRunner
 
 import vibroimpact as vi
 from support import plain_case
-from vibroimpact.cases.meshes import meshes_of
+from vibroimpact.cases.elastic.meshes import meshes_of
 from vibroimpact.cli import app
 from vibroimpact.structures.lattice import box_mesh
 

@@ -11,7 +11,7 @@ import pytest
 import vibroimpact as vi
 from support import one_in, plain_case
 from vibroimpact.bodies.elastic import plate_recipe
-from vibroimpact.cases.conditions import Seen
+from vibroimpact.cases.conditions import DropSummary
 from vibroimpact.cases.doubts import doubts
 from vibroimpact.cases.limits.plate_waves import plate_theory_error
 from vibroimpact.dynamics.truncation import time_of_contact
@@ -119,7 +119,7 @@ def test_a_contact_too_short_for_plate_elements_is_doubted_with_a_number() -> No
     shorter = result_of(vi.simulate(case(radius=0.00025))).doubts
     (doubt,) = (text for text in shorter if "waves through the thickness of the plate, which plate elements do not have" in text)
     assert 'take element = "solid"' in doubt
-    assert doubts({}, Seen(plate_theory=0.004, duration=1e-5)) == doubts({}, Seen()) == []
+    assert doubts({}, DropSummary(plate_theory=0.004, duration=1e-5)) == doubts({}, DropSummary()) == []
 
 
 def test_bricks_lack_nothing_of_that() -> None:

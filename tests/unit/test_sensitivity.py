@@ -13,8 +13,8 @@ from rich.console import Console
 import vibroimpact as vi
 from support import plain_case
 from vibrating import STIFFNESS, drop_on, random_modes
-from vibroimpact.cases.build import resolved
-from vibroimpact.cases.conditions import Seen
+from vibroimpact.cases.build import resolved_case
+from vibroimpact.cases.conditions import DropSummary
 from vibroimpact.cases.doubts import doubts
 from vibroimpact.contact.laws.hertz import Hertz
 from vibroimpact.results.result import Result, result_of
@@ -90,8 +90,8 @@ def test_a_narrow_terminal_has_fewer_columns_and_whole_numbers(undamped: Result,
 )
 def test_only_what_has_no_damping_is_asked_for_it(sphere: str, damping: float | None, asked: str) -> None:
     plate = {"model": "elastic", "material": "steel", "size": [0.3, 0.2, 0.01], "supports": "clamped", "damping": damping}
-    case = resolved(vi.read_case(plain_case(sphere__model=sphere, plate={key: value for key, value in plate.items() if value})))
-    (found,) = (doubt for doubt in doubts(case, Seen(changes=np.array([1e-9, 0.5]))) if "sensitive" in doubt)
+    case = resolved_case(vi.read_case(plain_case(sphere__model=sphere, plate={key: value for key, value in plate.items() if value})))
+    (found,) = (doubt for doubt in doubts(case, DropSummary(changes=np.array([1e-9, 0.5]))) if "sensitive" in doubt)
     assert asked in found
     assert found.endswith("them by their distribution in a study over drop.height")
 
@@ -108,8 +108,8 @@ def test_the_doubt_names_the_impact_and_the_remedy(undamped: Result) -> None:
     assert "from impact 2 on" in found
     assert "to 0.2 % of impact 2 and to all of impact 4" in found
     assert "damping" in found
-    assert not doubts({}, Seen(changes=np.array([1e-9, 5e-4])))
-    assert "grows to all of impact 1," in doubts({}, Seen(changes=np.array([np.inf])))[0]
+    assert not doubts({}, DropSummary(changes=np.array([1e-9, 5e-4])))
+    assert "grows to all of impact 1," in doubts({}, DropSummary(changes=np.array([np.inf])))[0]
 
 
 def test_a_loose_tolerance_counts(undamped: Result) -> None:

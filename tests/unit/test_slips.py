@@ -14,7 +14,7 @@ import vibroimpact as vi
 from studies import study_table
 from support import plain_case
 from vibroimpact.calibration.case import calibrate_case, read_calibration
-from vibroimpact.cases.build import resolved
+from vibroimpact.cases.build import resolved_case
 from vibroimpact.cases.slips.find import slips, swept_slips
 from vibroimpact.cli import app
 from vibroimpact.results.result import result_of
@@ -33,7 +33,7 @@ ELASTIC = {"size": SIZE, "material": "steel", "model": "elastic", "supports": "c
 
 
 def told(**changes: Any) -> list[str]:
-    return slips(resolved(vi.read_case(plain_case(**changes))))
+    return slips(resolved_case(vi.read_case(plain_case(**changes))))
 
 
 def steel(**numbers: Any) -> dict[str, Any]:
@@ -114,7 +114,7 @@ def test_what_is_proposed_can_be_written_and_is_not_doubted(changes: dict[str, A
         inside = inside[part][-1] if part == "sensors" else inside[part]
     place: Any = ("length", "width", "thickness").index(last) if isinstance(inside, list) else last
     inside[place] = [meant] if isinstance(inside[place], list) else meant
-    assert slips(resolved(vi.read_case(table))) == []
+    assert slips(resolved_case(vi.read_case(table))) == []
 
 
 def test_a_stiffness_is_held_to_that_of_hertz() -> None:
@@ -149,7 +149,7 @@ def test_several_sides_are_each_said() -> None:
 
 @pytest.mark.parametrize("key", ["drop.height", "contact.damping_max", "sphere.material.density"])
 def test_nothing_is_said_of_zero(key: str) -> None:
-    assert swept_slips(resolved(vi.read_case(plain_case(contact=ADAMS))), {key: np.array([0.0])}) == []
+    assert swept_slips(resolved_case(vi.read_case(plain_case(contact=ADAMS))), {key: np.array([0.0])}) == []
 
 
 def numbers_in(table: Any) -> list[tuple[Any, Any]]:
@@ -171,7 +171,7 @@ def test_any_number_can_be_looked_at(value: float) -> None:
         run={"duration": 1.0, "rest_speed": 1e-3},
         calibrate={"target": {"max_force": 100.0, "duration": 1e-3, "max_indentation": 1e-4, "rebound_height": 0.3}},
     )
-    case = resolved(vi.read_case(table))
+    case = resolved_case(vi.read_case(table))
     places = numbers_in(case)
     assert len(places) > 30
     for inside, name in places:

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 import vibroimpact as vi
-from vibroimpact.cases.build import resolved
-from vibroimpact.cases.conditions import Conditions, Seen
+from vibroimpact.cases.build import resolved_case
+from vibroimpact.cases.conditions import Conditions, DropSummary
 from vibroimpact.cases.rigid import contact_pair
 from vibroimpact.exporting.load_drop import load_drop
 from vibroimpact.studies.compute_study import compute_study
@@ -99,8 +99,8 @@ def test_two_that_stick_fly_on_together() -> None:
 def test_doubts_know_both_curvatures() -> None:
     """The peak pressure of two equal spheres is that of a flat under the same force, times 2^(2/3)."""
     case = case_of({"radius": 0.01})
-    conditions = Conditions(resolved(case), Seen(force=1000.0))
-    flat = Conditions(resolved(case_of({})), Seen(force=1000.0))
+    conditions = Conditions(resolved_case(case), DropSummary(force=1000.0))
+    flat = Conditions(resolved_case(case_of({})), DropSummary(force=1000.0))
     assert conditions.peak_pressure == pytest.approx(2.0 ** (2.0 / 3.0) * flat.peak_pressure)
     assert conditions.effective_mass == pytest.approx(mass_of(0.01, STEEL))
 
@@ -108,7 +108,7 @@ def test_doubts_know_both_curvatures() -> None:
 def test_the_case_reads_back() -> None:
     for plate in ({"radius": 0.03}, {"radius": 0.03, "supports": "free"}):
         case = case_of(plate)
-        again = vi.read_case(resolved(case))
+        again = vi.read_case(resolved_case(case))
         assert again.plate.radius == 0.03
         assert again.plate.supports == plate.get("supports")
         assert contact_pair(again) == contact_pair(case)
@@ -117,7 +117,7 @@ def test_the_case_reads_back() -> None:
 @pytest.mark.parametrize("supports", [{}, {"supports": "free"}])
 def test_its_radius_can_be_swept(supports: dict[str, str], tmp_path: Path) -> None:
     radii = [0.01, 0.02, 0.04]
-    table = {**resolved(case_of({"radius": 0.02, **supports})), "sweep": {"over": {"plate.radius": radii}}}
+    table = {**resolved_case(case_of({"radius": 0.02, **supports})), "sweep": {"over": {"plate.radius": radii}}}
     del table["contact"]["stiffness"]  # which is that of one radius
     found = vi.read_study(compute_study(vi.read_sweep(table), tmp_path / "study")).values("max_force_N")
     single = [vi.simulate(case_of({"radius": radius, **supports})).impacts["max_force_N"][0] for radius in radii]

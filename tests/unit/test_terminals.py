@@ -19,7 +19,7 @@ from support import one_in, plain_case
 from told import told_case
 from vibroimpact.calibration.calibrate import calibrate
 from vibroimpact.calibration.text import calibration_summary
-from vibroimpact.cases.modes import compute_modes
+from vibroimpact.cases.elastic.modes import compute_modes
 from vibroimpact.cli import main
 from vibroimpact.cli.doctor import diagnose
 from vibroimpact.cli.material_text import material_sheet, material_table

@@ -10,7 +10,7 @@ import pytest
 
 import vibroimpact as vi
 from oracles.three_dimensional_plate import Elastic, thickness_modes
-from vibroimpact.cases.coupling import coupling_of
+from vibroimpact.cases.elastic.coupling import coupling_of
 from vibroimpact.structures.recipe import PlateOfPlates, PlateOfSolids, Recipe
 from vibroimpact.structures.supports.edge import EDGES, Edge
 from vibroimpact.structures.surface import Side

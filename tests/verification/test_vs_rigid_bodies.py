@@ -21,7 +21,7 @@ from oracles.adams_commands import read_commands
 from oracles.adams_dataset import read_dataset, read_solver_commands
 from support import one_in
 from vibroimpact.calibration.file import CALIBRATION, calibration_table
-from vibroimpact.cases.build import resolved
+from vibroimpact.cases.build import resolved_case
 from vibroimpact.cli import main
 from vibroimpact.exporting.export_format import find_export_format
 from vibroimpact.exporting.load_drop import drop_of_result
@@ -175,7 +175,7 @@ def test_the_remedy_that_is_named_rebounds_as_the_run(place: Path, tmp_path: Pat
     found = vi.calibrate_case(wanted)
     (tmp_path / "found").mkdir()  # what an export reads of a calibration, without its figures
     (tmp_path / "found" / CALIBRATION).write_text(json.dumps(calibration_table(wanted.case, found)))
-    (tmp_path / "found" / "case.toml").write_text(tomli_w.dumps(resolved(vi.calibrated_case(wanted.case, found))))
+    (tmp_path / "found" / "case.toml").write_text(tomli_w.dumps(resolved_case(vi.calibrated_case(wanted.case, found))))
     bounces = moved_by_adams(exported(tmp_path / "found", "adams", tmp_path))
     here = vi.read_result(place / "elastic").impacts
     assert [bounce.separation_speed / bounce.approach_speed for bounce in bounces] == pytest.approx(here["restitution_achieved"], abs=2e-4)

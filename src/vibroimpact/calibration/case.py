@@ -16,11 +16,11 @@ from vibroimpact.calibration.matching import Tunable
 from vibroimpact.calibration.section import CalibrateSection
 from vibroimpact.calibration.targets import target_of
 from vibroimpact.calibration.tunables import law_parameter, modal_damping
-from vibroimpact.cases.build import problem_of, resolved
+from vibroimpact.cases.build import problem_of, resolved_case
 from vibroimpact.cases.case import Case
-from vibroimpact.cases.contact_section import read_contact
-from vibroimpact.cases.local_section import LocalSection
-from vibroimpact.cases.reader import load_table, named, read_case
+from vibroimpact.cases.fields.contact import read_contact
+from vibroimpact.cases.fields.local import LocalSection
+from vibroimpact.cases.reader import load_table, prefix_errors, read_case
 from vibroimpact.cases.slips.find import slips
 from vibroimpact.contact.law import find_contact_law
 from vibroimpact.contact.pair import ContactPair
@@ -50,7 +50,7 @@ def load_calibration(source: str | PathLike[str]) -> ToCalibrate:
     >>> load_calibration("paper:type1-theory").case.contact.law
     'adams-impact'
     """
-    return named(source, lambda: read_calibration(load_table(source)))
+    return prefix_errors(source, lambda: read_calibration(load_table(source)))
 
 
 def read_calibration(table: Mapping[str, Any]) -> ToCalibrate:
@@ -135,7 +135,7 @@ def calibrate_case(
     except InputError as error:
         raise InputError(error.message, f"calibrate.{error.key}".rstrip(".")) from None
     tuned = (f"contact.{found.parameter}", found.parameter)  # where it begins says nothing
-    return replace(found, doubts=(*slips(resolved(case), tuned), *found.doubts))
+    return replace(found, doubts=(*slips(resolved_case(case), tuned), *found.doubts))
 
 
 def calibrated_case(case: Case, found: Calibration) -> Case:
@@ -148,7 +148,7 @@ def calibrated_case(case: Case, found: Calibration) -> Case:
     found : Calibration
         What was found.
     """
-    table = {key: value for key, value in resolved(case).items() if key != "calibrate"}
+    table = {key: value for key, value in resolved_case(case).items() if key != "calibrate"}
     values = found.impacts[1].tolist()
     if found.parameter in _DAMPINGS:
         body = found.parameter.partition(".")[0]

@@ -12,7 +12,7 @@ from vibroimpact._version import __version__
 from vibroimpact.calibration.calibration import Calibration
 from vibroimpact.calibration.comparison import COMPARED, WAYS, differences, largest_misfit, reference
 from vibroimpact.calibration.outcomes import OUTCOMES
-from vibroimpact.cases.build import resolved
+from vibroimpact.cases.build import resolved_case
 from vibroimpact.cases.case import Case
 
 CALIBRATION = "calibration.json"
@@ -60,7 +60,7 @@ def calibration_table(case: Case, found: Calibration) -> dict[str, Any]:
         "differences": {column: {way: _plain(values) for way, values in ways.items()} for column, ways in differences(found).items()},
         "other_parameters": dict(found.others),
         "doubts": list(found.doubts),
-        "case": resolved(case),
+        "case": resolved_case(case),
     }
 
 

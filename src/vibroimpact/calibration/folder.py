@@ -22,7 +22,7 @@ from vibroimpact.calibration.tables import (
     values_table,
     ways_words,
 )
-from vibroimpact.cases.build import resolved
+from vibroimpact.cases.build import resolved_case
 from vibroimpact.cases.case import Case
 from vibroimpact.files.check_sums import CHECK_SUMS, file_digest, sealed
 from vibroimpact.report.figure_files import save_figures
@@ -68,7 +68,7 @@ def save_calibration(case: Case, found: Calibration, directory: str | PathLike[s
         If something is there already, or the place can't be written to.
     """
     with new_folder(directory, force=force) as folder:
-        (folder / "case.toml").write_text(tomli_w.dumps(resolved(calibrated_case(case, found))), encoding="utf-8")
+        (folder / "case.toml").write_text(tomli_w.dumps(resolved_case(calibrated_case(case, found))), encoding="utf-8")
         table = {**calibration_table(case, found), CHECK_SUMS: {"case.toml": file_digest(folder / "case.toml")}}
         (folder / CALIBRATION).write_text(sealed(table), encoding="utf-8")
         summary = {"name": case.name, "version": __version__, "calibration": found.parameter}
@@ -90,7 +90,7 @@ def save_calibration(case: Case, found: Calibration, directory: str | PathLike[s
             ways=ways_words(found),
             doubts=found.doubts,
             pictures=[picture(name, *_TITLES[name], svg) for name, svg in pictures.items()],
-            case=tomli_w.dumps(resolved(case)),
+            case=tomli_w.dumps(resolved_case(case)),
             version=__version__,
         )
         (folder / "report.html").write_text(page, encoding="utf-8")

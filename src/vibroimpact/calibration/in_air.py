@@ -13,7 +13,7 @@ from vibroimpact.calibration.air_flights import AirFlights
 from vibroimpact.calibration.flights import Flights
 from vibroimpact.calibration.observations import Observations
 from vibroimpact.cases.case import Case
-from vibroimpact.cases.rigid import first_speed
+from vibroimpact.cases.rigid import touch_speed
 from vibroimpact.dynamics.air import AIR_DENSITY
 from vibroimpact.errors import InputError
 
@@ -32,7 +32,7 @@ class Measurement(NamedTuple):
 def speed_at_touch(case: Case, flights: Flights | None) -> float:
     """Return the speed of the first touch of a case [m/s]: in air, if it falls through that from a height."""
     if flights is None or case.drop.height is None:
-        return first_speed(case)
+        return touch_speed(case)
     return float(flights.falling(np.array(case.drop.height - case.sphere.radius))[0])
 
 
@@ -46,7 +46,7 @@ def in_air(case: Case, measurement: Measurement, air: bool | None) -> Observatio
     """
     if case.drop.gravity == 0.0:  # no flight ends
         return measurement.evaluated(None)
-    highest = max(measurement.highest, (case.drop.height or 0.0) - case.sphere.radius, 0.5 * first_speed(case) ** 2 / case.drop.gravity)
+    highest = max(measurement.highest, (case.drop.height or 0.0) - case.sphere.radius, 0.5 * touch_speed(case) ** 2 / case.drop.gravity)
     flights = AirFlights(case.drop.gravity, case.sphere.radius, case.sphere.material.density, _ROOM * highest)
     if air:
         note = f"Flights have the drag of air ({AIR_DENSITY:g} kg/m³; Clift and Gauvin)."

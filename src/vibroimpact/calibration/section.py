@@ -8,10 +8,10 @@ import numpy as np
 from pydantic import BeforeValidator, Field, StrictBool, WithJsonSchema, model_validator
 
 from vibroimpact.calibration.outcomes import OUTCOMES, check_weights
-from vibroimpact.cases.bounds import Name, at_most
-from vibroimpact.cases.contact_section import ContactSection, law_schema, read_contact
-from vibroimpact.cases.quantities import Quantity
-from vibroimpact.cases.section import Section, read_table
+from vibroimpact.cases.fields.bounds import Name, at_most
+from vibroimpact.cases.fields.contact import ContactSection, law_schema, read_contact
+from vibroimpact.cases.fields.quantities import Quantity
+from vibroimpact.cases.fields.section import Section, read_table
 from vibroimpact.errors import InputError, did_you_mean
 from vibroimpact.files.reading import FileKind, beginning, with_path
 from vibroimpact.ranges import Range

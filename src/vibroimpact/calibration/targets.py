@@ -13,8 +13,8 @@ from vibroimpact.calibration.observations import Observations, from_table
 from vibroimpact.calibration.outcomes import REBOUND, REBOUNDS
 from vibroimpact.calibration.section import CalibrateSection, FileTarget, HeightsTarget, ImpactTarget, RestitutionTarget
 from vibroimpact.cases.case import Case
-from vibroimpact.cases.contact_section import ContactSection
-from vibroimpact.cases.rigid import contact_laws_of, first_speed
+from vibroimpact.cases.fields.contact import ContactSection
+from vibroimpact.cases.rigid import contact_laws_of, touch_speed
 from vibroimpact.contact.laws.newton import Newton
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.errors import InputError
@@ -42,7 +42,7 @@ def target_of(case: Case, problem: Problem, section: CalibrateSection) -> Proble
     if isinstance(target.restitution, tuple):
         return of_speeds(case, target)
     if problem.vibrates:  # where a law without a force has no meaning: the first impact, on a plate at rest
-        speed = first_speed(case)
+        speed = touch_speed(case)
         return from_table(
             np.array([speed]), {"separation_speed": np.array([target.restitution * speed])}, None, ("impact 1",), of_the_drop=True
         )

@@ -1,4 +1,4 @@
-"""From a case to the problem it states, and back to a resolved case."""
+"""The problem that a case describes, and the resolved case: checks across sections, conversion to `Problem`, and back to a table."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from dataclasses import fields, replace
 from typing import TYPE_CHECKING, Any, Literal
 
 from vibroimpact.calibration.section import calibrate_table
-from vibroimpact.cases.material_field import material_table
-from vibroimpact.cases.rigid import FALLS, contact_laws_of, deforms, elastic_names, impacts_of, is_free_sphere, rigid_problem
+from vibroimpact.cases.fields.material import material_table
+from vibroimpact.cases.rigid import PLATE_FALLS, contact_laws_of, deforms, elastic_names, impact_limit, is_free_sphere, rigid_problem
 from vibroimpact.contact.law import CompliantLaw, is_conservative
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.errors import InputError
@@ -21,16 +21,17 @@ _BALL_FALLS = "under gravity a sphere that is free falls away from under the oth
 
 
 def check_case(case: CaseTable) -> None:
-    """Raise unless a case can be stated as a problem, without computing anything.
+    """Check the sections of a case against each other, without computing modes.
 
     Raises
     ------
     InputError
-        If the contact law can't be made for these bodies, the sphere would bounce for ever, an elastic body can't be made, or what must
-        lie on the plate does not.
+        If the contact law or an elastic body can't be made, the run would not end, keys contradict each other, or a sensor or a support
+        lies outside the plate.
     """
     law = contact_laws_of(case)[-1]
-    if impacts_of(case) is None and case.run.duration is None:
+    # without a limit of impacts or time only losses in the contact end a run
+    if impact_limit(case) is None and case.run.duration is None:
         remedy = "give a number or a duration"
         if is_conservative(law):
             raise InputError(f'"all" needs a law that loses energy, and this {law.name} never comes to rest; {remedy}', "run.impacts")
@@ -49,62 +50,63 @@ def check_case(case: CaseTable) -> None:
     if local.finite_sphere and not isinstance(law, CompliantLaw):
         raise InputError(f"{law.name} gives no force that a finite sphere would change; leave this out", "contact.finite_sphere")
     if elastic_names(case):
-        from vibroimpact.cases.build_elastic import elastic_bodies  # which loads sparse matrices
-        from vibroimpact.cases.places import check_places
+        from vibroimpact.cases.elastic.bodies import elastic_bodies  # imports scipy.sparse
+        from vibroimpact.cases.elastic.positions import check_positions
 
-        check_places(case)
+        check_positions(case)
         elastic_bodies(case)
 
 
 def check_drop(case: CaseTable) -> None:
-    """Raise unless a case can be run as a drop, as far as is known without computing anything; modes of it may be had.
+    """Check that no free plate is hit under gravity; the modes of such a plate may still be computed.
 
     Raises
     ------
     InputError
-        If nothing holds the plate, and gravity would let it fall.
+        If the plate is free and gravity is not zero.
     """
     if case.plate.supports == "free" and case.drop.gravity:
-        raise InputError(FALLS if case.plate.radius is None else _BALL_FALLS, "plate.supports")
+        raise InputError(PLATE_FALLS if case.plate.radius is None else _BALL_FALLS, "plate.supports")
 
 
 def problem_of(case: CaseTable, progress: Callable[[float], None] | None = None, tell: Callable[[str], None] | None = None) -> Problem:
-    """Return the problem that a case states.
+    """Return the problem that a case describes.
 
     Parameters
     ----------
     case : CaseTable
         The case.
     progress : callable, optional
-        Called with a number from 0 to 1 while modes of elastic bodies are computed.
+        Called with the fraction done, 0 to 1, while modes of elastic bodies are computed.
     tell : callable, optional
-        Called with a sentence if something is wrong with the store of modes.
+        Called with a warning if the mode store is faulty.
 
     Raises
     ------
     InputError
-        What `check_case` and `check_drop` raise; and if elastic bodies do not fit the treatment of local compliance, or no local element
-        fits what was measured.
+        From `check_case` and `check_drop`; and if the elastic bodies are incompatible with the treatment of local compliance, or no local
+        element fits the measurement.
     """
     check_case(case)
     check_drop(case)
-    problem = replace(rigid_problem(case), source=resolved(case))
+    problem = replace(rigid_problem(case), source=resolved_case(case))
     if not deforms(case):
         return problem
-    from vibroimpact.cases.coupling import coupled  # which loads finite elements
+    from vibroimpact.cases.elastic.coupling import couple_bodies  # imports the finite-element code
 
-    return coupled(case, problem, progress, tell)
+    return couple_bodies(case, problem, progress, tell)
 
 
-def resolved(case: CaseTable) -> dict[str, Any]:
-    """Return a case in full, in SI: what is written as `case.toml`, and reads back as the same case."""
+def resolved_case(case: CaseTable) -> dict[str, Any]:
+    """Return a case as a table in SI with all defaults resolved, as written to `case.toml`; reading it gives the same case."""
     laws = contact_laws_of(case)
     contact: dict[str, Any] = {"law": case.contact.law}
+    # a parameter is a list only if its values differ between impacts; derived ones are written out, so that the file is complete
     for item in fields(laws[0]):
         values = [getattr(law, item.name) for law in laws]
         if item.name in case.contact.parameters or values[0] is not None:
             contact[item.name] = values if len(values) > 1 and len(set(values)) > 1 else values[0]
-    number = impacts_of(case)
+    number = impact_limit(case)
     return {
         "schema_version": case.schema_version,
         "name": case.name,
@@ -120,14 +122,14 @@ def resolved(case: CaseTable) -> dict[str, Any]:
 
 
 def _body(case: CaseTable, name: Literal["sphere", "plate"]) -> dict[str, Any]:
-    """Return a body in full, without what its model does not have."""
+    """Return the table of a body, without the keys that do not apply to its model."""
     section: SphereSection | PlateSection = getattr(case, name)
     found = section.model_dump(exclude_none=True, exclude={"material", "supports", "damping", "mesh"})
     if section.model == "rigid":
         found = {key: found[key] for key in ("radius", "size", "model") if key in found}
         found |= {"supports": "free"} if name == "plate" and is_free_sphere(case) else {}
     else:
-        from vibroimpact.cases.build_elastic import elastic_table  # which loads sparse matrices
+        from vibroimpact.cases.elastic.bodies import elastic_table  # imports scipy.sparse
 
         found |= elastic_table(case, name)
     if "size" in found:

@@ -1,4 +1,4 @@
-"""A case: what its file says, and the problem that it states."""
+"""The case: a validated case file with its conversion to a problem, and its JSON schema."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 from vibroimpact.cases.build import problem_of
-from vibroimpact.cases.contact_section import contact_schema
+from vibroimpact.cases.fields.contact import contact_schema
 from vibroimpact.cases.schema import CaseTable
 from vibroimpact.dynamics.problem import Problem
 
@@ -18,14 +18,14 @@ class Case(CaseTable):
     """
 
     def to_problem(self, progress: Callable[[float], None] | None = None, tell: Callable[[str], None] | None = None) -> Problem:
-        """Return the problem that the case states; modes of elastic bodies are computed, or fetched from the store.
+        """Return the problem that the case describes; modes of elastic bodies are computed, or read from the mode store.
 
         Parameters
         ----------
         progress : callable, optional
-            Called with a number from 0 to 1 while modes are computed.
+            Called with the fraction done, 0 to 1, while modes are computed.
         tell : callable, optional
-            Called with a sentence if something is wrong with the store.
+            Called with a warning if the mode store is faulty.
 
         Raises
         ------

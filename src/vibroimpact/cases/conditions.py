@@ -1,4 +1,4 @@
-"""The conditions of a drop, to which the limits of the theory are applied: its bodies, how it falls, and what came of it."""
+"""The conditions under which the limits of the theory are evaluated: the resolved case and the peak values of the drop."""
 
 from __future__ import annotations
 
@@ -16,28 +16,30 @@ from vibroimpact.contact.law import ContactLaw, InstantaneousLaw, find_contact_l
 from vibroimpact.contact.pair import effective_modulus, hertz_stiffness
 from vibroimpact.materials import RIGID, Material
 
-_LIKE_HERTZ = 0.01  # a stiffness that is off by more was measured, or fitted, and holds what Hertz's lacks
+_LIKE_HERTZ = 0.01  # relative: a stiffness that differs by more was measured or fitted, and includes effects beyond Hertz's theory
 
 
 @dataclass(frozen=True)
-class Seen:
-    """What came of a drop, or is expected of it; arrays have one value a drop, NaN where there is none.
+class DropSummary:
+    """Computed or expected peak values of a drop; arrays have one value per drop, NaN where a value is not known.
 
     Parameters
     ----------
     force, depth : float or array
         Largest contact force [N] and largest indentation [m].
     duration, speed : float or array
-        Duration of the first contact [s], of a visit of several that of one of its depth; and speed at its first touch [m/s].
+        Duration of the first contact [s], or, if it consists of several micro-impacts, of one contact of the same depth; and approach
+        speed of the first impact [m/s].
     deflection : float or array
         Largest deflection of an elastic plate at the contact point [m].
     modes : mapping of str to (float, float)
-        By the name of a body that has modes: about which part of the largest force those left out would change, and the highest
-        frequency of those kept [Hz].
+        By the name of an elastic body: estimated relative change of the largest force by the truncated modes, and highest frequency of
+        the retained modes [Hz].
     changes : array, shape (impacts,)
-        Of one drop on bodies that vibrate: the relative change of each impact for one of the drop that can't be ruled out.
+        Sensitivity of a single drop on elastic bodies: relative change of each impact for a perturbation of the drop of
+        `RELATIVE_CHANGE`, or of the tolerance if that is larger.
     plate_theory : float
-        Of one drop on plate elements: about by which part its first largest force is too large, as they only bend.
+        For a single drop on plate elements: estimated relative error of the first largest force due to plate theory.
     """
 
     force: Array = math.nan
@@ -52,18 +54,18 @@ class Seen:
 
 @dataclass(frozen=True)
 class Conditions:
-    """A drop, or a batch with arrays for numbers, and what came of it.
+    """A drop, or a batch of drops, with its peak values.
 
     Parameters
     ----------
     case : mapping
-        A resolved case; any number in it may be an array with one value a drop.
-    seen : Seen
-        What came of it.
+        A resolved case; any number in it may be an array with one value per drop. Empty for a problem made in Python.
+    summary : DropSummary
+        Its peak values.
     """
 
     case: Mapping[str, Any]
-    seen: Seen
+    summary: DropSummary
 
     @cached_property
     def materials(self) -> dict[str, Material]:
@@ -82,13 +84,13 @@ class Conditions:
 
     @cached_property
     def effective_radius(self) -> Array:
-        """Effective radius of the pair [m]: the sphere's, or where it falls on another sphere that of two curvatures."""
+        """Effective radius of the pair [m]: that of the sphere, or of two spheres if one replaces the plate."""
         below = self.case["plate"].get("radius")
         return self.radius if below is None else self.radius * below / (self.radius + below)
 
     @cached_property
     def effective_mass(self) -> Array:
-        """Effective mass of the pair [kg]: the sphere's, or where it falls on a sphere that is free the reduced one."""
+        """Effective mass of the pair [kg]: that of the sphere, or the reduced mass if a free sphere replaces the plate."""
         plate = self.case["plate"]
         if "radius" not in plate or plate.get("supports") != "free":
             return self.mass
@@ -103,31 +105,31 @@ class Conditions:
     @cached_property
     def contact_radius(self) -> Array:
         """Hertz's contact radius at the largest force [m]."""
-        return np.cbrt(0.75 * self.seen.force * self.effective_radius / self.modulus)
+        return np.cbrt(0.75 * self.summary.force * self.effective_radius / self.modulus)
 
     @cached_property
     def peak_pressure(self) -> Array:
         """Hertz's peak pressure at the largest force [Pa]."""
-        return 1.5 * self.seen.force / (math.pi * self.contact_radius**2)
+        return 1.5 * self.summary.force / (math.pi * self.contact_radius**2)
 
     @cached_property
     def law(self) -> type[ContactLaw]:
-        """The contact law."""
+        """Class of the contact law."""
         return find_contact_law(self.case["contact"]["law"])
 
-    def of_law(self, name: str, otherwise: Any = math.nan) -> Array:
-        """Return a parameter of the law at the first impact."""
+    def law_parameter(self, name: str, otherwise: Any = math.nan) -> Array:
+        """Return a parameter of the contact law for the first impact."""
         value = self.case["contact"].get(name, otherwise)
         return value[0] if isinstance(value, (list, tuple)) else value
 
     @property
     def yields(self) -> bool:
-        """Does the law compute yield itself, or no contact force at all?"""
+        """Whether the law models yielding, or gives no contact force at all."""
         return issubclass(self.law, (ElasticPlasticLaw, InstantaneousLaw))
 
     @cached_property
     def is_hertzian(self) -> Array:
-        """Is the law's elastic force that of Hertz for these bodies?"""
+        """Whether the elastic force of the law is that of Hertz for these bodies."""
         if self.yields:
             return False
         contact = self.case["contact"]
@@ -137,8 +139,8 @@ class Conditions:
             "exponent" not in contact and "1.5" not in self.law.__dataclass_fields__["stiffness"].metadata["unit"]
         ):
             return False
-        ratio = self.of_law("stiffness") / hertz_stiffness(self.modulus, self.effective_radius)
-        return (abs(ratio - 1.0) < _LIKE_HERTZ) & (self.of_law("exponent", 1.5) == 1.5)
+        ratio = self.law_parameter("stiffness") / hertz_stiffness(self.modulus, self.effective_radius)
+        return (abs(ratio - 1.0) < _LIKE_HERTZ) & (self.law_parameter("exponent", 1.5) == 1.5)
 
     def model(self, body: str) -> str:
         """Return whether "sphere" or "plate" is "rigid" or "elastic"."""
@@ -146,7 +148,7 @@ class Conditions:
 
     @property
     def size(self) -> Array:
-        """Length, width and thickness of the plate [m]; None where they are not known."""
+        """Length, width and thickness of the plate [m]; None if not given."""
         return self.case["plate"].get("size")
 
 

@@ -1,4 +1,4 @@
-"""What a run of a case will take: time, memory and room on disk, told beforehand where they are large."""
+"""Estimates of the time, memory and disk space that a run of a case takes."""
 
 from __future__ import annotations
 
@@ -6,8 +6,8 @@ import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, NamedTuple
 
-from vibroimpact.cases.build_elastic import elastic_bodies
-from vibroimpact.cases.rigid import contact_laws_of, contact_pair, deforms, first_speed, impacts_of
+from vibroimpact.cases.elastic.bodies import elastic_bodies
+from vibroimpact.cases.rigid import contact_laws_of, contact_pair, deforms, impact_limit, touch_speed
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.static import static_indentation
 from vibroimpact.dynamics.history_grid import MOST_POINTS
@@ -21,21 +21,21 @@ if TYPE_CHECKING:
     from vibroimpact.cases.case import Case
 
 # measured on one core of 2.5 GHz or so, by benchmarks/bench_costs.py
-_PROGRAM = 170e6  # bytes that the program takes with its figures
+_PROGRAM = 170e6  # bytes of the program itself, with its figures
 _IMPACT_SECONDS, _IMPACT_BYTES, _IMPACT_ON_DISK = 5e-3, 2.2e3, 1e3
-_VIBRATING_SECONDS = 20e-3  # of an impact of bodies that vibrate, with few modes or many
-_POINTS, _POINT_BYTES, _POINT_ON_DISK = 170, 130.0, 100.0  # of an impact in a history, and what each takes
+_VIBRATING_SECONDS = 20e-3  # per impact of elastic bodies, for any number of modes
+_POINTS, _POINT_BYTES, _POINT_ON_DISK = 170, 130.0, 100.0  # history points per impact, and bytes of each
 _SAMPLE_SECONDS, _SAMPLE_BYTES, _SAMPLE_ON_DISK = 2e-7, 8.5, 9.0
-_MODES_SECONDS, _MODES_DOFS, _MODES_NUMBER = 35.0, 42_423, 300  # of a sphere, in eighths
-_WHOLE = 4.0  # times longer: a mesh that was brought is hardly ever its own mirror image
+_MODES_SECONDS, _MODES_DOFS, _MODES_NUMBER = 35.0, 42_423, 300  # of a sphere, computed in eighths by symmetry
+_WHOLE = 4.0  # factor for imported meshes, which are rarely symmetric
 _DOF_BYTES = 20e3
-_ELASTIC = 1e-7  # of the speed: what loses less in an impact goes on as if it lost nothing
+_ELASTIC = 1e-7  # relative loss of speed per impact below which a drop counts as lossless
 _LONG, _LARGE, _MUCH = 10.0, 1e9, 500e6
-"""Seconds, bytes of memory and bytes on disk from which on they are told."""
+"""Seconds, bytes of memory and bytes on disk above which costs are reported."""
 
 
 class Cost(NamedTuple):
-    """A part of what a run takes: in seconds, in bytes of memory and on disk, for what, and how to have less of it."""
+    """One contribution to the costs of a run: seconds, bytes of memory and on disk, its cause, and how to reduce it."""
 
     seconds: float
     memory: float
@@ -45,25 +45,25 @@ class Cost(NamedTuple):
 
 
 def costs_of(case: Case, *, modes_alone: bool = False) -> list[Cost]:
-    """Return the parts of what a run of a case takes, about; modes that are in the store cost nothing.
+    """Return the estimated contributions to the costs of a run; modes in the mode store cost nothing.
 
     Parameters
     ----------
     case : Case
         The case.
     modes_alone : bool, default False
-        Only what its modes take.
+        Estimate the costs of its modes only.
     """
-    return [*_of_modes(case), *(() if modes_alone else (*_of_impacts(case), *_of_signals(case)))]
+    return [*_mode_costs(case), *(() if modes_alone else (*_impact_costs(case), *_signal_costs(case)))]
 
 
-def costs_told(case: Case, *, modes_alone: bool = False) -> list[str]:
-    """Return a sentence for each part of a run that takes more than ten seconds, 1 GB of memory or 500 MB on disk.
+def describe_costs(case: Case, *, modes_alone: bool = False) -> list[str]:
+    """Return a sentence for each contribution of more than ten seconds, 1 GB of memory or 500 MB on disk.
 
     Raises
     ------
     InputError
-        If it would take more memory than is free; the message says what takes it, and how to have less.
+        If a contribution exceeds the free memory; the message gives its cause and remedy.
     """
     told = []
     for cost in costs_of(case, modes_alone=modes_alone):
@@ -74,13 +74,13 @@ def costs_told(case: Case, *, modes_alone: bool = False) -> list[str]:
 
 
 def impacts_expected(case: Case) -> int:
-    r"""Return about how many impacts a drop has if its bodies are rigid; those that vibrate have fewer.
+    r"""Return the estimated number of impacts of a drop with rigid bodies, an upper bound for elastic ones.
 
-    The restitution e of the first is taken for that of all: from a speed :math:`v` to :math:`v_r` there are
-    :math:`\ln(v_r/v)/\ln e`, and in a time :math:`T` those whose flights, :math:`2 v e^k / g`, fill it.
+    All impacts are assumed to have the restitution e of the first: from a speed :math:`v` to the rest speed :math:`v_r` there are
+    :math:`\ln(v_r/v)/\ln e` impacts; a duration :math:`T` is filled by the flights, which take :math:`2 v e^k / g`.
     """
-    most = impacts_of(case) or MOST_IMPACTS
-    law, pair, speed, gravity = contact_laws_of(case)[-1], contact_pair(case), first_speed(case), case.drop.gravity
+    most = impact_limit(case) or MOST_IMPACTS
+    law, pair, speed, gravity = contact_laws_of(case)[-1], contact_pair(case), touch_speed(case), case.drop.gravity
     mass = float(pair.effective_mass)
     kept = float(achieved_restitution(law, mass, speed))
     if kept <= 0.0 or not (speed > 0.0 and gravity > 0.0):
@@ -98,20 +98,20 @@ def impacts_expected(case: Case) -> int:
     return int(min(most, max(count, 0.0) + 1.0))
 
 
-def _of_impacts(case: Case) -> Iterator[Cost]:
+def _impact_costs(case: Case) -> Iterator[Cost]:
     number = impacts_expected(case)
-    vibrate = deforms(case)  # what their impacts lose to vibration only makes them fewer
+    vibrate = deforms(case)  # energy lost to vibration only reduces the number of impacts
     points = min(_POINTS * number, MOST_POINTS)
     yield Cost(
         (_VIBRATING_SECONDS if vibrate else _IMPACT_SECONDS) * number,
         _IMPACT_BYTES * number + _POINT_BYTES * points,
         _IMPACT_ON_DISK * number + _POINT_ON_DISK * points,
         f"{'up to ' if vibrate else ''}about {float(f'{number:.2g}'):,.0f} impacts",
-        "give fewer run.impacts, or a higher run.rest_speed" if impacts_of(case) is None else "give fewer run.impacts",
+        "give fewer run.impacts, or a higher run.rest_speed" if impact_limit(case) is None else "give fewer run.impacts",
     )
 
 
-def _of_signals(case: Case) -> Iterator[Cost]:
+def _signal_costs(case: Case) -> Iterator[Cost]:
     if case.run.duration is None or not case.sensors:
         return
     samples = case.run.duration * sum(sensor.rate for sensor in case.sensors)
@@ -120,7 +120,7 @@ def _of_signals(case: Case) -> Iterator[Cost]:
     yield Cost(_SAMPLE_SECONDS * samples, _SAMPLE_BYTES * samples, _SAMPLE_ON_DISK * samples, f"{which}, {samples:.2g},", remedy)
 
 
-def _of_modes(case: Case) -> Iterator[Cost]:
+def _mode_costs(case: Case) -> Iterator[Cost]:
     for name, body in elastic_bodies(case).items() if deforms(case) else ():
         recipe = body.recipe
         if has_model(model_key(recipe)):
@@ -134,7 +134,7 @@ def _of_modes(case: Case) -> Iterator[Cost]:
 
 
 def _listed(cost: Cost) -> str:
-    """Return what a part takes, in words."""
+    """Return the amounts of a contribution in words."""
     parts = [_time(cost.seconds)] if cost.seconds > 1.0 else []
     parts.append(f"{_size(_PROGRAM + cost.memory)} of memory")
     disk = f" and {_size(cost.disk)} on disk" if cost.disk > 1e6 else ""

@@ -1,4 +1,4 @@
-"""What to expect of the first impact of a case before it is run: from the undamped contact between rigid bodies."""
+"""Expected peak values of the first impact before a case is run, from the undamped contact of rigid bodies."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vibroimpact.cases.conditions import Seen
-from vibroimpact.cases.rigid import contact_laws_of, contact_pair, first_speed
+from vibroimpact.cases.conditions import DropSummary
+from vibroimpact.cases.rigid import contact_laws_of, contact_pair, touch_speed
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.power_law import HERTZ_TIME
 from vibroimpact.dynamics.encounter import encounter_of
@@ -20,23 +20,24 @@ _SUPPORTED, _CLAMPED = 0.0116, 0.0056
 """Deflection of a square plate under a force at its centre over F a^2 / D: Timoshenko and Woinowsky-Krieger 1959, Tables 23 and 37."""
 
 
-def expected_of(case: Case) -> Seen:
-    """Return what to expect of the first impact of a case if nothing were lost; NaN of a law that gives no force."""
-    law, speed = contact_laws_of(case)[0], first_speed(case)
+def expected_of(case: Case) -> DropSummary:
+    """Return the expected peak values of the first impact without losses; NaN for a law that gives no force."""
+    law, speed = contact_laws_of(case)[0], touch_speed(case)
     if not isinstance(law, CompliantLaw):
-        return Seen(speed=speed)
+        return DropSummary(speed=speed)
     one = np.ones(1)
     encounter = encounter_of(law, contact_pair(case).effective_mass * one, case.drop.gravity * one, speed * one)
     depth = float(encounter.depth[0])
     force = float(np.asarray(law.forces(encounter.depth, 0.0 * one, encounter.approach_speed)[0])[0])
-    return Seen(force, depth, HERTZ_TIME * depth / speed, speed, _deflection(case, speed))
+    return DropSummary(force, depth, HERTZ_TIME * depth / speed, speed, _deflection(case, speed))
 
 
 def _deflection(case: Case, speed: float) -> float:
-    """Return about how far an elastic plate gives way [m]; NaN of another.
+    """Return the estimated deflection of an elastic plate at the contact point [m]; NaN for a rigid plate.
 
-    The sphere rebounds before waves come back from the edges, so that the plate takes up twice its momentum as an infinite plate would,
-    with 8 sqrt(D rho h) of force over speed; or, if it is heavy, the plate stops it like a spring. It can't be more than either.
+    It is the smaller of two bounds. A light sphere rebounds before flexural waves return from the edges: the plate takes up twice the
+    momentum of the sphere like an infinite plate, of impedance 8 sqrt(D rho h). A heavy sphere is stopped by the plate as by a spring of
+    the static stiffness.
     """
     size, material = case.plate.size, case.plate.material
     if case.plate.model == "rigid" or size is None:

@@ -1,4 +1,4 @@
-"""What a limit of the theory is: a quantity of a drop, the threshold beyond which it is doubted, and the sentence that says so."""
+"""Limits of the theory: a dimensionless number of a drop, the threshold above which the drop is doubted, and the sentence for it."""
 
 from __future__ import annotations
 
@@ -15,28 +15,28 @@ from vibroimpact.registry import modules_in
 
 @dataclass(frozen=True, kw_only=True)
 class Limit:
-    """A limit of what a drop is computed with, to which each drop is held.
+    """A limit of the theory, which is checked for each drop.
 
-    Being in `LIMITS` of a file of its own under `vibroimpact.cases.limits` is all the registration that it needs.
+    It is registered by being in `LIMITS` of a module of `vibroimpact.cases.limits`.
 
     Parameters
     ----------
     name : str
-        As results call it: lower case, words joined by "_".
+        Name in results: lower case, words joined by "_".
     title : str
-        As people call it, in a few words.
+        Short title.
     meaning : str
-        What the number is, in a few words; it has no unit.
+        Definition of the number, which is dimensionless.
     threshold : float
-        A drop whose number is greater is doubted.
+        A drop with a larger number is doubted.
     number : callable
-        Returns the number of a drop, or of an array of drops, under `Conditions`; NaN where the limit has no bearing.
+        Returns the number of a drop, or of an array of drops, from its `Conditions`; NaN where the limit does not apply.
     sentence : callable
-        Returns what is said of one drop and its number: what is off and how far, the cause and the remedy.
+        Returns the message for one drop and its number: what is wrong and by how much, the cause and the remedy.
     shown : callable
-        Returns a number as it is read.
+        Formats a number for display.
     without_case : bool, default False
-        Does the number follow from what came of a drop alone? Then a problem made in Python, which has no case, is held to it too.
+        Whether the number depends on the peak values of the drop only, so that it also applies to a problem made in Python.
     """
 
     name: str
@@ -51,7 +51,7 @@ class Limit:
 
 @cache
 def limits() -> Mapping[str, Limit]:
-    """Return every limit by its name.
+    """Return all registered limits by name.
 
     Examples
     --------
@@ -63,14 +63,14 @@ def limits() -> Mapping[str, Limit]:
 
 
 def numbers_of(drops: Conditions) -> dict[str, Array]:
-    """Return the number of each limit that has a bearing on a drop, or on any of an array of drops."""
-    with np.errstate(all="ignore"):  # what can't be told of a drop is not a number
+    """Return, by name, the number of each limit that applies to a drop, or to any of an array of drops."""
+    with np.errstate(all="ignore"):  # values that are not known are NaN
         found = {name: limit.number(drops) for name, limit in limits().items() if drops.case or limit.without_case}
     return {name: number for name, number in found.items() if not np.all(np.isnan(number))}
 
 
 def percent_less(part: float) -> str:
-    """Return a part that is lost, in per cent: 0.135 is -13.5 %.
+    """Return a relative loss in per cent: 0.135 is -13.5 %.
 
     Examples
     --------
@@ -82,5 +82,5 @@ def percent_less(part: float) -> str:
 
 
 def percent_more(part: float) -> str:
-    """Return a part that is added, in per cent: 0.135 is +13.5 %."""
+    """Return a relative gain in per cent: 0.135 is +13.5 %."""
     return percent_less(part).replace("-", "+", 1)

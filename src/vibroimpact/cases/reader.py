@@ -1,4 +1,4 @@
-"""Read a case from a file, from the shipped library, or from a mapping."""
+"""Reading of cases: from a TOML file, from the shipped library, or from a mapping."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from typing import Any, TypeVar
 from pydantic import BaseModel, ValidationError
 
 from vibroimpact.calibration.section import CalibrateSection, SpeedsTable
-from vibroimpact.cases.bounds import MOST_BYTES, check_bounds, check_text
 from vibroimpact.cases.build import check_case
 from vibroimpact.cases.case import Case
-from vibroimpact.cases.explain import explained
-from vibroimpact.cases.item_labels import place_in_words
-from vibroimpact.cases.material_field import InlineMaterial
+from vibroimpact.cases.fields.bounds import MOST_BYTES, check_bounds, check_text
+from vibroimpact.cases.fields.explain import fault_messages
+from vibroimpact.cases.fields.item_labels import path_in_words
+from vibroimpact.cases.fields.material import InlineMaterial
 from vibroimpact.cases.schema import AccelerometerTable, DropSection, PlateSection, RunSection, SensorSection, SphereSection
 from vibroimpact.errors import InputError, did_you_mean
 from vibroimpact.files.reading import FileKind, read_text
@@ -45,11 +45,12 @@ _SECTIONS: dict[tuple[str, ...], type[BaseModel]] = {
 
 
 def _section(where: tuple[str, ...]) -> type[BaseModel] | None:
+    """Return the section class at a key path, for the lists of known keys in messages."""
     return _SECTIONS.get(tuple(part for part in where if not part.isdigit()), InlineMaterial if where[-1:] == ("material",) else None)
 
 
 def load_case(source: str | PathLike[str]) -> Case:
-    """Read a case file, or a shipped case such as "paper:type1-theory".
+    """Return the case of a TOML file, or a shipped case such as "paper:type1-theory".
 
     Parameters
     ----------
@@ -66,10 +67,11 @@ def load_case(source: str | PathLike[str]) -> Case:
     >>> load_case("paper:type1-theory").sphere.radius
     0.025
     """
-    return named(source, lambda: _read_to_run(load_table(source)))
+    return prefix_errors(source, lambda: _read_to_run(load_table(source)))
 
 
 def _read_to_run(table: dict[str, Any]) -> Case:
+    """Return the case, with a hint if it lacks keys that `calibrate` or `sweep` would supply."""
     try:
         return _case_of(table)
     except InputError as error:
@@ -85,7 +87,7 @@ def _with_hint(error: InputError, hint: str) -> InputError:
 
 
 def load_table(source: str | PathLike[str]) -> dict[str, Any]:
-    """Read a case file, or a shipped case, without looking at what it says; files that it names are found beside it.
+    """Return the parsed, not yet validated table of a case file or a shipped case; paths are made absolute, relative to the file.
 
     Raises
     ------
@@ -96,16 +98,16 @@ def load_table(source: str | PathLike[str]) -> dict[str, Any]:
     check_text(text)
     try:
         table = tomllib.loads(text)
-    except ValueError as error:  # tomllib's own, or a number of thousands of digits
+    except ValueError as error:  # a TOML syntax error, or an integer of too many digits
         raise InputError(f"this is not valid TOML: {error}{_toml_hint(text, str(error))}") from None
     except RecursionError:
         raise InputError("this is not a case: its tables are nested too deeply") from None
     check_bounds(table)
-    return _beside(table, Path(source).parent)
+    return _resolve_paths(table, Path(source).parent)
 
 
 def _toml_hint(text: str, fault: str) -> str:
-    """Return what is likely wrong with a line, of which TOML says only what it expected."""
+    """Return the likely cause of a TOML syntax error, as a hint to be added to the message; "" if not known."""
     place = re.search(r"at line (\d+)", fault)
     line = text.split("\n")[int(place[1]) - 1] if place else ""
     if re.match(r"[^=]{1,100}=\s*[+-]?[\d.]+(?:[eE][+-]?\d+)?\s*[^\W\d_][^\"']*$", line):
@@ -115,8 +117,8 @@ def _toml_hint(text: str, fault: str) -> str:
     return "; close the quotes on the line where they are opened" if "Illegal character '\\n'" in fault else ""
 
 
-def named(source: str | PathLike[str], read: Callable[[], Read]) -> Read:
-    """Return what is read from a source, whose name stands before each line of an error."""
+def prefix_errors(source: str | PathLike[str], read: Callable[[], Read]) -> Read:
+    """Return the result of `read`, with the source prefixed to each line of an `InputError` that it raises."""
     try:
         return read()
     except InputError as error:
@@ -125,32 +127,41 @@ def named(source: str | PathLike[str], read: Callable[[], Read]) -> Read:
 
 
 def read_case(table: Mapping[str, Any]) -> Case:
-    """Make a case from a mapping, as a TOML file would hold it.
+    """Return the case of a mapping with the structure of a case file.
 
     Raises
     ------
     InputError
-        If it is not a valid case; one line a fault.
+        If it is not a valid case; one line per fault.
+
+    Examples
+    --------
+    >>> case = read_case({
+    ...     "sphere": {"radius": "25 mm", "material": "granite"}, "plate": {"material": "rigid"},
+    ...     "drop": {"speed": 1.0}, "contact": {"law": "hertz"},
+    ... })
+    >>> case.sphere.radius
+    0.025
     """
     check_bounds(table)
     return _case_of(table)
 
 
 def _case_of(table: Mapping[str, Any]) -> Case:
-    """Make a case from a mapping whose bounds have been checked."""
+    """Return the case of a mapping whose size has been checked."""
     try:
         case = Case.model_validate(dict(table))
         check_case(case)
     except ValidationError as error:
-        faults = explained(error, _section)
+        faults = fault_messages(error, _section)
         raise InputError.of_several(
-            f"{shortened(place_in_words(path, table), 160)}: {message}" if path else message for path, message in faults
+            f"{shortened(path_in_words(path, table), 160)}: {message}" if path else message for path, message in faults
         ) from None
     return case
 
 
 def shipped_cases() -> dict[str, str]:
-    """Return the shipped cases: their names as `load_case` takes them, and what they are.
+    """Return the titles of the shipped cases by their names, which `load_case` accepts.
 
     Examples
     --------
@@ -160,8 +171,8 @@ def shipped_cases() -> dict[str, str]:
     return {name: tomllib.loads(_shipped(name))["name"] for name in _names()}
 
 
-def _beside(table: dict[str, Any], folder: Path) -> dict[str, Any]:
-    """Return a case whose files are found beside it, wherever it is read from."""
+def _resolve_paths(table: dict[str, Any], folder: Path) -> dict[str, Any]:
+    """Make the file paths of a case absolute, in place, relative to the folder of the case file; return the case."""
     for body in ("sphere", "plate"):
         section = table.get(body)
         mesh = section.get("mesh") if isinstance(section, dict) else None
@@ -174,16 +185,16 @@ def _beside(table: dict[str, Any], folder: Path) -> dict[str, Any]:
     file = target.get("file") if isinstance(target, dict) else target
     if isinstance(wanted, dict) and isinstance(file, str) and file.strip():
         wanted["target"] = {"file": str((folder / file).absolute())}
-    _columns_beside(table.get("sweep"), folder)
+    _resolve_sweep_paths(table.get("sweep"), folder)
     return table
 
 
-def _columns_beside(inside: Any, folder: Path) -> None:
-    """Find the files of a [sweep] section, however deep they stand in it, beside the case."""
+def _resolve_sweep_paths(inside: Any, folder: Path) -> None:
+    """Make the file paths of a [sweep] section absolute, in place, at any depth."""
     for value in inside.values() if isinstance(inside, dict) else ():
         if isinstance(value, dict) and isinstance(value.get("file"), str):
             value["file"] = str((folder / value["file"]).absolute())
-        _columns_beside(value, folder)
+        _resolve_sweep_paths(value, folder)
 
 
 @cache
@@ -194,6 +205,7 @@ def _names() -> list[str]:
 
 
 def _shipped(name: str) -> str:
+    """Return the text of a shipped case."""
     entry = files("vibroimpact").joinpath("cases/library", name.removeprefix("paper:") + ".toml")
     if name not in (known := _names()):
         raise InputError(f"there is no shipped case {shown(name)}; there are {', '.join(known)}.{did_you_mean(name, known)}")

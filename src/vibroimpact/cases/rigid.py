@@ -1,4 +1,4 @@
-"""What a case says of its bodies and their contact, and the problem that it states if nothing but the contact deforms."""
+"""Contact pair, laws and stop rule of a case, and its problem with rigid bodies."""
 
 from __future__ import annotations
 
@@ -20,15 +20,15 @@ if TYPE_CHECKING:
 
 _DEFAULT_IMPACTS = 5
 
-FALLS = (
+PLATE_FALLS = (
     "the supports let the plate fall or tilt: under gravity it falls away from under the sphere; hold it vertically, leave it rigid, or "
     "hit it in free space, with drop.gravity = 0 and drop.speed"
 )
-"""Of a plate that its supports do not hold, as far as is known without its modes, and with them."""
+"""Message for a plate that its supports do not hold, raised before its modes are computed (`"free"`) or after."""
 
 
 def contact_pair(case: CaseTable) -> ContactPair:
-    """Return the facts of the touching pair of a case: effective modulus, radius and mass."""
+    """Return the contact pair of a case: effective modulus, radius and mass, and the yield strength of the weaker body."""
     modulus, below = effective_modulus(case.sphere.material, case.plate.material), case.plate.radius
     mass, radius = rigid_sphere(case.sphere.radius, case.sphere.material).mass, case.sphere.radius
     if below is not None:
@@ -48,17 +48,17 @@ def contact_pair(case: CaseTable) -> ContactPair:
 
 
 def mass_of_sphere(case: CaseTable) -> float:
-    """Return the mass of the sphere that falls [kg]."""
+    """Return the mass of the falling sphere [kg]."""
     return float(rigid_sphere(case.sphere.radius, case.sphere.material).mass)
 
 
 def is_free_sphere(case: CaseTable) -> bool:
-    """Is the body below a sphere that nothing holds?"""
+    """Return whether a free sphere replaces the plate."""
     return case.plate.radius is not None and case.plate.supports == "free"
 
 
 def contact_laws_of(case: CaseTable) -> tuple[ContactLaw, ...]:
-    """Return the law of each impact: as many as the longest list of a parameter."""
+    """Return the contact law of each impact, as many as the longest list of a parameter has values; the last holds for later impacts."""
     law, pair = find_contact_law(case.contact.law), contact_pair(case)
     lists = {key: value for key, value in case.contact.parameters.items() if isinstance(value, tuple)}
     number = max((len(value) for value in lists.values()), default=1)
@@ -71,27 +71,27 @@ def contact_laws_of(case: CaseTable) -> tuple[ContactLaw, ...]:
         raise InputError(error.message, f"contact.{error.key}".rstrip(".")) from None
 
 
-def impacts_of(case: CaseTable) -> int | None:
-    """Return after how many impacts a case stops; None if it goes on to rest."""
+def impact_limit(case: CaseTable) -> int | None:
+    """Return the number of impacts after which a run stops; None if it continues to rest or to its duration."""
     if case.run.impacts is None:
         return _DEFAULT_IMPACTS if case.run.duration is None else None
     return None if case.run.impacts == "all" else case.run.impacts
 
 
 def elastic_names(case: CaseTable) -> list[Literal["sphere", "plate"]]:
-    """Return which bodies of a case are elastic."""
+    """Return the names of the elastic bodies of a case."""
     names: tuple[Literal["sphere", "plate"], ...] = ("sphere", "plate")
     return [name for name in names if getattr(case, name).model == "elastic"]
 
 
 def deforms(case: CaseTable) -> bool:
-    """Does anything of a case but the contact itself deform, or the body below move?"""
+    """Return whether anything but the contact itself deforms, or the body below is free to move."""
     local = case.contact.local
     return bool(elastic_names(case)) or local.local_compliance == "identified" or local.finite_sphere or is_free_sphere(case)
 
 
 def rigid_problem(case: CaseTable) -> Problem:
-    """Return the problem of a case as if its bodies were rigid; the numbers of the case may be arrays, one value a drop."""
+    """Return the problem of a case with rigid bodies; the numbers of the case may be arrays, one value per drop."""
     return Problem(
         sphere=rigid_sphere(case.sphere.radius, case.sphere.material),
         plate=_rigid_below(case),
@@ -99,7 +99,7 @@ def rigid_problem(case: CaseTable) -> Problem:
         height=case.drop.height,
         speed=case.drop.speed,
         gravity=case.drop.gravity,
-        impacts=impacts_of(case),
+        impacts=impact_limit(case),
         duration=case.run.duration,
         rest_speed=case.run.rest_speed,
         same_spot=case.drop.same_spot,
@@ -108,14 +108,14 @@ def rigid_problem(case: CaseTable) -> Problem:
 
 
 def _rigid_below(case: CaseTable) -> Body:
-    """Return what a sphere falls on, held fixed: a plate, or another sphere."""
+    """Return the fixed rigid body below: a plate, or a sphere that replaces it."""
     if case.plate.radius is not None:
         return Body(mass=np.inf, contact_offset=case.plate.radius)
     return rigid_plate(case.plate.size[2] if case.plate.size else 0.0)
 
 
-def first_speed(case: CaseTable) -> float:
-    """Return the speed of the first touch [m/s] of a case."""
+def touch_speed(case: CaseTable) -> float:
+    """Return the approach speed of the first impact [m/s]."""
     if case.drop.speed is not None:
         return case.drop.speed
     return float((2.0 * case.drop.gravity * ((case.drop.height or 0.0) - case.sphere.radius)) ** 0.5)

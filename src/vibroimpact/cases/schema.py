@@ -9,25 +9,25 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import BeforeValidator, Field, StrictBool, model_validator
 
 from vibroimpact.calibration.section import CalibrateSection
-from vibroimpact.cases.bounds import MOST_ITEMS, Name, at_most
-from vibroimpact.cases.contact_section import ContactSection, read_contact
-from vibroimpact.cases.damping_field import DampingField
-from vibroimpact.cases.elastic_fields import (
+from vibroimpact.cases.fields.bounds import MOST_ITEMS, Name, at_most
+from vibroimpact.cases.fields.contact import ContactSection, read_contact
+from vibroimpact.cases.fields.damping import DampingField
+from vibroimpact.cases.fields.elastic_body import (
     BroughtMeshTable,
     FrequencyField,
     MethodField,
     ModesField,
     PlateMeshField,
     SphereMeshField,
-    check_below,
     check_elastic,
     check_plate,
+    check_sphere_below,
 )
-from vibroimpact.cases.material_field import MaterialField
-from vibroimpact.cases.quantities import Quantity
-from vibroimpact.cases.section import Section
+from vibroimpact.cases.fields.material import MaterialField
+from vibroimpact.cases.fields.quantities import Quantity
+from vibroimpact.cases.fields.section import Section, check_alternatives
+from vibroimpact.cases.fields.supports import SupportsField
 from vibroimpact.cases.slips.lengths import likely_lengths
-from vibroimpact.cases.supports_field import SupportsField
 from vibroimpact.dynamics.problem import MOST_IMPACTS, STANDARD_GRAVITY
 from vibroimpact.dynamics.sensors.sensor import FILTERS, Accelerometer, Sensor
 from vibroimpact.errors import InputError, did_you_mean
@@ -51,7 +51,7 @@ class SphereSection(Section):
     attachment_mode: StrictBool = Field(False, description="add a residual attachment mode at the contact point")
 
     @model_validator(mode="after")
-    def _has_mass(self) -> SphereSection:
+    def _check_body(self) -> SphereSection:
         if self.material is RIGID:
             raise InputError('"rigid" has no density, and the sphere needs a mass; only the plate can be rigid', "material")
         check_elastic(self)
@@ -82,7 +82,7 @@ class PlateSection(Section):
     attachment_mode: StrictBool = Field(False, description="add a residual attachment mode at the contact point")
 
     @model_validator(mode="after")
-    def _whole(self) -> PlateSection:
+    def _check_body(self) -> PlateSection:
         check_elastic(self)
         check_plate(self)
         return self
@@ -105,12 +105,12 @@ class DropSection(Section):
 
     @model_validator(mode="after")
     def _one_of_two(self) -> DropSection:
-        if (self.height is None) == (self.speed is None):
-            raise InputError("give either height or speed" + ("; both are given" if self.height is not None else "; neither is given"))
+        check_alternatives(self, "height", "speed", needed=True)
         return self
 
 
 def _read_impacts(value: Any) -> Any:
+    """Return a valid number of impacts, "all" or None."""
     if value is None or value == "all" or (type(value) is int and 1 <= value <= MOST_IMPACTS):
         return value
     raise InputError(f'{shown(value)} is not allowed; it must be a whole number from 1 to {MOST_IMPACTS}, or "all" to go on to rest')
@@ -131,6 +131,7 @@ _DIRECTIONS = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 
 
 def _read_filter(value: Any) -> Any:
+    """Return the name of a filter; a value that is no string is left to the type check of the field."""
     if not isinstance(value, str) or value in FILTERS:
         return value
     known = ", ".join(f'"{name}"' for name in FILTERS)
@@ -155,16 +156,16 @@ class SensorSection(Section):
     accelerometer: AccelerometerTable | None = Field(None, description="the resonance, range, noise and resolution of what reads it")
 
     @model_validator(mode="after")
-    def _fits(self) -> SensorSection:
+    def _check_sensor(self) -> SensorSection:
         if self.accelerometer is not None and self.quantity != "acceleration":
             raise InputError("an accelerometer reads acceleration; leave out quantity, or the accelerometer", "quantity")
         if not isinstance(self.direction, str) and not any(self.direction):
             raise InputError("it has no length; give x, y and z of the direction, such as [0, 0, 1]", "direction")
-        self.sensor()  # which raises if the filter takes no corner
+        self.sensor()  # raises if the filter does not take a corner frequency
         return self
 
     def sensor(self) -> Sensor:
-        """Return the sensor."""
+        """Return the sensor, with its direction as a unit vector."""
         along = _DIRECTIONS[self.direction] if isinstance(self.direction, str) else self.direction
         x, y, z = (part / math.hypot(*along) for part in along)
         meter = Accelerometer(**self.accelerometer.model_dump()) if self.accelerometer else None
@@ -201,7 +202,8 @@ class CaseTable(Section):
     sweep: SweepSection | None = Field(None, description="what `vibroimpact sweep` does with it")
 
     @model_validator(mode="after")
-    def _fits_together(self) -> Self:
+    def _check_consistency(self) -> Self:
+        """Check values of different sections against each other."""
         radius, height, size = self.sphere.radius, self.drop.height, self.plate.size
         if height is not None and height <= radius:
             hint = likely_lengths([radius], [min(height, 3.0)]).replace("Write", "Write sphere.radius =")
@@ -213,7 +215,8 @@ class CaseTable(Section):
         if height is not None and self.drop.gravity == 0:
             raise InputError("without gravity a sphere does not fall; give drop.speed instead of drop.height", "drop.gravity")
         if self.plate.radius is not None:
-            check_below(self)
+            check_sphere_below(self)
+        # the extent of an imported mesh is not known before it is read
         in_own_coordinates = isinstance(self.plate.mesh, BroughtMeshTable)
         reach = [0.5 * length for length in size[:2]] if size and not in_own_coordinates else [math.inf, math.inf]
         if any(abs(at) > end for at, end in zip(self.drop.position, reach, strict=True)):

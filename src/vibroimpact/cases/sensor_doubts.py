@@ -1,4 +1,4 @@
-"""What to doubt of the signals of sensors: overload, modes left out, and nearness of the contact, each with a number and a remedy."""
+"""Doubts about the signals of sensors: overload, truncated modes and proximity to the contact, each with a number and a remedy."""
 
 from __future__ import annotations
 
@@ -9,25 +9,25 @@ from typing import Any
 from vibroimpact.dynamics.sensors.recording import Signal
 from vibroimpact.units.display import text
 
-_PROMISED = 0.01  # of the rms value: what the modes left out may change in a signal without a word
-_NEAR = 2.0  # thicknesses from the contact
-_CUTS = 1.5  # over the duration of a contact: about where the spectrum of its force ends
-_ENOUGH = 1.2  # times the highest magnitude: the range to take
+_PROMISED = 0.01  # relative to the rms value: error of a signal by truncated modes above which it is doubted
+_NEAR = 2.0  # thicknesses of the plate: distance from the contact within which a sensor is near it
+_CUTS = 1.5  # over the contact duration: approximate cut-off frequency of the force spectrum
+_ENOUGH = 1.2  # recommended range over the peak magnitude
 
 
 def sensor_doubts(case: Mapping[str, Any], signals: Mapping[str, Signal], highest: float, duration: float) -> list[str]:
-    """Return what to doubt of signals.
+    """Return a sentence for each doubt about the signals of sensors.
 
     Parameters
     ----------
     case : mapping
-        The resolved case; an empty one tells no places.
+        The resolved case; if empty, the positions of the sensors are not known.
     signals : mapping of str to Signal
-        What sensors on the plate recorded.
+        Signals of the sensors on the plate.
     highest : float
-        The frequency of the plate's highest mode [Hz].
+        Frequency of the highest mode of the plate [Hz].
     duration : float
-        Of the first contact [s]; NaN where there is none.
+        Duration of the first contact [s]; NaN if there is none.
 
     Examples
     --------
@@ -36,30 +36,33 @@ def sensor_doubts(case: Mapping[str, Any], signals: Mapping[str, Signal], highes
     """
     places = {one["name"]: one["position"] for one in case.get("sensors", ())}
     ranges = {one["name"]: one.get("accelerometer", {}).get("range") for one in case.get("sensors", ())}
-    found = [doubt for name, signal in signals.items() for doubt in _of_range(signal, ranges.get(name))]
-    alike: dict[tuple[str, str], dict[str, float]] = {}  # what is said of several sensors is said once: the parts by their names
+    found = [doubt for name, signal in signals.items() for doubt in _range_doubts(signal, ranges.get(name))]
+    alike: dict[
+        tuple[str, str], dict[str, float]
+    ] = {}  # sensors with the same cause and remedy share a sentence: relative errors by their names
     for name, signal in signals.items():
-        apart = _thicknesses(case, places.get(name))
+        apart = _distance_in_thicknesses(case, places.get(name))
         if apart < _NEAR:
-            part = _known(signal.uncertainty) + _of_thickness(case, signal, duration)
+            part = _finite_or_zero(signal.uncertainty) + _thickness_error(case, signal, duration)
             cause = f"{apart:.2g} thicknesses from the contact what the plate does through its thickness, and in the modes left out,"
             remedy = _remedy(signal, highest) if signal.uncertainty > _PROMISED else f"beyond {_NEAR:g} thicknesses plate theory holds"
             alike.setdefault((cause, remedy), {})[name] = part
         elif signal.uncertainty > _PROMISED:
             cause = f"the modes of the plate left out (above {text(highest, 'Hz')}, at {signal.sensor.rate:g} samples per second)"
             alike.setdefault((cause, _remedy(signal, highest)), {})[name] = signal.uncertainty
-    return found + [_said(cause, remedy, parts) for (cause, remedy), parts in alike.items()]
+    return found + [_sentence(cause, remedy, parts) for (cause, remedy), parts in alike.items()]
 
 
-def _said(cause: str, remedy: str, parts: dict[str, float]) -> str:
-    """Return a doubt of sensors that have the same cause and remedy."""
+def _sentence(cause: str, remedy: str, parts: dict[str, float]) -> str:
+    """Return the sentence for sensors with the same cause and remedy; `parts` are relative errors by the names of the sensors."""
     each = list(dict.fromkeys(map(_per_cent, parts.values())))
     names = ", ".join(f'"{name}"' for name in parts)
     sensors, signal = ("sensors", "their signals") if len(parts) > 1 else ("sensor", "its signal")
     return f"{sensors} {names}: {cause} may change {signal} by about {' and '.join(each)} of the rms value; {remedy}"
 
 
-def _of_range(signal: Signal, end: float | None) -> list[str]:
+def _range_doubts(signal: Signal, end: float | None) -> list[str]:
+    """Return the doubt about an accelerometer that is driven beyond its range; none if it is not."""
     limit = "its range" if end is None else f"its range of {end:g} m/s2"
     if not signal.overload_time:
         return []
@@ -79,8 +82,8 @@ def _remedy(signal: Signal, highest: float) -> str:
     return f'ask for plate.max_frequency = "{wanted / 1e3:.3g} kHz" or so, or for a lower rate'
 
 
-def _thicknesses(case: Mapping[str, Any], place: Any) -> float:
-    """Return how far a sensor lies from the contact along the plate, in its thicknesses; infinite where that is not known."""
+def _distance_in_thicknesses(case: Mapping[str, Any], place: Any) -> float:
+    """Return the in-plane distance of a sensor from the contact over the plate thickness; infinite if not known."""
     size = case.get("plate", {}).get("size")
     mesh = case.get("plate", {}).get("mesh", {})
     if size is None or place is None or isinstance(place, str) or "file" in mesh:
@@ -88,15 +91,15 @@ def _thicknesses(case: Mapping[str, Any], place: Any) -> float:
     return math.dist(place, case["drop"]["position"]) / float(size[2])
 
 
-def _of_thickness(case: Mapping[str, Any], signal: Signal, duration: float) -> float:
-    """Return about which part of a signal is motion through the thickness: the square of its band over the first such resonance."""
+def _thickness_error(case: Mapping[str, Any], signal: Signal, duration: float) -> float:
+    """Return the estimated relative error by thickness motion: square of the signal bandwidth over the first thickness-shear resonance."""
     material, thickness = case["plate"]["material"], case["plate"]["size"][2]
     shear = math.sqrt(material["youngs_modulus"] / (2.0 * (1.0 + material["poissons_ratio"]) * material["density"]))
     band = min(0.5 * signal.sensor.rate, _CUTS / duration if duration > 0.0 else math.inf)
     return float((band * 2.0 * thickness / shear) ** 2)
 
 
-def _known(part: float) -> float:
+def _finite_or_zero(part: float) -> float:
     return part if math.isfinite(part) else 0.0
 
 

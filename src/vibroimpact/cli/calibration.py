@@ -26,7 +26,7 @@ def calibrate(
     from vibroimpact.calibration.case import calibrate_case, load_calibration
     from vibroimpact.calibration.folder import save_calibration
     from vibroimpact.calibration.text import calibration_summary
-    from vibroimpact.cases.reader import named
+    from vibroimpact.cases.reader import prefix_errors
     from vibroimpact.report.progress import patient_progress
     from vibroimpact.results.folder import check_free
 
@@ -36,7 +36,7 @@ def calibrate(
     screen = console()
     with whole_or_nothing():
         with patient_progress("calibrating", screen) as progress:
-            found = named(case, lambda: calibrate_case(what, progress, note))
+            found = prefix_errors(case, lambda: calibrate_case(what, progress, note))
         folder = save_calibration(what.case, found, target, force=force)
     screen.print(calibration_summary(what.case, found))
     say(f"wrote {folder / 'report.html'}")

@@ -42,26 +42,26 @@ def check(case: CaseArgument) -> None:
     """Validate a case or a study and explain it; run nothing."""
     from vibroimpact.calibration.section import check_target
     from vibroimpact.cases.build import check_drop
-    from vibroimpact.cases.reader import load_case, load_table, named
+    from vibroimpact.cases.reader import load_case, load_table, prefix_errors
     from vibroimpact.runs.console import case_explained
     from vibroimpact.studies.report.explained import sweep_explained
     from vibroimpact.studies.sweep import read_sweep
 
-    table = named(case, lambda: load_table(case))
+    table = prefix_errors(case, lambda: load_table(case))
     if "sweep" not in table:
         found = load_case(case)
-        named(case, lambda: check_drop(found))
-        named(case, lambda: check_target(found.calibrate))
-        console().print(named(case, lambda: case_explained(found)))
+        prefix_errors(case, lambda: check_drop(found))
+        prefix_errors(case, lambda: check_target(found.calibrate))
+        console().print(prefix_errors(case, lambda: case_explained(found)))
         return
-    study = named(case, lambda: read_sweep(table))
+    study = prefix_errors(case, lambda: read_sweep(table))
     console().print(sweep_explained(study))
-    console().print(named(case, lambda: case_explained(study.case, study.axes)))
+    console().print(prefix_errors(case, lambda: case_explained(study.case, study.axes)))
 
 
 def _run(name: str, output: Path | None, *, force: bool) -> None:
-    from vibroimpact.cases.costs import costs_told
-    from vibroimpact.cases.reader import load_case, named
+    from vibroimpact.cases.costs import describe_costs
+    from vibroimpact.cases.reader import load_case, prefix_errors
     from vibroimpact.dynamics.simulate import simulate
     from vibroimpact.report.progress import patient_progress
     from vibroimpact.results.folder import check_free, read_result
@@ -71,12 +71,12 @@ def _run(name: str, output: Path | None, *, force: bool) -> None:
     case = load_case(name)
     target = Path(stem(name)) if output is None else output
     check_free(target, force=force)  # before the work, not after it
-    for sentence in costs_told(case):
+    for sentence in describe_costs(case):
         note(sentence)
     screen = console()
     with whole_or_nothing():
         with patient_progress("computing modes", screen) as progress:
-            problem = named(name, lambda: case.to_problem(progress, note))
+            problem = prefix_errors(name, lambda: case.to_problem(progress, note))
         with patient_progress("simulating", screen) as progress:
             response = simulate(problem, progress)
         folder = save_result(response, target, force=force)
@@ -95,9 +95,9 @@ def modes(
 
     The folder holds a table of frequencies, pictures of the first modes, and the meshes for ParaView, Nastran and Abaqus.
     """
-    from vibroimpact.cases.costs import costs_told
-    from vibroimpact.cases.modes import compute_modes
-    from vibroimpact.cases.reader import load_case, named
+    from vibroimpact.cases.costs import describe_costs
+    from vibroimpact.cases.elastic.modes import compute_modes
+    from vibroimpact.cases.reader import load_case, prefix_errors
     from vibroimpact.modes.folder import save_modes
     from vibroimpact.modes.text import modes_summary
     from vibroimpact.report.progress import patient_progress
@@ -106,12 +106,12 @@ def modes(
     found = load_case(case)
     target = Path(f"{stem(case)}-modes") if output is None else output
     check_free(target, force=force)
-    for sentence in costs_told(found, modes_alone=True):
+    for sentence in describe_costs(found, modes_alone=True):
         note(sentence)
     screen = console()
     with whole_or_nothing():
         with patient_progress("computing modes", screen) as progress:
-            bodies = named(case, lambda: compute_modes(found, progress, note))
+            bodies = prefix_errors(case, lambda: compute_modes(found, progress, note))
         folder = save_modes(found, bodies, target, force=force)
     screen.print(modes_summary(found, bodies))
     say(f"wrote {folder / 'modes.csv'}, and pictures and meshes beside it")

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from vibroimpact.cases.case import Case
-from vibroimpact.cases.rigid import contact_laws_of, contact_pair, first_speed
+from vibroimpact.cases.rigid import contact_laws_of, contact_pair, touch_speed
 from vibroimpact.comparison.laws import cases_under
 from vibroimpact.contact.law import ContactLaw
 from vibroimpact.dynamics.columns import ALL_IMPACT_COLUMNS
@@ -84,7 +84,7 @@ def compare_laws(
     {'hunt-crossley': 0.739, 'flores': 0.63}
     """
     cases = cases_under(case, laws, given, achieving)
-    mass, speed = contact_pair(case).effective_mass, first_speed(case)
+    mass, speed = contact_pair(case).effective_mass, touch_speed(case)
     speeds = speed * np.geomspace(1e-3, 3.0, _SPEEDS)
     first, results, restitutions = {}, {}, {}
     for number, (name, one) in enumerate(cases.items()):

@@ -6,10 +6,10 @@ from collections.abc import Iterable, Mapping
 from dataclasses import MISSING, Field, fields
 from typing import Any
 
-from vibroimpact.cases.build import resolved
+from vibroimpact.cases.build import resolved_case
 from vibroimpact.cases.case import Case
 from vibroimpact.cases.reader import read_case
-from vibroimpact.cases.rigid import contact_laws_of, contact_pair, first_speed
+from vibroimpact.cases.rigid import contact_laws_of, contact_pair, touch_speed
 from vibroimpact.contact.law import ContactLaw, find_contact_law, unit_of
 from vibroimpact.dynamics.restitution import law_achieving
 from vibroimpact.errors import InputError, did_you_mean
@@ -82,7 +82,7 @@ def _case_under(case: Case, law: type[ContactLaw], given: Mapping[str, Any], ach
             guessed.append(key)
     own_name = case.name or "a drop"  # which may name the case's own law
     named = own_name if law.name == case.contact.law else f"{law.name} on the drop of: {own_name}"
-    table = {**resolved(case), "name": named, "contact": contact}
+    table = {**resolved_case(case), "name": named, "contact": contact}
     try:
         found = read_case(table)
         tuned = contact_laws_of(found)[0].free_parameter
@@ -101,7 +101,7 @@ def _case_under(case: Case, law: type[ContactLaw], given: Mapping[str, Any], ach
 
 def _tuned(case: Case, table: Mapping[str, Any], parameter: str, achieving: float) -> Case:
     """Return a case whose first impact achieves a restitution."""
-    law, speed = contact_laws_of(case)[0], first_speed(case)
+    law, speed = contact_laws_of(case)[0], touch_speed(case)
     tuned = law_achieving(law, achieving, contact_pair(case).effective_mass, speed)
     return read_case({**table, "contact": {**table["contact"], parameter: getattr(tuned, parameter)}})
 

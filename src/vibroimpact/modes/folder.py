@@ -11,9 +11,9 @@ from typing import Any
 import tomli_w
 
 from vibroimpact._version import __version__
-from vibroimpact.cases.build import resolved
+from vibroimpact.cases.build import resolved_case
 from vibroimpact.cases.case import Case
-from vibroimpact.cases.modes import BodyModes
+from vibroimpact.cases.elastic.modes import BodyModes
 from vibroimpact.meshes.write_abaqus import write_abaqus
 from vibroimpact.meshes.write_nastran import write_nastran
 from vibroimpact.meshes.write_vtu import write_vtu
@@ -64,7 +64,7 @@ def save_modes(case: Case, modes: Mapping[str, BodyModes], directory: str | Path
         If something is there already, or the place can't be written to.
     """
     with new_folder(directory, force=force) as folder:
-        (folder / "case.toml").write_text(tomli_w.dumps(resolved(case)), encoding="utf-8")
+        (folder / "case.toml").write_text(tomli_w.dumps(resolved_case(case)), encoding="utf-8")
         write_csv([row for name, body in modes.items() for row in mode_rows(name, body)], list(MODE_COLUMNS), folder / "modes.csv")
         points = [row for name, body in modes.items() for row in _point_rows(name, body)]
         if points:

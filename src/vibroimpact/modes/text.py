@@ -10,10 +10,10 @@ from rich.text import Text
 
 from vibroimpact.arrays import Floats
 from vibroimpact.bodies.elastic import ElasticBody
-from vibroimpact.cases.build_elastic import elastic_bodies
 from vibroimpact.cases.case import Case
-from vibroimpact.cases.meshes import meshes_of
-from vibroimpact.cases.modes import BodyModes
+from vibroimpact.cases.elastic.bodies import elastic_bodies
+from vibroimpact.cases.elastic.meshes import meshes_of
+from vibroimpact.cases.elastic.modes import BodyModes
 from vibroimpact.report.terminal_table import Column, TerminalTable, facts, numbers, with_gap
 from vibroimpact.structures.recipe import model_key
 from vibroimpact.structures.store import has_model

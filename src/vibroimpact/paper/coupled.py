@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from vibroimpact.cases.build import resolved
+from vibroimpact.cases.build import resolved_case
 from vibroimpact.cases.reader import load_case
 from vibroimpact.paper.measures import in_first_impact
 from vibroimpact.paper.mesh_mass import mesh_mass
@@ -25,7 +25,7 @@ def section_5_1(runs: Runs) -> Section:
         for quantity, column in _IMPACTS.items():
             unresolved = unresolved_range(runs, kind, column) if quantity != "max_acceleration" else None
             rows += rows_by_treatment(runs, kind, printed(f"type{kind}.{quantity}"), in_first_impact(column), unresolved)
-    ratio = float(resolved(load_case("paper:type2"))["sphere"]["damping"])
+    ratio = float(resolved_case(load_case("paper:type2"))["sphere"]["damping"])
     return Section(
         "Section 5.1: force, acceleration and rebound in Types 1, 2 and 3",
         (

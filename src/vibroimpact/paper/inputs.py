@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from vibroimpact.cases.build import resolved
+from vibroimpact.cases.build import resolved_case
 from vibroimpact.cases.reader import load_case
 from vibroimpact.cases.rigid import contact_pair
 from vibroimpact.contact.laws.adams_impact import AdamsImpact
@@ -15,7 +15,7 @@ from vibroimpact.paper.section import Section
 
 def table1(runs: Runs) -> Section:
     """Return Table 1 beside the shipped case of Type 3, which has all of it."""
-    case = resolved(load_case("paper:type3"))
+    case = resolved_case(load_case("paper:type3"))
     sphere, plate, drop = case["sphere"], case["plate"], case["drop"]
     values = {f"{body}.{name}": case[body]["material"][name] for body in ("sphere", "plate") for name in _MATERIAL}
     values["sphere.radius"] = 1e3 * sphere["radius"]

@@ -13,7 +13,7 @@ import numpy as np
 
 from vibroimpact._version import __version__
 from vibroimpact.arrays import Floats
-from vibroimpact.cases.conditions import Seen
+from vibroimpact.cases.conditions import DropSummary
 from vibroimpact.cases.doubts import doubts
 from vibroimpact.cases.limits.plate_waves import plate_theory_error
 from vibroimpact.cases.sensor_doubts import sensor_doubts
@@ -94,16 +94,16 @@ class Result:
         return found + sensor_doubts(self.case, self.signals, highest, float(self._seen.duration))
 
     @property
-    def _seen(self) -> Seen:
+    def _seen(self) -> DropSummary:
         """What came of the drop, to which the limits of the theory are applied."""
         if not len(self.impacts["impact"]):
-            return Seen()
+            return DropSummary()
         force, depth = (float(self.impacts[name].max()) for name in ("max_force_N", "max_indentation_m"))
         duration, speed = time_of_contact(self.impacts), float(self.impacts["approach_speed_m_s"][0])
         deflection = float(self.peaks.get("plate", {}).get("max_bending_m") or math.nan)
         modes = {body: (part, self.frequencies(body)[-1]) for body, part in self.truncation.items()}
         theory = plate_theory_error(self.deformation, self.impacts)
-        return Seen(force, depth, duration, speed, deflection, modes, self.change_by_impact, theory)
+        return DropSummary(force, depth, duration, speed, deflection, modes, self.change_by_impact, theory)
 
     @property
     def name(self) -> str:

@@ -10,9 +10,9 @@ import numpy as np
 from rich.console import Group, RenderableType
 from rich.text import Text
 
-from vibroimpact.cases.build import resolved
+from vibroimpact.cases.build import resolved_case
 from vibroimpact.cases.case import Case
-from vibroimpact.cases.costs import costs_told
+from vibroimpact.cases.costs import describe_costs
 from vibroimpact.cases.doubts import doubts
 from vibroimpact.cases.expected import expected_of
 from vibroimpact.cases.rigid import (
@@ -20,10 +20,10 @@ from vibroimpact.cases.rigid import (
     contact_pair,
     deforms,
     elastic_names,
-    first_speed,
-    impacts_of,
+    impact_limit,
     is_free_sphere,
     mass_of_sphere,
+    touch_speed,
 )
 from vibroimpact.cases.schema import SensorSection
 from vibroimpact.contact.law import CompliantLaw, ContactLaw, unit_of
@@ -123,7 +123,7 @@ def _below(case: Case) -> str:
 
 def case_explained(case: Case, aside: Container[str] = ()) -> RenderableType:
     """Return what a case means: the resolved numbers, what to expect, and what to doubt; but slips of units at keys told elsewhere."""
-    laws, pair, speed = contact_laws_of(case), contact_pair(case), first_speed(case)
+    laws, pair, speed = contact_laws_of(case), contact_pair(case), touch_speed(case)
     mass, radius, gravity = mass_of_sphere(case), case.sphere.radius, case.drop.gravity
     rows: list[tuple[str, str]] = [
         ("sphere", f"radius {radius:g} m, mass {mass:.6g} kg, {case.sphere.model}, of {_stuff(case.sphere.material)}"),
@@ -142,7 +142,7 @@ def case_explained(case: Case, aside: Container[str] = ()) -> RenderableType:
             ", ".join(f"{value:.9g}" for value in values) if len(set(values)) > 1 else f"{values[0]:.9g}" if values[0] is not None else "-"
         )
         rows.append((f"  {item.name}", f"{shown} {unit_of(item, getattr(laws[0], 'exponent', 1))}"))
-    number = impacts_of(case)
+    number = impact_limit(case)
     stop = ["at rest"] + ([f"after {number} impact{'' if number == 1 else 's'}"] if number else [])
     stop += [f"at {case.run.duration:g} s"] if case.run.duration else []
     rows += [("stops", " or ".join(stop)), ("tolerance", f"{case.run.tolerance:g}")]
@@ -159,8 +159,8 @@ def case_explained(case: Case, aside: Container[str] = ()) -> RenderableType:
     if not math.isnan(expected.force):
         numbers = f"indentation {expected.depth:.4g} m, force {expected.force:.4g} N"
         rows.append(("if nothing were lost" + ("" if rigid else ", rigid"), numbers))
-    rows += [("" if number else "cost", line) for number, line in enumerate(costs_told(case))]
-    found = doubts(resolved(case), expected, aside)
+    rows += [("" if number else "cost", line) for number, line in enumerate(describe_costs(case))]
+    found = doubts(resolved_case(case), expected, aside)
     return Group(Text(case.name or "a drop", style="bold"), facts(rows), *doubt_lines(found))
 
 

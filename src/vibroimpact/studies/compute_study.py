@@ -13,8 +13,8 @@ from pathlib import Path
 import numpy as np
 
 from vibroimpact._version import __version__
-from vibroimpact.cases.coupling import carried_modes
-from vibroimpact.cases.rigid import impacts_of
+from vibroimpact.cases.elastic.coupling import carried_modes
+from vibroimpact.cases.rigid import impact_limit
 from vibroimpact.errors import ComputationError, InputError
 from vibroimpact.files.check_sums import sealed
 from vibroimpact.results.folder import SUMMARY, new_folder
@@ -222,7 +222,7 @@ def least_memory(sweep: Sweep) -> float:
     sweep : Sweep
         The study.
     """
-    useful = _USEFUL_ELASTIC if sweep.deforms else math.ceil(_USEFUL / (impacts_of(sweep.case) or LONG))
+    useful = _USEFUL_ELASTIC if sweep.deforms else math.ceil(_USEFUL / (impact_limit(sweep.case) or LONG))
     return max(LEAST_MEMORY, min(useful, math.ceil(sweep.size / _FEW_CHUNKS)) * _bytes_each(sweep))
 
 

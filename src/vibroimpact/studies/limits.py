@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from vibroimpact.cases.build import resolved
+from vibroimpact.cases.build import resolved_case
 from vibroimpact.cases.case import Case
-from vibroimpact.cases.conditions import Conditions, Seen
+from vibroimpact.cases.conditions import Conditions, DropSummary
 from vibroimpact.cases.limit import limits, numbers_of
 from vibroimpact.cases.limits.plate_waves import plate_theory_error
 from vibroimpact.contact.law import ContactLaw
@@ -64,7 +64,7 @@ def batch_conditions(case: Case, arrays: Mapping[str, Values], law: ContactLaw, 
     peaks : mapping of str to array
         What came of them.
     """
-    table = with_values(resolved(case), {key: values for key, values in arrays.items() if not key.startswith("contact.")})
+    table = with_values(resolved_case(case), {key: values for key, values in arrays.items() if not key.startswith("contact.")})
     given = {item.name: getattr(law, item.name) for item in fields(law)}
     table["contact"] |= {name: value for name, value in given.items() if value is not None}
     return Conditions(table, _seen(peaks))
@@ -86,8 +86,8 @@ def drop_conditions(response: Response, peaks: Mapping[str, NDArray[Any]]) -> Co
     return Conditions(problem.source or {}, seen)
 
 
-def _seen(peaks: Mapping[str, NDArray[Any]]) -> Seen:
-    return Seen(
+def _seen(peaks: Mapping[str, NDArray[Any]]) -> DropSummary:
+    return DropSummary(
         force=peaks["largest_force_N"],
         depth=peaks["largest_indentation_m"],
         duration=peaks["first_duration_s"],

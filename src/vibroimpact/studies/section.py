@@ -8,8 +8,8 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, WithJsonSchema
 
-from vibroimpact.cases.quantities import Quantity, read_quantity
-from vibroimpact.cases.section import Section, read_table
+from vibroimpact.cases.fields.quantities import Quantity, read_quantity
+from vibroimpact.cases.fields.section import Section, read_table
 from vibroimpact.errors import InputError, did_you_mean
 from vibroimpact.measurements.table_file import TableFile, name_and_unit, read_table_file
 from vibroimpact.ranges import Range

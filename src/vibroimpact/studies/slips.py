@@ -7,7 +7,7 @@ from typing import Any
 
 from numpy.typing import NDArray
 
-from vibroimpact.cases.build import resolved
+from vibroimpact.cases.build import resolved_case
 from vibroimpact.cases.case import Case
 from vibroimpact.cases.slips.find import slips, swept_slips
 from vibroimpact.errors import InputError
@@ -17,12 +17,12 @@ from vibroimpact.studies.swept_keys import case_at
 
 def slips_of_axes(sweep: Sweep) -> list[str]:
     """Return a sentence for each swept key of a study with values that look like a slip of a unit."""
-    return swept_slips(resolved(sweep.case), sweep.plan.columns)
+    return swept_slips(resolved_case(sweep.case), sweep.plan.columns)
 
 
 def whole_slips(sweep: Sweep) -> list[str]:
     """Return a sentence for each number of a study that looks like a slip of a unit, swept or not; each is said once."""
-    return _once(resolved(sweep.case), sweep.plan.columns)
+    return _once(resolved_case(sweep.case), sweep.plan.columns)
 
 
 def study_slips(table: Mapping[str, Any], values: Mapping[str, NDArray[Any]]) -> list[str]:
@@ -39,7 +39,7 @@ def study_slips(table: Mapping[str, Any], values: Mapping[str, NDArray[Any]]) ->
         case: Case = case_at({key: one for key, one in table.items() if key != "sweep"}, {key: one[0] for key, one in values.items()})
     except InputError:  # the meshes of a study may be gone when its results are read
         return []
-    return _once(resolved(case), values)
+    return _once(resolved_case(case), values)
 
 
 def _once(case: Mapping[str, Any], values: Mapping[str, NDArray[Any]]) -> list[str]:

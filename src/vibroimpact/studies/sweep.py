@@ -14,12 +14,12 @@ from typing import Any
 
 import numpy as np
 
-from vibroimpact.cases.bounds import MOST_ITEMS, check_bounds, check_count
 from vibroimpact.cases.case import Case
-from vibroimpact.cases.quantities import Quantity
-from vibroimpact.cases.reader import load_table, named
-from vibroimpact.cases.rigid import deforms, impacts_of
-from vibroimpact.cases.section import read_table
+from vibroimpact.cases.fields.bounds import MOST_ITEMS, check_bounds, check_count
+from vibroimpact.cases.fields.quantities import Quantity
+from vibroimpact.cases.fields.section import read_table
+from vibroimpact.cases.reader import load_table, prefix_errors
+from vibroimpact.cases.rigid import deforms, impact_limit
 from vibroimpact.dynamics.columns import ALL_IMPACT_COLUMNS, IMPACT_COLUMNS, meanings
 from vibroimpact.errors import InputError
 from vibroimpact.files.reading import input_file_digest
@@ -116,7 +116,7 @@ class Sweep:
     @property
     def bytes(self) -> float:
         """About how large its results are."""
-        impacts = (impacts_of(self.case) or LONG) if "impacts" in self.section.keep else 0
+        impacts = (impact_limit(self.case) or LONG) if "impacts" in self.section.keep else 0
         kept = self.case.sensors if "signals" in self.section.keep else ()
         samples = sum(sensor.rate * (self.case.run.duration or 0.0) for sensor in kept)
         double, single = len(self.axes) + len(PEAKS) + impacts * len(IMPACT_COLUMNS), len(limit_meanings()) + samples
@@ -165,7 +165,7 @@ def load_sweep(source: str | PathLike[str]) -> Sweep:
     InputError
         If it can't be read, or is not a valid study; the message says where, what, and what is allowed.
     """
-    return named(source, lambda: read_sweep(load_table(source)))
+    return prefix_errors(source, lambda: read_sweep(load_table(source)))
 
 
 def read_sweep(table: Mapping[str, Any]) -> Sweep:

@@ -10,12 +10,12 @@ from typing import Any, get_args, get_origin
 import numpy as np
 
 from vibroimpact.cases.case import Case
-from vibroimpact.cases.local_section import LocalSection
-from vibroimpact.cases.material_field import InlineMaterial, material_table
-from vibroimpact.cases.quantities import Quantity
+from vibroimpact.cases.fields.local import LocalSection
+from vibroimpact.cases.fields.material import InlineMaterial, material_table
+from vibroimpact.cases.fields.quantities import Quantity
+from vibroimpact.cases.fields.section import Section
 from vibroimpact.cases.reader import read_case
 from vibroimpact.cases.schema import DropSection, PlateSection, RunSection, SphereSection
-from vibroimpact.cases.section import Section
 from vibroimpact.contact.law import find_contact_law, unit_of
 from vibroimpact.errors import InputError, did_you_mean
 from vibroimpact.materials import find_material

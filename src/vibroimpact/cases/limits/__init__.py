@@ -1,1 +1,1 @@
-"""The limits of what a drop is computed with, one idea a file; `vibroimpact.cases.limit` says what one is."""
+"""Limits of the theory, one per module; `vibroimpact.cases.limit` defines what a limit is."""

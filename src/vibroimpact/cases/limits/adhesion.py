@@ -1,4 +1,4 @@
-r"""Adhesion: small particles stick, and most laws leave it out."""
+r"""Adhesion, which makes small particles stick and which most contact laws neglect."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ from vibroimpact.cases.conditions import Conditions
 from vibroimpact.cases.limit import Limit, percent_less
 
 WORK_OF_ADHESION = 0.1
-"""What is reckoned with [J/m^2]: the upper end of clean and dry bodies, 0.02 to 0.1; rough ones have less."""
+"""Work of adhesion assumed [J/m^2]: the upper end of the range of clean and dry bodies, 0.02 to 0.1; rough bodies have less."""
 
-_TEAR = 7.09  # of (w^5 R^4 / E*^2)^(1/3): what a contact takes to be torn apart, from zero indentation on
+_TEAR = 7.09  # over (w^5 R^4 / E*^2)^(1/3): work of separating a contact from zero indentation
 
 
 def sticking_speed(radius: Array, modulus: Array, mass: Array, work_of_adhesion: Array = WORK_OF_ADHESION) -> Array:
-    r"""Return the speed below which an elastic sphere sticks to a flat [m/s].
+    r"""Return the approach speed below which an elastic sphere sticks to a flat [m/s].
 
     .. math:: v_s = \left(\frac{14.18}{m}\right)^{1/2} \left(\frac{w^5 R^4}{E^{*2}}\right)^{1/6}
 
@@ -24,7 +24,7 @@ def sticking_speed(radius: Array, modulus: Array, mass: Array, work_of_adhesion:
     radius, modulus, mass : float or array
         Radius [m], effective modulus [Pa] and mass of the sphere [kg].
     work_of_adhesion : float or array
-        Of the pair [J/m^2].
+        Work of adhesion of the pair [J/m^2].
 
     References
     ----------
@@ -40,9 +40,10 @@ def sticking_speed(radius: Array, modulus: Array, mass: Array, work_of_adhesion:
 
 
 def _number(drops: Conditions) -> Array:
+    """Return the relative loss of the first restitution by adhesion; NaN for laws that include it."""
     if "work_of_adhesion" in drops.case["contact"]:
         return np.nan
-    ratio = sticking_speed(drops.effective_radius, drops.modulus, drops.effective_mass) / drops.seen.speed
+    ratio = sticking_speed(drops.effective_radius, drops.modulus, drops.effective_mass) / drops.summary.speed
     return 1.0 - np.sqrt(1.0 - np.minimum(ratio, 1.0) ** 2)
 
 

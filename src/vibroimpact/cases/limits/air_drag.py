@@ -1,4 +1,4 @@
-r"""Air drag: a drop from a height is computed in a vacuum."""
+r"""Air drag, which the computation of a fall neglects."""
 
 from __future__ import annotations
 
@@ -11,20 +11,20 @@ from vibroimpact.cases.conditions import Conditions
 from vibroimpact.cases.limit import Limit, percent_less
 from vibroimpact.dynamics.air import AIR_DENSITY, AIR_VISCOSITY, drag_coefficient
 
-_ROUNDS = 2  # of speed and coefficient; each takes the error of the speed down twenty times
+_ROUNDS = 2  # fixed-point iterations of speed and drag coefficient; each reduces the error of the speed by a factor of 20
 
 
 def drag_loss(radius: Array, density: Array, fall: Array, gravity: Array) -> Array:
-    r"""Return which part of the speed of a sphere that falls from rest is lost to the drag of air.
+    r"""Return the relative loss of speed by air drag of a sphere that falls from rest.
 
-    With a coefficient that is constant over the fall the speed after a fall H is
-    :math:`\sqrt{1 - e^{-2 k H}}\,\sqrt{g/k}`, with :math:`k = \tfrac12 \rho_a C_d \pi R^2 / m`. The drag works with the square of
-    the speed, which grows with the height fallen, so the coefficient is taken where two thirds of it are fallen.
+    With a constant drag coefficient the speed after a fall of height H is
+    :math:`\sqrt{1 - e^{-2 k H}}\,\sqrt{g/k}`, with :math:`k = \tfrac12 \rho_a C_d \pi R^2 / m`. As the drag grows with the square of
+    the speed, and so with the height fallen, the coefficient is evaluated after two thirds of the fall.
 
     Parameters
     ----------
     radius, density : float or array
-        Of the sphere [m], [kg/m^3].
+        Radius [m] and density [kg/m^3] of the sphere.
     fall : float or array
         Height fallen [m].
     gravity : float or array

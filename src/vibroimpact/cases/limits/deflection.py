@@ -1,4 +1,4 @@
-r"""Deflection: plates are computed as if they bent without stretching."""
+r"""Deflection of the plate: linear bending neglects the membrane stretching of large deflections."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from vibroimpact.cases.conditions import Conditions
 from vibroimpact.cases.limit import Limit, percent_more
 
 _STIFFENING = {True: (0.200, 0.443), False: (0.272, 1.430)}
-"""Of clamped plates and of others: by edges that slide in their plane, and by edges that are held.
+"""Coefficients A of clamped plates (True) and others (False): for edges that are free to move in the plane, and immovable edges.
 
 Timoshenko and Woinowsky-Krieger 1959, Theory of Plates and Shells, section 100, eq. (232) and Table 82 (after Volmir), circular plates
 under a force at the centre: w/h + A (w/h)^3 is proportional to the force.
@@ -17,18 +17,18 @@ under a force at the centre: w/h + A (w/h)^3 is proportional to the force.
 
 
 def _number(drops: Conditions) -> Array:
-    return drops.seen.deflection / drops.size[2] if drops.size is not None and drops.model("plate") == "elastic" else math.nan
+    return drops.summary.deflection / drops.size[2] if drops.size is not None and drops.model("plate") == "elastic" else math.nan
 
 
 def stiffening(ratio: float, *, clamped: bool) -> tuple[float, float]:
-    """Return by which part a plate is stiffer than small deflections say, its edges sliding in its plane, and held in it.
+    """Return the relative increase of the stiffness of a plate by its deflection, for edges free in the plane and immovable edges.
 
     Parameters
     ----------
     ratio : float
-        Deflection under a force over the thickness.
+        Deflection over thickness.
     clamped : bool
-        Are the edges clamped? Else they may turn.
+        Whether the edges are clamped; otherwise they are free to rotate.
     """
     sliding, held = _STIFFENING[clamped]
     return sliding * ratio**2, held * ratio**2

@@ -1,4 +1,4 @@
-r"""Edges: the contact is that of a half space, and next to an edge a quarter of the space is missing."""
+r"""Proximity to an edge: the contact is that of a half space, which is too stiff near an edge (quarter space)."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ from vibroimpact.cases.conditions import Conditions
 from vibroimpact.cases.limit import Limit
 
 _RADII, _THICKNESSES = 10.0, 2.0
-"""How far the contact keeps from an edge: of a rigid plate in contact radii, where a half space is 3 to 5 % too stiff; of an elastic plate
-in thicknesses, beyond which nothing of the local deformation is left (it falls as exp(-pi d / h))."""
+"""Least distance of the contact from an edge: for a rigid plate in contact radii, where a half space is 3 to 5 % too stiff; for an elastic
+plate in thicknesses, beyond which the local deformation vanishes (it decays as exp(-pi d / h))."""
 
 
 def softening(contact_radius: Array, distance: Array, poissons_ratio: Array, share: Array) -> Array:
-    r"""Return by which part a contact is softer near a free edge, to first order in its radius over its distance from the edge.
+    r"""Return the relative reduction of contact stiffness near a free edge, to first order in contact radius over distance from the edge.
 
-    What the quarter space gives way beyond the half space is, under a force F at a distance d from the edge,
-    :math:`\psi (1 - \nu^2) F / (2 \pi E d)`: :math:`\psi` times what the mirror image of the force would add. Hertz's indentation is
+    Under a force F at a distance d from the edge, the indentation of a quarter space exceeds that of a half space by
+    :math:`\psi (1 - \nu^2) F / (2 \pi E d)`: :math:`\psi` times that due to the mirror image of the force. Hertz's indentation is
     :math:`3 F / (4 E^* a)`.
 
     Parameters
@@ -27,9 +27,9 @@ def softening(contact_radius: Array, distance: Array, poissons_ratio: Array, sha
     contact_radius, distance : float or array
         Contact radius a and distance d of its centre from the edge [m].
     poissons_ratio : float or array
-        Of the plate.
+        Poisson's ratio of the plate.
     share : float or array
-        The plate's part of the compliance of the contact.
+        Share of the plate in the compliance of the contact.
 
     Notes
     -----
@@ -46,20 +46,21 @@ def softening(contact_radius: Array, distance: Array, poissons_ratio: Array, sha
 
 
 def _distance(drops: Conditions) -> Array:
-    """Return how far the contact is from the nearest edge [m]; NaN where the plate's edges are not known."""
+    """Return the distance of the contact from the nearest edge [m]; NaN if the edges of the plate are not known."""
     if drops.size is None or (isinstance(drops.case["plate"].get("mesh"), dict) and "file" in drops.case["plate"]["mesh"]):
         return math.nan
     sides = zip(drops.size[:2], drops.case["drop"]["position"], strict=True)
     return np.minimum(*(0.5 * length - abs(place) for length, place in sides))
 
 
-def _kept(drops: Conditions) -> Array:
+def _least_distance(drops: Conditions) -> Array:
+    """Return the distance from the edge beyond which the half space holds [m]."""
     return _THICKNESSES * drops.size[2] if drops.model("plate") == "elastic" else _RADII * drops.contact_radius
 
 
 def _number(drops: Conditions) -> Array:
     distance = _distance(drops)
-    return distance if np.all(np.isnan(distance)) else _kept(drops) / distance
+    return distance if np.all(np.isnan(distance)) else _least_distance(drops) / distance
 
 
 def _sentence(drop: Conditions, _: float) -> str:
@@ -72,7 +73,7 @@ def _sentence(drop: Conditions, _: float) -> str:
         reach = f"{distance / float(drop.contact_radius):.2g} contact radii"
     return (
         f"the contact is {distance:.3g} m from the edge of the plate, {reach}: a half space is too stiff there, by about "
-        f"{100.0 * soft:.2g} % where the edge is free; move drop.position {float(_kept(drop)):.2g} m or more away from the edge"
+        f"{100.0 * soft:.2g} % where the edge is free; move drop.position {float(_least_distance(drop)):.2g} m or more away from the edge"
     )
 
 

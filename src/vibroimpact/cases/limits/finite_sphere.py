@@ -1,4 +1,4 @@
-r"""The finite size of the sphere: Hertz takes it for a half space."""
+r"""Finite size of the sphere, which Hertz's theory treats as a half space."""
 
 from __future__ import annotations
 
@@ -12,26 +12,26 @@ from vibroimpact.cases.limit import Limit, percent_less
 from vibroimpact.contact.quasi_static import QuasiStatic
 from vibroimpact.structures.sphere_compliance import FITTED, sphere_term
 
-_STEPS = 3  # of Newton's method, which leave less than 1e-6
-_RATIOS = np.linspace(0.0, 0.49, 15)  # Poisson's ratios between which the factors of the term are interpolated, to 1e-3 of it
+_STEPS = 3  # Newton iterations, which leave an error below 1e-6
+_RATIOS = np.linspace(0.0, 0.49, 15)  # Poisson's ratios of the interpolation table, whose relative error is 1e-3
 
 
 def force_lacking(force: Array, radius: Array, modulus: Array, youngs_modulus: Array, poissons_ratio: Array) -> Array:
-    r"""Return which part of the largest force Hertz's half space lacks of that of a sphere of finite size.
+    r"""Return the relative deficit of Hertz's largest force (half space) with respect to that of a sphere of finite size.
 
-    Both take up the same energy, quasi-statically: with Hertz's indentation :math:`\delta` at his force :math:`F`, and
-    :math:`s(F)` of the finite sphere in series (`QuasiStatic`), the force of the finite sphere is :math:`f F`, and
+    Both absorb the same energy quasi-statically. With Hertz's indentation :math:`\delta` at his force :math:`F`, and the displacement
+    :math:`s(F)` in series for the finite sphere (`QuasiStatic`), the force of the finite sphere is :math:`f F`, and
 
     .. math:: \tfrac25 F \delta\, f^{5/3} + \int_0^{f F} F'\, s'(F')\, dF' = \tfrac25 F \delta
 
-    of which this is :math:`1 - 1/f`. Only the sphere is of finite size: where the plate is the softer one there is little of it.
+    The result is :math:`1 - 1/f`. Only the sphere is of finite size, so the effect is small if the plate is softer than the sphere.
 
     Parameters
     ----------
     force, radius, modulus : float or array
         Hertz's largest force [N], the radius of the sphere [m] and the effective modulus of the pair [Pa].
     youngs_modulus, poissons_ratio : float or array
-        Of the sphere [Pa], [-].
+        Young's modulus [Pa] and Poisson's ratio of the sphere.
 
     Examples
     --------
@@ -41,7 +41,7 @@ def force_lacking(force: Array, radius: Array, modulus: Array, youngs_modulus: A
     """
     whole = 4.0 / 3.0 * modulus * radius**2
     ratio = np.minimum(np.cbrt(force / whole), FITTED[1])
-    force = whole * ratio**3  # beyond, what is known of it ends
+    force = whole * ratio**3  # limited to the range of the fitted correction
     series = QuasiStatic(0.0, 1.0 / (youngs_modulus * radius), _factors(poissons_ratio), whole)
     hertz = 0.4 * force * radius * ratio**2
     more = 1.0
@@ -53,9 +53,9 @@ def force_lacking(force: Array, radius: Array, modulus: Array, youngs_modulus: A
 
 
 def _factors(poissons_ratio: Array) -> tuple[Array, Array, Array, Array]:
-    """Return the factors of the finite-size term; of an array of many ratios they are interpolated."""
+    """Return the factors of the finite-size term; for an array of ratios they are interpolated."""
     if np.ndim(poissons_ratio) == 0:
-        term = sphere_term(min(max(float(poissons_ratio), 0.0), 0.5))  # negative ratios are rare, and the term of zero is near
+        term = sphere_term(min(max(float(poissons_ratio), 0.0), 0.5))  # rare negative ratios: the term of zero is close
         return term.constant, term.logarithm, term.linear, term.square
     constant, logarithm, linear, square = (np.interp(poissons_ratio, _RATIOS, row) for row in _table())
     return constant, logarithm, linear, square
@@ -63,6 +63,7 @@ def _factors(poissons_ratio: Array) -> tuple[Array, Array, Array, Array]:
 
 @cache
 def _table() -> Array:
+    """Return the factors of the finite-size term at the ratios of the interpolation table, one row per factor."""
     terms = [sphere_term(float(ratio)) for ratio in _RATIOS]
     return np.array([[term.constant, term.logarithm, term.linear, term.square] for term in terms]).T
 
@@ -70,11 +71,11 @@ def _table() -> Array:
 def _number(drops: Conditions) -> Array:
     contact = drops.case["contact"]
     if "radius" in drops.case["plate"]:
-        return np.nan  # what is lacking of a half space is known of a sphere on a flat
+        return np.nan  # the correction is known for a sphere on a flat only
     if drops.model("sphere") == "elastic" or contact.get("finite_sphere") or contact.get("local_compliance") == "identified":
-        return np.nan  # they have it, or count what is local twice
+        return np.nan  # these include the effect, or count local deformation twice
     sphere = drops.materials["sphere"]
-    lacking = force_lacking(drops.seen.force, drops.radius, drops.modulus, sphere.youngs_modulus, sphere.poissons_ratio)
+    lacking = force_lacking(drops.summary.force, drops.radius, drops.modulus, sphere.youngs_modulus, sphere.poissons_ratio)
     return np.where(drops.is_hertzian, lacking, np.nan)
 
 

@@ -1,4 +1,4 @@
-"""Full damping: Adams' penetration at which the damping acts in full is never reached."""
+"""Full-damping penetration of the Adams impact law, which the indentation may never reach."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from vibroimpact.cases.limit import Limit
 
 
 def _number(drops: Conditions) -> Array:
-    return np.divide(drops.of_law("full_damping_penetration"), drops.seen.depth)
+    return np.divide(drops.law_parameter("full_damping_penetration"), drops.summary.depth)
 
 
 def _sentence(drop: Conditions, ratio: float) -> str:
-    fade = float(drop.of_law("full_damping_penetration"))
+    fade = float(drop.law_parameter("full_damping_penetration"))
     return (
-        f"the indentation, {drop.seen.depth:.2g} m, stays below the full-damping penetration, {fade:.2g} m: the damping never acts in "
-        f"full, and less is lost than damping_max would take; take a penetration of {0.1 * drop.seen.depth:.1g} m or so, or calibrate"
+        f"the indentation, {drop.summary.depth:.2g} m, stays below the full-damping penetration, {fade:.2g} m: the damping never acts in "
+        f"full, and less is lost than damping_max would take; take a penetration of {0.1 * drop.summary.depth:.1g} m or so, or calibrate"
     )
 
 

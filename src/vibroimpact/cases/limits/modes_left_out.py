@@ -1,4 +1,4 @@
-"""Modes: a body that is cut off at too low a frequency has too few for its contact."""
+"""Truncation of modes at a frequency that is too low for the contact."""
 
 from __future__ import annotations
 
@@ -12,19 +12,19 @@ from vibroimpact.cases.conditions import Conditions
 from vibroimpact.cases.limit import Limit
 from vibroimpact.units.display import text
 
-_TRUNCATED = 0.05  # of the largest force
-_CYCLES, _ENOUGH = 1.5, 3.0  # periods of the highest mode in a contact: too few, and enough
+_TRUNCATED = 0.05  # allowed relative change of the largest force by truncated modes
+_CYCLES, _ENOUGH = 1.5, 3.0  # periods of the highest mode in a contact: doubted below, and recommended
 
 
 def _number(body: str, drops: Conditions) -> Array:
-    if body not in drops.seen.modes or (body == "sphere" and drops.case.get("contact", {}).get("local_compliance") == "superposed"):
-        return math.nan  # of a superposed sphere more modes would only make it softer
-    part, highest = drops.seen.modes[body]
-    return np.fmax(part / _TRUNCATED, np.divide(_CYCLES, highest * drops.seen.duration))
+    if body not in drops.summary.modes or (body == "sphere" and drops.case.get("contact", {}).get("local_compliance") == "superposed"):
+        return math.nan  # with superposition, more modes of the sphere would only make the contact softer
+    part, highest = drops.summary.modes[body]
+    return np.fmax(part / _TRUNCATED, np.divide(_CYCLES, highest * drops.summary.duration))
 
 
 def _sentence(body: str, drop: Conditions, _: float) -> str:
-    (part, highest), duration = drop.seen.modes[body], float(drop.seen.duration)
+    (part, highest), duration = drop.summary.modes[body], float(drop.summary.duration)
     return (
         f"the modes of the {body} end at {text(highest, 'Hz')}, and the contact lasts {text(duration, 's', 3)}: those left out may "
         f"change the largest force by up to {float(f'{100.0 * part:.2g}'):g} %, and rebound and vibration by more; ask for "

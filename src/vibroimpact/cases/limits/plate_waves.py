@@ -1,4 +1,4 @@
-r"""Waves through the thickness: plate elements only bend."""
+r"""Waves through the thickness of the plate, which plate theory neglects."""
 
 from __future__ import annotations
 
@@ -12,23 +12,23 @@ from vibroimpact.dynamics.truncation import time_of_contact
 
 
 def plate_theory_error(facts: Mapping[str, Any], impacts: Mapping[str, Any]) -> float:
-    r"""Return about how much too large the largest force of the first impact is for what plate elements lack, as a part of it.
+    r"""Return the estimated relative error of the first largest force due to the lack of thickness waves in plate elements.
 
-    A force so short that it sends waves through the thickness of a plate meets more than its bending. To first order these take
-    :math:`c \ddot F` from how far the face yields, of which the inertia c is among the facts; the largest force is then off by that over
-    the tangent compliance of the contact, two thirds of indentation over force. A Hertzian force is about :math:`\sin^{3/2}(\pi t / T)`.
+    A short force also excites waves through the thickness of a plate. To first order these reduce the displacement of the face by
+    :math:`c \ddot F`, of which the inertia c is among the facts; the error of the largest force is that displacement over the tangent
+    compliance of the contact, two thirds of indentation over force. A Hertzian force is about :math:`\sin^{3/2}(\pi t / T)`.
 
     Parameters
     ----------
     facts : mapping
-        Of the bodies that deform; `plate_theory_inertia_m_s2_N` is c.
+        Facts of the elastic bodies; `plate_theory_inertia_m_s2_N` is c.
     impacts : mapping of str to array
         The impact table.
 
     Returns
     -------
     float
-        NaN without plate elements or without an impact.
+        Relative error; NaN without plate elements or without an impact.
 
     Examples
     --------
@@ -43,8 +43,9 @@ def plate_theory_error(facts: Mapping[str, Any], impacts: Mapping[str, Any]) -> 
 
 
 def _sentence(drop: Conditions, error: float) -> str:
+    duration = float(drop.summary.duration)
     return (
-        f"the contact lasts {float(drop.seen.duration):.3g} s, and waves through the thickness of the plate, which plate elements do not "
+        f"the contact lasts {duration:.3g} s, and waves through the thickness of the plate, which plate elements do not "
         f'have, change the largest force by about {percent_less(error)}; take element = "solid"'
     )
 
@@ -55,7 +56,7 @@ LIMITS = (
         title="waves through the thickness of the plate",
         meaning="part by which the first largest force is too large, as plate elements only bend",
         threshold=0.005,
-        number=lambda drops: drops.seen.plate_theory,
+        number=lambda drops: drops.summary.plate_theory,
         sentence=_sentence,
         shown=percent_less,
         without_case=True,

@@ -1,4 +1,4 @@
-r"""Relaxation: viscoelastic laws are of first order in their time."""
+r"""Relaxation: viscoelastic contact laws are of first order in the dissipation time."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from vibroimpact.cases.limit import Limit
 
 
 def _number(drops: Conditions) -> Array:
-    return np.divide(drops.of_law("dissipation_time"), drops.seen.duration)
+    return np.divide(drops.law_parameter("dissipation_time"), drops.summary.duration)
 
 
 def _sentence(drop: Conditions, ratio: float) -> str:
-    time = float(drop.of_law("dissipation_time"))
+    time = float(drop.law_parameter("dissipation_time"))
     return (
-        f"the dissipation time, {time:.2g} s, is {ratio:.2g} of the contact's {drop.seen.duration:.2g} s: "
+        f"the dissipation time, {time:.2g} s, is {ratio:.2g} of the contact's {drop.summary.duration:.2g} s: "
         f"{drop.law.name} keeps the first order of it, and the second would be about {50.0 * (math.pi * ratio) ** 2:.2g} % of the force; "
         "take a shorter time, or a law that is fitted to a restitution"
     )

@@ -1,4 +1,4 @@
-"""Sensitivity: a drop on a plate that rings can't be predicted for ever."""
+"""Sensitivity: limited predictability of repeated impacts on a vibrating plate."""
 
 from __future__ import annotations
 
@@ -11,17 +11,17 @@ from vibroimpact.cases.conditions import Conditions
 from vibroimpact.cases.limit import Limit
 from vibroimpact.dynamics.vibrating.sensitivity import RELATIVE_CHANGE
 
-_PREDICTED = 1e-3  # of an impact: a larger change of it is doubted
-_LOST = 0.3  # a larger one leaves no digit
+_PREDICTED = 1e-3  # largest relative change of an impact that is not doubted
+_LOST = 0.3  # relative change above which no significant digit remains
 
 
 def _number(drops: Conditions) -> Array:
-    changes = np.asarray(drops.seen.changes, dtype=float)
+    changes = np.asarray(drops.summary.changes, dtype=float)
     return float(np.nan_to_num(changes, nan=np.inf).max()) if changes.any() else math.nan
 
 
 def _sentence(drop: Conditions, _: float) -> str:
-    changes = np.asarray(drop.seen.changes, dtype=float)
+    changes = np.asarray(drop.summary.changes, dtype=float)
     first, lost = np.flatnonzero(~(changes <= _PREDICTED))[0], np.flatnonzero(~(changes <= _LOST))
     grown = [] if lost.size and lost[0] == first else [f"to {100.0 * changes[first]:.2g} % of impact {first + 1}"]
     grown += [f"to all of impact {lost[0] + 1}"] if lost.size else []
@@ -39,8 +39,8 @@ def _shown(change: float) -> str:
 
 
 def _undamped(drop: Conditions) -> str:
-    """Return what vibrates without damping, in words; nothing if all of it is damped."""
-    if not drop.case:  # nothing is known of the bodies
+    """Return the undamped elastic bodies in words; "" if all are damped."""
+    if not drop.case:  # the bodies are not known
         return "what vibrates its"
     bodies = [f"the {body}" for body in ("plate", "sphere") if drop.model(body) == "elastic" and not drop.case[body].get("damping")]
     return f"{' and '.join(bodies)} {'its' if len(bodies) == 1 else 'their'}" if bodies else ""

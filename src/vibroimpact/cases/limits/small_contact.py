@@ -1,4 +1,4 @@
-"""Small contacts: Hertz's theory is one of small strains."""
+"""Size of the contact: Hertz's theory assumes small strains."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from vibroimpact.cases.limit import Limit
 
 
 def _number(drops: Conditions) -> Array:
-    return np.sqrt(drops.seen.depth / drops.effective_radius)
+    return np.sqrt(drops.summary.depth / drops.effective_radius)
 
 
 def _sentence(drop: Conditions, part: float) -> str:

@@ -1,4 +1,4 @@
-r"""Strength: what yields, is crushed or cracks under the pressure of the contact, body by body."""
+r"""Strength of the bodies: yielding, crushing or cracking under the contact pressure."""
 
 from __future__ import annotations
 
@@ -12,20 +12,20 @@ from vibroimpact.cases.conditions import Conditions
 from vibroimpact.cases.limit import Limit
 from vibroimpact.materials import RIGID, Material
 
-_YIELD = 1.6  # Johnson 1985, section 6.1: below the surface the shear reaches yield where the peak pressure is 1.6 times the yield strength
+_YIELD = 1.6  # Johnson 1985, section 6.1: yield begins below the surface at a peak pressure of 1.6 times the yield strength
 _BODIES = ("sphere", "plate")
 
 
 def demands(material: Material, peak_pressure: Array) -> dict[str, tuple[Array, Array, str]]:
-    r"""Return the stresses that a Hertz contact puts a body under, its strengths, and what happens beyond, by the name of the strength.
+    r"""Return, by the name of each known strength, the stress in a body under a Hertz contact, the strength, and the verb of its failure.
 
-    Only of strengths that are known. The shear below the surface is that of a uniaxial test at :math:`p_0 / 1.6`; the tension at the
-    rim of the contact is :math:`(1 - 2 \nu) p_0 / 3`.
+    The largest shear stress below the surface equals that of a uniaxial test at :math:`p_0 / 1.6`; the tension at the rim of the contact
+    is :math:`(1 - 2 \nu) p_0 / 3`.
 
     Parameters
     ----------
     material : Material
-        Of the body.
+        Material of the body.
     peak_pressure : float or array
         Hertz's peak pressure p0 [Pa].
 
@@ -42,15 +42,15 @@ def demands(material: Material, peak_pressure: Array) -> dict[str, tuple[Array, 
     return {name: (stress, strength, verb) for name, (stress, strength, verb) in found.items() if strength is not None}
 
 
-def _of_body(body: str, drops: Conditions) -> Array:
-    """Return the largest stress over strength of a body; NaN if no strength is known."""
+def _stress_ratio(body: str, drops: Conditions) -> Array:
+    """Return the largest ratio of stress to strength of a body; NaN if no strength is known or the law models yielding."""
     if drops.yields:
         return math.nan
     ratios = [stress / strength for stress, strength, _ in demands(drops.materials[body], drops.peak_pressure).values()]
     return math.nan if not ratios else np.maximum.reduce(np.broadcast_arrays(*ratios))
 
 
-def _broken(body: str, drop: Conditions, ratio: float) -> str:
+def _strength_sentence(body: str, drop: Conditions, ratio: float) -> str:
     material, pressure = drop.materials[body], float(drop.peak_pressure)
     name, (stress, strength, verb) = max(demands(material, pressure).items(), key=lambda item: item[1][0] / item[1][1])
     known = f"its {name.replace('_', ' ')} of {_stress(strength)}"
@@ -77,17 +77,18 @@ def _named(body: str, material: Material) -> str:
     return f"the {body} ({material.name})" if material.name else f"the {body}"
 
 
-def _unknown(drops: Conditions) -> list[str]:
+def _bodies_without_strength(drops: Conditions) -> list[str]:
+    """Return the names of the bodies that deform and have no known strength."""
     return [body for body in _BODIES if drops.materials[body] is not RIGID and not demands(drops.materials[body], 1.0)]
 
 
-def _without(drops: Conditions) -> Array:
-    """Return the peak pressure over the effective modulus where no strength of a body is known."""
-    return drops.peak_pressure / drops.modulus if _unknown(drops) and not drops.yields else math.nan
+def _pressure_ratio(drops: Conditions) -> Array:
+    """Return the peak pressure over the effective modulus; NaN if a strength of each body is known or the law models yielding."""
+    return drops.peak_pressure / drops.modulus if _bodies_without_strength(drops) and not drops.yields else math.nan
 
 
-def _not_known(drop: Conditions, _: float) -> str:
-    bodies = [_named(body, drop.materials[body]) for body in _unknown(drop)]
+def _unknown_sentence(drop: Conditions, _: float) -> str:
+    bodies = [_named(body, drop.materials[body]) for body in _bodies_without_strength(drop)]
     return (
         f"whether {' and '.join(bodies)} {'yield or crack' if len(bodies) > 1 else 'yields or cracks'} under Hertz's peak pressure of "
         f"{_stress(float(drop.peak_pressure))} is not known: no strength is given; give yield_strength, compressive_strength or "
@@ -102,8 +103,8 @@ LIMITS = (
             title=f"strength of the {body}",
             meaning=f"largest stress in the {body} over its strength, under Hertz's pressure",
             threshold=1.0,
-            number=partial(_of_body, body),
-            sentence=partial(_broken, body),
+            number=partial(_stress_ratio, body),
+            sentence=partial(_strength_sentence, body),
             shown=lambda ratio: f"{ratio:.3g} times the strength",
         )
         for body in _BODIES
@@ -113,8 +114,8 @@ LIMITS = (
         title="strength not known",
         meaning="Hertz's peak pressure over the effective modulus, where no strength of a body is known",
         threshold=0.0,
-        number=_without,
-        sentence=_not_known,
+        number=_pressure_ratio,
+        sentence=_unknown_sentence,
         shown=lambda ratio: f"a peak pressure of {ratio:.2g} of the effective modulus",
     ),
 )

@@ -1,1 +1,1 @@
-"""Slips of units: numbers of a case that are not plausible as they stand, and the unit that was likely meant."""
+"""Slips of units: detection of implausible values in a case, with the unit that was likely meant."""

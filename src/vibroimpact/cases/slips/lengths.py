@@ -1,22 +1,22 @@
-"""Lengths that do not fit on the plate: in which unit they would."""
+"""Hint on the likely unit of lengths that exceed the plate."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 
-from vibroimpact.cases.slips.plausible import number
+from vibroimpact.cases.slips.plausible import number_text
 
 _UNITS = {"mm": 1e-3, "cm": 1e-2, "um": 1e-6}
-_FAR = 5.0  # times too long: nearer ones are no slip of a unit
+_FAR = 5.0  # excess ratio below which a length is not taken for a slip of a unit
 
 
 def likely_lengths(values: Sequence[float], most: Sequence[float]) -> str:
-    """Return the hint that lengths which are far too long were meant in another unit, to be added to a message; "" if none explains it.
+    """Return a hint, to be added to a message, that lengths which are far too large were meant in another unit; "" if no unit fits.
 
     Parameters
     ----------
     values, most : sequence of float
-        The lengths, and what each may be at most [m].
+        The lengths, and the maximum of each [m].
 
     Examples
     --------
@@ -29,6 +29,6 @@ def likely_lengths(values: Sequence[float], most: Sequence[float]) -> str:
         return ""
     for unit, size in _UNITS.items():
         if all(abs(value) * size <= end for value, end in zip(values, most, strict=True)):
-            texts = [f'"{number(value)} {unit}"' for value in values]
+            texts = [f'"{number_text(value)} {unit}"' for value in values]
             return f"; were {unit} meant? Write {texts[0] if len(texts) == 1 else '[' + ', '.join(texts) + ']'}"
     return ""

@@ -1,4 +1,4 @@
-"""What is plausible for one number of a case: where it may lie, and in which units people write it."""
+"""Plausible ranges of the values of a case, and the units in which they are usually written."""
 
 from __future__ import annotations
 
@@ -8,29 +8,29 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from vibroimpact.cases.slips.facts import Facts
+from vibroimpact.cases.slips.hertz_estimate import HertzEstimate
 
 Words = str | Callable[[float], str]
-"""What is said of a value: as it stands, or made for the value."""
+"""A part of a message: fixed, or a function of the value."""
 
 
 @dataclass(frozen=True, kw_only=True)
-class Plausible:
-    """Where a number is plausible; NaN bounds nothing.
+class PlausibleRange:
+    """The plausible range of a value; a bound of NaN is no bound.
 
     Parameters
     ----------
     low, high : float
-        Beyond these it is doubted [SI].
+        Bounds of the magnitude [SI].
     below, above : str or callable
-        What is said of one that is too small, and of one that is too large.
+        Message for a value below or above the range.
     reference : float, optional
-        What physics gives for it: of several units the likely one is that which comes close, and is usual. Without it the first
-        that leads into the range is.
+        Physical estimate of the value: of several units, the one that brings the value close to it and is common is taken. Without it,
+        the first unit that brings the value into the range.
     within : float, default 100
-        By which factor the closest may still be off.
+        Largest ratio between the corrected value and the reference.
     remedy : str or callable, optional
-        What to do where no unit explains it; if that is "", nothing is said then.
+        Advice if no unit explains the value; if it is "", the value is then not reported.
     """
 
     low: float = 0.0
@@ -42,24 +42,24 @@ class Plausible:
     remedy: Words = ""
 
 
-Rule = Callable[[Facts, Mapping[str, Any]], Plausible]
-"""Gives what is plausible under the facts of a case, for a number that stands in a table."""
+Rule = Callable[[HertzEstimate, Mapping[str, Any]], PlausibleRange]
+"""Returns the plausible range of a value, from the estimate of the case and the table that holds the value."""
 
 
 @dataclass(frozen=True)
-class Place:
-    """A key of a case, or keys alike, and what is plausible there.
+class CheckedKey:
+    """A key of a case whose value is checked for plausibility.
 
     Parameters
     ----------
     key : str
-        Dotted; "#" stands for each of a list, such as in "sensors.#.rate".
+        Dotted key; "#" stands for each item of a list, such as in "sensors.#.rate".
     unit : str
-        Its SI unit; "N/m^n" has the exponent of the law.
+        Its SI unit; the n of "N/m^n" is the exponent of the law.
     units : tuple of str
-        Others in which it is usually written, the likeliest first.
+        Other common units, the likeliest first.
     rule : callable
-        What is plausible.
+        Returns the plausible range.
     """
 
     key: str
@@ -69,53 +69,67 @@ class Place:
 
 
 def between(low: float = 0.0, high: float = math.inf, *, below: str = "", above: str = "") -> Rule:
-    """Return the rule of a number that lies in a range whatever else the case says."""
-    bounds = Plausible(low=low, high=high, below=below, above=above)
-    return lambda facts, table: bounds
+    """Return the rule of a fixed range."""
+    bounds = PlausibleRange(low=low, high=high, below=below, above=above)
+    return lambda estimate, table: bounds
 
 
-def about(what: Callable[[Facts], float], words: str, unit: str, *, factor: float = 300.0, within: float = 30.0) -> Rule:
-    """Return the rule of a number that physics gives: by which factor it may be off, and one in another unit."""
+def near(what: Callable[[HertzEstimate], float], words: str, unit: str, *, factor: float = 300.0, within: float = 30.0) -> Rule:
+    """Return the rule of a value with a physical estimate.
 
-    def rule(facts: Facts, table: Mapping[str, Any]) -> Plausible:
-        reference = what(facts)
+    Parameters
+    ----------
+    what : callable
+        Returns the estimate [SI].
+    words : str
+        Name of the estimate in messages.
+    unit : str
+        Its SI unit.
+    factor : float
+        Largest ratio of a plausible value to the estimate, or its inverse.
+    within : float
+        Largest ratio, or its inverse, of a value that is corrected for its unit.
+    """
+
+    def rule(estimate: HertzEstimate, table: Mapping[str, Any]) -> PlausibleRange:
+        reference = what(estimate)
 
         def said(value: float) -> str:
-            return f"is {times(value / reference)} than {words} {number(reference, 4)} {unit}"
+            return f"is {ratio_text(value / reference)} than {words} {number_text(reference, 4)} {unit}"
 
-        return Plausible(low=reference / factor, high=reference * factor, below=said, above=said, reference=reference, within=within)
+        return PlausibleRange(low=reference / factor, high=reference * factor, below=said, above=said, reference=reference, within=within)
 
     return rule
 
 
-def times(ratio: float) -> str:
-    """Return how many times more or less something is.
+def ratio_text(ratio: float) -> str:
+    """Return a ratio in words.
 
     Examples
     --------
-    >>> times(64.3), times(1 / 31622.8)
+    >>> ratio_text(64.3), ratio_text(1 / 31622.8)
     ('64 times more', '31,623 times less')
     """
-    return f"{count(ratio)} times more" if ratio > 1.0 else f"{count(1.0 / ratio)} times less"
+    return f"{count_text(ratio)} times more" if ratio > 1.0 else f"{count_text(1.0 / ratio)} times less"
 
 
-def count(value: float) -> str:
-    """Return a whole number with commas; a very large one with an exponent.
+def count_text(value: float) -> str:
+    """Return an integer with thousands separators; a very large one with an exponent.
 
     Examples
     --------
-    >>> count(31622.8), count(6.4e12)
+    >>> count_text(31622.8), count_text(6.4e12)
     ('31,623', '6.4e12')
     """
-    return f"{value:,.0f}" if value < 1e9 else number(value, 2)
+    return f"{value:,.0f}" if value < 1e9 else number_text(value, 2)
 
 
-def number(value: float, digits: int = 6) -> str:
-    """Return a number as people type it.
+def number_text(value: float, digits: int = 6) -> str:
+    """Return a number in its shortest usual notation.
 
     Examples
     --------
-    >>> number(16176.0), number(5.115e8), number(7.85e-9), number(2786.0, 2)
+    >>> number_text(16176.0), number_text(5.115e8), number_text(7.85e-9), number_text(2786.0, 2)
     ('16176', '5.115e8', '7.85e-9', '2800')
     """
     rounded = float(f"{value:.{digits}g}")

@@ -1,4 +1,4 @@
-"""What is plausible where the other numbers of a case tell more than a range does."""
+"""Plausible ranges that depend on the other values of a case."""
 
 from __future__ import annotations
 
@@ -8,27 +8,28 @@ from typing import Any
 
 import numpy as np
 
-from vibroimpact.cases.slips.facts import Facts
-from vibroimpact.cases.slips.plausible import Plausible, Rule, count, number, times
+from vibroimpact.cases.slips.hertz_estimate import HertzEstimate
+from vibroimpact.cases.slips.plausible import PlausibleRange, Rule, count_text, number_text, ratio_text
 
-_GRAVITY = 9.8  # that weighs on springs, whatever the drop has
+_GRAVITY = 9.8  # m/s^2, for the weight on springs, independent of drop.gravity
 
-_DENSITY = (10.0, 25_000.0)  # foams; osmium has 22 590
-_MODULUS = (2e4, 2e12)  # gels; diamond has 1.1e12
-_LIGHTEST = 3.5e8  # Young's modulus over density [m^2/s^2]: diamond has 3e8
+_DENSITY = (10.0, 25_000.0)  # kg/m^3: foams; osmium has 22 590
+_MODULUS = (2e4, 2e12)  # Pa: gels; diamond has 1.1e12
+_LIGHTEST = 3.5e8  # largest Young's modulus over density [m^2/s^2]: diamond has 3e8
 _SOFTEST = ((1400.0, _MODULUS[0]), (2300.0, 1e6), (4000.0, 1e8), (math.inf, 2e9))
-"""Below which density [kg/m^3] a Young's modulus [Pa] is how low: gels and rubber; soils and filled rubber; rock and glass; metals."""
+"""Upper end of a range of densities [kg/m^3], and its least Young's modulus [Pa]: gels and rubber; soils and filled rubber; rock and glass;
+metals."""
 
 
-def _sound(value: float, ends: tuple[float, float]) -> float:
-    """Return a value between two ends, else NaN: what is wrong itself tells nothing of another."""
+def _nan_outside(value: float, ends: tuple[float, float]) -> float:
+    """Return a value, or NaN if it lies outside its range, so that an implausible value does not affect the range of another."""
     return value if ends[0] <= value <= ends[1] else math.nan
 
 
-def density(facts: Facts, table: Mapping[str, Any]) -> Plausible:
-    """Return what a material may weigh: not so little that sound would be faster in it than in diamond."""
-    least = _sound(table["youngs_modulus"], _MODULUS) / _LIGHTEST
-    return Plausible(
+def density(estimate: HertzEstimate, table: Mapping[str, Any]) -> PlausibleRange:
+    """Return the range of a density, so high that sound is hardly faster than in diamond."""
+    least = _nan_outside(table["youngs_modulus"], _MODULUS) / _LIGHTEST
+    return PlausibleRange(
         low=float(np.fmax(_DENSITY[0], least)),
         high=_DENSITY[1],
         below=lambda value: "is lighter than any foam" if value < _DENSITY[0] else "is too light for anything as stiff",
@@ -36,10 +37,10 @@ def density(facts: Facts, table: Mapping[str, Any]) -> Plausible:
     )
 
 
-def modulus(facts: Facts, table: Mapping[str, Any]) -> Plausible:
-    """Return how stiff a material of its density may be."""
-    weight = _sound(table.get("density", math.nan), _DENSITY)
-    return Plausible(
+def elastic_modulus(estimate: HertzEstimate, table: Mapping[str, Any]) -> PlausibleRange:
+    """Return the range of a Young's modulus for the density of the material."""
+    weight = _nan_outside(table.get("density", math.nan), _DENSITY)
+    return PlausibleRange(
         low=next((least for end, least in _SOFTEST if weight < end), _MODULUS[0]),
         high=float(np.fmin(_MODULUS[1], weight * _LIGHTEST)),
         below=lambda value: "is softer than any gel" if value < _MODULUS[0] else "is too soft for anything as heavy",
@@ -47,119 +48,119 @@ def modulus(facts: Facts, table: Mapping[str, Any]) -> Plausible:
     )
 
 
-def strength(facts: Facts, table: Mapping[str, Any]) -> Plausible:
-    """Return how weak a material of its stiffness may be; there is no upper end, as one that is never to yield is given any strength."""
-    stiff = _sound(table.get("youngs_modulus", table.get("effective_modulus", math.nan)), _MODULUS)
-    return Plausible(
+def strength(estimate: HertzEstimate, table: Mapping[str, Any]) -> PlausibleRange:
+    """Return the range of a strength for the stiffness of the material; unbounded above, as a huge strength is used to exclude yielding."""
+    stiff = _nan_outside(table.get("youngs_modulus", table.get("effective_modulus", math.nan)), _MODULUS)
+    return PlausibleRange(
         low=float(np.fmax(1e3, 5e-6 * stiff)),
         below="is too weak for anything as stiff",
     )
 
 
-def thickness(facts: Facts, table: Mapping[str, Any]) -> Plausible:
-    """Return how thick a plate may be."""
-    return Plausible(
-        high=float(np.fmin(5.0, 4.0 * facts.across)),
-        above=lambda value: "is thicker than any plate" if value > 5.0 else f"is much more than the plate is long, {facts.across:g} m",
+def plate_thickness(estimate: HertzEstimate, table: Mapping[str, Any]) -> PlausibleRange:
+    """Return the range of the thickness of a plate."""
+    return PlausibleRange(
+        high=float(np.fmin(5.0, 4.0 * estimate.across)),
+        above=lambda value: "is thicker than any plate" if value > 5.0 else f"is much more than the plate is long, {estimate.across:g} m",
     )
 
 
-def radius(facts: Facts, table: Mapping[str, Any]) -> Plausible:
-    """Return how large a sphere may be."""
-    return Plausible(
-        high=float(np.fmin(3.0, 4.0 * facts.across)),
-        above=lambda value: "is larger than a boulder" if value > 3.0 else f"is far more than the plate is long, {facts.across:g} m",
+def sphere_radius(estimate: HertzEstimate, table: Mapping[str, Any]) -> PlausibleRange:
+    """Return the range of the radius of a sphere."""
+    return PlausibleRange(
+        high=float(np.fmin(3.0, 4.0 * estimate.across)),
+        above=lambda value: "is larger than a boulder" if value > 3.0 else f"is far more than the plate is long, {estimate.across:g} m",
     )
 
 
 def part_of_plate(part: float, words: str) -> Rule:
-    """Return the rule of a length that is at most so much of the longer side of the plate."""
-    return lambda facts, table: Plausible(high=part * facts.across, above=words)
+    """Return the rule of a length that is at most a fraction `part` of the longer side of the plate."""
+    return lambda estimate, table: PlausibleRange(high=part * estimate.across, above=words)
 
 
-def spring(facts: Facts, table: Mapping[str, Any]) -> Plausible:
-    """Return how stiff a spring under a plate may be: the softest lets it sag by several times its length."""
-    weight = _GRAVITY * facts.plate.density * math.prod(facts.size)
-    return Plausible(
-        low=weight / (4.0 * facts.across),
+def support_stiffness(estimate: HertzEstimate, table: Mapping[str, Any]) -> PlausibleRange:
+    """Return the range of the stiffness of a spring under a plate; at its lower end the plate sags by four times its longer side."""
+    weight = _GRAVITY * estimate.plate.density * math.prod(estimate.size)
+    return PlausibleRange(
+        low=weight / (4.0 * estimate.across),
         high=1e13,
-        below=lambda value: f"would let the plate, which weighs {number(weight, 3)} N, sag by {number(weight / value, 2)} m",
+        below=lambda value: f"would let the plate, which weighs {number_text(weight, 3)} N, sag by {number_text(weight / value, 2)} m",
         above="is stiffer than any support",
     )
 
 
-def law_stiffness(facts: Facts, table: Mapping[str, Any]) -> Plausible:
-    """Return how stiff a contact may be, beside Hertz's: as stiff as gives the same force at his largest indentation.
+def contact_stiffness(estimate: HertzEstimate, table: Mapping[str, Any]) -> PlausibleRange:
+    """Return the range of a contact stiffness around the value that gives Hertz's force at his largest indentation.
 
-    Linear springs are made soft on purpose to save steps: they are doubted only if the sphere sinks in by a third of its radius.
+    Linear springs are often chosen soft to save time steps, so they are doubted only if the indentation reaches 0.3 of the radius.
     """
-    exponent, at = facts.exponent, f" at his largest indentation, {number(facts.depth, 2)} m,"
-    reference = facts.stiffness * facts.depth ** (1.5 - exponent)
+    exponent, at = estimate.exponent, f" at his largest indentation, {number_text(estimate.depth, 2)} m,"
+    reference = estimate.stiffness * estimate.depth ** (1.5 - exponent)
     unit = stiffness_unit(exponent)
     low, words = reference / 2000.0, "Hertz's" if exponent == 1.5 else f"what gives Hertz's force{at}"
     if exponent == 1.0:
-        low = min(reference / 100.0, facts.mass * (facts.speed / (0.3 * facts.radius)) ** 2)
+        low = min(reference / 100.0, estimate.mass * (estimate.speed / (0.3 * estimate.radius)) ** 2)
 
     def said(value: float) -> str:
-        return f"is {times(value / reference)} than {words} {number(reference, 4)} {unit}"
+        return f"is {ratio_text(value / reference)} than {words} {number_text(reference, 4)} {unit}"
 
-    remedy = "leave it out to take Hertz's" if exponent == 1.5 else f"something like {number(reference, 1)} {unit} is usual"
-    return Plausible(low=low, high=300.0 * reference, below=said, above=said, reference=reference, remedy=remedy)
+    remedy = "leave it out to take Hertz's" if exponent == 1.5 else f"something like {number_text(reference, 1)} {unit} is usual"
+    return PlausibleRange(low=low, high=300.0 * reference, below=said, above=said, reference=reference, remedy=remedy)
 
 
 def stiffness_unit(exponent: float) -> str:
-    """Return the SI unit of a stiffness of an exponent."""
+    """Return the SI unit of a contact stiffness for an exponent of the law."""
     return "N/m" if exponent == 1.0 else f"N/m^{exponent:g}"
 
 
-def damping(facts: Facts, table: Mapping[str, Any]) -> Plausible:
-    """Return how much damping a contact may have, beside critical damping."""
-    critical = facts.critical_damping
-    said = f"the critical damping of this contact, {number(critical, 2)} N s/m"
-    return Plausible(
+def contact_damping(estimate: HertzEstimate, table: Mapping[str, Any]) -> PlausibleRange:
+    """Return the range of the damping coefficient of a contact, relative to critical damping."""
+    critical = estimate.critical_damping
+    said = f"the critical damping of this contact, {number_text(critical, 2)} N s/m"
+    return PlausibleRange(
         low=2e-4 * critical,
         high=10.0 * critical,
-        below=lambda value: f"is {count(critical / value)} times less than {said}, and takes next to nothing",
-        above=lambda value: f"is {count(value / critical)} times {said}",
+        below=lambda value: f"is {count_text(critical / value)} times less than {said}, and takes next to nothing",
+        above=lambda value: f"is {count_text(value / critical)} times {said}",
         reference=0.05 * critical,
         within=60.0,
     )
 
 
-def full_damping(facts: Facts, table: Mapping[str, Any]) -> Plausible:
-    """Return how deep a contact may get before its damping acts in full."""
-    return Plausible(
-        high=float(np.fmax(0.3 * facts.radius, 10.0 * facts.depth)),
-        above=lambda value: f"is {count(value / facts.depth)} times the largest indentation, {number(facts.depth, 2)} m",
-        reference=0.1 * facts.depth,
+def full_damping_penetration(estimate: HertzEstimate, table: Mapping[str, Any]) -> PlausibleRange:
+    """Return the range of the full-damping penetration of the Adams impact law."""
+    return PlausibleRange(
+        high=float(np.fmax(0.3 * estimate.radius, 10.0 * estimate.depth)),
+        above=lambda value: f"is {count_text(value / estimate.depth)} times the largest indentation, {number_text(estimate.depth, 2)} m",
+        reference=0.1 * estimate.depth,
     )
 
 
-def dissipation_time(facts: Facts, table: Mapping[str, Any]) -> Plausible:
-    """Return how long the dissipative constant of a viscoelastic contact may be."""
-    lasts = facts.contact_time
-    return Plausible(
+def dissipation_time(estimate: HertzEstimate, table: Mapping[str, Any]) -> PlausibleRange:
+    """Return the range of the dissipation time of a viscoelastic contact, relative to the contact duration."""
+    lasts = estimate.contact_time
+    return PlausibleRange(
         high=10.0 * lasts,
-        above=lambda value: f"is {count(value / lasts)} times as long as the contact, {number(lasts, 2)} s",
+        above=lambda value: f"is {count_text(value / lasts)} times as long as the contact, {number_text(lasts, 2)} s",
         reference=0.03 * lasts,
     )
 
 
-def gravity(facts: Facts, table: Mapping[str, Any]) -> Plausible:
-    """Return how strong gravity may be; if it is not, it was meant to be that of the earth."""
-    return Plausible(high=300.0, above="is more than that of the sun", reference=9.8, within=1.05)
+def gravitational_acceleration(estimate: HertzEstimate, table: Mapping[str, Any]) -> PlausibleRange:
+    """Return the range of the acceleration of gravity; an implausible value is corrected only to that of the earth."""
+    return PlausibleRange(high=300.0, above="is more than that of the sun", reference=9.8, within=1.05)
 
 
-def duration(facts: Facts, table: Mapping[str, Any]) -> Plausible:
-    """Return how long a run may be: to the end of the first contact at least."""
-    touch, lasts = facts.touch, float(np.nan_to_num(facts.contact_time))
+def run_duration(estimate: HertzEstimate, table: Mapping[str, Any]) -> PlausibleRange:
+    """Return the range of the duration of a run, which ends after the first contact at the earliest."""
+    touch, lasts = estimate.touch, float(np.nan_to_num(estimate.contact_time))
 
     def below(value: float) -> str:
         if value < touch:
             return f"is over before the sphere touches the plate, at {touch:.4g} s"
         return f"is over before the first contact is, which ends at about {touch + lasts:.6g} s"
 
-    return Plausible(
+    return PlausibleRange(
         low=touch + lasts,
         high=1000.0,
         below=below,
@@ -171,45 +172,46 @@ def duration(facts: Facts, table: Mapping[str, Any]) -> Plausible:
 
 
 def _rounded_up(value: float) -> str:
-    """Return a little more than a value, in two digits."""
+    """Return a value with two significant digits that exceeds the given one by at least 2 %."""
     step = 10.0 ** (math.floor(math.log10(value)) - 1)
     return f"{math.ceil(1.02 * value / step) * step:.2g}"
 
 
-def rest_speed(facts: Facts, table: Mapping[str, Any]) -> Plausible:
-    """Return how fast a sphere may be that is taken to be at rest."""
-    return Plausible(high=0.9 * facts.speed, above=f"is no less than the speed of the first touch, {facts.speed:.3g} m/s")
+def rest_speed(estimate: HertzEstimate, table: Mapping[str, Any]) -> PlausibleRange:
+    """Return the range of the rest speed, less than the approach speed of the first impact."""
+    return PlausibleRange(high=0.9 * estimate.speed, above=f"is no less than the speed of the first touch, {estimate.speed:.3g} m/s")
 
 
-def periods(facts: Facts, table: Mapping[str, Any]) -> Plausible:
-    """Return up to which frequency modes may be asked for: those whose periods are like the contact or shorter."""
-    lasts = facts.contact_time
-    return Plausible(
+def modal_frequency(estimate: HertzEstimate, table: Mapping[str, Any]) -> PlausibleRange:
+    """Return the range of the upper frequency of modes, relative to the inverse of the contact duration."""
+    lasts = estimate.contact_time
+    contact = f"about {number_text(lasts, 2)} s"
+    return PlausibleRange(
         low=0.05 / lasts,
         high=1e5 / lasts,
         below=lambda value: (
-            f"has a period of {number(1.0 / value, 2)} s, and the contact lasts about {number(lasts, 2)} s: it excites much higher ones"
+            f"has a period of {number_text(1.0 / value, 2)} s, and the contact lasts {contact}: it excites much higher ones"
         ),
-        above=lambda value: f"is far higher than a contact of about {number(lasts, 2)} s excites",
+        above=lambda value: f"is far higher than a contact of {contact} excites",
     )
 
 
-def rate(facts: Facts, table: Mapping[str, Any]) -> Plausible:
-    """Return how fast a sensor may sample: accelerations as fast as a contact, other motions like a camera at least."""
-    lasts = facts.contact_time
-    return Plausible(
+def sampling_rate(estimate: HertzEstimate, table: Mapping[str, Any]) -> PlausibleRange:
+    """Return the range of a sampling rate: it resolves the contact for accelerations, and is at least that of a camera otherwise."""
+    lasts = estimate.contact_time
+    return PlausibleRange(
         low=float(np.fmin(1000.0, 0.1 / lasts)) if table["quantity"] == "acceleration" else 10.0,
         high=1e9,
-        below=lambda value: f"takes a sample every {number(1.0 / value, 2)} s, and the contact lasts about {number(lasts, 2)} s",
+        below=lambda value: f"takes a sample every {number_text(1.0 / value, 2)} s, and the contact lasts about {number_text(lasts, 2)} s",
         above="is faster than any converter",
     )
 
 
-def corner(facts: Facts, table: Mapping[str, Any]) -> Plausible:
-    """Return how low a filter of samples may let pass."""
-    return Plausible(low=1e-3 * table["rate"], below=f"leaves next to nothing of {table['rate']:g} samples per second")
+def filter_corner(estimate: HertzEstimate, table: Mapping[str, Any]) -> PlausibleRange:
+    """Return the range of the corner frequency of a filter, relative to the sampling rate."""
+    return PlausibleRange(low=1e-3 * table["rate"], below=f"leaves next to nothing of {table['rate']:g} samples per second")
 
 
-def below_range(facts: Facts, table: Mapping[str, Any]) -> Plausible:
-    """Return how coarse an accelerometer may be: less than its range."""
-    return Plausible(high=table.get("range", math.nan), above=f"is more than its range, {table.get('range', math.nan):g} m/s^2")
+def below_sensor_range(estimate: HertzEstimate, table: Mapping[str, Any]) -> PlausibleRange:
+    """Return the range of the noise or resolution of an accelerometer: less than its measuring range."""
+    return PlausibleRange(high=table.get("range", math.nan), above=f"is more than its range, {table.get('range', math.nan):g} m/s^2")

@@ -1,13 +1,13 @@
-"""The table of what is plausible, key by key: the numbers of a case that a slip of a unit can spoil.
+"""The table of the keys that are checked for slips of units, with their plausible ranges.
 
-The ranges are far wider than anything in use (rubber to diamond, dust to boulders, foils to slabs), and narrower only where the other
-numbers of the case tell more: Hertz's stiffness for a stiffness, critical damping for a damping, the fall for a duration.
+The ranges are far wider than those in use (rubber to diamond, dust to boulders, foils to slabs), and narrower only where other values of
+the case give an estimate: Hertz's stiffness for a stiffness, critical damping for a damping, the fall for a duration.
 """
 
 from __future__ import annotations
 
 from vibroimpact.cases.slips import rules
-from vibroimpact.cases.slips.plausible import Place, about, between
+from vibroimpact.cases.slips.plausible import CheckedKey, between, near
 
 _LENGTHS = ("mm", "cm", "um")
 _SPEEDS = ("mm/s", "cm/s")
@@ -22,65 +22,82 @@ _DAMPINGS = ("N s/mm", "kN s/m")
 _ACCELERATIONS = ("mm/s^2", "cm/s^2")
 
 
-def _material(at: str) -> tuple[Place, ...]:
+def _material(at: str) -> tuple[CheckedKey, ...]:
+    """Return the checked keys of the material at a key."""
     return (
-        Place(f"{at}.density", "kg/m^3", ("g/cm^3", "kg/mm^3", "t/mm^3"), rules.density),
-        Place(f"{at}.youngs_modulus", "Pa", _MODULI, rules.modulus),
-        *(Place(f"{at}.{name}_strength", "Pa", _STRENGTHS, rules.strength) for name in ("yield", "compressive", "tensile")),
+        CheckedKey(f"{at}.density", "kg/m^3", ("g/cm^3", "kg/mm^3", "t/mm^3"), rules.density),
+        CheckedKey(f"{at}.youngs_modulus", "Pa", _MODULI, rules.elastic_modulus),
+        *(CheckedKey(f"{at}.{name}_strength", "Pa", _STRENGTHS, rules.strength) for name in ("yield", "compressive", "tensile")),
     )
 
 
-_LARGEST_FORCE = about(lambda facts: facts.force, "Hertz's largest force,", "N")
+_LARGEST_FORCE = near(lambda estimate: estimate.force, "Hertz's largest force,", "N")
 _REBOUND = between(high=300.0, above="is higher than a tower")
 
-PLACES: tuple[Place, ...] = (
+CHECKED_KEYS: tuple[CheckedKey, ...] = (
     *_material("sphere.material"),
     *_material("plate.material"),
-    *(Place(f"plate.size.{side}", "m", _LENGTHS, between(high=60.0, above="is longer than any plate")) for side in ("length", "width")),
-    Place("plate.size.thickness", "m", _LENGTHS, rules.thickness),
-    Place("plate.radius", "m", _LENGTHS, rules.radius),
-    Place("sphere.radius", "m", _LENGTHS, rules.radius),
-    Place("drop.height", "m", _LENGTHS, between(high=300.0, above="is higher than a tower")),
-    Place("drop.speed", "m/s", _SPEEDS, between(high=1000.0, above="is faster than a bullet")),
-    Place("drop.gravity", "m/s^2", _ACCELERATIONS, rules.gravity),
-    Place("contact.stiffness", "N/m^n", _LAW_STIFFNESSES, rules.law_stiffness),
-    Place("contact.penalty", "N/m", _STIFFNESSES, rules.law_stiffness),
-    Place("contact.damping_max", "N s/m", _DAMPINGS, rules.damping),
-    Place("contact.damping", "N s/m", _DAMPINGS, rules.damping),
-    Place("contact.full_damping_penetration", "m", ("mm", "um"), rules.full_damping),
-    Place("contact.effective_modulus", "Pa", _MODULI, rules.modulus),
-    Place("contact.yield_strength", "Pa", _STRENGTHS, rules.strength),
-    Place("contact.yield_pressure", "Pa", _STRENGTHS, rules.strength),
-    Place("contact.effective_radius", "m", _LENGTHS, about(lambda facts: facts.radius, "the sphere's", "m", factor=100.0, within=5.0)),
-    Place("contact.effective_mass", "kg", ("g",), about(lambda facts: facts.mass, "the sphere's", "kg", factor=100.0, within=5.0)),
-    Place("contact.work_of_adhesion", "J/m^2", ("mJ/m^2",), between(high=20.0, above="is more than any two surfaces have")),
-    Place("contact.dissipation_time", "s", ("us", "ms"), rules.dissipation_time),
-    Place("contact.local_stiffness", "N/m", _STIFFNESSES, about(lambda facts: facts.force / facts.depth, "Hertz's", "N/m", factor=3000.0)),
-    Place("contact.measured.max_force", "N", _FORCES, _LARGEST_FORCE),
-    Place("contact.measured.rebound_height", "m", _LENGTHS, _REBOUND),
-    Place("calibrate.target.max_force", "N", _FORCES, _LARGEST_FORCE),
-    Place("calibrate.target.duration", "s", _TIMES, about(lambda facts: facts.contact_time, "the duration of Hertz's contact,", "s")),
-    Place("calibrate.target.max_indentation", "m", _LENGTHS, about(lambda facts: facts.depth, "Hertz's largest indentation,", "m")),
-    Place("calibrate.target.rebound_height", "m", _LENGTHS, _REBOUND),
-    Place("calibrate.target.rebound_heights", "m", _LENGTHS, _REBOUND),
-    Place("run.duration", "s", _TIMES, rules.duration),
-    Place("run.rest_speed", "m/s", _SPEEDS, rules.rest_speed),
+    *(
+        CheckedKey(f"plate.size.{side}", "m", _LENGTHS, between(high=60.0, above="is longer than any plate"))
+        for side in ("length", "width")
+    ),
+    CheckedKey("plate.size.thickness", "m", _LENGTHS, rules.plate_thickness),
+    CheckedKey("plate.radius", "m", _LENGTHS, rules.sphere_radius),
+    CheckedKey("sphere.radius", "m", _LENGTHS, rules.sphere_radius),
+    CheckedKey("drop.height", "m", _LENGTHS, between(high=300.0, above="is higher than a tower")),
+    CheckedKey("drop.speed", "m/s", _SPEEDS, between(high=1000.0, above="is faster than a bullet")),
+    CheckedKey("drop.gravity", "m/s^2", _ACCELERATIONS, rules.gravitational_acceleration),
+    CheckedKey("contact.stiffness", "N/m^n", _LAW_STIFFNESSES, rules.contact_stiffness),
+    CheckedKey("contact.penalty", "N/m", _STIFFNESSES, rules.contact_stiffness),
+    CheckedKey("contact.damping_max", "N s/m", _DAMPINGS, rules.contact_damping),
+    CheckedKey("contact.damping", "N s/m", _DAMPINGS, rules.contact_damping),
+    CheckedKey("contact.full_damping_penetration", "m", ("mm", "um"), rules.full_damping_penetration),
+    CheckedKey("contact.effective_modulus", "Pa", _MODULI, rules.elastic_modulus),
+    CheckedKey("contact.yield_strength", "Pa", _STRENGTHS, rules.strength),
+    CheckedKey("contact.yield_pressure", "Pa", _STRENGTHS, rules.strength),
+    CheckedKey(
+        "contact.effective_radius", "m", _LENGTHS, near(lambda estimate: estimate.radius, "the sphere's", "m", factor=100.0, within=5.0)
+    ),
+    CheckedKey(
+        "contact.effective_mass", "kg", ("g",), near(lambda estimate: estimate.mass, "the sphere's", "kg", factor=100.0, within=5.0)
+    ),
+    CheckedKey("contact.work_of_adhesion", "J/m^2", ("mJ/m^2",), between(high=20.0, above="is more than any two surfaces have")),
+    CheckedKey("contact.dissipation_time", "s", ("us", "ms"), rules.dissipation_time),
+    CheckedKey(
+        "contact.local_stiffness",
+        "N/m",
+        _STIFFNESSES,
+        near(lambda estimate: estimate.force / estimate.depth, "Hertz's", "N/m", factor=3000.0),
+    ),
+    CheckedKey("contact.measured.max_force", "N", _FORCES, _LARGEST_FORCE),
+    CheckedKey("contact.measured.rebound_height", "m", _LENGTHS, _REBOUND),
+    CheckedKey("calibrate.target.max_force", "N", _FORCES, _LARGEST_FORCE),
+    CheckedKey(
+        "calibrate.target.duration", "s", _TIMES, near(lambda estimate: estimate.contact_time, "the duration of Hertz's contact,", "s")
+    ),
+    CheckedKey(
+        "calibrate.target.max_indentation", "m", _LENGTHS, near(lambda estimate: estimate.depth, "Hertz's largest indentation,", "m")
+    ),
+    CheckedKey("calibrate.target.rebound_height", "m", _LENGTHS, _REBOUND),
+    CheckedKey("calibrate.target.rebound_heights", "m", _LENGTHS, _REBOUND),
+    CheckedKey("run.duration", "s", _TIMES, rules.run_duration),
+    CheckedKey("run.rest_speed", "m/s", _SPEEDS, rules.rest_speed),
     *_material("plate.supports.#.material"),
-    Place("plate.supports.#.stiffness", "N/m", _STIFFNESSES, rules.spring),
-    Place("plate.supports.#.length", "m", _LENGTHS, between(high=50.0, above="is longer than any column")),
-    Place("plate.mesh.element_size", "m", _LENGTHS, rules.part_of_plate(1.0, "is more than the plate is long")),
-    Place("plate.mesh.margin", "m", _LENGTHS, rules.part_of_plate(0.5, "is more than half the plate")),
-    Place("sphere.max_frequency", "Hz", _FREQUENCIES, rules.periods),
-    Place("plate.max_frequency", "Hz", _FREQUENCIES, rules.periods),
-    Place("sensors.#.rate", "Hz", _FREQUENCIES, rules.rate),
-    Place("sensors.#.corner", "Hz", _FREQUENCIES, rules.corner),
-    Place(
+    CheckedKey("plate.supports.#.stiffness", "N/m", _STIFFNESSES, rules.support_stiffness),
+    CheckedKey("plate.supports.#.length", "m", _LENGTHS, between(high=50.0, above="is longer than any column")),
+    CheckedKey("plate.mesh.element_size", "m", _LENGTHS, rules.part_of_plate(1.0, "is more than the plate is long")),
+    CheckedKey("plate.mesh.margin", "m", _LENGTHS, rules.part_of_plate(0.5, "is more than half the plate")),
+    CheckedKey("sphere.max_frequency", "Hz", _FREQUENCIES, rules.modal_frequency),
+    CheckedKey("plate.max_frequency", "Hz", _FREQUENCIES, rules.modal_frequency),
+    CheckedKey("sensors.#.rate", "Hz", _FREQUENCIES, rules.sampling_rate),
+    CheckedKey("sensors.#.corner", "Hz", _FREQUENCIES, rules.filter_corner),
+    CheckedKey(
         "sensors.#.accelerometer.resonance",
         "Hz",
         _FREQUENCIES,
         between(100.0, 1e8, below="is lower than any accelerometer's", above="is higher than any accelerometer's"),
     ),
-    Place("sensors.#.accelerometer.noise", "m/s^2", _ACCELERATIONS, rules.below_range),
-    Place("sensors.#.accelerometer.resolution", "m/s^2", _ACCELERATIONS, rules.below_range),
+    CheckedKey("sensors.#.accelerometer.noise", "m/s^2", _ACCELERATIONS, rules.below_sensor_range),
+    CheckedKey("sensors.#.accelerometer.resolution", "m/s^2", _ACCELERATIONS, rules.below_sensor_range),
 )
-"""What is plausible at each key; what others are held to stands before them."""
+"""Checked keys, in an order in which a value precedes those whose range depends on it."""

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.patches import Circle, Polygon
 
 from vibroimpact.arrays import Floats
-from vibroimpact.cases.build import resolved
+from vibroimpact.cases.build import resolved_case
 from vibroimpact.cases.reader import load_case
 from vibroimpact.paper.report.drawing import Drawing
 from vibroimpact.paper.runs import Runs
@@ -39,7 +39,7 @@ def draw_model(runs: Runs) -> Drawing:
     runs : Runs
         The simulations; the case of Type 3 has the dimensions.
     """
-    case = resolved(load_case("paper:type3"))
+    case = resolved_case(load_case("paper:type3"))
     length, width, thickness = case["plate"]["size"]
     held = case["plate"]["supports"][0]
     along, across = held["spacing"]

@@ -1,4 +1,4 @@
-"""How large a case may be, looked at before it is worked on: what lies beyond is no case, and would take for ever to refuse."""
+"""Limits on the size of a case file, checked before validation, so that oversized or hostile input is rejected quickly."""
 
 from __future__ import annotations
 
@@ -12,49 +12,49 @@ from vibroimpact.errors import InputError
 from vibroimpact.shown import shown
 
 MOST_BYTES = 1_000_000
-"""Of a file; a case is a page of text."""
+"""Maximum size of a case file [bytes]."""
 
 DEEPEST = 20
-"""Tables and lists in one another; a case has seven."""
+"""Maximum nesting depth of tables and lists; a case needs seven levels."""
 
 MOST_VALUES = 200_000
-"""Keys and items of lists in all; a study may list its points."""
+"""Maximum number of keys and list items in total; a study may list its points."""
 
 LONGEST_TEXT = 4096
-"""Characters of a text: what a path may have on most computers."""
+"""Maximum number of characters of a string: that of a path on most systems."""
 
 LONGEST_KEY = 200
-"""Characters of a key."""
+"""Maximum number of characters of a key."""
 
 LARGEST_WHOLE = 2**63 - 1
-"""As TOML has it."""
+"""Largest integer, as TOML defines it."""
 
 LONGEST_NAME = 200
-"""Characters of a name."""
+"""Maximum number of characters of a name."""
 
 MOST_ITEMS = 1000
-"""Sensors or supports of a plate."""
+"""Maximum number of sensors, and of supports, of a plate."""
 
 MOST_OF_A_LIST = 10_000
-"""Values of a parameter of a contact law, one an impact."""
+"""Maximum number of values, one per impact, of a parameter of a contact law."""
 
 _PART = r"""(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')"""
 _DOTTED = re.compile(rf"(?<![\w-]){_PART}(?:[ \t]*+\.[ \t]*+{_PART}){{{DEEPEST}}}", re.ASCII)
 
 
 def check_text(text: str) -> None:
-    """Raise if a text holds a dotted key of more parts than tables may lie in one another; to read it takes their number squared.
+    """Check that no dotted key has more parts than the maximum nesting depth; the TOML parser takes quadratic time in that number.
 
     Raises
     ------
     InputError
-        With where it begins.
+        If there is one; the message gives its line.
 
     Examples
     --------
     >>> check_text("plate.size = [1, 2, 3]")
     """
-    if max(map(_points, text.split("\n"))) < DEEPEST:
+    if max(map(_dots, text.split("\n"))) < DEEPEST:
         return
     found = _DOTTED.search(text)
     if found is not None and not text[text.rfind("\n", 0, found.start()) + 1 : found.start()].lstrip().startswith("#"):
@@ -62,17 +62,17 @@ def check_text(text: str) -> None:
         raise InputError(f"line {line}: {shown(found[0])} has too many parts; tables lie at most {DEEPEST} deep in one another")
 
 
-def _points(line: str) -> int:
+def _dots(line: str) -> int:
     return line.count(".")
 
 
 def check_bounds(table: Mapping[str, Any]) -> None:
-    """Raise unless a case, as a TOML file holds it, is of a size that can be worked on.
+    """Check the size of a parsed case: number of values, nesting depth, lengths of keys and strings, magnitude of integers.
 
     Raises
     ------
     InputError
-        With the key of what is too large.
+        If a limit is exceeded; with the key.
 
     Examples
     --------
@@ -81,11 +81,11 @@ def check_bounds(table: Mapping[str, Any]) -> None:
         ...
     vibroimpact.errors.InputError: name: the text has 5000 characters; 4096 are the most
     """
-    _look(table, (), 0)
+    _check_table(table, (), 0)
 
 
-def _look(table: Any, where: tuple[Any, ...], number: int) -> int:
-    """Look into a table or a list; return how many values there are up to its end."""
+def _check_table(table: Any, where: tuple[Any, ...], number: int) -> int:
+    """Check a table or a list recursively; return `number`, the count of values so far, plus its own."""
     number += len(table)
     if number > MOST_VALUES:
         words = "a case is a page of text, and many points of a study go into a CSV file"
@@ -106,17 +106,17 @@ def _look(table: Any, where: tuple[Any, ...], number: int) -> int:
                 words = f"the number is too large for a whole number; beyond {LARGEST_WHOLE} write it as 1e20"
                 raise _too_large((*where, key), words)
         elif isinstance(value, (dict, list, tuple)):
-            number = _look(value, (*where, key), number)
+            number = _check_table(value, (*where, key), number)
     return number
 
 
 def check_name(name: str) -> str:
-    """Return a name, which is one line of text that can be shown.
+    """Return a name after checking that it is one line of printable text.
 
     Raises
     ------
     InputError
-        If it is too long, or has characters that steer a terminal.
+        If it is too long, or contains non-printable characters, such as the escape sequences of terminals.
     """
     if len(name) > LONGEST_NAME:
         raise InputError(f"the name has {len(name)} characters; {LONGEST_NAME} are the most")
@@ -126,11 +126,11 @@ def check_name(name: str) -> str:
 
 
 Name = Annotated[str, AfterValidator(check_name)]
-"""What something is called in tables, pages and figures."""
+"""Type of a name that is shown in tables, pages and figures."""
 
 
 def at_most(number: int, what: str) -> BeforeValidator:
-    """Return a validator of a list that may have so many items, which refuses a longer one before it looks at them."""
+    """Return a validator that rejects a list of more than `number` items before the items themselves are validated."""
 
     def check(value: Any) -> Any:
         if isinstance(value, (list, tuple)):
@@ -141,12 +141,12 @@ def at_most(number: int, what: str) -> BeforeValidator:
 
 
 def check_count(count: int, most: int, what: str) -> None:
-    """Raise if there are more of something than may be.
+    """Check that a count does not exceed its maximum.
 
     Raises
     ------
     InputError
-        With both numbers.
+        If it does; the message gives both numbers.
     """
     if count > most:
         raise InputError(f"there are {count} {what}; {most} are the most")

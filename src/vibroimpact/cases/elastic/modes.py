@@ -1,4 +1,4 @@
-"""The modes of the elastic bodies of a case."""
+"""Modes of the elastic bodies of a case, and doubts about them."""
 
 from __future__ import annotations
 
@@ -10,21 +10,22 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vibroimpact.bodies.elastic import ElasticBody
-from vibroimpact.cases.build_elastic import elastic_bodies
-from vibroimpact.cases.meshes import meshes_of
+from vibroimpact.cases.elastic.bodies import elastic_bodies
+from vibroimpact.cases.elastic.meshes import meshes_of
 from vibroimpact.errors import InputError
 from vibroimpact.structures.damping import ConstantRatio, RatioOfEach, RatioTable
 from vibroimpact.structures.frequency_error import MESH, REDUCTION, SUPPORTS, THEORY
 from vibroimpact.structures.modal_model import ModalBasis, ModalModel
 from vibroimpact.structures.recipe import MAIN_CAUSE, BroughtMesh, PlateOfSolids, Recipe, SphereOfSolids, is_thin, modal_model_of
+from vibroimpact.structures.surface import Side, place_of
 
 if TYPE_CHECKING:
     from vibroimpact.cases.schema import CaseTable
 
-_FREQUENCY_OFF = 0.005  # relative: frequencies that may be off by more are doubted
-_WEIGHT_OFF = 0.05  # relative: a mesh whose volume differs more from that of the case is doubted
-_MESH_OFF = 0.005  # relative: a mesh made here with less of the body's mass is too coarse
-_LARGE = 50.0  # m: a body larger than this is probably in millimetres
+_FREQUENCY_OFF = 0.005  # relative: a larger estimated frequency error is doubted
+_WEIGHT_OFF = 0.05  # relative: a larger difference in mass between an imported mesh and the case is doubted
+_MESH_OFF = 0.005  # relative: a generated mesh with a larger error of its mass is too coarse
+_LARGE = 50.0  # m: the coordinates of a larger body are probably in millimetres
 
 
 @dataclass(frozen=True)
@@ -38,9 +39,9 @@ class BodyModes:
     model : ModalModel
         Its modes on its mesh.
     basis : ModalBasis
-        Its modes seen at the contact point and at the sensors.
+        Its modes at the contact point and the sensors.
     doubts : tuple of str
-        What to doubt of it.
+        Doubts about it, one sentence each.
     """
 
     body: ElasticBody
@@ -59,16 +60,16 @@ def compute_modes(
     case : CaseTable
         A case with `model = "elastic"` for the sphere, the plate, or both.
     progress : callable, optional
-        Called with a number from 0 to 1.
+        Called with the fraction done, 0 to 1.
     tell : callable, optional
-        Called with a sentence if something is wrong with the store of modes.
+        Called with a warning if the mode store is faulty.
 
     Raises
     ------
     InputError
         If no body of the case is elastic, or one can't be made.
     ComputationError
-        If modes can't be computed.
+        If the modes can't be computed.
 
     Examples
     --------
@@ -95,13 +96,18 @@ def compute_modes(
             basis = body.basis(model)
             found[name] = BodyModes(body, model, basis, tuple(_doubts(case, name, body, model, basis)))
         except InputError as error:
-            meshes_of(case)  # says it by its key, if something does not lie on a mesh
+            meshes_of(case)  # raises with the key, if something does not lie on a mesh
             raise InputError(error.message, ".".join(part for part in (name, error.key) if part)) from None
     return found
 
 
+def contact_place(body: BodyModes) -> tuple[tuple[float, float], Side]:
+    """Return the position of the contact point of a body [m] and its side."""
+    return place_of(body.model.mesh, body.body.contact, body.body.side), body.body.side
+
+
 def _doubts(case: CaseTable, name: str, body: ElasticBody, model: ModalModel, basis: ModalBasis) -> Iterator[str]:
-    """Say where a plate would fall, and where a mesh or a damping does not look like what was meant."""
+    """Yield doubts about an elastic body: a plate that is not held, mesh quality and size, and overcritical damping."""
     if name == "plate" and not model.is_held_vertically and case.drop.gravity:
         yield "the plate is not held: its supports let it fall or tilt, and a drop under gravity needs a plate that is held"
     yield from _doubts_of_mass(case, name, body, model)
@@ -113,7 +119,7 @@ def _doubts(case: CaseTable, name: str, body: ElasticBody, model: ModalModel, ba
 
 
 def _doubts_of_frequencies(name: str, body: ElasticBody, model: ModalModel) -> Iterator[str]:
-    """Say which frequencies may be off by more than half a per cent, the main cause, and what to do."""
+    """Yield a doubt if estimated frequency errors exceed half a per cent, with the main cause and a remedy."""
     errors = np.nan_to_num(model.frequency_errors)
     off = int((errors > _FREQUENCY_OFF).sum())
     if not off:
@@ -127,7 +133,7 @@ def _doubts_of_frequencies(name: str, body: ElasticBody, model: ModalModel) -> I
 
 
 def _remedy(recipe: Recipe, cause: str) -> str:
-    """Return the remedy for errors of frequencies due to a cause."""
+    """Return the remedy for frequency errors by their main cause."""
     shape = recipe.shape
     if cause == THEORY and is_thin(recipe):
         return 'take mesh.theory = "thick", or keep fewer modes'
@@ -143,6 +149,7 @@ def _remedy(recipe: Recipe, cause: str) -> str:
 
 
 def _doubts_of_mass(case: CaseTable, name: str, body: ElasticBody, model: ModalModel) -> Iterator[str]:
+    """Yield a doubt if the mass of a mesh differs from that of the case, or its size suggests millimetres."""
     brought, extent = isinstance(body.recipe.shape, BroughtMesh), model.mesh.extent
     size = " x ".join(f"{side:.3g}" for side in (*extent[:2], model.thickness or extent[2]))
     said = f"the mesh of the {name} is {size} m large and weighs {model.properties.mass:.4g} kg"

@@ -1,4 +1,4 @@
-"""The [contact] section: a law by name, and that law's own parameters."""
+"""The [contact] section: the name of a contact law, and the parameters of that law."""
 
 from __future__ import annotations
 
@@ -6,10 +6,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from typing import Any
 
-from vibroimpact.cases.bounds import MOST_OF_A_LIST, check_count
-from vibroimpact.cases.local_section import LocalSection
-from vibroimpact.cases.quantities import quantity_schema, read_quantity
-from vibroimpact.cases.section import read_table
+from vibroimpact.cases.fields.bounds import MOST_OF_A_LIST, check_count
+from vibroimpact.cases.fields.local import LocalSection
+from vibroimpact.cases.fields.quantities import quantity_schema, read_quantity
+from vibroimpact.cases.fields.section import read_table
 from vibroimpact.contact.law import ContactLaw, contact_laws, find_contact_law, unit_of
 from vibroimpact.errors import InputError, did_you_mean
 from vibroimpact.shown import shown
@@ -17,9 +17,9 @@ from vibroimpact.shown import shown
 
 @dataclass(frozen=True)
 class ContactSection:
-    """A contact law's name and its parameters in SI; a tuple is one value an impact, the last one goes on.
+    """Name and parameters [SI] of a contact law, and how it is combined with the local deformation of elastic bodies (`local`).
 
-    `local` says how the local deformation of elastic bodies goes together with it.
+    A tuple has one value per impact; its last value holds for all later impacts.
     """
 
     law: str
@@ -28,12 +28,12 @@ class ContactSection:
 
 
 def read_contact(value: Any) -> ContactSection:
-    """Read the [contact] section.
+    """Return the validated [contact] section.
 
     Raises
     ------
     InputError
-        If the law is not known, or a parameter is unknown, can't be read or lies outside its range.
+        If the law or a parameter is unknown, or a value can't be read or lies outside its range.
     """
     if isinstance(value, ContactSection):
         return value
@@ -41,6 +41,7 @@ def read_contact(value: Any) -> ContactSection:
         raise InputError(f'it needs law = "...", one of {", ".join(contact_laws())}')
     law = find_contact_law(value["law"])
     known = {item.name: item for item in fields(law)}
+    # the SI unit of a stiffness depends on the exponent of the law
     exponent = value.get("exponent", known["exponent"].default if "exponent" in known else 1.0)
     parameters: dict[str, float | tuple[float, ...]] = {}
     for key, given in value.items():
@@ -66,13 +67,13 @@ def read_contact(value: Any) -> ContactSection:
 
 
 def contact_schema() -> dict[str, Any]:
-    """Return the JSON schema of the [contact] section: one alternative a law."""
+    """Return the JSON schema of the [contact] section: one alternative per law."""
     local = LocalSection.model_json_schema()["properties"]
     return {"description": "the contact law and its parameters", "oneOf": [_law_schema(law, local) for law in contact_laws().values()]}
 
 
 def law_schema() -> dict[str, Any]:
-    """Return the JSON schema of a law and its parameters alone."""
+    """Return the JSON schema of a law and its parameters, without the keys of `LocalSection`."""
     return {"description": "a contact law and its parameters", "oneOf": [_law_schema(law, {}) for law in contact_laws().values()]}
 
 

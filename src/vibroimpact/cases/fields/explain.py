@@ -1,4 +1,4 @@
-"""From pydantic's errors to sentences: where, what is wrong, what is allowed."""
+"""Error messages made from pydantic's validation errors: the key, what is wrong, and what is allowed."""
 
 from __future__ import annotations
 
@@ -10,15 +10,15 @@ from vibroimpact.errors import did_you_mean
 from vibroimpact.shown import shown
 
 SectionAt = Callable[[tuple[str, ...]], type[BaseModel] | None]
-"""Which section of a case lies at a place, if one does."""
+"""Returns the section class at a key path of a case; None if there is none."""
 
 
-def explained(error: ValidationError, section_at: SectionAt) -> Iterator[tuple[str, str]]:
-    """Yield the dotted place of each fault, and a sentence about it."""
+def fault_messages(error: ValidationError, section_at: SectionAt) -> Iterator[tuple[str, str]]:
+    """Yield the dotted key path and the message of each validation error."""
     for fault in error.errors():
         where = tuple(str(part) for part in fault["loc"] if not _is_branch(str(part)))
         if _of_a_text(fault["loc"]) and fault["type"] == "string_type" and isinstance(fault["input"], (list, tuple)):
-            continue  # it need not be a text: what is wrong with it as a list is told too
+            continue  # the field may also be a list, and the error of that alternative is reported
         path = ".".join(where)
         kind, context = fault["type"], fault.get("ctx", {})
         cause, given = context.get("error"), shown(fault["input"])
@@ -33,7 +33,7 @@ def explained(error: ValidationError, section_at: SectionAt) -> Iterator[tuple[s
         elif kind == "missing":
             yield path, f"this {'section' if len(where) == 1 else 'key'} is missing{_about(where, section_at)}"
         elif kind == "value_error" and isinstance(cause, ValidationError):
-            yield from ((f"{path}.{inner}" if path else inner, message) for inner, message in explained(cause, section_at))
+            yield from ((f"{path}.{inner}" if path else inner, message) for inner, message in fault_messages(cause, section_at))
         elif kind == "value_error":
             key = getattr(cause, "key", "")
             yield ".".join(part for part in (path, key) if part), getattr(cause, "message", str(cause))
@@ -53,16 +53,17 @@ def explained(error: ValidationError, section_at: SectionAt) -> Iterator[tuple[s
 
 
 def _of_a_text(loc: tuple[int | str, ...]) -> bool:
-    """Is the last part of a location the alternative of a union that is a text, plain or looked at by a function?"""
+    """Return whether the last part of a location is the string alternative of a union, plain or with a validator."""
     return bool(loc) and (loc[-1] == "str" or str(loc[-1]).endswith(", str]"))
 
 
 def _is_branch(part: str) -> bool:
-    """Is this part of a location the name that pydantic gives to one alternative of a union?"""
+    """Return whether a part of a location is the label that pydantic gives to an alternative of a union."""
     return part.startswith(("literal[", "constrained-", "function-", "tuple[", "nullable"))
 
 
 def _about(where: tuple[str, ...], section_at: SectionAt) -> str:
+    """Return ": " and the description of a field; "" if it has none."""
     section = section_at(where[:-1])
     field = section.model_fields.get(where[-1]) if section else None
     text = (field.description or "") if field else ""

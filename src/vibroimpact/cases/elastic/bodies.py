@@ -1,4 +1,4 @@
-"""From a case to its elastic bodies."""
+"""Elastic bodies of a case: their meshes, supports, reduction and damping."""
 
 from __future__ import annotations
 
@@ -6,10 +6,10 @@ import math
 from typing import TYPE_CHECKING, Any, Literal
 
 from vibroimpact.bodies.elastic import ElasticBody, plate_recipe, recipe_of, sphere_recipe
-from vibroimpact.cases.damping_field import damping_of, damping_table
-from vibroimpact.cases.elastic_fields import BroughtMeshTable, PlateMeshTable, SphereMeshTable, reduction_of
+from vibroimpact.cases.fields.damping import damping_of, damping_table
+from vibroimpact.cases.fields.elastic_body import BroughtMeshTable, PlateMeshTable, SphereMeshTable, reduction_of
+from vibroimpact.cases.fields.supports import supports_of, supports_table
 from vibroimpact.cases.rigid import elastic_names
-from vibroimpact.cases.supports_field import supports_of, supports_table
 from vibroimpact.errors import InputError
 from vibroimpact.structures.recipe import BroughtMesh, Recipe, to_follow
 from vibroimpact.structures.rectangle import rectangle_blocks
@@ -19,21 +19,22 @@ from vibroimpact.structures.surface import Spot
 if TYPE_CHECKING:
     from vibroimpact.cases.schema import CaseTable
 
-_UNSPLIT = {"splits": 0, "lower_splits": 0}  # unless asked for: the number of elements is that of the case
+_UNSPLIT = {"splits": 0, "lower_splits": 0}  # default: no splitting, so that the number of elements is that of the case
 
 
 def elastic_bodies(case: CaseTable) -> dict[str, ElasticBody]:
-    """Return the bodies of a case that deform, by their names.
+    """Return the elastic bodies of a case by name.
 
     Raises
     ------
     InputError
-        If one can't be made.
+        If one can't be made; with its key.
     """
     return {name: _body(case, name) for name in elastic_names(case)}
 
 
 def _body(case: CaseTable, name: Literal["sphere", "plate"]) -> ElasticBody:
+    """Return an elastic body; errors carry the name of the body in their key."""
     try:
         return (_sphere if name == "sphere" else _plate)(case)
     except InputError as error:
@@ -41,7 +42,7 @@ def _body(case: CaseTable, name: Literal["sphere", "plate"]) -> ElasticBody:
 
 
 def elastic_table(case: CaseTable, name: Literal["sphere", "plate"]) -> dict[str, Any]:
-    """Return the keys of an elastic body with what was chosen for it: its mesh, its modes and its damping."""
+    """Return the resolved keys of an elastic body: mesh, reduction, modes, damping, and supports of a plate."""
     section, body = getattr(case, name), _body(case, name)
     shape, reduction = body.recipe.shape, body.recipe.reduction
     damping = body.damping if section.damping is None else section.damping
@@ -86,20 +87,20 @@ def _plate_recipe(case: CaseTable, contact: Spot) -> Recipe:
     supports = supports_of(section.supports)
     if isinstance(mesh, BroughtMeshTable):
         return recipe_of(mesh.brought(), section.material, reduction, supports)
-    assert section.size is not None  # the section has seen to it
+    assert section.size is not None  # validated by the section
     element = section.element or "plate"
     options = mesh.model_dump(exclude_none=True, exclude={"elements"}) if isinstance(mesh, PlateMeshTable) else {}
     if isinstance(mesh, PlateMeshTable) and mesh.elements:
-        options = {**_about(section.size, mesh.elements, mesh.layers, supports), **options}
+        options = {**_mesh_options(section.size, mesh.elements, mesh.layers, supports), **options}
     return plate_recipe(section.size, section.material, reduction, supports, element, **options)
 
 
-def _about(size: tuple[float, float, float], elements: int, layers: int | None, supports: tuple[Support, ...]) -> dict[str, Any]:
-    """Return the side of an element, and the layers, with which a plate has about so many of them, cubes if may be."""
+def _mesh_options(size: tuple[float, float, float], elements: int, layers: int | None, supports: tuple[Support, ...]) -> dict[str, Any]:
+    """Return the element size and the number of layers of a plate with about this many elements, near-cubic if `layers` is None."""
     layers = layers or max(1, round(size[2] * (elements / math.prod(size)) ** (1.0 / 3.0)))
     side = math.sqrt(size[0] * size[1] * layers / elements)
     tried: dict[float, float] = {}
-    for _ in range(8):  # the count goes as 1 / side^2, but for the elements around patches and for rounding
+    for _ in range(8):  # the count scales as 1 / side^2, except for elements around patches and rounding
         blocks = rectangle_blocks(size[:2], side, 1, *to_follow(supports))
         count = layers * sum((block.shape[0] - 1) * (block.shape[1] - 1) for block in blocks)
         tried[side] = abs(count - elements)

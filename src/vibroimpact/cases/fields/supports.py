@@ -1,4 +1,7 @@
-"""The supports of a plate in a case: a word, a table, or a list of tables."""
+"""The supports field of a plate: a keyword, a table, or a list of tables.
+
+To add a support, define its table here and list it in `_TABLES`.
+"""
 
 from __future__ import annotations
 
@@ -8,16 +11,16 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, get_args
 
 from pydantic import AfterValidator, BeforeValidator, Field, WithJsonSchema, model_validator
 
-from vibroimpact.cases.bounds import MOST_ITEMS, Name, check_count
-from vibroimpact.cases.material_field import MaterialField, material_table
-from vibroimpact.cases.quantities import Quantity
-from vibroimpact.cases.section import Section, read_table
+from vibroimpact.cases.fields.bounds import MOST_ITEMS, Name, check_count
+from vibroimpact.cases.fields.material import MaterialField, material_table
+from vibroimpact.cases.fields.quantities import Quantity
+from vibroimpact.cases.fields.section import Section, check_alternatives, read_table
 from vibroimpact.errors import InputError, did_you_mean
 from vibroimpact.materials import RIGID, Material
 from vibroimpact.ranges import Range
 from vibroimpact.shown import shown
 
-if TYPE_CHECKING:  # they load sparse matrices, which a case of rigid bodies does without
+if TYPE_CHECKING:  # not imported at run time, as a case with rigid bodies does not need scipy.sparse
     from vibroimpact.structures.supports.support import Support
 
 EdgeName = Literal["x-min", "x-max", "y-min", "y-max"]
@@ -33,31 +36,32 @@ _Spacing = Annotated[tuple[_Length, _Length], Field(description="two lengths: be
 WORDS = ("free", "clamped", "simply-supported")
 
 
-class _Table(Section):
+class SupportTable(Section):
+    """A table of the supports field."""
+
     what: ClassVar[str]
 
-    def made(self) -> tuple[Support, ...]:
-        """Return the supports that the table states."""
+    def supports(self) -> tuple[Support, ...]:
+        """Return the supports that the table describes."""
         raise NotImplementedError
 
 
-class PatchTable(_Table):
+class PatchTable(SupportTable):
     """A rigid patch of the lower side."""
 
     what = "a rigid patch of the lower side, held still: a disc of a radius, or a rectangle of a size"
-    type: Literal["patch"] = "patch"
+    type: Literal["patch"]
     position: _Position
     radius: _Radius | None = None
     size: tuple[_Length, _Length] | None = Field(None, description="two lengths: along x and along y")
 
     @model_validator(mode="after")
     def _one_of_two(self) -> PatchTable:
-        if (self.radius is None) == (self.size is None):
-            raise InputError("give either radius or size" + ("; neither is given" if self.radius is None else "; both are given"))
+        check_alternatives(self, "radius", "size", needed=True)
         return self
 
-    def made(self) -> tuple[Support, ...]:
-        """Return the patch."""
+    def supports(self) -> tuple[Support, ...]:
+        """Return the patch, circular or rectangular."""
         from vibroimpact.structures.supports.patch import Patch, RectangularPatch
 
         if self.size is not None:
@@ -65,16 +69,16 @@ class PatchTable(_Table):
         return (Patch(*self.position, self.radius or 0.0),)
 
 
-class PatchesTable(_Table):
+class PatchesTable(SupportTable):
     """Four rigid patches, at the corners of a rectangle."""
 
     what = "four rigid circular patches of the lower side, at the corners of a rectangle of this spacing around the centre"
-    type: Literal["patches"] = "patches"
+    type: Literal["patches"]
     spacing: _Spacing
     radius: _Radius
 
-    def made(self) -> tuple[Support, ...]:
-        """Return the four."""
+    def supports(self) -> tuple[Support, ...]:
+        """Return the four patches."""
         from vibroimpact.structures.supports.patch import Patch
 
         return tuple(Patch(x, y, self.radius) for x, y in _corners(self.spacing))
@@ -89,134 +93,139 @@ def _not_rigid(value: Material) -> Material:
 _BarMaterial = Annotated[MaterialField, AfterValidator(_not_rigid)]
 
 
-def _plain(material: Material) -> Material:
-    """Return what determines the modes of a bar, without names and sources."""
+def _elastic_part(material: Material) -> Material:
+    """Return the properties that determine the modes of a bar, so that names and sources do not change the key of the mode store."""
     return Material(material.density, material.youngs_modulus, material.poissons_ratio)
 
 
-class BarTable(_Table):
+class BarTable(SupportTable):
     """An elastic column."""
 
     what = "an elastic round column under the plate, fixed to the ground"
-    type: Literal["bar"] = "bar"
+    type: Literal["bar"]
     position: _Position
     radius: _Radius
     length: _Length
     material: _BarMaterial
 
-    def made(self) -> tuple[Support, ...]:
+    def supports(self) -> tuple[Support, ...]:
         """Return the column."""
         from vibroimpact.structures.supports.bar import Bar
 
-        return (Bar(*self.position, self.radius, self.length, _plain(self.material)),)
+        return (Bar(*self.position, self.radius, self.length, _elastic_part(self.material)),)
 
 
-class BarsTable(_Table):
+class BarsTable(SupportTable):
     """Four elastic columns, at the corners of a rectangle."""
 
     what = "four elastic round columns, at the corners of a rectangle of this spacing around the centre"
-    type: Literal["bars"] = "bars"
+    type: Literal["bars"]
     spacing: _Spacing
     radius: _Radius
     length: _Length
     material: _BarMaterial
 
-    def made(self) -> tuple[Support, ...]:
-        """Return the four."""
+    def supports(self) -> tuple[Support, ...]:
+        """Return the four columns."""
         from vibroimpact.structures.supports.bar import Bar
 
-        return tuple(Bar(x, y, self.radius, self.length, _plain(self.material)) for x, y in _corners(self.spacing))
+        return tuple(Bar(x, y, self.radius, self.length, _elastic_part(self.material)) for x, y in _corners(self.spacing))
 
 
-class EdgeTable(_Table):
+class EdgeTable(SupportTable):
     """An edge of the plate."""
 
     what = "an edge of the plate"
-    type: Literal["edge"] = "edge"
+    type: Literal["edge"]
     edge: EdgeName
     condition: Literal["clamped", "simply-supported"]
 
-    def made(self) -> tuple[Support, ...]:
+    def supports(self) -> tuple[Support, ...]:
         """Return the edge."""
         from vibroimpact.structures.supports.edge import Edge
 
         return (Edge(self.edge, self.condition),)
 
 
-class PointTable(_Table):
+class PointTable(SupportTable):
     """A pinned point."""
 
     what = "a point of the lower side, held along some axes"
-    type: Literal["point"] = "point"
+    type: Literal["point"]
     position: _Position
     directions: _Directions = Field("z", description="the axes along which it is held")
 
-    def made(self) -> tuple[Support, ...]:
+    def supports(self) -> tuple[Support, ...]:
         """Return the point."""
         from vibroimpact.structures.supports.point import Point
 
         return (Point(*self.position, self.directions),)
 
 
-class SpringTable(_Table):
+class SpringTable(SupportTable):
     """A spring or an elastic pad."""
 
     what = "a spring under a point, or an elastic pad of a radius"
-    type: Literal["spring"] = "spring"
+    type: Literal["spring"]
     position: _Position
     stiffness: Annotated[float, Quantity("N/m", "vertical stiffness", Range(above=0))]
     horizontal_stiffness: Annotated[float, Quantity("N/m", "stiffness along x, and along y", Range(at_least=0))] = 0.0
     radius: Annotated[float, Quantity("m", "radius", Range(at_least=0))] = 0.0
 
-    def made(self) -> tuple[Support, ...]:
+    def supports(self) -> tuple[Support, ...]:
         """Return the spring."""
         from vibroimpact.structures.supports.spring import Spring
 
         return (Spring(*self.position, self.stiffness, self.horizontal_stiffness, self.radius),)
 
 
-class SetTable(_Table):
+class SetTable(SupportTable):
     """A named set of a mesh that was brought."""
 
     what = "a named set of nodes or elements of a mesh that was brought, held still along some axes"
-    type: Literal["set"] = "set"
+    type: Literal["set"]
     name: Name = Field(description="of the set")
     directions: _Directions = Field("xyz", description="the axes along which it is held")
 
-    def made(self) -> tuple[Support, ...]:
+    def supports(self) -> tuple[Support, ...]:
         """Return the set."""
         from vibroimpact.structures.supports.node_set import NodeSet
 
         return (NodeSet(self.name, self.directions),)
 
 
-_TABLES: Mapping[str, type[_Table]] = {
-    str(kind.model_fields["type"].default): kind
+_TABLES: Mapping[str, type[SupportTable]] = {
+    get_args(kind.model_fields["type"].annotation)[0]: kind
     for kind in (PatchesTable, PatchTable, BarsTable, BarTable, EdgeTable, PointTable, SpringTable, SetTable)
 }
 _ALLOWED = f"{', '.join(WORDS)}, or a table (or a list of tables) with type = {', '.join(_TABLES)}"
 
 
 def _read_supports(value: Any) -> Any:
+    """Return a keyword, or the validated tables as a tuple."""
     if isinstance(value, str):
         if value not in WORDS:
             raise InputError(f"{shown(value)} is not allowed; it must be {_ALLOWED}.{did_you_mean(value, WORDS)}")
         return value
     if isinstance(value, dict):
-        return (_read_one(value),)
+        return (_read_support(value),)
     if isinstance(value, (list, tuple)):
         check_count(len(value), MOST_ITEMS, "supports")
         found = []
         for number, item in enumerate(value):
             try:
-                found.append(item if isinstance(item, _Table) else _read_one(item))
+                found.append(item if isinstance(item, SupportTable) else _read_support(item))
             except InputError as error:
                 raise InputError(error.message, ".".join(part for part in (str(number), error.key) if part)) from None
         return tuple(found)
     raise InputError(f"{shown(value)} is not allowed; it must be {_ALLOWED}")
 
 
-def _read_one(value: Any) -> _Table:
+def _read_support(value: Any) -> SupportTable:
+    """Return a validated table of the kind that its type names.
+
+    A discriminated union of pydantic would select the kind as well, but not give these messages.
+    """
     name = value.get("type") if isinstance(value, dict) else None
     if not isinstance(name, str) or name not in _TABLES:
         if value in WORDS:
@@ -226,36 +235,38 @@ def _read_one(value: Any) -> _Table:
     return read_table(_TABLES[name], value)
 
 
+_TABLE_SCHEMAS = [{**kind.model_json_schema(), "description": kind.what} for kind in _TABLES.values()]
 _SCHEMA = {
     "description": "how the plate is held",
     "anyOf": [
         {"enum": list(WORDS)},
-        *({**kind.model_json_schema(), "description": kind.what} for kind in _TABLES.values()),
-        {"type": "array", "items": {"type": "object"}},
+        *_TABLE_SCHEMAS,
+        {"type": "array", "items": {"anyOf": _TABLE_SCHEMAS}},
     ],
 }
 SupportsField = Annotated[Any, BeforeValidator(_read_supports), WithJsonSchema(_SCHEMA)]
 
 
-def supports_of(value: str | tuple[_Table, ...]) -> tuple[Support, ...]:
-    """Return the supports that a case states."""
+def supports_of(value: str | tuple[SupportTable, ...]) -> tuple[Support, ...]:
+    """Return the supports of a validated field; a keyword holds for all four edges."""
     if isinstance(value, str):
         from vibroimpact.structures.supports.edge import Edge
 
         return () if value == "free" else tuple(Edge(edge, value) for edge in get_args(EdgeName))  # type: ignore[arg-type]
-    return tuple(support for table in value for support in table.made())
+    return tuple(support for table in value for support in table.supports())
 
 
 def _corners(spacing: tuple[float, float]) -> list[tuple[float, float]]:
+    """Return the positions [m] of the corners of a rectangle around the centre of the plate."""
     return [(0.5 * x * spacing[0], 0.5 * y * spacing[1]) for x, y in product((-1.0, 1.0), repeat=2)]
 
 
 def supports_table(value: Any) -> Any:
-    """Return supports as a case holds them."""
+    """Return supports as they are written in a resolved case file."""
     if isinstance(value, tuple):
-        return [{**table.model_dump(exclude_none=True), **_material(table)} for table in value]
+        return [{**table.model_dump(exclude_none=True, exclude={"material"}, mode="json"), **_material(table)} for table in value]
     return value
 
 
-def _material(table: _Table) -> dict[str, Any]:
+def _material(table: SupportTable) -> dict[str, Any]:
     return {"material": material_table(table.material)} if isinstance(table, (BarTable, BarsTable)) else {}

@@ -1,4 +1,9 @@
-"""How the deformation of the bodies of a case goes together with its contact law: the three treatments."""
+"""Coupling of elastic bodies to the contact law: the three treatments of local compliance.
+
+`consistent` counts each part of the deformation once: the static compliance that the retained modes of the plate lack is put in series
+with the law, and that of the modes of the sphere, which the law contains, is subtracted. `superposed` puts modes and law in series as they
+are. `identified` treats the plate as `consistent` does, and represents the sphere by a spring and a dashpot in series with the law.
+"""
 
 from __future__ import annotations
 
@@ -11,10 +16,10 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.bodies.sphere import rigid_sphere
-from vibroimpact.cases.local_section import MeasuredImpact
-from vibroimpact.cases.modes import BodyModes, compute_modes
-from vibroimpact.cases.residuals import residual_key, with_residuals
-from vibroimpact.cases.rigid import FALLS, contact_laws_of, contact_pair, elastic_names, first_speed, is_free_sphere
+from vibroimpact.cases.elastic.modes import BodyModes, compute_modes, contact_place
+from vibroimpact.cases.elastic.residuals import residual_key, with_residuals
+from vibroimpact.cases.fields.local import MeasuredImpact
+from vibroimpact.cases.rigid import PLATE_FALLS, contact_laws_of, contact_pair, elastic_names, is_free_sphere, touch_speed
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.quasi_static import QuasiStatic
 from vibroimpact.dynamics.encounter import encounter_of
@@ -31,30 +36,30 @@ from vibroimpact.structures.recipe import is_thin, model_key
 from vibroimpact.structures.sphere_compliance import FITTED, sphere_term
 from vibroimpact.structures.static_compliance import compliance_key, static_compliance
 from vibroimpact.structures.store import carry
-from vibroimpact.structures.surface import Side, place_of
+from vibroimpact.structures.surface import place_of
 
 if TYPE_CHECKING:
     from vibroimpact.cases.schema import CaseTable
 
-_LEAST_SLOPE = 0.25  # of the contact's own compliance that must be left when what the modes carry is taken out
+_LEAST_SLOPE = 0.25  # least part of the contact's own compliance that must remain after the modal compliance is subtracted
 
 
 @dataclass(frozen=True)
 class Coupling:
-    """What the dynamics need of elastic bodies, and what is told of it.
+    """Elastic bodies as the simulation needs them, and a record of how they are modelled.
 
     Parameters
     ----------
     modes : mapping of str to ModalBasis
-        By the name of the body.
+        Modal basis by the name of the body.
     rigid : ModalBasis or None
-        The rigid motions of a plate that its supports leave free to move vertically, or of a sphere in its place.
+        Rigid-body modes of a plate that its supports leave free to move vertically, or of a free sphere that replaces it.
     quasi_static : QuasiStatic
-        What is in series with the law.
+        Compliance in series with the contact law.
     facts : mapping of str to float or str
-        What was done, with numbers: names end in their units.
+        Record of the treatment and its values; names end in their units.
     models : mapping of str to ModalModel
-        The modes on their meshes.
+        Modes on their meshes by the name of the body.
     """
 
     modes: Mapping[str, ModalBasis]
@@ -65,17 +70,17 @@ class Coupling:
 
 
 def treatment_of(case: CaseTable) -> str:
-    """Return which treatment of local compliance a case has."""
+    """Return the treatment of local compliance of a case."""
     return case.contact.local.local_compliance or "consistent"
 
 
 def coupling_of(case: CaseTable, progress: Callable[[float], None] | None = None, tell: Callable[[str], None] | None = None) -> Coupling:
-    """Compute, or fetch from the store, how the elastic bodies of a case deform.
+    """Return the coupling of the bodies of a case; modes and compliances are computed, or read from the mode store.
 
     Raises
     ------
     InputError
-        If a body can't be made, the plate is not held, or the basis is ill-posed for the treatment.
+        If a body can't be made, the plate is not held under gravity, or the modes leave too little compliance to the contact.
     """
     treatment = treatment_of(case)
     bodies = compute_modes(case, progress, tell) if elastic_names(case) else {}
@@ -86,17 +91,17 @@ def coupling_of(case: CaseTable, progress: Callable[[float], None] | None = None
     linear, finite, rigid = 0.0, QuasiStatic(), None
     if "plate" in bodies:
         if not bodies["plate"].model.is_held_vertically and case.drop.gravity:
-            raise InputError(FALLS, "plate.supports")
+            raise InputError(PLATE_FALLS, "plate.supports")
         if not bodies["plate"].model.is_held_vertically:
             rigid = bodies["plate"].body.rigid_motions(bodies["plate"].model)
-        if treatment != "superposed":  # which is to be what a multibody program has: the motion of a node
-            modes["plate"], beyond = _at_its_face(bodies["plate"])
+        if treatment != "superposed":  # which reproduces multibody programs: contact at a node, without corrections
+            modes["plate"], beyond = _basis_at_face(bodies["plate"])
             if beyond:
                 facts["plate_theory_inertia_m_s2_N"] = beyond
         carried = _compliance(modes["plate"])
         facts["plate_modal_compliance_m_N"] = carried
         if treatment != "superposed":
-            static = _plate_compliance(bodies["plate"], tell)
+            static = _plate_compliance(bodies["plate"], tell)  # what the truncated modes lack of it is put in series
             facts["plate_static_compliance_m_N"] = static
             linear += static - carried
             modes["plate"] = with_residuals(bodies["plate"], modes["plate"], tell)
@@ -106,7 +111,8 @@ def coupling_of(case: CaseTable, progress: Callable[[float], None] | None = None
         patch = min(_contact_radius(case), FITTED[1] * case.sphere.radius)
         finite, facts["finite_sphere_factor"] = _finite_size(case, patch)
         if "sphere" in bodies:
-            modes["sphere"] = _averaged(bodies["sphere"], patch)
+            # the law already contains the quasi-static compliance of the sphere, so that of the modes is subtracted
+            modes["sphere"] = _averaged_over_patch(bodies["sphere"], patch)
             linear -= _compliance(modes["sphere"])
             facts["contact_patch_m"] = patch
     if "sphere" in bodies:
@@ -115,13 +121,13 @@ def coupling_of(case: CaseTable, progress: Callable[[float], None] | None = None
     if linear:
         facts["series_compliance_m_N"] = linear
     if series:
-        _refuse_ill_posed(case, series, facts)
+        _check_well_posed(case, series, facts)
     return Coupling(modes, rigid, series, facts, {name: body.model for name, body in bodies.items()})
 
 
 def _free_sphere(case: CaseTable) -> ModalBasis:
-    """Return how a sphere below moves that nothing holds: along the line of impact, which goes through its centre."""
-    assert case.plate.radius is not None  # it is a sphere
+    """Return the rigid-body mode of a free sphere below: translation along the line of impact, which passes through its centre."""
+    assert case.plate.radius is not None  # the caller has checked it
     mass = float(rigid_sphere(case.plate.radius, case.plate.material).mass)
     along, up = np.zeros(1), np.array([[0.0, 0.0, math.sqrt(mass)]])
     return ModalBasis(along, along, np.array([mass**-0.5]), up, mass=mass, rotation=np.zeros((1, 3)))
@@ -130,21 +136,21 @@ def _free_sphere(case: CaseTable) -> ModalBasis:
 def carried_modes(
     case: CaseTable, progress: Callable[[float], None] | None = None, tell: Callable[[str], None] | None = None
 ) -> dict[str, bytes]:
-    """Return the entries of the store that a case needs, so that a process on another disk computes no modes for it.
+    """Return the entries of the mode store that a case needs, for a process that does not share the file system.
 
-    That process hands them to `vibroimpact.structures.store.receive`. What is not in the store yet is computed.
+    That process passes them to `vibroimpact.structures.store.receive`. Entries that are missing are computed.
 
     Raises
     ------
     InputError
-        What `coupling_of` raises.
+        As `coupling_of`.
     """
     keys: list[str] = []
     for name, body in (compute_modes(case, progress, tell) if elastic_names(case) else {}).items():
         keys.append(model_key(body.body.recipe))
         if name == "plate" and treatment_of(case) != "superposed":
             _plate_compliance(body, tell)
-            keys.append(compliance_key(body.body.recipe, *_met(body)))
+            keys.append(compliance_key(body.body.recipe, *contact_place(body)))
             if body.body.watched:
                 with_residuals(body, body.basis, tell)
                 keys.append(residual_key(body))
@@ -157,16 +163,12 @@ def _compliance(basis: ModalBasis) -> float:
 
 
 def _plate_compliance(body: BodyModes, tell: Callable[[str], None] | None) -> float:
-    return static_compliance(body.body.recipe, *_met(body), tell)
-
-
-def _met(body: BodyModes) -> tuple[tuple[float, float], Side]:
-    """Return where the other body is met, and on which side."""
-    return place_of(body.model.mesh, body.body.contact, body.body.side), body.body.side
+    """Return the static compliance of a plate at the contact point, with all its modes [m/N]."""
+    return static_compliance(body.body.recipe, *contact_place(body), tell)
 
 
 def _finite_size(case: CaseTable, patch: float) -> tuple[QuasiStatic, float]:
-    """Return what a sphere of finite size lacks of the half space, and its factor at a contact radius [m]."""
+    """Return the compliance correction of a sphere of finite size relative to a half space, and its factor at a contact radius [m]."""
     ratio, radius = case.sphere.material.poissons_ratio, case.sphere.radius
     term, force = sphere_term(ratio), 4.0 / 3.0 * contact_pair(case).effective_modulus * radius**2
     if not math.isfinite(force):
@@ -176,58 +178,61 @@ def _finite_size(case: CaseTable, patch: float) -> tuple[QuasiStatic, float]:
     return QuasiStatic(0.0, unit, factors, force), float(term.factor(patch / radius))
 
 
-def _averaged(body: BodyModes, radius: float) -> ModalBasis:
-    """Return the modes of a sphere, the contact point averaged over the contact patch: at a point they have no limit."""
-    place, side = _met(body)
+def _averaged_over_patch(body: BodyModes, radius: float) -> ModalBasis:
+    """Return the modes of a sphere with the contact displacement averaged over the contact patch.
+
+    The compliance at a point does not converge with the number of modes.
+    """
+    place, side = contact_place(body)
     shapes = body.model.averaged(place, radius, side, "the contact patch")
     return replace(body.basis, contact=shapes[:, 2])
 
 
-def _at_its_face(body: BodyModes) -> tuple[ModalBasis, float]:
-    """Return the modes of a plate, contact point and points watched on its face; and what plate theory lacks beyond its modes [m s^2/N].
+def _basis_at_face(body: BodyModes) -> tuple[ModalBasis, float]:
+    """Return the modes of a plate at its face, at the contact point and the sensors, and the inertia that plate theory lacks [m s^2/N].
 
-    Solids have a face. By the thin theory a plate has none, and all points above one another move alike.
+    The modes of solid elements, and of thin plate theory, in which all points of a normal move alike, are returned unchanged.
     """
     recipe = body.body.recipe
     if not body.model.mesh.is_flat or is_thin(recipe):
         return body.basis, 0.0
     material = Material(recipe.density, recipe.youngs_modulus, recipe.poissons_ratio)
 
-    def seen(place: tuple[float, float], deflection: Floats) -> Floats:
+    def at_face(place: tuple[float, float], deflection: Floats) -> Floats:
         return face_shapes(body.model, material, place, deflection)
 
     points = {
-        name: np.column_stack([shapes[:, :2], seen(place_of(body.model.mesh, *body.body.watched[name]), shapes[:, 2])])
+        name: np.column_stack([shapes[:, :2], at_face(place_of(body.model.mesh, *body.body.watched[name]), shapes[:, 2])])
         for name, shapes in body.basis.points.items()
     }
-    contact = seen(_met(body)[0], body.basis.contact)
+    contact = at_face(contact_place(body)[0], body.basis.contact)
     return replace(body.basis, contact=contact, points=points), inertia_beyond_bending(body.model.thickness, material)
 
 
 def _first_contact(case: CaseTable) -> tuple[CompliantLaw, float]:
-    """Return the law of the first impact and how deep it would get undamped between rigid bodies [m]."""
+    """Return the law of the first impact, and its largest indentation without damping between rigid bodies [m]."""
     law = contact_laws_of(case)[0]
     if not isinstance(law, CompliantLaw):
         raise InputError(f"{law.name} gives no force, and bodies that deform need one; take another law", "contact.law")
-    mass, gravity, speed = (np.array([value]) for value in (contact_pair(case).effective_mass, case.drop.gravity, first_speed(case)))
+    mass, gravity, speed = (np.array([value]) for value in (contact_pair(case).effective_mass, case.drop.gravity, touch_speed(case)))
     return law, float(encounter_of(law, mass, gravity, speed).depth[0])
 
 
 def _contact_radius(case: CaseTable) -> float:
-    """Return Hertz's contact radius of the first impact at its deepest [m]."""
+    """Return Hertz's contact radius at the largest indentation of the first impact [m]."""
     return math.sqrt(case.sphere.radius * _first_contact(case)[1])
 
 
-def _refuse_ill_posed(case: CaseTable, series: QuasiStatic, facts: Mapping[str, float | str]) -> None:
-    """Raise if what is taken out of the contact leaves too little of it, anywhere up to the deepest point.
+def _check_well_posed(case: CaseTable, series: QuasiStatic, facts: Mapping[str, float | str]) -> None:
+    """Check that enough compliance of the contact remains after that of the modes is subtracted, up to the largest indentation.
 
     Raises
     ------
     InputError
-        With the reason, and what can be done.
+        If not; the message gives the cause and a remedy.
     """
     law, depth = _first_contact(case)
-    local = LocalContact(law, series, first_speed(case))
+    local = LocalContact(law, series, touch_speed(case))
     delta = np.linspace(0.0, 1.2 * depth, 200)[1:]
     slopes = np.gradient(local.approach_at(delta), delta)
     if slopes.min() >= _LEAST_SLOPE:
@@ -243,11 +248,11 @@ def _refuse_ill_posed(case: CaseTable, series: QuasiStatic, facts: Mapping[str, 
 
 
 def _rebound(case: CaseTable, measured: MeasuredImpact) -> dict[str, float]:
-    """Return the rebound that was measured as `identify_local_element` takes it."""
+    """Return the measured rebound as a keyword argument of `identify_local_element`."""
     if measured.separation_speed is not None:
         return {"separation_speed": measured.separation_speed}
     if measured.restitution is not None:
-        return {"separation_speed": measured.restitution * first_speed(case)}
+        return {"separation_speed": measured.restitution * touch_speed(case)}
     height = measured.rebound_height or 0.0
     if height <= case.sphere.radius:
         words = f"{height:g} m is no rebound: it is the height of the centre, which rests at {case.sphere.radius:g} m"
@@ -255,15 +260,15 @@ def _rebound(case: CaseTable, measured: MeasuredImpact) -> dict[str, float]:
     return {"rebound_height": height}
 
 
-def coupled(
+def couple_bodies(
     case: CaseTable, problem: Problem, progress: Callable[[float], None] | None = None, tell: Callable[[str], None] | None = None
 ) -> Problem:
-    """Return the problem of a case with its bodies deforming; `problem` is that of rigid ones.
+    """Return the problem of a case with its elastic bodies and its local element, made from the problem with rigid bodies.
 
     Raises
     ------
     InputError
-        What `coupling_of` raises; and if no local element fits what was measured.
+        As `coupling_of`; and if no local element fits the measurement.
     """
     coupling = coupling_of(case, progress, tell)
     bodies = {name: replace(getattr(problem, name), modes=basis) for name, basis in coupling.modes.items()}
@@ -282,7 +287,7 @@ def coupled(
     if local.local_compliance != "identified":
         return found
     if local.measured is None:
-        assert local.local_stiffness is not None  # the section has seen to it
+        assert local.local_stiffness is not None  # validated by the section
         assert local.local_damping is not None
         given = (local.local_stiffness, local.local_damping)
         facts = {**coupling.facts, "local_stiffness_N_m": given[0], "local_damping_N_s_m": given[1]}
@@ -292,7 +297,7 @@ def coupled(
 
 
 def _identified(case: CaseTable, measured: MeasuredImpact, problem: Problem) -> tuple[tuple[float, float], dict[str, float | str]]:
-    """Return the local element that gives what was measured, and what is told of it."""
+    """Return the local element identified from the measurement, and its facts: stiffness and damping, with deviations if known."""
     try:
         element = identify_local_element(problem, measured.max_force, **_rebound(case, measured))
     except InputError as error:

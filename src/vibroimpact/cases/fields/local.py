@@ -1,4 +1,4 @@
-"""How the local deformation of elastic bodies goes together with the contact law, in the [contact] section."""
+"""The keys of the [contact] section that combine the local deformation of elastic bodies with the contact law."""
 
 from __future__ import annotations
 
@@ -6,8 +6,8 @@ from typing import Annotated, Literal
 
 from pydantic import Field, StrictBool, model_validator
 
-from vibroimpact.cases.quantities import Quantity
-from vibroimpact.cases.section import Section
+from vibroimpact.cases.fields.quantities import Quantity
+from vibroimpact.cases.fields.section import Section
 from vibroimpact.errors import InputError
 from vibroimpact.ranges import Range
 
@@ -23,7 +23,7 @@ class MeasuredImpact(Section):
     plate: Literal["as here", "rigid"] = Field("as here", description="what it fell on: the plate of the case, or a rigid one")
 
     @model_validator(mode="after")
-    def _one_rebound(self) -> MeasuredImpact:
+    def _check_rebound(self) -> MeasuredImpact:
         given = [key for key in ("rebound_height", "separation_speed", "restitution") if getattr(self, key) is not None]
         if len(given) != 1:
             raise InputError(f"give one of rebound_height, separation_speed and restitution, not {' and '.join(given) or 'none'}")
@@ -42,7 +42,7 @@ class LocalSection(Section):
     measured: MeasuredImpact | None = Field(None, description="what stiffness and damping of the local element are identified from")
 
     @model_validator(mode="after")
-    def _whole(self) -> LocalSection:
+    def _check_keys(self) -> LocalSection:
         keys = ("local_stiffness", "local_damping", "measured")
         given = [key for key in keys if getattr(self, key) is not None]
         if self.local_compliance != "identified" and given:

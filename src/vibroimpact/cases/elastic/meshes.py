@@ -1,4 +1,4 @@
-"""The meshes of the elastic bodies of a case, made or read, with all that must lie on them: told by the keys at which it stands."""
+"""Meshes of the elastic bodies of a case, generated or read, with checks that contact, sensors and supports lie on them."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.sparse import csr_array
 
-from vibroimpact.cases.build_elastic import elastic_bodies
-from vibroimpact.cases.item_labels import in_list
+from vibroimpact.cases.elastic.bodies import elastic_bodies
+from vibroimpact.cases.fields.item_labels import item_label
 from vibroimpact.errors import InputError
 from vibroimpact.structures.geometry import check_mesh, mass_properties
 from vibroimpact.structures.mesh import Mesh
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 def meshes_of(case: CaseTable) -> dict[str, Mesh]:
-    """Return the mesh of each elastic body of a case; nothing is assembled.
+    """Return the mesh of each elastic body of a case by name; no matrices are assembled.
 
     Raises
     ------
@@ -34,7 +34,7 @@ def meshes_of(case: CaseTable) -> dict[str, Mesh]:
     for name, body in elastic_bodies(case).items():
         try:
             mesh = body.recipe.shape.mesh(body.recipe.supports)
-            if isinstance(body.recipe.shape, BroughtMesh):  # what is meshed here is sound
+            if isinstance(body.recipe.shape, BroughtMesh):  # generated meshes are valid
                 check_mesh(mesh)
         except InputError as error:
             raise InputError(error.message, f"{name}.{error.key}".rstrip(".")) from None
@@ -43,7 +43,7 @@ def meshes_of(case: CaseTable) -> dict[str, Mesh]:
         _check_spot(mesh, body.contact, body.side, at)
         names = [{"name": one} for one in body.watched]
         for number, (spot, face) in enumerate(body.watched.values()):
-            _check_spot(mesh, spot, face, f"{in_list('sensors', names, number)}.position")
+            _check_spot(mesh, spot, face, f"{item_label('sensors', names, number)}.position")
         if name == "plate":
             _check_supports(case, body, mesh)
         found[name] = mesh
@@ -51,6 +51,7 @@ def meshes_of(case: CaseTable) -> dict[str, Mesh]:
 
 
 def _check_spot(mesh: Mesh, spot: Spot, side: Side, key: str) -> None:
+    """Check that a point lies on a side of a mesh."""
     try:
         surface_motion(mesh, np.array([place_of(mesh, spot, side)]), side)
     except InputError as error:
@@ -58,16 +59,17 @@ def _check_spot(mesh: Mesh, spot: Spot, side: Side, key: str) -> None:
 
 
 def _check_supports(case: CaseTable, body: ElasticBody, mesh: Mesh) -> None:
-    """Raise unless each support finds something to hold, that no other one holds."""
+    """Check that each support finds degrees of freedom to constrain that no other support constrains."""
     tables = case.plate.supports if isinstance(case.plate.supports, tuple) else ()
+    # constraints depend on the mesh and its mass properties only, so zero matrices and unit density serve
     dofs = mesh.dofs_per_node * len(mesh.nodes)
     nothing = csr_array((dofs, dofs))
     thickness = case.plate.size[2] if case.plate.size is not None and mesh.is_flat else 0.0
     constraints = Constraints(Structure(mesh, nothing, nothing, mass_properties(mesh, 1.0, thickness or 1.0), thickness))
     kinds = [{"type": table.type} for table in tables]
     for number, table in enumerate(tables):
-        for support in table.made():
+        for support in table.supports():
             try:
                 support.hold(constraints)
             except InputError as error:
-                raise InputError(error.message, in_list("plate.supports", kinds, number)) from None
+                raise InputError(error.message, item_label("plate.supports", kinds, number)) from None

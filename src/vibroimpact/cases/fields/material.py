@@ -1,4 +1,4 @@
-"""A material in a case: by its name, or by its numbers."""
+"""The material field: the name of a material of the library, or its properties."""
 
 from __future__ import annotations
 
@@ -7,9 +7,9 @@ from typing import Annotated, Any
 
 from pydantic import BeforeValidator, WithJsonSchema
 
-from vibroimpact.cases.bounds import Name
-from vibroimpact.cases.quantities import Quantity
-from vibroimpact.cases.section import Section
+from vibroimpact.cases.fields.bounds import Name
+from vibroimpact.cases.fields.quantities import Quantity
+from vibroimpact.cases.fields.section import Section
 from vibroimpact.errors import InputError
 from vibroimpact.materials import RIGID, Material, find_material
 from vibroimpact.ranges import Range
@@ -47,7 +47,7 @@ MaterialField = Annotated[Material, BeforeValidator(_read_material), WithJsonSch
 
 
 def material_table(material: Material) -> dict[str, Any] | str:
-    """Return a material as a case holds it in full."""
+    """Return a material as it is written in a resolved case file."""
     if material is RIGID:
         return RIGID.name
     return {key: value for key, value in asdict(material).items() if key in InlineMaterial.model_fields and value not in (None, "")}

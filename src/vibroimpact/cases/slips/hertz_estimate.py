@@ -1,4 +1,4 @@
-"""What a case tells of its drop before anything is computed, to which its numbers are held."""
+"""Estimates of the first impact by Hertz's theory, against which the values of a case are checked."""
 
 from __future__ import annotations
 
@@ -10,15 +10,15 @@ from typing import Any
 
 import numpy as np
 
-from vibroimpact.cases.conditions import Conditions, Seen
+from vibroimpact.cases.conditions import Conditions, DropSummary
 from vibroimpact.contact.pair import hertz_stiffness
 from vibroimpact.contact.power_law import HERTZ_TIME
 from vibroimpact.materials import Material
 
 
 @dataclass(frozen=True)
-class Facts:
-    """What follows from a case by Hertz's undamped contact of its two bodies; NaN of what does not.
+class HertzEstimate:
+    """Peak values of the first impact of a case by Hertz's theory without damping; NaN where they can't be estimated.
 
     Parameters
     ----------
@@ -30,7 +30,7 @@ class Facts:
 
     @cached_property
     def _conditions(self) -> Conditions:
-        return Conditions(self.case, Seen())
+        return Conditions(self.case, DropSummary())
 
     @property
     def plate(self) -> Material:
@@ -45,7 +45,7 @@ class Facts:
 
     @property
     def across(self) -> float:
-        """The longer of length and width of the plate [m]."""
+        """Larger of length and width of the plate [m]."""
         return max(self.size[:2])
 
     @property
@@ -60,7 +60,7 @@ class Facts:
 
     @cached_property
     def speed(self) -> float:
-        """Speed at the first touch [m/s]."""
+        """Approach speed of the first impact [m/s]."""
         drop = self.case["drop"]
         if drop.get("speed") is not None:
             return float(drop["speed"])
@@ -68,7 +68,7 @@ class Facts:
 
     @property
     def touch(self) -> float:
-        """Time of the first touch [s]."""
+        """Time of first contact [s]."""
         return 0.0 if self.case["drop"].get("speed") is not None else self.speed / self.case["drop"]["gravity"]
 
     @cached_property
@@ -94,20 +94,20 @@ class Facts:
 
     @property
     def critical_damping(self) -> float:
-        """Critical damping of the sphere on the contact as stiff as it is at the largest indentation [N s/m]."""
+        """Critical damping of the sphere with the tangent stiffness of the contact at the largest indentation [N s/m]."""
         return 2.0 * math.sqrt(self.mass * 1.5 * self.stiffness * math.sqrt(self.depth))
 
     @property
     def exponent(self) -> float:
-        """Exponent of the law's elastic force."""
+        """Exponent of the elastic force of the law."""
         known: Mapping[str, Any] = self._conditions.law.__dataclass_fields__
         if "exponent" in known:
-            return float(self._conditions.of_law("exponent", 1.5))
+            return float(self._conditions.law_parameter("exponent", 1.5))
         return 1.5 if "stiffness" in known and "1.5" in known["stiffness"].metadata["unit"] else 1.0
 
     @property
-    def told_by_the_bodies(self) -> set[str]:
-        """Parameters of the law that have the values which the two bodies give, so that nobody wrote them."""
+    def derived_parameters(self) -> set[str]:
+        """Names of the parameters of the law whose values equal those derived from the bodies, so that the user did not give them."""
         bodies = self._conditions.materials.values()
         strengths = [material.yield_strength for material in bodies if material.yield_strength is not None]
         given = {

@@ -1,4 +1,4 @@
-"""Fields of a case that are quantities: a number in SI, or a string with a unit."""
+"""Quantity fields: a number in SI, or a string with a unit."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ from vibroimpact.shown import shown
 from vibroimpact.units.reading import to_si
 
 SMALLEST, LARGEST = 1e-50, 1e50
-"""Magnitudes of a quantity in SI; squares and products of what lies between them are numbers that a computer has."""
+"""Range of the magnitude of a nonzero quantity in SI, within which squares and products neither overflow nor underflow."""
 
 
 def read_quantity(value: Any, unit: str, allowed: Range) -> float:
-    """Return a quantity in SI, checked against its range.
+    """Return the value of a quantity in SI after checking its range.
 
     Raises
     ------
     InputError
-        If it can't be read, or lies outside the range.
+        If it can't be read, or lies outside its range.
 
     Examples
     --------
@@ -40,7 +40,7 @@ def read_quantity(value: Any, unit: str, allowed: Range) -> float:
 
 @dataclass(frozen=True)
 class Quantity:
-    """The annotation of a quantity field: SI unit, meaning and range; pydantic reads and describes it by this."""
+    """Annotation of a quantity field with its SI unit, meaning and range, from which pydantic validates it and makes its JSON schema."""
 
     unit: str
     meaning: str

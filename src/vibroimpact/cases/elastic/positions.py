@@ -1,12 +1,12 @@
-"""Are the supports and the sensors of a plate on it? Told by the keys at which they stand, before anything is computed."""
+"""Checks that the supports and sensors of a plate lie on it, before it is meshed."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-from vibroimpact.cases.elastic_fields import BroughtMeshTable
-from vibroimpact.cases.item_labels import in_list
+from vibroimpact.cases.fields.elastic_body import BroughtMeshTable
+from vibroimpact.cases.fields.item_labels import item_label
 from vibroimpact.cases.slips.lengths import likely_lengths
 from vibroimpact.errors import InputError
 from vibroimpact.structures.rectangle import CLOSEST
@@ -14,12 +14,12 @@ from vibroimpact.structures.rectangle import CLOSEST
 if TYPE_CHECKING:
     from vibroimpact.cases.schema import CaseTable
 
-_ROUNDING = 1.0 + 1e-9
-_RIGID = ("patch", "patches", "bar", "bars")  # whose rim is an edge of elements
+_ROUNDING = 1.0 + 1e-9  # relative tolerance
+_RIGID = ("patch", "patches", "bar", "bars")  # the mesh follows their rims
 
 
-def check_places(case: CaseTable) -> None:
-    """Raise unless the supports and the sensors of an elastic plate that is meshed here lie on it.
+def check_positions(case: CaseTable) -> None:
+    """Check that the supports and sensors of an elastic plate with a generated mesh lie on it.
 
     Raises
     ------
@@ -37,14 +37,14 @@ def check_places(case: CaseTable) -> None:
             _check_point(sensor.position, half, "position")
         except InputError as error:
             names = [{"name": sensor.name} for sensor in case.sensors]
-            raise InputError(error.message, f"{in_list('sensors', names, number)}.position") from None
+            raise InputError(error.message, f"{item_label('sensors', names, number)}.position") from None
     tables = plate.supports if isinstance(plate.supports, tuple) else ()
     for number, table in enumerate(tables):
         try:
             _check_support(table, half)
         except InputError as error:
             kinds = [{"type": table.type} for table in tables]
-            raise InputError(error.message, f"{in_list('plate.supports', kinds, number)}.{error.key}".rstrip(".")) from None
+            raise InputError(error.message, f"{item_label('plate.supports', kinds, number)}.{error.key}".rstrip(".")) from None
 
 
 def _check_point(position: Sequence[float], half: tuple[float, float], key: str) -> None:
@@ -53,7 +53,7 @@ def _check_point(position: Sequence[float], half: tuple[float, float], key: str)
 
 
 def _check_support(table: Any, half: tuple[float, float]) -> None:
-    """Raise unless a support lies on the plate: its centre, or those of four, and its rim."""
+    """Check that a support lies on the plate: its centre, or those of a group of four, and its rim."""
     if table.type == "set":
         raise InputError(f'a plate that is meshed here has no set "{table.name}"; give patches, bars, edges, points or springs')
     centre = getattr(table, "position", None)
@@ -74,7 +74,7 @@ def _check_support(table: Any, half: tuple[float, float]) -> None:
         return
     radius = getattr(table, "radius", None) or 0.0
     is_rigid = table.type in _RIGID
-    least = CLOSEST * radius if is_rigid else radius - 1e-9 * max(half)  # rims are held to it as exactly as meshes hold them
+    least = CLOSEST * radius if is_rigid else radius - 1e-9 * max(half)  # with the tolerance of supports on meshes
     if least > min(room):
         margin = f"; between it and the edge must be at least {CLOSEST - 1.0:.2g} radii" if is_rigid else ""
         words = f"{radius:g} m around {_shown(centre)} m reaches beyond the plate, {_reaches(half)}{margin}"
@@ -82,7 +82,7 @@ def _check_support(table: Any, half: tuple[float, float]) -> None:
 
 
 def _reaches(half: Sequence[float]) -> str:
-    """Return how far a plate reaches from its centre, in words."""
+    """Return the extent of a plate from its centre in words."""
     return f"which reaches to {_shown(half)} m from its centre"
 
 

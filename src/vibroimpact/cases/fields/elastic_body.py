@@ -1,4 +1,4 @@
-"""The keys of a body in a case that say how it deforms."""
+"""The fields of the [sphere] and [plate] sections that describe an elastic body: mesh, modes and reduction, and their checks."""
 
 from __future__ import annotations
 
@@ -8,15 +8,15 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
 
-from vibroimpact.cases.quantities import Quantity
-from vibroimpact.cases.section import Section, read_table
+from vibroimpact.cases.fields.quantities import Quantity
+from vibroimpact.cases.fields.section import Section, check_alternatives, read_table
 from vibroimpact.errors import InputError
 from vibroimpact.files.reading import input_file_digest, with_path
 from vibroimpact.meshes.text_files import MESH
 from vibroimpact.ranges import Range
 from vibroimpact.shown import shown
 
-if TYPE_CHECKING:  # they load sparse matrices, which a case of rigid bodies does without
+if TYPE_CHECKING:  # not imported at run time, as a case with rigid bodies does not need scipy.sparse
     from vibroimpact.structures.mesh import Mesh
     from vibroimpact.structures.recipe import BroughtMesh, Place, Reduction
 
@@ -25,11 +25,11 @@ DEFAULT_MODES = {"sphere": 20, "plate": 100}
 
 _Size = Annotated[float, Quantity("m", "largest side of an element", Range(above=0))]
 _Count = Annotated[int, Field(ge=1, strict=True)]
-Kind = Literal["hex8", "hex20", "hex27", "tet4", "tet10"]
+ElementKind = Literal["hex8", "hex20", "hex27", "tet4", "tet10"]
 
 
-def _one_of_a_unit(value: Any) -> Any:
-    """Return "1 mm" for "mm"."""
+def _one_unit(value: Any) -> Any:
+    """Return one of a unit that is given without a number: "1 mm" for "mm"."""
     return f"1 {value}" if isinstance(value, str) and value.strip().isalpha() else value
 
 
@@ -37,17 +37,17 @@ class BroughtMeshTable(Section):
     """A mesh, or a geometry, from a file."""
 
     file: str = Field(description="Nastran (.bdf, .dat), Abaqus (.inp), Gmsh (.msh), or with the extra mesh STEP (.step) and BREP (.brep)")
-    unit: Annotated[float, Quantity("m", "unit of its coordinates", Range(above=0)), BeforeValidator(_one_of_a_unit)] = 1.0
+    unit: Annotated[float, Quantity("m", "unit of its coordinates", Range(above=0)), BeforeValidator(_one_unit)] = 1.0
     element_size: _Size | None = None
     contact: str | None = Field(None, description="a named set: the contact point is its middle")
 
     def brought(self) -> BroughtMesh:
-        """Return the mesh, to be read when it is needed.
+        """Return the mesh, which is identified by the checksum of its file and read when it is first used.
 
         Raises
         ------
         InputError
-            If there is no such file.
+            If the file can't be read.
         """
         from vibroimpact.structures.recipe import BroughtMesh
 
@@ -58,7 +58,7 @@ class BroughtMeshTable(Section):
         return BroughtMesh(json.dumps([content, Path(self.file).suffix.lower(), self.unit, self.element_size]), self.read)
 
     def read(self) -> Mesh:
-        """Read the mesh [m]."""
+        """Read the mesh, with coordinates in metres."""
         from vibroimpact.meshes.mesh_file import read_mesh
 
         try:
@@ -74,7 +74,7 @@ class SphereMeshTable(Section):
     elements_across: Annotated[int, Field(ge=4, multiple_of=2, strict=True)] | None = Field(
         None, description="elements from pole to pole, even and at least 4"
     )
-    kind: Kind = Field("hex27", description="kind of element")
+    kind: ElementKind = Field("hex27", description="kind of element")
     grading: Annotated[float, Quantity("", "how many times smaller elements are at the contact point", Range(at_least=1))] = 1.0
 
 
@@ -84,7 +84,7 @@ class PlateMeshTable(Section):
     element_size: _Size | None = None
     elements: _Count | None = Field(None, description='about how many elements in all, instead of element_size; only of element = "solid"')
     layers: _Count | None = Field(None, description='elements through the thickness; only of element = "solid"')
-    kind: Kind | None = Field(None, description='kind of element; only of element = "solid"')
+    kind: ElementKind | None = Field(None, description='kind of element; only of element = "solid"')
     splits: Annotated[int, Field(ge=0, le=6, strict=True)] | None = Field(
         None, description='how often elements along edges and at the rims of patches are split in four; only of element = "solid"'
     )
@@ -98,12 +98,13 @@ class PlateMeshTable(Section):
 
     @model_validator(mode="after")
     def _one_of_two(self) -> PlateMeshTable:
-        if self.element_size is not None and self.elements is not None:
-            raise InputError("give either element_size or elements; both are given")
+        check_alternatives(self, "element_size", "elements", needed=False)
         return self
 
 
-def _mesh_reader(kind: type[Section]) -> Any:
+def _mesh_field(kind: type[Section]) -> Any:
+    """Return the type of a mesh field: a file name, a table with a file, or a table of the given kind for a generated mesh."""
+
     def read(value: Any) -> Any:
         if isinstance(value, Section) or value is None:
             return value
@@ -119,8 +120,8 @@ def _mesh_reader(kind: type[Section]) -> Any:
     return Annotated[Any, BeforeValidator(read), WithJsonSchema({"description": "a file, or how the mesh is made here", "anyOf": schemas})]
 
 
-SphereMeshField = _mesh_reader(SphereMeshTable)
-PlateMeshField = _mesh_reader(PlateMeshTable)
+SphereMeshField = _mesh_field(SphereMeshTable)
+PlateMeshField = _mesh_field(PlateMeshTable)
 
 ModesField = Annotated[int, Field(ge=1, le=MOST_MODES, strict=True)]
 FrequencyField = Annotated[float, Quantity("Hz", "all modes up to this frequency", Range(above=0))]
@@ -130,12 +131,12 @@ _ELASTIC_KEYS = ("modes", "max_frequency", "damping", "supports", "mesh", "reduc
 
 
 def check_elastic(section: Any) -> None:
-    """Raise unless the keys of a body fit one another, and its model.
+    """Check the keys of a body against each other and against its model, rigid or elastic.
 
     Raises
     ------
     InputError
-        With the key that does not.
+        With the invalid key.
     """
     if section.model == "rigid":
         for key in _ELASTIC_KEYS:
@@ -144,12 +145,11 @@ def check_elastic(section: Any) -> None:
                 continue
             if key == "supports" and section.radius is not None:
                 if value == "free":
-                    continue  # a sphere in the place of the plate, which flies off
+                    continue  # a sphere below that moves freely
                 raise InputError('a sphere in the place of the plate is held fixed, or "free"', key)
             raise InputError(f'a rigid body does not take it; add model = "elastic", or leave out {key}', key)
         return
-    if section.modes is not None and section.max_frequency is not None:
-        raise InputError("give either modes or max_frequency; both are given", "modes")
+    check_alternatives(section, "modes", "max_frequency", needed=False, key="modes")
     if section.reduction == "craig-bampton" and section.attachment_mode:
         raise InputError("the constraint modes of craig-bampton hold it already; leave it out", "attachment_mode")
     if section.material.name == "rigid":
@@ -157,12 +157,12 @@ def check_elastic(section: Any) -> None:
 
 
 def check_plate(section: Any) -> None:
-    """Check the keys of an elastic plate, or of a sphere that takes the plate's place.
+    """Check the keys of an elastic plate, or of a sphere that replaces the plate.
 
     Raises
     ------
     InputError
-        With the key that is wrong.
+        With the invalid key.
     """
     if section.radius is not None:
         if section.size is not None:
@@ -174,6 +174,7 @@ def check_plate(section: Any) -> None:
             raise InputError('"rigid" has no density, and a sphere that is free needs a mass', "material")
     if section.model == "rigid":
         return
+    # an elastic plate: its size, supports and mesh keys must suit its elements
     mesh = section.mesh
     brought = isinstance(mesh, BroughtMeshTable)
     if section.size is None and not brought:
@@ -189,13 +190,13 @@ def check_plate(section: Any) -> None:
                 raise InputError(f'element = "{section.element or "plate"}" does not take it', f"mesh.{key}")
 
 
-def check_below(case: Any) -> None:
-    """Check how a sphere that takes the place of the plate is met.
+def check_sphere_below(case: Any) -> None:
+    """Check a case in which a sphere replaces the plate: a central impact of bodies that deform only in their contact.
 
     Raises
     ------
     InputError
-        With the key that is wrong.
+        With the invalid key.
     """
     local = case.contact.local
     if any(case.drop.position):
@@ -207,7 +208,7 @@ def check_below(case: Any) -> None:
 
 
 def reduction_of(body: Literal["sphere", "plate"], section: Any, place: Place) -> Reduction:
-    """Return which modes of a body a case asks for; the place is that of the contact."""
+    """Return the modal reduction of a body with its contact point at `place`."""
     from vibroimpact.structures.recipe import Reduction
 
     number = DEFAULT_MODES[body] if section.modes is None and section.max_frequency is None else section.modes

@@ -1,37 +1,37 @@
-"""What the numbers and tables of lists in a case are called, so that nobody has to count from 0."""
+"""Labels of list items in messages: names or ordinals in place of indices counted from 0."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from typing import Any
 
-NUMBERS: dict[str, tuple[str, ...]] = {"position": ("x", "y"), "size": ("length", "width", "thickness")}
-"""What the numbers of a list are called, such as in "drop.position.x"."""
+NUMBER_LABELS: dict[str, tuple[str, ...]] = {"position": ("x", "y"), "size": ("length", "width", "thickness")}
+"""Labels of the numbers of a list, such as in "drop.position.x"."""
 
-_LONGEST = 40  # of a name that is shown
+_LONGEST = 40  # characters of a name that serves as a label
 
 
-def in_list(key: str, items: Sequence[Any], number: int) -> str:
-    """Return the key of one of a list: by its name, such as sensors."a1", or by its place, counted from 1, if there are several.
+def item_label(key: str, items: Sequence[Any], number: int) -> str:
+    """Return the key of a list item with its name, such as sensors."a1", or with its ordinal if the list has several items.
 
     Parameters
     ----------
     key : str
-        That of the list.
+        Key of the list.
     items : sequence
-        What is in it.
+        Items of the list.
     number : int
-        Which one is meant, from 0.
+        Index of the item, from 0.
 
     Examples
     --------
-    >>> in_list("sensors", [{"name": "a1"}, {"rate": 5e4}], 0), in_list("sensors", [{"name": "a1"}, {"rate": 5e4}], 1)
+    >>> item_label("sensors", [{"name": "a1"}, {"rate": 5e4}], 0), item_label("sensors", [{"name": "a1"}, {"rate": 5e4}], 1)
     ('sensors."a1"', 'sensors (the 2nd)')
-    >>> in_list("drop.position", [0.1, 0.0], 1), in_list("plate.supports", [{"type": "point"}], 0)
+    >>> item_label("drop.position", [0.1, 0.0], 1), item_label("plate.supports", [{"type": "point"}], 0)
     ('drop.position.y', 'plate.supports')
     """
     item = items[number] if number < len(items) else None
-    names = NUMBERS.get(key.rpartition(".")[2], ())
+    names = NUMBER_LABELS.get(key.rpartition(".")[2], ())
     if not isinstance(item, dict) and number < len(names):
         return f"{key}.{names[number]}"
     name = item.get("name") if isinstance(item, dict) else None
@@ -42,7 +42,7 @@ def in_list(key: str, items: Sequence[Any], number: int) -> str:
 
 
 def ordinal(number: int) -> str:
-    """Return 1st, 2nd, 3rd, 4th, ... 11th, ...
+    """Return an ordinal number, such as "1st".
 
     Examples
     --------
@@ -53,25 +53,25 @@ def ordinal(number: int) -> str:
     return f"{number}{ending}"
 
 
-def place_in_words(path: str, table: Any) -> str:
-    """Return a dotted place in a case with lists' own names and places counted from 1, in place of numbers from 0.
+def path_in_words(path: str, table: Any) -> str:
+    """Return a dotted key path in which the indices of list items are replaced by their labels.
 
     Parameters
     ----------
     path : str
-        As pydantic gives it: "sensors.1.filter".
+        Path as pydantic gives it: "sensors.1.filter".
     table : any
-        The case that it is a place in.
+        The case to which the path belongs.
 
     Examples
     --------
-    >>> place_in_words("sensors.1.filter", {"sensors": [{"name": "a1"}, {"name": "b"}]})
+    >>> path_in_words("sensors.1.filter", {"sensors": [{"name": "a1"}, {"name": "b"}]})
     'sensors."b".filter'
     """
     words, inside = "", table
     for part in path.split("."):
         if isinstance(inside, (list, tuple)) and part.isdigit():
-            words = in_list(words, inside, int(part))
+            words = item_label(words, inside, int(part))
             inside = inside[int(part)] if int(part) < len(inside) else None
         else:
             words = f"{words}.{part}" if words else part

@@ -1,4 +1,4 @@
-"""The damping of an elastic body in a case: a ratio, a word, or a table."""
+"""The damping field of an elastic body: a damping ratio, a keyword, or a table."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import Annotated, Any
 
 from pydantic import BeforeValidator, WithJsonSchema
 
-from vibroimpact.cases.quantities import read_quantity
+from vibroimpact.cases.fields.quantities import read_quantity
 from vibroimpact.errors import InputError, did_you_mean
 from vibroimpact.ranges import Range
 from vibroimpact.shown import shown
@@ -70,12 +70,12 @@ DampingField = Annotated[
 
 
 def damping_of(value: Any, loss_factor: float | None) -> Damping:
-    """Return the damping that a case states; none if it states none.
+    """Return the damping model of a validated field; zero damping if the field is None.
 
     Raises
     ------
     InputError
-        If the material's loss factor is asked for and it has none.
+        If the field refers to the loss factor of the material, which has none.
     """
     if value is None:
         return ConstantRatio(0.0)
@@ -88,7 +88,7 @@ def damping_of(value: Any, loss_factor: float | None) -> Damping:
 
 
 def damping_table(value: Any) -> Any:
-    """Return a damping as a case holds it."""
+    """Return a damping model as it is written in a case file."""
     match value:
         case ConstantRatio():
             return value.ratio

@@ -1,0 +1,1 @@
+"""Elastic bodies of a case: meshes, modes, and their coupling to the contact law."""

@@ -1,0 +1,1 @@
+"""Fields of the case file: quantities, materials, supports, damping and meshes, their validation and their error messages."""

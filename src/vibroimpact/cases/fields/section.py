@@ -1,0 +1,53 @@
+"""The base class of the sections of a case, and the validation of their tables."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, TypeVar
+
+from pydantic import BaseModel, ConfigDict, ValidationError
+
+from vibroimpact.cases.fields.explain import fault_messages
+from vibroimpact.errors import InputError, did_you_mean
+from vibroimpact.shown import shown
+
+
+class Section(BaseModel):
+    """A table of a case."""  # the docstrings of sections are the descriptions in the JSON schema
+
+    model_config = ConfigDict(extra="forbid", frozen=True, arbitrary_types_allowed=True)
+
+
+Table = TypeVar("Table", bound=Section)
+
+
+def read_table(kind: type[Table], value: Mapping[str, Any]) -> Table:
+    """Return a validated table of the given kind, for fields that accept several kinds of tables.
+
+    Raises
+    ------
+    InputError
+        For the first invalid key; the message for an unknown key lists the keys of this kind.
+    """
+    known = [info.alias or name for name, info in kind.model_fields.items() if name != "type"]
+    for key in value:
+        if key not in known and key not in kind.model_fields:
+            raise InputError(f"unknown key {shown(key)}; it takes {', '.join(known)}.{did_you_mean(key, known)}", key)
+    try:
+        return kind.model_validate(dict(value))
+    except ValidationError as error:
+        path, message = next(fault_messages(error, lambda where: kind if not where else None))
+        raise InputError(message.replace("this section is missing", "this key is missing"), path) from None
+
+
+def check_alternatives(table: Section, one: str, other: str, *, needed: bool, key: str = "") -> None:
+    """Check that at most one of two alternative keys of a table is given, and, if `needed`, that one is.
+
+    Raises
+    ------
+    InputError
+        With `key`, if both are given, or none of those needed.
+    """
+    given = [name for name in (one, other) if getattr(table, name) is not None]
+    if len(given) == 2 or (needed and not given):
+        raise InputError(f"give either {one} or {other}; {'both are' if given else 'neither is'} given", key)
