@@ -10,6 +10,7 @@ from vibroimpact.arrays import Array
 from vibroimpact.bodies.body import Body
 from vibroimpact.bodies.plate import rigid_plate
 from vibroimpact.bodies.sphere import rigid_sphere
+from vibroimpact.cases.fields.section import derived
 from vibroimpact.contact.law import ContactLaw, find_contact_law
 from vibroimpact.contact.pair import ContactPair, effective_modulus
 from vibroimpact.dynamics.problem import Problem
@@ -27,6 +28,7 @@ PLATE_FALLS = (
 """Message for a plate that its supports do not hold, raised before its modes are computed (`"free"`) or after."""
 
 
+@derived
 def contact_pair(case: CaseTable) -> ContactPair:
     """Return the contact pair of a case: effective modulus, radius and mass, and the yield strength of the weaker body."""
     modulus, below = effective_modulus(case.sphere.material, case.plate.material), case.plate.radius
@@ -57,6 +59,7 @@ def is_free_sphere(case: CaseTable) -> bool:
     return case.plate.radius is not None and case.plate.supports == "free"
 
 
+@derived
 def contact_laws_of(case: CaseTable) -> tuple[ContactLaw, ...]:
     """Return the contact law of each impact, as many as the longest list of a parameter has values; the last holds for later impacts."""
     law, pair = find_contact_law(case.contact.law), contact_pair(case)

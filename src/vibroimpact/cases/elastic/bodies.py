@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal
 from vibroimpact.bodies.elastic import ElasticBody, plate_recipe, recipe_of, sphere_recipe
 from vibroimpact.cases.fields.damping import damping_of, damping_table
 from vibroimpact.cases.fields.elastic_body import BroughtMeshTable, PlateMeshTable, SphereMeshTable, reduction_of
+from vibroimpact.cases.fields.section import derived
 from vibroimpact.cases.fields.supports import supports_of, supports_table
 from vibroimpact.cases.rigid import elastic_names
 from vibroimpact.errors import InputError
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
 _UNSPLIT = {"splits": 0, "lower_splits": 0}  # default: no splitting, so that the number of elements is that of the case
 
 
+@derived
 def elastic_bodies(case: CaseTable) -> dict[str, ElasticBody]:
     """Return the elastic bodies of a case by name.
 
@@ -43,7 +45,7 @@ def _body(case: CaseTable, name: Literal["sphere", "plate"]) -> ElasticBody:
 
 def elastic_table(case: CaseTable, name: Literal["sphere", "plate"]) -> dict[str, Any]:
     """Return the resolved keys of an elastic body: mesh, reduction, modes, damping, and supports of a plate."""
-    section, body = getattr(case, name), _body(case, name)
+    section, body = getattr(case, name), elastic_bodies(case)[name]
     shape, reduction = body.recipe.shape, body.recipe.reduction
     damping = body.damping if section.damping is None else section.damping
     table: dict[str, Any] = {"reduction": reduction.method, "damping": damping_table(damping)}

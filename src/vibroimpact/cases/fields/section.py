@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any, TypeVar
+from collections.abc import Callable, Mapping
+from functools import wraps
+from typing import Any, Self, TypeVar
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 
@@ -11,11 +12,52 @@ from vibroimpact.cases.fields.explain import fault_messages
 from vibroimpact.errors import InputError, did_you_mean
 from vibroimpact.shown import shown
 
+Value = TypeVar("Value")
+
 
 class Section(BaseModel):
     """A table of a case."""  # the docstrings of sections are the descriptions in the JSON schema
 
     model_config = ConfigDict(extra="forbid", frozen=True, arbitrary_types_allowed=True)
+
+    def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
+        """Return a copy with some keys changed; its `derived` values are computed anew."""
+        copy = super().model_copy(update=update, deep=deep)
+        for name in vars(copy).keys() - type(self).model_fields.keys():
+            del copy.__dict__[name]
+        return copy
+
+
+Of = TypeVar("Of", bound=Section)
+
+
+def derived(function: Callable[[Of], Value]) -> Callable[[Of], Value]:
+    """Decorate a function of a section so that its value is computed once and kept with the section, which is frozen.
+
+    Examples
+    --------
+    >>> class Bar(Section):
+    ...     length: float
+    >>> @derived
+    ... def area(bar: Bar) -> float:
+    ...     print("computed")
+    ...     return 2.0 * bar.length
+    >>> bar = Bar(length=3.0)
+    >>> area(bar), area(bar)
+    computed
+    (6.0, 6.0)
+    """
+    name = f"{function.__module__}.{function.__qualname__}"
+
+    @wraps(function)
+    def kept(section: Of) -> Value:
+        values = section.__dict__
+        if name not in values:
+            values[name] = function(section)
+        found: Value = values[name]
+        return found
+
+    return kept
 
 
 Table = TypeVar("Table", bound=Section)
