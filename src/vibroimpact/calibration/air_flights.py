@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.calibration.flights import Flown, Lasted
+from vibroimpact.calibration.flights import EndSpeeds, Flight
 from vibroimpact.dynamics.air import drag
 from vibroimpact.errors import InputError
 
@@ -44,7 +44,7 @@ class AirFlights:
     Examples
     --------
     >>> pebble = AirFlights(9.8, 0.002, 1250.0, 4.0)
-    >>> [round(float(speed), 2) for speed in (pebble.falling(np.array(4.0))[0], pebble.rising(np.array(4.0))[0])]
+    >>> [round(float(speed), 2) for speed in (pebble.speed_after_fall(np.array(4.0))[0], pebble.speed_to_rise(np.array(4.0))[0])]
     [7.68, 10.33]
     """
 
@@ -53,23 +53,23 @@ class AirFlights:
     density: float
     highest: float
 
-    def falling(self, height: Floats) -> tuple[Floats, Floats]:
+    def speed_after_fall(self, height: Floats) -> tuple[Floats, Floats]:
         """Return the speed after a fall from rest by a height [m/s], and its derivative by the height [1/s]."""
         speed = self._within(self._tables.down, height)
         return speed, (self.gravity - drag(speed, self.radius, self.density)) / speed
 
-    def rising(self, height: Floats) -> tuple[Floats, Floats]:
+    def speed_to_rise(self, height: Floats) -> tuple[Floats, Floats]:
         """Return the speed that it takes to rise by a height [m/s], and its derivative by the height [1/s]."""
         speed = self._within(self._tables.up, height)
         return speed, (self.gravity + drag(speed, self.radius, self.density)) / speed
 
-    def fallen(self, time: Floats) -> tuple[Floats, Floats]:
+    def depth_at(self, time: Floats) -> tuple[Floats, Floats]:
         """Return how far below the top of its flight a sphere is [m] at a time from it [s], and its downward velocity [m/s]."""
         depth = self._tables.depth
         at = np.clip(time, depth.x[0], depth.x[-1])
         return np.asarray(depth(at)), np.asarray(depth(at, 1))
 
-    def lasting(self, time: Floats) -> Lasted:
+    def end_speeds(self, time: Floats) -> EndSpeeds:
         """Return the speeds at both ends of flights of given durations [s]."""
         tables = self._tables
         if np.any(time > tables.lasted.x[-1]):
@@ -77,15 +77,15 @@ class AirFlights:
         root, by_time = tables.lasted(time), tables.lasted(time, 1)
         ends = [tables.up, tables.down]
         speeds, slopes = zip(*((np.asarray(end(root)), np.asarray(end(root, 1) * by_time)) for end in ends), strict=True)
-        return Lasted(*speeds, *slopes)
+        return EndSpeeds(*speeds, *slopes)
 
-    def flown(self, speed: Floats) -> Flown:
+    def flight(self, speed: Floats) -> Flight:
         """Return the flights that begin with given speeds [m/s]."""
         tables = self._tables
         if np.any(speed > tables.risen.x[-1]):
             raise self._too_far(f"a flight that begins with {np.max(speed):.4g} m/s")
         root = tables.risen(speed)
-        return Flown(np.asarray(root**2), np.asarray(tables.rise(root)), np.asarray(tables.time(root)), np.asarray(tables.down(root)))
+        return Flight(np.asarray(root**2), np.asarray(tables.rise(root)), np.asarray(tables.time(root)), np.asarray(tables.down(root)))
 
     def _within(self, table: Any, height: Floats) -> Floats:
         if np.any(height > table.x[-1] ** 2):

@@ -7,16 +7,15 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 
 from vibroimpact.arrays import Floats
+from vibroimpact.calibration.calibrated_drops import impact_tables, limited_to, values_by_function
 from vibroimpact.calibration.calibration import Calibration
-from vibroimpact.calibration.drops import by_function, drops_with, shortened
-from vibroimpact.calibration.match_drop import match_drop
-from vibroimpact.calibration.match_measurement import match_measurement
+from vibroimpact.calibration.match_target import match_drop, match_measurement
+from vibroimpact.calibration.matchable import REBOUND, REBOUNDS, check_weights
 from vibroimpact.calibration.matching import Tunable
 from vibroimpact.calibration.observations import Observations
-from vibroimpact.calibration.outcomes import REBOUND, REBOUNDS, check_weights
 from vibroimpact.calibration.overlay import overlays
 from vibroimpact.calibration.tunables import law_parameter
-from vibroimpact.calibration.uncertainty import of_the_whole
+from vibroimpact.calibration.uncertainty import fit_doubts
 from vibroimpact.calibration.unreachable import other_parameters
 from vibroimpact.dynamics.problem import Problem, StatesProblem
 from vibroimpact.dynamics.simulate import simulate
@@ -53,7 +52,7 @@ def calibrate(
     tunable : Tunable, optional
         What is tuned; by default the law's own free parameter.
     weights : mapping of str to float, optional
-        What is matched, by the names of `OUTCOMES`: one, or several with their weights. By default the rebound; or all that was
+        What is matched, by the names of `MATCHABLE`: one, or several with their weights. By default the rebound; or all that was
         measured, if that was not.
     degree : int, optional
         Of the polynomial; by default 2, or less where there are fewer speeds.
@@ -106,12 +105,12 @@ def calibrate(
     else:
         found = match_drop(tuned, stated, target.to_problem(), weights, degree, speeds, tell)
     tell(0.9)
-    along, values = by_function(tuned, stated, found.fit.function, found.seen)
+    along, values = values_by_function(tuned, stated, found.fit.function, found.seen)
     chain = (found.seen.speeds, found.values) if found.seen.of_the_drop else (along, values)
-    drops = drops_with(tuned, chain[1], values, found.seen)
+    drops = impact_tables(tuned, chain[1], values, found.seen)
     along = along[: len(drops["function"]["impact"])]
     if not isinstance(target, Observations):
-        drops = {"target": simulate(shortened(target.to_problem(), len(chain[1]))).impacts, **drops}
+        drops = {"target": simulate(limited_to(target.to_problem(), len(chain[1]))).impacts, **drops}
     rows = found.seen.which
     given = tuned.given[np.minimum(rows, len(tuned.given) - 1)]
     as_given = {} if np.isnan(given).any() else tuned.respond(found.seen.speeds, given, rows)
@@ -139,7 +138,7 @@ def calibrate(
         confidence=confidence,
         bootstrap=found.draws,
         overlays=overlaid,
-        doubts=(*found.doubts, *of_the_whole(stated, tuned, found.seen, found.fit, found.curve, along)),
+        doubts=(*found.doubts, *fit_doubts(stated, tuned, found.seen, found.fit, found.curve, along)),
     )
 
 

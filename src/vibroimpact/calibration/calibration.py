@@ -26,7 +26,7 @@ class Calibration:
     allowed : Range
         Of what was tuned.
     weights : mapping of str to float
-        What was matched, by the names of `OUTCOMES`.
+        What was matched, by the names of `MATCHABLE`.
     observations : Observations
         The impacts that were matched: approach speeds and what was wanted.
     values : array, shape (n,)

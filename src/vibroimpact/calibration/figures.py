@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from vibroimpact.calibration.calibration import Calibration
-from vibroimpact.calibration.comparison import COMPARED, WAYS, differences
+from vibroimpact.calibration.differences import COMPARED, WAYS, differences
 from vibroimpact.calibration.record_figure import draw_record
 from vibroimpact.report.layout import label_vertical, new_figure, row_of_axes, wide_axes
 from vibroimpact.report.style import ACCENT, INK, LOOPS, MARK, style

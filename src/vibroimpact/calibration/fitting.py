@@ -9,7 +9,7 @@ import numpy as np
 from numpy.polynomial import polynomial
 
 from vibroimpact.arrays import Floats
-from vibroimpact.calibration.matching import Tunable, scale_of, slopes
+from vibroimpact.calibration.matching import Tunable, derivatives, residual_scale
 from vibroimpact.calibration.observations import Observations
 from vibroimpact.calibration.speed_function import SpeedFunction
 from vibroimpact.errors import ComputationError, InputError
@@ -133,7 +133,7 @@ def fit_observations(tunable: Tunable, observations: Observations, weights: Mapp
     at = tunable.allowed.clip(begin)
     coefficients = _least_squares(powers, at)[0]
     for _ in range(_SWEEPS):
-        found = slopes(tunable, speeds, at, observations.which)
+        found = derivatives(tunable, speeds, at, observations.which)
         rows, targets, noises = [], [], []
         for name, weight in weights.items():
             by_value = found.by_value[name]
@@ -171,10 +171,10 @@ def _misfits(scatter: float, freedom: int) -> bool:
 
 def value_noise(tunable: Tunable, observations: Observations, weights: Mapping[str, float], values: Floats) -> Floats:
     """Return what each source of noise adds to the value that fits each impact alone, to first order, (n, m)."""
-    found = slopes(tunable, observations.speeds, np.where(np.isfinite(values), values, tunable.start), observations.which)
+    found = derivatives(tunable, observations.speeds, np.where(np.isfinite(values), values, tunable.start), observations.which)
     above, below = np.zeros((len(values), observations.speed_noise.shape[1])), np.zeros((len(values), 1))
     for name, weight in weights.items():
-        scale = scale_of(name, observations.speeds, observations.wanted[name])
+        scale = residual_scale(name, observations.speeds, observations.wanted[name])
         by_value = (found.by_value[name] / scale)[:, None]
         noise = observations.noise[name] - found.by_speed[name][:, None] * observations.speed_noise
         above += weight * by_value * noise / scale[:, None]

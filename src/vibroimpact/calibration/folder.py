@@ -9,10 +9,10 @@ from pathlib import Path
 import tomli_w
 
 from vibroimpact._version import __version__
+from vibroimpact.calibration.calibrate_case import calibrated_case
 from vibroimpact.calibration.calibration import Calibration
-from vibroimpact.calibration.case import calibrated_case
 from vibroimpact.calibration.figures import draw_calibration
-from vibroimpact.calibration.file import CALIBRATION, calibration_table, columns_of, comparison_rows, matched_rows
+from vibroimpact.calibration.file_contents import CALIBRATION, calibration_table, columns_of, comparison_rows, matched_rows
 from vibroimpact.calibration.tables import (
     differences_tables,
     fit_sentences,

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from vibroimpact.arrays import Bools, Floats, Indices
-from vibroimpact.calibration.force_rest import level_of_record, level_under_impact
+from vibroimpact.calibration.force_baseline import baseline_under_impact, record_baseline
 from vibroimpact.calibration.record_noise import ABOVE_NOISE, record_noise
 from vibroimpact.errors import InputError
 
@@ -26,7 +26,7 @@ _PEAK, _TOP = 0.003, 0.8
 """How well the largest force is told from what is above so much of it."""
 
 
-class Pushes(NamedTuple):
+class DetectedPulses(NamedTuple):
     """Where a force pushes: the force as it was recorded, its noise, which samples are quiet, and runs of samples that push, as first and
     behind the last.
     """
@@ -52,7 +52,7 @@ class Pulse(NamedTuple):
     piece: tuple[Floats, Floats]
 
 
-def pushes(time: Floats, force: Floats) -> Pushes:
+def find_pulses(time: Floats, force: Floats) -> DetectedPulses:
     """Return where a force pushes.
 
     Raises
@@ -81,23 +81,23 @@ def pushes(time: Floats, force: Floats) -> Pushes:
         if np.count_nonzero(quiet) < _FEWEST:
             raise InputError("the record shows nothing but the impact; it takes some time before or after it, to tell the force at rest")
         if sight < _SIGHTS - 1:
-            rest = level_of_record(time, force, quiet)
-    return Pushes(force, noise, quiet, runs)
+            rest = record_baseline(time, force, quiet)
+    return DetectedPulses(force, noise, quiet, runs)
 
 
-def pulses_of(time: Floats, seen: Pushes, runs: list[tuple[int, int]]) -> list[Pulse]:
+def evaluate_pulses(time: Floats, seen: DetectedPulses, runs: list[tuple[int, int]]) -> list[Pulse]:
     """Return the pulses of some of the runs."""
     between = [0, *((end + begin) // 2 for (_, end), (begin, _) in itertools.pairwise(seen.runs)), len(time)]
     rooms = itertools.pairwise(between)
     return [_pulse(time, seen, run, room) for run, room in zip(seen.runs, rooms, strict=True) if run in runs]
 
 
-def _pulse(time: Floats, seen: Pushes, run: tuple[int, int], room: tuple[int, int]) -> Pulse:
+def _pulse(time: Floats, seen: DetectedPulses, run: tuple[int, int], room: tuple[int, int]) -> Pulse:
     """Return one pulse, integrated with some time on either side, within its room, above its level at rest."""
     begin, end = run
     margin = _margin(begin, end)
     part = slice(max(begin - margin, room[0]), min(end + margin, room[1]))
-    level = level_under_impact(time, seen.force, seen.quiet, part, room, end - begin, seen.noise)
+    level = baseline_under_impact(time, seen.force, seen.quiet, part, room, end - begin, seen.noise)
     force, at, step = seen.force[part] - level.values, time[part], float(np.median(np.diff(time)))
     impulse = float(np.trapezoid(force, at))
     noise = seen.noise * step * np.sqrt(part.stop - part.start)

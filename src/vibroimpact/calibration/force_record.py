@@ -8,10 +8,10 @@ from dataclasses import replace
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.calibration.flights import Flights, Lasted, VacuumFlights
-from vibroimpact.calibration.force_pulses import Pulse, pulses_of, pushes
+from vibroimpact.calibration.flights import EndSpeeds, Flights, VacuumFlights
+from vibroimpact.calibration.force_pulses import Pulse, evaluate_pulses, find_pulses
 from vibroimpact.calibration.observations import Observations, Record
-from vibroimpact.calibration.record_noise import named_samples
+from vibroimpact.calibration.record_noise import sample_label
 from vibroimpact.errors import InputError
 
 _FEWEST = 5
@@ -72,7 +72,7 @@ def impacts_in_force(
     >>> found.wanted["separation_speed"].round(2).tolist(), found.wanted["max_force"].round(0).tolist()
     ([1.18], [100.0])
     """
-    at, step, seen = named_samples(lines), float(np.median(np.diff(time))), pushes(time, force)
+    at, step, seen = sample_label(lines), float(np.median(np.diff(time))), find_pulses(time, force)
     runs, ends = list(seen.runs), []
     if len(runs) > 1 and runs[-1][1] == len(force):  # it still ends a flight
         ends = [float(time[runs.pop()[0]])]
@@ -83,12 +83,12 @@ def impacts_in_force(
             raise InputError(
                 f"the impact at {at(begin)} has only {end - begin} samples, and it takes {_FEWEST}; sample faster, or smooth less"
             )
-    pulses = pulses_of(time, seen, runs)
+    pulses = evaluate_pulses(time, seen, runs)
     begins = np.array([*(pulse.begin for pulse in pulses), *ends])
     gaps = begins[1:] - np.array([pulse.begin + pulse.duration for pulse in pulses])[: len(begins) - 1]
     if gravity == 0.0 and len(gaps):
         raise InputError(f"without gravity the sphere does not come back, and the record shows {len(runs) + len(ends)} impacts")
-    flown = (flights or VacuumFlights(gravity)).lasting(gaps)
+    flown = (flights or VacuumFlights(gravity)).end_speeds(gaps)
     separation, deviation, doubts = _separations(pulses, flown, mass, gravity, first_speed, step)
     number = len(pulses)
     speeds = np.append(first_speed, flown.end)[:number]
@@ -113,7 +113,7 @@ def impacts_in_force(
 
 
 def _separations(
-    pulses: list[Pulse], flown: Lasted, mass: float, gravity: float, first_speed: float, step: float
+    pulses: list[Pulse], flown: EndSpeeds, mass: float, gravity: float, first_speed: float, step: float
 ) -> tuple[Floats, Floats, tuple[str, ...]]:
     """Return separation speeds [m/s] and their standard deviations, and what to doubt of them.
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from vibroimpact.arrays import Floats, Indices
-from vibroimpact.calibration.outcomes import REBOUNDS
+from vibroimpact.calibration.matchable import REBOUNDS
 from vibroimpact.contact.roots import find_root, solve_monotonic
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.ranges import Range
@@ -37,7 +37,7 @@ class Tunable:
         Its value as the case gives it, one an impact; NaN where the case does not.
     respond : callable
         Takes approach speeds [m/s] (m,), values (m,), and which impact each stands for (m,); returns the outcomes, as
-        `one_impact` does.
+        `single_impacts` does.
     drop : callable
         Takes values, one an impact, and returns the drop with them; the last one goes on.
     damps : bool
@@ -69,7 +69,7 @@ def match(
     wanted: Mapping[str, Floats],
     weights: Mapping[str, float],
     which: Indices,
-    farthest: int = 20,
+    max_steps: int = 20,
 ) -> Match:
     """Return the value with which each impact comes out as wanted, or as near to that as can be.
 
@@ -85,10 +85,10 @@ def match(
         Of each outcome that counts. With several, the sum over them of weight times squared relative deviation becomes least.
     which : array of int, shape (n,)
         Which impact of the drop each stands for.
-    farthest : int, default 20
+    max_steps : int, default 20
         How many steps of four from where it begins to look for one outcome.
     """
-    scales = {name: scale_of(name, speeds, wanted[name]) for name in weights}
+    scales = {name: residual_scale(name, speeds, wanted[name]) for name in weights}
 
     def misses(values: Floats) -> dict[str, Floats]:
         found = tunable.respond(speeds, values, which)
@@ -102,16 +102,16 @@ def match(
             grid = [tunable.allowed.clip(factor * start) for factor in _GRID]
             seen = np.array([misses(values)[name] for values in grid])
             least, most = (bound * scales[name] + wanted[name] for bound in (np.nanmin(seen, axis=0), np.nanmax(seen, axis=0)))
-            return Match(_smallest(lambda values: misses(values)[name], start, grid, seen), least, most)
+            return Match(_smallest_root(lambda values: misses(values)[name], start, grid, seen), least, most)
         found = solve_monotonic(
-            lambda values: misses(values)[name] + 1.0, np.ones(len(speeds)), start, tunable.allowed, falls=falls, farthest=farthest
+            lambda values: misses(values)[name] + 1.0, np.ones(len(speeds)), start, tunable.allowed, falls=falls, farthest=max_steps
         )
         least, most = ((bound - 1.0) * scales[name] + wanted[name] for bound in (found.least, found.most))
         return Match(found.place, least, most)
-    return Match(_best(misses, start, weights, tunable.allowed), *np.full((2, len(speeds)), np.nan))
+    return Match(_least_squares_value(misses, start, weights, tunable.allowed), *np.full((2, len(speeds)), np.nan))
 
 
-def _smallest(miss: Callable[[Floats], Floats], start: Floats, grid: list[Floats], misses: Floats) -> Floats:
+def _smallest_root(miss: Callable[[Floats], Floats], start: Floats, grid: list[Floats], misses: Floats) -> Floats:
     """Return the smallest value at which a miss changes its sign, NaN where it does not on the grid, whose misses are (values, n)."""
     above = misses > 0.0
     turns = above[1:] != above[:-1]
@@ -123,7 +123,9 @@ def _smallest(miss: Callable[[Floats], Floats], start: Floats, grid: list[Floats
     return np.where(some, find_root(miss, low, high, close=_CLOSE), np.nan)
 
 
-def _best(misses: Callable[[Floats], dict[str, Floats]], start: Floats, weights: Mapping[str, float], allowed: Range) -> Floats:
+def _least_squares_value(
+    misses: Callable[[Floats], dict[str, Floats]], start: Floats, weights: Mapping[str, float], allowed: Range
+) -> Floats:
     """Return where the weighted sum of squares is least: the best of a grid, then the root of the slope beside it."""
 
     def cost(values: Floats) -> Floats:
@@ -146,13 +148,13 @@ def _best(misses: Callable[[Floats], dict[str, Floats]], start: Floats, weights:
     return np.where(turns, found, np.where(best == 0, inside[0], np.nan))
 
 
-def scale_of(name: str, speeds: Floats, wanted: Floats) -> Floats:
+def residual_scale(name: str, speeds: Floats, wanted: Floats) -> Floats:
     """Return what a miss of an outcome is compared with: what is wanted; of a separation speed, which may be zero, the approach speed."""
     return speeds if name == "separation_speed" else np.abs(wanted)
 
 
 @dataclass(frozen=True)
-class Slopes:
+class Derivatives:
     """Outcomes (n,) by name, and their derivatives by the value of the parameter and by the approach speed."""
 
     outcomes: dict[str, Floats]
@@ -160,7 +162,7 @@ class Slopes:
     by_speed: dict[str, Floats]
 
 
-def slopes(tunable: Tunable, speeds: Floats, values: Floats, which: Indices) -> Slopes:
+def derivatives(tunable: Tunable, speeds: Floats, values: Floats, which: Indices) -> Derivatives:
     """Return outcomes of impacts and their derivatives, by central differences inside the range of the parameter."""
     step = _STEP * np.maximum(np.abs(values), 1e-3 * tunable.start)
     high, low = tunable.allowed.clip(values + step), tunable.allowed.clip(values - step)
@@ -170,7 +172,7 @@ def slopes(tunable: Tunable, speeds: Floats, values: Floats, which: Indices) -> 
         np.concatenate([speeds, speeds, speeds, faster, slower]), np.concatenate([values, high, low, values, values]), rows
     )
     parts = {name: found.reshape(5, -1) for name, found in every.items()}
-    return Slopes(
+    return Derivatives(
         {name: part[0] for name, part in parts.items()},
         {name: (part[1] - part[2]) / (high - low) for name, part in parts.items()},
         {name: (part[3] - part[4]) / (faster - slower) for name, part in parts.items()},

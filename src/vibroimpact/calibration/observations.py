@@ -9,7 +9,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from vibroimpact.arrays import Floats, Indices
-from vibroimpact.calibration.flights import Flights, VacuumFlights, as_in_vacuum
+from vibroimpact.calibration.flights import Flights, VacuumFlights, vacuum_height
 
 
 class Record(NamedTuple):
@@ -34,7 +34,7 @@ class Observations:
     speeds : array, shape (n,)
         Approach speeds [m/s].
     wanted : mapping of str to array, shape (n,)
-        By the names of `OUTCOMES` in SI.
+        By the names of `MATCHABLE` in SI.
     speed_noise : array, shape (n, m)
         What each source adds to the approach speeds [m/s].
     noise : mapping of str to array, shape (n, m)
@@ -123,8 +123,8 @@ def from_heights(
     ([4.0, 3.1305], [0.525, 0.1])
     """
     flying = flights or VacuumFlights(gravity)
-    falls, slopes = flying.falling(heights - radius)
-    rises, scales = as_in_vacuum(flying, heights - radius)
+    falls, slopes = flying.speed_after_fall(heights - radius)
+    rises, scales = vacuum_height(flying, heights - radius)
     noise = np.diag(np.ones(len(heights)) if deviation is None else deviation)
     before = np.vstack([np.zeros(len(heights)), slopes[:-1, None] * noise[:-1]])
     names = labels or tuple(f"impact {number + 1}" for number in range(len(heights)))
@@ -133,7 +133,7 @@ def from_heights(
     return Observations(speeds, wanted, before, noises, known, names, flights=flights)
 
 
-def scaled(seen: Observations, scatter: float, weights: Mapping[str, float]) -> Observations:
+def with_noise_scale(seen: Observations, scatter: float, weights: Mapping[str, float]) -> Observations:
     """Return observations whose noise, so far only compared, has a size: `scatter` times what it was, less where a weight says so."""
     noise = {name: scatter / np.sqrt(weights.get(name, 1.0)) * values for name, values in seen.noise.items()}
     return replace(seen, speed_noise=scatter * seen.speed_noise, noise=noise, deviations_known=True)
@@ -154,7 +154,7 @@ def from_table(
     speeds : array, shape (n,)
         Approach speeds [m/s].
     wanted : mapping of str to array, shape (n,)
-        By the names of `OUTCOMES`, in SI.
+        By the names of `MATCHABLE`, in SI.
     deviations : mapping of str to array, optional
         Their standard deviations, in the same units.
     labels : tuple of str

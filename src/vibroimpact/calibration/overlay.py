@@ -89,8 +89,8 @@ def _position(drop: Problem, seen: Observations, outcomes: Mapping[str, Floats])
     time, position = seen.record.pieces[0]
     simulated, begin = np.full_like(time, np.nan), seen.record.begin
     for rebound, lasting in zip(outcomes["rebound_height"], np.append(outcomes["duration"][1:], 0.0), strict=True):
-        flown = flying.flown(np.asarray(np.sqrt(2.0 * gravity * max(float(rebound) - radius, 0.0))))
-        inside = (time >= begin) & (time <= begin + flown.time)
-        simulated[inside] = radius + flown.height - flying.fallen(time[inside] - begin - flown.rise)[0]
-        begin += float(flown.time) + float(lasting)
+        flown = flying.flight(np.asarray(np.sqrt(2.0 * gravity * max(float(rebound) - radius, 0.0))))
+        inside = (time >= begin) & (time <= begin + flown.duration)
+        simulated[inside] = radius + flown.height - flying.depth_at(time[inside] - begin - flown.rise_time)[0]
+        begin += float(flown.duration) + float(lasting)
     return Overlay("", "position", (time, position), (time, simulated))

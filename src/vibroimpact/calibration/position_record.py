@@ -10,9 +10,9 @@ from typing import NamedTuple
 import numpy as np
 
 from vibroimpact.arrays import Floats, Indices
-from vibroimpact.calibration.flights import Flights, VacuumFlights, as_in_vacuum
+from vibroimpact.calibration.flights import Flights, VacuumFlights, vacuum_height
 from vibroimpact.calibration.observations import Observations, Record
-from vibroimpact.calibration.record_noise import ABOVE_NOISE, named_samples, record_noise
+from vibroimpact.calibration.record_noise import ABOVE_NOISE, record_noise, sample_label
 from vibroimpact.contact.roots import find_root
 from vibroimpact.errors import InputError
 
@@ -87,7 +87,7 @@ def impacts_in_position(
     >>> found.speeds.round(3).tolist(), found.wanted["rebound_height"].round(4).tolist()
     ([4.9], [0.4842])
     """
-    noise, at, flying = record_noise(position), named_samples(lines), flights or VacuumFlights(gravity)
+    noise, at, flying = record_noise(position), sample_label(lines), flights or VacuumFlights(gravity)
     lows = _lowest(position, noise)
     if not len(lows):
         raise InputError("the record does not show an impact: nowhere does the sphere stop falling and rise again")
@@ -116,7 +116,7 @@ def impacts_in_position(
     if any(flight.top <= radius for flight in known):
         raise InputError("the sphere never rises above its radius; position must be the height of its centre above the plate")
     labels = tuple(f"impact {number + 1}, {at(low)}" for number, low in enumerate(lows[: len(known)]))
-    begin = known[0].when - float(flying.flown(flying.rising(np.array(known[0].top - radius))[0]).rise)
+    begin = known[0].when - float(flying.flight(flying.speed_to_rise(np.array(known[0].top - radius))[0]).rise_time)
     found = _between_flights(fitted[0], known, radius, flying, first_speed, labels)
     return replace(found, flights=flights, record=Record("position", ((time, position),), begin))
 
@@ -125,14 +125,14 @@ def _between_flights(
     first: _Flight | None, known: list[_Flight], radius: float, flying: Flights, first_speed: float, labels: tuple[str, ...]
 ) -> Observations:
     tops, deviations = (np.array([getattr(flight, name) for flight in known]) for name in ("top", "deviation"))
-    falls, slopes = flying.falling(tops - radius)
-    rises, scales = as_in_vacuum(flying, tops - radius)
+    falls, slopes = flying.speed_after_fall(tops - radius)
+    rises, scales = vacuum_height(flying, tops - radius)
     number = len(known)
     sources, before = np.zeros((number, number + 1)), np.zeros((number, number + 1))
     sources[:, 1:] = np.diag(scales * deviations)
     before[1:, 1:] = np.diag(slopes * deviations)[:-1]
     if first is not None and first.top > radius:
-        speed, slope = flying.falling(np.array(first.top - radius))
+        speed, slope = flying.speed_after_fall(np.array(first.top - radius))
         first_speed, before[0, 0] = float(speed), float(slope) * first.deviation
     wanted, noise = {"rebound_height": radius + rises}, {"rebound_height": sources}
     noise_from = "the scatter of the record"
@@ -147,13 +147,13 @@ def _fitted(time: Floats, position: Floats, flying: Flights) -> _Flight:
     (height, speed), *_ = np.linalg.lstsq(powers, position + 0.5 * gravity * across**2, rcond=None)  # in a vacuum, to begin with
     top, when = float(height + 0.5 * speed**2 / gravity), float(middle + speed / gravity)
     for _ in range(_ROUNDS):
-        fallen, downwards = flying.fallen(time - when)
+        fallen, downwards = flying.depth_at(time - when)
         left, slopes = position - (top - fallen), np.stack([np.ones_like(time), downwards], axis=1)
         step, *_ = np.linalg.lstsq(slopes, left, rcond=None)
         top, when = top + float(step[0]), when + float(step[1])
         if abs(step[0]) <= _SETTLED * abs(top):
             break
-    left = position - (top - flying.fallen(time - when)[0])
+    left = position - (top - flying.depth_at(time - when)[0])
     inverse = np.linalg.pinv(slopes.T @ slopes)
     return _Flight(top, when, float(np.sqrt(inverse[0, 0])), float(left @ left), len(time) - 2)
 
@@ -183,12 +183,12 @@ def _where_they_meet(one: _Flight, other: _Flight, flying: Flights) -> float:
     """Return the height at which a flight that comes down crosses one that goes up after it [m]; NaN if they don't between their tops."""
 
     def apart(time: Floats) -> Floats:
-        return (other.top - flying.fallen(time - other.when)[0]) - (one.top - flying.fallen(time - one.when)[0])
+        return (other.top - flying.depth_at(time - other.when)[0]) - (one.top - flying.depth_at(time - one.when)[0])
 
     ends = np.array([one.when]), np.array([other.when])
     if not (apart(ends[0])[0] < 0.0 < apart(ends[1])[0]):
         return float("nan")
-    return float(one.top - flying.fallen(find_root(apart, *ends) - one.when)[0][0])
+    return float(one.top - flying.depth_at(find_root(apart, *ends) - one.when)[0][0])
 
 
 def _lowest(position: Floats, noise: float) -> Indices:

@@ -25,6 +25,6 @@ def record_noise(values: Floats) -> float:
     return float(np.median(np.abs(third)) / 0.6745 / np.sqrt(20.0)) if len(third) else 0.0
 
 
-def named_samples(lines: Sequence[int] | None) -> Callable[[int], str]:
+def sample_label(lines: Sequence[int] | None) -> Callable[[int], str]:
     """Return what tells where a sample is: its line of a file, if that is known."""
     return (lambda index: f"sample {index + 1}") if lines is None else (lambda index: f"line {lines[index]}")

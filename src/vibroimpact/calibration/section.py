@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal
 import numpy as np
 from pydantic import BeforeValidator, Field, StrictBool, WithJsonSchema, model_validator
 
-from vibroimpact.calibration.outcomes import OUTCOMES, check_weights
+from vibroimpact.calibration.matchable import MATCHABLE, check_weights
 from vibroimpact.cases.bounds import Name, at_most
 from vibroimpact.cases.contact_section import ContactSection, law_schema, read_contact
 from vibroimpact.cases.quantities import Quantity
@@ -118,7 +118,7 @@ def _read_match(value: Any) -> Any:
     if isinstance(value, str):
         value = {value: 1.0}
     if not isinstance(value, dict):
-        raise InputError(f"{shown(value)} is not allowed; it must be one of {', '.join(OUTCOMES)}, or a table of them with weights")
+        raise InputError(f"{shown(value)} is not allowed; it must be one of {', '.join(MATCHABLE)}, or a table of them with weights")
     try:
         weights = {str(name): float(weight) for name, weight in value.items()}
     except (TypeError, ValueError):
@@ -160,8 +160,8 @@ _TARGET_SCHEMA = {
 _MATCH_SCHEMA = {
     "description": "what of an impact is matched: one, or a table of several with weights",
     "anyOf": [
-        {"enum": list(OUTCOMES)},
-        {"type": "object", "properties": {name: {"type": "number"} for name in OUTCOMES}, "additionalProperties": False},
+        {"enum": list(MATCHABLE)},
+        {"type": "object", "properties": {name: {"type": "number"} for name in MATCHABLE}, "additionalProperties": False},
     ],
 }
 

@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from vibroimpact.calibration.calibration import Calibration
-from vibroimpact.calibration.comparison import COMPARED, WAYS, differences, largest_misfit
-from vibroimpact.calibration.outcomes import OUTCOMES, REBOUNDS
+from vibroimpact.calibration.differences import COMPARED, WAYS, differences, largest_misfit
+from vibroimpact.calibration.matchable import MATCHABLE, REBOUNDS
 from vibroimpact.calibration.tunables import law_parameter
 from vibroimpact.runs.tables import column
 from vibroimpact.units.display import column_texts, digits, fixed, largest, text
@@ -37,8 +37,8 @@ def values_table(found: Calibration) -> Cells:
         headers.append(("As the case gives it", found.unit))
         columns.append(column_texts(found.given, 6))
     for name in found.weights:
-        header = OUTCOMES[name].words.capitalize()
-        unit, cells = column(OUTCOMES[name].column, np.concatenate([seen.wanted[name], found.outcomes[name]]))
+        header = MATCHABLE[name].words.capitalize()
+        unit, cells = column(MATCHABLE[name].column, np.concatenate([seen.wanted[name], found.outcomes[name]]))
         headers += [(f"{header} wanted", unit), ("found", unit)]
         columns += [cells[: len(seen.speeds)], cells[len(seen.speeds) :]]
         if found.as_given:
@@ -117,8 +117,8 @@ def given_sentences(found: Calibration) -> list[str]:
             continue
         worst = int(np.nanargmax(np.abs(off)))
         given, meets = (f"{digits(value, 6)} {found.unit}".rstrip() for value in (found.given[worst], found.values[worst]))
-        words = f"With {found.parameter} = {given}, as the case gives it, the {OUTCOMES[name].words} of {found.observations.labels[worst]}"
-        instead, asked = (text(float(value), OUTCOMES[name].unit, 5) for value in (comes[worst], wanted[worst]))
+        words = f"With {found.parameter} = {given}, as the case gives it, the {MATCHABLE[name].words} of {found.observations.labels[worst]}"
+        instead, asked = (text(float(value), MATCHABLE[name].unit, 5) for value in (comes[worst], wanted[worst]))
         misses = abs(off[worst]) > _MET
         within = found.intervals is not None and bool(np.prod(found.intervals[worst] - found.given[worst]) <= 0.0)
         verdict = ", no more than the measurement leaves open" if within else ": the target can't be met so" if misses else ""
@@ -133,8 +133,8 @@ def given_sentences(found: Calibration) -> list[str]:
 def match_words(found: Calibration) -> str:
     """Return what was matched, in words."""
     if len(found.weights) == 1:
-        return f"the {OUTCOMES[next(iter(found.weights))].words} of each impact comes out as wanted"
-    every = " and ".join(f"the {OUTCOMES[name].words} (weight {weight:g})" for name, weight in found.weights.items())
+        return f"the {MATCHABLE[next(iter(found.weights))].words} of each impact comes out as wanted"
+    every = " and ".join(f"the {MATCHABLE[name].words} (weight {weight:g})" for name, weight in found.weights.items())
     return f"{every} of each impact come as near to what is wanted as one number can make them"
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from vibroimpact.arrays import Floats, Indices
 from vibroimpact.calibration.matching import Tunable
-from vibroimpact.calibration.one_impact import one_impact, stacked
+from vibroimpact.calibration.single_impacts import batched_law, single_impacts
 from vibroimpact.contact.law import ContactLaw, unit_of
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.errors import InputError, did_you_mean
@@ -51,8 +51,8 @@ def law_parameter(problem: Problem, name: str | None = None) -> Tunable:
     start = next((value for value in (given[0], told["example"]) if value), 1.0)
 
     def respond(speeds: Floats, values: Floats, which: Indices) -> dict[str, Floats]:
-        law = stacked(laws, int(which.max()) + 1)
-        return one_impact(problem, law.take(which).changed({chosen: values}), speeds)
+        law = batched_law(laws, int(which.max()) + 1)
+        return single_impacts(problem, law.take(which).changed({chosen: values}), speeds)
 
     def drop(values: Floats) -> Problem:
         number = max(len(values), len(laws))
@@ -89,7 +89,7 @@ def modal_damping(problem: Problem, body: Literal["sphere", "plate"]) -> Tunable
 
     def respond(speeds: Floats, values: Floats, which: Indices) -> dict[str, Floats]:
         each = [
-            one_impact(damped(float(value)), _law(problem.laws, int(impact)), np.array([speed]))
+            single_impacts(damped(float(value)), _law(problem.laws, int(impact)), np.array([speed]))
             for speed, value, impact in zip(speeds, values, which, strict=True)
         ]
         return {name: np.concatenate([one[name] for one in each]) for name in each[0]}

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.polynomial import polynomial
 
 from vibroimpact.arrays import Floats, Indices
-from vibroimpact.calibration.drops import impacts_of
+from vibroimpact.calibration.calibrated_drops import impact_count
 from vibroimpact.calibration.fitting import Fit
 from vibroimpact.calibration.matching import Tunable, match
 from vibroimpact.calibration.observations import Observations
@@ -39,7 +39,7 @@ def default_draws(values: Floats, deviations: Floats) -> int:
     return int(np.clip(_DRAWN_VALUES // len(values), _FEWEST_DRAWS, _MOST_DRAWS))
 
 
-def redrawn(
+def bootstrap_intervals(
     tunable: Tunable,
     observations: Observations,
     weights: Mapping[str, float],
@@ -84,7 +84,7 @@ def redrawn(
         wanted = {name: np.concatenate([one[1][name] for one in drawn]) for name in weights}
         which = np.tile(observations.which, len(drawn))
         found = match(tunable, fast, wanted, weights, which).values
-        values.append(with_nearest_end(tunable, found, fast, wanted, weights, which).reshape(len(drawn), number))
+        values.append(with_nearest_bound(tunable, found, fast, wanted, weights, which).reshape(len(drawn), number))
         speeds.append(fast.reshape(len(drawn), number))
         progress(min(1.0, (begin + at_once) / draws))
     every, fast = np.concatenate(values), np.concatenate(speeds)
@@ -98,7 +98,7 @@ def redrawn(
     return intervals, replace(fit, covariance=np.atleast_2d(np.cov(np.array(coefficients).T)))
 
 
-def with_nearest_end(
+def with_nearest_bound(
     tunable: Tunable,
     values: Floats,
     speeds: Floats,
@@ -121,7 +121,7 @@ def with_nearest_end(
     return filled
 
 
-def undetermined(
+def undetermined_doubts(
     tunable: Tunable, values: Floats, intervals: Floats | None, observations: Observations, fit: Fit, confidence: float
 ) -> list[str]:
     """Return sentences about values and coefficients that the measurement does not determine."""
@@ -146,7 +146,7 @@ def undetermined(
     return told
 
 
-def of_the_whole(
+def fit_doubts(
     problem: Problem, tunable: Tunable, seen: Observations, fit: Fit, curve: tuple[Floats, Floats] | None, speeds: Floats
 ) -> list[str]:
     """Return sentences about a polynomial that does not follow what it was fitted to, or is used beyond it; and other limits.
@@ -173,6 +173,6 @@ def of_the_whole(
             f"{function.slowest:.4g} to {function.fastest:.4g} m/s: what it says there is a guess"
         )
     rings = problem.sphere.modes is not None or problem.plate.modes is not None or problem.local_element is not None
-    if rings and impacts_of(problem) > 1:
+    if rings and impact_count(problem) > 1:
         told.append(f"{tunable.name} is matched on bodies at rest; at later impacts they still ring, and the rebound differs")
     return told

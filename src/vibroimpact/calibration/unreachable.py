@@ -8,10 +8,10 @@ from dataclasses import fields
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.calibration.above_one import believed, restitutions
-from vibroimpact.calibration.matching import Match, Tunable, match, slopes
+from vibroimpact.calibration.matchable import MATCHABLE, REBOUNDS
+from vibroimpact.calibration.matching import Match, Tunable, derivatives, match
 from vibroimpact.calibration.observations import Observations
-from vibroimpact.calibration.outcomes import OUTCOMES, REBOUNDS
+from vibroimpact.calibration.restitution_limit import measured_restitutions, restitution_limit
 from vibroimpact.calibration.tunables import law_parameter
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.dynamics.problem import Problem
@@ -37,7 +37,7 @@ def check_reached(tunable: Tunable, problem: Problem, seen: Observations, weight
             raise InputError(f"{seen.labels[missed[0]]}: no value of {tunable.name} is better than all others", "target")
         return found.values
     (name,) = weights
-    wanted, (_, unit, words) = seen.wanted[name], OUTCOMES[name]
+    wanted, (_, unit, words) = seen.wanted[name], MATCHABLE[name]
     for row in missed:
         beyond = max(wanted[row] - found.most[row], found.least[row] - wanted[row])
         if 0.0 < beyond <= max(_BEYOND_NOISE * _noise_of(tunable, seen, name, int(row)), _above_one(problem, seen, name, int(row))):
@@ -59,8 +59,8 @@ def _above_one(problem: Problem, seen: Observations, name: str, row: int) -> flo
     if seen.deviations_known or not seen.measured or name not in REBOUNDS:
         return 0.0
     radius, gravity, speed = float(problem.sphere.contact_offset), float(problem.gravity), float(seen.speeds[row])
-    found = restitutions(seen, radius, gravity)
-    if found is None or not 1.0 < found[row] <= believed(seen.speeds, found, None).most[row]:
+    found = measured_restitutions(seen, radius, gravity)
+    if found is None or not 1.0 < found[row] <= restitution_limit(seen.speeds, found, None).most[row]:
         return 0.0
     height = 0.5 * speed**2 / gravity if name == "rebound_height" else 0.0
     lossless, scale = (radius + height, height) if height else (speed, speed)
@@ -71,7 +71,7 @@ def _noise_of(tunable: Tunable, seen: Observations, name: str, row: int) -> floa
     """Return the standard deviation of what is wanted less what would come of it, where the sizes of the noise are known."""
     if not seen.deviations_known:
         return 0.0
-    near = slopes(tunable, seen.speeds[[row]], tunable.allowed.clip(np.array([1e-3 * tunable.start])), seen.which[[row]])
+    near = derivatives(tunable, seen.speeds[[row]], tunable.allowed.clip(np.array([1e-3 * tunable.start])), seen.which[[row]])
     return float(np.linalg.norm(seen.noise[name][row] - near.by_speed[name][0] * seen.speed_noise[row]))
 
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from vibroimpact.calibration.one_impact import first_speed
+from vibroimpact.calibration.single_impacts import first_approach_speed
 from vibroimpact.calibration.speed_function import SpeedFunction
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.response import Response
@@ -48,7 +48,7 @@ def _by_function(problem: Problem, name: str, function: SpeedFunction) -> Respon
     The speed of an impact depends on the values of those before it alone, so that each pass makes one more of them right; most of
     them it makes right much sooner, as the value changes little with the speed.
     """
-    law, speeds = problem.laws[0], np.array([first_speed(problem)])
+    law, speeds = problem.laws[0], np.array([first_approach_speed(problem)])
     for _ in range(_PASSES):
         response = simulate(replace(problem, laws=tuple(law_at(law, name, function, float(speed)) for speed in speeds)))
         before, speeds = speeds, response.impacts["approach_speed_m_s"]

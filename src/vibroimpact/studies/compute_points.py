@@ -20,10 +20,9 @@ from vibroimpact.dynamics.tabulate import ImpactTable, tabulate
 from vibroimpact.errors import ComputationError, InputError, lines_of
 from vibroimpact.studies.axes import Values
 from vibroimpact.studies.chunk_file import ChunkResult
-from vibroimpact.studies.columns import FIRST, LARGEST, OUTCOME, SENSOR_PEAK, SIGNAL
-from vibroimpact.studies.limits import batch_conditions, drop_conditions, limit_columns
-from vibroimpact.studies.swept_arrays import is_array_key, with_arrays
-from vibroimpact.studies.swept_keys import case_at
+from vibroimpact.studies.drop_variables import FIRST, LARGEST, OUTCOME, SENSOR_PEAK, SIGNAL
+from vibroimpact.studies.limit_columns import batch_conditions, drop_conditions, limit_columns
+from vibroimpact.studies.swept_keys import case_at, is_array_key, with_arrays
 
 _TOGETHER = 16
 """Drops with bodies of their own that are computed at once: enough to pay, and few enough for their histories to lie in memory."""

@@ -22,14 +22,13 @@ from vibroimpact.structures.store import receive
 from vibroimpact.studies.chunk_file import FOLDER, ChunkResult, checksum, read_chunk, write_chunk
 from vibroimpact.studies.compute_points import compute_points
 from vibroimpact.studies.dask_workers import check_scheduler, dask_workers
-from vibroimpact.studies.dataset import write_dataset
+from vibroimpact.studies.drops_table import MOST_ROWS, write_drops
 from vibroimpact.studies.ledger import LEDGER, Ledger, Span, busy, is_held, make_ledger, open_ledger
 from vibroimpact.studies.run_chunks import Points, run_chunks
-from vibroimpact.studies.study import DATASET, STUDY, clear_study, is_study, recover_study
+from vibroimpact.studies.study_folder import DATASET, STUDY, clear_study, is_study, recover_study, study_toml
 from vibroimpact.studies.sweep import LONG, Sweep
-from vibroimpact.studies.table import MOST_ROWS, write_drops
-from vibroimpact.studies.toml import study_toml
 from vibroimpact.studies.workers import Workers, processes, this_process
+from vibroimpact.studies.write_dataset import write_dataset
 
 MEMORY = 500e6
 """Bytes that the drops of a chunk may take, where nothing else is said."""
@@ -93,14 +92,14 @@ def compute_study(
         check_scheduler(scheduler)
     recover_study(folder)
     if resume and is_study(folder):
-        _see_that_there_is_a_ledger(folder, sweep, memory)
+        _restore_ledger(folder, sweep, memory)
     else:
         _begin(folder, sweep, memory, force=force and not resume)
     with open_ledger(folder) as ledger:
         clear_study(folder)
         _check_same(ledger, folder, sweep)
         if not (folder / DATASET).is_file():
-            _forget_damaged(ledger, folder, tell)
+            _invalidate_damaged(ledger, folder, tell)
             number = min(workers, len(ledger.chunks("waiting")))
             _run(ledger, folder, sweep, _workers(folder, sweep, number, scheduler, modes_progress, tell), progress)
             if tell is not None and sweep.size >= _MANY:
@@ -124,7 +123,7 @@ def _begin(folder: Path, sweep: Sweep, memory: float, *, force: bool) -> None:
         (working / SUMMARY).write_text(sealed(summary), encoding="utf-8")
 
 
-def _see_that_there_is_a_ledger(folder: Path, sweep: Sweep, memory: float) -> None:
+def _restore_ledger(folder: Path, sweep: Sweep, memory: float) -> None:
     """Make the ledger of a study that was begun anew if it is missing."""
     if (folder / LEDGER).is_file():
         return
@@ -150,7 +149,7 @@ def _check_same(ledger: Ledger, folder: Path, sweep: Sweep) -> None:
         raise InputError(f"{folder}: {words}; {STUDY} in it is what was begun; begin anew with --force, or in another folder")
 
 
-def _forget_damaged(ledger: Ledger, folder: Path, tell: Tell | None) -> None:
+def _invalidate_damaged(ledger: Ledger, folder: Path, tell: Tell | None) -> None:
     """Have chunks computed again that are not on disk as they were written."""
     for number, expected in ledger.checksums().items():
         if checksum(folder, number) != expected:

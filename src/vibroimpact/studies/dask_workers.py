@@ -10,7 +10,7 @@ from typing import Any
 
 from vibroimpact._version import __version__
 from vibroimpact.errors import InputError
-from vibroimpact.studies.workers import Crew, Setup
+from vibroimpact.studies.workers import Setup, WorkerPool
 
 LOCAL = "local"
 """Instead of an address: a cluster that is started for the study."""
@@ -38,7 +38,7 @@ def check_scheduler(address: str) -> None:
 
 
 @contextmanager
-def dask_workers(address: str, number: int, setup: Setup) -> Iterator[Crew]:
+def dask_workers(address: str, number: int, setup: Setup) -> Iterator[WorkerPool]:
     """Compute with the workers of a scheduler, which `check_scheduler` has found.
 
     Parameters
@@ -63,7 +63,7 @@ def dask_workers(address: str, number: int, setup: Setup) -> Iterator[Crew]:
     options = {"n_workers": number, "threads_per_worker": 1, "scheduler_kwargs": questions, "silence_logs": logging.CRITICAL}
     with LocalCluster(**options) if address == LOCAL else nullcontext(address) as cluster, Client(cluster) as client:
         client.register_plugin(Setting())
-        yield Crew(client.get_executor(pure=False), lambda: 2 * max(1, sum(client.nthreads().values())))
+        yield WorkerPool(client.get_executor(pure=False), lambda: 2 * max(1, sum(client.nthreads().values())))
 
 
 def _client(address: str) -> Any:

@@ -55,7 +55,7 @@ class Ledger:
 
     def done(self, chunk: Span, sha256: str, failed: int) -> None:
         """Note that a chunk is done and on disk."""
-        with _told(self.path), self.connection:
+        with _translated_faults(self.path), self.connection:
             self.connection.execute(
                 "UPDATE chunk SET state = 'done', sha256 = ?, failed = ?, finished = datetime('now') WHERE number = ?",
                 (sha256, failed, chunk.number),
@@ -63,13 +63,13 @@ class Ledger:
 
     def undone(self, chunk: int) -> None:
         """Note that a chunk has to be done again: what is on disk is not what was written."""
-        with _told(self.path), self.connection:
+        with _translated_faults(self.path), self.connection:
             self.connection.execute("UPDATE chunk SET state = 'waiting', sha256 = NULL, failed = NULL WHERE number = ?", (chunk,))
 
 
 def make_ledger(folder: Path, facts: Mapping[str, str], size: int, chunk: int) -> None:
     """Make, whole or not at all, the ledger of a study of `size` points in chunks of `chunk`, none of them done."""
-    with _told(folder / LEDGER), new_file(folder / LEDGER) as working, closing(sqlite3.connect(working)) as connection:
+    with _translated_faults(folder / LEDGER), new_file(folder / LEDGER) as working, closing(sqlite3.connect(working)) as connection:
         connection.execute("PRAGMA journal_mode = MEMORY")  # it is whole or not at all, and nothing is beside it
         with connection:
             connection.executescript(_SCHEMA)
@@ -111,10 +111,10 @@ def open_ledger(folder: Path) -> Iterator[Ledger]:
     path = folder / LEDGER
     if not path.is_file():
         raise InputError(f"{folder}: this is not the folder of a study; it has no {LEDGER}")
-    with _told(path):
+    with _translated_faults(path):
         connection = sqlite3.connect(path, timeout=0.2)
     try:
-        with _told(path):
+        with _translated_faults(path):
             # the journal of a process that died stays until something is written; leaving this mode rolls it back and deletes it
             connection.execute("PRAGMA journal_mode = TRUNCATE")
             connection.execute("PRAGMA journal_mode = DELETE")
@@ -144,7 +144,7 @@ def _check_chunks(connection: sqlite3.Connection) -> None:
 
 
 @contextmanager
-def _told(path: Path) -> Iterator[None]:
+def _translated_faults(path: Path) -> Iterator[None]:
     """Say what a fault of the database means."""
     try:
         yield

@@ -53,7 +53,7 @@ def run_chunks(
         running: dict[Future[ChunkResult], Span] = {}
         try:
             with start() as (executor, in_flight):
-                _see_that_it_lives(executor)
+                _check_alive(executor)
                 while waiting or suspects or running:
                     source, most = (suspects, 1) if suspects else (waiting, in_flight())
                     while source and len(running) < most:
@@ -75,7 +75,7 @@ def run_chunks(
             raise ComputationError("the scheduler and its workers are gone; what is done stays: go on with --resume") from None
 
 
-def _see_that_it_lives(executor: Executor) -> None:
+def _check_alive(executor: Executor) -> None:
     """Raise if not even nothing can be computed: then no chunk is to blame."""
     try:
         executor.submit(int).result()

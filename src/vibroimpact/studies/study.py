@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from math import prod
 from os import PathLike
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import h5py
 import numpy as np
@@ -21,19 +21,34 @@ from vibroimpact.errors import InputError
 from vibroimpact.files.check_sums import CHECK_SUMS, DamageError, read_sealed
 from vibroimpact.files.damaged_part import check_hdf5
 from vibroimpact.files.hdf5 import read_array, why
-from vibroimpact.files.leftovers import remove
-from vibroimpact.files.recover import clear, recover
 from vibroimpact.results.folder import SUMMARY
-from vibroimpact.studies.chunk_file import CHUNK
-from vibroimpact.studies.chunk_file import FOLDER as CHUNKS
-from vibroimpact.studies.columns import SIGNAL
-from vibroimpact.studies.ledger import LEDGER, is_held
+from vibroimpact.studies.drop_variables import DOUBTS, LIMIT, SIGNAL
 from vibroimpact.studies.plan import SAMPLE
-from vibroimpact.studies.recorded_doubts import StudyDoubt, study_doubts
+from vibroimpact.studies.study_folder import DATASET, STUDY, recover_study
 
-DATASET, STUDY = "study.nc", "study.toml"
 FAILED_POINT, FAILED_REASON = "failed_point", "failed_reason"
 """The variables that say which drops failed, and why."""
+
+
+class StudyDoubt(NamedTuple):
+    """A limit that some drops of a study are beyond.
+
+    Attributes
+    ----------
+    limit : str
+        Its name, such as "air_drag".
+    drops : int
+        How many drops are beyond it.
+    worst : int
+        The number of the one that is farthest beyond, from 0.
+    number : float
+        Of that one; `limit_NAME` of the dataset says what it is.
+    """
+
+    limit: str
+    drops: int
+    worst: int
+    number: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,7 +105,7 @@ class Study:
     @property
     def doubts(self) -> list[StudyDoubt]:
         """The limits of the theory that drops are beyond: how many drops, and the worst of them."""
-        with _damage_told(self.path):
+        with _reported_damage(self.path):
             return study_doubts(self.path)
 
     def values(self, name: str, *place: Any) -> NDArray[Any]:
@@ -109,7 +124,7 @@ class Study:
             If there is no such variable, or it is damaged.
         """
         self._check(name)
-        with _damage_told(self.path), h5py.File(self.path, "r") as file:
+        with _reported_damage(self.path), h5py.File(self.path, "r") as file:
             return read_array(file[name], place or ())
 
     def __repr__(self) -> str:
@@ -130,7 +145,7 @@ class Study:
         """
         name = f"{SIGNAL}{sensor}"
         self._check(name)
-        with _damage_told(self.path), h5py.File(self.path, "r") as file:
+        with _reported_damage(self.path), h5py.File(self.path, "r") as file:
             (scale,) = file[name].dims[len(self.dimensions)].values()
             return np.asarray(read_array(scale), dtype=np.float64)
 
@@ -139,32 +154,25 @@ class Study:
             raise InputError(f'there is no variable "{name}"; there are {", ".join(self.shapes)}')
 
 
-def is_study(folder: Path) -> bool:
-    """Was a study begun in a folder?"""
-    return (folder / STUDY).is_file() or (folder / LEDGER).is_file()
+def study_doubts(dataset: Path) -> list[StudyDoubt]:
+    """Return the limits that drops of a study are beyond, that of the most drops first.
 
-
-def begun(folder: Path) -> bool:
-    """Was a study begun in a folder, and is it there, or can it be brought back?"""
-    recover(folder)
-    return is_study(folder)
-
-
-def recover_study(folder: Path) -> None:
-    """Put right what processes that died have left of a study; if one is at work on it, all stays as it is."""
-    recover(folder)
-    if (folder / LEDGER).is_file() and not is_held(folder):
-        clear_study(folder)
-        if (folder / DATASET).is_file():
-            remove(folder / CHUNKS)
-
-
-def clear_study(folder: Path) -> None:
-    """Clear what lies half written in a study that no process is at work on: whole are its chunks alone."""
-    clear(folder)
-    for path in (folder / CHUNKS).glob("*"):
-        if path.suffix != CHUNK:
-            remove(path)
+    Parameters
+    ----------
+    dataset : Path
+        The `study.nc` of the study; of one made before limits were kept there are none.
+    """
+    with h5py.File(dataset, "r") as file:
+        if DOUBTS not in file:
+            return []
+        beyond, found = read_array(file[DOUBTS]).ravel(), []
+        for mask, limit in zip(file[DOUBTS].attrs["flag_masks"], str(file[DOUBTS].attrs["flag_meanings"]).split(), strict=True):
+            doubted = (beyond & mask) != 0
+            if doubted.any():
+                numbers = np.where(doubted, read_array(file[f"{LIMIT}{limit}"]).ravel(), -np.inf)
+                worst = int(np.argmax(numbers))
+                found.append(StudyDoubt(limit, int(doubted.sum()), worst, float(numbers[worst])))
+    return sorted(found, key=lambda one: -one.drops)
 
 
 def read_study(directory: str | PathLike[str]) -> Study:
@@ -188,9 +196,9 @@ def read_study(directory: str | PathLike[str]) -> Study:
             raise InputError(f"{folder}: this is not the folder of a study; it has no {DATASET}")
         command = f"vibroimpact sweep {shlex.quote(str(folder / STUDY))} -o {shlex.quote(str(folder))} --resume"
         raise InputError(f"{folder}: the study is not done; if nothing is at work on it, go on with: {command}")
-    with _damage_told(path):
+    with _reported_damage(path):
         check_hdf5(path, _check_sum(path.parent))
-    with _damage_told(path), h5py.File(path, "r") as file:
+    with _reported_damage(path), h5py.File(path, "r") as file:
         table = tomllib.loads(str(file.attrs["study"]))
         over = list(table["sweep"]["over"])  # in the order of the dimensions
         is_grid = _design(table) == "grid"
@@ -223,7 +231,7 @@ def _check_sum(folder: Path) -> str | None:
 
 
 @contextmanager
-def _damage_told(path: Path) -> Iterator[None]:
+def _reported_damage(path: Path) -> Iterator[None]:
     """Say of a dataset that can't be read that it is damaged."""
     try:
         yield

@@ -26,9 +26,9 @@ from vibroimpact.files.lines import MESH
 from vibroimpact.files.reading import file_digest
 from vibroimpact.shown import shortened, shown, visible
 from vibroimpact.studies.axes import Axis, Listed, Values
-from vibroimpact.studies.columns import OUTCOME, PEAKS, SENSOR_PEAK, SIGNAL
 from vibroimpact.studies.design import find_design
-from vibroimpact.studies.limits import limit_meanings
+from vibroimpact.studies.drop_variables import OUTCOME, PEAKS, SENSOR_PEAK, SIGNAL
+from vibroimpact.studies.limit_columns import limit_meanings
 from vibroimpact.studies.plan import Plan
 from vibroimpact.studies.section import MOST_DROPS, SweepSection, read_axis
 from vibroimpact.studies.swept_keys import case_at, find_quantity, holds_keys

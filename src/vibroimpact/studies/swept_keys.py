@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import copy
+from collections import defaultdict
 from collections.abc import Iterator, Mapping
-from dataclasses import fields
+from dataclasses import fields, replace
 from typing import Any, get_args, get_origin
 
 import numpy as np
@@ -21,6 +22,7 @@ from vibroimpact.errors import InputError, did_you_mean
 from vibroimpact.materials import find_material
 from vibroimpact.ranges import Range
 from vibroimpact.shown import shown
+from vibroimpact.studies.axes import Values
 
 _SECTIONS: dict[str, type[Section]] = {"sphere": SphereSection, "plate": PlateSection, "drop": DropSection, "run": RunSection}
 _PLACES = {"position": ("x", "y"), "size": ("length", "width", "thickness")}
@@ -30,6 +32,9 @@ _DAMPING = Quantity("", "damping ratio", Range(at_least=0))
 
 _OPEN = ("supports", "mesh", "damping", "reduction")
 """Tables of a body whose own keys are taken as they are; the reader of the case knows them."""
+
+_OF_THE_RUN = ("run.duration", "run.tolerance")  # one for all drops of a batch
+_WITHOUT_EFFECT = ("drop.position.", "plate.size.")  # on rigid bodies
 
 
 def swept_keys(table: Mapping[str, Any]) -> dict[str, Quantity | None]:
@@ -129,6 +134,39 @@ def case_at(table: Mapping[str, Any], values: Mapping[str, Any]) -> Case:
     """
     plain = {key: value.item() if isinstance(value, np.generic) else value for key, value in values.items()}
     return read_case(with_values(table, plain))
+
+
+def is_array_key(key: str, values: Values) -> bool:
+    """May the values of a key differ from drop to drop of a batch of rigid bodies?"""
+    return values.dtype.kind == "f" and key not in _OF_THE_RUN
+
+
+def with_arrays(case: Case, arrays: Mapping[str, Values]) -> Case:
+    """Return a case whose numbers at dotted keys are arrays, one value a drop; they are known to be in range.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from vibroimpact.cases.rigid import rigid_problem
+    >>> from vibroimpact.cases.reader import load_case
+    >>> case = with_arrays(load_case("paper:type1-theory"), {"drop.height": np.array([1.0, 2.0, 4.0])})
+    >>> rigid_problem(case).shape
+    (3,)
+    """
+    fields: dict[str, dict[str, Any]] = defaultdict(dict)
+    materials: dict[str, dict[str, Any]] = defaultdict(dict)
+    for key, values in arrays.items():
+        section, _, field = key.partition(".")
+        if field.startswith("material."):
+            materials[section][field.removeprefix("material.")] = values
+        elif not key.startswith(_WITHOUT_EFFECT):
+            fields[section][field] = values
+    for section, numbers in materials.items():
+        fields[section]["material"] = replace(getattr(case, section).material, **numbers)
+    changed: dict[str, Any] = {name: getattr(case, name).model_copy(update=given) for name, given in fields.items() if name != "contact"}
+    if "contact" in fields:
+        changed["contact"] = replace(case.contact, parameters={**case.contact.parameters, **fields["contact"]})
+    return case.model_copy(update=changed)
 
 
 def _keys(table: Mapping[str, Any]) -> Iterator[tuple[str, Quantity | None]]:

@@ -23,18 +23,18 @@ Setup = Callable[[], object]
 """What a worker does once before its first chunk; it is pickled."""
 
 
-class Crew(NamedTuple):
+class WorkerPool(NamedTuple):
     """Workers that are there: what gives them work, and a function that says how many chunks may be on the way, so that none waits."""
 
     executor: Executor
     in_flight: Callable[[], int]
 
 
-Workers = Callable[[], AbstractContextManager[Crew]]
+Workers = Callable[[], AbstractContextManager[WorkerPool]]
 """Starts workers, and ends them when the context does."""
 
 
-class _AtOnce(Executor):
+class _SynchronousExecutor(Executor):
     """An executor that does its work when it is given it."""
 
     def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
@@ -47,12 +47,12 @@ class _AtOnce(Executor):
 
 
 @contextmanager
-def this_process() -> Iterator[Crew]:
+def this_process() -> Iterator[WorkerPool]:
     """Compute in this process, which has what `Setup` would bring."""
-    yield Crew(_AtOnce(), lambda: 1)
+    yield WorkerPool(_SynchronousExecutor(), lambda: 1)
 
 
-class _ByFile(Executor):
+class _FileExecutor(Executor):
     """An executor whose results come by files: a worker that is killed while it sends much would leave its leader waiting for the rest."""
 
     def __init__(self, pool: Executor, folder: Path) -> None:
@@ -87,7 +87,7 @@ def _from_file(result: Future[Any], written: Future[Path]) -> None:
         result.set_exception(error)
 
 
-class _Deaf(SpawnProcess):
+class _InterruptImmuneProcess(SpawnProcess):
     """A process that takes no notice of Ctrl-C from its first instruction on: that is for the one that leads."""
 
     def start(self) -> None:
@@ -103,18 +103,18 @@ class _Deaf(SpawnProcess):
             signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
-class _DeafContext(SpawnContext):
+class _InterruptImmuneContext(SpawnContext):
     """Starts processes that take no notice of Ctrl-C, whenever an executor starts them; spawned, for a fork would copy locks of threads."""
 
-    Process = _Deaf
+    Process = _InterruptImmuneProcess
 
 
 @contextmanager
-def processes(number: int, setup: Setup, folder: Path) -> Iterator[Crew]:
+def processes(number: int, setup: Setup, folder: Path) -> Iterator[WorkerPool]:
     """Compute in `number` processes of this machine, which leave their results in a folder until they are taken."""
-    pool = ProcessPoolExecutor(number, _DeafContext(), initializer=_begin, initargs=(setup,))
+    pool = ProcessPoolExecutor(number, _InterruptImmuneContext(), initializer=_begin, initargs=(setup,))
     try:
-        yield Crew(_ByFile(pool, folder), lambda: 2 * number)
+        yield WorkerPool(_FileExecutor(pool, folder), lambda: 2 * number)
     finally:
         pool.shutdown(cancel_futures=True)  # each ends after the chunk that it is at, or with this process
 

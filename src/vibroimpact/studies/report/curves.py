@@ -6,11 +6,11 @@ from matplotlib.figure import Figure
 
 from vibroimpact.report.lettering import lettering
 from vibroimpact.report.style import ENLARGED, LOOPS, MARKS
-from vibroimpact.studies.columns import PEAK_TABLE
+from vibroimpact.studies.drop_variables import PEAK_TABLE
 from vibroimpact.studies.report.axes import StudyAxis
 from vibroimpact.studies.report.outputs import Output, on_grid
 from vibroimpact.studies.report.panels import add_legend, panels, scale_vertical, title_of
-from vibroimpact.studies.report.ticks import Ticks, rising
+from vibroimpact.studies.report.ticks import Ticks, ascending_order
 from vibroimpact.studies.study import Study
 
 _MOST_MARKED, _MOST = 40, 3000  # levels
@@ -18,7 +18,7 @@ _MOST_MARKED, _MOST = 40, 3000  # levels
 
 def draw_curves(study: Study, axis: StudyAxis, outputs: list[Output]) -> Figure:
     """Draw results over one axis, each of the first impacts a line where impacts were kept."""
-    ticks, order = Ticks(axis), rising(axis, _MOST)
+    ticks, order = Ticks(axis), ascending_order(axis, _MOST)
     places = ticks.places(axis.values[order])
     number = min(_impacts_kept(study), ENLARGED)
     figure, some = panels([ticks.turned] * len(outputs), legend=number > 1)

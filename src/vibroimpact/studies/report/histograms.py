@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from vibroimpact.arrays import Floats
 from vibroimpact.report.style import ACCENT, INK, MARK
 from vibroimpact.studies.report.axes import StudyAxis
-from vibroimpact.studies.report.outputs import Output, independent, independent_drops
+from vibroimpact.studies.report.outputs import Output, independent_drops, independent_values
 from vibroimpact.studies.report.panels import add_legend, is_log, panels, title_of
 from vibroimpact.studies.report.ticks import Ticks, plain_log_ticks
 from vibroimpact.studies.study import Study
@@ -41,7 +41,7 @@ def draw_outputs(study: Study, outputs: list[Output]) -> Figure:
     figure, some = panels([False] * len(outputs), legend=True)
     for output, panel in zip(outputs, some, strict=True):
         size = output.scale.size
-        values = independent(study, output.name)
+        values = independent_values(study, output.name)
         values = values[np.isfinite(values)]
         values /= size
         _draw_histogram(panel, values, is_log(output))

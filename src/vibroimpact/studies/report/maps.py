@@ -15,7 +15,7 @@ from vibroimpact.report.layout import WIDTH, label_vertical
 from vibroimpact.studies.report.axes import StudyAxis
 from vibroimpact.studies.report.outputs import Output, on_grid
 from vibroimpact.studies.report.panels import is_log, panels, title_of
-from vibroimpact.studies.report.ticks import Ticks, plain_log_ticks, rising
+from vibroimpact.studies.report.ticks import Ticks, ascending_order, plain_log_ticks
 from vibroimpact.studies.study import Study
 
 _MOST = 400  # levels of an axis that are drawn; a figure has few more pixels
@@ -41,7 +41,7 @@ def draw_maps(study: Study, axes: list[StudyAxis], outputs: list[Output], shown:
     if not axes[up].numeric and axes[across].numeric:  # names have more room below
         across, up = up, across
     below, beside = Ticks(axes[across]), Ticks(axes[up])
-    levels = rising(axes[across], _MOST), rising(axes[up], _MOST)
+    levels = ascending_order(axes[across], _MOST), ascending_order(axes[up], _MOST)
     edges = _edges(below, axes[across].values[levels[0]]), _edges(beside, axes[up].values[levels[1]])
     figure, some = panels([below.turned] * len(outputs))
     for number, (panel, output) in enumerate(zip(some, outputs, strict=True)):

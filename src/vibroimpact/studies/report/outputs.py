@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from vibroimpact.arrays import Floats
 from vibroimpact.dynamics.outcome import Outcome
-from vibroimpact.studies.columns import OUTCOME, PEAK_TABLE, SENSOR_PEAK
+from vibroimpact.studies.drop_variables import OUTCOME, PEAK_TABLE, SENSOR_PEAK
 from vibroimpact.studies.percentiles import Spread, spread_of
 from vibroimpact.studies.study import Study
 from vibroimpact.units.display import Multiple, multiple
@@ -46,14 +46,14 @@ class Output(NamedTuple):
         return multiple(self.unit, self.spread.percentiles[-1])
 
     @property
-    def of_sensor(self) -> bool:
+    def is_sensor_reading(self) -> bool:
         """Is it what a sensor reads?"""
         return self.name not in PEAK_TABLE
 
     @property
-    def tells(self) -> bool:
+    def is_informative(self) -> bool:
         """Is it worth a picture: does it vary, and say something of the bodies?"""
-        return self.spread.varies and (self.of_sensor or PEAK_TABLE[self.name].is_drawn)
+        return self.spread.varies and (self.is_sensor_reading or PEAK_TABLE[self.name].is_drawn)
 
 
 def output_names(study: Study) -> list[str]:
@@ -70,15 +70,15 @@ def study_outputs(study: Study, most: int | None = None) -> list[Output]:
     for name in output_names(study)[:most]:
         title = PEAK_TABLE[name].title if name in PEAK_TABLE else f"Largest reading of {name.removesuffix(SENSOR_PEAK)}"
         short = PEAK_TABLE[name].short if name in PEAK_TABLE else title
-        found.append(Output(name, title, short, study.meanings[name][0], spread_of(independent(study, name))))
+        found.append(Output(name, title, short, study.meanings[name][0], spread_of(independent_values(study, name))))
     return found
 
 
 def drawn_outputs(outputs: list[Output]) -> list[Output]:
     """Return the results that are drawn."""
-    worth = [one for one in outputs if one.tells]
-    bodies = [one for one in worth if not one.of_sensor]
-    sensors = [one for one in worth if one.of_sensor]
+    worth = [one for one in outputs if one.is_informative]
+    bodies = [one for one in worth if not one.is_sensor_reading]
+    sensors = [one for one in worth if one.is_sensor_reading]
     return [*bodies[:_BODIES], *sensors[:_SENSORS]]
 
 
@@ -87,7 +87,7 @@ def independent_drops(study: Study) -> int:
     return study.size if study.design != "saltelli" else 2 * (study.size // (2 + len(study.coordinates)))
 
 
-def independent(study: Study, name: str) -> NDArray[Any]:
+def independent_values(study: Study, name: str) -> NDArray[Any]:
     """Return a result in all drops that are independent of each other, flat; NaN where the drop failed."""
     return read_output(study, name) if study.is_grid else read_output(study, name, slice(0, independent_drops(study)))
 
@@ -98,7 +98,7 @@ def on_grid(study: Study, name: str) -> NDArray[Any]:
     return read_output(study, name).reshape(*levels, *study.shapes[name][len(study.dimensions) :])
 
 
-def some_places(study: Study, most: int) -> tuple[slice, ...]:
+def sampled_places(study: Study, most: int) -> tuple[slice, ...]:
     """Return where some drops lie that stand for all, along each dimension: the same ones each time.
 
     Of drawn points these are the first, since every one of them lies anywhere, and the first of a Sobol sequence are as even as
@@ -114,9 +114,9 @@ def some_places(study: Study, most: int) -> tuple[slice, ...]:
     return tuple(slice(None, None, step) for step in steps)
 
 
-def some(study: Study, name: str, most: int) -> Floats:
+def sampled_output(study: Study, name: str, most: int) -> Floats:
     """Return a result in some drops, (drops, ...); NaN where the drop failed."""
-    return read_output(study, name, *some_places(study, most))
+    return read_output(study, name, *sampled_places(study, most))
 
 
 def read_output(study: Study, name: str, *places: slice) -> Floats:

@@ -13,9 +13,9 @@ from vibroimpact.report.style import ACCENT, INK, MARK
 from vibroimpact.studies.percentiles import PERCENTILES
 from vibroimpact.studies.report.axes import StudyAxis
 from vibroimpact.studies.report.labels import BAND
-from vibroimpact.studies.report.outputs import Output, on_grid, some, some_places
+from vibroimpact.studies.report.outputs import Output, on_grid, sampled_output, sampled_places
 from vibroimpact.studies.report.panels import add_legend, panels, same_heights, scale_vertical, title_of
-from vibroimpact.studies.report.ticks import Ticks, rising
+from vibroimpact.studies.report.ticks import Ticks, ascending_order
 from vibroimpact.studies.study import Study
 
 MOST_AXES = 8
@@ -38,7 +38,7 @@ def draw_bands(study: Study, axes: list[StudyAxis], output: Output) -> Figure:
     values = on_grid(study, output.name)
     figure, panel = panels([one.turned for one in ticks], legend=True)
     for number, (one, axis) in enumerate(zip(ticks, axes, strict=True)):
-        order = rising(axis, _LEVELS)
+        order = ascending_order(axis, _LEVELS)
         bands = np.array([_parts_of(values[(slice(None),) * number + (level,)]) for level in order])
         _draw_band(panel[number], one, one.places(axis.values[order]), bands / output.scale.size)
     _finish(figure, panel, ticks, output)
@@ -49,10 +49,10 @@ def draw_points(study: Study, axes: list[StudyAxis], output: Output) -> Figure:
     """Draw a result of drawn points over each axis: some drops, and the median and band of more of them."""
     axes = [axis for axis in axes if axis.varies][:MOST_AXES]
     ticks = [Ticks(axis) for axis in axes]
-    values = some(study, output.name, _BANDED) / output.scale.size
+    values = sampled_output(study, output.name, _BANDED) / output.scale.size
     figure, panel = panels([one.turned for one in ticks], legend=True)
     for one, axis, here in zip(ticks, axes, panel, strict=True):
-        places = one.places(axis.values[some_places(study, _BANDED)])
+        places = one.places(axis.values[sampled_places(study, _BANDED)])
         finite = np.isfinite(values)
         if finite.sum() > 20 * _FULL:
             _draw_band(here, one, *_in_bins(places[finite], values[finite], one))

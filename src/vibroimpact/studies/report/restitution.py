@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from vibroimpact.arrays import Floats
 from vibroimpact.report.layout import label_vertical, new_figure, row_of_axes, wide_axes
 from vibroimpact.report.style import LOOPS, MARKS
-from vibroimpact.studies.report.outputs import independent, some
+from vibroimpact.studies.report.outputs import independent_values, sampled_output
 from vibroimpact.studies.report.panels import add_legend
 from vibroimpact.studies.report.ticks import is_spread_by_factors, plain_log_ticks
 from vibroimpact.studies.study import Study
@@ -23,7 +23,7 @@ _FEW, _SOME = 100, 300  # drops up to which marks are large, and are drawn as li
 _AS_ASKED: dict[str, Any] = {"color": "#888888", "linewidth": 0.9, "linestyle": (0, (4, 2)), "zorder": 1.5, "label": "as asked"}
 
 
-class Restitution(NamedTuple):
+class RestitutionSummary(NamedTuple):
     """Restitution at the first impacts of all drops.
 
     Attributes
@@ -39,20 +39,20 @@ class Restitution(NamedTuple):
     difference: float
 
 
-def restitution_of(study: Study) -> Restitution:
+def summarize_restitution(study: Study) -> RestitutionSummary:
     """Return how restitution asked and achieved compare at the first impacts."""
     if "first_restitution_achieved" not in study.shapes:
-        return Restitution(None, None, math.nan)
-    found = independent(study, "first_restitution_achieved")
+        return RestitutionSummary(None, None, math.nan)
+    found = independent_values(study, "first_restitution_achieved")
     achieved = _extremes(found)
     if "first_restitution_asked" not in study.shapes:
-        return Restitution(None, achieved, math.nan)
-    wanted = independent(study, "first_restitution_asked")
+        return RestitutionSummary(None, achieved, math.nan)
+    wanted = independent_values(study, "first_restitution_asked")
     asked = _extremes(wanted)
     found -= wanted
     del wanted  # there may be millions
     found = found[np.isfinite(found)]
-    return Restitution(asked, achieved, float(np.median(found, overwrite_input=True)) if len(found) else math.nan)
+    return RestitutionSummary(asked, achieved, float(np.median(found, overwrite_input=True)) if len(found) else math.nan)
 
 
 def _extremes(values: Floats) -> tuple[float, float] | None:
@@ -61,7 +61,7 @@ def _extremes(values: Floats) -> tuple[float, float] | None:
     return (low, high) if math.isfinite(low) else None
 
 
-def restitution_sentence(found: Restitution) -> str:
+def restitution_sentence(found: RestitutionSummary) -> str:
     """Return in words what was asked and what was achieved; "" if nothing was achieved."""
     if found.achieved is None:
         return ""
@@ -114,7 +114,7 @@ def _asked_achieved_speed(study: Study) -> tuple[Floats, Floats, Floats] | None:
         names = ("first_restitution_asked", "first_restitution_achieved", "first_approach_speed_m_s")
     if names[0] not in study.shapes:
         return None
-    asked, achieved, speed = (np.atleast_2d(some(study, name, _MOST).T).T for name in names)
+    asked, achieved, speed = (np.atleast_2d(sampled_output(study, name, _MOST).T).T for name in names)
     return (asked, achieved, speed) if (np.isfinite(asked) & np.isfinite(achieved)).any() else None
 
 

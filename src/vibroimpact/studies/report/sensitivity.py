@@ -8,8 +8,8 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.studies.report.axes import StudyAxis, study_axes
-from vibroimpact.studies.report.outputs import Output, on_grid, read_output, some, some_places
-from vibroimpact.studies.report.ticks import rising
+from vibroimpact.studies.report.outputs import Output, on_grid, read_output, sampled_output, sampled_places
+from vibroimpact.studies.report.ticks import ascending_order
 from vibroimpact.studies.sensitivity import MOST_LEFT_OUT, one_at_a_time, rank_correlations, sobol_indices
 from vibroimpact.studies.study import Study
 
@@ -103,11 +103,11 @@ def _ranks(study: Study, axes: list[StudyAxis], outputs: list[Output]) -> Sensit
     notes = [f"{', '.join(named)}: names have no order, so that there is no rank correlation with them."] if named else []
     if not numeric:
         return Sensitivity(RANKS, [], {}, {}, notes)
-    places = some_places(study, _RANKED)
+    places = sampled_places(study, _RANKED)
     inputs = np.array([axis.values[places] for axis in numeric])
     rows = {}
     for output in outputs:
-        values = some(study, output.name, _RANKED)
+        values = sampled_output(study, output.name, _RANKED)
         drops = np.full(len(numeric), int(np.isfinite(values).sum()))
         rows[output.name] = {"rank_correlation": rank_correlations(inputs, values), "drops": drops}
     if inputs.shape[1] < study.size:
@@ -117,7 +117,7 @@ def _ranks(study: Study, axes: list[StudyAxis], outputs: list[Output]) -> Sensit
 
 
 def _ranges(study: Study, axes: list[StudyAxis], outputs: list[Output]) -> Sensitivity | None:
-    orders = [rising(axis) for axis in axes]
+    orders = [ascending_order(axis) for axis in axes]
     rows, strength, without = {}, {}, []
     for output in outputs:
         moved = one_at_a_time(on_grid(study, output.name), orders)

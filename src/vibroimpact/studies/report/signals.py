@@ -12,9 +12,9 @@ from vibroimpact.files.plain_names import plain_names
 from vibroimpact.report.layout import label_vertical, new_figure, wide_axes
 from vibroimpact.report.lettering import lettering
 from vibroimpact.report.style import ACCENT, INK, LOOPS
-from vibroimpact.studies.columns import SIGNAL
+from vibroimpact.studies.drop_variables import SIGNAL
 from vibroimpact.studies.report.labels import BAND, drops_text, with_unit
-from vibroimpact.studies.report.outputs import some
+from vibroimpact.studies.report.outputs import sampled_output
 from vibroimpact.studies.report.panels import add_legend
 from vibroimpact.studies.study import Study
 from vibroimpact.units.display import Multiple, multiple
@@ -39,7 +39,7 @@ def draw_signals(study: Study, sensor: str) -> Figure | None:
     """Draw the signals of a sensor: the 5 to 95 % band of its readings over time, and a few drops from where they begin."""
     name = f"{SIGNAL}{sensor}"
     samples, unit = study.shapes[name][-1], study.meanings[name][0]
-    signals = some(study, name, max(_FEW, int(_BYTES / (8 * samples))))
+    signals = sampled_output(study, name, max(_FEW, int(_BYTES / (8 * samples))))
     signals = signals[np.isfinite(signals).all(axis=1)]
     if not len(signals) or not np.abs(signals).max() > 0.0:
         return None

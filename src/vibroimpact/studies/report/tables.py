@@ -9,16 +9,22 @@ from typing import Any
 import numpy as np
 
 from vibroimpact.arrays import Floats
+from vibroimpact.cases.limit import limits
 from vibroimpact.studies.percentiles import PERCENTILES
 from vibroimpact.studies.report.axes import StudyAxis, study_axes
 from vibroimpact.studies.report.labels import drops_text, percent, range_text, value_text
 from vibroimpact.studies.report.outputs import Output
 from vibroimpact.studies.report.sensitivity import RANKS, SOBOL, Sensitivity
 from vibroimpact.studies.study import Study
+from vibroimpact.studies.unit_slips import study_slips
 from vibroimpact.units.display import digits, fixed
 
 PERCENTILE_COLUMNS = ["output", "unit", "drops", "mean", "standard_deviation", *(f"percentile_{part}" for part in PERCENTILES)]
 """Of `percentiles.csv`."""
+
+COUNTED_FROM = "Drops are counted from 0, as in study.nc and drops.csv."
+
+_WORST_KEYS = 4  # of the worst drop that are shown; all are in drops.csv
 
 _COUNT = "number_of_impacts"
 _FAILURES, _REASONS = 10, 5
@@ -64,6 +70,18 @@ def point_of(study: Study, axes: list[StudyAxis], number: int) -> list[Any]:
         places = np.unravel_index(number, tuple(study.dimensions.values()))
         return [axis.values[place] for axis, place in zip(axes, places, strict=True)]
     return [axis.values[number] for axis in axes]
+
+
+def doubt_sentences(study: Study) -> list[str]:
+    """Return what to doubt of a study: slips of units, then each limit that drops are beyond, how many drops, the worst, counted from 0."""
+    axes, found = study_axes(study), study_slips(study.table, study.coordinates)
+    for limit, drops, worst, number in study.doubts:
+        known = limits().get(limit)
+        title, shown = (known.title, known.shown(number)) if known else (limit.replace("_", " "), digits(number, 3))
+        point = zip(axes, point_of(study, axes, worst), strict=True)
+        where = ", ".join([f"{axis.key} {value_text(axis, value)}" for axis, value in point if axis.varies][:_WORST_KEYS])
+        found.append(f"{title}: {drops:,} of {study.size:,} drops, worst {shown} at drop {worst}{f' ({where})' if where else ''}")
+    return found
 
 
 def axes_table(study: Study, axes: list[StudyAxis]) -> list[tuple[str, str, str]]:

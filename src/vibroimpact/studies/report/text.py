@@ -9,12 +9,11 @@ from vibroimpact.report.terminal_table import Column, TerminalTable
 from vibroimpact.runs.console import doubt_lines
 from vibroimpact.studies.percentiles import PERCENTILES
 from vibroimpact.studies.report.axes import study_axes
-from vibroimpact.studies.report.doubts import COUNTED_FROM, doubt_sentences
 from vibroimpact.studies.report.labels import percent, with_unit
 from vibroimpact.studies.report.outputs import study_outputs
-from vibroimpact.studies.report.restitution import restitution_of, restitution_sentence
+from vibroimpact.studies.report.restitution import restitution_sentence, summarize_restitution
 from vibroimpact.studies.report.sensitivity import RANKS, SOBOL, Sensitivity, sensitivity_of, strongest
-from vibroimpact.studies.report.tables import counts_sentence, reasons
+from vibroimpact.studies.report.tables import COUNTED_FROM, counts_sentence, doubt_sentences, reasons
 from vibroimpact.studies.study import Study
 from vibroimpact.units.display import digits
 
@@ -38,7 +37,7 @@ def study_summary(study: Study, width: int) -> RenderableType:
         heading = "moved most, of keys that are numbers, by" if named else "moved most by"
         columns.append(Column(heading, [_strongest(told, one.name) for one in outputs], words=True))
     why = [Text(f" {number}: {words}", style="yellow") for number, words in reasons(study)[:_REASONS]]
-    restitution, doubts = restitution_sentence(restitution_of(study)), doubt_sentences(study)
+    restitution, doubts = restitution_sentence(summarize_restitution(study)), doubt_sentences(study)
     return Group(
         Text(study.name, style="bold"),
         Text(counts_sentence(study)),

@@ -68,13 +68,13 @@ class Ticks:
                     text.set(rotation=20, ha="right", rotation_mode="anchor")
 
 
-def rising(axis: StudyAxis, most: int | None = None) -> Indices:
+def ascending_order(axis: StudyAxis, most: int | None = None) -> Indices:
     """Return where the levels of an axis are in rising order, names as they first come; evenly left out where there are too many.
 
     Examples
     --------
     >>> axis = StudyAxis("sphere.radius", "m", np.array([0.03, 0.01, 0.02]))
-    >>> rising(axis).tolist(), rising(axis, most=2).tolist()
+    >>> ascending_order(axis).tolist(), ascending_order(axis, most=2).tolist()
     ([1, 2, 0], [1, 0])
     """
     order = np.argsort(Ticks(axis).places(axis.values), kind="stable")

@@ -9,7 +9,7 @@ from typing import NamedTuple
 from vibroimpact.errors import InputError, did_you_mean
 
 
-class Outcome(NamedTuple):
+class MatchableQuantity(NamedTuple):
     """What of an impact can be matched: its column of the impact table, SI unit, and words."""
 
     column: str
@@ -17,12 +17,12 @@ class Outcome(NamedTuple):
     words: str
 
 
-OUTCOMES = {
-    "separation_speed": Outcome("separation_speed_m_s", "m/s", "separation speed"),
-    "max_force": Outcome("max_force_N", "N", "largest force"),
-    "max_indentation": Outcome("max_indentation_m", "m", "largest indentation"),
-    "duration": Outcome("duration_s", "s", "contact duration"),
-    "rebound_height": Outcome("rebound_height_m", "m", "rebound height"),
+MATCHABLE = {
+    "separation_speed": MatchableQuantity("separation_speed_m_s", "m/s", "separation speed"),
+    "max_force": MatchableQuantity("max_force_N", "N", "largest force"),
+    "max_indentation": MatchableQuantity("max_indentation_m", "m", "largest indentation"),
+    "duration": MatchableQuantity("duration_s", "s", "contact duration"),
+    "rebound_height": MatchableQuantity("rebound_height_m", "m", "rebound height"),
 }
 """What can be matched, by name."""
 
@@ -42,11 +42,11 @@ def check_weights(weights: Mapping[str, float]) -> None:
         If one is not known, or a weight is not positive.
     """
     for name, weight in weights.items():
-        if name not in OUTCOMES:
-            raise InputError(f'"{name}" can\'t be matched; there are {", ".join(OUTCOMES)}.{did_you_mean(name, OUTCOMES)}', "match")
+        if name not in MATCHABLE:
+            raise InputError(f'"{name}" can\'t be matched; there are {", ".join(MATCHABLE)}.{did_you_mean(name, MATCHABLE)}', "match")
         if not 0.0 < weight < math.inf:
             raise InputError(f"{weight:g} is not allowed as a weight; it must be greater than 0", f"match.{name}")
     if set(REBOUNDS) <= set(weights):
         raise InputError(f"{' and '.join(REBOUNDS)} say the same; give one of them", "match")
     if not weights:
-        raise InputError(f"name at least one of {', '.join(OUTCOMES)}", "match")
+        raise InputError(f"name at least one of {', '.join(MATCHABLE)}", "match")

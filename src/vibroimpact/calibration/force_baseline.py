@@ -20,7 +20,7 @@ _FEWEST = 5
 _NOT_NOISE = 0.999  # of all records whose noise is white look less like a drift
 
 
-class Level(NamedTuple):
+class Baseline(NamedTuple):
     """The level under an impact: values at its samples, what it adds to the impulse and the standard deviation of that [N s], its standard
     deviation in the middle [N], and how far the level wanders about the curve that was laid through it [N]; 0 where noise explains that.
     """
@@ -32,13 +32,13 @@ class Level(NamedTuple):
     wanders: float
 
 
-def level_of_record(time: Floats, force: Floats, quiet: Bools) -> Floats:
+def record_baseline(time: Floats, force: Floats, quiet: Bools) -> Floats:
     """Return the level of a record at each of its times: straight between the medians of pieces of what is quiet.
 
     Examples
     --------
     >>> time = np.linspace(0.0, 1.0, 1001)
-    >>> level = level_of_record(time, 3.0 * time, np.ones(1001, dtype=bool))
+    >>> level = record_baseline(time, 3.0 * time, np.ones(1001, dtype=bool))
     >>> float(np.abs(level - 3.0 * time).max()) < 1e-9
     True
     """
@@ -54,7 +54,9 @@ def level_of_record(time: Floats, force: Floats, quiet: Bools) -> Floats:
     return found
 
 
-def level_under_impact(time: Floats, force: Floats, quiet: Bools, part: slice, room: tuple[int, int], length: int, noise: float) -> Level:
+def baseline_under_impact(
+    time: Floats, force: Floats, quiet: Bools, part: slice, room: tuple[int, int], length: int, noise: float
+) -> Baseline:
     """Return the level under an impact, from what is quiet on either side: a parabola, or a line where there is little time.
 
     As much is taken on one side as on the other. So what a charge amplifier makes of the impact itself, a lower level after it than
@@ -75,11 +77,11 @@ def level_under_impact(time: Floats, force: Floats, quiet: Bools, part: slice, r
     noise : float
         Standard deviation of one sample [N].
     """
-    level, wanders = _level(time, force, quiet, part, room, length, noise, _WIDTHS[0]), 0.0
+    level, wanders = _baseline(time, force, quiet, part, room, length, noise, _WIDTHS[0]), 0.0
     for width in _WIDTHS[1:]:
         if not level.wanders:
             break
-        wider, level = level, _level(time, force, quiet, part, room, length, noise, width)
+        wider, level = level, _baseline(time, force, quiet, part, room, length, noise, width)
         wanders = max(wanders, wider.wanders)
         # what the choice of the width changes is not known, beside what noise does
         unsure = float(np.hypot(level.impulse_deviation, 0.5 * (level.impulse - wider.impulse)))
@@ -87,7 +89,7 @@ def level_under_impact(time: Floats, force: Floats, quiet: Bools, part: slice, r
     return level._replace(wanders=max(wanders, level.wanders))
 
 
-def _level(
+def _baseline(
     time: Floats,
     force: Floats,
     quiet: Bools,
@@ -96,7 +98,7 @@ def _level(
     length: int,
     noise: float,
     width: float,
-) -> Level:
+) -> Baseline:
     most = int(width * length) + 1
     before = np.flatnonzero(quiet[room[0] : part.start])[-most:] + room[0]
     after = np.flatnonzero(quiet[part.stop : room[1]])[:most] + part.stop
@@ -118,8 +120,8 @@ def _level(
     inverse = np.linalg.inv(powers(time[beside]).T @ powers(time[beside]))
     weights = np.trapezoid(powers(inside), inside, axis=0)
     scatter = float(np.sqrt(left @ left / freedom)) if freedom > 0 else 0.0
-    wanders = scatter if freedom > 0 and _is_no_noise(scatter / noise, freedom) else 0.0
-    return Level(
+    wanders = scatter if freedom > 0 and _exceeds_noise(scatter / noise, freedom) else 0.0
+    return Baseline(
         values=powers(inside) @ coefficients,
         impulse=float(weights @ coefficients),
         impulse_deviation=float(np.hypot(noise * np.sqrt(weights @ inverse @ weights), wanders * (inside[-1] - inside[0]))),
@@ -128,7 +130,7 @@ def _level(
     )
 
 
-def _is_no_noise(ratio: float, freedom: int) -> bool:
+def _exceeds_noise(ratio: float, freedom: int) -> bool:
     from scipy.stats import chi2  # which takes longer to load than a calibration
 
     return bool(ratio**2 * freedom > chi2.ppf(_NOT_NOISE, freedom))

@@ -21,11 +21,11 @@ from vibroimpact.files.hdf5 import CHECKED, chunk_shape, new_array, new_hdf5
 from vibroimpact.files.write_file import new_file, write_file
 from vibroimpact.results.folder import SUMMARY
 from vibroimpact.studies.chunk_file import chunk_layout, read_chunk
-from vibroimpact.studies.columns import DOUBTS, LIMIT, OUTCOME, SIGNAL
+from vibroimpact.studies.drop_variables import DOUBTS, LIMIT, OUTCOME, SIGNAL
 from vibroimpact.studies.ledger import Span
 from vibroimpact.studies.plan import SAMPLE, Plan
-from vibroimpact.studies.study import DATASET, FAILED_POINT, FAILED_REASON
-from vibroimpact.studies.toml import study_toml
+from vibroimpact.studies.study import FAILED_POINT, FAILED_REASON
+from vibroimpact.studies.study_folder import DATASET, study_toml
 
 Meanings = Mapping[str, tuple[str, str]]
 """Unit and meaning of variables by their names."""
@@ -77,7 +77,7 @@ def write_dataset(
             layout[variable] = (tuple(map(max, before, wide)), dtype)
     with new_file(folder / DATASET) as working:  # last: once it is there, all is
         columns = sum(values.nbytes for values in plan.columns.values()) + 8 * plan.size
-        _see_that_there_is_room(working, columns + plan.size * sum(prod(wide) * dtype.itemsize for wide, dtype in layout.values()))
+        _reserve_space(working, columns + plan.size * sum(prod(wide) * dtype.itemsize for wide, dtype in layout.values()))
         with new_hdf5(working) as file:
             file.attrs["title"] = name
             file.attrs["version"] = __version__
@@ -100,7 +100,7 @@ def as_text(value: Any) -> Any:
     return value if isinstance(value, (str, float, int)) and not isinstance(value, bool) else json.dumps(value)
 
 
-def _see_that_there_is_room(path: Path, size: int) -> None:
+def _reserve_space(path: Path, size: int) -> None:
     """Raise OSError unless so many bytes, and some more, can be written, before the work is done."""
     with path.open("wb") as file:
         if hasattr(os, "posix_fallocate"):

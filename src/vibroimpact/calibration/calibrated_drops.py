@@ -9,10 +9,10 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.calibration.flights import Flights
+from vibroimpact.calibration.matchable import MATCHABLE
 from vibroimpact.calibration.matching import Tunable
 from vibroimpact.calibration.observations import Observations
-from vibroimpact.calibration.one_impact import first_speed
-from vibroimpact.calibration.outcomes import OUTCOMES
+from vibroimpact.calibration.single_impacts import first_approach_speed
 from vibroimpact.calibration.speed_function import SpeedFunction
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.simulate import simulate
@@ -21,19 +21,19 @@ MOST_IMPACTS = 20
 """Impacts of a drop that goes on to rest which are calibrated."""
 
 
-def impacts_of(problem: Problem) -> int:
+def impact_count(problem: Problem) -> int:
     """Return how many impacts of a drop are calibrated."""
     return min(problem.impacts or MOST_IMPACTS, MOST_IMPACTS)
 
 
-def by_function(tunable: Tunable, problem: Problem, function: SpeedFunction, seen: Observations) -> tuple[Floats, Floats]:
+def values_by_function(tunable: Tunable, problem: Problem, function: SpeedFunction, seen: Observations) -> tuple[Floats, Floats]:
     """Return approach speeds [m/s] and values of the impacts of a drop whose value follows its approach speed."""
-    first = first_speed(problem) if seen.flights is None else float(seen.speeds[0])
-    table = _chained(tunable, lambda _, speed: function(speed), impacts_of(problem), first, seen.flights)
+    first = first_approach_speed(problem) if seen.flights is None else float(seen.speeds[0])
+    table = _impact_sequence(tunable, lambda _, speed: function(speed), impact_count(problem), first, seen.flights)
     return table["approach_speed_m_s"], table["value"]
 
 
-def drops_with(tunable: Tunable, values: Floats, by_speed: Floats, seen: Observations) -> dict[str, Mapping[str, Floats]]:
+def impact_tables(tunable: Tunable, values: Floats, by_speed: Floats, seen: Observations) -> dict[str, Mapping[str, Floats]]:
     """Return the impact tables of the drop with the first value at each impact, with each its own, and with those of the function.
 
     Where the sphere flies in air, the impacts follow one another through that.
@@ -41,9 +41,9 @@ def drops_with(tunable: Tunable, values: Floats, by_speed: Floats, seen: Observa
     found: dict[str, Mapping[str, Floats]] = {}
     for name, given in (("constant", values[:1]), ("variable", values), ("function", by_speed)):
         if seen.flights is None:
-            found[name] = simulate(shortened(tunable.drop(given), len(values))).impacts
+            found[name] = simulate(limited_to(tunable.drop(given), len(values))).impacts
         else:
-            found[name] = _chained(tunable, _one_each(given), len(values), float(seen.speeds[0]), seen.flights)
+            found[name] = _impact_sequence(tunable, _one_each(given), len(values), float(seen.speeds[0]), seen.flights)
     return found
 
 
@@ -51,7 +51,7 @@ def _one_each(values: Floats) -> Callable[[int, float], float]:
     return lambda impact, _: float(values[min(impact, len(values) - 1)])
 
 
-def _chained(
+def _impact_sequence(
     tunable: Tunable, value_of: Callable[[int, float], float], number: int, first: float, flights: Flights | None
 ) -> dict[str, Floats]:
     """Return impacts that follow one another, and the value of each, as columns of an impact table."""
@@ -60,16 +60,16 @@ def _chained(
     for impact in range(number):
         value = tunable.allowed.clip(np.array([value_of(impact, speed)]))
         found = tunable.respond(np.array([speed]), value, np.array([impact]))
-        outcomes = {column: float(found[name][0]) for name, (column, *_) in OUTCOMES.items()}
+        outcomes = {column: float(found[name][0]) for name, (column, *_) in MATCHABLE.items()}
         rows.append({"impact": impact + 1, "approach_speed_m_s": speed, "value": float(value[0]), **outcomes})
         speed = float(found["next_speed"][0])
         if not speed > 0.0:
             break
         if flights is not None:
-            speed = float(flights.flown(np.asarray(speed)).back)
+            speed = float(flights.flight(np.asarray(speed)).return_speed)
     return {name: np.array([row[name] for row in rows]) for name in rows[0]}
 
 
-def shortened(problem: Problem, impacts: int) -> Problem:
+def limited_to(problem: Problem, impacts: int) -> Problem:
     """Return a drop that stops after so many impacts at the latest."""
     return replace(problem, impacts=impacts, sensors=())

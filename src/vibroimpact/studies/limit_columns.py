@@ -20,7 +20,7 @@ from vibroimpact.dynamics.response import Response
 from vibroimpact.dynamics.truncation import time_of_contact
 from vibroimpact.dynamics.vibrating.sensitivity import change_by_impact
 from vibroimpact.studies.axes import Values
-from vibroimpact.studies.columns import DOUBTS, LIMIT
+from vibroimpact.studies.drop_variables import DOUBTS, LIMIT
 from vibroimpact.studies.swept_keys import with_values
 
 

@@ -10,8 +10,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from vibroimpact.calibration.calibrate import calibrate
+from vibroimpact.calibration.calibrated_drops import impact_count
 from vibroimpact.calibration.calibration import Calibration
-from vibroimpact.calibration.drops import impacts_of
 from vibroimpact.calibration.matching import Tunable
 from vibroimpact.calibration.section import CalibrateSection
 from vibroimpact.calibration.targets import target_of
@@ -115,7 +115,7 @@ def calibrate_case(
     if section is None or section.target is None:
         raise InputError("it is missing; it says what impacts are to be like, such as { restitution = 0.7 }", "calibrate.target")
     problem = problem_of(case, progress, tell)
-    if problem.same_spot and getattr(problem.laws[0], "lasting", False) and impacts_of(problem) > 1:
+    if problem.same_spot and getattr(problem.laws[0], "lasting", False) and impact_count(problem) > 1:
         words = f"{case.contact.law} leaves a dent that the next impact falls into, and each impact is matched on fresh surfaces"
         raise InputError(f"{words}; set it to false, or run.impacts = 1", "drop.same_spot")
     try:

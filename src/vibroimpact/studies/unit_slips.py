@@ -15,18 +15,18 @@ from vibroimpact.studies.sweep import Sweep
 from vibroimpact.studies.swept_keys import case_at
 
 
-def slips_of_axes(sweep: Sweep) -> list[str]:
+def axis_slips(sweep: Sweep) -> list[str]:
     """Return a sentence for each swept key of a study with values that look like a slip of a unit."""
     return swept_slips(resolved(sweep.case), sweep.plan.columns)
 
 
-def whole_slips(sweep: Sweep) -> list[str]:
+def sweep_slips(sweep: Sweep) -> list[str]:
     """Return a sentence for each number of a study that looks like a slip of a unit, swept or not; each is said once."""
     return _once(resolved(sweep.case), sweep.plan.columns)
 
 
 def study_slips(table: Mapping[str, Any], values: Mapping[str, NDArray[Any]]) -> list[str]:
-    """Return what `whole_slips` does, of a study whose results are there.
+    """Return what `sweep_slips` does, of a study whose results are there.
 
     Parameters
     ----------

@@ -7,11 +7,11 @@ from rich.text import Text
 
 from vibroimpact.report.terminal_table import Column, TerminalTable
 from vibroimpact.studies.axes import Axis, Listed, Normal, Spaced
-from vibroimpact.studies.slips import slips_of_axes
 from vibroimpact.studies.sweep import Sweep
+from vibroimpact.studies.unit_slips import axis_slips
 
 
-def sweep_explained(sweep: Sweep) -> RenderableType:
+def explain_sweep(sweep: Sweep) -> RenderableType:
     """Return what a study would do, for a terminal."""
     section = sweep.section
     drawn = f", drawn with seed {section.seed}" if section.samples else ""
@@ -22,7 +22,7 @@ def sweep_explained(sweep: Sweep) -> RenderableType:
     return Group(
         Text(f"A study of {sweep.size:,} drops: {section.design}{drawn}; keeps {kept}.", style="bold"),
         table,
-        *(Text(f"Doubt: {doubt}.", style="yellow") for doubt in slips_of_axes(sweep)),
+        *(Text(f"Doubt: {doubt}.", style="yellow") for doubt in axis_slips(sweep)),
         Text("The case at its first point:\n"),
     )
 

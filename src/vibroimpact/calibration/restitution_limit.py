@@ -14,14 +14,14 @@ _LEAST, _MOST = 0.01, 0.1
 """What is believed above 1 where nothing tells the noise, and the most where the scatter does."""
 
 
-class Believed(NamedTuple):
+class RestitutionLimit(NamedTuple):
     """The largest restitution that is believed of each impact, (n,), and why, in words."""
 
     most: Floats
     why: str
 
 
-def restitutions(seen: Observations, radius: float, gravity: float) -> Floats | None:
+def measured_restitutions(seen: Observations, radius: float, gravity: float) -> Floats | None:
     """Return the restitution that was measured of each impact, (n,); None if its rebound was not."""
     if "separation_speed" in seen.wanted:
         return seen.wanted["separation_speed"] / seen.speeds
@@ -30,7 +30,7 @@ def restitutions(seen: Observations, radius: float, gravity: float) -> Floats | 
     return None
 
 
-def believed(speeds: Floats, restitutions: Floats, deviations: Floats | None) -> Believed:
+def restitution_limit(speeds: Floats, restitutions: Floats, deviations: Floats | None) -> RestitutionLimit:
     """Return up to which value above 1 a measured restitution is taken for noise.
 
     Three standard deviations where these are given. Else three times the scatter of those that are not above 1, about a parabola of
@@ -45,21 +45,21 @@ def believed(speeds: Floats, restitutions: Floats, deviations: Floats | None) ->
 
     Examples
     --------
-    >>> believed(np.array([1.0, 2.0]), np.array([1.003, 0.9]), None).most.tolist()
+    >>> restitution_limit(np.array([1.0, 2.0]), np.array([1.003, 0.9]), None).most.tolist()
     [1.01, 1.01]
-    >>> believed(np.array([1.0]), np.array([1.003]), np.array([0.002])).most.tolist()
+    >>> restitution_limit(np.array([1.0]), np.array([1.003]), np.array([0.002])).most.tolist()
     [1.006]
     """
     if deviations is not None:
-        return Believed(1.0 + _DEVIATIONS * deviations, "three standard deviations")
+        return RestitutionLimit(1.0 + _DEVIATIONS * deviations, "three standard deviations")
     some = restitutions <= 1.0
     degree = min(2, len(np.unique(speeds[some])) - 1)
     freedom = int(np.count_nonzero(some)) - degree - 1
     if degree < 0 or freedom < 1:
-        return Believed(np.full(len(speeds), 1.0 + _LEAST), "1 %, as no standard deviation is given")
+        return RestitutionLimit(np.full(len(speeds), 1.0 + _LEAST), "1 %, as no standard deviation is given")
     powers = np.vander(speeds[some] / speeds.max(), degree + 1)
     left = restitutions[some] - powers @ np.linalg.lstsq(powers, restitutions[some], rcond=None)[0]
     scatter = float(np.sqrt(left @ left / freedom))
     part = float(np.clip(_DEVIATIONS * scatter, _LEAST, _MOST))
     why = "three times the scatter of the others" if _LEAST < part < _MOST else f"{100.0 * part:g} %, as no standard deviation is given"
-    return Believed(np.full(len(speeds), 1.0 + part), why)
+    return RestitutionLimit(np.full(len(speeds), 1.0 + part), why)

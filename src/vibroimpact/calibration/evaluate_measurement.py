@@ -8,10 +8,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from vibroimpact.calibration.above_one import restitutions
 from vibroimpact.calibration.air_flights import AirFlights
 from vibroimpact.calibration.flights import Flights
 from vibroimpact.calibration.observations import Observations
+from vibroimpact.calibration.restitution_limit import measured_restitutions
 from vibroimpact.cases.case import Case
 from vibroimpact.cases.rigid import first_speed
 from vibroimpact.dynamics.air import AIR_DENSITY
@@ -33,10 +33,10 @@ def speed_at_touch(case: Case, flights: Flights | None) -> float:
     """Return the speed of the first touch of a case [m/s]: in air, if it falls through that from a height."""
     if flights is None or case.drop.height is None:
         return first_speed(case)
-    return float(flights.falling(np.array(case.drop.height - case.sphere.radius))[0])
+    return float(flights.speed_after_fall(np.array(case.drop.height - case.sphere.radius))[0])
 
 
-def in_air(case: Case, measurement: Measurement, air: bool | None) -> Observations:
+def evaluate(case: Case, measurement: Measurement, air: bool | None) -> Observations:
     """Return what a measurement tells, with the drag of air in its flights or without; doubted where nothing says which, and it matters.
 
     Raises
@@ -64,7 +64,7 @@ def _doubt(seen: Observations, measurement: Measurement, flights: Flights, case:
         other = measurement.evaluated(flights)
     except InputError:  # which tells of a sphere that never flew through air
         return ""
-    without, with_air = (restitutions(one, case.sphere.radius, case.drop.gravity) for one in (seen, other))
+    without, with_air = (measured_restitutions(one, case.sphere.radius, case.drop.gravity) for one in (seen, other))
     if without is None or with_air is None or len(without) != len(with_air):
         return ""
     off = with_air / without - 1.0

@@ -14,10 +14,10 @@ from vibroimpact.cases.limit import limits
 from vibroimpact.dynamics.outcome import OUTCOMES, Outcome
 from vibroimpact.files.write_file import new_file
 from vibroimpact.studies.chunk_file import ChunkResult, chunk_layout, read_chunk
-from vibroimpact.studies.columns import DOUBTS, OUTCOME, PEAKS, SENSOR_PEAK
-from vibroimpact.studies.dataset import Meanings, as_text
+from vibroimpact.studies.drop_variables import DOUBTS, OUTCOME, PEAKS, SENSOR_PEAK
 from vibroimpact.studies.ledger import Span
 from vibroimpact.studies.plan import Plan
+from vibroimpact.studies.write_dataset import Meanings, as_text
 
 TABLE = "drops.csv"
 MOST_ROWS = 1_000_000

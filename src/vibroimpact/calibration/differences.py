@@ -8,10 +8,10 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.calibration.calibration import Calibration
-from vibroimpact.calibration.outcomes import OUTCOMES
+from vibroimpact.calibration.matchable import MATCHABLE
 
 COMPARED = {
-    OUTCOMES[name].column: OUTCOMES[name].words.capitalize()
+    MATCHABLE[name].column: MATCHABLE[name].words.capitalize()
     for name in ("max_indentation", "max_force", "duration", "rebound_height", "separation_speed")
 }
 """Columns of the impact table that are compared, and how they are headed."""
@@ -29,7 +29,7 @@ def reference(found: Calibration) -> dict[str, Floats]:
     if not found.observations.of_the_drop:
         return {}
     seen = found.observations.wanted
-    return {OUTCOMES[name].column: values for name, values in seen.items()}
+    return {MATCHABLE[name].column: values for name, values in seen.items()}
 
 
 def differences(found: Calibration) -> dict[str, Mapping[str, Floats]]:

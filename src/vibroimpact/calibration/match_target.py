@@ -1,20 +1,24 @@
-"""Match the impacts of a drop under another law."""
+"""Match a parameter to a target, impact by impact, and fit its polynomial of the approach speed.
+
+The target is a drop under another contact law, or a measurement.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import fields
+from typing import NamedTuple
 
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.calibration.drops import impacts_of, shortened
-from vibroimpact.calibration.fitting import fit_values
-from vibroimpact.calibration.match_result import Matched, degree_of
+from vibroimpact.calibration.calibrated_drops import impact_count, limited_to
+from vibroimpact.calibration.fitting import Fit, distinct, fit_observations, fit_values, value_noise
+from vibroimpact.calibration.matchable import MATCHABLE
 from vibroimpact.calibration.matching import Tunable, match
-from vibroimpact.calibration.observations import Observations
-from vibroimpact.calibration.one_impact import one_impact, stacked
-from vibroimpact.calibration.outcomes import OUTCOMES
+from vibroimpact.calibration.observations import Observations, with_noise_scale
+from vibroimpact.calibration.single_impacts import batched_law, single_impacts
+from vibroimpact.calibration.uncertainty import bootstrap_intervals, default_draws, undetermined_doubts, with_nearest_bound
 from vibroimpact.calibration.unreachable import check_reached
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.simulate import simulate
@@ -26,6 +30,18 @@ _CURVE_POINTS = 41
 _PASSES = 20
 
 
+class MatchedTarget(NamedTuple):
+    """Impacts that were matched, the value of each, and what is told of both; as `Calibration` has them."""
+
+    seen: Observations
+    values: Floats
+    fit: Fit
+    intervals: Floats | None = None
+    curve: tuple[Floats, Floats] | None = None
+    draws: int = 0
+    doubts: Sequence[str] = ()
+
+
 def match_drop(
     tuned: Tunable,
     problem: Problem,
@@ -34,21 +50,21 @@ def match_drop(
     degree: int | None,
     speeds: Sequence[float] | Floats | None,
     tell: Callable[[float], None],
-) -> Matched:
+) -> MatchedTarget:
     """Return the values with which impacts come out as they do under the law of another problem, `target`."""
-    table = simulate(shortened(target, impacts_of(problem))).impacts
-    least = float(simulate(shortened(problem, 1)).rest.speed[0])  # what leaves more slowly stays
+    table = simulate(limited_to(target, impact_count(problem))).impacts
+    least = float(simulate(limited_to(problem, 1)).rest.speed[0])  # what leaves more slowly stays
     at = table["approach_speed_m_s"][table["separation_speed_m_s"] > least]
     if not len(at):
         raise InputError("under the law of the target the sphere does not leave the plate; there is no rebound to match", "target")
 
     for name in weights:
-        column = OUTCOMES[name].column
+        column = MATCHABLE[name].column
         if not np.all(table[column][: len(at)] > 0.0):
             raise InputError(f"{name} is not told by the target, {target.laws[0].name}; match something else", "match")
 
     def wanted_at(fast: Floats) -> tuple[Observations, Floats]:
-        outcomes = one_impact(target, stacked(target.laws, len(fast)), fast)
+        outcomes = single_impacts(target, batched_law(target.laws, len(fast)), fast)
         labels = tuple(f"impact {number + 1}" for number in range(len(fast)))
         seen = Observations(fast, {name: outcomes[name] for name in weights}, labels=labels)
         return seen, check_reached(tuned, problem, seen, weights, match(tuned, fast, seen.wanted, weights, seen.which))
@@ -74,12 +90,12 @@ def match_drop(
     if over is not None:
         curve = (over, _along(tuned, problem, target, weights, over, asked=speeds is not None))
     along, through = curve if curve is not None and speeds is not None else (seen.speeds, values)
-    return Matched(seen, values, fit_values(along, through, degree_of(along, degree)), curve=curve)
+    return MatchedTarget(seen, values, fit_values(along, through, _degree(along, degree)), curve=curve)
 
 
 def _along(tuned: Tunable, problem: Problem, target: Problem, weights: Mapping[str, float], speeds: Floats, *, asked: bool) -> Floats:
     """Return the values at approach speeds, under the first laws; NaN where there is none, unless they were asked for."""
-    outcomes = one_impact(target, target.laws[0], speeds)
+    outcomes = single_impacts(target, target.laws[0], speeds)
     labels = tuple(f"an impact at {speed:.4g} m/s" for speed in speeds)
     seen = Observations(speeds, {name: outcomes[name] for name in weights}, labels=labels, of_the_drop=False)
     found = match(tuned, speeds, seen.wanted, weights, seen.which)
@@ -92,3 +108,49 @@ def _alike(problem: Problem, tuned: Tunable) -> bool:
     return all(
         getattr(law, item.name) == getattr(first, item.name) for law in problem.laws for item in fields(law) if item.name != tuned.name
     )
+
+
+def match_measurement(
+    tuned: Tunable,
+    problem: Problem,
+    seen: Observations,
+    weights: Mapping[str, float],
+    degree: int | None,
+    confidence: float,
+    bootstrap: int | None,
+    seed: int,
+    tell: Callable[[float], None],
+) -> MatchedTarget:
+    """Return the values with which impacts come out as they were measured, and how well they are known."""
+    missing = [name for name in weights if name not in seen.wanted]
+    if missing:
+        raise InputError(f"{', '.join(missing)} was not measured; there is {', '.join(seen.wanted)}", "match")
+    found = match(tuned, seen.speeds, seen.wanted, weights, seen.which)
+    alone = check_reached(tuned, problem, seen, weights, found)
+    tell(0.3)
+    fit = fit_observations(tuned, seen, weights, _degree(seen.speeds, degree), alone)
+    tell(0.5)
+    values = with_nearest_bound(tuned, alone, seen.speeds, seen.wanted, weights, seen.which)
+    doubts = list(seen.doubts) + [
+        f"{label}: no {tuned.name} meets it, which noise explains; {nearest:.5g}, as near as {tuned.name} can come, stands for it"
+        for label, value, nearest in zip(seen.labels, alone, values, strict=True)
+        if np.isnan(value)
+    ]
+    sized = seen if seen.deviations_known else with_noise_scale(seen, fit.scatter, weights)
+    deviations = np.linalg.norm(value_noise(tuned, sized, weights, values), axis=1)
+    half, draws = fit.quantile(confidence) * deviations, 0
+    intervals = np.stack([values - half, values + half], axis=1) if np.isfinite(half).all() else None
+    if intervals is not None:
+        draws = default_draws(values, deviations) if bootstrap is None else bootstrap
+    if draws:
+        intervals, fit = bootstrap_intervals(
+            tuned, sized, weights, fit, deviations, draws, confidence, seed, lambda done: tell(0.5 + 0.4 * done)
+        )
+    doubts += undetermined_doubts(tuned, values, intervals, seen, fit, confidence)
+    within = None if intervals is None else tuned.allowed.bounded(intervals)
+    return MatchedTarget(seen, values, fit, within, None, draws, doubts)
+
+
+def _degree(speeds: Floats, degree: int | None) -> int:
+    """Return the degree asked for; else 2, or less where there are fewer speeds."""
+    return min(2, distinct(speeds) - 1) if degree is None else degree

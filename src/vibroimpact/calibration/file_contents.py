@@ -10,13 +10,13 @@ import numpy as np
 
 from vibroimpact._version import __version__
 from vibroimpact.calibration.calibration import Calibration
-from vibroimpact.calibration.comparison import COMPARED, WAYS, differences, largest_misfit, reference
-from vibroimpact.calibration.outcomes import OUTCOMES
+from vibroimpact.calibration.differences import COMPARED, WAYS, differences, largest_misfit, reference
+from vibroimpact.calibration.matchable import MATCHABLE
 from vibroimpact.cases.build import resolved
 from vibroimpact.cases.case import Case
 
 CALIBRATION = "calibration.json"
-_SHORT = {outcome.column: name for name, outcome in OUTCOMES.items()}
+_SHORT = {outcome.column: name for name, outcome in MATCHABLE.items()}
 
 
 def calibration_table(case: Case, found: Calibration) -> dict[str, Any]:
@@ -72,7 +72,7 @@ def matched_rows(found: Calibration) -> list[dict[str, Any]]:
         row["value"] = _finite(found.values[number])
         row["low"], row["high"] = (None, None) if found.intervals is None else (_finite(end) for end in found.intervals[number])
         row["given"] = _finite(found.given[number])
-        for name, (column, *_) in OUTCOMES.items():
+        for name, (column, *_) in MATCHABLE.items():
             if name in found.observations.wanted:
                 row[f"wanted_{column}"] = _finite(found.observations.wanted[name][number])
             row[column] = _finite(found.outcomes[name][number])
