@@ -1,4 +1,4 @@
-"""The whole drop with a calibrated value: the same at each impact, another at each, and by the fitted function."""
+"""The drop computed with calibrated values: constant, one per impact, or by the fitted polynomial."""
 
 from __future__ import annotations
 
@@ -18,25 +18,25 @@ from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.simulate import simulate
 
 MOST_IMPACTS = 20
-"""Impacts of a drop that goes on to rest which are calibrated."""
+"""The largest number of impacts that are calibrated."""
 
 
 def impact_count(problem: Problem) -> int:
-    """Return how many impacts of a drop are calibrated."""
+    """Return the number of impacts of a drop to be calibrated."""
     return min(problem.impacts or MOST_IMPACTS, MOST_IMPACTS)
 
 
 def values_by_function(tunable: Tunable, problem: Problem, function: SpeedFunction, seen: Observations) -> tuple[Floats, Floats]:
-    """Return approach speeds [m/s] and values of the impacts of a drop whose value follows its approach speed."""
+    """Return approach speeds [m/s] and values of the impacts of a drop whose value is a function of the approach speed."""
     first = first_approach_speed(problem) if seen.flights is None else float(seen.speeds[0])
     table = _impact_sequence(tunable, lambda _, speed: function(speed), impact_count(problem), first, seen.flights)
     return table["approach_speed_m_s"], table["value"]
 
 
 def impact_tables(tunable: Tunable, values: Floats, by_speed: Floats, seen: Observations) -> dict[str, Mapping[str, Floats]]:
-    """Return the impact tables of the drop with the first value at each impact, with each its own, and with those of the function.
+    """Return the impact tables of the drop: "constant" (first value), "variable" (one value per impact), "function" (`by_speed`).
 
-    Where the sphere flies in air, the impacts follow one another through that.
+    If the flights have drag, the impacts are computed one by one and connected by those flights.
     """
     found: dict[str, Mapping[str, Floats]] = {}
     for name, given in (("constant", values[:1]), ("variable", values), ("function", by_speed)):
@@ -54,7 +54,7 @@ def _one_each(values: Floats) -> Callable[[int, float], float]:
 def _impact_sequence(
     tunable: Tunable, value_of: Callable[[int, float], float], number: int, first: float, flights: Flights | None
 ) -> dict[str, Floats]:
-    """Return impacts that follow one another, and the value of each, as columns of an impact table."""
+    """Return successive impacts with the value of each, as columns of an impact table."""
     rows: list[dict[str, float]] = []
     speed = first
     for impact in range(number):
@@ -71,5 +71,5 @@ def _impact_sequence(
 
 
 def limited_to(problem: Problem, impacts: int) -> Problem:
-    """Return a drop that stops after so many impacts at the latest."""
+    """Return the drop, ended after a number of impacts at the latest, without sensors."""
     return replace(problem, impacts=impacts, sensors=())

@@ -1,4 +1,4 @@
-"""The figures of a calibration: the value over the approach speed, and what it still gets wrong."""
+"""Figures of a calibration: the value over the approach speed, the measured record, and the remaining differences."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ def draw_calibration(found: Calibration) -> dict[str, Figure]:
     Parameters
     ----------
     found : Calibration
-        What was found.
+        Result of the calibration.
 
     Returns
     -------
     dict of str to Figure
-        `parameter`; `record` where a record was measured; and `differences` where there is something to compare with.
+        `parameter`; `record` if a record was measured; `differences` if there are several impacts and a reference.
     """
     with style():
         figures = {"parameter": _draw_parameter(found)}

@@ -1,4 +1,4 @@
-"""How a sphere flies between impacts, and flights in a vacuum."""
+"""Vertical flights of a sphere between impacts, and those in a vacuum."""
 
 from __future__ import annotations
 
@@ -11,9 +11,7 @@ from vibroimpact.arrays import Floats
 
 
 class Flight(NamedTuple):
-    """A flight from the plate and back to it: how high it rises [m], for how long it does and how long it is [s], and the speed with
-    which it comes back [m/s].
-    """
+    """A flight from the plate back to the plate: height [m], time of ascent and duration [s], and the speed on return [m/s]."""
 
     height: Floats
     rise_time: Floats
@@ -22,7 +20,7 @@ class Flight(NamedTuple):
 
 
 class EndSpeeds(NamedTuple):
-    """The speeds at the start and at the end of a flight of some duration [m/s], and their derivatives by it [m/s^2]."""
+    """The initial and final speeds of a flight [m/s], and their derivatives with respect to its duration [m/s^2]."""
 
     start: Floats
     end: Floats
@@ -31,34 +29,34 @@ class EndSpeeds(NamedTuple):
 
 
 class Flights(Protocol):
-    """Vertical flights of a sphere: heights are counted from where it touches the plate, or from the top of a flight."""
+    """Vertical flights of a sphere; heights are measured from its position in touch with the plate, depths from the apex."""
 
     @property
     def gravity(self) -> float:
         """Acceleration of gravity [m/s^2]."""
 
     def speed_after_fall(self, height: Floats) -> tuple[Floats, Floats]:
-        """Return the speed after a fall from rest by a height [m/s], and its derivative by the height [1/s]."""
+        """Return the speed after a fall from rest through a height [m/s], and its derivative with respect to the height [1/s]."""
 
     def speed_to_rise(self, height: Floats) -> tuple[Floats, Floats]:
-        """Return the speed that it takes to rise by a height [m/s], and its derivative by the height [1/s]."""
+        """Return the initial speed needed to rise by a height [m/s], and its derivative with respect to the height [1/s]."""
 
     def depth_at(self, time: Floats) -> tuple[Floats, Floats]:
-        """Return how far below the top of its flight a sphere is [m] at a time from it [s], and its downward velocity [m/s].
+        """Return the depth below the apex [m] at a time relative to the apex [s], and the downward velocity [m/s].
 
-        Times before the top are negative.
+        Times before the apex are negative.
         """
 
     def end_speeds(self, time: Floats) -> EndSpeeds:
-        """Return the speeds at both ends of flights of given durations [s]."""
+        """Return the initial and final speeds of flights of given durations [s]."""
 
     def flight(self, speed: Floats) -> Flight:
-        """Return the flights that begin with given speeds [m/s]."""
+        """Return the flights with given initial speeds [m/s]."""
 
 
 @dataclass(frozen=True)
 class VacuumFlights:
-    """Flights without air, which are parabolas.
+    """Flights in a vacuum, which are parabolas.
 
     Parameters
     ----------
@@ -74,28 +72,28 @@ class VacuumFlights:
     gravity: float
 
     def speed_after_fall(self, height: Floats) -> tuple[Floats, Floats]:
-        """Return the speed after a fall from rest by a height [m/s], and its derivative by the height [1/s]."""
+        """Return the speed after a fall from rest through a height [m/s], and its derivative with respect to the height [1/s]."""
         speed = np.sqrt(2.0 * self.gravity * height)
         return speed, self.gravity / speed
 
     speed_to_rise = speed_after_fall
 
     def depth_at(self, time: Floats) -> tuple[Floats, Floats]:
-        """Return how far below the top of its flight a sphere is [m] at a time from it [s], and its downward velocity [m/s]."""
+        """Return the depth below the apex [m] at a time relative to the apex [s], and the downward velocity [m/s]."""
         return 0.5 * self.gravity * time**2, self.gravity * time
 
     def end_speeds(self, time: Floats) -> EndSpeeds:
-        """Return the speeds at both ends of flights of given durations [s]."""
+        """Return the initial and final speeds of flights of given durations [s]."""
         speed, slope = 0.5 * self.gravity * time, np.full_like(time, 0.5 * self.gravity)
         return EndSpeeds(speed, speed, slope, slope)
 
     def flight(self, speed: Floats) -> Flight:
-        """Return the flights that begin with given speeds [m/s]."""
+        """Return the flights with given initial speeds [m/s]."""
         return Flight(0.5 * speed**2 / self.gravity, speed / self.gravity, 2.0 * speed / self.gravity, speed)
 
 
 def vacuum_height(flights: Flights, height: Floats) -> tuple[Floats, Floats]:
-    """Return how high a sphere would rise in a vacuum that rises by a height [m], and the derivative by that height.
+    """Return the rise in a vacuum [m] of a sphere that rises by a given height, and its derivative with respect to that height.
 
     Examples
     --------

@@ -25,13 +25,13 @@ from vibroimpact.dynamics.simulate import simulate
 from vibroimpact.errors import InputError
 
 _CURVE_POINTS = 41
-"""Speeds between the slowest and the fastest impact at which the exact value is found too, to compare the polynomial with."""
+"""Number of speeds at which the exact value is computed for comparison with the polynomial."""
 
 _PASSES = 20
 
 
 class MatchedTarget(NamedTuple):
-    """Impacts that were matched, the value of each, and what is told of both; as `Calibration` has them."""
+    """Matched impacts, the value of each, their fit and its uncertainty; fields as in `Calibration`."""
 
     seen: Observations
     values: Floats
@@ -51,9 +51,9 @@ def match_drop(
     speeds: Sequence[float] | Floats | None,
     tell: Callable[[float], None],
 ) -> MatchedTarget:
-    """Return the values with which impacts come out as they do under the law of another problem, `target`."""
+    """Return the values with which the impacts match those of another problem, `target`, with another law."""
     table = simulate(limited_to(target, impact_count(problem))).impacts
-    least = float(simulate(limited_to(problem, 1)).rest.speed[0])  # what leaves more slowly stays
+    least = float(simulate(limited_to(problem, 1)).rest.speed[0])  # below this separation speed the sphere is at rest
     at = table["approach_speed_m_s"][table["separation_speed_m_s"] > least]
     if not len(at):
         raise InputError("under the law of the target the sphere does not leave the plate; there is no rebound to match", "target")
@@ -73,12 +73,13 @@ def match_drop(
         seen, values = wanted_at(at)
         tell(0.3)
         if set(weights) != {"separation_speed"}:
-            break  # it bounces otherwise than the target does, whose impacts are matched all the same
-        # a law that lets go before the overlap is gone comes down again a little faster than it left
+            break  # the rebound is not matched: the approach speeds remain those of the target
+        # a law that releases before the overlap has vanished returns slightly faster than it separated
         after = tuned.respond(at, values, np.arange(len(at)))["next_speed"][:-1]
         if np.allclose(after, at[1:], rtol=1e-10, atol=0.0):
             break
         at = np.append(at[0], after)
+    # exact values over a range of speeds need one law for all impacts
     over, curve = None, None
     alike = len(target.laws) == 1 and _alike(problem, tuned)
     if speeds is not None:
@@ -88,22 +89,22 @@ def match_drop(
     elif len(at) > 1 and len(weights) == 1 and not problem.vibrates and alike:
         over = np.linspace(at.min(), at.max(), _CURVE_POINTS)
     if over is not None:
-        curve = (over, _along(tuned, problem, target, weights, over, asked=speeds is not None))
+        curve = (over, _along(tuned, problem, target, weights, over, required=speeds is not None))
     along, through = curve if curve is not None and speeds is not None else (seen.speeds, values)
     return MatchedTarget(seen, values, fit_values(along, through, _degree(along, degree)), curve=curve)
 
 
-def _along(tuned: Tunable, problem: Problem, target: Problem, weights: Mapping[str, float], speeds: Floats, *, asked: bool) -> Floats:
-    """Return the values at approach speeds, under the first laws; NaN where there is none, unless they were asked for."""
+def _along(tuned: Tunable, problem: Problem, target: Problem, weights: Mapping[str, float], speeds: Floats, *, required: bool) -> Floats:
+    """Return the values at approach speeds with the first laws; without a solution NaN, or an error if the user gave the speeds."""
     outcomes = single_impacts(target, target.laws[0], speeds)
     labels = tuple(f"an impact at {speed:.4g} m/s" for speed in speeds)
     seen = Observations(speeds, {name: outcomes[name] for name in weights}, labels=labels, of_the_drop=False)
     found = match(tuned, speeds, seen.wanted, weights, seen.which)
-    return check_reached(tuned, problem, seen, weights, found) if asked else found.values
+    return check_reached(tuned, problem, seen, weights, found) if required else found.values
 
 
 def _alike(problem: Problem, tuned: Tunable) -> bool:
-    """Is the contact law the same at each impact, but for what is tuned?"""
+    """Return whether the contact law is the same at each impact except for the tuned parameter."""
     first = problem.laws[0]
     return all(
         getattr(law, item.name) == getattr(first, item.name) for law in problem.laws for item in fields(law) if item.name != tuned.name
@@ -121,7 +122,7 @@ def match_measurement(
     seed: int,
     tell: Callable[[float], None],
 ) -> MatchedTarget:
-    """Return the values with which impacts come out as they were measured, and how well they are known."""
+    """Return the values with which the impacts match a measurement, with confidence intervals."""
     missing = [name for name in weights if name not in seen.wanted]
     if missing:
         raise InputError(f"{', '.join(missing)} was not measured; there is {', '.join(seen.wanted)}", "match")
@@ -152,5 +153,5 @@ def match_measurement(
 
 
 def _degree(speeds: Floats, degree: int | None) -> int:
-    """Return the degree asked for; else 2, or less where there are fewer speeds."""
+    """Return the given degree, or by default 2, less if there are fewer than three distinct speeds."""
     return min(2, distinct(speeds) - 1) if degree is None else degree

@@ -1,4 +1,4 @@
-"""What of an impact can be matched."""
+"""The quantities of an impact that can be matched."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from vibroimpact.errors import InputError, did_you_mean
 
 
 class MatchableQuantity(NamedTuple):
-    """What of an impact can be matched: its column of the impact table, SI unit, and words."""
+    """A quantity of an impact: its column in the impact table, SI unit, and name in words."""
 
     column: str
     unit: str
@@ -24,22 +24,22 @@ MATCHABLE = {
     "duration": MatchableQuantity("duration_s", "s", "contact duration"),
     "rebound_height": MatchableQuantity("rebound_height_m", "m", "rebound height"),
 }
-"""What can be matched, by name."""
+"""The quantities that can be matched, by name."""
 
 REBOUNDS = ("separation_speed", "rebound_height")
-"""Two readings of one thing; they differ a little under a law that lets go before the bodies have stopped overlapping."""
+"""Two measures of the rebound; they differ slightly under a law that releases before the overlap has vanished."""
 
 REBOUND: Mapping[str, float] = {"separation_speed": 1.0}
-"""What is matched by default."""
+"""The default weights."""
 
 
 def check_weights(weights: Mapping[str, float]) -> None:
-    """Raise unless these are outcomes that can be matched, with weights.
+    """Check names and weights of the quantities to be matched.
 
     Raises
     ------
     InputError
-        If one is not known, or a weight is not positive.
+        If a name is unknown, a weight is not positive, both rebounds are given, or none at all.
     """
     for name, weight in weights.items():
         if name not in MATCHABLE:

@@ -1,4 +1,4 @@
-"""Measurements that a case holds itself: restitutions, rebound heights, or the first impact."""
+"""Measurements given in the case file: restitutions, rebound heights, or quantities of the first impact."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ from vibroimpact.errors import InputError
 
 
 def heights_measurement(case: Case, heights: Floats, deviation: Floats | None, labels: tuple[str, ...]) -> Measurement:
-    """Return rebound heights [m], from the first impact on.
+    """Return the measurement of successive rebound heights [m] from the first impact on.
 
     Raises
     ------
     InputError
-        If one can't be.
+        If a height is not above the rest position, or (when evaluated) exceeds the height of fall by more than noise.
     """
     radius = case.sphere.radius
     _check_above(case, heights, labels)
@@ -46,7 +46,7 @@ def heights_measurement(case: Case, heights: Floats, deviation: Floats | None, l
 
 
 def first_impact_measurement(case: Case, target: ImpactTarget) -> Measurement:
-    """Return the first impact of the drop."""
+    """Return the measurement of the first impact of the drop."""
     if target.rebound_height is not None:
         _check_above(case, np.array([target.rebound_height]), ("impact 1",))
     radius, part = case.sphere.radius, target.relative_deviation
@@ -69,7 +69,7 @@ def first_impact_measurement(case: Case, target: ImpactTarget) -> Measurement:
 
 
 def restitution_observations(case: Case, target: RestitutionTarget) -> Observations:
-    """Return restitutions at several approach speeds."""
+    """Return measured restitutions at several approach speeds."""
     assert isinstance(target.restitution, tuple)
     speeds, values = np.array(target.approach_speed), np.array(target.restitution)
     deviations = None if target.standard_deviation is None else {"separation_speed": target.standard_deviation * speeds}
@@ -80,12 +80,12 @@ def restitution_observations(case: Case, target: RestitutionTarget) -> Observati
 
 
 def check_restitutions(seen: Observations, case: Case) -> None:
-    """Raise unless restitutions are 1 at most, but for noise.
+    """Check that no restitution exceeds 1 by more than noise.
 
     Raises
     ------
     InputError
-        If one is larger than noise explains; with how far it is believed.
+        If one does; the message gives the limit.
     """
     values = measured_restitutions(seen, case.sphere.radius, case.drop.gravity)
     if values is None:

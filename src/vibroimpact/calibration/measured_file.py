@@ -1,4 +1,4 @@
-"""Measurements in a file: impacts one a row, rebound heights, or a record of position, force or the sphere's acceleration."""
+"""Measurements in a file: one impact per row, rebound heights, or a record of position, force or the sphere's acceleration."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from vibroimpact.errors import InputError
 from vibroimpact.measurements.record_file import SPHERE_ACCELERATION, is_universal, read_universal_record
 from vibroimpact.measurements.table_file import TableFile, read_table_file, rising
 
-_MATCHABLE = {name: outcome.unit for name, outcome in MATCHABLE.items()}
+_MATCHABLE = {name: quantity.unit for name, quantity in MATCHABLE.items()}
 _DEVIATION = "_standard_deviation"
 _COLUMNS = {
     "time": "s",
@@ -50,8 +50,8 @@ _WHOSE = (
 
 
 class Recorded(NamedTuple):
-    """A record: times [s]; position [m], force [N] and acceleration of the sphere [m/s^2], as far as they are there, by their columns;
-    and the line of each sample.
+    """A record: times [s]; the available columns of position [m], force [N] and acceleration of the sphere [m/s^2] by name; line numbers of
+    the samples, None for a universal file.
     """
 
     time: Floats
@@ -60,12 +60,12 @@ class Recorded(NamedTuple):
 
 
 def file_measurement(case: Case, target: FileTarget, by_rebound: bool) -> Measurement:
-    """Return what a file tells; of a record of both position and force the position, if only the rebound is matched.
+    """Return the measurement in a file; if only the rebound is matched, position takes precedence over force.
 
     Raises
     ------
     InputError
-        If it can't be read, or does not tell of impacts; with the line.
+        If it can't be read or contains no impacts; the message names the line.
     """
     if is_universal(target.file):
         found = read_universal_record(target.file, target.function, by_rebound)
@@ -121,13 +121,13 @@ def _record_measurement(case: Case, record: Recorded, by_rebound: bool) -> Measu
 
 
 def _rows_measurement(case: Case, table: TableFile) -> Measurement:
-    """Return impacts that a file gives one a row."""
+    """Return the measurement of a file with one impact per row."""
     columns, speeds = dict(table.columns), table.columns["approach_speed"]
-    if "restitution_achieved" in columns:  # as the impact table of a result calls it
+    if "restitution_achieved" in columns:  # name of the column in the impact table of a result
         columns.setdefault("restitution", columns["restitution_achieved"])
     for name in ("approach_speed", *(name for name in columns if name.endswith(_DEVIATION))):
         _positive(table, name)
-    for ending in ("", _DEVIATION):  # a restitution is a separation speed over the approach speed
+    for ending in ("", _DEVIATION):  # as separation speed, by the definition of restitution
         if f"restitution{ending}" in columns:
             columns.setdefault(f"separation_speed{ending}", columns[f"restitution{ending}"] * speeds)
     wanted = {name: columns[name] for name in MATCHABLE if name in columns}
@@ -166,14 +166,14 @@ def _table(file: str) -> TableFile:
     try:
         return read_table_file(file, _COLUMNS)
     except InputError as error:
-        if "acceleration; what is wanted is a " in error.message:  # of a force, a position
-            what = error.message.partition(" (a number in ")[0]  # and not how else to write a force
+        if "acceleration; what is wanted is a " in error.message:  # given where a force or a position is required
+            what = error.message.partition(" (a number in ")[0]  # without the hint how to write a force
             raise InputError(f"{what}. In a record {_WHOSE}", "target") from None
         raise InputError(error.message, "target") from None
 
 
 def _naming_file(file: str, measurement: Measurement) -> Measurement:
-    """Return a measurement whose faults name the file."""
+    """Return the measurement with error messages that name the file."""
 
     def evaluated(flights: Flights | None) -> Observations:
         try:

@@ -1,4 +1,4 @@
-"""Impacts in a measured record of position."""
+"""Impacts in a measured position record."""
 
 from __future__ import annotations
 
@@ -17,20 +17,20 @@ from vibroimpact.contact.roots import find_root
 from vibroimpact.errors import InputError
 
 _FEWEST = 5
-"""Samples of a flight through which a parabola is laid, at least."""
+"""Minimum number of samples of a fitted flight."""
 
 _SMALL, _LEAST = 0.02, 1e-9
-"""Parts of the largest rise: what is no flight, and the least noise that a record has."""
+"""Fractions of the range of the record: the least prominence of an impact, and the lower bound of the noise."""
 
 _SETTLED, _ROUNDS = 1e-13, 30
-"""When a fitted flight no longer moves, as a part of its height, and after how many rounds at the latest."""
+"""Tolerance of the fit of a flight relative to its height, and the maximum number of iterations."""
 
-_FAR = 0.5  # of the radius, that flights may meet above or below where the sphere touches
+_FAR = 0.5  # tolerance of the height at which successive flights meet, as a fraction of the radius
 
 
 class _Flight(NamedTuple):
-    """A flight: height of its top [m] and when it is there [s]; the standard deviation of the height under noise of one; the sum
-    of squares that is left of how many degrees of freedom; then its standard deviation [m].
+    """A fitted flight: height [m] and time [s] of its apex; standard deviation of the height per unit of noise; residual sum of squares and
+    its degrees of freedom; the standard deviation of the height [m].
     """
 
     top: float
@@ -53,26 +53,26 @@ def impacts_in_position(
 ) -> Observations:
     """Return the impacts of a sphere whose height was recorded.
 
-    A free flight with the given gravity, a parabola in a vacuum, goes through each by least squares; its top tells the speeds at
-    its ends. Samples near an impact are left out, so that it does not matter how well the contact is resolved.
+    A free flight under the given gravity (a parabola in a vacuum) is fitted between successive impacts by least squares; the speeds
+    at its ends follow from its apex. Samples near an impact are omitted, so that the contact need not be resolved.
 
     Parameters
     ----------
     time, position : array, shape (n,)
         Time [s], and height of the sphere's centre above the plate [m].
     radius, gravity : float
-        Of the sphere [m], and acceleration [m/s^2], > 0.
+        Radius of the sphere [m], and acceleration of gravity [m/s^2], > 0.
     first_speed : float
-        Of the first touch [m/s]; used if the record begins too late to tell it.
+        Approach speed of the first impact [m/s]; used if the record does not show the fall before it.
     lines : sequence of int, optional
-        The line of a file that each sample stands on, for messages.
+        The line of each sample in the file, for messages.
     flights : Flights, optional
-        How the sphere flies; in a vacuum by default.
+        Model of the flights; a vacuum by default.
 
     Returns
     -------
     Observations
-        With standard deviations from what is left over of the fitted flights.
+        With standard deviations from the residuals of the fitted flights.
 
     Raises
     ------
@@ -91,6 +91,7 @@ def impacts_in_position(
     lows = _lowest(position, noise)
     if not len(lows):
         raise InputError("the record does not show an impact: nowhere does the sphere stop falling and rise again")
+    # fit the fall before the first impact and the flight after each; the record may cut the first and the last short
     ends = [0, *lows, len(time) - 1]
     fitted: list[_Flight | None] = []
     for number, (begin, end) in enumerate(itertools.pairwise(ends)):
@@ -140,11 +141,11 @@ def _between_flights(
 
 
 def _fitted(time: Floats, position: Floats, flying: Flights) -> _Flight:
-    """Return the flight through samples, by least squares: only its top and when that is are free."""
+    """Return the least-squares fit of a flight to samples; the free parameters are height and time of its apex."""
     middle, gravity = float(time.mean()), flying.gravity
     across = time - middle
     powers = np.vander(across, 2, increasing=True)
-    (height, speed), *_ = np.linalg.lstsq(powers, position + 0.5 * gravity * across**2, rcond=None)  # in a vacuum, to begin with
+    (height, speed), *_ = np.linalg.lstsq(powers, position + 0.5 * gravity * across**2, rcond=None)  # initial guess: in a vacuum
     top, when = float(height + 0.5 * speed**2 / gravity), float(middle + speed / gravity)
     for _ in range(_ROUNDS):
         fallen, downwards = flying.depth_at(time - when)
@@ -159,14 +160,14 @@ def _fitted(time: Floats, position: Floats, flying: Flights) -> _Flight:
 
 
 def _pooled(flights: list[_Flight | None], least: float) -> list[_Flight | None]:
-    """Return flights with their standard deviations, from what is left over of all of them."""
+    """Return the flights with standard deviations from the pooled residuals of all of them."""
     known = [flight for flight in flights if flight is not None]
     noise = float(np.hypot(np.sqrt(sum(flight.left for flight in known) / sum(flight.freedom for flight in known)), least))
     return [flight and flight._replace(deviation=noise * flight.under_noise) for flight in flights]
 
 
 def _check_level(fitted: list[_Flight | None], places: list[str], radius: float, flying: Flights) -> None:
-    """Raise unless neighbouring flights meet about where the sphere touches the plate."""
+    """Check that successive flights meet near the height at which the sphere touches the plate."""
     for (one, other), place in zip(itertools.pairwise(fitted), places, strict=True):
         if one is None or other is None:
             continue
@@ -180,7 +181,7 @@ def _check_level(fitted: list[_Flight | None], places: list[str], radius: float,
 
 
 def _where_they_meet(one: _Flight, other: _Flight, flying: Flights) -> float:
-    """Return the height at which a flight that comes down crosses one that goes up after it [m]; NaN if they don't between their tops."""
+    """Return the height at which a flight crosses the following one between their apexes [m]; NaN if it does not."""
 
     def apart(time: Floats) -> Floats:
         return (other.top - flying.depth_at(time - other.when)[0]) - (one.top - flying.depth_at(time - one.when)[0])
@@ -192,7 +193,7 @@ def _where_they_meet(one: _Flight, other: _Flight, flying: Flights) -> float:
 
 
 def _lowest(position: Floats, noise: float) -> Indices:
-    """Return the samples at which the sphere is lowest between two flights."""
+    """Return the indices of the local minima of the position, the impacts."""
     from scipy.signal import find_peaks
 
     rise = float(position.max() - position.min())

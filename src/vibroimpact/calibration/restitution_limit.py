@@ -1,4 +1,4 @@
-"""Measured restitutions above 1: how far they are taken for noise."""
+"""Measured restitutions, and the limit up to which values above 1 are attributed to noise."""
 
 from __future__ import annotations
 
@@ -11,18 +11,18 @@ from vibroimpact.calibration.observations import Observations
 
 _DEVIATIONS = 3.0
 _LEAST, _MOST = 0.01, 0.1
-"""What is believed above 1 where nothing tells the noise, and the most where the scatter does."""
+"""Excess over 1 that is accepted where the noise is unknown, and its upper bound where it is estimated from the scatter."""
 
 
 class RestitutionLimit(NamedTuple):
-    """The largest restitution that is believed of each impact, (n,), and why, in words."""
+    """The largest accepted restitution of each impact, (n,), and the reason in words."""
 
     most: Floats
     why: str
 
 
 def measured_restitutions(seen: Observations, radius: float, gravity: float) -> Floats | None:
-    """Return the restitution that was measured of each impact, (n,); None if its rebound was not."""
+    """Return the measured restitution of each impact, (n,); None if no rebound was measured."""
     if "separation_speed" in seen.wanted:
         return seen.wanted["separation_speed"] / seen.speeds
     if "rebound_height" in seen.wanted:
@@ -31,10 +31,10 @@ def measured_restitutions(seen: Observations, radius: float, gravity: float) -> 
 
 
 def restitution_limit(speeds: Floats, restitutions: Floats, deviations: Floats | None) -> RestitutionLimit:
-    """Return up to which value above 1 a measured restitution is taken for noise.
+    """Return the value above 1 up to which a measured restitution is attributed to noise.
 
-    Three standard deviations where these are given. Else three times the scatter of those that are not above 1, about a parabola of
-    the approach speed; never less than 1 %, nor more than 10 %.
+    The limit lies three standard deviations above 1 where these are given. Otherwise it lies three times the scatter of the values
+    not above 1 about a parabola of the approach speed, at least 1 % and at most 10 %.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""The [calibrate] section: what impacts are to be like, and what is tuned for it."""
+"""The [calibrate] section of a case: target, tuned law and parameter, and options."""
 
 from __future__ import annotations
 
@@ -145,7 +145,7 @@ class SpeedsTable(Section):
         return self
 
     def values(self) -> np.ndarray:
-        """Return the speeds [m/s]."""
+        """Return the approach speeds [m/s]."""
         return (np.linspace if self.scale == "linear" else np.geomspace)(self.start, self.end, self.number)
 
 
@@ -199,7 +199,7 @@ class CalibrateSection(Section):
 
 
 def calibrate_table(section: CalibrateSection) -> dict[str, Any]:
-    """Return the section as a case holds it, in SI."""
+    """Return the section as a table of the case file, in SI units."""
     table = section.model_dump(exclude_defaults=True, exclude={"target", "model"}, by_alias=True, mode="json")
     laws = {name: value for name in ("target", "model") if (value := getattr(section, name)) is not None}
     return {**{name: _as_table(value) for name, value in laws.items()}, **table}
@@ -215,12 +215,12 @@ _MEASURED = FileKind("what was measured is in a CSV file or a universal file", 5
 
 
 def check_target(section: CalibrateSection | None) -> None:
-    """Raise unless the file with what was measured, if there is one, can be read; what it tells is not looked at.
+    """Check that the file of a measurement, if there is one, can be read; its contents are not evaluated.
 
     Raises
     ------
     InputError
-        If it can't be.
+        If it can't be read.
     """
     if section is not None and isinstance(section.target, FileTarget):
         try:

@@ -1,4 +1,4 @@
-"""What one impact is like at each of many approach speeds."""
+"""Single impacts at many approach speeds, computed as one batch."""
 
 from __future__ import annotations
 
@@ -18,24 +18,24 @@ _TOLERANCE = 1e-12
 
 
 def single_impacts(problem: Problem, law: ContactLaw, speeds: Floats) -> dict[str, Floats]:
-    """Return separation speed [m/s], largest force [N], largest indentation [m] and duration [s] of single impacts.
+    """Return separation speed [m/s], largest force [N], largest indentation [m], duration [s] and rebound height [m] of single impacts.
 
-    Gravity acts in the contact, as it does in a run, and each impact finds fresh surfaces.
+    Gravity acts during contact, as in a run, and each impact is on undeformed surfaces.
 
     Parameters
     ----------
     problem : Problem
         The bodies.
     law : ContactLaw
-        The law; parameters that are arrays have one value a speed.
+        The contact law; array parameters have one value per speed.
     speeds : array, shape (n,)
         Approach speeds [m/s].
 
     Returns
     -------
     dict of str to array, shape (n,)
-        By the names of `MATCHABLE`, and `next_speed`, with which the sphere comes down again [m/s]; NaN where an impact could not
-        be computed.
+        By the names of `MATCHABLE`, and `next_speed`, the approach speed of the next impact in a vacuum [m/s]. Quantities of an impact
+        that could not be computed are NaN.
 
     Examples
     --------
@@ -53,14 +53,14 @@ def single_impacts(problem: Problem, law: ContactLaw, speeds: Floats) -> dict[st
 
 
 def first_approach_speed(problem: Problem) -> float:
-    """Return the speed of the first touch of a drop [m/s]."""
+    """Return the speed at the first touch of a drop [m/s]."""
     if problem.speed is not None:
         return float(problem.speed)
     return float(np.sqrt(2.0 * problem.gravity * (np.asarray(problem.height) - problem.sphere.contact_offset)))
 
 
 def batched_law(laws: Sequence[ContactLaw], number: int) -> ContactLaw:
-    """Return the laws of the first impacts as one law whose parameters are arrays; the last law goes on.
+    """Return the laws of the first impacts as one law with array parameters; the last law holds for all further impacts.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""The tables and sentences of a calibration, as text that is ready to show."""
+"""Tables and sentences of a calibration as text, for the terminal and the report page."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from vibroimpact.runs.tables import column
 from vibroimpact.units.display import column_texts, digits, fixed, largest, text
 
 _MOST_ROWS = 50
-_MET = 1e-3  # of what is wanted
+_MET = 1e-3  # relative deviation up to which the target is met
 _POWERS = ("", " v", " v²", " v³")
 _MEANING = {
     "constant": "the value of the first impact throughout",
@@ -25,7 +25,7 @@ Cells = tuple[list[tuple[str, str]], list[list[str]]]
 
 
 def values_table(found: Calibration) -> Cells:
-    """Return headers with units, and a row for each impact that was matched."""
+    """Return headers with units, and a row per matched impact."""
     seen = found.observations
     headers = [("", ""), ("Approach speed", "m/s"), (found.parameter, found.unit)]
     columns = [list(seen.labels), column_texts(seen.speeds), column_texts(found.values, 6)]
@@ -49,13 +49,13 @@ def values_table(found: Calibration) -> Cells:
 
 
 def differences_tables(found: Calibration) -> dict[str, Cells]:
-    """Return headers, and a row an impact, for each quantity that is compared: how far each way is off [%].
+    """Return for each compared quantity headers, and a row per impact with the deviations of each way of prescribing the value [%].
 
-    None for a single impact, which is matched, and where nothing is there to compare with.
+    Empty for a single impact, which is matched, and without a reference.
     """
     off = differences(found)
     if "rebound_height_m" in off and "separation_speed_m_s" in off:
-        del off["separation_speed_m_s"]  # which says the same
+        del off["separation_speed_m_s"]  # equivalent to the rebound height
     tables = {}
     for name, ways in off.items():
         number = len(next(iter(ways.values())))
@@ -66,7 +66,7 @@ def differences_tables(found: Calibration) -> dict[str, Cells]:
 
 
 def function_words(found: Calibration) -> str:
-    """Return the fitted polynomial in words.
+    """Return the fitted polynomial as text.
 
     Examples
     --------
@@ -89,7 +89,7 @@ def function_words(found: Calibration) -> str:
 
 
 def fit_sentences(found: Calibration) -> list[str]:
-    """Return how good the polynomial is: how well it is known, and how far it is off."""
+    """Return sentences on the uncertainty of the polynomial, or on its largest deviation."""
     fit, seen = found.fit, found.observations
     told = list(seen.notes)
     if seen.measured:
@@ -108,7 +108,7 @@ def fit_sentences(found: Calibration) -> list[str]:
 
 
 def given_sentences(found: Calibration) -> list[str]:
-    """Return how far the value that the case gives is off, and what would meet the target instead."""
+    """Return sentences on the deviation with the value given by the case, and on other parameters that would meet the target."""
     told, missed = [], False
     for name in found.weights if found.as_given else ():
         wanted, comes = found.observations.wanted[name], found.as_given[name]
@@ -131,7 +131,7 @@ def given_sentences(found: Calibration) -> list[str]:
 
 
 def match_words(found: Calibration) -> str:
-    """Return what was matched, in words."""
+    """Return in words what was matched."""
     if len(found.weights) == 1:
         return f"the {MATCHABLE[next(iter(found.weights))].words} of each impact comes out as wanted"
     every = " and ".join(f"the {MATCHABLE[name].words} (weight {weight:g})" for name, weight in found.weights.items())
@@ -139,13 +139,13 @@ def match_words(found: Calibration) -> str:
 
 
 def ways_words(found: Calibration) -> str:
-    """Return what the ways to give the value mean."""
+    """Return in words the ways of prescribing the value."""
     chain = "" if set(found.weights) & set(REBOUNDS) else ". The rebound is not matched, so later impacts come at other speeds"
     return "; ".join(f"{way}: {_MEANING[way]}" for way in WAYS) + chain
 
 
 def _off(parts: ArrayLike) -> list[str]:
-    """Return parts in percent, all with the same decimals: three, or two where one is 10 % or more."""
+    """Return fractions as percentages with the same decimals: three, or two if one is 10 % or more."""
     percent = 100.0 * np.atleast_1d(np.asarray(parts, dtype=float))
     return [fixed(float(value), 3 if largest(percent) < 10.0 else 2) for value in percent]
 

@@ -1,4 +1,4 @@
-"""What the impacts of a calibration are to be like: under another law, or as they were measured."""
+"""The target of a calibration: the drop under another law, or a measurement."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ from vibroimpact.errors import InputError
 
 
 def target_of(case: Case, problem: Problem, section: CalibrateSection) -> Problem | Observations:
-    """Return what impacts are to be like: the drop under another law, or what was measured.
+    """Return the target: the drop under another law, or the evaluated measurement.
 
     Raises
     ------
     InputError
-        If a file can't be read, or does not tell of impacts, with the line; or if what was measured can't be.
+        If a file can't be read or contains no impacts (the message names the line), or the measured values are impossible.
     """
     target = section.target
     if isinstance(target, (HeightsTarget, ImpactTarget, FileTarget)):
@@ -41,7 +41,7 @@ def target_of(case: Case, problem: Problem, section: CalibrateSection) -> Proble
     assert isinstance(target, RestitutionTarget)
     if isinstance(target.restitution, tuple):
         return restitution_observations(case, target)
-    if problem.vibrates:  # where a law without a force has no meaning: the first impact, on a plate at rest
+    if problem.vibrates:  # an impulsive law is not defined with vibrating bodies: match the first impact, on bodies at rest
         speed = first_speed(case)
         return from_table(
             np.array([speed]), {"separation_speed": np.array([target.restitution * speed])}, None, ("impact 1",), of_the_drop=True

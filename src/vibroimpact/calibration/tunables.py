@@ -1,4 +1,4 @@
-"""What can be tuned: a parameter of the contact law, or the damping of a body's modes."""
+"""The parameters that can be tuned: those of the contact law, and the modal damping of a body."""
 
 from __future__ import annotations
 
@@ -19,19 +19,19 @@ _MODAL_START = 0.02
 
 
 def law_parameter(problem: Problem, name: str | None = None) -> Tunable:
-    """Return a parameter of the contact law of a drop as something to tune.
+    """Return a parameter of the contact law of a drop as a `Tunable`.
 
     Parameters
     ----------
     problem : Problem
         The drop.
     name : str, optional
-        The parameter; by default the one that sets how much is lost.
+        The parameter; by default the one that determines the energy loss.
 
     Raises
     ------
     InputError
-        If the law has no such parameter, or none that sets its loss.
+        If the law has no such parameter, or none that determines its loss.
 
     Examples
     --------
@@ -65,19 +65,19 @@ def law_parameter(problem: Problem, name: str | None = None) -> Tunable:
 
 
 def modal_damping(problem: Problem, body: Literal["sphere", "plate"]) -> Tunable:
-    """Return the damping ratio of the modes of a body, one for all of them, as something to tune.
+    """Return the damping ratio of a body, common to all its modes, as a `Tunable`.
 
     Parameters
     ----------
     problem : Problem
         The drop.
     body : "sphere" or "plate"
-        Which of its bodies.
+        The body.
 
     Raises
     ------
     InputError
-        If the body has no modes.
+        If the body is rigid.
     """
     modes = getattr(problem, body).modes
     if modes is None:

@@ -1,4 +1,4 @@
-"""A study explained: how many drops, over what, and what is kept."""
+"""Terminal description of a study before it is computed: drops, axes, kept results."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from vibroimpact.studies.unit_slips import axis_slips
 
 
 def explain_sweep(sweep: Sweep) -> RenderableType:
-    """Return what a study would do, for a terminal."""
+    """Return the description of a study for the terminal."""
     section = sweep.section
     drawn = f", drawn with seed {section.seed}" if section.samples else ""
     kept = " and ".join(dict.fromkeys(["peaks", *section.keep])) + f", about {sweep.bytes / 1e6:.3g} MB"
@@ -28,7 +28,7 @@ def explain_sweep(sweep: Sweep) -> RenderableType:
 
 
 def _words(axis: Axis, unit: str, *, is_drawn: bool) -> str:
-    """Return in a few words what an axis runs over."""
+    """Return a short description of the values of an axis."""
     if isinstance(axis, Listed):
         shown = [f"{value:g}" if isinstance(value, float) else str(value) for value in axis.values]
         text = ", ".join(shown) if len(shown) <= 8 else f"{len(shown)} values, {shown[0]} to {shown[-1]}"

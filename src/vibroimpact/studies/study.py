@@ -1,4 +1,4 @@
-"""A study that is done: one NetCDF-4 dataset, whose dimensions are the swept keys or `sample`."""
+"""A completed study: a NetCDF-4 dataset whose dimensions are the swept keys or `sample`."""
 
 from __future__ import annotations
 
@@ -27,22 +27,22 @@ from vibroimpact.studies.plan import SAMPLE
 from vibroimpact.studies.study_folder import DATASET, STUDY, recover_study
 
 FAILED_POINT, FAILED_REASON = "failed_point", "failed_reason"
-"""The variables that say which drops failed, and why."""
+"""The variables with the numbers of failed drops, and the reasons."""
 
 
 class StudyDoubt(NamedTuple):
-    """A limit that some drops of a study are beyond.
+    """A limit of the theory that some drops of a study exceed.
 
     Attributes
     ----------
     limit : str
-        Its name, such as "air_drag".
+        Name of the limit, such as "air_drag".
     drops : int
-        How many drops are beyond it.
+        Number of drops that exceed it.
     worst : int
-        The number of the one that is farthest beyond, from 0.
+        Number of the drop that exceeds it most, from 0.
     number : float
-        Of that one; `limit_NAME` of the dataset says what it is.
+        The value of `limit_NAME` in the dataset for that drop.
     """
 
     limit: str
@@ -53,28 +53,28 @@ class StudyDoubt(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Study:
-    """A study that is done; its variables are read when they are asked for.
+    """A completed study; its variables are read on demand.
 
     Attributes
     ----------
     path : Path
-        Of its dataset.
+        Path of the dataset.
     name : str
-        What it is called.
+        Title of the study.
     table : dict
         The case with its [sweep] section.
     version : str
-        Of the package that made it.
+        Version of the package that computed it.
     dimensions : dict of str to int
-        The dimensions of every variable, in order, and their lengths: the swept keys, or `sample`.
+        Leading dimensions of every variable in order, with their lengths: the swept keys, or `sample`.
     coordinates : dict of str to array
-        By the swept key its levels, or its values along `sample`.
+        By swept key its levels, or its values along `sample`.
     meanings : dict of str to (str, str)
         Unit and meaning of every variable and every swept key.
     shapes : dict of str to tuple
-        The shape of every variable: that of `dimensions`, and then impacts or samples in time.
+        Shape of every variable: that of `dimensions`, followed by impacts or samples in time.
     failures : dict of int to str
-        Why a drop failed, by its number: its place when all points are counted through, from 0.
+        Reason of each failed drop, by its number in the sequence of all points, from 0.
     """
 
     path: Path
@@ -94,7 +94,7 @@ class Study:
 
     @property
     def is_grid(self) -> bool:
-        """Are its points all combinations of the levels of its keys?"""
+        """Whether its points are all combinations of the levels of its keys."""
         return SAMPLE not in self.dimensions
 
     @property
@@ -104,19 +104,19 @@ class Study:
 
     @property
     def doubts(self) -> list[StudyDoubt]:
-        """The limits of the theory that drops are beyond: how many drops, and the worst of them."""
+        """The limits of the theory that drops exceed, with the number of drops and the worst of them."""
         with _reported_damage(self.path):
             return study_doubts(self.path)
 
     def values(self, name: str, *place: Any) -> NDArray[Any]:
-        """Return a variable, or the part of it at a place as NumPy counts.
+        """Return a variable, or a part of it by NumPy indexing.
 
         Parameters
         ----------
         name : str
-            Such as "max_force_N".
+            Name, such as "max_force_N".
         *place : int or slice
-            Along the first dimension, the second, ...
+            Index along the first dimension, the second, ...
 
         Raises
         ------
@@ -136,12 +136,12 @@ class Study:
         Parameters
         ----------
         sensor : str
-            Its name.
+            Name of the sensor.
 
         Raises
         ------
         InputError
-            If its signal was not kept.
+            If its signal was not kept, or is damaged.
         """
         name = f"{SIGNAL}{sensor}"
         self._check(name)
@@ -155,12 +155,12 @@ class Study:
 
 
 def study_doubts(dataset: Path) -> list[StudyDoubt]:
-    """Return the limits that drops of a study are beyond, that of the most drops first.
+    """Return the limits of the theory that drops of a study exceed, most frequent first.
 
     Parameters
     ----------
     dataset : Path
-        The `study.nc` of the study; of one made before limits were kept there are none.
+        The `study.nc` of the study; the result is empty for one of a version that stored no limits.
     """
     with h5py.File(dataset, "r") as file:
         if DOUBTS not in file:
@@ -176,7 +176,7 @@ def study_doubts(dataset: Path) -> list[StudyDoubt]:
 
 
 def read_study(directory: str | PathLike[str]) -> Study:
-    """Read the dataset of a study, but for its variables.
+    """Return a completed study from its folder; the variables are read later.
 
     Parameters
     ----------
@@ -186,7 +186,7 @@ def read_study(directory: str | PathLike[str]) -> Study:
     Raises
     ------
     InputError
-        If there is none, or it is damaged.
+        If there is no completed study, or its dataset is damaged.
     """
     path = Path(directory) / DATASET
     recover_study(path.parent)
@@ -202,7 +202,7 @@ def read_study(directory: str | PathLike[str]) -> Study:
         table = tomllib.loads(str(file.attrs["study"]))
         over = list(table["sweep"]["over"])  # in the order of the dimensions
         is_grid = _design(table) == "grid"
-        coordinates = {key: _of_file(file[key]) for key in over}
+        coordinates = {key: _coordinate(file[key]) for key in over}
         dimensions = {key: len(coordinates[key]) for key in over} if is_grid else {SAMPLE: len(file[SAMPLE])}
         names = [one for one in file if not file[one].is_scale and one not in (*over, FAILED_REASON)]
         meanings = {one: (str(file[one].attrs["units"]), str(file[one].attrs["long_name"])) for one in [*over, *names]}
@@ -214,7 +214,7 @@ def read_study(directory: str | PathLike[str]) -> Study:
 
 
 def _check_sum(folder: Path) -> str | None:
-    """Return the check sum of the dataset; None of an earlier version, which wrote none.
+    """Return the checksum of the dataset; None for an earlier version, which wrote none.
 
     Raises
     ------
@@ -232,12 +232,12 @@ def _check_sum(folder: Path) -> str | None:
 
 @contextmanager
 def _reported_damage(path: Path) -> Iterator[None]:
-    """Say of a dataset that can't be read that it is damaged."""
+    """Report read errors of a dataset as damage, with the command to compute it again."""
     try:
         yield
     except InputError:
         raise
-    except Exception as error:  # of many kinds, as files are damaged in many ways
+    except Exception as error:  # damage raises errors of many types
         words = str(error) if isinstance(error, DamageError) else f"the file is damaged: {why(error)}"
         folder = shlex.quote(str(path.parent))
         command = f"vibroimpact sweep {shlex.quote(str(path.parent / STUDY))} -o {folder} --force"
@@ -248,7 +248,7 @@ def _design(table: dict[str, Any]) -> str:
     return str(table["sweep"].get("design", "grid"))
 
 
-def _of_file(data: h5py.Dataset) -> NDArray[Any]:
-    """Return the values of a coordinate: numbers, or texts."""
+def _coordinate(data: h5py.Dataset) -> NDArray[Any]:
+    """Return the values of a coordinate, numbers or strings."""
     values = read_array(data)
     return np.array([text.decode() for text in values], dtype=object) if values.dtype == object else np.asarray(values)

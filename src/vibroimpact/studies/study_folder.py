@@ -19,18 +19,18 @@ DATASET, STUDY = "study.nc", "study.toml"
 
 
 def is_study(folder: Path) -> bool:
-    """Was a study begun in a folder?"""
+    """Return whether a folder contains a study, complete or not."""
     return (folder / STUDY).is_file() or (folder / LEDGER).is_file()
 
 
 def has_study(folder: Path) -> bool:
-    """Was a study begun in a folder, and is it there, or can it be brought back?"""
+    """Return whether a folder contains a study, after recovery of an interrupted replacement."""
     recover(folder)
     return is_study(folder)
 
 
 def recover_study(folder: Path) -> None:
-    """Put right what processes that died have left of a study; if one is at work on it, all stays as it is."""
+    """Clean up after processes that died while computing a study, unless another process is computing it."""
     recover(folder)
     if (folder / LEDGER).is_file() and not is_held(folder):
         clear_study(folder)
@@ -39,7 +39,7 @@ def recover_study(folder: Path) -> None:
 
 
 def clear_study(folder: Path) -> None:
-    """Clear what lies half written in a study that no process is at work on: whole are its chunks alone."""
+    """Remove partly written files of a study that no process is computing; only chunk files are complete."""
     clear(folder)
     for path in (folder / CHUNKS).glob("*"):
         if path.suffix != CHUNK:
@@ -47,7 +47,7 @@ def clear_study(folder: Path) -> None:
 
 
 def study_toml(table: Mapping[str, Any]) -> str:
-    """Return a study as a TOML file holds it, what it sweeps in its order: it is that of the dimensions.
+    """Return the text of `study.toml`, with the swept keys in the order of the dimensions.
 
     Parameters
     ----------
@@ -60,7 +60,7 @@ def study_toml(table: Mapping[str, Any]) -> str:
 
 
 def _inline(value: Any) -> str:
-    """Return a value on one line; the writer of TOML would move tables behind what is none."""
+    """Return a value as inline TOML; the library would move tables behind the other keys and so change their order."""
     if isinstance(value, dict):
         return "{ " + ", ".join(f"{json.dumps(key)} = {_inline(one)}" for key, one in value.items()) + " }"
     if isinstance(value, list):

@@ -1,4 +1,4 @@
-"""The report of a study: figures, tables of percentiles and of sensitivity, and the page."""
+"""Write the report of a study: figures, tables of percentiles and sensitivity, and the page."""
 
 from __future__ import annotations
 
@@ -38,21 +38,21 @@ PAGE, FIGURES, SPREADS, SENSITIVITY = "report.html", "figures", "percentiles.csv
 
 
 def write_study_report(study: Study, folder: Path) -> None:
-    """Write figures, `percentiles.csv`, `sensitivity.csv` where there is something to tell, and `report.html`.
+    """Write figures, `percentiles.csv`, `sensitivity.csv` if there are sensitivities, and `report.html`.
 
-    All is written beside and then put in its place file by file; figures that there no longer are go.
+    All files are written to a temporary folder and then moved into place one by one; obsolete figures are removed.
 
     Parameters
     ----------
     study : Study
-        What is told.
+        The completed study.
     folder : pathlib.Path
-        That of the study.
+        Folder of the study.
 
     Raises
     ------
     InputError
-        If the folder can't be written to.
+        If the folder can't be written.
     """
     write_beside(folder, partial(_write, study), goes=(SENSITIVITY, f"{FIGURES}/*.*"))
 
@@ -69,7 +69,7 @@ def _write(study: Study, folder: Path) -> None:
 
 
 def _pictures(study: Study, outputs: list[Output], found: Sensitivity | None, folder: Path) -> list[Picture]:
-    """Draw and save the figures one by one, so that no more than one is held."""
+    """Draw and save the figures one by one, so that only one is in memory."""
     pictures = []
     for name, one in study_figures(study, outputs, found).items():
         figure = draw(one)

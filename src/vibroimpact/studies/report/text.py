@@ -1,4 +1,4 @@
-"""What a sweep prints at its end: how many drops, the results that matter, and the key that moves them most."""
+"""Terminal summary of a completed study: number of drops, main results, and the key with the largest effect on each."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ from vibroimpact.studies.study import Study
 from vibroimpact.units.display import digits
 
 _RESULTS, _REASONS = 5, 3
-_TOLD = (5, 50, 95)  # percentiles
-_NARROW = 70  # columns of a terminal
+_TOLD = (5, 50, 95)  # percentiles shown
+_NARROW = 70  # width of a terminal below which sensitivities are not shown
 
 
 def study_summary(study: Study, width: int) -> RenderableType:
-    """Return what a sweep prints in a terminal of a width: no more than a screen."""
+    """Return the summary for a terminal of a width; it fits on a screen."""
     there = [one for one in study_outputs(study, most=_RESULTS + 3) if one.spread.drops]
     outputs = ([one for one in there if one.spread.varies] or there)[:_RESULTS]
     found = sensitivity_of(study, outputs)
@@ -50,7 +50,7 @@ def study_summary(study: Study, width: int) -> RenderableType:
 
 
 def _strongest(found: Sensitivity, output: str) -> str:
-    """Return the key that moves a result most and how strongly; "" where it can't be told."""
+    """Return the key with the largest effect on a result, with its magnitude; "" if undetermined."""
     key = strongest(found, output)
     if key is None:
         return ""
