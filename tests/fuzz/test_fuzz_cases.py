@@ -14,7 +14,7 @@ from vibroimpact.cases.reader import load_table, named
 from vibroimpact.cases.rigid import deforms
 from vibroimpact.report.terminal import TerminalConsole
 from vibroimpact.runs.console import case_explained
-from vibroimpact.studies.explained import explain_sweep
+from vibroimpact.studies.explain_sweep import explain_sweep
 
 
 def shown(renderable: object) -> None:

@@ -9,7 +9,7 @@ from attack import failures, number, seed
 from mutations import Table, studies
 from vibroimpact.runs.console import case_explained
 from vibroimpact.studies.compute_points import compute_points
-from vibroimpact.studies.explained import explain_sweep
+from vibroimpact.studies.explain_sweep import explain_sweep
 
 
 def compute_a_few(table: Table) -> None:

@@ -472,7 +472,7 @@ def test_an_interrupt_waits_while_a_process_is_started_and_is_not_lost(monkeypat
     monkeypatch.setattr(SpawnProcess, "start", starts)
     before = signal.signal(signal.SIGINT, lambda *_: seen.append("told"))
     try:
-        workers._Deaf(target=_nothing).start()
+        workers._InterruptImmuneProcess(target=_nothing).start()
     finally:
         signal.signal(signal.SIGINT, before)
     assert seen == ["started", "told"]

@@ -36,7 +36,7 @@ from vibroimpact.report.terminal import TerminalConsole
 from vibroimpact.results.result import result_of
 from vibroimpact.runs.console import case_explained, result_summary, versions_table
 from vibroimpact.studies.compute_study import compute_study
-from vibroimpact.studies.explained import explain_sweep
+from vibroimpact.studies.explain_sweep import explain_sweep
 from vibroimpact.studies.report.text import study_summary
 from vibroimpact.studies.sweep import read_sweep
 

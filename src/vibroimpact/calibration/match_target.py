@@ -73,7 +73,7 @@ def match_drop(
         seen, values = wanted_at(at)
         tell(0.3)
         if set(weights) != {"separation_speed"}:
-            break  # the rebound is not matched: the approach speeds remain those of the target
+            break  # the rebound is not matched exactly: the approach speeds remain those of the target
         # a law that releases before the overlap has vanished returns slightly faster than it separated
         after = tuned.respond(at, values, np.arange(len(at)))["next_speed"][:-1]
         if np.allclose(after, at[1:], rtol=1e-10, atol=0.0):

@@ -44,7 +44,7 @@ def check(case: CaseArgument) -> None:
     from vibroimpact.cases.build import check_drop
     from vibroimpact.cases.reader import load_case, load_table, named
     from vibroimpact.runs.console import case_explained
-    from vibroimpact.studies.explained import explain_sweep
+    from vibroimpact.studies.explain_sweep import explain_sweep
     from vibroimpact.studies.sweep import read_sweep
 
     table = named(case, lambda: load_table(case))

@@ -1,4 +1,4 @@
-"""Variables of a study with one value per drop: the peaks, and the names of the others."""
+"""The peaks of a drop in a study, and the names of the other variables of its dataset."""
 
 from __future__ import annotations
 

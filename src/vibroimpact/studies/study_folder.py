@@ -39,7 +39,7 @@ def recover_study(folder: Path) -> None:
 
 
 def clear_study(folder: Path) -> None:
-    """Remove partly written files of a study that no process is computing; only chunk files are complete."""
+    """Remove partly written files of a study that no process is computing, and all but complete chunks from the chunk folder."""
     clear(folder)
     for path in (folder / CHUNKS).glob("*"):
         if path.suffix != CHUNK:
