@@ -20,11 +20,11 @@ if TYPE_CHECKING:
     from vibroimpact.bodies.plate import rigid_plate as rigid_plate
     from vibroimpact.bodies.sphere import rigid_sphere as rigid_sphere
     from vibroimpact.calibration.calibrate import calibrate as calibrate
+    from vibroimpact.calibration.calibrate_case import calibrate_case as calibrate_case
+    from vibroimpact.calibration.calibrate_case import calibrated_case as calibrated_case
+    from vibroimpact.calibration.calibrate_case import load_calibration as load_calibration
+    from vibroimpact.calibration.calibrate_case import read_calibration as read_calibration
     from vibroimpact.calibration.calibration import Calibration as Calibration
-    from vibroimpact.calibration.case import calibrate_case as calibrate_case
-    from vibroimpact.calibration.case import calibrated_case as calibrated_case
-    from vibroimpact.calibration.case import load_calibration as load_calibration
-    from vibroimpact.calibration.case import read_calibration as read_calibration
     from vibroimpact.calibration.folder import save_calibration as save_calibration
     from vibroimpact.calibration.force_record import impacts_in_force as impacts_in_force
     from vibroimpact.calibration.observations import Observations as Observations
@@ -85,7 +85,7 @@ if TYPE_CHECKING:
     from vibroimpact.runs.save import save_result as save_result
     from vibroimpact.structures.mesh import Mesh as Mesh
     from vibroimpact.structures.modal_model import ModalBasis as ModalBasis
-    from vibroimpact.studies.report.folder import run_sweep as run_sweep
+    from vibroimpact.studies.run_sweep import run_sweep as run_sweep
     from vibroimpact.studies.study import Study as Study
     from vibroimpact.studies.study import read_study as read_study
     from vibroimpact.studies.sweep import Sweep as Sweep
@@ -126,8 +126,8 @@ _HOME = {
     "VibroimpactError": "errors",
     "achieved_restitution": "dynamics.restitution",
     "calibrate": "calibration.calibrate",
-    "calibrate_case": "calibration.case",
-    "calibrated_case": "calibration.case",
+    "calibrate_case": "calibration.calibrate_case",
+    "calibrated_case": "calibration.calibrate_case",
     "case_schema": "cases.case",
     "compare_laws": "comparison.comparison",
     "compute_modes": "cases.elastic.modes",
@@ -143,13 +143,13 @@ _HOME = {
     "integrated_restitution": "dynamics.restitution",
     "law_achieving": "dynamics.restitution",
     "law_parameter": "calibration.tunables",
-    "load_calibration": "calibration.case",
+    "load_calibration": "calibration.calibrate_case",
     "load_case": "cases.reader",
     "load_sweep": "studies.sweep",
     "local_element_deviations": "dynamics.local_element",
     "material_library": "materials",
     "modal_damping": "calibration.tunables",
-    "read_calibration": "calibration.case",
+    "read_calibration": "calibration.calibrate_case",
     "read_case": "cases.reader",
     "read_mesh": "meshes.mesh_file",
     "read_result": "results.folder",
@@ -159,7 +159,7 @@ _HOME = {
     "reproduce_paper": "paper.report.folder",
     "rigid_plate": "bodies.plate",
     "rigid_sphere": "bodies.sphere",
-    "run_sweep": "studies.report.folder",
+    "run_sweep": "studies.run_sweep",
     "save_calibration": "calibration.folder",
     "save_comparison": "comparison.folder",
     "save_modes": "modes.folder",

@@ -25,7 +25,8 @@ def remake_report(directory: str | PathLike[str]) -> Path:
     # imported here, since a run does not need them
     from vibroimpact.paper.report.folder import is_reproduction, write_reproduction_report
     from vibroimpact.studies.report.page import write_study_report
-    from vibroimpact.studies.study import is_study, read_study
+    from vibroimpact.studies.study import read_study
+    from vibroimpact.studies.study_folder import is_study
 
     folder = Path(directory)
     recover(folder)

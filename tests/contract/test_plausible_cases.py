@@ -14,7 +14,7 @@ import pytest
 
 import vibroimpact as vi
 from support import one_in
-from vibroimpact.calibration.case import read_calibration
+from vibroimpact.calibration.calibrate_case import read_calibration
 from vibroimpact.cases.build import resolved_case
 from vibroimpact.cases.reader import load_table, shipped_cases
 from vibroimpact.cases.rigid import contact_pair

@@ -14,7 +14,7 @@ from vibroimpact.cases.reader import load_table, prefix_errors
 from vibroimpact.cases.rigid import deforms
 from vibroimpact.report.terminal import TerminalConsole
 from vibroimpact.runs.console import case_explained
-from vibroimpact.studies.report.explained import sweep_explained
+from vibroimpact.studies.explain_sweep import explain_sweep
 
 
 def shown(renderable: object) -> None:
@@ -34,7 +34,7 @@ def check(data: bytes, folder: Path) -> vi.Case:
         case = vi.load_case(file)
     else:
         study = prefix_errors(file, lambda: vi.read_sweep(table))
-        shown(sweep_explained(study))
+        shown(explain_sweep(study))
         case = study.case
     shown(case_explained(case))
     return case

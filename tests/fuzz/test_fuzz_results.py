@@ -183,7 +183,7 @@ def read_calibration(folder: Path) -> Any:
 
 @pytest.fixture(scope="module")
 def calibration(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    from vibroimpact.calibration.case import calibrate_case, read_calibration
+    from vibroimpact.calibration.calibrate_case import calibrate_case, read_calibration
     from vibroimpact.calibration.folder import save_calibration
 
     case = plain_case(contact={"law": "adams-impact", "damping_max": 100.0}, run={"impacts": 2}, calibrate={"target": {"restitution": 0.6}})

@@ -9,12 +9,12 @@ from attack import failures, number, seed
 from mutations import Table, studies
 from vibroimpact.runs.console import case_explained
 from vibroimpact.studies.compute_points import compute_points
-from vibroimpact.studies.report.explained import sweep_explained
+from vibroimpact.studies.explain_sweep import explain_sweep
 
 
 def compute_a_few(table: Table) -> None:
     study = vi.read_sweep(table)
-    shown(sweep_explained(study))
+    shown(explain_sweep(study))
     shown(case_explained(study.case))
     if study.deforms:
         return

@@ -16,7 +16,7 @@ import pyuff
 import vibroimpact as vi
 from attack import failures, number, seed
 from support import plain_case
-from vibroimpact.calibration.case import read_calibration
+from vibroimpact.calibration.calibrate_case import read_calibration
 from vibroimpact.calibration.targets import target_of
 from vibroimpact.cases.build import problem_of
 from vibroimpact.measurements.table_file import read_table_file

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import vibroimpact as vi
-from vibroimpact.calibration.comparison import differences
+from vibroimpact.calibration.differences import differences
 
 EXACT = [179.790, 172.746, 166.419, 160.869, 156.663]  # N s/m
 EXACT_FIT = [139.408, 5.86288, -0.145601]

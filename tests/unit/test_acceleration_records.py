@@ -9,8 +9,8 @@ import pytest
 
 import vibroimpact as vi
 from support import plain_case
+from vibroimpact.calibration.calibrate_case import calibrate_case, read_calibration
 from vibroimpact.calibration.calibration import Calibration
-from vibroimpact.calibration.case import calibrate_case, read_calibration
 
 CONTACT = {"law": "adams-impact", "damping_max": 200.0}
 

@@ -10,7 +10,7 @@ import pytest
 
 import vibroimpact as vi
 from support import plain_case
-from vibroimpact.calibration.case import ToCalibrate
+from vibroimpact.calibration.calibrate_case import ToCalibrate
 from vibroimpact.exporting.load_drop import load_drop
 
 ADAMS = {"law": "adams-impact"}

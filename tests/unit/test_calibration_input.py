@@ -10,8 +10,8 @@ import tomli_w
 
 import vibroimpact as vi
 from support import plain_case
+from vibroimpact.calibration.calibrate_case import calibrate_case, read_calibration
 from vibroimpact.calibration.calibration import Calibration
-from vibroimpact.calibration.case import calibrate_case, read_calibration
 from vibroimpact.cli import main
 from vibroimpact.measurements.table_file import read_table_file
 

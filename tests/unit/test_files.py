@@ -13,7 +13,7 @@ import pytest
 import vibroimpact as vi
 from attack import attack
 from support import plain_case
-from vibroimpact.calibration.case import read_calibration
+from vibroimpact.calibration.calibrate_case import read_calibration
 from vibroimpact.files.reading import FileKind, beginning, input_file_digest, read_bytes, read_text
 from vibroimpact.measurements.table_file import read_table_file
 from vibroimpact.meshes.mesh_file import read_mesh

@@ -10,7 +10,7 @@ import pytest
 import vibroimpact as vi
 from attack import attack
 from support import plain_case
-from vibroimpact.calibration.case import read_calibration
+from vibroimpact.calibration.calibrate_case import read_calibration
 from vibroimpact.cases.elastic.meshes import meshes_of
 from vibroimpact.measurements.table_file import name_and_unit, read_table_file
 from vibroimpact.meshes.mesh_file import read_mesh

@@ -9,8 +9,8 @@ import pytest
 
 import vibroimpact as vi
 from support import plain_case
+from vibroimpact.calibration.calibrate_case import calibrate_case, read_calibration
 from vibroimpact.calibration.calibration import Calibration
-from vibroimpact.calibration.case import calibrate_case, read_calibration
 
 NEWTON = {"law": "newton", "restitution": 0.9}
 SPEEDS = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0]

@@ -13,16 +13,16 @@ from typer.testing import CliRunner
 import vibroimpact as vi
 from studies import study_table
 from support import plain_case
-from vibroimpact.calibration.case import calibrate_case, read_calibration
+from vibroimpact.calibration.calibrate_case import calibrate_case, read_calibration
 from vibroimpact.cases.build import resolved_case
 from vibroimpact.cases.slips.find import slips, swept_slips
 from vibroimpact.cli import app
 from vibroimpact.results.result import result_of
 from vibroimpact.studies.compute_study import compute_study
-from vibroimpact.studies.report.doubts import doubt_sentences
-from vibroimpact.studies.slips import slips_of_axes
+from vibroimpact.studies.report.tables import doubt_sentences
 from vibroimpact.studies.study import read_study
 from vibroimpact.studies.sweep import read_sweep
+from vibroimpact.studies.unit_slips import axis_slips
 
 STEEL = {"density": 7850, "youngs_modulus": "210 GPa", "poissons_ratio": 0.3}
 ACRYLIC = {"density": 1190, "youngs_modulus": "3.3 GPa", "poissons_ratio": 0.37}
@@ -187,7 +187,7 @@ def test_any_number_can_be_looked_at(value: float) -> None:
 def test_swept_values_are_said_once_with_how_many(tmp_path: Path) -> None:
     table = study_table({"over": {"sphere.radius": [0.005, 10.0, 25.0]}}, drop={"speed": 3.0}, contact__stiffness=16176)
     study = read_sweep(table)
-    (said,) = slips_of_axes(study)
+    (said,) = axis_slips(study)
     assert said == 'sphere.radius: 2 of 3 values, such as 10 m, which is larger than a boulder; was 10 mm meant? Write "10 mm"'
     found = doubt_sentences(read_study(compute_study(study, tmp_path / "out")))
     assert [one.partition(":")[0] for one in found[:2]] == ["contact.stiffness", "sphere.radius"]

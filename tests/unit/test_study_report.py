@@ -21,14 +21,14 @@ from vibroimpact.errors import InputError
 from vibroimpact.remake import remake_report
 from vibroimpact.studies import compute_study as computing
 from vibroimpact.studies.chunk_file import ChunkResult
-from vibroimpact.studies.columns import OUTCOME
+from vibroimpact.studies.drop_variables import OUTCOME
 from vibroimpact.studies.report.axes import study_axes
 from vibroimpact.studies.report.curves import draw_curves
-from vibroimpact.studies.report.folder import run_sweep
-from vibroimpact.studies.report.outputs import drawn_outputs, output_names, some, study_outputs
+from vibroimpact.studies.report.outputs import drawn_outputs, output_names, sampled_output, study_outputs
 from vibroimpact.studies.report.sensitivity import sensitivity_of, strongest
 from vibroimpact.studies.report.text import study_summary
 from vibroimpact.studies.report.ticks import Ticks
+from vibroimpact.studies.run_sweep import run_sweep
 from vibroimpact.studies.study import Study, read_study
 from vibroimpact.studies.sweep import read_sweep
 
@@ -319,10 +319,10 @@ def test_a_report_that_cannot_be_written_leaves_the_old_one(copy_of_grid: Path, 
 
 @pytest.mark.usefixtures("words_alone")
 def test_what_is_thinned_stands_for_all(tmp_path: Path, grid: Study) -> None:
-    assert len(some(grid, "largest_force_N", 7)) <= 7
-    assert set(some(grid, "largest_force_N", 7)) <= set(grid.values("largest_force_N").ravel())
+    assert len(sampled_output(grid, "largest_force_N", 7)) <= 7
+    assert set(sampled_output(grid, "largest_force_N", 7)) <= set(grid.values("largest_force_N").ravel())
     drawn = study_of(tmp_path / "drawn", {**DRAWN, "design": "sobol", "samples": 32})
-    assert np.array_equal(some(drawn, "largest_force_N", 20), drawn.values("largest_force_N")[:16])  # as many as are even
+    assert np.array_equal(sampled_output(drawn, "largest_force_N", 20), drawn.values("largest_force_N")[:16])  # as many as are even
     assert output_names(drawn)[0] == "largest_force_N"
 
 

@@ -24,13 +24,13 @@ import pytest
 import vibroimpact as vi
 from studies import RANDOM, study_file, study_table
 from vibroimpact.studies import compute_study as computing
-from vibroimpact.studies import dataset as study_dataset
+from vibroimpact.studies import write_dataset as study_dataset
 from vibroimpact.studies.chunk_file import ChunkResult
 from vibroimpact.studies.compute_points import compute_points
 from vibroimpact.studies.compute_study import compute_study
 from vibroimpact.studies.ledger import LEDGER, Span, make_ledger, open_ledger
 from vibroimpact.studies.run_chunks import run_chunks
-from vibroimpact.studies.workers import Crew, processes, this_process
+from vibroimpact.studies.workers import WorkerPool, processes, this_process
 from waiting import wait_until
 
 DRAWN = vi.read_sweep(study_table(RANDOM))
@@ -211,7 +211,7 @@ def test_a_worker_that_dies_while_a_chunk_is_kept_costs_nothing() -> None:
     @contextmanager
     def start() -> Any:
         with Dying(1) as executor:
-            yield Crew(executor, lambda: 2)
+            yield WorkerPool(executor, lambda: 2)
 
     kept: list[int] = []
     chunks = [Span(number, number, 1) for number in range(6)]
@@ -235,7 +235,7 @@ def test_a_scheduler_that_goes_away_is_told() -> None:
 
     @contextmanager
     def start() -> Any:
-        yield Crew(Gone(), lambda: 2)  # type: ignore[arg-type]
+        yield WorkerPool(Gone(), lambda: 2)  # type: ignore[arg-type]
 
     with pytest.raises(vi.ComputationError, match="the scheduler and its workers are gone"):
         run_chunks(_dies, lambda chunk: {}, [Span(0, 0, 1)], start, lambda *_: None)  # type: ignore[arg-type]
@@ -280,14 +280,14 @@ def test_a_full_disk_ends_the_study_and_room_lets_it_go_on(tmp_path: Path) -> No
 def test_a_disk_that_fills_while_the_results_are_put_together_is_told(tmp_path: Path) -> None:
     sweep = vi.read_sweep(study_table({**RANDOM, "samples": 100}))
     expected = results(compute_study(sweep, tmp_path / "undisturbed"))
-    limits, kept = resource.getrlimit(resource.RLIMIT_FSIZE), study_dataset._see_that_there_is_room
+    limits, kept = resource.getrlimit(resource.RLIMIT_FSIZE), study_dataset._reserve_space
 
     def enough_for_now(path: Path, size: int) -> None:
         kept(path, size)
         resource.setrlimit(resource.RLIMIT_FSIZE, (5000, limits[1]))
 
     with pytest.MonkeyPatch.context() as patched:
-        patched.setattr(study_dataset, "_see_that_there_is_room", enough_for_now)
+        patched.setattr(study_dataset, "_reserve_space", enough_for_now)
         try:
             with pytest.raises(vi.ComputationError, match=r"the results can't be put together: File too large; see to the disk"):
                 compute_study(sweep, tmp_path / "out")
@@ -472,7 +472,7 @@ def test_an_interrupt_waits_while_a_process_is_started_and_is_not_lost(monkeypat
     monkeypatch.setattr(SpawnProcess, "start", starts)
     before = signal.signal(signal.SIGINT, lambda *_: seen.append("told"))
     try:
-        workers._Deaf(target=_nothing).start()
+        workers._InterruptImmuneProcess(target=_nothing).start()
     finally:
         signal.signal(signal.SIGINT, before)
     assert seen == ["started", "told"]

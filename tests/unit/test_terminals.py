@@ -36,7 +36,7 @@ from vibroimpact.report.terminal import TerminalConsole
 from vibroimpact.results.result import result_of
 from vibroimpact.runs.console import case_explained, result_summary, versions_table
 from vibroimpact.studies.compute_study import compute_study
-from vibroimpact.studies.report.explained import sweep_explained
+from vibroimpact.studies.explain_sweep import explain_sweep
 from vibroimpact.studies.report.text import study_summary
 from vibroimpact.studies.sweep import read_sweep
 
@@ -80,7 +80,7 @@ def commands(tmp_path_factory: pytest.TempPathFactory, variable: vi.Response) ->
         "run": lambda width: result_summary(rigid, width),
         "run, elastic": lambda width: result_summary(rung, width),
         "check": lambda _: case_explained(elastic),
-        "check, study": lambda _: sweep_explained(sweep),
+        "check, study": lambda _: explain_sweep(sweep),
         "compare": lambda _: comparison_summary(compared),
         "calibrate": lambda _: calibration_summary(case, calibrated),
         "modes": lambda _: modes_summary(elastic, modes),

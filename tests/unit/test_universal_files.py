@@ -12,8 +12,8 @@ import pyuff
 
 import vibroimpact as vi
 from support import plain_case
+from vibroimpact.calibration.calibrate_case import calibrate_case, read_calibration
 from vibroimpact.calibration.calibration import Calibration
-from vibroimpact.calibration.case import calibrate_case, read_calibration
 from vibroimpact.exporting.export_result import export_result
 from vibroimpact.measurements.record_file import read_universal_record
 from vibroimpact.measurements.universal_file import is_universal, read_universal_file

@@ -12,8 +12,8 @@ import vibroimpact as vi
 from oracles.bouncing_in_air import Bounces, bounces, clift_gauvin, schiller_naumann
 from support import plain_case
 from vibroimpact.calibration.air_flights import AirFlights
+from vibroimpact.calibration.calibrate_case import calibrate_case, read_calibration
 from vibroimpact.calibration.calibration import Calibration
-from vibroimpact.calibration.case import calibrate_case, read_calibration
 
 GRAVITY = 9.80665
 RUBBER = {"density": 1100.0, "youngs_modulus": 5e6, "poissons_ratio": 0.48}
@@ -138,24 +138,24 @@ def test_flights(radius: float, density: float, height: float) -> None:
         return float(state[1])
 
     ground.terminal, ground.direction = True, -1.0
-    start = float(flights.rising(np.array(height))[0])
+    start = float(flights.speed_to_rise(np.array(height))[0])
     flight = solve_ivp(slope, (0.0, 100.0), [1e-15, start], method="DOP853", rtol=1e-11, atol=1e-14, events=(ground, top))
     assert flight.y_events[1][0][0] == pytest.approx(height, rel=1e-7)
-    assert -flight.y[1, -1] == pytest.approx(float(flights.falling(np.array(height))[0]), rel=1e-7)
-    flown, lasted = flights.flown(np.array(start)), flights.lasting(np.array(flight.t[-1]))
-    assert flown.time == pytest.approx(flight.t[-1], rel=1e-7)
-    assert flown.rise == pytest.approx(flight.t_events[1][0], rel=1e-6)
+    assert -flight.y[1, -1] == pytest.approx(float(flights.speed_after_fall(np.array(height))[0]), rel=1e-7)
+    flown, lasted = flights.flight(np.array(start)), flights.end_speeds(np.array(flight.t[-1]))
+    assert flown.duration == pytest.approx(flight.t[-1], rel=1e-7)
+    assert flown.rise_time == pytest.approx(flight.t_events[1][0], rel=1e-6)
     assert flown.height == pytest.approx(height, rel=1e-7)
     assert (lasted.start, lasted.end) == (pytest.approx(start, rel=1e-6), pytest.approx(-flight.y[1, -1], rel=1e-6))
-    depth, down = flights.fallen(np.array([0.5 * float(flown.rise) - float(flown.rise), 0.01]))
-    half = solve_ivp(slope, (0.0, 0.5 * float(flown.rise)), [0.0, start], method="DOP853", rtol=1e-11, atol=1e-14).y[:, -1]
+    depth, down = flights.depth_at(np.array([0.5 * float(flown.rise_time) - float(flown.rise_time), 0.01]))
+    half = solve_ivp(slope, (0.0, 0.5 * float(flown.rise_time)), [0.0, start], method="DOP853", rtol=1e-11, atol=1e-14).y[:, -1]
     assert (height - depth[0], -down[0]) == (pytest.approx(half[0], rel=1e-6), pytest.approx(half[1], rel=1e-6))
 
 
 def test_beyond_what_air_lets_rise() -> None:
     grain = AirFlights(GRAVITY, 2e-5, 2500.0, 1.0)
     with pytest.raises(vi.InputError, match="not possible in air"):
-        grain.rising(np.array(3.0))
+        grain.speed_to_rise(np.array(3.0))
 
 
 def test_air_where_nothing_flew() -> None:

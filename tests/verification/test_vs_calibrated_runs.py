@@ -15,9 +15,9 @@ import vibroimpact as vi
 from support import one_in, plain_case
 from vibrating import STIFFNESS, drop_on, random_modes
 from vibroimpact.calibration.calibrate import calibrate
-from vibroimpact.calibration.case import calibrate_case, calibrated_case, read_calibration
+from vibroimpact.calibration.calibrate_case import calibrate_case, calibrated_case, read_calibration
+from vibroimpact.calibration.matchable import MATCHABLE
 from vibroimpact.calibration.observations import from_table
-from vibroimpact.calibration.outcomes import OUTCOMES
 from vibroimpact.calibration.tunables import modal_damping
 from vibroimpact.contact.law import contact_laws
 from vibroimpact.contact.laws.hertz import Hertz
@@ -87,7 +87,7 @@ def test_every_law_but_hertz_has_a_parameter_that_sets_its_loss() -> None:
 @pytest.mark.parametrize("name", ["paper:type1-theory", "paper:calibration"])
 def test_the_calibrated_case_bounces_as_the_target_does(name: str) -> None:
     """Another law as the target: every rebound height of the paper's drop."""
-    from vibroimpact.calibration.case import load_calibration
+    from vibroimpact.calibration.calibrate_case import load_calibration
 
     what = load_calibration(name)
     run = vi.simulate(calibrated_case(what.case, calibrate_case(what))).impacts
@@ -135,7 +135,7 @@ def test_other_parameters_to_other_outcomes(law: str, parameter: str, outcome: s
     given = {"hertz": {}, "lankarani-nikravesh": {"restitution": 0.8}}[law]
     truth = {"stiffness": 3e8, "exponent": 1.6}[parameter]
     case = plain_case(contact={"law": law, **given, parameter: truth}, run={"impacts": 1})
-    wanted = float(vi.simulate(vi.read_case(case)).impacts[OUTCOMES[outcome][0]][0])
+    wanted = float(vi.simulate(vi.read_case(case)).impacts[MATCHABLE[outcome][0]][0])
     contact = {"law": law, **given, **({"stiffness": 1e9} if parameter == "stiffness" else {})}
     target = {"target": {outcome: wanted}, "match": outcome, "parameter": parameter}
     what = read_calibration(plain_case(contact=contact, calibrate=target, run={"impacts": 1}))
@@ -182,7 +182,7 @@ def test_several_outcomes_are_as_near_as_they_can_be() -> None:
 
 def test_the_full_damping_penetration_that_gives_the_printed_height() -> None:
     """The paper prints 1e-5 m and a rebound of 2.41132 m; the height takes ten times that, and the run has it."""
-    from vibroimpact.calibration.case import load_calibration
+    from vibroimpact.calibration.calibrate_case import load_calibration
 
     what = load_calibration("paper:full-damping-penetration")
     found = calibrate_case(what)

@@ -1,1 +1,1 @@
-"""From what was measured, or wanted, to the parameters of a model."""
+"""Calibration: the parameter of a contact law, or a modal damping, that matches measured or specified impacts."""

@@ -1,4 +1,4 @@
-r"""Flights in air, with the drag of every moment."""
+r"""Vertical flights in still air, with aerodynamic drag."""
 
 from __future__ import annotations
 
@@ -9,42 +9,42 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.calibration.flights import Flown, Lasted
+from vibroimpact.calibration.flights import EndSpeeds, Flight
 from vibroimpact.dynamics.air import drag
 from vibroimpact.errors import InputError
 
-_POINTS = 513  # of a table; cubics between them are off by 1e-9 of a fall of 4 m
-_BEGIN = 1e-6  # of the table's square root of a height: there is no drag to speak of
+_POINTS = 513  # of a table; cubic interpolation errs by 1e-9 for a fall of 4 m
+_BEGIN = 1e-6  # start of the integration, as a fraction of the range of the root of the height; drag is negligible below it
 _CLOSE = 1e-11
-_FASTEST = 1e4  # m/s, that a sphere is followed to
+_FASTEST = 1e4  # m/s, at which the integration stops
 
 
 @dataclass(frozen=True)
 class AirFlights:
-    r"""Flights in air that is at rest.
+    r"""Vertical flights of a sphere in still air.
 
     Below the top of a flight, at a depth s, :math:`v\,dv/ds = g - a(v)` on the way down and :math:`g + a(v)` on the way up, with
-    the drag a of `vibroimpact.dynamics.air.drag`. Both are integrated once over the square root of s, in which speeds and times
-    are smooth, and read from cubics after that.
+    the drag deceleration a of `vibroimpact.dynamics.air.drag`. Both equations are integrated once over the square root of s, in which
+    speeds and times are smooth, and then interpolated by cubic Hermite splines.
 
     Parameters
     ----------
     gravity : float
         Acceleration [m/s^2], > 0.
     radius, density : float
-        Of the sphere [m], [kg/m^3].
+        Radius [m] and density [kg/m^3] of the sphere.
     highest : float
-        The highest rise that is asked for [m].
+        The largest rise to be tabulated [m].
 
     Raises
     ------
     InputError
-        Where a flight is asked for that reaches beyond that.
+        If a requested flight exceeds the tables.
 
     Examples
     --------
     >>> pebble = AirFlights(9.8, 0.002, 1250.0, 4.0)
-    >>> [round(float(speed), 2) for speed in (pebble.falling(np.array(4.0))[0], pebble.rising(np.array(4.0))[0])]
+    >>> [round(float(speed), 2) for speed in (pebble.speed_after_fall(np.array(4.0))[0], pebble.speed_to_rise(np.array(4.0))[0])]
     [7.68, 10.33]
     """
 
@@ -53,39 +53,39 @@ class AirFlights:
     density: float
     highest: float
 
-    def falling(self, height: Floats) -> tuple[Floats, Floats]:
-        """Return the speed after a fall from rest by a height [m/s], and its derivative by the height [1/s]."""
+    def speed_after_fall(self, height: Floats) -> tuple[Floats, Floats]:
+        """Return the speed after a fall from rest through a height [m/s], and its derivative with respect to the height [1/s]."""
         speed = self._within(self._tables.down, height)
         return speed, (self.gravity - drag(speed, self.radius, self.density)) / speed
 
-    def rising(self, height: Floats) -> tuple[Floats, Floats]:
-        """Return the speed that it takes to rise by a height [m/s], and its derivative by the height [1/s]."""
+    def speed_to_rise(self, height: Floats) -> tuple[Floats, Floats]:
+        """Return the initial speed needed to rise by a height [m/s], and its derivative with respect to the height [1/s]."""
         speed = self._within(self._tables.up, height)
         return speed, (self.gravity + drag(speed, self.radius, self.density)) / speed
 
-    def fallen(self, time: Floats) -> tuple[Floats, Floats]:
-        """Return how far below the top of its flight a sphere is [m] at a time from it [s], and its downward velocity [m/s]."""
+    def depth_at(self, time: Floats) -> tuple[Floats, Floats]:
+        """Return the depth below the apex [m] at a time relative to the apex [s], and the downward velocity [m/s]."""
         depth = self._tables.depth
         at = np.clip(time, depth.x[0], depth.x[-1])
         return np.asarray(depth(at)), np.asarray(depth(at, 1))
 
-    def lasting(self, time: Floats) -> Lasted:
-        """Return the speeds at both ends of flights of given durations [s]."""
+    def end_speeds(self, time: Floats) -> EndSpeeds:
+        """Return the initial and final speeds of flights of given durations [s]."""
         tables = self._tables
         if np.any(time > tables.lasted.x[-1]):
             raise self._too_far(f"a flight of {np.max(time):.4g} s")
         root, by_time = tables.lasted(time), tables.lasted(time, 1)
         ends = [tables.up, tables.down]
         speeds, slopes = zip(*((np.asarray(end(root)), np.asarray(end(root, 1) * by_time)) for end in ends), strict=True)
-        return Lasted(*speeds, *slopes)
+        return EndSpeeds(*speeds, *slopes)
 
-    def flown(self, speed: Floats) -> Flown:
-        """Return the flights that begin with given speeds [m/s]."""
+    def flight(self, speed: Floats) -> Flight:
+        """Return the flights with given initial speeds [m/s]."""
         tables = self._tables
         if np.any(speed > tables.risen.x[-1]):
             raise self._too_far(f"a flight that begins with {np.max(speed):.4g} m/s")
         root = tables.risen(speed)
-        return Flown(np.asarray(root**2), np.asarray(tables.rise(root)), np.asarray(tables.time(root)), np.asarray(tables.down(root)))
+        return Flight(np.asarray(root**2), np.asarray(tables.rise(root)), np.asarray(tables.time(root)), np.asarray(tables.down(root)))
 
     def _within(self, table: Any, height: Floats) -> Floats:
         if np.any(height > table.x[-1] ** 2):
@@ -100,12 +100,12 @@ class AirFlights:
 
     @cached_property
     def _tables(self) -> _Tables:
-        from scipy.interpolate import CubicHermiteSpline  # which takes longer to load than most calibrations
+        from scipy.interpolate import CubicHermiteSpline  # imported late: it takes longer to load than most calibrations
 
         last = float(np.sqrt(self.highest))
         root, up = self._branch(1.0, last)
         root, down = self._branch(-1.0, float(root[-1]))
-        slopes = []  # of speed and time over the root of the depth, on the way up and down
+        slopes = []  # derivatives of speed and time with respect to the root of the depth, for ascent and descent
         for sign, (speed, _) in ((1.0, up), (-1.0, down)):
             with np.errstate(invalid="ignore"):
                 slow = np.where(root > 0.0, 2.0 * root / speed, np.sqrt(2.0 / self.gravity))
@@ -126,7 +126,7 @@ class AirFlights:
         )
 
     def _branch(self, sign: float, last: float) -> tuple[Floats, Floats]:
-        """Return roots of depths, and speed and time from the top there, on the way up (1) or down (-1)."""
+        """Return the roots of the depths, and speed and time from the apex there, for the ascent (sign 1) or the descent (-1)."""
         from scipy.integrate import solve_ivp
 
         def slope(root: float, state: Floats) -> list[float]:
@@ -147,8 +147,11 @@ class AirFlights:
 
 
 class _Tables(NamedTuple):
-    """Cubics over the root of a height: speeds on the way up and down, and the times of the first and of both; the depth over the time
-    from the top; and the root of the height over the time of both, and over the speed at the start.
+    """Splines of a flight.
+
+    As functions of the root of the height: the speeds of ascent (`up`) and descent (`down`), the time of ascent (`rise`) and of the flight
+    (`time`). `depth`: depth below the apex as a function of the time from it. `lasted`, `risen`: root of the height as a function of the
+    duration of the flight, and of its initial speed.
     """
 
     up: Any

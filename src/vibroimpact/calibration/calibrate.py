@@ -1,4 +1,4 @@
-"""The parameter of a contact law with which a sphere bounces as it is wanted to, or as it was measured to."""
+"""Calibrate a parameter of a contact law so that impacts match a reference law or a measurement."""
 
 from __future__ import annotations
 
@@ -7,22 +7,21 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 
 from vibroimpact.arrays import Floats
+from vibroimpact.calibration.calibrated_drops import impact_tables, limited_to, values_by_function
 from vibroimpact.calibration.calibration import Calibration
-from vibroimpact.calibration.drops import by_function, drops_with, shortened
-from vibroimpact.calibration.match_drop import match_drop
-from vibroimpact.calibration.match_measurement import match_measurement
+from vibroimpact.calibration.match_target import match_drop, match_measurement
+from vibroimpact.calibration.matchable import REBOUND, REBOUNDS, check_weights
 from vibroimpact.calibration.matching import Tunable
 from vibroimpact.calibration.observations import Observations
-from vibroimpact.calibration.outcomes import REBOUND, REBOUNDS, check_weights
 from vibroimpact.calibration.overlay import overlays
 from vibroimpact.calibration.tunables import law_parameter
-from vibroimpact.calibration.uncertainty import of_the_whole
+from vibroimpact.calibration.uncertainty import fit_doubts
 from vibroimpact.calibration.unreachable import other_parameters
 from vibroimpact.dynamics.problem import Problem, StatesProblem
 from vibroimpact.dynamics.simulate import simulate
 from vibroimpact.errors import InputError
 
-_MET = 1e-6  # of what is wanted
+_MET = 1e-6  # relative deviation below which the given value already meets the target
 
 
 def calibrate(
@@ -38,45 +37,45 @@ def calibrate(
     seed: int = 0,
     progress: Callable[[float], None] | None = None,
 ) -> Calibration:
-    """Find the value of a contact law's parameter with which impacts come out as wanted, and fit it over the approach speed.
+    """Return the parameter value with which each impact matches the target, and its fit over the approach speed.
 
-    Each impact is matched by itself, at the approach speed that it has, with gravity, to rounding. Where the target is a
-    drop, a polynomial goes through the values of its impacts by least squares, all alike. Where it is a measurement, the
-    polynomial is the one with which impacts are most likely to have been measured so, readings weighed by their noise.
+    Each impact is matched separately at its own approach speed, including gravity, to rounding. If the target is a drop, a polynomial
+    of the approach speed is fitted to the values by unweighted least squares. If it is a measurement, the polynomial is the
+    maximum-likelihood estimate from the readings with their noise.
 
     Parameters
     ----------
     problem : Problem or Case
         The drop whose contact law is calibrated.
     target : Problem, Case or Observations
-        How it is to bounce: the same drop under another law, or what was measured.
+        The target: the same drop under another law, or a measurement.
     tunable : Tunable, optional
-        What is tuned; by default the law's own free parameter.
+        The parameter to be tuned; by default the free parameter of the law.
     weights : mapping of str to float, optional
-        What is matched, by the names of `OUTCOMES`: one, or several with their weights. By default the rebound; or all that was
-        measured, if that was not.
+        The quantities to be matched, by the names of `MATCHABLE`: one, or several with weights. By default the rebound, or all
+        measured quantities if no rebound was measured.
     degree : int, optional
-        Of the polynomial; by default 2, or less where there are fewer speeds.
+        Degree of the polynomial; by default 2, or less if there are fewer distinct speeds.
     speeds : array, optional
-        Approach speeds [m/s] that the polynomial is fitted over in place of those of the drop; not with a measurement.
+        Approach speeds [m/s] at which the polynomial is fitted instead of those of the drop; not with a measurement.
     confidence : float, default 0.95
-        Of all intervals.
+        Confidence level of all intervals.
     bootstrap : int, optional
-        How many times the measurement is drawn again to find the intervals; 0: they are of first order. By default by
-        bootstrap where those are wide.
+        Number of bootstrap samples for the intervals; 0: intervals to first order. By default bootstrap only where the first-order
+        intervals are wide.
     seed : int, default 0
-        Of the drawing.
+        Seed of the bootstrap.
     progress : callable, optional
         Called with the fraction done, in [0, 1].
 
     Raises
     ------
     InputError
-        If no value meets an impact: the message says which, what can be reached, and which other parameter would.
+        If no value matches an impact; the message names the impact, the attainable range, and other parameters that would match it.
 
     References
     ----------
-    The rebound matched impact by impact by the damping of Adams' IMPACT, and the polynomial of the approach speed: "Study on
+    Matching the rebound impact by impact with the damping of Adams' IMPACT, and the polynomial of the approach speed: "Study on
     the Vibroimpact Response of the Particle Elastic Impact on the Metal Plate", Shock and Vibration.
 
     Examples
@@ -94,7 +93,7 @@ def calibrate(
         seen = target.wanted if isinstance(target, Observations) else REBOUND
         weights = REBOUND if set(REBOUNDS) & set(seen) else dict.fromkeys(seen, 1.0)
     if isinstance(target, Observations) and "separation_speed" not in target.wanted and "rebound_height" in target.wanted:
-        # two readings of one thing, of which the height was measured
+        # both describe the rebound; match the one that was measured
         weights = {name.replace("separation_speed", "rebound_height"): weight for name, weight in weights.items()}
     check_weights(weights)
     _check(stated, confidence, bootstrap)
@@ -106,12 +105,13 @@ def calibrate(
     else:
         found = match_drop(tuned, stated, target.to_problem(), weights, degree, speeds, tell)
     tell(0.9)
-    along, values = by_function(tuned, stated, found.fit.function, found.seen)
+    # the whole drop with the values found, and with those given, for comparison with the target
+    along, values = values_by_function(tuned, stated, found.fit.function, found.seen)
     chain = (found.seen.speeds, found.values) if found.seen.of_the_drop else (along, values)
-    drops = drops_with(tuned, chain[1], values, found.seen)
+    drops = impact_tables(tuned, chain[1], values, found.seen)
     along = along[: len(drops["function"]["impact"])]
     if not isinstance(target, Observations):
-        drops = {"target": simulate(shortened(target.to_problem(), len(chain[1]))).impacts, **drops}
+        drops = {"target": simulate(limited_to(target.to_problem(), len(chain[1]))).impacts, **drops}
     rows = found.seen.which
     given = tuned.given[np.minimum(rows, len(tuned.given) - 1)]
     as_given = {} if np.isnan(given).any() else tuned.respond(found.seen.speeds, given, rows)
@@ -139,7 +139,7 @@ def calibrate(
         confidence=confidence,
         bootstrap=found.draws,
         overlays=overlaid,
-        doubts=(*found.doubts, *of_the_whole(stated, tuned, found.seen, found.fit, found.curve, along)),
+        doubts=(*found.doubts, *fit_doubts(stated, tuned, found.seen, found.fit, found.curve, along)),
     )
 
 

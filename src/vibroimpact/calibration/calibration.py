@@ -1,4 +1,4 @@
-"""What a calibration found."""
+"""The result of a calibration."""
 
 from __future__ import annotations
 
@@ -15,49 +15,50 @@ from vibroimpact.ranges import Range
 
 @dataclass(frozen=True)
 class Calibration:
-    """What a calibration found.
+    """The result of a calibration.
 
     Parameters
     ----------
     problem : Problem
-        The drop with its contact law as it was given.
+        The drop with its contact law as given.
     parameter, unit : str
-        What was tuned.
+        Name and unit of the tuned parameter.
     allowed : Range
-        Of what was tuned.
+        Allowed range of the parameter.
     weights : mapping of str to float
-        What was matched, by the names of `OUTCOMES`.
+        Weights of the matched quantities, by the names of `MATCHABLE`.
     observations : Observations
-        The impacts that were matched: approach speeds and what was wanted.
+        The matched impacts: approach speeds and target values.
     values : array, shape (n,)
-        The value with which each comes out as wanted; the end of the range where noise puts it out of reach.
+        The parameter value that matches each impact; the nearest end of the range where noise puts the target out of reach.
     intervals : array, shape (n, 2), optional
-        Between which each value lies; None where nothing tells.
+        Confidence interval of each value; None for an exact target, or if it cannot be estimated.
     outcomes : mapping of str to array, shape (n,)
-        What the impacts are like with these values.
+        Quantities of the impacts computed with these values.
     given : array, shape (n,)
-        The values as the problem gives them.
+        The values given by the problem; NaN where it gives none.
     as_given : mapping of str to array, shape (n,)
-        What the impacts are like with those.
+        Quantities of the impacts computed with the given values; empty where there are none.
     others : mapping of str to float
-        Values of other parameters of the law that would meet the first impact instead, the rest as given; none if it is met so.
+        Values of other parameters of the law that would each match the first impact, the rest as given; empty unless the given
+        values miss the target.
     fit : Fit
-        The value as a function of the approach speed.
+        The polynomial of the approach speed.
     curve : tuple of two arrays, optional
-        Approach speeds [m/s] and the exact value at each.
+        Approach speeds [m/s], and the exact value at each.
     impacts : tuple of two arrays
         Approach speed [m/s] and value of each impact of the drop.
     drops : mapping of str to mapping
-        Impact tables of the drop: "target", where that can be simulated, and with the value "constant", "variable" from
-        impact to impact, and by the fitted "function".
+        Impact tables of the drop: "target", where that can be simulated; "constant" with the value of the first impact, "variable"
+        with the value of each impact, and "function" with the fitted polynomial.
     confidence : float
-        Of the intervals.
+        Confidence level of the intervals.
     bootstrap : int
-        How many measurements were drawn again for them; 0 if they are of first order.
+        Number of bootstrap samples; 0 if the intervals are of first order.
     overlays : tuple of Overlay
-        What was recorded beside what is simulated with the values found; none where no record was given.
+        The measured record and its simulation with the values found; empty if no record was given.
     doubts : tuple of str
-        What to doubt of it.
+        Warnings about the validity of the result, as sentences.
     """
 
     problem: Problem = field(repr=False)

@@ -1,4 +1,4 @@
-"""The figures of a calibration: the value over the approach speed, and what it still gets wrong."""
+"""Figures of a calibration: the value over the approach speed, the measured record, and the remaining differences."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from vibroimpact.calibration.calibration import Calibration
-from vibroimpact.calibration.comparison import COMPARED, WAYS, differences
+from vibroimpact.calibration.differences import COMPARED, WAYS, differences
 from vibroimpact.calibration.record_figure import draw_record
 from vibroimpact.report.layout import label_vertical, new_figure, row_of_axes, wide_axes
 from vibroimpact.report.style import ACCENT, INK, LOOPS, MARK, style
@@ -21,12 +21,12 @@ def draw_calibration(found: Calibration) -> dict[str, Figure]:
     Parameters
     ----------
     found : Calibration
-        What was found.
+        Result of the calibration.
 
     Returns
     -------
     dict of str to Figure
-        `parameter`; `record` where a record was measured; and `differences` where there is something to compare with.
+        `parameter`; `record` if a record was measured; `differences` if there are several impacts and a reference.
     """
     with style():
         figures = {"parameter": _draw_parameter(found)}

@@ -1,4 +1,4 @@
-"""Fit a parameter as a polynomial of the approach speed: through values, or through what was measured, by least squares."""
+"""Least-squares fit of a parameter as a polynomial of the approach speed, to values or to measurements."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 from numpy.polynomial import polynomial
 
 from vibroimpact.arrays import Floats
-from vibroimpact.calibration.matching import Tunable, scale_of, slopes
+from vibroimpact.calibration.matching import Tunable, derivatives, residual_scale
 from vibroimpact.calibration.observations import Observations
 from vibroimpact.calibration.speed_function import SpeedFunction
 from vibroimpact.errors import ComputationError, InputError
@@ -20,19 +20,19 @@ _WITHIN = 1e-10
 
 @dataclass(frozen=True)
 class Fit:
-    """A fitted polynomial and how well it is known.
+    """A fitted polynomial and its uncertainty.
 
     Parameters
     ----------
     function : SpeedFunction
         The polynomial.
     covariance : array, shape (k, k)
-        Of its coefficients; NaN if there are no more observations than coefficients, and the noise is not known.
+        Covariance of the coefficients; NaN if there are no more observations than coefficients and the noise is unknown.
     freedom : float
-        Degrees of freedom of the estimate of the noise; infinite where the noise is known, and explains the residuals. Where it does
-        not, the covariance is that of the residuals.
+        Degrees of freedom of the noise estimate; infinite if the noise is known and consistent with the residuals. If it is not
+        consistent, the covariance is scaled by the residuals.
     scatter : float
-        Standard deviation of the values about the polynomial, or of the residuals over their noise.
+        Standard deviation of the values about the polynomial, or of the residuals normalized by their noise.
     """
 
     function: SpeedFunction
@@ -41,29 +41,29 @@ class Fit:
     scatter: float
 
     def quantile(self, confidence: float) -> float:
-        """Return how many standard deviations an interval reaches to either side."""
-        from scipy.stats import t as students_t  # which takes longer to load than a calibration
+        """Return the half width of a confidence interval in standard deviations (Student's t)."""
+        from scipy.stats import t as students_t  # imported late: it takes longer to load than a calibration
 
         return float(students_t.ppf(0.5 + 0.5 * confidence, self.freedom))
 
     def half_widths(self, confidence: float) -> Floats:
-        """Return the half widths of the intervals of the coefficients."""
+        """Return the half widths of the confidence intervals of the coefficients."""
         return np.asarray(self.quantile(confidence) * np.sqrt(np.maximum(np.diag(self.covariance), 0.0)))
 
     def band(self, speeds: Floats, confidence: float) -> Floats:
-        """Return the half width of the band of the polynomial at approach speeds [m/s]."""
+        """Return the half width of the confidence band of the polynomial at approach speeds [m/s]."""
         powers = _powers(np.asarray(speeds, dtype=float), self.function.degree)
         spread = np.einsum("ni,ij,nj->n", powers, self.covariance, powers)
         return np.asarray(self.quantile(confidence) * np.sqrt(np.maximum(spread, 0.0)))
 
 
 def check_degree(speeds: Floats, degree: int) -> None:
-    """Raise unless there are enough different speeds for a polynomial.
+    """Check that there are enough distinct speeds for a polynomial of a degree.
 
     Raises
     ------
     InputError
-        If there are not.
+        If there are fewer than degree + 1.
     """
     different = distinct(speeds)
     if degree >= different:
@@ -73,7 +73,7 @@ def check_degree(speeds: Floats, degree: int) -> None:
 
 
 def distinct(speeds: Floats) -> int:
-    """Return how many speeds differ by more than a hundredth of the largest.
+    """Return the number of speeds that differ by more than 1 % of the largest.
 
     Examples
     --------
@@ -84,9 +84,9 @@ def distinct(speeds: Floats) -> int:
 
 
 def fit_values(speeds: Floats, values: Floats, degree: int) -> Fit:
-    """Fit values that are exact, all alike.
+    """Return the unweighted least-squares fit to exact values.
 
-    What is left over is not noise but what the polynomial can't follow.
+    The residuals are not noise but the error of the polynomial approximation.
 
     Examples
     --------
@@ -104,47 +104,49 @@ def fit_values(speeds: Floats, values: Floats, degree: int) -> Fit:
 
 
 def fit_observations(tunable: Tunable, observations: Observations, weights: Mapping[str, float], degree: int, values: Floats) -> Fit:
-    """Fit the function with which impacts come out as they were measured, by Gauss and Newton's method.
+    """Return the fit of the measured quantities themselves, by the Gauss-Newton method.
 
     Parameters
     ----------
     tunable : Tunable
         The parameter.
     observations : Observations
-        What was measured, with its noise.
+        The measurements with their noise.
     weights : mapping of str to float
-        Outcomes that count; their weights only where the sizes of the noise are not known.
+        The quantities to be fitted; the weights are used only if the magnitude of the noise is unknown.
     degree : int
-        Of the polynomial.
+        Degree of the polynomial.
     values : array, shape (n,)
-        What fits each alone, to begin with; NaN where nothing does.
+        Values that match each impact separately, for the initial guess; NaN where there is none.
 
     Raises
     ------
     ComputationError
-        If it does not converge.
+        If the iteration does not converge.
     """
     speeds, known = observations.speeds, observations.deviations_known
     check_degree(speeds, degree)
     powers = _powers(speeds, degree)
+    # initial guess: a polynomial through the values of the impacts that could be matched
     some = np.isfinite(values)
     first = min(degree, distinct(speeds[some]) - 1) if some.any() else 0
     begin = fit_values(speeds[some], values[some], first).function(speeds) if some.any() else np.full(len(speeds), tunable.start)
     at = tunable.allowed.clip(begin)
     coefficients = _least_squares(powers, at)[0]
     for _ in range(_SWEEPS):
-        found = slopes(tunable, speeds, at, observations.which)
+        found = derivatives(tunable, speeds, at, observations.which)
         rows, targets, noises = [], [], []
         for name, weight in weights.items():
             by_value = found.by_value[name]
             rows.append(by_value[:, None] * powers)
             targets.append(observations.wanted[name] - found.outcomes[name] + by_value * at)
-            # at another approach speed the polynomial says another value, too
+            # noise of the approach speed also changes the value of the polynomial
             along = found.by_speed[name] + by_value * polynomial.polyval(speeds, polynomial.polyder(coefficients))
             noise = observations.noise[name] - along[:, None] * observations.speed_noise
             noises.append(noise / (1.0 if known else np.sqrt(weight)))
         if not any(np.any(row) for row in rows):
             raise InputError(f"{tunable.name} has no influence on what was measured, which can't tell it", "parameter")
+        # whiten by the Cholesky factor of the noise covariance, so that readings shared by two impacts count once
         noise = np.concatenate(noises)
         root = np.linalg.cholesky(noise @ noise.T)
         whitened = [np.linalg.solve(root, part) for part in (np.concatenate(rows), np.concatenate(targets))]
@@ -163,18 +165,18 @@ def fit_observations(tunable: Tunable, observations: Observations, weights: Mapp
 
 
 def _misfits(scatter: float, freedom: int) -> bool:
-    """Are residuals larger than noise of the given size would leave once in a thousand times?"""
+    """Return whether the residuals exceed the 99.9 % quantile expected from the given noise."""
     from scipy.stats import chi2
 
     return bool(scatter**2 * freedom > chi2.ppf(0.999, freedom))
 
 
 def value_noise(tunable: Tunable, observations: Observations, weights: Mapping[str, float], values: Floats) -> Floats:
-    """Return what each source of noise adds to the value that fits each impact alone, to first order, (n, m)."""
-    found = slopes(tunable, observations.speeds, np.where(np.isfinite(values), values, tunable.start), observations.which)
+    """Return the first-order contribution of each noise source to the value that matches each impact, (n, m)."""
+    found = derivatives(tunable, observations.speeds, np.where(np.isfinite(values), values, tunable.start), observations.which)
     above, below = np.zeros((len(values), observations.speed_noise.shape[1])), np.zeros((len(values), 1))
     for name, weight in weights.items():
-        scale = scale_of(name, observations.speeds, observations.wanted[name])
+        scale = residual_scale(name, observations.speeds, observations.wanted[name])
         by_value = (found.by_value[name] / scale)[:, None]
         noise = observations.noise[name] - found.by_speed[name][:, None] * observations.speed_noise
         above += weight * by_value * noise / scale[:, None]
@@ -188,7 +190,7 @@ def _powers(speeds: Floats, degree: int) -> Floats:
 
 
 def _least_squares(powers: Floats, values: Floats) -> tuple[Floats, Floats]:
-    """Return the solution and the inverse of the normal matrix, from columns of length one."""
+    """Return the least-squares solution and the inverse of the normal matrix; columns are normalized for conditioning."""
     length = np.linalg.norm(powers, axis=0)
     inverse = np.linalg.pinv(powers / length)
     return inverse @ values / length, (inverse @ inverse.T) / np.outer(length, length)

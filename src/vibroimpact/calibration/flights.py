@@ -1,4 +1,4 @@
-"""How a sphere flies between impacts, and flights in a vacuum."""
+"""Vertical flights of a sphere between impacts, and those in a vacuum."""
 
 from __future__ import annotations
 
@@ -10,19 +10,17 @@ import numpy as np
 from vibroimpact.arrays import Floats
 
 
-class Flown(NamedTuple):
-    """A flight from the plate and back to it: how high it rises [m], for how long it does and how long it is [s], and the speed with
-    which it comes back [m/s].
-    """
+class Flight(NamedTuple):
+    """A flight from the plate back to the plate: height [m], time of ascent and duration [s], and the speed on return [m/s]."""
 
     height: Floats
-    rise: Floats
-    time: Floats
-    back: Floats
+    rise_time: Floats
+    duration: Floats
+    return_speed: Floats
 
 
-class Lasted(NamedTuple):
-    """The speeds at the start and at the end of a flight of some duration [m/s], and their derivatives by it [m/s^2]."""
+class EndSpeeds(NamedTuple):
+    """The initial and final speeds of a flight [m/s], and their derivatives with respect to its duration [m/s^2]."""
 
     start: Floats
     end: Floats
@@ -31,34 +29,34 @@ class Lasted(NamedTuple):
 
 
 class Flights(Protocol):
-    """Vertical flights of a sphere: heights are counted from where it touches the plate, or from the top of a flight."""
+    """Vertical flights of a sphere; heights are measured from its position in touch with the plate, depths from the apex."""
 
     @property
     def gravity(self) -> float:
         """Acceleration of gravity [m/s^2]."""
 
-    def falling(self, height: Floats) -> tuple[Floats, Floats]:
-        """Return the speed after a fall from rest by a height [m/s], and its derivative by the height [1/s]."""
+    def speed_after_fall(self, height: Floats) -> tuple[Floats, Floats]:
+        """Return the speed after a fall from rest through a height [m/s], and its derivative with respect to the height [1/s]."""
 
-    def rising(self, height: Floats) -> tuple[Floats, Floats]:
-        """Return the speed that it takes to rise by a height [m/s], and its derivative by the height [1/s]."""
+    def speed_to_rise(self, height: Floats) -> tuple[Floats, Floats]:
+        """Return the initial speed needed to rise by a height [m/s], and its derivative with respect to the height [1/s]."""
 
-    def fallen(self, time: Floats) -> tuple[Floats, Floats]:
-        """Return how far below the top of its flight a sphere is [m] at a time from it [s], and its downward velocity [m/s].
+    def depth_at(self, time: Floats) -> tuple[Floats, Floats]:
+        """Return the depth below the apex [m] at a time relative to the apex [s], and the downward velocity [m/s].
 
-        Times before the top are negative.
+        Times before the apex are negative.
         """
 
-    def lasting(self, time: Floats) -> Lasted:
-        """Return the speeds at both ends of flights of given durations [s]."""
+    def end_speeds(self, time: Floats) -> EndSpeeds:
+        """Return the initial and final speeds of flights of given durations [s]."""
 
-    def flown(self, speed: Floats) -> Flown:
-        """Return the flights that begin with given speeds [m/s]."""
+    def flight(self, speed: Floats) -> Flight:
+        """Return the flights with given initial speeds [m/s]."""
 
 
 @dataclass(frozen=True)
 class VacuumFlights:
-    """Flights without air, which are parabolas.
+    """Flights in a vacuum, which are parabolas.
 
     Parameters
     ----------
@@ -67,40 +65,40 @@ class VacuumFlights:
 
     Examples
     --------
-    >>> [round(float(value), 3) for value in VacuumFlights(9.8).flown(np.array(4.9))]
+    >>> [round(float(value), 3) for value in VacuumFlights(9.8).flight(np.array(4.9))]
     [1.225, 0.5, 1.0, 4.9]
     """
 
     gravity: float
 
-    def falling(self, height: Floats) -> tuple[Floats, Floats]:
-        """Return the speed after a fall from rest by a height [m/s], and its derivative by the height [1/s]."""
+    def speed_after_fall(self, height: Floats) -> tuple[Floats, Floats]:
+        """Return the speed after a fall from rest through a height [m/s], and its derivative with respect to the height [1/s]."""
         speed = np.sqrt(2.0 * self.gravity * height)
         return speed, self.gravity / speed
 
-    rising = falling
+    speed_to_rise = speed_after_fall
 
-    def fallen(self, time: Floats) -> tuple[Floats, Floats]:
-        """Return how far below the top of its flight a sphere is [m] at a time from it [s], and its downward velocity [m/s]."""
+    def depth_at(self, time: Floats) -> tuple[Floats, Floats]:
+        """Return the depth below the apex [m] at a time relative to the apex [s], and the downward velocity [m/s]."""
         return 0.5 * self.gravity * time**2, self.gravity * time
 
-    def lasting(self, time: Floats) -> Lasted:
-        """Return the speeds at both ends of flights of given durations [s]."""
+    def end_speeds(self, time: Floats) -> EndSpeeds:
+        """Return the initial and final speeds of flights of given durations [s]."""
         speed, slope = 0.5 * self.gravity * time, np.full_like(time, 0.5 * self.gravity)
-        return Lasted(speed, speed, slope, slope)
+        return EndSpeeds(speed, speed, slope, slope)
 
-    def flown(self, speed: Floats) -> Flown:
-        """Return the flights that begin with given speeds [m/s]."""
-        return Flown(0.5 * speed**2 / self.gravity, speed / self.gravity, 2.0 * speed / self.gravity, speed)
+    def flight(self, speed: Floats) -> Flight:
+        """Return the flights with given initial speeds [m/s]."""
+        return Flight(0.5 * speed**2 / self.gravity, speed / self.gravity, 2.0 * speed / self.gravity, speed)
 
 
-def as_in_vacuum(flights: Flights, height: Floats) -> tuple[Floats, Floats]:
-    """Return how high a sphere would rise in a vacuum that rises by a height [m], and the derivative by that height.
+def vacuum_height(flights: Flights, height: Floats) -> tuple[Floats, Floats]:
+    """Return the rise in a vacuum [m] of a sphere that rises by a given height, and its derivative with respect to that height.
 
     Examples
     --------
-    >>> round(float(as_in_vacuum(VacuumFlights(9.8), np.array(0.5))[0]), 9)
+    >>> round(float(vacuum_height(VacuumFlights(9.8), np.array(0.5))[0]), 9)
     0.5
     """
-    speed, slope = flights.rising(height)
+    speed, slope = flights.speed_to_rise(height)
     return 0.5 * speed**2 / flights.gravity, speed * slope / flights.gravity

@@ -1,4 +1,4 @@
-"""Write a calibration: data, the calibrated case, figures and page."""
+"""Write the folder of a calibration: data, the calibrated case, figures and the report page."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ from pathlib import Path
 import tomli_w
 
 from vibroimpact._version import __version__
+from vibroimpact.calibration.calibrate_case import calibrated_case
 from vibroimpact.calibration.calibration import Calibration
-from vibroimpact.calibration.case import calibrated_case
 from vibroimpact.calibration.figures import draw_calibration
-from vibroimpact.calibration.file import CALIBRATION, calibration_table, columns_of, comparison_rows, matched_rows
+from vibroimpact.calibration.file_contents import CALIBRATION, calibration_table, columns_of, comparison_rows, matched_rows
 from vibroimpact.calibration.tables import (
     differences_tables,
     fit_sentences,
@@ -41,21 +41,21 @@ _TITLES = {
 
 
 def save_calibration(case: Case, found: Calibration, directory: str | PathLike[str], *, force: bool = False) -> Path:
-    """Write a calibration folder; it appears whole or not at all.
+    """Write a calibration folder, atomically.
 
-    It holds `calibration.json`, `case.toml` (the case with the value found, ready to run), `matched.csv`, `comparison.csv`,
-    figures and a page.
+    It contains `calibration.json`, `case.toml` (the case with the calibrated values, ready to run), `matched.csv`, `comparison.csv`,
+    the figures and `report.html`.
 
     Parameters
     ----------
     case : Case
-        The case that was calibrated.
+        The calibrated case.
     found : Calibration
-        What was found.
+        Result of its calibration.
     directory : path
-        The folder to make.
+        The folder to create.
     force : bool, default False
-        Replace the folder that is there.
+        Replace an existing folder.
 
     Returns
     -------
@@ -65,7 +65,7 @@ def save_calibration(case: Case, found: Calibration, directory: str | PathLike[s
     Raises
     ------
     InputError
-        If something is there already, or the place can't be written to.
+        If the folder exists already, or can't be written.
     """
     with new_folder(directory, force=force) as folder:
         (folder / "case.toml").write_text(tomli_w.dumps(resolved_case(calibrated_case(case, found))), encoding="utf-8")

@@ -1,4 +1,4 @@
-"""Pulses in a record of force: where they are, how long, how strong, and how well that is known."""
+"""Pulses in a force record: detection, duration, impulse and largest force, with standard deviations."""
 
 from __future__ import annotations
 
@@ -8,27 +8,27 @@ from typing import NamedTuple
 import numpy as np
 
 from vibroimpact.arrays import Bools, Floats, Indices
-from vibroimpact.calibration.force_rest import level_of_record, level_under_impact
+from vibroimpact.calibration.force_baseline import baseline_under_impact, record_baseline
 from vibroimpact.calibration.record_noise import ABOVE_NOISE, record_noise
 from vibroimpact.errors import InputError
 
 _FEWEST = 5
 
 _SMALL, _LEAST = 0.02, 1e-9
-"""Parts of the largest force: what is no impact, and the least noise that a record has."""
+"""Detection threshold as a fraction of the largest force, and the lower bound of the noise as a fraction of the range of the record."""
 
-_UPSIDE_DOWN = 3.0  # how much farther down than up a force goes whose sign is wrong
+_UPSIDE_DOWN = 3.0  # ratio of negative to positive excursion above which the sign of the force is wrong
 
-_SIGHTS, _MARGIN = 3, 0.25
-"""How often the force at rest is told anew, and the part of an impact's time that goes to it on either side."""
+_PASSES, _MARGIN = 3, 0.25
+"""Number of passes of detection and baseline, and the margin on either side of a pulse as a fraction of its duration."""
 
 _PEAK, _TOP = 0.003, 0.8
-"""How well the largest force is told from what is above so much of it."""
+"""Relative standard deviation of the largest force, and the fraction of it above which samples enter its parabola."""
 
 
-class Pushes(NamedTuple):
-    """Where a force pushes: the force as it was recorded, its noise, which samples are quiet, and runs of samples that push, as first and
-    behind the last.
+class DetectedPulses(NamedTuple):
+    """Pulses found in a force record: the force as recorded, its noise [N], a mask of the samples outside all pulses (quiet), and the
+    pulses as half-open index ranges.
     """
 
     force: Floats
@@ -38,8 +38,8 @@ class Pushes(NamedTuple):
 
 
 class Pulse(NamedTuple):
-    """A pulse of force: when it begins and how long it lasts [s], its largest force [N] and its impulse [N s], with standard deviations;
-    how far the force at rest wanders beside it, beyond what noise explains [N]; and times and forces about it, above that at rest.
+    """A force pulse: start and duration [s]; largest force [N] and impulse [N s] with standard deviations; scatter of the baseline beside
+    it in excess of the noise [N]; times and forces above the baseline around it.
     """
 
     begin: float
@@ -48,17 +48,17 @@ class Pulse(NamedTuple):
     largest_deviation: float
     impulse: float
     impulse_deviation: float
-    wanders: float
-    piece: tuple[Floats, Floats]
+    excess_scatter: float
+    samples: tuple[Floats, Floats]
 
 
-def pushes(time: Floats, force: Floats) -> Pushes:
-    """Return where a force pushes.
+def find_pulses(time: Floats, force: Floats) -> DetectedPulses:
+    """Return the pulses in a force record.
 
     Raises
     ------
     InputError
-        If it does nowhere, downwards, or everywhere.
+        If there are none, the force is negative, or no samples remain for the baseline.
     """
     noise = max(record_noise(force), _LEAST * float(np.ptp(force)))
     low, high = float(force.min()), float(force.max())
@@ -67,8 +67,8 @@ def pushes(time: Floats, force: Floats) -> Pushes:
     middle = float(np.median(force))
     if middle - low > max(_UPSIDE_DOWN * (high - middle), 2.0 * ABOVE_NOISE * noise):
         raise InputError("the force is negative; it must be positive where it pushes the sphere up")
-    rest = np.full_like(force, np.median(force[force < 0.5 * (low + high)]))  # of what belongs to no impact, at first sight
-    for sight in range(_SIGHTS):
+    rest = np.full_like(force, np.median(force[force < 0.5 * (low + high)]))  # first estimate of the baseline
+    for number in range(_PASSES):
         above = force - rest
         threshold = max(ABOVE_NOISE * noise, _SMALL * float(above.max()))
         runs = [(begin, end) for begin, end in _joined(_runs(above > threshold)) if above[begin:end].max() > 2.0 * threshold]
@@ -80,28 +80,28 @@ def pushes(time: Floats, force: Floats) -> Pushes:
             quiet[max(begin - margin, 0) : end + margin] = False
         if np.count_nonzero(quiet) < _FEWEST:
             raise InputError("the record shows nothing but the impact; it takes some time before or after it, to tell the force at rest")
-        if sight < _SIGHTS - 1:
-            rest = level_of_record(time, force, quiet)
-    return Pushes(force, noise, quiet, runs)
+        if number < _PASSES - 1:
+            rest = record_baseline(time, force, quiet)
+    return DetectedPulses(force, noise, quiet, runs)
 
 
-def pulses_of(time: Floats, seen: Pushes, runs: list[tuple[int, int]]) -> list[Pulse]:
-    """Return the pulses of some of the runs."""
+def evaluate_pulses(time: Floats, seen: DetectedPulses, runs: list[tuple[int, int]]) -> list[Pulse]:
+    """Return the evaluated pulses of the selected index ranges."""
     between = [0, *((end + begin) // 2 for (_, end), (begin, _) in itertools.pairwise(seen.runs)), len(time)]
-    rooms = itertools.pairwise(between)
-    return [_pulse(time, seen, run, room) for run, room in zip(seen.runs, rooms, strict=True) if run in runs]
+    segments = itertools.pairwise(between)
+    return [_pulse(time, seen, run, segment) for run, segment in zip(seen.runs, segments, strict=True) if run in runs]
 
 
-def _pulse(time: Floats, seen: Pushes, run: tuple[int, int], room: tuple[int, int]) -> Pulse:
-    """Return one pulse, integrated with some time on either side, within its room, above its level at rest."""
+def _pulse(time: Floats, seen: DetectedPulses, run: tuple[int, int], segment: tuple[int, int]) -> Pulse:
+    """Return one pulse, integrated above its baseline with a margin on either side, within its own segment of the record."""
     begin, end = run
     margin = _margin(begin, end)
-    part = slice(max(begin - margin, room[0]), min(end + margin, room[1]))
-    level = level_under_impact(time, seen.force, seen.quiet, part, room, end - begin, seen.noise)
+    part = slice(max(begin - margin, segment[0]), min(end + margin, segment[1]))
+    level = baseline_under_impact(time, seen.force, seen.quiet, part, segment, end - begin, seen.noise)
     force, at, step = seen.force[part] - level.values, time[part], float(np.median(np.diff(time)))
     impulse = float(np.trapezoid(force, at))
     noise = seen.noise * step * np.sqrt(part.stop - part.start)
-    # what every other sample would tell, beyond what noise makes of that, says how much there is between the samples
+    # sampling error: the change of the impulse at half the sampling rate, beyond that expected from noise
     coarse = [np.trapezoid(force[first::2], at[first::2]) for first in (0, 1)]
     between = 0.5 * max(0.0, float(np.abs(impulse - np.array(coarse)).max()) - 2.0 * noise)
     unsure = float(np.linalg.norm([noise, level.impulse_deviation, between]))
@@ -114,13 +114,13 @@ def _pulse(time: Floats, seen: Pushes, run: tuple[int, int], room: tuple[int, in
         largest_deviation=float(np.hypot(deviation, _PEAK * largest)),
         impulse=impulse,
         impulse_deviation=unsure,
-        wanders=level.wanders,
-        piece=(at, force),
+        excess_scatter=level.excess_scatter,
+        samples=(at, force),
     )
 
 
 def _largest(number: Indices, force: Floats) -> float:
-    """Return the top of a parabola through the largest samples; the largest of them if they are few."""
+    """Return the apex of a parabola through the samples near the maximum; the largest sample if they are few."""
     largest = float(force.max())
     top = np.flatnonzero(force > _TOP * largest)
     if len(top) > _FEWEST:
@@ -135,7 +135,7 @@ def _margin(begin: int, end: int) -> int:
 
 
 def _joined(runs: list[tuple[int, int]]) -> list[tuple[int, int]]:
-    """Return runs, with those as one between which noise alone makes a gap."""
+    """Return the index ranges, merged where the gap between them is short compared with their length."""
     joined: list[tuple[int, int]] = []
     for begin, end in runs:
         if joined and begin - joined[-1][1] < _MARGIN * max(end - begin, joined[-1][1] - joined[-1][0]):
@@ -146,6 +146,6 @@ def _joined(runs: list[tuple[int, int]]) -> list[tuple[int, int]]:
 
 
 def _runs(above: Bools) -> list[tuple[int, int]]:
-    """Return where samples in a row are above, as first and behind the last."""
+    """Return the half-open index ranges of consecutive samples above the threshold."""
     edges = np.flatnonzero(np.diff(np.concatenate([[False], above, [False]]).astype(int)))
     return [(int(begin), int(end)) for begin, end in edges.reshape(-1, 2)]

@@ -1,4 +1,4 @@
-"""Impacts in a measured record of force."""
+"""Impacts in a measured force record."""
 
 from __future__ import annotations
 
@@ -8,19 +8,19 @@ from dataclasses import replace
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.calibration.flights import Flights, Lasted, VacuumFlights
-from vibroimpact.calibration.force_pulses import Pulse, pulses_of, pushes
+from vibroimpact.calibration.flights import EndSpeeds, Flights, VacuumFlights
+from vibroimpact.calibration.force_pulses import Pulse, evaluate_pulses, find_pulses
 from vibroimpact.calibration.observations import Observations, Record
-from vibroimpact.calibration.record_noise import named_samples
+from vibroimpact.calibration.record_noise import sample_label
 from vibroimpact.errors import InputError
 
 _FEWEST = 5
-"""Samples of an impact, at least."""
+"""Minimum number of samples of an impact."""
 
 _MOST, _GAIN = 1.2, 0.03
-"""Restitution above which a record can't be right, and by how much impulses may be off from times of flight."""
+"""Restitution above which a record is rejected, and the deviation of impulses from times of flight above which a warning is given."""
 
-_EDGE = 0.03  # how well the ends of an impact are told, as a part of its time
+_EDGE = 0.03  # uncertainty of the start and end of an impact, as a fraction of its duration
 
 
 def impacts_in_force(
@@ -35,24 +35,24 @@ def impacts_in_force(
 ) -> Observations:
     r"""Return the impacts of a sphere whose contact force was recorded.
 
-    The impulse tells by how much the speed changes, :math:`m (v^+ + v^-) = \int F\,dt - m g T`, and the time to the next impact
-    tells it better: :math:`v^+ = g\,\Delta t / 2` in a vacuum. Where both are known they also tell the scale of the force, by which
-    the last impulse is corrected. The level of the force at rest may drift: it is told anew beside each impact, and what it adds to
-    the impulse, with what is not known of that, is in the standard deviations. An impact that the record breaks off in ends the
-    flight before it, and tells no more.
+    The change of speed follows from the impulse, :math:`m (v^+ + v^-) = \int F\,dt - m g T`, or, more accurately, from the time to
+    the next impact: :math:`v^+ = g\,\Delta t / 2` in a vacuum. Where both are known, their ratio calibrates the scale of the force, by
+    which the last impulse is corrected. The baseline of the force may drift: it is estimated beside each impact, and the uncertainty
+    of its contribution to the impulse is part of the standard deviations. An impact that is cut off at the end of the record only
+    ends the flight before it.
 
     Parameters
     ----------
     time, force : array
-        Time [s] and contact force [N], positive where it pushes.
+        Time [s] and contact force [N], positive in compression.
     mass, gravity : float
-        Effective mass of the pair [kg], the sphere's if the plate is held, and acceleration [m/s^2], >= 0.
+        Effective mass of the pair [kg], that of the sphere if the plate is held, and acceleration of gravity [m/s^2], >= 0.
     first_speed : float
-        Of the first touch [m/s].
+        Approach speed of the first impact [m/s].
     lines : sequence of int, optional
-        The line of a file that each sample stands on, for messages.
+        The line of each sample in the file, for messages.
     flights : Flights, optional
-        How the sphere flies; in a vacuum by default.
+        Model of the flights; a vacuum by default.
 
     Returns
     -------
@@ -72,9 +72,9 @@ def impacts_in_force(
     >>> found.wanted["separation_speed"].round(2).tolist(), found.wanted["max_force"].round(0).tolist()
     ([1.18], [100.0])
     """
-    at, step, seen = named_samples(lines), float(np.median(np.diff(time))), pushes(time, force)
+    at, step, seen = sample_label(lines), float(np.median(np.diff(time))), find_pulses(time, force)
     runs, ends = list(seen.runs), []
-    if len(runs) > 1 and runs[-1][1] == len(force):  # it still ends a flight
+    if len(runs) > 1 and runs[-1][1] == len(force):  # cut off by the end of the record; its start still ends a flight
         ends = [float(time[runs.pop()[0]])]
     for begin, end in runs:
         if begin == 0 or end == len(force):
@@ -83,12 +83,12 @@ def impacts_in_force(
             raise InputError(
                 f"the impact at {at(begin)} has only {end - begin} samples, and it takes {_FEWEST}; sample faster, or smooth less"
             )
-    pulses = pulses_of(time, seen, runs)
+    pulses = evaluate_pulses(time, seen, runs)
     begins = np.array([*(pulse.begin for pulse in pulses), *ends])
     gaps = begins[1:] - np.array([pulse.begin + pulse.duration for pulse in pulses])[: len(begins) - 1]
     if gravity == 0.0 and len(gaps):
         raise InputError(f"without gravity the sphere does not come back, and the record shows {len(runs) + len(ends)} impacts")
-    flown = (flights or VacuumFlights(gravity)).lasting(gaps)
+    flown = (flights or VacuumFlights(gravity)).end_speeds(gaps)
     separation, deviation, doubts = _separations(pulses, flown, mass, gravity, first_speed, step)
     number = len(pulses)
     speeds = np.append(first_speed, flown.end)[:number]
@@ -103,24 +103,24 @@ def impacts_in_force(
         "separation_speed": np.hstack([np.diag(deviation), nothing]),
         "max_force": np.hstack([nothing, np.diag([pulse.largest_deviation for pulse in pulses])]),
     }
-    back = (flown.end_slope / flown.start_slope)[: number - 1, None]  # a flight of another time ends otherwise too
+    back = (flown.end_slope / flown.start_slope)[: number - 1, None]  # an error of the duration of a flight changes both of its speeds
     before_noise = np.vstack([np.zeros(2 * number), back * noises["separation_speed"][:-1]])
     wanted = {"separation_speed": separation, "max_force": np.array([pulse.largest for pulse in pulses])}
     labels = tuple(f"impact {row + 1}, {at(begin)}" for row, (begin, _) in enumerate(runs))
-    record = Record("force", tuple(pulse.piece for pulse in pulses))
+    record = Record("force", tuple(pulse.samples for pulse in pulses))
     found = Observations(speeds, wanted, before_noise, noises, True, labels, noise_from="the noise of the record", doubts=doubts)
     return replace(found, flights=flights, record=record)
 
 
 def _separations(
-    pulses: list[Pulse], flown: Lasted, mass: float, gravity: float, first_speed: float, step: float
+    pulses: list[Pulse], flown: EndSpeeds, mass: float, gravity: float, first_speed: float, step: float
 ) -> tuple[Floats, Floats, tuple[str, ...]]:
-    """Return separation speeds [m/s] and their standard deviations, and what to doubt of them.
+    """Return separation speeds [m/s], their standard deviations, and warnings.
 
-    Those before another impact follow from the time of flight, the last one from its impulse.
+    A speed before another impact follows from the time of flight, the last one from its impulse.
     """
     number = len(pulses)
-    timed = len(flown.start)  # as many as there are impacts where the record breaks off in one more
+    timed = len(flown.start)  # equal to the number of impacts if the record ends within a further one
     before, pairs = np.append(first_speed, flown.end)[:number], list(zip(pulses, flown.start, strict=False))
     expected = np.array([mass * (came + left + gravity * pulse.duration) for (pulse, left), came in zip(pairs, before, strict=False)])
     edges = np.array([np.hypot(0.5 * step, _EDGE * pulse.duration) for pulse in pulses])
@@ -138,15 +138,15 @@ def _separations(
         doubts.append(
             f"one impact alone: its rebound follows from the impulse, and 1 % in the scale of the force makes {per_cent:.2g} m/s of it"
         )
-    # a flight shorter by an error of time begins more slowly; the first derivative has half of gravity in a vacuum, and both ends err
+    # the start of a flight and its end are both uncertain; in a vacuum the derivative of the initial speed is g / 2
     deviation = 2.0 * flown.start_slope * edges[:timed]
     if timed == number:
         return flown.start, deviation, tuple(doubts)
     last = pulses[-1]
     after = scale * last.impulse / mass - gravity * last.duration - before[-1]
     of_last = float(np.hypot(last.impulse_deviation, unsure * last.impulse)) / mass
-    if last.wanders:
-        part = 100.0 * last.wanders / last.largest
+    if last.excess_scatter:
+        part = 100.0 * last.excess_scatter / last.largest
         doubts.append(
             f"the force at rest wanders by {part:.2g} % of the largest beside the last impact, more than its noise does, which makes "
             f"{last.impulse_deviation / mass:.2g} m/s of the rebound uncertain"

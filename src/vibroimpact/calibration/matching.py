@@ -1,4 +1,4 @@
-"""The value of a parameter with which each impact comes out as it is wanted."""
+"""Solve for the parameter value with which each impact matches its target, and derivatives of the impact quantities."""
 
 from __future__ import annotations
 
@@ -8,40 +8,40 @@ from dataclasses import dataclass
 import numpy as np
 
 from vibroimpact.arrays import Floats, Indices
-from vibroimpact.calibration.outcomes import REBOUNDS
+from vibroimpact.calibration.matchable import REBOUNDS
 from vibroimpact.contact.roots import find_root, solve_monotonic
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.ranges import Range
 
 _STEP = 1e-4
-"""Relative step of difference quotients: with impacts good to 1e-12, both of its errors are about 1e-8."""
+"""Relative step of central differences: with impacts accurate to 1e-12, truncation and rounding errors are both about 1e-8."""
 
 _CLOSE = 1e-11
 _GRID = np.append(0.0, 4.0 ** np.arange(-8.0, 9.0))
-"""Of the start: values among which the best is looked for first, where several outcomes can't all be met."""
+"""Multiples of the initial guess that are scanned before a root is refined."""
 
 
 @dataclass(frozen=True)
 class Tunable:
-    """A parameter and what impacts are like with it.
+    """A parameter that can be tuned, and the impacts as a function of it.
 
     Parameters
     ----------
     name, unit : str
-        The parameter.
+        Name and unit of the parameter.
     allowed : Range
-        Of its value.
+        Allowed range of the value.
     start : float
-        Where to begin, > 0.
+        Initial guess, > 0.
     given : array, shape (n,) or ()
-        Its value as the case gives it, one an impact; NaN where the case does not.
+        Its value as given by the case, one per impact; NaN where the case gives none.
     respond : callable
-        Takes approach speeds [m/s] (m,), values (m,), and which impact each stands for (m,); returns the outcomes, as
-        `one_impact` does.
+        Takes approach speeds [m/s] (m,), values (m,) and indices of the impacts (m,); returns the impact quantities, as
+        `single_impacts` does.
     drop : callable
-        Takes values, one an impact, and returns the drop with them; the last one goes on.
+        Takes values, one per impact, and returns the drop with them; the last value holds for all further impacts.
     damps : bool
-        Is it known that the separation speed falls as the value rises from its lower end?
+        Whether the separation speed is known to decrease with the value from its lower end.
     """
 
     name: str
@@ -56,7 +56,7 @@ class Tunable:
 
 @dataclass(frozen=True)
 class Match:
-    """Values (n,), NaN where nothing fits; and the least and the largest outcome that was seen on the way, where one is matched."""
+    """Values (n,), NaN without a solution; least and largest value of the matched quantity found during the search (NaN for several)."""
 
     values: Floats
     least: Floats
@@ -69,9 +69,9 @@ def match(
     wanted: Mapping[str, Floats],
     weights: Mapping[str, float],
     which: Indices,
-    farthest: int = 20,
+    max_steps: int = 20,
 ) -> Match:
-    """Return the value with which each impact comes out as wanted, or as near to that as can be.
+    """Return the value with which each impact matches its target, or for several quantities the best compromise.
 
     Parameters
     ----------
@@ -80,15 +80,15 @@ def match(
     speeds : array, shape (n,)
         Approach speeds [m/s].
     wanted : mapping of str to array, shape (n,)
-        Outcomes in SI.
+        Target values in SI units.
     weights : mapping of str to float
-        Of each outcome that counts. With several, the sum over them of weight times squared relative deviation becomes least.
+        Weights of the matched quantities. With several, the sum of weight times squared relative deviation is minimized.
     which : array of int, shape (n,)
-        Which impact of the drop each stands for.
-    farthest : int, default 20
-        How many steps of four from where it begins to look for one outcome.
+        Index of the impact of the drop that each represents.
+    max_steps : int, default 20
+        Maximum number of steps by a factor of four from the initial guess in the search for a bracket.
     """
-    scales = {name: scale_of(name, speeds, wanted[name]) for name in weights}
+    scales = {name: residual_scale(name, speeds, wanted[name]) for name in weights}
 
     def misses(values: Floats) -> dict[str, Floats]:
         found = tunable.respond(speeds, values, which)
@@ -98,33 +98,35 @@ def match(
     if len(weights) == 1:
         (name,) = weights
         falls = tunable.damps and name in REBOUNDS
-        if tunable.damps and not falls:  # a force falls with a little damping and rises with much: the smallest counts
+        if tunable.damps and not falls:  # force over damping has a minimum: take the smallest solution
             grid = [tunable.allowed.clip(factor * start) for factor in _GRID]
             seen = np.array([misses(values)[name] for values in grid])
             least, most = (bound * scales[name] + wanted[name] for bound in (np.nanmin(seen, axis=0), np.nanmax(seen, axis=0)))
-            return Match(_smallest(lambda values: misses(values)[name], start, grid, seen), least, most)
+            return Match(_smallest_root(lambda values: misses(values)[name], start, grid, seen), least, most)
         found = solve_monotonic(
-            lambda values: misses(values)[name] + 1.0, np.ones(len(speeds)), start, tunable.allowed, falls=falls, max_steps=farthest
+            lambda values: misses(values)[name] + 1.0, np.ones(len(speeds)), start, tunable.allowed, falls=falls, max_steps=max_steps
         )
         least, most = ((bound - 1.0) * scales[name] + wanted[name] for bound in (found.least, found.most))
         return Match(found.place, least, most)
-    return Match(_best(misses, start, weights, tunable.allowed), *np.full((2, len(speeds)), np.nan))
+    return Match(_least_squares_value(misses, start, weights, tunable.allowed), *np.full((2, len(speeds)), np.nan))
 
 
-def _smallest(miss: Callable[[Floats], Floats], start: Floats, grid: list[Floats], misses: Floats) -> Floats:
-    """Return the smallest value at which a miss changes its sign, NaN where it does not on the grid, whose misses are (values, n)."""
+def _smallest_root(miss: Callable[[Floats], Floats], start: Floats, grid: list[Floats], misses: Floats) -> Floats:
+    """Return the smallest root of the deviation, NaN if it has no sign change on the grid; `misses` are its values there, (values, n)."""
     above = misses > 0.0
     turns = above[1:] != above[:-1]
     first, which = turns.argmax(axis=0), np.arange(len(start))
     some = turns.any(axis=0)
     ends = [np.where(some, np.stack(grid)[first + side, which], start) for side in (0, 1)]
-    upwards = above[first + 1, which]  # the root is sought where the function becomes positive
+    upwards = above[first + 1, which]  # find_root expects the function to become positive
     low, high = (np.where(upwards, ends[side], ends[1 - side]) for side in (0, 1))
     return np.where(some, find_root(miss, low, high, close=_CLOSE), np.nan)
 
 
-def _best(misses: Callable[[Floats], dict[str, Floats]], start: Floats, weights: Mapping[str, float], allowed: Range) -> Floats:
-    """Return where the weighted sum of squares is least: the best of a grid, then the root of the slope beside it."""
+def _least_squares_value(
+    misses: Callable[[Floats], dict[str, Floats]], start: Floats, weights: Mapping[str, float], allowed: Range
+) -> Floats:
+    """Return the minimizer of the weighted sum of squares: the best point of a grid, refined by a root of the derivative."""
 
     def cost(values: Floats) -> Floats:
         return np.asarray(sum(weight * misses(values)[name] ** 2 for name, weight in weights.items()))
@@ -146,22 +148,23 @@ def _best(misses: Callable[[Floats], dict[str, Floats]], start: Floats, weights:
     return np.where(turns, found, np.where(best == 0, inside[0], np.nan))
 
 
-def scale_of(name: str, speeds: Floats, wanted: Floats) -> Floats:
-    """Return what a miss of an outcome is compared with: what is wanted; of a separation speed, which may be zero, the approach speed."""
+def residual_scale(name: str, speeds: Floats, wanted: Floats) -> Floats:
+    """Return the scale of a deviation: the target value; for a separation speed, which may be zero, the approach speed."""
     return speeds if name == "separation_speed" else np.abs(wanted)
 
 
 @dataclass(frozen=True)
-class Slopes:
-    """Outcomes (n,) by name, and their derivatives by the value of the parameter and by the approach speed."""
+class Derivatives:
+    """Impact quantities (n,) by name, and their derivatives with respect to the parameter and to the approach speed."""
 
     outcomes: dict[str, Floats]
     by_value: dict[str, Floats]
     by_speed: dict[str, Floats]
 
 
-def slopes(tunable: Tunable, speeds: Floats, values: Floats, which: Indices) -> Slopes:
-    """Return outcomes of impacts and their derivatives, by central differences inside the range of the parameter."""
+def derivatives(tunable: Tunable, speeds: Floats, values: Floats, which: Indices) -> Derivatives:
+    """Return impact quantities and their derivatives by central differences within the allowed range of the parameter."""
+    # one batch of impacts for all five points of the two differences
     step = _STEP * np.maximum(np.abs(values), 1e-3 * tunable.start)
     high, low = tunable.allowed.clip(values + step), tunable.allowed.clip(values - step)
     faster, slower = speeds * (1.0 + _STEP), speeds * (1.0 - _STEP)
@@ -170,7 +173,7 @@ def slopes(tunable: Tunable, speeds: Floats, values: Floats, which: Indices) -> 
         np.concatenate([speeds, speeds, speeds, faster, slower]), np.concatenate([values, high, low, values, values]), rows
     )
     parts = {name: found.reshape(5, -1) for name, found in every.items()}
-    return Slopes(
+    return Derivatives(
         {name: part[0] for name, part in parts.items()},
         {name: (part[1] - part[2]) / (high - low) for name, part in parts.items()},
         {name: (part[3] - part[4]) / (faster - slower) for name, part in parts.items()},

@@ -1,4 +1,4 @@
-"""Measurements that a case holds itself: restitutions, rebound heights, or the first impact."""
+"""Measurements given in the case file: restitutions, rebound heights, or quantities of the first impact."""
 
 from __future__ import annotations
 
@@ -7,23 +7,23 @@ from dataclasses import replace
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.calibration.above_one import Believed, believed, restitutions
-from vibroimpact.calibration.flights import Flights, VacuumFlights, as_in_vacuum
-from vibroimpact.calibration.in_air import Measurement, speed_at_touch
+from vibroimpact.calibration.evaluate_measurement import Measurement, speed_at_touch
+from vibroimpact.calibration.flights import Flights, VacuumFlights, vacuum_height
+from vibroimpact.calibration.matchable import MATCHABLE
 from vibroimpact.calibration.observations import Observations, from_heights, from_table
-from vibroimpact.calibration.outcomes import OUTCOMES
+from vibroimpact.calibration.restitution_limit import RestitutionLimit, measured_restitutions, restitution_limit
 from vibroimpact.calibration.section import ImpactTarget, RestitutionTarget
 from vibroimpact.cases.case import Case
 from vibroimpact.errors import InputError
 
 
-def of_heights(case: Case, heights: Floats, deviation: Floats | None, labels: tuple[str, ...]) -> Measurement:
-    """Return rebound heights [m], from the first impact on.
+def heights_measurement(case: Case, heights: Floats, deviation: Floats | None, labels: tuple[str, ...]) -> Measurement:
+    """Return the measurement of successive rebound heights [m] from the first impact on.
 
     Raises
     ------
     InputError
-        If one can't be.
+        If a height is not above the rest position, or (when evaluated) exceeds the height of fall by more than noise.
     """
     radius = case.sphere.radius
     _check_above(case, heights, labels)
@@ -31,7 +31,7 @@ def of_heights(case: Case, heights: Floats, deviation: Floats | None, labels: tu
     def evaluated(flights: Flights | None) -> Observations:
         speed, gravity = speed_at_touch(case, flights), case.drop.gravity
         seen = from_heights(heights, deviation, first_speed=speed, radius=radius, gravity=gravity, labels=labels, flights=flights)
-        limit, values = _believed(seen, case), restitutions(seen, radius, gravity)
+        limit, values = _limit(seen, case), measured_restitutions(seen, radius, gravity)
         assert values is not None
         higher = np.flatnonzero(values > limit.most)
         if higher.size:
@@ -45,18 +45,18 @@ def of_heights(case: Case, heights: Floats, deviation: Floats | None, labels: tu
     return Measurement(evaluated, float(heights.max()) - radius)
 
 
-def of_first(case: Case, target: ImpactTarget) -> Measurement:
-    """Return the first impact of the drop."""
+def first_impact_measurement(case: Case, target: ImpactTarget) -> Measurement:
+    """Return the measurement of the first impact of the drop."""
     if target.rebound_height is not None:
         _check_above(case, np.array([target.rebound_height]), ("impact 1",))
     radius, part = case.sphere.radius, target.relative_deviation
 
     def evaluated(flights: Flights | None) -> Observations:
-        speed, found = speed_at_touch(case, flights), {name: getattr(target, name) for name in OUTCOMES}
+        speed, found = speed_at_touch(case, flights), {name: getattr(target, name) for name in MATCHABLE}
         if target.restitution is not None:
             found["separation_speed"] = target.restitution * speed
         if target.rebound_height is not None:
-            rise = as_in_vacuum(flights or VacuumFlights(case.drop.gravity), np.array(target.rebound_height - radius))[0]
+            rise = vacuum_height(flights or VacuumFlights(case.drop.gravity), np.array(target.rebound_height - radius))[0]
             found["rebound_height"] = radius + float(rise)
         wanted = {name: np.array([value]) for name, value in found.items() if value is not None}
         deviations = None if part is None else {name: part * value for name, value in wanted.items()}
@@ -68,8 +68,8 @@ def of_first(case: Case, target: ImpactTarget) -> Measurement:
     return Measurement(evaluated, 0.0 if target.rebound_height is None else target.rebound_height - radius)
 
 
-def of_speeds(case: Case, target: RestitutionTarget) -> Observations:
-    """Return restitutions at several approach speeds."""
+def restitution_observations(case: Case, target: RestitutionTarget) -> Observations:
+    """Return measured restitutions at several approach speeds."""
     assert isinstance(target.restitution, tuple)
     speeds, values = np.array(target.approach_speed), np.array(target.restitution)
     deviations = None if target.standard_deviation is None else {"separation_speed": target.standard_deviation * speeds}
@@ -80,17 +80,17 @@ def of_speeds(case: Case, target: RestitutionTarget) -> Observations:
 
 
 def check_restitutions(seen: Observations, case: Case) -> None:
-    """Raise unless restitutions are 1 at most, but for noise.
+    """Check that no restitution exceeds 1 by more than noise.
 
     Raises
     ------
     InputError
-        If one is larger than noise explains; with how far it is believed.
+        If one does; the message gives the limit.
     """
-    values = restitutions(seen, case.sphere.radius, case.drop.gravity)
+    values = measured_restitutions(seen, case.sphere.radius, case.drop.gravity)
     if values is None:
         return
-    limit = _believed(seen, case)
+    limit = _limit(seen, case)
     over = np.flatnonzero(values > limit.most)
     if over.size:
         at = int(over[0])
@@ -98,8 +98,8 @@ def check_restitutions(seen: Observations, case: Case) -> None:
         raise InputError(f"{seen.labels[at]}: {words}", "target")
 
 
-def _believed(seen: Observations, case: Case) -> Believed:
-    values, deviations = restitutions(seen, case.sphere.radius, case.drop.gravity), None
+def _limit(seen: Observations, case: Case) -> RestitutionLimit:
+    values, deviations = measured_restitutions(seen, case.sphere.radius, case.drop.gravity), None
     assert values is not None
     if seen.deviations_known:
         name = "separation_speed" if "separation_speed" in seen.wanted else "rebound_height"
@@ -107,7 +107,7 @@ def _believed(seen: Observations, case: Case) -> Believed:
         by_reading = 1.0 if name == "separation_speed" else case.drop.gravity / np.maximum(left, 1e-300)[:, None]
         noise = by_reading * seen.noise[name] / seen.speeds[:, None] - (values / seen.speeds)[:, None] * seen.speed_noise
         deviations = np.linalg.norm(noise, axis=1)
-    return believed(seen.speeds, values, deviations)
+    return restitution_limit(seen.speeds, values, deviations)
 
 
 def _by_noise(value: float, most: float, why: str) -> str:

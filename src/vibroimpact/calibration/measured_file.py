@@ -1,4 +1,4 @@
-"""Measurements in a file: impacts one a row, rebound heights, or a record of position, force or the sphere's acceleration."""
+"""Measurements in a file: one impact per row, rebound heights, or a record of position, force or the sphere's acceleration."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ from typing import NamedTuple
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.calibration.flights import Flights, VacuumFlights, as_in_vacuum
+from vibroimpact.calibration.evaluate_measurement import Measurement, speed_at_touch
+from vibroimpact.calibration.flights import Flights, VacuumFlights, vacuum_height
 from vibroimpact.calibration.force_record import impacts_in_force
-from vibroimpact.calibration.in_air import Measurement, speed_at_touch
-from vibroimpact.calibration.measured_case import check_restitutions, of_heights
+from vibroimpact.calibration.matchable import MATCHABLE
+from vibroimpact.calibration.measured_case import check_restitutions, heights_measurement
 from vibroimpact.calibration.observations import Observations, from_table
-from vibroimpact.calibration.outcomes import OUTCOMES
 from vibroimpact.calibration.position_record import impacts_in_position
 from vibroimpact.calibration.section import FileTarget
 from vibroimpact.cases.case import Case
@@ -23,7 +23,7 @@ from vibroimpact.errors import InputError
 from vibroimpact.measurements.record_file import SPHERE_ACCELERATION, is_universal, read_universal_record
 from vibroimpact.measurements.table_file import TableFile, read_table_file, strictly_increasing
 
-_OUTCOMES = {name: outcome.unit for name, outcome in OUTCOMES.items()}
+_MATCHABLE = {name: quantity.unit for name, quantity in MATCHABLE.items()}
 _DEVIATION = "_standard_deviation"
 _COLUMNS = {
     "time": "s",
@@ -35,8 +35,8 @@ _COLUMNS = {
     "restitution": "",
     "restitution_achieved": "",
     "rebound_height": "m",
-    **_OUTCOMES,
-    **{f"{name}{_DEVIATION}": unit for name, unit in {"restitution": "", "rebound_height": "m", **_OUTCOMES}.items()},
+    **_MATCHABLE,
+    **{f"{name}{_DEVIATION}": unit for name, unit in {"restitution": "", "rebound_height": "m", **_MATCHABLE}.items()},
 }
 _RECORDED = ("position", "force", "sphere_acceleration")
 _KINDS = (
@@ -50,8 +50,8 @@ _WHOSE = (
 
 
 class Recorded(NamedTuple):
-    """A record: times [s]; position [m], force [N] and acceleration of the sphere [m/s^2], as far as they are there, by their columns;
-    and the line of each sample.
+    """A record: times [s]; the available columns of position [m], force [N] and acceleration of the sphere [m/s^2] by name; line numbers of
+    the samples, None for a universal file.
     """
 
     time: Floats
@@ -59,26 +59,26 @@ class Recorded(NamedTuple):
     lines: Sequence[int] | None
 
 
-def of_file(case: Case, target: FileTarget, by_rebound: bool) -> Measurement:
-    """Return what a file tells; of a record of both position and force the position, if only the rebound is matched.
+def file_measurement(case: Case, target: FileTarget, by_rebound: bool) -> Measurement:
+    """Return the measurement in a file; if only the rebound is matched, position takes precedence over force.
 
     Raises
     ------
     InputError
-        If it can't be read, or does not tell of impacts; with the line.
+        If it can't be read or contains no impacts; the message names the line.
     """
     if is_universal(target.file):
         found = read_universal_record(target.file, target.function, by_rebound)
         if found.quantity == "acceleration" and found.words != SPHERE_ACCELERATION:
             raise InputError(f'{target.file}: "{found.words}": in a table, {_WHOSE}', "target")
         column = "sphere_acceleration" if found.quantity == "acceleration" else found.quantity
-        return _named(target.file, _of_record(case, Recorded(found.time, {column: found.values}, None), by_rebound))
+        return _naming_file(target.file, _record_measurement(case, Recorded(found.time, {column: found.values}, None), by_rebound))
     if target.function is not None:
         raise InputError("only a universal file has functions; the columns of a table say what they are", "target.function")
     table = _table(target.file)
     columns = table.columns
     if "approach_speed" in columns:
-        return _named(target.file, _of_rows(case, table))
+        return _naming_file(target.file, _rows_measurement(case, table))
     try:
         if "rebound_height" in columns:
             if table.empty:
@@ -86,19 +86,19 @@ def of_file(case: Case, target: FileTarget, by_rebound: bool) -> Measurement:
                 raise InputError(f"line {table.empty[0]}: {words}")
             labels = tuple(f"line {line}" for line in table.lines)
             deviation = columns.get(f"rebound_height{_DEVIATION}")
-            return _named(target.file, of_heights(case, columns["rebound_height"], deviation, labels))
+            return _naming_file(target.file, heights_measurement(case, columns["rebound_height"], deviation, labels))
         if "acceleration" in columns and not set(_RECORDED) & set(columns):
             raise InputError(_WHOSE)
         if "time" not in columns or not set(_RECORDED) & set(columns):
             raise InputError(f"the columns {', '.join(columns)} do not tell of impacts; a file has {_KINDS}")
         table = strictly_increasing(table, "time")
         values = {name: table.columns[name] for name in _RECORDED if name in table.columns}
-        return _named(target.file, _of_record(case, Recorded(table.columns["time"], values, table.lines), by_rebound))
+        return _naming_file(target.file, _record_measurement(case, Recorded(table.columns["time"], values, table.lines), by_rebound))
     except InputError as error:
         raise _in_file(target.file, error) from None
 
 
-def _of_record(case: Case, record: Recorded, by_rebound: bool) -> Measurement:
+def _record_measurement(case: Case, record: Recorded, by_rebound: bool) -> Measurement:
     time, values, lines = record
     if "position" in values and (by_rebound or len(values) == 1):
         if case.drop.gravity == 0.0:
@@ -120,19 +120,19 @@ def _of_record(case: Case, record: Recorded, by_rebound: bool) -> Measurement:
     return Measurement(in_force, case.drop.gravity * float(time[-1] - time[0]) ** 2 / 8.0)
 
 
-def _of_rows(case: Case, table: TableFile) -> Measurement:
-    """Return impacts that a file gives one a row."""
+def _rows_measurement(case: Case, table: TableFile) -> Measurement:
+    """Return the measurement of a file with one impact per row."""
     columns, speeds = dict(table.columns), table.columns["approach_speed"]
-    if "restitution_achieved" in columns:  # as the impact table of a result calls it
+    if "restitution_achieved" in columns:  # name of the column in the impact table of a result
         columns.setdefault("restitution", columns["restitution_achieved"])
     for name in ("approach_speed", *(name for name in columns if name.endswith(_DEVIATION))):
         _positive(table, name)
-    for ending in ("", _DEVIATION):  # a restitution is a separation speed over the approach speed
+    for ending in ("", _DEVIATION):  # as separation speed, by the definition of restitution
         if f"restitution{ending}" in columns:
             columns.setdefault(f"separation_speed{ending}", columns[f"restitution{ending}"] * speeds)
-    wanted = {name: columns[name] for name in OUTCOMES if name in columns}
+    wanted = {name: columns[name] for name in MATCHABLE if name in columns}
     if not wanted:
-        raise InputError(f"{table.path}: beside approach_speed a column is missing: restitution, {', '.join(OUTCOMES)}", "target")
+        raise InputError(f"{table.path}: beside approach_speed a column is missing: restitution, {', '.join(MATCHABLE)}", "target")
     for name in wanted:
         _positive(table, next(column for column in (name, "restitution", "restitution_achieved") if column in table.columns))
     known = [name for name in wanted if f"{name}{_DEVIATION}" in columns]
@@ -145,7 +145,7 @@ def _of_rows(case: Case, table: TableFile) -> Measurement:
     def evaluated(flights: Flights | None) -> Observations:
         seen = from_table(speeds, wanted, deviations, labels)
         if "rebound_height" in wanted and gravity > 0.0 and np.all(wanted["rebound_height"] > radius):
-            rises, scales = as_in_vacuum(flights or VacuumFlights(gravity), wanted["rebound_height"] - radius)
+            rises, scales = vacuum_height(flights or VacuumFlights(gravity), wanted["rebound_height"] - radius)
             noise = {**seen.noise, "rebound_height": scales[:, None] * seen.noise["rebound_height"]}
             seen = replace(seen, wanted={**wanted, "rebound_height": radius + rises}, noise=noise)
         if "restitution" in columns:
@@ -166,14 +166,14 @@ def _table(file: str) -> TableFile:
     try:
         return read_table_file(file, _COLUMNS)
     except InputError as error:
-        if "acceleration; what is wanted is a " in error.message:  # of a force, a position
-            what = error.message.partition(" (a number in ")[0]  # and not how else to write a force
+        if "acceleration; what is wanted is a " in error.message:  # given where a force or a position is required
+            what = error.message.partition(" (a number in ")[0]  # without the hint how to write a force
             raise InputError(f"{what}. In a record {_WHOSE}", "target") from None
         raise InputError(error.message, "target") from None
 
 
-def _named(file: str, measurement: Measurement) -> Measurement:
-    """Return a measurement whose faults name the file."""
+def _naming_file(file: str, measurement: Measurement) -> Measurement:
+    """Return the measurement with error messages that name the file."""
 
     def evaluated(flights: Flights | None) -> Observations:
         try:

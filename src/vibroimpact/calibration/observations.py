@@ -1,4 +1,4 @@
-"""What impacts are to be like: approach speeds, and what was wanted or measured at each, with its noise."""
+"""Impacts to be matched: approach speeds, target or measured values, and their noise."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from vibroimpact.arrays import Floats, Indices
-from vibroimpact.calibration.flights import Flights, VacuumFlights, as_in_vacuum
+from vibroimpact.calibration.flights import Flights, VacuumFlights, vacuum_height
 
 
 class Record(NamedTuple):
-    """What was recorded over time: times [s] and values of a force [N], above its level at rest, one piece an impact; or of a position
-    [m], in one piece, and when the first impact ends in that [s].
+    """A record over time: times [s] and forces above the baseline [N], one piece per impact; or positions [m] in one piece, with the time
+    at which the first flight from the plate begins [s].
     """
 
     quantity: Literal["force", "position"]
@@ -26,36 +26,35 @@ class Record(NamedTuple):
 class Observations:
     """Impacts to be matched.
 
-    Noise is a linear map from independent sources, each of unit variance, so that readings which two impacts share (the height
-    between them) are counted once.
+    Noise is a linear map from independent sources of unit variance, so that a reading shared by two impacts (the height between
+    them) counts once.
 
     Parameters
     ----------
     speeds : array, shape (n,)
         Approach speeds [m/s].
     wanted : mapping of str to array, shape (n,)
-        By the names of `OUTCOMES` in SI.
+        Target values by the names of `MATCHABLE`, in SI units.
     speed_noise : array, shape (n, m)
-        What each source adds to the approach speeds [m/s].
+        Contribution of each noise source to the approach speeds [m/s].
     noise : mapping of str to array, shape (n, m)
-        What each source adds to what is wanted. Empty: there is no noise, what is wanted is exact.
+        Contribution of each source to the target values. Empty: the values are exact.
     deviations_known : bool
-        Are the sizes of the sources known? Else only how they compare.
+        Whether the magnitudes of the sources are known; otherwise only their ratios are.
     labels : tuple of str
-        What each is called in messages, such as "impact 3" or "row 7".
+        Names of the impacts in messages, such as "impact 3" or "row 7".
     of_the_drop : bool
-        Are they the impacts of the drop, in order?
+        Whether they are the successive impacts of the drop.
     noise_from : str
-        Where the sizes of the sources come from, in words.
+        Origin of the magnitudes of the sources, in words.
     doubts : tuple of str
-        What to doubt of them.
+        Warnings, as sentences.
     flights : Flights, optional
-        How the sphere flies from impact to impact, where that is not in a vacuum; then rebound heights are those that it would
-        reach in one.
+        Model of the flights between impacts if they have drag; rebound heights are then converted to those in a vacuum.
     record : Record, optional
-        The record that they were found in.
+        The record in which they were found.
     notes : tuple of str
-        How they were evaluated, in sentences.
+        How they were evaluated, as sentences.
     """
 
     speeds: Floats
@@ -73,16 +72,16 @@ class Observations:
 
     @property
     def measured(self) -> bool:
-        """Do they come from a measurement, and not from a rule?"""
+        """Whether they come from a measurement, with noise, rather than from a law."""
         return bool(self.noise)
 
     @property
     def which(self) -> Indices:
-        """Which impact of the drop each stands for; those that were measured apart from it for the first, (n,)."""
+        """Index of the impact of the drop that each represents, (n,); 0 if they are not impacts of the drop."""
         return np.arange(len(self.speeds)) if self.of_the_drop else np.zeros(len(self.speeds), dtype=np.intp)
 
     def redrawn(self, random: np.random.Generator) -> tuple[Floats, dict[str, Floats]]:
-        """Return approach speeds and what is wanted, as another measurement might have found them."""
+        """Return approach speeds and target values with a random realization of the noise."""
         draw = random.normal(size=self.speed_noise.shape[1])
         return self.speeds + self.speed_noise @ draw, {name: values + self.noise[name] @ draw for name, values in self.wanted.items()}
 
@@ -99,22 +98,22 @@ def from_heights(
 ) -> Observations:
     r"""Return the impacts between measured rebound heights.
 
-    With :math:`\sqrt{2 g (h - R)}` the sphere comes down from a height h to the next; in air more slowly.
+    The approach speed after a flight of height h is :math:`\sqrt{2 g (h - R)}`; lower in air.
 
     Parameters
     ----------
     heights : array, shape (n,)
-        Of the sphere's centre above the plate at the top of each rebound [m].
+        Height of the sphere's centre above the plate at the apex of each rebound [m].
     deviation : array, shape (n,), optional
         Standard deviation of each [m].
     first_speed : float
-        Speed of the first touch [m/s], taken as exact.
+        Approach speed of the first impact [m/s], taken as exact.
     radius, gravity : float
-        Of the sphere [m], and acceleration [m/s^2].
+        Radius of the sphere [m], and acceleration of gravity [m/s^2].
     labels : tuple of str, optional
-        What each is called.
+        Names of the impacts.
     flights : Flights, optional
-        How the sphere flies; in a vacuum by default.
+        Model of the flights; a vacuum by default.
 
     Examples
     --------
@@ -123,8 +122,8 @@ def from_heights(
     ([4.0, 3.1305], [0.525, 0.1])
     """
     flying = flights or VacuumFlights(gravity)
-    falls, slopes = flying.falling(heights - radius)
-    rises, scales = as_in_vacuum(flying, heights - radius)
+    falls, slopes = flying.speed_after_fall(heights - radius)
+    rises, scales = vacuum_height(flying, heights - radius)
     noise = np.diag(np.ones(len(heights)) if deviation is None else deviation)
     before = np.vstack([np.zeros(len(heights)), slopes[:-1, None] * noise[:-1]])
     names = labels or tuple(f"impact {number + 1}" for number in range(len(heights)))
@@ -133,8 +132,8 @@ def from_heights(
     return Observations(speeds, wanted, before, noises, known, names, flights=flights)
 
 
-def scaled(seen: Observations, scatter: float, weights: Mapping[str, float]) -> Observations:
-    """Return observations whose noise, so far only compared, has a size: `scatter` times what it was, less where a weight says so."""
+def with_noise_scale(seen: Observations, scatter: float, weights: Mapping[str, float]) -> Observations:
+    """Return the observations with noise of known magnitude: `scatter` times the relative one, over the root of the weight."""
     noise = {name: scatter / np.sqrt(weights.get(name, 1.0)) * values for name, values in seen.noise.items()}
     return replace(seen, speed_noise=scatter * seen.speed_noise, noise=noise, deviations_known=True)
 
@@ -147,25 +146,25 @@ def from_table(
     *,
     of_the_drop: bool = False,
 ) -> Observations:
-    """Return impacts that were measured apart from each other, at approach speeds that are exact.
+    """Return impacts that were measured independently, at exact approach speeds.
 
     Parameters
     ----------
     speeds : array, shape (n,)
         Approach speeds [m/s].
     wanted : mapping of str to array, shape (n,)
-        By the names of `OUTCOMES`, in SI.
+        Measured values by the names of `MATCHABLE`, in SI units.
     deviations : mapping of str to array, optional
-        Their standard deviations, in the same units.
+        Standard deviations, in the same units.
     labels : tuple of str
-        What each impact is called.
+        Names of the impacts.
     of_the_drop : bool, default False
-        Are they the impacts of the drop, in order?
+        Whether they are the successive impacts of the drop.
     """
     number, several = len(speeds), len(wanted)
     noise = {}
     for place, (name, values) in enumerate(wanted.items()):
-        size = np.abs(values) if deviations is None else deviations[name]  # of unknown size: alike in percent
+        size = np.abs(values) if deviations is None else deviations[name]  # of unknown magnitude: the same relative noise for all
         block = np.zeros((number, number * several))
         block[:, place * number : (place + 1) * number] = np.diag(size)
         noise[name] = block

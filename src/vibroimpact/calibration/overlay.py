@@ -1,4 +1,4 @@
-"""A measured record and what is simulated with the values found, for the same times."""
+"""A measured record and its simulation with the values found."""
 
 from __future__ import annotations
 
@@ -15,22 +15,22 @@ from vibroimpact.calibration.observations import Observations
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.simulate import simulate
 
-_MOST = 5  # contacts that are drawn
+_MOST = 5  # contacts that are shown
 _POINTS = 201
 
 
 @dataclass(frozen=True)
 class Overlay:
-    """A piece of a record, and the same simulated.
+    """A piece of a record and its simulation.
 
     Parameters
     ----------
     label : str
-        What it shows, such as "impact 1, line 305".
+        Name, such as "impact 1, line 305".
     quantity : "force" or "position"
         The contact force [N], or the height of the sphere's centre above the plate [m].
     measured, simulated : tuple of two arrays
-        Times [s], from the simulated first touch for a force and those of the record for a position, and values.
+        Times [s], relative to the simulated first touch for a force and those of the record for a position, and values.
     """
 
     label: str
@@ -40,18 +40,18 @@ class Overlay:
 
 
 def overlays(tunable: Tunable, seen: Observations, values: Floats, outcomes: Mapping[str, Floats]) -> tuple[Overlay, ...]:
-    """Return a record beside what is simulated: each of the first contacts of a force, or all flights of a position.
+    """Return the measured record with its simulation: one overlay per contact for a force, one in all for a position.
 
     Parameters
     ----------
     tunable : Tunable
-        What was tuned.
+        The tuned parameter.
     seen : Observations
-        What was measured; nothing is returned if that was no record, or one of a force that the law does not have.
+        The measurement; the result is empty if it is not a record, or a force record and the law has no force.
     values : array, shape (n,)
         The value found for each impact.
     outcomes : mapping of str to array, shape (n,)
-        What the impacts are like with these values.
+        Quantities of the impacts with these values.
     """
     if seen.record is None:
         return ()
@@ -59,16 +59,16 @@ def overlays(tunable: Tunable, seen: Observations, values: Floats, outcomes: Map
         return (_position(tunable.drop(values), seen, outcomes),)
     drop, found = tunable.drop(values), []
     if not np.all(outcomes["max_force"] > 0.0):
-        return ()  # a law without a force
+        return ()  # an impulsive law has no force
     for number, (time, force) in enumerate(seen.record.pieces[:_MOST]):
         at, simulated = _contact(drop, number, float(seen.speeds[number]))
-        shift = _middle(time, force) - _middle(at, simulated)  # the middle of a pulse is told better than its ends
+        shift = _middle(time, force) - _middle(at, simulated)  # the centroid of a pulse is better determined than its ends
         found.append(Overlay(seen.labels[number], "force", (time - shift, force), (at, simulated)))
     return tuple(found)
 
 
 def _contact(drop: Problem, number: int, speed: float) -> tuple[Floats, Floats]:
-    """Return times since first touch [s] and the force [N] of an impact by itself."""
+    """Return times since first touch [s] and the force [N] of a single impact."""
     law = drop.laws[min(number, len(drop.laws) - 1)]
     begun = replace(drop, laws=(law,), height=None, speed=speed, impacts=1, duration=None, rest_speed=0.0, sensors=())
     response = simulate(begun)
@@ -82,15 +82,15 @@ def _middle(time: Floats, force: Floats) -> float:
 
 
 def _position(drop: Problem, seen: Observations, outcomes: Mapping[str, Floats]) -> Overlay:
-    """Return the record beside the flights that each impact sends up, as long after one another as contacts last."""
+    """Return the record with the flights after each simulated impact, separated by the contact durations."""
     assert seen.record is not None
     radius, gravity = float(drop.sphere.contact_offset), float(drop.gravity)
     flying = seen.flights or VacuumFlights(gravity)
     time, position = seen.record.pieces[0]
     simulated, begin = np.full_like(time, np.nan), seen.record.begin
     for rebound, lasting in zip(outcomes["rebound_height"], np.append(outcomes["duration"][1:], 0.0), strict=True):
-        flown = flying.flown(np.asarray(np.sqrt(2.0 * gravity * max(float(rebound) - radius, 0.0))))
-        inside = (time >= begin) & (time <= begin + flown.time)
-        simulated[inside] = radius + flown.height - flying.fallen(time[inside] - begin - flown.rise)[0]
-        begin += float(flown.time) + float(lasting)
+        flown = flying.flight(np.asarray(np.sqrt(2.0 * gravity * max(float(rebound) - radius, 0.0))))
+        inside = (time >= begin) & (time <= begin + flown.duration)
+        simulated[inside] = radius + flown.height - flying.depth_at(time[inside] - begin - flown.rise_time)[0]
+        begin += float(flown.duration) + float(lasting)
     return Overlay("", "position", (time, position), (time, simulated))

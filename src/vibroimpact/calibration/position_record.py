@@ -1,4 +1,4 @@
-"""Impacts in a measured record of position."""
+"""Impacts in a measured position record."""
 
 from __future__ import annotations
 
@@ -10,27 +10,27 @@ from typing import NamedTuple
 import numpy as np
 
 from vibroimpact.arrays import Floats, Indices
-from vibroimpact.calibration.flights import Flights, VacuumFlights, as_in_vacuum
+from vibroimpact.calibration.flights import Flights, VacuumFlights, vacuum_height
 from vibroimpact.calibration.observations import Observations, Record
-from vibroimpact.calibration.record_noise import ABOVE_NOISE, named_samples, record_noise
+from vibroimpact.calibration.record_noise import ABOVE_NOISE, record_noise, sample_label
 from vibroimpact.contact.roots import find_root
 from vibroimpact.errors import InputError
 
 _FEWEST = 5
-"""Samples of a flight through which a parabola is laid, at least."""
+"""Minimum number of samples of a fitted flight."""
 
 _SMALL, _LEAST = 0.02, 1e-9
-"""Parts of the largest rise: what is no flight, and the least noise that a record has."""
+"""Fractions of the range of the record: the least prominence of an impact, and the lower bound of the noise."""
 
 _SETTLED, _ROUNDS = 1e-13, 30
-"""When a fitted flight no longer moves, as a part of its height, and after how many rounds at the latest."""
+"""Tolerance of the fit of a flight relative to its height, and the maximum number of iterations."""
 
-_FAR = 0.5  # of the radius, that flights may meet above or below where the sphere touches
+_FAR = 0.5  # tolerance of the height at which successive flights meet, as a fraction of the radius
 
 
 class _Flight(NamedTuple):
-    """A flight: height of its top [m] and when it is there [s]; the standard deviation of the height under noise of one; the sum
-    of squares that is left of how many degrees of freedom; then its standard deviation [m].
+    """A fitted flight: height [m] and time [s] of its apex; standard deviation of the height per unit of noise; residual sum of squares and
+    its degrees of freedom; the standard deviation of the height [m].
     """
 
     top: float
@@ -53,26 +53,26 @@ def impacts_in_position(
 ) -> Observations:
     """Return the impacts of a sphere whose height was recorded.
 
-    A free flight with the given gravity, a parabola in a vacuum, goes through each by least squares; its top tells the speeds at
-    its ends. Samples near an impact are left out, so that it does not matter how well the contact is resolved.
+    A free flight under the given gravity (a parabola in a vacuum) is fitted between successive impacts by least squares; the speeds
+    at its ends follow from its apex. Samples near an impact are omitted, so that the contact need not be resolved.
 
     Parameters
     ----------
     time, position : array, shape (n,)
         Time [s], and height of the sphere's centre above the plate [m].
     radius, gravity : float
-        Of the sphere [m], and acceleration [m/s^2], > 0.
+        Radius of the sphere [m], and acceleration of gravity [m/s^2], > 0.
     first_speed : float
-        Of the first touch [m/s]; used if the record begins too late to tell it.
+        Approach speed of the first impact [m/s]; used if the record does not show the fall before it.
     lines : sequence of int, optional
-        The line of a file that each sample stands on, for messages.
+        The line of each sample in the file, for messages.
     flights : Flights, optional
-        How the sphere flies; in a vacuum by default.
+        Model of the flights; a vacuum by default.
 
     Returns
     -------
     Observations
-        With standard deviations from what is left over of the fitted flights.
+        With standard deviations from the residuals of the fitted flights.
 
     Raises
     ------
@@ -87,10 +87,11 @@ def impacts_in_position(
     >>> found.speeds.round(3).tolist(), found.wanted["rebound_height"].round(4).tolist()
     ([4.9], [0.4842])
     """
-    noise, at, flying = record_noise(position), named_samples(lines), flights or VacuumFlights(gravity)
+    noise, at, flying = record_noise(position), sample_label(lines), flights or VacuumFlights(gravity)
     lows = _lowest(position, noise)
     if not len(lows):
         raise InputError("the record does not show an impact: nowhere does the sphere stop falling and rise again")
+    # fit the fall before the first impact and the flight after each; the record may cut the first and the last short
     ends = [0, *lows, len(time) - 1]
     fitted: list[_Flight | None] = []
     for number, (begin, end) in enumerate(itertools.pairwise(ends)):
@@ -116,7 +117,7 @@ def impacts_in_position(
     if any(flight.top <= radius for flight in known):
         raise InputError("the sphere never rises above its radius; position must be the height of its centre above the plate")
     labels = tuple(f"impact {number + 1}, {at(low)}" for number, low in enumerate(lows[: len(known)]))
-    begin = known[0].when - float(flying.flown(flying.rising(np.array(known[0].top - radius))[0]).rise)
+    begin = known[0].when - float(flying.flight(flying.speed_to_rise(np.array(known[0].top - radius))[0]).rise_time)
     found = _between_flights(fitted[0], known, radius, flying, first_speed, labels)
     return replace(found, flights=flights, record=Record("position", ((time, position),), begin))
 
@@ -125,14 +126,14 @@ def _between_flights(
     first: _Flight | None, known: list[_Flight], radius: float, flying: Flights, first_speed: float, labels: tuple[str, ...]
 ) -> Observations:
     tops, deviations = (np.array([getattr(flight, name) for flight in known]) for name in ("top", "deviation"))
-    falls, slopes = flying.falling(tops - radius)
-    rises, scales = as_in_vacuum(flying, tops - radius)
+    falls, slopes = flying.speed_after_fall(tops - radius)
+    rises, scales = vacuum_height(flying, tops - radius)
     number = len(known)
     sources, before = np.zeros((number, number + 1)), np.zeros((number, number + 1))
     sources[:, 1:] = np.diag(scales * deviations)
     before[1:, 1:] = np.diag(slopes * deviations)[:-1]
     if first is not None and first.top > radius:
-        speed, slope = flying.falling(np.array(first.top - radius))
+        speed, slope = flying.speed_after_fall(np.array(first.top - radius))
         first_speed, before[0, 0] = float(speed), float(slope) * first.deviation
     wanted, noise = {"rebound_height": radius + rises}, {"rebound_height": sources}
     noise_from = "the scatter of the record"
@@ -140,33 +141,33 @@ def _between_flights(
 
 
 def _fitted(time: Floats, position: Floats, flying: Flights) -> _Flight:
-    """Return the flight through samples, by least squares: only its top and when that is are free."""
+    """Return the least-squares fit of a flight to samples; the free parameters are height and time of its apex."""
     middle, gravity = float(time.mean()), flying.gravity
     across = time - middle
     powers = np.vander(across, 2, increasing=True)
-    (height, speed), *_ = np.linalg.lstsq(powers, position + 0.5 * gravity * across**2, rcond=None)  # in a vacuum, to begin with
+    (height, speed), *_ = np.linalg.lstsq(powers, position + 0.5 * gravity * across**2, rcond=None)  # initial guess: in a vacuum
     top, when = float(height + 0.5 * speed**2 / gravity), float(middle + speed / gravity)
     for _ in range(_ROUNDS):
-        fallen, downwards = flying.fallen(time - when)
+        fallen, downwards = flying.depth_at(time - when)
         left, slopes = position - (top - fallen), np.stack([np.ones_like(time), downwards], axis=1)
         step, *_ = np.linalg.lstsq(slopes, left, rcond=None)
         top, when = top + float(step[0]), when + float(step[1])
         if abs(step[0]) <= _SETTLED * abs(top):
             break
-    left = position - (top - flying.fallen(time - when)[0])
+    left = position - (top - flying.depth_at(time - when)[0])
     inverse = np.linalg.pinv(slopes.T @ slopes)
     return _Flight(top, when, float(np.sqrt(inverse[0, 0])), float(left @ left), len(time) - 2)
 
 
 def _pooled(flights: list[_Flight | None], least: float) -> list[_Flight | None]:
-    """Return flights with their standard deviations, from what is left over of all of them."""
+    """Return the flights with standard deviations from the pooled residuals of all of them."""
     known = [flight for flight in flights if flight is not None]
     noise = float(np.hypot(np.sqrt(sum(flight.left for flight in known) / sum(flight.freedom for flight in known)), least))
     return [flight and flight._replace(deviation=noise * flight.under_noise) for flight in flights]
 
 
 def _check_level(fitted: list[_Flight | None], places: list[str], radius: float, flying: Flights) -> None:
-    """Raise unless neighbouring flights meet about where the sphere touches the plate."""
+    """Check that successive flights meet near the height at which the sphere touches the plate."""
     for (one, other), place in zip(itertools.pairwise(fitted), places, strict=True):
         if one is None or other is None:
             continue
@@ -180,19 +181,19 @@ def _check_level(fitted: list[_Flight | None], places: list[str], radius: float,
 
 
 def _where_they_meet(one: _Flight, other: _Flight, flying: Flights) -> float:
-    """Return the height at which a flight that comes down crosses one that goes up after it [m]; NaN if they don't between their tops."""
+    """Return the height at which a flight crosses the following one between their apexes [m]; NaN if it does not."""
 
     def apart(time: Floats) -> Floats:
-        return (other.top - flying.fallen(time - other.when)[0]) - (one.top - flying.fallen(time - one.when)[0])
+        return (other.top - flying.depth_at(time - other.when)[0]) - (one.top - flying.depth_at(time - one.when)[0])
 
     ends = np.array([one.when]), np.array([other.when])
     if not (apart(ends[0])[0] < 0.0 < apart(ends[1])[0]):
         return float("nan")
-    return float(one.top - flying.fallen(find_root(apart, *ends) - one.when)[0][0])
+    return float(one.top - flying.depth_at(find_root(apart, *ends) - one.when)[0][0])
 
 
 def _lowest(position: Floats, noise: float) -> Indices:
-    """Return the samples at which the sphere is lowest between two flights."""
+    """Return the indices of the local minima of the position, the impacts."""
     from scipy.signal import find_peaks
 
     rise = float(position.max() - position.min())

@@ -1,4 +1,4 @@
-"""What was recorded over what is simulated with the values that a calibration found."""
+"""Figure of a measured record and its simulation with calibrated values."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ from vibroimpact.report.style import ACCENT, INK, MARK
 from vibroimpact.runs.windows import thinned
 from vibroimpact.units.display import Multiple, multiple
 
-_FEW = 400  # samples that are drawn as points; more would run together
+_FEW = 400  # samples up to which points are drawn; more would overlap
 
-_BESIDE = 3
-"""Contacts in a row; more would be too narrow to compare."""
+_PER_ROW = 3
+"""Panels per row."""
 
 
 def draw_record(overlays: Sequence[Overlay]) -> Figure:
-    """Draw a record and its simulation over each other, and below a position how far they are apart.
+    """Draw a record over its simulation, and the difference below a position.
 
     Parameters
     ----------
@@ -33,9 +33,9 @@ def draw_record(overlays: Sequence[Overlay]) -> Figure:
 
 
 def _draw_forces(overlays: Sequence[Overlay]) -> Figure:
-    rows = -(-len(overlays) // _BESIDE)
+    rows = -(-len(overlays) // _PER_ROW)
     figure = new_figure(0.85 + 2.55 * rows)
-    across = min(len(overlays), _BESIDE)
+    across = min(len(overlays), _PER_ROW)
     places = [axes for row in reversed(range(rows)) for axes in row_of_axes(figure, across, 0.95 + 2.55 * row, 1.8)]
     clock = multiple("s", np.concatenate([one.simulated[0] for one in overlays]))
     scale = multiple("N", np.concatenate([one.simulated[1] for one in overlays]))

@@ -1,4 +1,4 @@
-"""The [calibrate] section: what impacts are to be like, and what is tuned for it."""
+"""The [calibrate] section of a case: target, tuned law and parameter, and options."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal
 import numpy as np
 from pydantic import BeforeValidator, Field, StrictBool, WithJsonSchema, model_validator
 
-from vibroimpact.calibration.outcomes import OUTCOMES, check_weights
+from vibroimpact.calibration.matchable import MATCHABLE, check_weights
 from vibroimpact.cases.fields.bounds import Name, at_most
 from vibroimpact.cases.fields.contact import ContactSection, law_schema, read_contact
 from vibroimpact.cases.fields.quantities import Quantity
@@ -118,7 +118,7 @@ def _read_match(value: Any) -> Any:
     if isinstance(value, str):
         value = {value: 1.0}
     if not isinstance(value, dict):
-        raise InputError(f"{shown(value)} is not allowed; it must be one of {', '.join(OUTCOMES)}, or a table of them with weights")
+        raise InputError(f"{shown(value)} is not allowed; it must be one of {', '.join(MATCHABLE)}, or a table of them with weights")
     try:
         weights = {str(name): float(weight) for name, weight in value.items()}
     except (TypeError, ValueError):
@@ -145,7 +145,7 @@ class SpeedsTable(Section):
         return self
 
     def values(self) -> np.ndarray:
-        """Return the speeds [m/s]."""
+        """Return the approach speeds [m/s]."""
         return (np.linspace if self.scale == "linear" else np.geomspace)(self.start, self.end, self.number)
 
 
@@ -160,8 +160,8 @@ _TARGET_SCHEMA = {
 _MATCH_SCHEMA = {
     "description": "what of an impact is matched: one, or a table of several with weights",
     "anyOf": [
-        {"enum": list(OUTCOMES)},
-        {"type": "object", "properties": {name: {"type": "number"} for name in OUTCOMES}, "additionalProperties": False},
+        {"enum": list(MATCHABLE)},
+        {"type": "object", "properties": {name: {"type": "number"} for name in MATCHABLE}, "additionalProperties": False},
     ],
 }
 
@@ -199,7 +199,7 @@ class CalibrateSection(Section):
 
 
 def calibrate_table(section: CalibrateSection) -> dict[str, Any]:
-    """Return the section as a case holds it, in SI."""
+    """Return the section as a table of the case file, in SI units."""
     table = section.model_dump(exclude_defaults=True, exclude={"target", "model"}, by_alias=True, mode="json")
     laws = {name: value for name in ("target", "model") if (value := getattr(section, name)) is not None}
     return {**{name: _as_table(value) for name, value in laws.items()}, **table}
@@ -215,12 +215,12 @@ _MEASURED = FileKind("what was measured is in a CSV file or a universal file", 5
 
 
 def check_target(section: CalibrateSection | None) -> None:
-    """Raise unless the file with what was measured, if there is one, can be read; what it tells is not looked at.
+    """Check that the file of a measurement, if there is one, can be read; its contents are not evaluated.
 
     Raises
     ------
     InputError
-        If it can't be.
+        If it can't be read.
     """
     if section is not None and isinstance(section.target, FileTarget):
         try:

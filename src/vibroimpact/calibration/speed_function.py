@@ -8,19 +8,19 @@ from typing import Any
 import numpy as np
 from numpy.polynomial import polynomial
 
-_BEYOND = 1.05  # times its ends
+_BEYOND = 1.05  # factor beyond the ends of the fitted range
 
 
 @dataclass(frozen=True)
 class SpeedFunction:
-    """A polynomial of the approach speed, and the speeds that it was fitted over.
+    """A polynomial of the approach speed with the range of speeds of its fit.
 
     Parameters
     ----------
     coefficients : tuple of float
-        Lowest power first; of the power k in the unit of the parameter over (m/s)^k.
+        Lowest power first; that of power k has the unit of the parameter over (m/s)^k.
     slowest, fastest : float
-        The range of speeds that it was fitted over [m/s].
+        The range of speeds of the fit [m/s].
 
     Examples
     --------
@@ -38,14 +38,14 @@ class SpeedFunction:
         return len(self.coefficients) - 1
 
     def __call__(self, speed: Any) -> Any:
-        """Return the parameter at an approach speed [m/s]."""
+        """Return the value of the parameter at an approach speed [m/s]."""
         return polynomial.polyval(speed, self.coefficients)
 
     def beyond(self, speeds: Any) -> Any:
-        """Return those of some speeds that lie clearly outside the range that it was fitted over."""
+        """Return those of the given speeds that lie more than 5 % outside the range of the fit."""
         return speeds[(speeds > _BEYOND * self.fastest) | (speeds * _BEYOND < self.slowest)]
 
     def misfit(self, speeds: Any, values: Any) -> float:
-        """Return how far it is off at most from exact values, over the speeds that it was fitted over."""
+        """Return the largest deviation from exact values within the range of the fit."""
         inside = (speeds >= self.slowest * (1.0 - 1e-9)) & (speeds <= self.fastest * (1.0 + 1e-9))
         return float(np.nanmax(np.abs(self(speeds) - values)[inside], initial=0.0))

@@ -1,4 +1,4 @@
-"""The tables and sentences of a calibration, as text that is ready to show."""
+"""Tables and sentences of a calibration as text, for the terminal and the report page."""
 
 from __future__ import annotations
 
@@ -6,14 +6,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from vibroimpact.calibration.calibration import Calibration
-from vibroimpact.calibration.comparison import COMPARED, WAYS, differences, largest_misfit
-from vibroimpact.calibration.outcomes import OUTCOMES, REBOUNDS
+from vibroimpact.calibration.differences import COMPARED, WAYS, differences, largest_misfit
+from vibroimpact.calibration.matchable import MATCHABLE, REBOUNDS
 from vibroimpact.calibration.tunables import law_parameter
 from vibroimpact.runs.tables import column
 from vibroimpact.units.display import column_texts, digits, fixed, largest, text
 
 _MOST_ROWS = 50
-_MET = 1e-3  # of what is wanted
+_MET = 1e-3  # relative deviation up to which the target is met
 _POWERS = ("", " v", " v²", " v³")
 _MEANING = {
     "constant": "the value of the first impact throughout",
@@ -25,7 +25,7 @@ Cells = tuple[list[tuple[str, str]], list[list[str]]]
 
 
 def values_table(found: Calibration) -> Cells:
-    """Return headers with units, and a row for each impact that was matched."""
+    """Return headers with units, and a row per matched impact."""
     seen = found.observations
     headers = [("", ""), ("Approach speed", "m/s"), (found.parameter, found.unit)]
     columns = [list(seen.labels), column_texts(seen.speeds), column_texts(found.values, 6)]
@@ -37,8 +37,8 @@ def values_table(found: Calibration) -> Cells:
         headers.append(("As the case gives it", found.unit))
         columns.append(column_texts(found.given, 6))
     for name in found.weights:
-        header = OUTCOMES[name].words.capitalize()
-        unit, cells = column(OUTCOMES[name].column, np.concatenate([seen.wanted[name], found.outcomes[name]]))
+        header = MATCHABLE[name].words.capitalize()
+        unit, cells = column(MATCHABLE[name].column, np.concatenate([seen.wanted[name], found.outcomes[name]]))
         headers += [(f"{header} wanted", unit), ("found", unit)]
         columns += [cells[: len(seen.speeds)], cells[len(seen.speeds) :]]
         if found.as_given:
@@ -49,13 +49,13 @@ def values_table(found: Calibration) -> Cells:
 
 
 def differences_tables(found: Calibration) -> dict[str, Cells]:
-    """Return headers, and a row an impact, for each quantity that is compared: how far each way is off [%].
+    """Return for each compared quantity headers, and a row per impact with the deviations of each way of prescribing the value [%].
 
-    None for a single impact, which is matched, and where nothing is there to compare with.
+    Empty for a single impact, which is matched, and without a reference.
     """
     off = differences(found)
     if "rebound_height_m" in off and "separation_speed_m_s" in off:
-        del off["separation_speed_m_s"]  # which says the same
+        del off["separation_speed_m_s"]  # equivalent to the rebound height
     tables = {}
     for name, ways in off.items():
         number = len(next(iter(ways.values())))
@@ -66,7 +66,7 @@ def differences_tables(found: Calibration) -> dict[str, Cells]:
 
 
 def function_words(found: Calibration) -> str:
-    """Return the fitted polynomial in words.
+    """Return the fitted polynomial as text.
 
     Examples
     --------
@@ -89,7 +89,7 @@ def function_words(found: Calibration) -> str:
 
 
 def fit_sentences(found: Calibration) -> list[str]:
-    """Return how good the polynomial is: how well it is known, and how far it is off."""
+    """Return sentences on the uncertainty of the polynomial, or on its largest deviation."""
     fit, seen = found.fit, found.observations
     told = list(seen.notes)
     if seen.measured:
@@ -108,7 +108,7 @@ def fit_sentences(found: Calibration) -> list[str]:
 
 
 def given_sentences(found: Calibration) -> list[str]:
-    """Return how far the value that the case gives is off, and what would meet the target instead."""
+    """Return sentences on the deviation with the value given by the case, and on other parameters that would meet the target."""
     told, missed = [], False
     for name in found.weights if found.as_given else ():
         wanted, comes = found.observations.wanted[name], found.as_given[name]
@@ -117,8 +117,8 @@ def given_sentences(found: Calibration) -> list[str]:
             continue
         worst = int(np.nanargmax(np.abs(off)))
         given, meets = (f"{digits(value, 6)} {found.unit}".rstrip() for value in (found.given[worst], found.values[worst]))
-        words = f"With {found.parameter} = {given}, as the case gives it, the {OUTCOMES[name].words} of {found.observations.labels[worst]}"
-        instead, asked = (text(float(value), OUTCOMES[name].unit, 5) for value in (comes[worst], wanted[worst]))
+        words = f"With {found.parameter} = {given}, as the case gives it, the {MATCHABLE[name].words} of {found.observations.labels[worst]}"
+        instead, asked = (text(float(value), MATCHABLE[name].unit, 5) for value in (comes[worst], wanted[worst]))
         misses = abs(off[worst]) > _MET
         within = found.intervals is not None and bool(np.prod(found.intervals[worst] - found.given[worst]) <= 0.0)
         verdict = ", no more than the measurement leaves open" if within else ": the target can't be met so" if misses else ""
@@ -131,21 +131,21 @@ def given_sentences(found: Calibration) -> list[str]:
 
 
 def match_words(found: Calibration) -> str:
-    """Return what was matched, in words."""
+    """Return in words what was matched."""
     if len(found.weights) == 1:
-        return f"the {OUTCOMES[next(iter(found.weights))].words} of each impact comes out as wanted"
-    every = " and ".join(f"the {OUTCOMES[name].words} (weight {weight:g})" for name, weight in found.weights.items())
+        return f"the {MATCHABLE[next(iter(found.weights))].words} of each impact comes out as wanted"
+    every = " and ".join(f"the {MATCHABLE[name].words} (weight {weight:g})" for name, weight in found.weights.items())
     return f"{every} of each impact come as near to what is wanted as one number can make them"
 
 
 def ways_words(found: Calibration) -> str:
-    """Return what the ways to give the value mean."""
+    """Return in words the ways of prescribing the value."""
     chain = "" if set(found.weights) & set(REBOUNDS) else ". The rebound is not matched, so later impacts come at other speeds"
     return "; ".join(f"{way}: {_MEANING[way]}" for way in WAYS) + chain
 
 
 def _off(parts: ArrayLike) -> list[str]:
-    """Return parts in percent, all with the same decimals: three, or two where one is 10 % or more."""
+    """Return fractions as percentages with the same decimals: three, or two if one is 10 % or more."""
     percent = 100.0 * np.atleast_1d(np.asarray(parts, dtype=float))
     return [fixed(float(value), 3 if largest(percent) < 10.0 else 2) for value in percent]
 

@@ -1,4 +1,4 @@
-"""What the impacts of a calibration are to be like: under another law, or as they were measured."""
+"""The target of a calibration: the drop under another law, or a measurement."""
 
 from __future__ import annotations
 
@@ -6,11 +6,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from vibroimpact.calibration.in_air import Measurement, in_air
-from vibroimpact.calibration.measured_case import of_first, of_heights, of_speeds
-from vibroimpact.calibration.measured_file import of_file
+from vibroimpact.calibration.evaluate_measurement import Measurement, evaluate
+from vibroimpact.calibration.matchable import REBOUND, REBOUNDS
+from vibroimpact.calibration.measured_case import first_impact_measurement, heights_measurement, restitution_observations
+from vibroimpact.calibration.measured_file import file_measurement
 from vibroimpact.calibration.observations import Observations, from_table
-from vibroimpact.calibration.outcomes import REBOUND, REBOUNDS
 from vibroimpact.calibration.section import CalibrateSection, FileTarget, HeightsTarget, ImpactTarget, RestitutionTarget
 from vibroimpact.cases.case import Case
 from vibroimpact.cases.fields.contact import ContactSection
@@ -21,16 +21,16 @@ from vibroimpact.errors import InputError
 
 
 def target_of(case: Case, problem: Problem, section: CalibrateSection) -> Problem | Observations:
-    """Return what impacts are to be like: the drop under another law, or what was measured.
+    """Return the target: the drop under another law, or the evaluated measurement.
 
     Raises
     ------
     InputError
-        If a file can't be read, or does not tell of impacts, with the line; or if what was measured can't be.
+        If a file can't be read or contains no impacts (the message names the line), or the measured values are impossible.
     """
     target = section.target
     if isinstance(target, (HeightsTarget, ImpactTarget, FileTarget)):
-        return in_air(case, _measured(case, target, section), section.air)
+        return evaluate(case, _measured(case, target, section), section.air)
     if section.air:
         raise InputError("nothing that is to be matched flew; leave this out", "air")
     if isinstance(target, ContactSection):
@@ -40,8 +40,8 @@ def target_of(case: Case, problem: Problem, section: CalibrateSection) -> Proble
             raise InputError(error.message, error.key.replace("contact", "target", 1)) from None
     assert isinstance(target, RestitutionTarget)
     if isinstance(target.restitution, tuple):
-        return of_speeds(case, target)
-    if problem.vibrates:  # where a law without a force has no meaning: the first impact, on a plate at rest
+        return restitution_observations(case, target)
+    if problem.vibrates:  # an impulsive law is not defined with vibrating bodies: match the first impact, on bodies at rest
         speed = touch_speed(case)
         return from_table(
             np.array([speed]), {"separation_speed": np.array([target.restitution * speed])}, None, ("impact 1",), of_the_drop=True
@@ -53,7 +53,7 @@ def _measured(case: Case, target: HeightsTarget | ImpactTarget | FileTarget, sec
     if isinstance(target, HeightsTarget):
         heights = np.array(target.rebound_heights)
         deviation = None if target.standard_deviation is None else np.full(len(heights), target.standard_deviation)
-        return of_heights(case, heights, deviation, tuple(f"impact {number + 1}" for number in range(len(heights))))
+        return heights_measurement(case, heights, deviation, tuple(f"impact {number + 1}" for number in range(len(heights))))
     if isinstance(target, ImpactTarget):
-        return of_first(case, target)
-    return of_file(case, target, set(section.match or REBOUND) <= set(REBOUNDS))
+        return first_impact_measurement(case, target)
+    return file_measurement(case, target, set(section.match or REBOUND) <= set(REBOUNDS))

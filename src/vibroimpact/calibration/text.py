@@ -1,4 +1,4 @@
-"""What the calibrate command prints."""
+"""Terminal output of the calibrate command."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from vibroimpact.report.terminal_table import Column, TerminalTable, numbers
 
 
 def calibration_summary(case: Case, found: Calibration) -> RenderableType:
-    """Return the function, the value of each impact, what it still gets wrong, and what to doubt."""
+    """Return the values, the fitted polynomial, the remaining differences and the warnings of a calibration, for the terminal."""
     parts: list[RenderableType] = [
         Text(case.name or "a drop", style="bold"),
         Text(f"{case.contact.law}, so that {match_words(found)}"),

@@ -1,4 +1,4 @@
-"""What can be tuned: a parameter of the contact law, or the damping of a body's modes."""
+"""The parameters that can be tuned: those of the contact law, and the modal damping of a body."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 
 from vibroimpact.arrays import Floats, Indices
 from vibroimpact.calibration.matching import Tunable
-from vibroimpact.calibration.one_impact import one_impact, stacked
+from vibroimpact.calibration.single_impacts import batched_law, single_impacts
 from vibroimpact.contact.law import ContactLaw, unit_of
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.errors import InputError, did_you_mean
@@ -19,19 +19,19 @@ _MODAL_START = 0.02
 
 
 def law_parameter(problem: Problem, name: str | None = None) -> Tunable:
-    """Return a parameter of the contact law of a drop as something to tune.
+    """Return a parameter of the contact law of a drop as a `Tunable`.
 
     Parameters
     ----------
     problem : Problem
         The drop.
     name : str, optional
-        The parameter; by default the one that sets how much is lost.
+        The parameter; by default the one that determines the energy loss.
 
     Raises
     ------
     InputError
-        If the law has no such parameter, or none that sets its loss.
+        If the law has no such parameter, or none that determines its loss.
 
     Examples
     --------
@@ -51,8 +51,8 @@ def law_parameter(problem: Problem, name: str | None = None) -> Tunable:
     start = next((value for value in (given[0], told["example"]) if value), 1.0)
 
     def respond(speeds: Floats, values: Floats, which: Indices) -> dict[str, Floats]:
-        law = stacked(laws, int(which.max()) + 1)
-        return one_impact(problem, law.take(which).changed({chosen: values}), speeds)
+        law = batched_law(laws, int(which.max()) + 1)
+        return single_impacts(problem, law.take(which).changed({chosen: values}), speeds)
 
     def drop(values: Floats) -> Problem:
         number = max(len(values), len(laws))
@@ -65,19 +65,19 @@ def law_parameter(problem: Problem, name: str | None = None) -> Tunable:
 
 
 def modal_damping(problem: Problem, body: Literal["sphere", "plate"]) -> Tunable:
-    """Return the damping ratio of the modes of a body, one for all of them, as something to tune.
+    """Return the damping ratio of a body, common to all its modes, as a `Tunable`.
 
     Parameters
     ----------
     problem : Problem
         The drop.
     body : "sphere" or "plate"
-        Which of its bodies.
+        The body.
 
     Raises
     ------
     InputError
-        If the body has no modes.
+        If the body is rigid.
     """
     modes = getattr(problem, body).modes
     if modes is None:
@@ -89,7 +89,7 @@ def modal_damping(problem: Problem, body: Literal["sphere", "plate"]) -> Tunable
 
     def respond(speeds: Floats, values: Floats, which: Indices) -> dict[str, Floats]:
         each = [
-            one_impact(damped(float(value)), _law(problem.laws, int(impact)), np.array([speed]))
+            single_impacts(damped(float(value)), _law(problem.laws, int(impact)), np.array([speed]))
             for speed, value, impact in zip(speeds, values, which, strict=True)
         ]
         return {name: np.concatenate([one[name] for one in each]) for name in each[0]}

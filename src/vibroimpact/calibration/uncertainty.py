@@ -1,4 +1,4 @@
-"""How well measurements determine a value: intervals by drawing them again, and what to doubt."""
+"""Uncertainty of calibrated values: bootstrap intervals, and warnings about values and fit."""
 
 from __future__ import annotations
 
@@ -9,37 +9,39 @@ import numpy as np
 from numpy.polynomial import polynomial
 
 from vibroimpact.arrays import Floats, Indices
-from vibroimpact.calibration.drops import impacts_of
+from vibroimpact.calibration.calibrated_drops import impact_count
 from vibroimpact.calibration.fitting import Fit
 from vibroimpact.calibration.matching import Tunable, match
 from vibroimpact.calibration.observations import Observations
 from vibroimpact.dynamics.problem import Problem
 
-_DRAWN_VALUES = 2000  # that a bootstrap finds unless more is asked for, so that it takes seconds
+_DRAWN_VALUES = 2000  # values computed by the default bootstrap, so that it takes seconds
 _FEWEST_DRAWS, _MOST_DRAWS = 100, 400
 _MOST_IMPACTS = 20
 _WIDE = 0.25
 _DETERMINED = 1.0
-"""Parts of a value: two standard deviations from which first order is not trusted, and a width of its interval that tells nothing."""
+"""Fractions of a value: two standard deviations above which first-order intervals are not trusted, and the width of an interval above
+which the value counts as undetermined.
+"""
 
 _FOLLOWS = 0.02
-"""How far a polynomial may be off before it is told, as a part of the largest value."""
+"""Deviation of the polynomial above which a warning is given, as a fraction of the largest value."""
 
 _AT_ONCE = 500
 _MOST_TOLD = 5
 
 
 def default_draws(values: Floats, deviations: Floats) -> int:
-    """Return how many measurements to draw again: some where noise is too large to trust first order, else none.
+    """Return the default number of bootstrap samples: 0 unless the noise is too large for first-order intervals.
 
-    With many impacts first order is enough for the function, which is what they are for.
+    With many impacts the aim is the polynomial, for which first order suffices.
     """
     if len(values) > _MOST_IMPACTS or np.all(2.0 * deviations <= _WIDE * np.abs(values)):
         return 0
     return int(np.clip(_DRAWN_VALUES // len(values), _FEWEST_DRAWS, _MOST_DRAWS))
 
 
-def redrawn(
+def bootstrap_intervals(
     tunable: Tunable,
     observations: Observations,
     weights: Mapping[str, float],
@@ -52,27 +54,27 @@ def redrawn(
 ) -> tuple[Floats, Fit]:
     """Return intervals of the values, (n, 2), and the fit with the covariance of its coefficients, by a parametric bootstrap.
 
-    The measurement is drawn again with its own noise about itself, and matched again. A draw that no value meets counts with the
-    end of the range that comes nearest.
+    Samples are the measurement plus a realization of its noise, matched like the measurement. A sample that no value matches counts
+    as the nearest end of the range.
 
     Parameters
     ----------
     tunable : Tunable
         The parameter.
     observations : Observations
-        What was measured, with noise of known size.
+        The measurement, with noise of known magnitude.
     weights : mapping of str to float
-        Outcomes that count.
+        Weights of the matched quantities.
     fit : Fit
-        The fit of what was measured.
+        The fit to the measurement.
     deviations : array, shape (n,)
-        Standard deviations of the values to first order, by which they count in the polynomials through the draws.
+        First-order standard deviations of the values, whose inverses weight the polynomials fitted to the samples.
     draws : int
-        How many measurements are drawn.
+        Number of samples.
     confidence : float
-        Of the intervals.
+        Confidence level of the intervals.
     seed : int
-        Of the drawing.
+        Seed of the random numbers.
     progress : callable
         Called with the fraction done.
     """
@@ -84,13 +86,13 @@ def redrawn(
         wanted = {name: np.concatenate([one[1][name] for one in drawn]) for name in weights}
         which = np.tile(observations.which, len(drawn))
         found = match(tunable, fast, wanted, weights, which).values
-        values.append(with_nearest_end(tunable, found, fast, wanted, weights, which).reshape(len(drawn), number))
+        values.append(with_nearest_bound(tunable, found, fast, wanted, weights, which).reshape(len(drawn), number))
         speeds.append(fast.reshape(len(drawn), number))
         progress(min(1.0, (begin + at_once) / draws))
     every, fast = np.concatenate(values), np.concatenate(speeds)
     tails = 50.0 * (1.0 - confidence)
     ends = np.percentile(every, [tails, 100.0 - tails], axis=0).T
-    # of noise whose size is only estimated the draws know nothing
+    # the samples assume a known noise; widen the intervals where it is only estimated (Student's t over normal quantile)
     wider = fit.quantile(confidence) / replace(fit, freedom=np.inf).quantile(confidence)
     intervals = np.median(every, axis=0)[:, None] + wider * (ends - np.median(every, axis=0)[:, None])
     counts = 1.0 / deviations
@@ -98,7 +100,7 @@ def redrawn(
     return intervals, replace(fit, covariance=np.atleast_2d(np.cov(np.array(coefficients).T)))
 
 
-def with_nearest_end(
+def with_nearest_bound(
     tunable: Tunable,
     values: Floats,
     speeds: Floats,
@@ -106,7 +108,7 @@ def with_nearest_end(
     weights: Mapping[str, float],
     which: Indices,
 ) -> Floats:
-    """Return values, with the end of the range that comes nearest to what is wanted where nothing meets it."""
+    """Return values with NaN replaced by the end of the allowed range that deviates least from the target."""
     missing = np.flatnonzero(np.isnan(values))
     if not missing.size:
         return values
@@ -121,10 +123,10 @@ def with_nearest_end(
     return filled
 
 
-def undetermined(
+def undetermined_doubts(
     tunable: Tunable, values: Floats, intervals: Floats | None, observations: Observations, fit: Fit, confidence: float
 ) -> list[str]:
-    """Return sentences about values and coefficients that the measurement does not determine."""
+    """Return warnings about values and coefficients that the measurement does not determine."""
     told, percent = [], f"{100.0 * confidence:g} %"
     if intervals is None:
         if fit.freedom > 0:
@@ -146,10 +148,10 @@ def undetermined(
     return told
 
 
-def of_the_whole(
+def fit_doubts(
     problem: Problem, tunable: Tunable, seen: Observations, fit: Fit, curve: tuple[Floats, Floats] | None, speeds: Floats
 ) -> list[str]:
-    """Return sentences about a polynomial that does not follow what it was fitted to, or is used beyond it; and other limits.
+    """Return warnings about a poor fit of the polynomial, its extrapolation, and impacts on bodies that still vibrate.
 
     `speeds`: the approach speeds of the drop [m/s].
     """
@@ -173,6 +175,6 @@ def of_the_whole(
             f"{function.slowest:.4g} to {function.fastest:.4g} m/s: what it says there is a guess"
         )
     rings = problem.sphere.modes is not None or problem.plate.modes is not None or problem.local_element is not None
-    if rings and impacts_of(problem) > 1:
+    if rings and impact_count(problem) > 1:
         told.append(f"{tunable.name} is matched on bodies at rest; at later impacts they still ring, and the rebound differs")
     return told

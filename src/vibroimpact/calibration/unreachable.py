@@ -1,4 +1,4 @@
-"""Targets that no value meets: which, what can be reached, and which other parameter would."""
+"""Targets outside the attainable range: error messages, and other parameters that would match them."""
 
 from __future__ import annotations
 
@@ -8,28 +8,28 @@ from dataclasses import fields
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.calibration.above_one import believed, restitutions
-from vibroimpact.calibration.matching import Match, Tunable, match, slopes
+from vibroimpact.calibration.matchable import MATCHABLE, REBOUNDS
+from vibroimpact.calibration.matching import Match, Tunable, derivatives, match
 from vibroimpact.calibration.observations import Observations
-from vibroimpact.calibration.outcomes import OUTCOMES, REBOUNDS
+from vibroimpact.calibration.restitution_limit import measured_restitutions, restitution_limit
 from vibroimpact.calibration.tunables import law_parameter
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.errors import InputError
 
 _BEYOND_NOISE = 3.0  # standard deviations
-_LOSSLESS = 1e-4  # how near to no loss a law must come for a restitution above 1 to be noise
+_LOSSLESS = 1e-4  # relative margin to the lossless rebound that the law must attain for a restitution above 1 to count as noise
 
-_NEAR = 3  # steps of four from what is given, in which another parameter is looked for
+_NEAR = 3  # steps by a factor of four from the given value in the search for another parameter
 
 
 def check_reached(tunable: Tunable, problem: Problem, seen: Observations, weights: Mapping[str, float], found: Match) -> Floats:
-    """Return the values found; those that noise puts out of reach are NaN.
+    """Return the values found, NaN where noise puts the target out of reach.
 
     Raises
     ------
     InputError
-        If one is out of reach and noise does not explain it.
+        If a target is out of reach by more than noise.
     """
     missed = np.flatnonzero(np.isnan(found.values))
     if len(weights) > 1:
@@ -37,7 +37,7 @@ def check_reached(tunable: Tunable, problem: Problem, seen: Observations, weight
             raise InputError(f"{seen.labels[missed[0]]}: no value of {tunable.name} is better than all others", "target")
         return found.values
     (name,) = weights
-    wanted, (_, unit, words) = seen.wanted[name], OUTCOMES[name]
+    wanted, (_, unit, words) = seen.wanted[name], MATCHABLE[name]
     for row in missed:
         beyond = max(wanted[row] - found.most[row], found.least[row] - wanted[row])
         if 0.0 < beyond <= max(_BEYOND_NOISE * _noise_of(tunable, seen, name, int(row)), _above_one(problem, seen, name, int(row))):
@@ -55,12 +55,12 @@ def check_reached(tunable: Tunable, problem: Problem, seen: Observations, weight
 
 
 def _above_one(problem: Problem, seen: Observations, name: str, row: int) -> float:
-    """Return by how much a rebound is more than one without loss, where that may be noise whose size is not known."""
+    """Return the excess of a rebound over the lossless one, where that may be noise of unknown magnitude; else 0."""
     if seen.deviations_known or not seen.measured or name not in REBOUNDS:
         return 0.0
     radius, gravity, speed = float(problem.sphere.contact_offset), float(problem.gravity), float(seen.speeds[row])
-    found = restitutions(seen, radius, gravity)
-    if found is None or not 1.0 < found[row] <= believed(seen.speeds, found, None).most[row]:
+    found = measured_restitutions(seen, radius, gravity)
+    if found is None or not 1.0 < found[row] <= restitution_limit(seen.speeds, found, None).most[row]:
         return 0.0
     height = 0.5 * speed**2 / gravity if name == "rebound_height" else 0.0
     lossless, scale = (radius + height, height) if height else (speed, speed)
@@ -68,19 +68,19 @@ def _above_one(problem: Problem, seen: Observations, name: str, row: int) -> flo
 
 
 def _noise_of(tunable: Tunable, seen: Observations, name: str, row: int) -> float:
-    """Return the standard deviation of what is wanted less what would come of it, where the sizes of the noise are known."""
+    """Return the standard deviation of the target minus the computed quantity; 0 if the magnitude of the noise is unknown."""
     if not seen.deviations_known:
         return 0.0
-    near = slopes(tunable, seen.speeds[[row]], tunable.allowed.clip(np.array([1e-3 * tunable.start])), seen.which[[row]])
+    near = derivatives(tunable, seen.speeds[[row]], tunable.allowed.clip(np.array([1e-3 * tunable.start])), seen.which[[row]])
     return float(np.linalg.norm(seen.noise[name][row] - near.by_speed[name][0] * seen.speed_noise[row]))
 
 
 def other_parameters(
     problem: Problem, tunable: Tunable, seen: Observations, weights: Mapping[str, float], row: int = 0
 ) -> dict[str, float]:
-    """Return values of the other parameters of the law, each of which would meet an impact with the rest as given.
+    """Return values of the other parameters of the law, each of which would match an impact with the rest as given.
 
-    None with several outcomes, or where bodies vibrate.
+    Empty with several matched quantities, or with vibrating bodies.
     """
     law = problem.laws[0]
     if len(weights) > 1 or problem.vibrates or not isinstance(law, CompliantLaw):

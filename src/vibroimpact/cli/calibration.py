@@ -23,7 +23,7 @@ def calibrate(
     The [calibrate] section of the case says what to match: a contact law, a restitution, or measurements. Without it the
     damping of Adams' IMPACT is found with which the sphere bounces as under the law of the case.
     """
-    from vibroimpact.calibration.case import calibrate_case, load_calibration
+    from vibroimpact.calibration.calibrate_case import calibrate_case, load_calibration
     from vibroimpact.calibration.folder import save_calibration
     from vibroimpact.calibration.text import calibration_summary
     from vibroimpact.cases.reader import prefix_errors

@@ -44,7 +44,7 @@ def check(case: CaseArgument) -> None:
     from vibroimpact.cases.build import check_drop
     from vibroimpact.cases.reader import load_case, load_table, prefix_errors
     from vibroimpact.runs.console import case_explained
-    from vibroimpact.studies.report.explained import sweep_explained
+    from vibroimpact.studies.explain_sweep import explain_sweep
     from vibroimpact.studies.sweep import read_sweep
 
     table = prefix_errors(case, lambda: load_table(case))
@@ -55,7 +55,7 @@ def check(case: CaseArgument) -> None:
         console().print(prefix_errors(case, lambda: case_explained(found)))
         return
     study = prefix_errors(case, lambda: read_sweep(table))
-    console().print(sweep_explained(study))
+    console().print(explain_sweep(study))
     console().print(prefix_errors(case, lambda: case_explained(study.case, study.axes)))
 
 

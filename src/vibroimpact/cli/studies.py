@@ -78,11 +78,12 @@ def _sweep(
         Where it can stop, once it was told to.
     """
     from vibroimpact.report.progress import counting_progress, patient_progress
-    from vibroimpact.studies.report.folder import run_sweep
     from vibroimpact.studies.report.text import study_summary
-    from vibroimpact.studies.slips import whole_slips
-    from vibroimpact.studies.study import begun, read_study
+    from vibroimpact.studies.run_sweep import run_sweep
+    from vibroimpact.studies.study import read_study
+    from vibroimpact.studies.study_folder import has_study
     from vibroimpact.studies.sweep import load_sweep
+    from vibroimpact.studies.unit_slips import sweep_slips
     from vibroimpact.units.reading import to_si
 
     try:
@@ -92,8 +93,8 @@ def _sweep(
     if size < 1e6:
         raise InputError(f"{memory} is too little; it must be 1 MB or more", "--memory")
     found, screen = load_sweep(study), console()
-    _see_that_it_is_wanted(study, found, yes=yes or (resume and begun(target)))
-    for doubt in whole_slips(found):
+    _see_that_it_is_wanted(study, found, yes=yes or (resume and has_study(target)))
+    for doubt in sweep_slips(found):
         note(f"doubt: {doubt}")  # now, and not only when all is computed
     with patient_progress("computing modes", screen) as modes, counting_progress("drops", screen) as count:
 

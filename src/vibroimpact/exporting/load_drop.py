@@ -6,7 +6,7 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
-from vibroimpact.calibration.file import CALIBRATION
+from vibroimpact.calibration.file_contents import CALIBRATION
 from vibroimpact.calibration.speed_function import SpeedFunction
 from vibroimpact.cases.case import Case
 from vibroimpact.cases.reader import load_case, read_case

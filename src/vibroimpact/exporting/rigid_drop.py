@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from vibroimpact.calibration.one_impact import first_speed
+from vibroimpact.calibration.single_impacts import first_approach_speed
 from vibroimpact.calibration.speed_function import SpeedFunction
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.response import Response
@@ -48,7 +48,7 @@ def _by_function(problem: Problem, name: str, function: SpeedFunction) -> Respon
     Fixed-point iteration: the speed of an impact depends on the impacts before it only, so that each pass fixes at least one more.
     Convergence is usually much faster, since the parameter varies slowly with the speed.
     """
-    law, speeds = problem.laws[0], np.array([first_speed(problem)])
+    law, speeds = problem.laws[0], np.array([first_approach_speed(problem)])
     for _ in range(_PASSES):
         response = simulate(replace(problem, laws=tuple(law_at(law, name, function, float(speed)) for speed in speeds)))
         before, speeds = speeds, response.impacts["approach_speed_m_s"]

@@ -20,7 +20,7 @@ from functools import cached_property
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.calibration.one_impact import first_speed
+from vibroimpact.calibration.single_impacts import first_approach_speed
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.roots import find_root
 from vibroimpact.dynamics.problem import Problem
@@ -183,4 +183,4 @@ def _method(problem: Problem, step: float) -> _Method:
     if problem.shape != () or more or not isinstance(law, CompliantLaw) or law.memories():
         raise InputError("the implicit Euler method is for one drop of the superposed model, under a law with a force and no memory")
     mass, gravity = float(problem.sphere.mass), float(problem.gravity)
-    return _Method(system_of(problem, mass, gravity), law, mass, gravity, first_speed(problem), step)
+    return _Method(system_of(problem, mass, gravity), law, mass, gravity, first_approach_speed(problem), step)

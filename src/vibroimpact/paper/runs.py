@@ -7,8 +7,8 @@ from dataclasses import replace
 from functools import cached_property, lru_cache
 
 from vibroimpact.arrays import Array, Floats
+from vibroimpact.calibration.calibrate_case import calibrate_case, load_calibration
 from vibroimpact.calibration.calibration import Calibration
-from vibroimpact.calibration.case import calibrate_case, load_calibration
 from vibroimpact.cases.reader import load_case
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.response import Response

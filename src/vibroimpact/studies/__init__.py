@@ -1,1 +1,1 @@
-"""Studies: many drops of one case, run so that none is lost, with dataset and report."""
+"""Parameter studies: many drops of one case, computed in resumable chunks, with dataset and report."""

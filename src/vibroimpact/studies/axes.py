@@ -1,4 +1,4 @@
-"""What a swept value runs over: a list, a range, or a distribution."""
+"""Axes of a study: the list, range or distribution of values of a swept key."""
 
 from __future__ import annotations
 
@@ -13,36 +13,36 @@ from vibroimpact.arrays import Floats
 from vibroimpact.errors import InputError
 
 Values = NDArray[Any]
-"""Floats, whole numbers, or objects where values are names or tables."""
+"""Array of floats or integers, or of objects if values are names or tables."""
 
 
 class Axis(Protocol):
-    """What one swept value runs over."""
+    """The values of one swept key."""
 
     @property
     def is_random(self) -> bool:
-        """Is it a distribution, rather than values that were chosen?"""
+        """Whether it is a distribution rather than chosen values."""
 
     def __len__(self) -> int:
-        """Return how many values it has in a grid."""
+        """Return the number of levels in a grid."""
 
     def levels(self) -> Values:
-        """Return its values in a grid."""
+        """Return the levels in a grid."""
 
     def quantiles(self, parts: Floats) -> Values:
-        """Return the values that have given parts, in [0, 1), of the distribution below them."""
+        """Return the quantiles of the distribution at probabilities in [0, 1)."""
 
 
 @dataclass(frozen=True)
 class Listed:
-    """Values one by one; drawn, each is as likely as another, or as its weight says.
+    """A list of values; in sampling designs equally likely, or with given weights.
 
     Parameters
     ----------
     values : tuple
         The values.
     weights : tuple of float, optional
-        Their weights, >= 0, in any unit; not all of them zero.
+        Weights >= 0, not necessarily normalized, not all zero.
 
     Examples
     --------
@@ -55,14 +55,14 @@ class Listed:
 
     @property
     def is_random(self) -> bool:
-        """They were chosen."""
+        """False: the values were chosen."""
         return False
 
     def __len__(self) -> int:
         return len(self.values)
 
     def levels(self) -> Values:
-        """Return the values: floats or whole numbers if all are, else as they are."""
+        """Return the values as floats or integers if all have that type, else as objects."""
         if {type(value) for value in self.values} in ({float}, {int}):
             return np.array(self.values)
         objects = np.empty(len(self.values), dtype=object)
@@ -70,7 +70,7 @@ class Listed:
         return objects
 
     def quantiles(self, parts: Floats) -> Values:
-        """Return the values by their place in the list."""
+        """Return the quantiles, in the order of the list."""
         below = np.cumsum(np.ones(len(self.values)) if self.weights is None else self.weights)
         places = np.searchsorted(below / below[-1], parts, side="right")
         return np.asarray(self.levels()[np.minimum(places, len(self.values) - 1)])
@@ -78,18 +78,18 @@ class Listed:
 
 @dataclass(frozen=True)
 class Spaced:
-    """Values from `start` to `end`, evenly apart or by even factors; drawn, they are uniform on that scale.
+    """Values from `start` to `end`, equally spaced on a linear or logarithmic scale; in sampling designs uniform on that scale.
 
     Parameters
     ----------
     start, end : float
-        The ends.
+        Limits of the range.
     number : int
-        How many levels it has in a grid, both ends among them.
+        Number of levels in a grid, including both limits.
     scale : {"linear", "log"}
-        Even steps, or even factors.
+        Constant steps, or constant ratios.
     is_random : bool
-        Is it a distribution?
+        Whether it is a distribution.
     """
 
     start: float
@@ -102,11 +102,11 @@ class Spaced:
         return self.number
 
     def levels(self) -> Values:
-        """Return the values, both ends among them."""
+        """Return the levels, including both limits."""
         return np.asarray((np.linspace if self.scale == "linear" else np.geomspace)(self.start, self.end, self.number))
 
     def quantiles(self, parts: Floats) -> Values:
-        """Return the values at parts of the way."""
+        """Return the quantiles of the uniform or log-uniform distribution."""
         if self.scale == "linear":
             return self.start + parts * (self.end - self.start)
         return np.asarray(self.start * (self.end / self.start) ** parts)
@@ -114,23 +114,23 @@ class Spaced:
 
 @dataclass(frozen=True)
 class Normal:
-    r"""A normal distribution, or a lognormal one, perhaps truncated.
+    r"""A normal or lognormal distribution, optionally truncated.
 
     Parameters
     ----------
     mean, standard_deviation : float
-        Of the quantity itself before it is truncated, also of a lognormal one.
+        Of the quantity itself before truncation, also for a lognormal distribution.
     number : int
-        How many levels it has in a grid: the middles of parts that are equally likely.
+        Number of levels in a grid: the medians of equally likely intervals.
     at_least, at_most : float
-        Where it is truncated.
+        Truncation limits.
     lognormal : bool
-        Is its logarithm normal? Then with :math:`\sigma^2 = \ln(1 + s^2/m^2)` and :math:`\mu = \ln m - \sigma^2/2`.
+        Whether the logarithm is normal, with :math:`\sigma^2 = \ln(1 + s^2/m^2)` and :math:`\mu = \ln m - \sigma^2/2`.
 
     Raises
     ------
     InputError
-        If a lognormal mean is not above zero, or next to nothing lies between the ends.
+        If a lognormal mean is not positive, or the probability between the truncation limits is below 1e-9.
 
     Examples
     --------
@@ -151,23 +151,23 @@ class Normal:
     def __post_init__(self) -> None:
         if self.lognormal and self.mean <= 0.0:
             raise InputError(f"{self.mean:g} is not allowed; the mean of a lognormal distribution must be greater than 0", "mean")
-        low, high = self._ends()
+        low, high = self._bounds()
         if not high - low > 1e-9:
             words = f"{100 * max(high - low, 0.0):.2g} % of the distribution lies from {self.at_least:g} to {self.at_most:g}"
             raise InputError(f"{words}; it must be truncated less", "at_least" if math.isfinite(self.at_least) else "at_most")
 
-    def _of_logarithm(self) -> tuple[float, float]:
-        """Return mean and standard deviation of what is normal: the quantity, or its logarithm."""
+    def _normal_parameters(self) -> tuple[float, float]:
+        """Return mean and standard deviation of the normal variable: the quantity or its logarithm."""
         if not self.lognormal:
             return self.mean, self.standard_deviation
         variance = math.log1p((self.standard_deviation / self.mean) ** 2)
         return math.log(self.mean) - 0.5 * variance, math.sqrt(variance)
 
-    def _ends(self) -> tuple[float, float]:
-        """Return which parts of the distribution lie below its two ends."""
+    def _bounds(self) -> tuple[float, float]:
+        """Return the cumulative probabilities at the truncation limits."""
         from scipy.special import ndtr
 
-        middle, spread = self._of_logarithm()
+        middle, spread = self._normal_parameters()
         ends = [self.at_least, self.at_most]
         if self.lognormal:
             ends = [math.log(end) if end > 0.0 else -math.inf for end in ends]
@@ -178,14 +178,14 @@ class Normal:
         return self.number
 
     def levels(self) -> Values:
-        """Return the middles of parts that are equally likely."""
+        """Return the medians of equally likely intervals."""
         return self.quantiles((np.arange(self.number) + 0.5) / self.number)
 
     def quantiles(self, parts: Floats) -> Values:
-        """Return the values below which lie parts of the distribution."""
+        """Return the quantiles of the truncated distribution."""
         from scipy.special import ndtri
 
-        (low, high), (middle, spread) = self._ends(), self._of_logarithm()
-        inside = np.clip(low + parts * (high - low), 1e-300, 1.0 - 2.0**-53)  # the ends of the whole are infinite
+        (low, high), (middle, spread) = self._bounds(), self._normal_parameters()
+        inside = np.clip(low + parts * (high - low), 1e-300, 1.0 - 2.0**-53)  # avoid the infinite quantiles at 0 and 1
         values = middle + spread * ndtri(inside)
         return np.asarray(np.clip(np.exp(values) if self.lognormal else values, self.at_least, self.at_most))

@@ -1,4 +1,4 @@
-"""The results of one chunk of drops, and the file that keeps them until the study is whole."""
+"""The results of one chunk of drops, and the HDF5 file that stores them until the study is complete."""
 
 from __future__ import annotations
 
@@ -18,19 +18,19 @@ from vibroimpact.files.atomic_write import write_file
 from vibroimpact.studies.ledger import Span
 
 FOLDER, CHUNK = "chunks", ".h5"
-"""Where chunks are in the folder of a study, and how their names end."""
+"""Subfolder of the chunk files in the folder of a study, and their suffix."""
 
 
 @dataclass(frozen=True)
 class ChunkResult:
-    """What came of the drops of one chunk.
+    """The results of the drops of one chunk.
 
     Parameters
     ----------
     arrays : mapping of str to array
-        By names, the drop along the first axis.
+        Results by name; the drop is the first axis.
     failures : mapping of int to str
-        Why a drop failed, by its place in the chunk.
+        Reason of each failed drop, by its index in the chunk.
     """
 
     arrays: Mapping[str, NDArray[Any]]
@@ -38,35 +38,35 @@ class ChunkResult:
 
 
 def chunk_path(folder: Path, number: int) -> Path:
-    """Return where a chunk of a study is kept."""
+    """Return the path of a chunk file."""
     return folder / FOLDER / f"{number:06d}{CHUNK}"
 
 
 def write_chunk(folder: Path, chunk: Span, result: ChunkResult, study: str) -> str:
-    """Write a chunk, whole or not at all; return its checksum.
+    """Write a chunk atomically, and return its SHA-256 checksum.
 
     Parameters
     ----------
     folder : Path
-        That of the study.
+        Folder of the study.
     chunk : Span
-        Which it is.
+        The chunk.
     result : ChunkResult
-        What came of it.
+        Its results.
     study : str
-        The fingerprint of the study that it belongs to.
+        Fingerprint of the study.
 
     Raises
     ------
     ComputationError
-        If there is no room for it.
+        If it can't be written.
     """
     memory = BytesIO()
-    with h5py.File(memory, "w", libver=("v110", "v110")) as file:  # whose headers have check sums
+    with h5py.File(memory, "w", libver=("v110", "v110")) as file:  # a format with checksums in its headers
         file.attrs["study"], file.attrs["first"], file.attrs["size"] = study, chunk.first, chunk.size
-        file.create_group("arrays")  # there also if nothing came of any drop
+        file.create_group("arrays")  # present even if all drops failed
         for name, values in result.arrays.items():
-            checked = {"fletcher32": True} if values.size else {}  # so that damage shows when it is read, also without a ledger
+            checked = {"fletcher32": True} if values.size else {}  # reveals damage on reading, even without a ledger
             file.create_dataset(f"arrays/{name}", data=values, **checked)
         reasons = [reason.encode() for reason in result.failures.values()]
         for name, given in (("place", np.array(list(result.failures), dtype=np.int64)), ("reason", np.array(reasons, dtype=bytes))):
@@ -82,7 +82,7 @@ def write_chunk(folder: Path, chunk: Span, result: ChunkResult, study: str) -> s
 
 
 def checksum(folder: Path, number: int) -> str | None:
-    """Return the checksum of a chunk as it is on disk; None if it is not there or can't be read."""
+    """Return the checksum of a chunk file; None if it is missing or can't be read."""
     try:
         return sha256(chunk_path(folder, number).read_bytes()).hexdigest()
     except OSError:
@@ -90,36 +90,36 @@ def checksum(folder: Path, number: int) -> str | None:
 
 
 def chunk_layout(folder: Path, number: int) -> dict[str, tuple[tuple[int, ...], np.dtype[Any]]]:
-    """Return the shape and the type of each array of a chunk, which are not read."""
+    """Return shape and type of each array of a chunk without reading the data."""
     with h5py.File(chunk_path(folder, number), "r") as file:
         return {name: (values.shape, values.dtype) for name, values in file["arrays"].items()}
 
 
 def read_chunk(folder: Path, chunk: Span, study: str, names: Collection[str] | None = None) -> ChunkResult:
-    """Read a chunk.
+    """Return the results of a chunk, read from its file.
 
     Parameters
     ----------
     folder : Path
-        That of the study.
+        Folder of the study.
     chunk : Span
-        Which it is.
+        The chunk.
     study : str
-        The fingerprint of the study.
+        Fingerprint of the study.
     names : collection of str, optional
-        The arrays to read, where they are there; by default all.
+        The arrays to read, if present; by default all.
 
     Raises
     ------
     OSError, KeyError, ValueError
-        If it is damaged, of another study, or has other drops.
+        If the file is damaged, or belongs to another study or other drops.
     """
     with h5py.File(chunk_path(folder, chunk.number), "r") as file:
         told = (file.attrs["study"], file.attrs["first"], file.attrs["size"])
         if told != (study, chunk.first, chunk.size):
             raise ValueError("it is of another study, or has other drops")
         wanted = [name for name in file["arrays"] if names is None or name in names]
-        # by name and with [()]: items() gives None for what can't be opened, and np.asarray makes an object of what can't be read
+        # by name and with [()], which raise errors for damage: items() would return None, and np.asarray an object array
         arrays = {name: np.asarray(file["arrays"][name][()]) for name in wanted}
         reasons = [reason.decode() for reason in file["failures/reason"][()]]
         return ChunkResult(arrays, dict(zip(file["failures/place"][()].tolist(), reasons, strict=True)))

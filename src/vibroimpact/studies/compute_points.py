@@ -1,4 +1,4 @@
-"""The work of a study: the drops at some of its points, those with rigid bodies as arrays, the others side by side."""
+"""Compute the drops at some points of a study: rigid bodies in vectorized batches, deformable ones in small groups."""
 
 from __future__ import annotations
 
@@ -20,17 +20,16 @@ from vibroimpact.dynamics.tabulate import tabulate
 from vibroimpact.errors import ComputationError, InputError, lines_of
 from vibroimpact.studies.axes import Values
 from vibroimpact.studies.chunk_file import ChunkResult
-from vibroimpact.studies.columns import FIRST, LARGEST, OUTCOME, SENSOR_PEAK, SIGNAL
-from vibroimpact.studies.limits import batch_conditions, drop_conditions, limit_columns
-from vibroimpact.studies.swept_arrays import is_array_key, with_arrays
-from vibroimpact.studies.swept_keys import case_at
+from vibroimpact.studies.drop_variables import FIRST, LARGEST, OUTCOME, SENSOR_PEAK, SIGNAL
+from vibroimpact.studies.limit_columns import batch_conditions, drop_conditions, limit_columns
+from vibroimpact.studies.swept_keys import case_at, is_array_key, with_arrays
 
 _TOGETHER = 16
-"""Drops with bodies of their own that are computed at once: enough to pay, and few enough for their histories to lie in memory."""
+"""Drops with individual bodies that are computed together: enough for efficiency, few enough for their histories to fit in memory."""
 
 
 class _Study(NamedTuple):
-    """A case, what is kept of it, and the points of a chunk."""
+    """A case, the kept results, and the points of a chunk."""
 
     table: Mapping[str, Any]
     keep: tuple[str, ...]
@@ -38,12 +37,12 @@ class _Study(NamedTuple):
     points: Mapping[str, Values]
 
     def case(self, place: np.intp | int) -> Case:
-        """Return the case of the drop at a place in the chunk."""
+        """Return the case of the drop at an index in the chunk."""
         return case_at(self.table, {key: column[place] for key, column in self.points.items()})
 
 
 class _Part(NamedTuple):
-    """What came of the drops at some places of a chunk."""
+    """The results of the drops at some indices of a chunk."""
 
     places: Indices
     arrays: dict[str, NDArray[Any]]
@@ -51,24 +50,24 @@ class _Part(NamedTuple):
 
 
 def compute_points(table: Mapping[str, Any], keep: tuple[str, ...], first: int, points: Mapping[str, Values]) -> ChunkResult:
-    """Compute the drops at some points of a study.
+    """Return the results of the drops at some points of a study.
 
     Parameters
     ----------
     table : mapping
-        The case, as a TOML file would hold it.
+        The case, with the structure of a TOML case file.
     keep : tuple of str
-        What is kept of each drop: "impacts", "signals"; its peaks always are.
+        The kept results besides the peaks: "impacts", "signals".
     first : int
-        The number of the first of the drops in the study: the noise of their sensors is drawn from their numbers.
+        Number in the study of the first of the drops; the numbers seed the noise of the sensors.
     points : mapping of str to array
-        The values of each drop at the keys that are swept.
+        The values of the drops by swept key.
 
     Returns
     -------
     ChunkResult
-        With the columns of the impact table (drops, impacts), the peaks (drops,), and the signals (drops, samples). A drop that
-        failed has its reason, and the others go on.
+        Columns of the impact table (drops, impacts), peaks (drops,) and signals (drops, samples), and the reasons of failed drops,
+        which do not affect the others.
 
     Examples
     --------
@@ -77,10 +76,10 @@ def compute_points(table: Mapping[str, Any], keep: tuple[str, ...], first: int, 
     >>> found.arrays["max_force_N"].shape
     (2, 5)
     """
-    from threadpoolctl import threadpool_limits  # which looks at all libraries that are loaded
+    from threadpoolctl import threadpool_limits  # imported late: it inspects all loaded libraries
 
     study = _Study(table, keep, first, points)
-    with threadpool_limits(1):  # many small products gain nothing from threads, and their number must not change a digit
+    with threadpool_limits(1):  # small matrix products gain nothing from threads, and results must not depend on their number
         parts = [part for places in _alike(points) for part in _parts(study, places)]
     count = len(next(iter(points.values())))
     failures = {place: part.failures[place] for part in parts for place in part.failures}
@@ -88,7 +87,7 @@ def compute_points(table: Mapping[str, Any], keep: tuple[str, ...], first: int, 
 
 
 def _alike(points: Mapping[str, Values]) -> Iterator[Indices]:
-    """Yield the places of drops that differ in nothing but numbers that may run as arrays."""
+    """Yield the indices of drops that differ only in numbers that can be vectorized."""
     others = [values for key, values in points.items() if not is_array_key(key, values)]
     count = len(next(iter(points.values())))
     if not others:
@@ -101,7 +100,7 @@ def _alike(points: Mapping[str, Values]) -> Iterator[Indices]:
 
 
 def _parts(study: _Study, places: Indices) -> Iterator[_Part]:
-    """Compute the drops at places that are alike."""
+    """Compute a group of drops that differ only in numbers that can be vectorized."""
     while places.size:
         try:
             case = study.case(places[0])
@@ -116,34 +115,34 @@ def _parts(study: _Study, places: Indices) -> Iterator[_Part]:
         yield from _side_by_side(study, places)
         return
     height: Any = arrays.get("drop.height", case.drop.height)
-    if height is not None:  # those that would begin inside the plate fail by themselves
+    if height is not None:  # drops that would start inside the plate are computed singly, and fail there
         above = np.broadcast_to(height > arrays.get("sphere.radius", case.sphere.radius), places.shape)
         yield from (_alone(study, place) for place in places[~above])
         places, arrays = places[above], {key: values[above] for key, values in arrays.items()}
     try:
         problem = rigid_problem(with_arrays(case, arrays))
         table = tabulate(problem)
-    except InputError:  # of one of them: the others must not suffer
+    except InputError:  # caused by one of them: compute all singly, so that only that one fails
         yield from (_alone(study, place) for place in places)
         return
     columns, failures = _columns(table, study.keep), table.failures
-    if len(table) < places.size:  # what is swept has no effect on rigid bodies, such as the plate's thickness: it is one drop for all
+    if len(table) < places.size:  # the swept values, such as the thickness of a rigid plate, have no effect: one drop represents all
         columns = {name: np.repeat(values, places.size, axis=0) for name, values in columns.items()}
         failures = {drop: reason for reason in failures.values() for drop in range(places.size)}
     columns |= limit_columns(batch_conditions(case, arrays, problem.laws[0], columns), places.size)
     failed = np.zeros(places.size, dtype=bool)
     failed[list(failures)] = True
-    columns = {name: values[~failed] for name, values in columns.items()}  # nothing that failed is a result
+    columns = {name: values[~failed] for name, values in columns.items()}  # failed drops have no results
     yield _Part(places[~failed], columns, {int(places[drop]): reason for drop, reason in failures.items()})
 
 
 def _alone(study: _Study, place: np.intp) -> _Part:
-    """Compute one drop by itself."""
+    """Compute a single drop."""
     return next(_side_by_side(study, np.array([place])))
 
 
 def _side_by_side(study: _Study, places: Indices) -> Iterator[_Part]:
-    """Compute drops that each have bodies of their own, some at once; whatever fails one of them is its reason, and the others go on."""
+    """Compute drops with individual bodies in small groups; an error of one drop becomes its reason and does not affect the others."""
     for begin in range(0, len(places), _TOGETHER):
         some, problems = places[begin : begin + _TOGETHER], {}
         for place in some.tolist():
@@ -166,10 +165,10 @@ def _failed(place: int, error: Exception) -> _Part:
 
 
 def _part_of(study: _Study, place: int, response: Response) -> _Part:
-    """Return what is kept of one drop."""
+    """Return the kept results of one drop."""
     problem, signals = response.problem, {}
     if "signals" in study.keep:
-        duration = problem.duration or 0.0  # the study has seen to it; a contact under way at its end was finished
+        duration = problem.duration or 0.0  # required by the study if signals are kept; a contact in progress at that time was completed
         for name, signal in response.signals().items():
             signals[f"{SIGNAL}{name}"] = signal.value[: sample_count(duration, signal.sensor.rate)].astype(np.float32)[None]
             signals[f"{name}{SENSOR_PEAK}"] = np.array([np.abs(signal.value).max()])
@@ -181,7 +180,7 @@ def _part_of(study: _Study, place: int, response: Response) -> _Part:
 
 
 def _noise(sensor: Sensor, number: int) -> Sensor:
-    """Return a sensor whose noise is that of one drop alone."""
+    """Return a sensor whose noise is seeded by the number of the drop."""
     meter = sensor.accelerometer
     if meter is None:
         return sensor
@@ -190,7 +189,7 @@ def _noise(sensor: Sensor, number: int) -> Sensor:
 
 
 def _columns(response: Response, keep: tuple[str, ...]) -> dict[str, NDArray[Any]]:
-    """Return impact table and peaks of the drops of a response."""
+    """Return peaks, outcomes, and if kept the impact table of the drops of a response."""
     impacts = {name: np.atleast_2d(values) for name, values in response.impacts.items()}
     first = {peak: impacts[name][:, 0] if impacts[name].size else np.full(len(response), np.nan) for peak, name in FIRST.items()}
     peaks = {
@@ -207,7 +206,7 @@ def _columns(response: Response, keep: tuple[str, ...]) -> dict[str, NDArray[Any
 
 
 def _gathered(parts: list[_Part], count: int) -> dict[str, NDArray[Any]]:
-    """Return the arrays of all drops of a chunk in order; what a drop does not have is NaN, and a failed drop is one that failed."""
+    """Return the arrays of all drops of a chunk in order; missing values are NaN or 0, and the outcome of failed drops is FAILED."""
     found: dict[str, NDArray[Any]] = {OUTCOME: np.full(count, Outcome.FAILED.code, dtype=np.int8)}
     for part in parts:
         for name, values in part.arrays.items():

@@ -1,4 +1,4 @@
-"""Compute a study in its folder, from the first chunk to the dataset, or on from where it stopped."""
+"""Compute a study in its folder, chunk by chunk, up to the dataset; resume one that was interrupted."""
 
 from __future__ import annotations
 
@@ -22,29 +22,28 @@ from vibroimpact.structures.store import receive
 from vibroimpact.studies.chunk_file import FOLDER, ChunkResult, checksum, read_chunk, write_chunk
 from vibroimpact.studies.compute_points import compute_points
 from vibroimpact.studies.dask_workers import check_scheduler, dask_workers
-from vibroimpact.studies.dataset import write_dataset
+from vibroimpact.studies.drops_table import MOST_ROWS, write_drops
 from vibroimpact.studies.ledger import LEDGER, Ledger, Span, busy, is_held, make_ledger, open_ledger
 from vibroimpact.studies.run_chunks import Points, run_chunks
-from vibroimpact.studies.study import DATASET, STUDY, clear_study, is_study, recover_study
+from vibroimpact.studies.study_folder import DATASET, STUDY, clear_study, is_study, recover_study, study_toml
 from vibroimpact.studies.sweep import LONG, Sweep
-from vibroimpact.studies.table import MOST_ROWS, write_drops
-from vibroimpact.studies.toml import study_toml
 from vibroimpact.studies.workers import Workers, processes, this_process
+from vibroimpact.studies.write_dataset import write_dataset
 
 MEMORY = 500e6
-"""Bytes that the drops of a chunk may take, where nothing else is said."""
+"""Default memory for the drops of a chunk [bytes]."""
 
 LEAST_MEMORY = 1e6
-"""The least of that."""
+"""Minimum memory for the drops of a chunk [bytes]."""
 
-_CHUNK = 8000  # drops of rigid bodies: a tenth of a second
-_ELASTIC_CHUNK = 8  # drops of elastic ones: half a second
-_PER_DROP, _COPIES = 4000.0, 4.0  # bytes that a drop takes while it is computed, and how often its results are there until they are written
+_CHUNK = 8000  # drops with rigid bodies per chunk: a tenth of a second
+_ELASTIC_CHUNK = 8  # drops with elastic bodies per chunk: half a second
+_PER_DROP, _COPIES = 4000.0, 4.0  # memory of a drop during computation [bytes], and copies of its results until they are written
 
-_FEW_CHUNKS = 40  # what so many cost beside their drops is two seconds, however small they are
-_USEFUL, _USEFUL_ELASTIC = 15_000, 3  # impacts of rigid bodies, or drops of elastic ones, beside which a chunk costs a third more at most
+_FEW_CHUNKS = 40  # the overhead of so many chunks is two seconds, whatever their size
+_USEFUL, _USEFUL_ELASTIC = 15_000, 3  # impacts with rigid bodies, or drops with elastic ones, in a chunk that limit its overhead to a third
 
-_MANY = 50_000  # drops from which on it takes seconds to put them together
+_MANY = 50_000  # drops above which assembling the dataset takes seconds
 
 Progress = Callable[[int, int], None]
 Tell = Callable[[str], None]
@@ -63,12 +62,12 @@ def compute_study(
     modes_progress: Callable[[float], None] | None = None,
     tell: Tell | None = None,
 ) -> Path:
-    """Compute a study in a folder: `study.nc`, `drops.csv`, and the ledger of its chunks; `run_sweep` draws its report too.
+    """Compute a study in a folder: `study.nc`, `drops.csv`, and the ledger of its chunks; `run_sweep` also writes the report.
 
     Parameters
     ----------
     sweep, directory, resume, force, workers, scheduler, memory, progress, modes_progress, tell
-        As `run_sweep` takes them.
+        As for `run_sweep`.
 
     Returns
     -------
@@ -78,7 +77,7 @@ def compute_study(
     Raises
     ------
     InputError, ComputationError
-        As `run_sweep` does.
+        As for `run_sweep`.
     """
     if not isinstance(sweep, Sweep):
         raise InputError(f"a study is wanted, as vi.load_sweep(...) reads it, not {sweep!r}")
@@ -93,14 +92,15 @@ def compute_study(
         check_scheduler(scheduler)
     recover_study(folder)
     if resume and is_study(folder):
-        _see_that_there_is_a_ledger(folder, sweep, memory)
+        _restore_ledger(folder, sweep, memory)
     else:
-        _begin(folder, sweep, memory, force=force and not resume)
+        _create(folder, sweep, memory, force=force and not resume)
+    # the open ledger locks the folder against other processes
     with open_ledger(folder) as ledger:
         clear_study(folder)
         _check_same(ledger, folder, sweep)
         if not (folder / DATASET).is_file():
-            _forget_damaged(ledger, folder, tell)
+            _invalidate_damaged(ledger, folder, tell)
             number = min(workers, len(ledger.chunks("waiting")))
             _run(ledger, folder, sweep, _workers(folder, sweep, number, scheduler, modes_progress, tell), progress)
             if tell is not None and sweep.size >= _MANY:
@@ -110,8 +110,8 @@ def compute_study(
     return folder
 
 
-def _begin(folder: Path, sweep: Sweep, memory: float, *, force: bool) -> None:
-    """Make the folder of a study of which nothing is computed."""
+def _create(folder: Path, sweep: Sweep, memory: float, *, force: bool) -> None:
+    """Create the folder of a new study: case, summary and ledger."""
     if is_held(folder):
         raise InputError(busy(folder))
     if is_study(folder) and not force:
@@ -124,8 +124,8 @@ def _begin(folder: Path, sweep: Sweep, memory: float, *, force: bool) -> None:
         (working / SUMMARY).write_text(sealed(summary), encoding="utf-8")
 
 
-def _see_that_there_is_a_ledger(folder: Path, sweep: Sweep, memory: float) -> None:
-    """Make the ledger of a study that was begun anew if it is missing."""
+def _restore_ledger(folder: Path, sweep: Sweep, memory: float) -> None:
+    """Rebuild the ledger of a study from its chunk files if it is missing."""
     if (folder / LEDGER).is_file():
         return
     make_ledger(folder, _facts(sweep), sweep.size, chunk_size(sweep, memory))
@@ -139,7 +139,7 @@ def _see_that_there_is_a_ledger(folder: Path, sweep: Sweep, memory: float) -> No
 
 
 def _check_same(ledger: Ledger, folder: Path, sweep: Sweep) -> None:
-    """Raise unless a ledger is that of a study, begun by these versions."""
+    """Check that a ledger belongs to this study and was created with the present versions."""
     facts, now = ledger.facts, _facts(sweep)
     for key, name in (("version", "vibroimpact"), ("numpy", "NumPy")):
         if facts.get(key) != now[key]:
@@ -150,8 +150,8 @@ def _check_same(ledger: Ledger, folder: Path, sweep: Sweep) -> None:
         raise InputError(f"{folder}: {words}; {STUDY} in it is what was begun; begin anew with --force, or in another folder")
 
 
-def _forget_damaged(ledger: Ledger, folder: Path, tell: Tell | None) -> None:
-    """Have chunks computed again that are not on disk as they were written."""
+def _invalidate_damaged(ledger: Ledger, folder: Path, tell: Tell | None) -> None:
+    """Mark chunks for recomputation whose files do not match their checksums."""
     for number, expected in ledger.checksums().items():
         if checksum(folder, number) != expected:
             ledger.undone(number)
@@ -160,7 +160,7 @@ def _forget_damaged(ledger: Ledger, folder: Path, tell: Tell | None) -> None:
 
 
 def _run(ledger: Ledger, folder: Path, sweep: Sweep, workers: Workers, progress: Progress | None) -> None:
-    """Compute the chunks that wait."""
+    """Compute the waiting chunks."""
     waiting = ledger.chunks("waiting")
     done = sweep.size - sum(chunk.size for chunk in waiting)
     if progress is not None:
@@ -180,7 +180,7 @@ def _run(ledger: Ledger, folder: Path, sweep: Sweep, workers: Workers, progress:
 
 
 def _assemble(folder: Path, ledger: Ledger, sweep: Sweep) -> None:
-    """Put the chunks together, the dataset last: once it is there, all is."""
+    """Write table and dataset from the chunks; the dataset comes last, as its presence marks a complete study."""
     chunks, left = ledger.chunks("done"), ledger.chunks("waiting")
     if left:
         raise ComputationError(f"{folder}: {len(left)} chunks are not done; go on with --resume")
@@ -198,8 +198,8 @@ def _assemble(folder: Path, ledger: Ledger, sweep: Sweep) -> None:
 def _workers(
     folder: Path, sweep: Sweep, number: int, scheduler: str | None, modes_progress: Callable[[float], None] | None, tell: Tell | None
 ) -> Workers:
-    """Return what starts workers; each gets the modes of the first point once, so that it finds them wherever it runs."""
-    from threadpoolctl import threadpool_limits  # which looks at all libraries that are loaded
+    """Return a function that starts workers; each receives the modes of the first point once, wherever it runs."""
+    from threadpoolctl import threadpool_limits  # imported late: it inspects all loaded libraries
 
     entries = {}
     if sweep.deforms and number:
@@ -215,7 +215,7 @@ def _facts(sweep: Sweep) -> dict[str, str]:
 
 
 def least_memory(sweep: Sweep) -> float:
-    """Return the bytes for the drops of a chunk below which a study becomes dearer by more than a third, for what each chunk costs.
+    """Return the memory per chunk [bytes] below which the overhead of chunks lengthens a study by more than a third.
 
     Parameters
     ----------
@@ -227,7 +227,7 @@ def least_memory(sweep: Sweep) -> float:
 
 
 def _check_memory(sweep: Sweep, memory: float) -> None:
-    """Raise if so little memory makes a study much dearer."""
+    """Check that the memory per chunk is not so small that the overhead of chunks dominates."""
     least = least_memory(sweep)
     if memory < least:
         size = chunk_size(sweep, memory)
@@ -239,18 +239,18 @@ def _check_memory(sweep: Sweep, memory: float) -> None:
 
 
 def _bytes_each(sweep: Sweep) -> float:
-    """Return how many bytes a drop of a chunk takes."""
+    """Return the memory of one drop of a chunk [bytes]."""
     return _PER_DROP + _COPIES * sweep.bytes / sweep.size
 
 
 def chunk_size(sweep: Sweep, memory: float) -> int:
-    """Return how many drops a chunk has: fewer if memory is short, and the same however many workers there are.
+    """Return the number of drops per chunk: fewer if memory is short, independent of the number of workers.
 
     Parameters
     ----------
     sweep : Sweep
         The study.
     memory : float
-        Bytes that the drops of a chunk may take.
+        Memory for the drops of a chunk [bytes].
     """
     return max(1, min(_ELASTIC_CHUNK if sweep.deforms else _CHUNK, int(memory / _bytes_each(sweep))))

@@ -1,4 +1,4 @@
-"""Chunks computed by the workers of a Dask scheduler: one that is there, or a cluster of this machine."""
+"""Workers of a Dask scheduler: an existing one, or a local cluster."""
 
 from __future__ import annotations
 
@@ -10,16 +10,16 @@ from typing import Any
 
 from vibroimpact._version import __version__
 from vibroimpact.errors import InputError
-from vibroimpact.studies.workers import Crew, Setup
+from vibroimpact.studies.workers import Setup, WorkerPool
 
 LOCAL = "local"
-"""Instead of an address: a cluster that is started for the study."""
+"""Value in place of an address: a local cluster is started for the study."""
 
-_PATIENCE = 30  # seconds to wait for a scheduler: its machine may be busy
+_PATIENCE = 30  # timeout of the connection to a scheduler [s]
 
 
 def check_scheduler(address: str) -> None:
-    """Raise unless chunks can be computed with a scheduler.
+    """Check that a scheduler can compute chunks.
 
     Parameters
     ----------
@@ -29,7 +29,7 @@ def check_scheduler(address: str) -> None:
     Raises
     ------
     InputError
-        If Dask is not installed, there is no scheduler at the address, it has no workers, or they have another version of this package.
+        If Dask is not installed, no scheduler answers at the address, it has no workers, or they run another version of this package.
     """
     if find_spec("distributed") is None:
         raise InputError('a Dask scheduler needs Dask; install it with: pip install "vibroimpact[cluster]"', "--scheduler")
@@ -38,17 +38,17 @@ def check_scheduler(address: str) -> None:
 
 
 @contextmanager
-def dask_workers(address: str, number: int, setup: Setup) -> Iterator[Crew]:
-    """Compute with the workers of a scheduler, which `check_scheduler` has found.
+def dask_workers(address: str, number: int, setup: Setup) -> Iterator[WorkerPool]:
+    """Provide the workers of a scheduler that `check_scheduler` has checked.
 
     Parameters
     ----------
     address : str
         Such as "tcp://10.0.0.5:8786"; "local" starts a scheduler and workers on this machine.
     number : int
-        How many workers that is; a scheduler that is there has its own.
+        Number of workers of a local cluster; an existing scheduler has its own.
     setup : callable
-        What each worker does once, also one that joins later.
+        Called once in each worker, including those that join later.
     """
     from distributed import Client, LocalCluster, WorkerPlugin
 
@@ -58,12 +58,12 @@ def dask_workers(address: str, number: int, setup: Setup) -> Iterator[Crew]:
         def setup(self, worker: object) -> None:
             setup()
 
-    # the scheduler answers questions about its health even without a dashboard; a free port for that, as 8787 may be taken
+    # the scheduler serves its health page even without a dashboard; choose a free port, as 8787 may be in use
     questions = {"dashboard": False, "dashboard_address": "localhost:0"}
     options = {"n_workers": number, "threads_per_worker": 1, "scheduler_kwargs": questions, "silence_logs": logging.CRITICAL}
     with LocalCluster(**options) if address == LOCAL else nullcontext(address) as cluster, Client(cluster) as client:
         client.register_plugin(Setting())
-        yield Crew(client.get_executor(pure=False), lambda: 2 * max(1, sum(client.nthreads().values())))
+        yield WorkerPool(client.get_executor(pure=False), lambda: 2 * max(1, sum(client.nthreads().values())))
 
 
 def _client(address: str) -> Any:

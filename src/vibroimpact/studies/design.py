@@ -1,4 +1,4 @@
-"""The registry of study designs: one file of `vibroimpact.studies.designs` each, which names itself with a `Design`."""
+"""Registry of study designs: each file of `vibroimpact.studies.designs` defines one `Design`."""
 
 from __future__ import annotations
 
@@ -16,19 +16,19 @@ from vibroimpact.studies.plan import Plan
 
 @dataclass(frozen=True)
 class Design:
-    """A way to choose the points of a study.
+    """A design of experiments: a rule that chooses the points of a study.
 
     Parameters
     ----------
     name : str
-        As a case has it.
+        Name in a case file.
     meaning : str
-        Which points they are, in a few words.
+        Short description of the points.
     is_drawn : bool
-        Does it take a number of samples and a seed?
+        Whether it takes a number of samples and a seed.
     size : callable
-        Takes the axes by their keys and the number of samples, returns how many points there would be. Raises InputError
-        if they do not fit the design.
+        Takes the axes by key and the number of samples, returns the number of points. Raises InputError if they do not suit the
+        design.
     plan : callable
         Takes the same and the seed, returns the points.
     """
@@ -42,7 +42,7 @@ class Design:
 
 @cache
 def designs() -> Mapping[str, Design]:
-    """Return every design by its name.
+    """Return all designs by name.
 
     Examples
     --------
@@ -59,16 +59,16 @@ def find_design(name: str) -> Design:
     Raises
     ------
     InputError
-        If there is none; the message names the closest.
+        If there is none; the message suggests the closest name.
     """
     return find_named("design", name, designs())
 
 
 def drawn_plan(name: str, axes: Mapping[str, Axis], parts: Floats) -> Plan:
-    """Return the plan whose points lie at parts (points, axes) of the distributions of the axes."""
+    """Return the plan whose points are the quantiles of the axes at probabilities (points, axes)."""
     return Plan(name, {key: axis.quantiles(parts[:, place]) for place, (key, axis) in enumerate(axes.items())}, False)
 
 
 def generator(seed: int, *stream: int) -> np.random.Generator:
-    """Return a generator of random numbers for a seed, and for a stream of its own."""
+    """Return a random number generator for a seed and an independent stream."""
     return np.random.default_rng([seed, *stream])

@@ -1,6 +1,6 @@
-"""The ledger of a study: which chunks there are, and which of them are done.
+"""The ledger of a study: its chunks and their state, in an SQLite database.
 
-It is an SQLite database, held locked for as long as a study is at work on it, whatever ends that work.
+The process that computes the study holds an exclusive lock on it, which the operating system releases even if the process is killed.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ CREATE TABLE chunk (number INTEGER PRIMARY KEY, first INTEGER NOT NULL, count IN
 
 
 class Span(NamedTuple):
-    """A chunk: its number, its first point, and how many it has."""
+    """A chunk: its number, its first point, and its number of points."""
 
     number: int
     first: int
@@ -41,36 +41,36 @@ class Ledger:
 
     @property
     def facts(self) -> dict[str, str]:
-        """What the study is: its fingerprint, the version that began it, how large it is."""
+        """Fingerprint of the study, versions that created it, and number of drops."""
         return dict(self.connection.execute("SELECT key, value FROM study"))
 
     def chunks(self, state: str) -> list[Span]:
-        """Return the chunks that are "waiting" or "done", in order."""
+        """Return the chunks in state "waiting" or "done", in order."""
         rows = self.connection.execute("SELECT number, first, count FROM chunk WHERE state = ? ORDER BY number", (state,))
         return [Span(*row) for row in rows]
 
     def checksums(self) -> dict[int, str]:
-        """Return the checksum of each chunk that is done, by its number."""
+        """Return the checksums of the completed chunks by number."""
         return dict(self.connection.execute("SELECT number, sha256 FROM chunk WHERE state = 'done' ORDER BY number"))
 
     def done(self, chunk: Span, sha256: str, failed: int) -> None:
-        """Note that a chunk is done and on disk."""
-        with _told(self.path), self.connection:
+        """Record that a chunk is computed and written."""
+        with _translated_faults(self.path), self.connection:
             self.connection.execute(
                 "UPDATE chunk SET state = 'done', sha256 = ?, failed = ?, finished = datetime('now') WHERE number = ?",
                 (sha256, failed, chunk.number),
             )
 
     def undone(self, chunk: int) -> None:
-        """Note that a chunk has to be done again: what is on disk is not what was written."""
-        with _told(self.path), self.connection:
+        """Record that a chunk must be recomputed, as its file is damaged or missing."""
+        with _translated_faults(self.path), self.connection:
             self.connection.execute("UPDATE chunk SET state = 'waiting', sha256 = NULL, failed = NULL WHERE number = ?", (chunk,))
 
 
 def make_ledger(folder: Path, facts: Mapping[str, str], size: int, chunk: int) -> None:
-    """Make, whole or not at all, the ledger of a study of `size` points in chunks of `chunk`, none of them done."""
-    with _told(folder / LEDGER), atomic_file(folder / LEDGER) as working, closing(sqlite3.connect(working)) as connection:
-        connection.execute("PRAGMA journal_mode = MEMORY")  # it is whole or not at all, and nothing is beside it
+    """Create atomically the ledger of a study of `size` points in chunks of `chunk` points, all waiting."""
+    with _translated_faults(folder / LEDGER), atomic_file(folder / LEDGER) as working, closing(sqlite3.connect(working)) as connection:
+        connection.execute("PRAGMA journal_mode = MEMORY")  # the file appears atomically, without a journal beside it
         with connection:
             connection.executescript(_SCHEMA)
             connection.executemany("INSERT INTO study VALUES (?, ?)", {**facts, "size": str(size)}.items())
@@ -79,12 +79,12 @@ def make_ledger(folder: Path, facts: Mapping[str, str], size: int, chunk: int) -
 
 
 def busy(folder: Path) -> str:
-    """Return what to tell of a folder in which another process is at work."""
+    """Return the error message for a folder in use by another process."""
     return f"{folder}: another sweep is at work in this folder; wait for it, or name another folder"
 
 
 def is_held(folder: Path) -> bool:
-    """Is a process at work on the study in a folder?"""
+    """Return whether a process is computing the study in a folder."""
     if not (folder / LEDGER).is_file():
         return False
     connection = sqlite3.connect(folder / LEDGER, timeout=0.2)
@@ -99,26 +99,26 @@ def is_held(folder: Path) -> bool:
 
 @contextmanager
 def open_ledger(folder: Path) -> Iterator[Ledger]:
-    """Open the ledger of a study, and keep everyone else from it.
+    """Open the ledger of a study with an exclusive lock.
 
     Raises
     ------
     InputError
-        If there is none, it is damaged, or another process has it open.
+        If there is none, it is damaged, or another process holds the lock.
     ComputationError
-        If it can't be written to.
+        If it can't be written.
     """
     path = folder / LEDGER
     if not path.is_file():
         raise InputError(f"{folder}: this is not the folder of a study; it has no {LEDGER}")
-    with _told(path):
+    with _translated_faults(path):
         connection = sqlite3.connect(path, timeout=0.2)
     try:
-        with _told(path):
-            # the journal of a process that died stays until something is written; leaving this mode rolls it back and deletes it
+        with _translated_faults(path):
+            # the journal of a killed process remains until the next write; changing the journal mode rolls it back and deletes it
             connection.execute("PRAGMA journal_mode = TRUNCATE")
             connection.execute("PRAGMA journal_mode = DELETE")
-            # an exclusive lock is held from the first write to the end of the connection, and the system frees it of a process that died
+            # the lock lasts from the first write to the end of the connection; the system releases it if the process is killed
             connection.execute("PRAGMA locking_mode = EXCLUSIVE")
             connection.execute("BEGIN EXCLUSIVE")
             connection.execute("COMMIT")
@@ -132,7 +132,7 @@ def open_ledger(folder: Path) -> Iterator[Ledger]:
 
 
 def _check_chunks(connection: sqlite3.Connection) -> None:
-    """Raise unless the chunks follow each other without a gap, and are done or not: a database has no check sums of its own."""
+    """Check that the chunks are contiguous and their states valid, as the database has no checksums of its own."""
     rows = connection.execute("SELECT number, first, count, state FROM chunk ORDER BY number").fetchall()
     begin = 0
     for place, (number, first, count, state) in enumerate(rows):
@@ -144,29 +144,29 @@ def _check_chunks(connection: sqlite3.Connection) -> None:
 
 
 @contextmanager
-def _told(path: Path) -> Iterator[None]:
-    """Say what a fault of the database means."""
+def _translated_faults(path: Path) -> Iterator[None]:
+    """Translate database errors into errors of this package."""
     try:
         yield
     except sqlite3.OperationalError as error:
         if "locked" in str(error):
             raise InputError(busy(path.parent)) from None
         if "no such table" in str(error):
-            raise InputError(_damaged(path, str(error))) from None
-        raise ComputationError(_unwritten(path, str(error))) from None
+            raise InputError(_damage(path, str(error))) from None
+        raise ComputationError(_write_failure(path, str(error))) from None
     except (sqlite3.Error, UnicodeError) as error:
-        raise InputError(_damaged(path, str(error))) from None
+        raise InputError(_damage(path, str(error))) from None
     except OSError as error:
-        raise ComputationError(_unwritten(path, error.strerror or str(error))) from None
+        raise ComputationError(_write_failure(path, error.strerror or str(error))) from None
 
 
-def _unwritten(path: Path, why: str) -> str:
-    """Return what to tell of a ledger that can't be written."""
+def _write_failure(path: Path, why: str) -> str:
+    """Return the error message for a ledger that can't be written."""
     return f"{path}: the ledger can't be written: {why}; see to the disk, then go on with --resume"
 
 
-def _damaged(path: Path, why: str) -> str:
-    """Return what to tell of a ledger that is damaged."""
+def _damage(path: Path, why: str) -> str:
+    """Return the error message for a damaged ledger."""
     shown = "".join(letter if letter.isprintable() else " " for letter in why)[:100]
     words = "delete this file and go on with --resume: it is made anew from the chunks that are there and whole"
     return f"{path}: the ledger is damaged ({shown}); {words}"

@@ -1,4 +1,4 @@
-"""How the values of a result spread over the drops of a study."""
+"""Statistics of a result over the drops of a study: mean, standard deviation and percentiles."""
 
 from __future__ import annotations
 
@@ -10,20 +10,20 @@ import numpy as np
 from vibroimpact.arrays import Floats
 
 PERCENTILES = (5, 25, 50, 75, 95)
-"""Those that are told."""
+"""The reported percentiles."""
 
 
 class Spread(NamedTuple):
-    """How values spread.
+    """Statistics of a sample.
 
     Attributes
     ----------
     drops : int
-        How many values are finite; the others are passed over.
+        Number of finite values; the others are ignored.
     mean, standard_deviation : float
-        The latter of a sample, by n - 1; NaN of one value alone.
+        The standard deviation is that of a sample (n - 1); NaN for a single value.
     percentiles : tuple of float
-        As many as `PERCENTILES`; NaN without values.
+        At `PERCENTILES`; NaN without values.
     """
 
     drops: int
@@ -33,17 +33,17 @@ class Spread(NamedTuple):
 
     @property
     def varies(self) -> bool:
-        """Do the values differ by more than rounding?"""
+        """Whether the values differ by more than rounding."""
         return self.drops > 1 and self.standard_deviation > 1e-9 * max(abs(self.mean), abs(self.percentiles[2]))
 
 
 def spread_of(values: Floats) -> Spread:
-    """Return how values spread; percentiles lie between two values by a straight line.
+    """Return the statistics of values; percentiles are interpolated linearly.
 
     Parameters
     ----------
     values : array
-        Of any shape and unit; those that are not finite are passed over.
+        Of any shape and unit; non-finite values are ignored.
 
     Returns
     -------
@@ -55,7 +55,7 @@ def spread_of(values: Floats) -> Spread:
     >>> spread_of(np.array([1.0, 2.0, 3.0, np.nan]))
     Spread(drops=3, mean=2.0, standard_deviation=1.0, percentiles=(1.1, 1.5, 2.0, 2.5, 2.9))
     """
-    finite = np.asarray(values, dtype=float)[np.isfinite(values)]  # a copy, which may be sorted and shifted in its place
+    finite = np.asarray(values, dtype=float)[np.isfinite(values)]  # a copy, to be sorted and shifted in place
     number = len(finite)
     if not number:
         return Spread(0, math.nan, math.nan, (math.nan,) * len(PERCENTILES))

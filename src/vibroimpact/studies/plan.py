@@ -1,4 +1,4 @@
-"""The points of a study: which values its drops have, and how they are arranged."""
+"""The points of a study: the values of its drops and their arrangement."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ import numpy as np
 from vibroimpact.studies.axes import Values
 
 SAMPLE = "sample"
-"""The dimension of a study whose points are no grid."""
+"""The dimension of a study whose points do not form a grid."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,9 +25,9 @@ class Plan:
     design : str
         The name of the design that made them.
     columns : mapping of str to array
-        By the swept key its levels, if it is a grid, the last key running fastest; else one value a point.
+        By swept key the levels of a grid, with the last key varying fastest, else one value per point.
     is_grid : bool
-        Are the points all combinations of the levels?
+        Whether the points are all combinations of the levels.
 
     Examples
     --------
@@ -44,7 +44,7 @@ class Plan:
 
     @property
     def dimensions(self) -> dict[str, int]:
-        """The dimensions of the results, and how long they are."""
+        """The dimensions of the results and their lengths."""
         if self.is_grid:
             return {key: len(levels) for key, levels in self.columns.items()}
         return {SAMPLE: len(next(iter(self.columns.values())))}
@@ -55,14 +55,14 @@ class Plan:
         return prod(self.dimensions.values())
 
     def points(self, first: int, count: int) -> dict[str, Values]:
-        """Return the values of some points by their keys, (count,) each."""
+        """Return the values of `count` points from `first` on by swept key, (count,) each."""
         if not self.is_grid:
             return {key: values[first : first + count] for key, values in self.columns.items()}
         places = np.unravel_index(np.arange(first, first + count), tuple(self.dimensions.values()))
         return {key: levels[place] for (key, levels), place in zip(self.columns.items(), places, strict=True)}
 
     def digest(self) -> str:
-        """Return a fingerprint of all points."""
+        """Return a fingerprint (SHA-256) of all points."""
         found = sha256(f"{self.design} {self.is_grid}".encode())
         for key, values in self.columns.items():
             objects = values.dtype == object

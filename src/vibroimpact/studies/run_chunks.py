@@ -1,4 +1,4 @@
-"""Have chunks computed, as many at a time as there are workers, and lose none to a worker that dies."""
+"""Dispatch chunks to workers, and recover from workers that die."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ from vibroimpact.studies.ledger import Span
 from vibroimpact.studies.workers import Workers
 
 Points = Mapping[str, Values]
-"""The values of some drops by the swept keys."""
+"""The values of some drops by swept key."""
 
-_DEATHS = 2  # of the worker, with a chunk alone on it, before the chunk is given up
+_DEATHS = 2  # deaths of a worker with a single chunk in flight after which the chunk is abandoned
 
 
 def run_chunks(
@@ -25,40 +25,40 @@ def run_chunks(
     start: Workers,
     keep: Callable[[Span, ChunkResult], None],
 ) -> None:
-    """Compute chunks and hand each on as soon as it is there, in whatever order.
+    """Compute chunks, and pass each result on as soon as it is available, in any order.
 
-    If a worker dies, the chunks that were on the way are computed again, one at a time. One that is alone then and ends its worker
-    again is given up: each of its drops failed, and the rest go on.
+    If a worker dies, the chunks in flight are computed again one at a time. A chunk that then kills its worker repeatedly is abandoned:
+    all its drops count as failed, and the other chunks continue.
 
     Parameters
     ----------
     work : callable
-        Takes the number of the first drop of a chunk and the points of all, returns what came of them; it is pickled.
+        Takes the number of the first drop of a chunk and its points, returns their results; it must be picklable.
     points : callable
         Returns the points of a chunk.
     chunks : iterable of Span
-        What is to be done.
+        The chunks to compute.
     start : callable
         Starts workers.
     keep : callable
-        Is given each chunk with what came of it.
+        Called with each chunk and its results.
 
     Raises
     ------
     ComputationError
-        If the workers are gone for good.
+        If the workers can't be started, or the scheduler is gone.
     """
     waiting, suspects, deaths = deque(chunks), deque[Span](), Counter[int]()
     while waiting or suspects:
         running: dict[Future[ChunkResult], Span] = {}
         try:
             with start() as (executor, in_flight):
-                _see_that_it_lives(executor)
+                _check_alive(executor)
                 while waiting or suspects or running:
                     source, most = (suspects, 1) if suspects else (waiting, in_flight())
                     while source and len(running) < most:
                         running[executor.submit(work, source[0].first, points(source[0]))] = source[0]
-                        source.popleft()  # not before: a worker may have died while the last chunk was kept
+                        source.popleft()  # only now: submit raises if a worker died while the last result was stored
                     for future in wait(running, return_when=FIRST_COMPLETED).done:
                         keep(running[future], _result(future, running[future]))
                         del running[future]
@@ -68,15 +68,15 @@ def run_chunks(
                 alone = lost[0]
                 deaths[alone.number] += 1
                 if deaths[alone.number] >= _DEATHS:
-                    keep(alone, _given_up(alone))
+                    keep(alone, _abandoned(alone))
                     continue
             suspects.extend(lost)
         except CancelledError:
             raise ComputationError("the scheduler and its workers are gone; what is done stays: go on with --resume") from None
 
 
-def _see_that_it_lives(executor: Executor) -> None:
-    """Raise if not even nothing can be computed: then no chunk is to blame."""
+def _check_alive(executor: Executor) -> None:
+    """Check that a trivial task succeeds, so that later failures are due to a chunk."""
     try:
         executor.submit(int).result()
     except BrokenExecutor:
@@ -85,17 +85,17 @@ def _see_that_it_lives(executor: Executor) -> None:
 
 
 def _result(future: Future[ChunkResult], chunk: Span) -> ChunkResult:
-    """Return what came of a chunk; Dask itself gives up one that ended worker after worker."""
+    """Return the results of a chunk; Dask reports one that killed several workers by an exception of its own."""
     try:
         return future.result()
     except BrokenExecutor:
         raise
     except Exception as error:
         if type(error).__name__ == "KilledWorker":
-            return _given_up(chunk)
+            return _abandoned(chunk)
         raise
 
 
-def _given_up(chunk: Span) -> ChunkResult:
+def _abandoned(chunk: Span) -> ChunkResult:
     reason = "the process that computed it died, again and again; it may have run out of memory"
     return ChunkResult({}, dict.fromkeys(range(chunk.size), reason))

@@ -1,4 +1,4 @@
-"""The [sweep] section: which keys of a case run over what, by which design, and what is kept."""
+"""The [sweep] section of a case: swept keys with their values, design, and kept results."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ from vibroimpact.studies.axes import Axis, Listed, Normal, Spaced
 from vibroimpact.studies.design import designs, find_design
 
 MOST_DROPS = 10_000_000
-"""The most that a study may have."""
+"""Maximum number of drops of a study."""
 
-_LEVELS = 10  # of a range or a distribution in a grid, where nothing else is said
+_LEVELS = 10  # default number of levels of a range or a distribution in a grid
 _Levels = Annotated[int, Field(ge=2, le=MOST_DROPS, strict=True)]
 
 
@@ -87,19 +87,19 @@ _ASKED = "a list of values, a range { from, to, number, scale }, a distribution 
 
 
 def read_axis(value: Any, quantity: Quantity | None) -> Axis:
-    """Read what a swept key runs over.
+    """Return the axis of a swept key.
 
     Parameters
     ----------
     value : any
-        As a TOML file holds it.
+        Its entry in the TOML file.
     quantity : Quantity or None
-        What the key holds; None if it is no quantity, and then only a list is taken.
+        The quantity of the key; None if it is not a quantity, so that only a list is allowed.
 
     Raises
     ------
     InputError
-        If it can't be read, or no such distribution exists.
+        If the entry is invalid, or the distribution is unknown.
 
     Examples
     --------
@@ -129,7 +129,7 @@ def read_axis(value: Any, quantity: Quantity | None) -> Axis:
 
 
 def _read_item(item: Any, quantity: Quantity) -> Any:
-    """Read one value of a list; a plain number may have names and tables beside it, as a damping has."""
+    """Return one value of a list; keys with plain numbers may also take names and tables, such as the damping."""
     if isinstance(item, (list, dict)) or (isinstance(item, str) and not quantity.unit):
         return item
     return _number(item, quantity, quantity.allowed)
@@ -164,7 +164,7 @@ def _normal(table: NormalTable, quantity: Quantity) -> Normal:
 
 
 def _columns(table: ColumnTable, quantity: Quantity) -> Listed:
-    """Return the values in a column of a CSV file, whose header gives its unit, with their weights if there are any."""
+    """Return the values, and optionally weights, from columns of a CSV file whose header gives the units."""
     name, weights = (None if column is None else name_and_unit(column)[0] for column in (table.column, table.weights))
     assert name is not None
     try:

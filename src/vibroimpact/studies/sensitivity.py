@@ -1,4 +1,4 @@
-"""Which of the keys that were swept moves a result: Sobol's indices, rank correlations, and ranges along the axes of a grid."""
+"""Sensitivity of a result to the swept keys: Sobol indices, rank correlations, and one-at-a-time ranges on a grid."""
 
 from __future__ import annotations
 
@@ -12,26 +12,26 @@ from vibroimpact.arrays import Floats, Indices
 from vibroimpact.studies.design import generator
 
 MOST_LEFT_OUT = 0.05
-"""The part of the points that may be without a value; with more of them, indices would tell of another study."""
+"""Maximum fraction of points without a value; with more, indices would not represent the study."""
 
 RESAMPLES = 200
-"""How many times the points are drawn anew to find the standard error of an index."""
+"""Number of bootstrap samples for the standard error of an index."""
 
-_RESAMPLED = 8192  # points of a block that are drawn anew; with more of them the error falls as their root
+_RESAMPLED = 8192  # points of a block used for the bootstrap; for larger blocks the error is scaled by the root of their number
 _QUANTILE = 1.959964  # of the normal distribution, for 95 %
 
 
 class SobolIndices(NamedTuple):
-    """Sobol's indices of one result, one value an axis.
+    """Sobol indices of one result, one value per axis.
 
     Attributes
     ----------
     first, total : array, shape (axes,)
-        The part of the variance that an axis makes by itself, and together with all others.
+        First-order index, the fraction of the variance due to an axis alone, and total index, including all interactions.
     first_error, total_error : array, shape (axes,)
-        Half of the interval of 95 %.
+        Half widths of the 95 % intervals.
     points, left_out : int
-        How many points of a block were used, and how many were not since a drop of theirs has no value.
+        Number of points of a block used, and number omitted since a drop has no value.
     """
 
     first: Floats
@@ -43,29 +43,29 @@ class SobolIndices(NamedTuple):
 
 
 def sobol_indices(values: Floats, axes: int, seed: int = 0) -> SobolIndices | None:
-    r"""Return Sobol's indices of a result at the points of the design "saltelli".
+    r"""Return the Sobol indices of a result at the points of the design "saltelli".
 
     .. math:: S_i = \frac{\overline{f_B\,(f_{AB_i} - f_A)}}{V}, \qquad T_i = \frac{\overline{(f_A - f_{AB_i})^2}}{2 V}
 
-    :math:`V` is the variance over the blocks A and B. The interval is 1.96 standard errors to both sides; the error is found
-    by drawing the points anew (bootstrap), from at most the first 8192 of a block: with more, it falls as the root of their number.
-    The points of a Sobol sequence lie more evenly than random ones, so that the interval is rather too wide than too narrow.
+    :math:`V` is the variance over the blocks A and B. The half width of the interval is 1.96 standard errors, from a bootstrap over
+    at most the first 8192 points of a block and scaled by the root of the number of points for larger blocks. As the points of a
+    Sobol sequence are more even than random ones, the interval is conservative.
 
-    A point of the blocks whose drop has no value is left out of all blocks. The indices are then those of the drops that have one.
+    A point without a value in one block is omitted from all blocks. The indices are then those of the remaining points.
 
     Parameters
     ----------
     values : array, shape ((2 + axes) points,)
-        Block A, block B, and for each axis the block A with the values of B on that axis.
+        Block A, block B, and for each axis block A with the values of B on that axis.
     axes : int
-        How many axes there are.
+        Number of axes.
     seed : int
-        Of the bootstrap.
+        Seed of the bootstrap.
 
     Returns
     -------
     SobolIndices or None
-        None if the result does not vary, or more than 5 % of the points would have to be left out.
+        None if the result does not vary, or more than 5 % of the points would have to be omitted.
 
     References
     ----------
@@ -89,7 +89,7 @@ def sobol_indices(values: Floats, axes: int, seed: int = 0) -> SobolIndices | No
     used = blocks[:2, complete]
     if not float(np.std(used)) > 1e-9 * float(np.abs(used).max()):
         return None
-    # SciPy takes a power of two alone: a point whose drops all lie at the mean stays one, and adds nothing to any of the sums
+    # SciPy requires a power of two: omitted points are set to the mean, which contributes nothing to the sums
     blocks = np.where(complete, blocks, used.mean())
     first, total = _estimates(blocks)
     drawn = min(len(complete), _RESAMPLED)
@@ -108,19 +108,19 @@ def _estimates(blocks: Floats) -> Floats:
 
 
 def rank_correlations(inputs: Floats, output: Floats) -> Floats:
-    """Return Spearman's rank correlation of a result with each input: 1 if it always rises with it, -1 if it always falls.
+    """Return Spearman's rank correlation of a result with each input: 1 if it increases monotonically with it, -1 if it decreases.
 
     Parameters
     ----------
     inputs : array, shape (axes, drops)
-        The values of the drops.
+        Input values of the drops.
     output : array, shape (drops,)
-        The result; drops without a finite value are left out.
+        The result; drops without a finite value are ignored.
 
     Returns
     -------
     array, shape (axes,)
-        NaN of an input or a result that does not vary.
+        NaN for an input or a result that does not vary.
 
     References
     ----------
@@ -145,14 +145,14 @@ def rank_correlations(inputs: Floats, output: Floats) -> Floats:
 
 
 class OneAtATime(NamedTuple):
-    """How far a result moves along each axis of a grid, with all others at their middle level; one value an axis.
+    """Range of a result along each axis of a grid with all others at their middle level, one value per axis.
 
     Attributes
     ----------
     middle : float
-        The result where all axes are at their middle level.
+        The result with all axes at their middle level.
     lowest, highest : array, shape (axes,)
-        The result's least and largest value along an axis.
+        Minimum and maximum of the result along an axis.
     """
 
     middle: float
@@ -161,19 +161,19 @@ class OneAtATime(NamedTuple):
 
     @property
     def relative(self) -> Floats:
-        """How far apart these are, as a part of the middle."""
+        """The range relative to the result in the middle; NaN if that is zero."""
         return (self.highest - self.lowest) / abs(self.middle) if self.middle else np.full(len(self.lowest), math.nan)
 
 
 def one_at_a_time(values: NDArray[Any], orders: list[Indices]) -> OneAtATime:
-    """Return how far a result moves along each axis of a grid.
+    """Return the range of a result along each axis of a grid.
 
     Parameters
     ----------
     values : array, of as many dimensions as the grid
         The result; NaN where a drop failed.
     orders : list of array
-        For each axis the places of its levels in rising order; the middle one (the upper of two) is its middle level.
+        For each axis the indices of its levels in ascending order; the middle one (the upper of two) is the middle level.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""A study that is done: one NetCDF-4 dataset, whose dimensions are the swept keys or `sample`."""
+"""A completed study: a NetCDF-4 dataset whose dimensions are the swept keys or `sample`."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from math import prod
 from os import PathLike
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import h5py
 import numpy as np
@@ -21,45 +21,60 @@ from vibroimpact.errors import InputError
 from vibroimpact.files.check_sums import CHECK_SUMS, DamageError, read_sealed
 from vibroimpact.files.damaged_part import check_hdf5
 from vibroimpact.files.hdf5 import read_array, short_reason
-from vibroimpact.files.recover import clear, recover
-from vibroimpact.files.working_files import remove
 from vibroimpact.results.folder import SUMMARY
-from vibroimpact.studies.chunk_file import CHUNK
-from vibroimpact.studies.chunk_file import FOLDER as CHUNKS
-from vibroimpact.studies.columns import SIGNAL
-from vibroimpact.studies.ledger import LEDGER, is_held
+from vibroimpact.studies.drop_variables import DOUBTS, LIMIT, SIGNAL
 from vibroimpact.studies.plan import SAMPLE
-from vibroimpact.studies.recorded_doubts import StudyDoubt, study_doubts
+from vibroimpact.studies.study_folder import DATASET, STUDY, recover_study
 
-DATASET, STUDY = "study.nc", "study.toml"
 FAILED_POINT, FAILED_REASON = "failed_point", "failed_reason"
-"""The variables that say which drops failed, and why."""
+"""The variables with the numbers of failed drops, and the reasons."""
+
+
+class StudyDoubt(NamedTuple):
+    """A limit of the theory that some drops of a study exceed.
+
+    Attributes
+    ----------
+    limit : str
+        Name of the limit, such as "air_drag".
+    drops : int
+        Number of drops that exceed it.
+    worst : int
+        Number of the drop that exceeds it most, from 0.
+    number : float
+        The value of `limit_NAME` in the dataset for that drop.
+    """
+
+    limit: str
+    drops: int
+    worst: int
+    number: float
 
 
 @dataclass(frozen=True, eq=False)
 class Study:
-    """A study that is done; its variables are read when they are asked for.
+    """A completed study; its variables are read on demand.
 
     Attributes
     ----------
     path : Path
-        Of its dataset.
+        Path of the dataset.
     name : str
-        What it is called.
+        Title of the study.
     table : dict
         The case with its [sweep] section.
     version : str
-        Of the package that made it.
+        Version of the package that computed it.
     dimensions : dict of str to int
-        The dimensions of every variable, in order, and their lengths: the swept keys, or `sample`.
+        Leading dimensions of every variable in order, with their lengths: the swept keys, or `sample`.
     coordinates : dict of str to array
-        By the swept key its levels, or its values along `sample`.
+        By swept key its levels, or its values along `sample`.
     meanings : dict of str to (str, str)
         Unit and meaning of every variable and every swept key.
     shapes : dict of str to tuple
-        The shape of every variable: that of `dimensions`, and then impacts or samples in time.
+        Shape of every variable: that of `dimensions`, followed by impacts or samples in time.
     failures : dict of int to str
-        Why a drop failed, by its number: its place when all points are counted through, from 0.
+        Reason of each failed drop, by its number in the sequence of all points, from 0.
     """
 
     path: Path
@@ -79,7 +94,7 @@ class Study:
 
     @property
     def is_grid(self) -> bool:
-        """Are its points all combinations of the levels of its keys?"""
+        """Whether its points are all combinations of the levels of its keys."""
         return SAMPLE not in self.dimensions
 
     @property
@@ -89,19 +104,19 @@ class Study:
 
     @property
     def doubts(self) -> list[StudyDoubt]:
-        """The limits of the theory that drops are beyond: how many drops, and the worst of them."""
-        with _damage_told(self.path):
+        """The limits of the theory that drops exceed, with the number of drops and the worst of them."""
+        with _reported_damage(self.path):
             return study_doubts(self.path)
 
     def values(self, name: str, *place: Any) -> NDArray[Any]:
-        """Return a variable, or the part of it at a place as NumPy counts.
+        """Return a variable, or a part of it by NumPy indexing.
 
         Parameters
         ----------
         name : str
-            Such as "max_force_N".
+            Name, such as "max_force_N".
         *place : int or slice
-            Along the first dimension, the second, ...
+            Index along the first dimension, the second, ...
 
         Raises
         ------
@@ -109,7 +124,7 @@ class Study:
             If there is no such variable, or it is damaged.
         """
         self._check(name)
-        with _damage_told(self.path), h5py.File(self.path, "r") as file:
+        with _reported_damage(self.path), h5py.File(self.path, "r") as file:
             return read_array(file[name], place or ())
 
     def __repr__(self) -> str:
@@ -121,16 +136,16 @@ class Study:
         Parameters
         ----------
         sensor : str
-            Its name.
+            Name of the sensor.
 
         Raises
         ------
         InputError
-            If its signal was not kept.
+            If its signal was not kept, or is damaged.
         """
         name = f"{SIGNAL}{sensor}"
         self._check(name)
-        with _damage_told(self.path), h5py.File(self.path, "r") as file:
+        with _reported_damage(self.path), h5py.File(self.path, "r") as file:
             (scale,) = file[name].dims[len(self.dimensions)].values()
             return np.asarray(read_array(scale), dtype=np.float64)
 
@@ -139,36 +154,29 @@ class Study:
             raise InputError(f'there is no variable "{name}"; there are {", ".join(self.shapes)}')
 
 
-def is_study(folder: Path) -> bool:
-    """Was a study begun in a folder?"""
-    return (folder / STUDY).is_file() or (folder / LEDGER).is_file()
+def study_doubts(dataset: Path) -> list[StudyDoubt]:
+    """Return the limits of the theory that drops of a study exceed, most frequent first.
 
-
-def begun(folder: Path) -> bool:
-    """Was a study begun in a folder, and is it there, or can it be brought back?"""
-    recover(folder)
-    return is_study(folder)
-
-
-def recover_study(folder: Path) -> None:
-    """Put right what processes that died have left of a study; if one is at work on it, all stays as it is."""
-    recover(folder)
-    if (folder / LEDGER).is_file() and not is_held(folder):
-        clear_study(folder)
-        if (folder / DATASET).is_file():
-            remove(folder / CHUNKS)
-
-
-def clear_study(folder: Path) -> None:
-    """Clear what lies half written in a study that no process is at work on: whole are its chunks alone."""
-    clear(folder)
-    for path in (folder / CHUNKS).glob("*"):
-        if path.suffix != CHUNK:
-            remove(path)
+    Parameters
+    ----------
+    dataset : Path
+        The `study.nc` of the study; the result is empty for one of a version that stored no limits.
+    """
+    with h5py.File(dataset, "r") as file:
+        if DOUBTS not in file:
+            return []
+        beyond, found = read_array(file[DOUBTS]).ravel(), []
+        for mask, limit in zip(file[DOUBTS].attrs["flag_masks"], str(file[DOUBTS].attrs["flag_meanings"]).split(), strict=True):
+            doubted = (beyond & mask) != 0
+            if doubted.any():
+                numbers = np.where(doubted, read_array(file[f"{LIMIT}{limit}"]).ravel(), -np.inf)
+                worst = int(np.argmax(numbers))
+                found.append(StudyDoubt(limit, int(doubted.sum()), worst, float(numbers[worst])))
+    return sorted(found, key=lambda one: -one.drops)
 
 
 def read_study(directory: str | PathLike[str]) -> Study:
-    """Read the dataset of a study, but for its variables.
+    """Return a completed study from its folder; the variables are read later.
 
     Parameters
     ----------
@@ -178,7 +186,7 @@ def read_study(directory: str | PathLike[str]) -> Study:
     Raises
     ------
     InputError
-        If there is none, or it is damaged.
+        If there is no completed study, or its dataset is damaged.
     """
     path = Path(directory) / DATASET
     recover_study(path.parent)
@@ -188,13 +196,13 @@ def read_study(directory: str | PathLike[str]) -> Study:
             raise InputError(f"{folder}: this is not the folder of a study; it has no {DATASET}")
         command = f"vibroimpact sweep {shlex.quote(str(folder / STUDY))} -o {shlex.quote(str(folder))} --resume"
         raise InputError(f"{folder}: the study is not done; if nothing is at work on it, go on with: {command}")
-    with _damage_told(path):
+    with _reported_damage(path):
         check_hdf5(path, _check_sum(path.parent))
-    with _damage_told(path), h5py.File(path, "r") as file:
+    with _reported_damage(path), h5py.File(path, "r") as file:
         table = tomllib.loads(str(file.attrs["study"]))
         over = list(table["sweep"]["over"])  # in the order of the dimensions
         is_grid = _design(table) == "grid"
-        coordinates = {key: _of_file(file[key]) for key in over}
+        coordinates = {key: _coordinate(file[key]) for key in over}
         dimensions = {key: len(coordinates[key]) for key in over} if is_grid else {SAMPLE: len(file[SAMPLE])}
         names = [one for one in file if not file[one].is_scale and one not in (*over, FAILED_REASON)]
         meanings = {one: (str(file[one].attrs["units"]), str(file[one].attrs["long_name"])) for one in [*over, *names]}
@@ -206,7 +214,7 @@ def read_study(directory: str | PathLike[str]) -> Study:
 
 
 def _check_sum(folder: Path) -> str | None:
-    """Return the check sum of the dataset; None of an earlier version, which wrote none.
+    """Return the checksum of the dataset; None for an earlier version, which wrote none.
 
     Raises
     ------
@@ -223,13 +231,13 @@ def _check_sum(folder: Path) -> str | None:
 
 
 @contextmanager
-def _damage_told(path: Path) -> Iterator[None]:
-    """Say of a dataset that can't be read that it is damaged."""
+def _reported_damage(path: Path) -> Iterator[None]:
+    """Report read errors of a dataset as damage, with the command to compute it again."""
     try:
         yield
     except InputError:
         raise
-    except Exception as error:  # of many kinds, as files are damaged in many ways
+    except Exception as error:  # damage raises errors of many types
         words = str(error) if isinstance(error, DamageError) else f"the file is damaged: {short_reason(error)}"
         folder = shlex.quote(str(path.parent))
         command = f"vibroimpact sweep {shlex.quote(str(path.parent / STUDY))} -o {folder} --force"
@@ -240,7 +248,7 @@ def _design(table: dict[str, Any]) -> str:
     return str(table["sweep"].get("design", "grid"))
 
 
-def _of_file(data: h5py.Dataset) -> NDArray[Any]:
-    """Return the values of a coordinate: numbers, or texts."""
+def _coordinate(data: h5py.Dataset) -> NDArray[Any]:
+    """Return the values of a coordinate, numbers or strings."""
     values = read_array(data)
     return np.array([text.decode() for text in values], dtype=object) if values.dtype == object else np.asarray(values)

@@ -1,4 +1,4 @@
-"""From a case with a [sweep] section to a study: a case, the axes it runs over, and what is kept."""
+"""A study to be computed, read from a case with a [sweep] section: case, axes, and kept results."""
 
 from __future__ import annotations
 
@@ -26,37 +26,37 @@ from vibroimpact.files.reading import input_file_digest
 from vibroimpact.meshes.text_files import MESH
 from vibroimpact.shown import shortened, shown, visible
 from vibroimpact.studies.axes import Axis, Listed, Values
-from vibroimpact.studies.columns import OUTCOME, PEAKS, SENSOR_PEAK, SIGNAL
 from vibroimpact.studies.design import find_design
-from vibroimpact.studies.limits import limit_meanings
+from vibroimpact.studies.drop_variables import OUTCOME, PEAKS, SENSOR_PEAK, SIGNAL
+from vibroimpact.studies.limit_columns import limit_meanings
 from vibroimpact.studies.plan import Plan
 from vibroimpact.studies.section import MOST_DROPS, SweepSection, read_axis
 from vibroimpact.studies.swept_keys import case_at, find_quantity, holds_keys
 
 MOST_KEYS = 100
-"""Swept keys of a study."""
+"""Maximum number of swept keys."""
 
 MOST_POINT_VALUES = 40_000_000
-"""Values of all keys at all points of a study that is no grid; they lie in memory."""
+"""Maximum number of values (points times keys) of a study that is not a grid; they are held in memory."""
 
 LONG = 100
-"""Impacts that are reckoned with where a drop goes on to rest."""
+"""Assumed number of impacts of a drop that continues to rest."""
 
 
 @dataclass(frozen=True, eq=False)
 class Sweep:
-    """A study, read and checked.
+    """A study, read and validated.
 
     Attributes
     ----------
     table : dict
-        The case without its [sweep] section, as a TOML file would hold it.
+        The case without its [sweep] section, with the structure of a TOML case file.
     section : SweepSection
-        The design and what is kept.
+        The [sweep] section.
     axes : dict of str to Axis
-        What each key runs over.
+        Values of each swept key.
     quantities : dict of str to Quantity or None
-        What each key holds.
+        Quantity of each swept key; None if it is not a quantity.
     """
 
     table: dict[str, Any]
@@ -71,7 +71,7 @@ class Sweep:
 
     @cached_property
     def plan(self) -> Plan:
-        """The points."""
+        """The points of the study."""
         return find_design(self.section.design).plan(self.axes, self.section.samples or 0, self.section.seed)
 
     @cached_property
@@ -80,34 +80,34 @@ class Sweep:
         return self.case_at(self.values_of(0))
 
     def values_of(self, drop: int) -> dict[str, Any]:
-        """Return the values of one drop at the swept keys, by its number, from 0."""
+        """Return the values of the swept keys for a drop, by its number from 0."""
         return {key: values[0] for key, values in self.plan.points(drop, 1).items()}
 
     def case_at(self, values: Mapping[str, Any]) -> Case:
-        """Return the case with values at its swept keys.
+        """Return the case with given values of the swept keys.
 
         Raises
         ------
         InputError
-            If there is no such case.
+            If it is not a valid case.
         """
         return case_at(self.table, values)
 
     @cached_property
     def deforms(self) -> bool:
-        """Does anything but the contact itself deform, at any level of what is swept?"""
+        """Whether anything but the contact deforms, at any level of the swept keys."""
         first = self.values_of(0)
         names = {key: values for key, values in self.plan.columns.items() if values.dtype == object}
         cases = (self.case_at({**first, key: level}) for key, values in names.items() for level in _different(values))
         return deforms(self.case) or any(map(deforms, cases))
 
     def case_of(self, drop: int) -> Case:
-        """Return the case of one drop by its number, from 0: to run it by itself.
+        """Return the case of a drop by its number from 0, such as to run it separately.
 
         Raises
         ------
         InputError
-            If there is no such drop, or no such case.
+            If there is no such drop, or its case is not valid.
         """
         if not 0 <= drop < self.size:
             raise InputError(f"there is no drop {drop}; the study has {self.size}, counted from 0")
@@ -115,7 +115,7 @@ class Sweep:
 
     @property
     def bytes(self) -> float:
-        """About how large its results are."""
+        """Approximate size of the results [bytes]."""
         impacts = (impact_limit(self.case) or LONG) if "impacts" in self.section.keep else 0
         kept = self.case.sensors if "signals" in self.section.keep else ()
         samples = sum(sensor.rate * (self.case.run.duration or 0.0) for sensor in kept)
@@ -124,36 +124,36 @@ class Sweep:
 
     @property
     def name(self) -> str:
-        """What the study is called."""
+        """Title of the study."""
         return self.case.name or "a study of drops"
 
     @property
     def whole_table(self) -> dict[str, Any]:
-        """The case with its [sweep] section, as a TOML file would hold it."""
+        """The case with its [sweep] section, with the structure of a TOML case file."""
         return {**self.table, "sweep": self.section.model_dump(exclude_none=True, mode="json")}
 
     @property
     def meanings(self) -> dict[str, tuple[str, str]]:
-        """Unit and meaning of every swept key and of everything that may be kept of a drop, in the order in which it is told."""
+        """Unit and meaning of every swept key and of all variables that may be kept, in the order of the files."""
         sensors = {sensor.name: sensor.sensor() for sensor in self.case.sensors} if "signals" in self.section.keep else {}
         keys = {key: (quantity.unit or "1", quantity.meaning) if quantity else ("1", key) for key, quantity in self.quantities.items()}
         largest = {f"{name}{SENSOR_PEAK}": (one.unit, f"largest magnitude that {name} reads") for name, one in sensors.items()}
         signals = {f"{SIGNAL}{name}": (one.unit, f"{one.quantity} that {name} reads") for name, one in sensors.items()}
         impacts = meanings(ALL_IMPACT_COLUMNS)
-        del impacts["impact"]  # the dimension
+        del impacts["impact"]  # a dimension, not a variable
         ended = {OUTCOME: ("1", "why the run of the drop ended")}
         return {**keys, **ended, **PEAKS, **largest, **limit_meanings(), **impacts, **signals}
 
     @cached_property
     def digest(self) -> str:
-        """A fingerprint of the case, its meshes, the points and what is kept."""
+        """Fingerprint (SHA-256) of the case, its meshes, the points and the kept results."""
         meshes = [input_file_digest(file, MESH) for file in _meshes(self.table)]
         rest = json.dumps([self.table, meshes, self.section.keep], sort_keys=True, default=str)
         return sha256(f"{self.plan.digest()} {rest}".encode()).hexdigest()
 
 
 def load_sweep(source: str | PathLike[str]) -> Sweep:
-    """Read a study: a case file with a [sweep] section.
+    """Return a study, read from a case file with a [sweep] section.
 
     Parameters
     ----------
@@ -163,15 +163,15 @@ def load_sweep(source: str | PathLike[str]) -> Sweep:
     Raises
     ------
     InputError
-        If it can't be read, or is not a valid study; the message says where, what, and what is allowed.
+        If it can't be read or is not a valid study; the message names the key, the value and what is allowed.
     """
     return prefix_errors(source, lambda: read_sweep(load_table(source)))
 
 
 def read_sweep(table: Mapping[str, Any]) -> Sweep:
-    """Read a study from a mapping, as a TOML file would hold it.
+    """Return a study, read from a mapping with the structure of a TOML case file.
 
-    What it would compute is looked at, and nothing is computed: the case at the first point, and at the ends of every axis.
+    Nothing is computed, but the case is validated at the first point and at the ends of every axis.
 
     Raises
     ------
@@ -230,6 +230,7 @@ def read_sweep(table: Mapping[str, Any]) -> Sweep:
     except InputError as error:
         raise InputError(error.message, f"sweep.{error.key}".rstrip(".")) from None
     _check_points(sweep)
+    # names of sensors become names of variables of the dataset, and must not collide with others
     if "signals" in section.keep:
         sensors = [sensor.name for sensor in sweep.case.sensors]
         variables = [name for sensor in sensors for name in (f"{SIGNAL}{sensor}", f"{sensor}{SENSOR_PEAK}", f"time_{sensor}")]
@@ -246,13 +247,13 @@ def read_sweep(table: Mapping[str, Any]) -> Sweep:
 
 
 def _check_names(axis: Axis) -> None:
-    """Raise if there are more different names and tables than can be looked at: there is a case at each."""
+    """Check the number of distinct names and tables, each of which requires the validation of a case."""
     if isinstance(axis, Listed) and len(axis.values) > MOST_ITEMS and axis.levels().dtype == object:
         check_count(len(_different(axis.levels())), MOST_ITEMS, "different names and tables")
 
 
 def _twice(axis: Axis) -> str | None:
-    """Return a level that an axis has twice; those of a range and of a distribution differ, unless it is narrower than numbers are."""
+    """Return a level that an axis has twice: in a list, or in a range narrower than the precision of numbers."""
     levels = axis.levels()
     if levels.dtype == object:
         again, often = Counter(map(repr, levels.tolist())).most_common(1)[0]
@@ -263,7 +264,7 @@ def _twice(axis: Axis) -> str | None:
 
 
 def _flat(over: Mapping[str, Any], above: str = "") -> Iterator[tuple[str, Any]]:
-    """Yield what is swept by its dotted key, also where TOML made tables of keys that were not in quotes."""
+    """Yield the swept keys in dotted form with their entries, also where unquoted keys became nested TOML tables."""
     for key, value in over.items():
         dotted = f"{above}{key}"
         if isinstance(value, dict) and holds_keys(dotted):
@@ -273,7 +274,7 @@ def _flat(over: Mapping[str, Any], above: str = "") -> Iterator[tuple[str, Any]]
 
 
 def _check_points(sweep: Sweep) -> None:
-    """Raise unless all values are in range, and there is a case at the first point and with every axis at its ends there."""
+    """Check that all values are in range, and that the case is valid at the first point and with each axis at its ends."""
     columns = sweep.plan.columns
     for key, values in columns.items():
         quantity = sweep.quantities[key]
@@ -295,12 +296,12 @@ def _check_points(sweep: Sweep) -> None:
 
 
 def _different(values: Values) -> list[Any]:
-    """Return the different ones of values that may be tables, in order."""
+    """Return the distinct values, which may be tables, in order."""
     return list({repr(value): value for value in values.tolist()}.values())
 
 
 def _meshes(table: Mapping[str, Any]) -> Iterator[Path]:
-    """Yield the files of meshes that a case brings."""
+    """Yield the mesh files of a case."""
     for body in ("sphere", "plate"):
         mesh = table[body].get("mesh") if isinstance(table.get(body), dict) else None
         file = mesh.get("file") if isinstance(mesh, dict) else mesh

@@ -1,10 +1,11 @@
-"""Dotted keys of a case: what quantity each holds, and how a value is put there."""
+"""Dotted keys of a case: their quantities, and setting their values, singly or as arrays over many drops."""
 
 from __future__ import annotations
 
 import copy
+from collections import defaultdict
 from collections.abc import Iterator, Mapping
-from dataclasses import fields
+from dataclasses import fields, replace
 from typing import Any, get_args, get_origin
 
 import numpy as np
@@ -21,24 +22,28 @@ from vibroimpact.errors import InputError, did_you_mean
 from vibroimpact.materials import find_material
 from vibroimpact.ranges import Range
 from vibroimpact.shown import shown
+from vibroimpact.studies.axes import Values
 
 _SECTIONS: dict[str, type[Section]] = {"sphere": SphereSection, "plate": PlateSection, "drop": DropSection, "run": RunSection}
 _PLACES = {"position": ("x", "y"), "size": ("length", "width", "thickness")}
-"""What the numbers of a list are called, such as in "drop.position.x"."""
+"""Names of the numbers of a list, such as x in "drop.position.x"."""
 
 _DAMPING = Quantity("", "damping ratio", Range(at_least=0))
 
 _OPEN = ("supports", "mesh", "damping", "reduction")
-"""Tables of a body whose own keys are taken as they are; the reader of the case knows them."""
+"""Tables of a body whose inner keys are validated by the reader of the case."""
+
+_OF_THE_RUN = ("run.duration", "run.tolerance")  # the same for all drops of a batch
+_WITHOUT_EFFECT = ("drop.position.", "plate.size.")  # on rigid bodies
 
 
 def swept_keys(table: Mapping[str, Any]) -> dict[str, Quantity | None]:
-    """Return the keys of a case that can be swept, and the quantity that each holds; None of one that is no quantity.
+    """Return the keys of a case that can be swept with their quantities; None for a key that is not a quantity.
 
     Parameters
     ----------
     table : mapping
-        The case, as a TOML file would hold it; its contact law has keys of its own.
+        The case, with the structure of a TOML case file; its contact law determines the keys of [contact].
 
     Examples
     --------
@@ -50,7 +55,7 @@ def swept_keys(table: Mapping[str, Any]) -> dict[str, Quantity | None]:
 
 
 def find_quantity(table: Mapping[str, Any], key: str) -> Quantity | None:
-    """Return the quantity that a key of a case holds; None if it is no quantity.
+    """Return the quantity of a key of a case; None if it is not a quantity.
 
     Raises
     ------
@@ -72,7 +77,7 @@ def _like(key: str, known: Mapping[str, object]) -> str:
 
 
 def holds_keys(key: str) -> bool:
-    """Is a dotted key that of a section or a table, below which there are keys that can be swept?
+    """Return whether a dotted key is that of a section or a table that contains keys that can be swept.
 
     Examples
     --------
@@ -84,7 +89,7 @@ def holds_keys(key: str) -> bool:
 
 
 def with_values(table: Mapping[str, Any], values: Mapping[str, Any]) -> dict[str, Any]:
-    """Return a case with values at dotted keys; a material that was named is written out where one of its numbers changes.
+    """Return the case with values at dotted keys; a named material is written out where one of its properties changes.
 
     Examples
     --------
@@ -92,7 +97,7 @@ def with_values(table: Mapping[str, Any], values: Mapping[str, Any]) -> dict[str
     {'drop': {'position': [0.0, 0.1]}, 'sphere': {'radius': '5 mm'}}
     """
     found = copy.deepcopy(dict(table))
-    for key, value in sorted(values.items(), key=lambda item: item[0].count(".")):  # a material before its numbers
+    for key, value in sorted(values.items(), key=lambda item: item[0].count(".")):  # a material before its properties
         *way, last = key.split(".")
         inside: Any = found
         for number, part in enumerate(way):
@@ -104,7 +109,9 @@ def with_values(table: Mapping[str, Any], values: Mapping[str, Any]) -> dict[str
                 named = material_table(find_material(inside))
                 if isinstance(named, str):
                     raise InputError(f"{shown(inside)} has no numbers that could be swept", ".".join(way))
-                inside = holder[part] = {name: number for name, number in named.items() if name != "name"}  # it is another one now
+                inside = holder[part] = {
+                    name: number for name, number in named.items() if name != "name"
+                }  # a different material now, without the name
         if not inside and last in _PLACES.get(way[-1], ()):
             raise InputError(f"it is missing, so that it has no {last} that could be swept; give all of it", ".".join(way))
         names = _PLACES.get(way[-1], ()) if way else ()
@@ -120,15 +127,48 @@ def with_values(table: Mapping[str, Any], values: Mapping[str, Any]) -> dict[str
 
 
 def case_at(table: Mapping[str, Any], values: Mapping[str, Any]) -> Case:
-    """Return the case that a table holds once values stand at dotted keys.
+    """Return the validated case of a table with values at dotted keys.
 
     Raises
     ------
     InputError
-        If there is no such case.
+        If it is not a valid case.
     """
     plain = {key: value.item() if isinstance(value, np.generic) else value for key, value in values.items()}
     return read_case(with_values(table, plain))
+
+
+def is_array_key(key: str, values: Values) -> bool:
+    """Return whether the values of a key may differ within a batch of drops with rigid bodies."""
+    return values.dtype.kind == "f" and key not in _OF_THE_RUN
+
+
+def with_arrays(case: Case, arrays: Mapping[str, Values]) -> Case:
+    """Return a case whose numbers at dotted keys are arrays, one value per drop, without validation.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from vibroimpact.cases.rigid import rigid_problem
+    >>> from vibroimpact.cases.reader import load_case
+    >>> case = with_arrays(load_case("paper:type1-theory"), {"drop.height": np.array([1.0, 2.0, 4.0])})
+    >>> rigid_problem(case).shape
+    (3,)
+    """
+    fields: dict[str, dict[str, Any]] = defaultdict(dict)
+    materials: dict[str, dict[str, Any]] = defaultdict(dict)
+    for key, values in arrays.items():
+        section, _, field = key.partition(".")
+        if field.startswith("material."):
+            materials[section][field.removeprefix("material.")] = values
+        elif not key.startswith(_WITHOUT_EFFECT):
+            fields[section][field] = values
+    for section, numbers in materials.items():
+        fields[section]["material"] = replace(getattr(case, section).material, **numbers)
+    changed: dict[str, Any] = {name: getattr(case, name).model_copy(update=given) for name, given in fields.items() if name != "contact"}
+    if "contact" in fields:
+        changed["contact"] = replace(case.contact, parameters={**case.contact.parameters, **fields["contact"]})
+    return case.model_copy(update=changed)
 
 
 def _keys(table: Mapping[str, Any]) -> Iterator[tuple[str, Quantity | None]]:
@@ -155,7 +195,7 @@ def _keys(table: Mapping[str, Any]) -> Iterator[tuple[str, Quantity | None]]:
 
 
 def _quantity(annotations: tuple[Any, ...]) -> Quantity | None:
-    """Return the first quantity among annotations, or inside them."""
+    """Return the first quantity among annotations or nested in them."""
     for annotation in annotations:
         found = (
             annotation if isinstance(annotation, Quantity) else _quantity((*get_args(annotation), *getattr(annotation, "__metadata__", ())))
@@ -166,5 +206,5 @@ def _quantity(annotations: tuple[Any, ...]) -> Quantity | None:
 
 
 def _parts(annotation: Any) -> tuple[Any, ...]:
-    """Return the annotations of the numbers of a tuple, which may be optional."""
+    """Return the annotations of the elements of a tuple type, which may be optional."""
     return next(get_args(option) for option in (annotation, *get_args(annotation)) if get_origin(option) is tuple)

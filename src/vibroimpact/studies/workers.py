@@ -1,4 +1,4 @@
-"""Where chunks are computed: in this process, in processes of this machine, or (`dask_workers`) by those of a Dask scheduler."""
+"""Workers that compute chunks: this process, or processes of this machine (for a Dask scheduler see `dask_workers`)."""
 
 from __future__ import annotations
 
@@ -20,22 +20,22 @@ from typing import Any, NamedTuple
 from vibroimpact.errors import ComputationError
 
 Setup = Callable[[], object]
-"""What a worker does once before its first chunk; it is pickled."""
+"""Called once in each worker before its first chunk; it must be picklable."""
 
 
-class Crew(NamedTuple):
-    """Workers that are there: what gives them work, and a function that says how many chunks may be on the way, so that none waits."""
+class WorkerPool(NamedTuple):
+    """Running workers: their executor, and a function that returns the number of chunks to keep in flight so that none is idle."""
 
     executor: Executor
     in_flight: Callable[[], int]
 
 
-Workers = Callable[[], AbstractContextManager[Crew]]
-"""Starts workers, and ends them when the context does."""
+Workers = Callable[[], AbstractContextManager[WorkerPool]]
+"""Context manager that starts workers and ends them on exit."""
 
 
-class _AtOnce(Executor):
-    """An executor that does its work when it is given it."""
+class _SynchronousExecutor(Executor):
+    """An executor that computes synchronously on submission."""
 
     def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
         future: Future[Any] = Future()
@@ -47,13 +47,13 @@ class _AtOnce(Executor):
 
 
 @contextmanager
-def this_process() -> Iterator[Crew]:
-    """Compute in this process, which has what `Setup` would bring."""
-    yield Crew(_AtOnce(), lambda: 1)
+def this_process() -> Iterator[WorkerPool]:
+    """Provide this process as the only worker; it needs no setup."""
+    yield WorkerPool(_SynchronousExecutor(), lambda: 1)
 
 
-class _ByFile(Executor):
-    """An executor whose results come by files: a worker that is killed while it sends much would leave its leader waiting for the rest."""
+class _FileExecutor(Executor):
+    """An executor that transfers results by files: a worker killed while sending through a pipe would block the parent process."""
 
     def __init__(self, pool: Executor, folder: Path) -> None:
         self.pool, self.folder = pool, folder
@@ -65,7 +65,7 @@ class _ByFile(Executor):
 
 
 def _to_file(folder: Path, fn: Callable[..., Any], args: Any, kwargs: Any) -> Path:
-    """Write what comes of a call to a file of its own, in a worker."""
+    """Write the result of a call, in a worker, to a new file, and return its path."""
     result = fn(*args, **kwargs)
     try:
         with NamedTemporaryFile(dir=folder, prefix="result-", delete=False) as file:
@@ -78,7 +78,7 @@ def _to_file(folder: Path, fn: Callable[..., Any], args: Any, kwargs: Any) -> Pa
 
 
 def _from_file(result: Future[Any], written: Future[Path]) -> None:
-    """Hand on what a worker wrote, or why it did not."""
+    """Set the result of a future from the file that a worker wrote, or its exception."""
     try:
         path = written.result()
         result.set_result(pickle.loads(path.read_bytes()))
@@ -87,15 +87,15 @@ def _from_file(result: Future[Any], written: Future[Path]) -> None:
         result.set_exception(error)
 
 
-class _Deaf(SpawnProcess):
-    """A process that takes no notice of Ctrl-C from its first instruction on: that is for the one that leads."""
+class _InterruptImmuneProcess(SpawnProcess):
+    """A process that ignores Ctrl-C from its first instruction on; the parent process handles it."""
 
     def start(self) -> None:
-        """Start it, while this thread lets interrupts wait: it inherits that, and what has waited here comes up at the end."""
+        """Start the process with SIGINT blocked in this thread, which the child inherits; a pending signal is delivered afterwards."""
         if not hasattr(signal, "pthread_sigmask"):  # Windows
             super().start()
             return
-        resource_tracker.ensure_running()  # which has interrupts come up when it starts
+        resource_tracker.ensure_running()  # it unblocks signals when it starts, so start it before
         before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
         try:
             super().start()
@@ -103,20 +103,20 @@ class _Deaf(SpawnProcess):
             signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
-class _DeafContext(SpawnContext):
-    """Starts processes that take no notice of Ctrl-C, whenever an executor starts them; spawned, for a fork would copy locks of threads."""
+class _InterruptImmuneContext(SpawnContext):
+    """Context of processes that ignore Ctrl-C, whenever an executor starts them; spawned, as a fork would copy held locks of threads."""
 
-    Process = _Deaf
+    Process = _InterruptImmuneProcess
 
 
 @contextmanager
-def processes(number: int, setup: Setup, folder: Path) -> Iterator[Crew]:
-    """Compute in `number` processes of this machine, which leave their results in a folder until they are taken."""
-    pool = ProcessPoolExecutor(number, _DeafContext(), initializer=_begin, initargs=(setup,))
+def processes(number: int, setup: Setup, folder: Path) -> Iterator[WorkerPool]:
+    """Provide `number` processes of this machine, which pass their results through files in a folder."""
+    pool = ProcessPoolExecutor(number, _InterruptImmuneContext(), initializer=_begin, initargs=(setup,))
     try:
-        yield Crew(_ByFile(pool, folder), lambda: 2 * number)
+        yield WorkerPool(_FileExecutor(pool, folder), lambda: 2 * number)
     finally:
-        pool.shutdown(cancel_futures=True)  # each ends after the chunk that it is at, or with this process
+        pool.shutdown(cancel_futures=True)  # each ends after its current chunk, or with this process
 
 
 def _begin(setup: Setup) -> None:
@@ -126,7 +126,7 @@ def _begin(setup: Setup) -> None:
 
 
 def _end_with_parent() -> None:
-    """End this process when the one that leads is gone, even if it was killed: nobody would give it work, or end it."""
+    """End this process when its parent has ended, even if the parent was killed."""
     parent = multiprocessing.parent_process()
     assert parent is not None
     parent.join()

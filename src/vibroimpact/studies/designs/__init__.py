@@ -1,1 +1,1 @@
-"""The study designs, one file each."""
+"""The study designs, one per file."""

@@ -1,4 +1,4 @@
-"""All combinations of the levels."""
+"""Full factorial design: all combinations of the levels."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from vibroimpact.studies.plan import Plan
 
 
 def size(axes: Mapping[str, Axis], samples: int) -> int:
-    """Return how many combinations there are."""
+    """Return the number of combinations."""
     return prod(map(len, axes.values()))
 
 
 def plan(axes: Mapping[str, Axis], samples: int, seed: int) -> Plan:
-    """Return the grid."""
+    """Return the points of the grid."""
     return Plan("grid", {key: axis.levels() for key, axis in axes.items()}, True)
 
 

@@ -1,4 +1,4 @@
-"""Random points, evenly spread along each axis."""
+"""Latin hypercube sampling: random points, stratified along each axis."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ def size(axes: Mapping[str, Axis], samples: int) -> int:
 
 
 def plan(axes: Mapping[str, Axis], samples: int, seed: int) -> Plan:
-    """Return the points: of each axis one in each of as many equally likely parts, paired at random.
+    """Return the points: on each axis one in each of `samples` equally likely intervals, paired at random.
 
-    Each axis is drawn by itself, from a stream of its own, so that all samples of all axes never lie in memory twice.
+    Each axis is sampled separately from its own random stream, which avoids a second copy of all samples in memory.
     """
     from scipy.stats import qmc
 

@@ -1,4 +1,4 @@
-"""The points that Sobol's indices of sensitivity are estimated from."""
+"""Saltelli's design: the points for the estimation of Sobol indices."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from vibroimpact.studies.plan import Plan
 
 
 def size(axes: Mapping[str, Axis], samples: int) -> int:
-    """Return how many points there are: as many samples as asked for in each of 2 + axes blocks.
+    """Return the number of points: `samples` in each of 2 + axes blocks.
 
     Raises
     ------
     InputError
-        If the number of samples is no power of two, or there is one axis alone.
+        If the number of samples is not a power of two, or there is only one axis.
     """
     check_power_of_two(samples)
     if len(axes) < 2:
@@ -28,7 +28,7 @@ def size(axes: Mapping[str, Axis], samples: int) -> int:
 
 
 def plan(axes: Mapping[str, Axis], samples: int, seed: int) -> Plan:
-    """Return the points: a block A, a block B, and for each axis the block A with the values of B on that axis.
+    """Return the points: block A, block B, and for each axis block A with the values of B on that axis.
 
     References
     ----------

@@ -1,4 +1,4 @@
-"""Points of a scrambled Sobol sequence: evenly spread in all axes together."""
+"""Points of a scrambled Sobol sequence, a low-discrepancy sequence."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ def size(axes: Mapping[str, Axis], samples: int) -> int:
     Raises
     ------
     InputError
-        If it is no power of two: only then is the sequence balanced.
+        If it is not a power of two, for which alone the sequence is balanced.
     """
     check_power_of_two(samples)
     return samples
 
 
 def check_power_of_two(samples: int) -> None:
-    """Raise unless a number of samples is a power of two."""
+    """Check that a number of samples is a power of two."""
     if samples & (samples - 1):
         below = 1 << (samples.bit_length() - 1)
         raise InputError(
@@ -32,7 +32,7 @@ def check_power_of_two(samples: int) -> None:
 
 
 def plan(axes: Mapping[str, Axis], samples: int, seed: int) -> Plan:
-    """Return the points."""
+    """Return the points of the sequence."""
     from scipy.stats import qmc
 
     return drawn_plan("sobol", axes, qmc.Sobol(len(axes), rng=generator(seed)).random(samples))

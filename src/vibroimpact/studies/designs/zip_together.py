@@ -1,4 +1,4 @@
-"""The first values of all keys together, the second values, and so on."""
+"""Paired values: the first values of all keys together, then the second, and so on."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from vibroimpact.studies.plan import Plan
 
 
 def size(axes: Mapping[str, Axis], samples: int) -> int:
-    """Return how many values each key has.
+    """Return the number of values of each key.
 
     Raises
     ------
     InputError
-        If they do not have as many, or are distributions.
+        If the keys have different numbers of values, or one is a distribution.
     """
     for key, axis in axes.items():
         if axis.is_random:
@@ -31,7 +31,7 @@ def size(axes: Mapping[str, Axis], samples: int) -> int:
 
 
 def plan(axes: Mapping[str, Axis], samples: int, seed: int) -> Plan:
-    """Return the points."""
+    """Return the paired points."""
     size(axes, samples)
     return Plan("zip", {key: axis.levels() for key, axis in axes.items()}, False)
 

@@ -1,4 +1,4 @@
-"""The axes of a study as figures and tables show them."""
+"""The axes of a study in figures and tables."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ class StudyAxis:
     Attributes
     ----------
     key : str
-        Dotted, as the study has it.
+        Dotted key.
     unit : str
-        SI; "1" of a plain number.
+        SI unit; "1" for a plain number.
     values : array
-        The levels of a grid, or one value a drop; numbers [SI], or names.
+        Levels of a grid, or one value per drop; numbers in SI units, or names.
     """
 
     key: str
@@ -31,22 +31,22 @@ class StudyAxis:
 
     @property
     def numeric(self) -> bool:
-        """Are its values numbers?"""
+        """Whether its values are numbers."""
         return self.values.dtype.kind in "fiu"
 
     @property
     def varies(self) -> bool:
-        """Has it two values or more?"""
+        """Whether it has two or more distinct values."""
         return bool(len(self.values) and (self.values != self.values[0]).any())
 
 
 def study_axes(study: Study) -> list[StudyAxis]:
-    """Return the axes in the order of the points."""
+    """Return the axes of a study in order."""
     return [StudyAxis(key, study.meanings[key][0], _as_numbers(values)) for key, values in study.coordinates.items()]
 
 
 def _as_numbers(values: NDArray[Any]) -> NDArray[Any]:
-    """Return texts that are all plain numbers as these; some datasets have whole numbers as texts."""
+    """Return strings that are all numbers as numbers, as some datasets store integers as strings."""
     if values.dtype != object or not len(values):
         return values
     try:

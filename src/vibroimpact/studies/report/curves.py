@@ -1,4 +1,4 @@
-"""The figures of a study with one axis: curves over it."""
+"""Figure of a study with one axis: curves of the results over it."""
 
 from __future__ import annotations
 
@@ -6,19 +6,19 @@ from matplotlib.figure import Figure
 
 from vibroimpact.report.lettering import lettering
 from vibroimpact.report.style import ENLARGED, LOOPS, MARKS
-from vibroimpact.studies.columns import PEAK_TABLE
+from vibroimpact.studies.drop_variables import PEAK_TABLE
 from vibroimpact.studies.report.axes import StudyAxis
 from vibroimpact.studies.report.outputs import Output, on_grid
 from vibroimpact.studies.report.panels import add_legend, panels, scale_vertical, title_of
-from vibroimpact.studies.report.ticks import Ticks, rising
+from vibroimpact.studies.report.ticks import Ticks, ascending_order
 from vibroimpact.studies.study import Study
 
-_MOST_MARKED, _MOST = 40, 3000  # levels
+_MOST_MARKED, _MOST = 40, 3000  # levels up to which points are marked, and drawn
 
 
 def draw_curves(study: Study, axis: StudyAxis, outputs: list[Output]) -> Figure:
-    """Draw results over one axis, each of the first impacts a line where impacts were kept."""
-    ticks, order = Ticks(axis), rising(axis, _MOST)
+    """Draw the results over one axis, with one line per impact for the first impacts if impacts were kept."""
+    ticks, order = Ticks(axis), ascending_order(axis, _MOST)
     places = ticks.places(axis.values[order])
     number = min(_impacts_kept(study), ENLARGED)
     figure, some = panels([ticks.turned] * len(outputs), legend=number > 1)
@@ -55,11 +55,11 @@ def curve_words(study: Study, axis: StudyAxis) -> str:
 
 
 def _column(study: Study, output: Output) -> str:
-    """Return the column of the impact table behind a result; "" if there is none, or it was not kept."""
+    """Return the column of the impact table from which a result is taken; "" if there is none or it was not kept."""
     column = PEAK_TABLE[output.name].column if output.name in PEAK_TABLE else ""
     return column if column in study.shapes else ""
 
 
 def _impacts_kept(study: Study) -> int:
-    """Return how many impacts of a drop were kept; 0 if none were."""
+    """Return the number of impacts kept per drop; 0 if none."""
     return max((study.shapes[peak.column][-1] for peak in PEAK_TABLE.values() if peak.column in study.shapes), default=0)

@@ -1,4 +1,4 @@
-"""The figures of a study, as its design and the number of its axes ask for, with titles and captions."""
+"""The figures of a study, chosen by its design and number of axes, with titles and captions."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from vibroimpact.studies.study import Study
 
 
 class StudyFigure(NamedTuple):
-    """A figure before it is drawn: its title and caption, and what draws it; None of one that there is nothing for."""
+    """A figure to be drawn: title, caption, and the function that draws it, which returns None if there is nothing to show."""
 
     title: str
     caption: str
@@ -33,16 +33,16 @@ class StudyFigure(NamedTuple):
 
 
 def study_figures(study: Study, outputs: list[Output], found: Sensitivity | None) -> dict[str, StudyFigure]:
-    """Return the figures of a study by their names, in the order of the page.
+    """Return the figures of a study by name, in the order of the page.
 
     Parameters
     ----------
     study : Study
-        What is drawn.
+        The study.
     outputs : list of Output
         Its results.
     found : Sensitivity or None
-        What each key does to each of them.
+        Sensitivity of the results to the keys.
     """
     shown = drawn_outputs(outputs)
     figures: dict[str, StudyFigure] = {}
@@ -62,7 +62,7 @@ def study_figures(study: Study, outputs: list[Output], found: Sensitivity | None
 
 
 def draw(figure: StudyFigure) -> Figure | None:
-    """Draw a figure in the report's look."""
+    """Draw a figure in the style of the report."""
     with style():
         return figure.draw()
 
@@ -70,7 +70,7 @@ def draw(figure: StudyFigure) -> Figure | None:
 def _of_grid(study: Study, axes: list[StudyAxis], shown: list[Output], found: Sensitivity | None) -> dict[str, StudyFigure]:
     if len(axes) == 1:
         return {"curves": StudyFigure(f"Over {axes[0].key}", curve_words(study, axes[0]), partial(draw_curves, study, axes[0], shown))}
-    first, second = _two_that_matter(axes, shown, found)
+    first, second = _map_axes(axes, shown, found)
     over = f"{axes[first].key} and {axes[second].key}"
     if len(axes) == 2:
         words = "Levels are at the middle of their cells. Hatched: the drop failed, or has no such value."
@@ -105,8 +105,8 @@ def _of_samples(study: Study, axes: list[StudyAxis], shown: list[Output]) -> dic
     return figures
 
 
-def _two_that_matter(axes: list[StudyAxis], shown: list[Output], found: Sensitivity | None) -> tuple[int, int]:
-    """Return the two axes of the maps, in the order of the points."""
+def _map_axes(axes: list[StudyAxis], shown: list[Output], found: Sensitivity | None) -> tuple[int, int]:
+    """Return the indices of the two axes of the maps: those with the largest effect on the first result if known, else the first two."""
     strength = None if found is None else found.strength.get(shown[0].name)
     if len(axes) == 2 or strength is None:
         return 0, 1

@@ -1,4 +1,4 @@
-"""The figures of how drawn inputs and their results spread."""
+"""Histograms of sampled inputs and of results."""
 
 from __future__ import annotations
 
@@ -9,19 +9,19 @@ from matplotlib.figure import Figure
 from vibroimpact.arrays import Floats
 from vibroimpact.report.style import ACCENT, INK, MARK
 from vibroimpact.studies.report.axes import StudyAxis
-from vibroimpact.studies.report.outputs import Output, independent, independent_drops
+from vibroimpact.studies.report.outputs import Output, independent_drops, independent_values
 from vibroimpact.studies.report.panels import add_legend, is_log, panels, title_of
 from vibroimpact.studies.report.ticks import Ticks, plain_log_ticks
 from vibroimpact.studies.study import Study
 
 FEWEST = 20
-"""Drops below which a histogram tells nothing."""
+"""Minimum number of drops of a histogram."""
 
 _MOST_BINS = 60
 
 
 def draw_inputs(study: Study, axes: list[StudyAxis]) -> Figure:
-    """Draw how the inputs were drawn."""
+    """Draw histograms of the sampled inputs."""
     ticks = [Ticks(axis) for axis in axes]
     figure, some = panels([one.turned for one in ticks])
     for axis, one, panel in zip(axes, ticks, some, strict=True):
@@ -37,11 +37,11 @@ def draw_inputs(study: Study, axes: list[StudyAxis]) -> Figure:
 
 
 def draw_outputs(study: Study, outputs: list[Output]) -> Figure:
-    """Draw how the results spread, with their percentiles."""
+    """Draw histograms of the results with their percentiles."""
     figure, some = panels([False] * len(outputs), legend=True)
     for output, panel in zip(outputs, some, strict=True):
         size = output.scale.size
-        values = independent(study, output.name)
+        values = independent_values(study, output.name)
         values = values[np.isfinite(values)]
         values /= size
         _draw_histogram(panel, values, is_log(output))

@@ -1,4 +1,4 @@
-"""Words that tables, captions and the terminal share: values of an axis, labels, counts and parts."""
+"""Text common to tables, captions and the terminal: values of an axis, labels, counts and percentages."""
 
 from __future__ import annotations
 
@@ -12,16 +12,16 @@ from vibroimpact.studies.report.axes import StudyAxis
 from vibroimpact.units.display import digits, multiple, text
 
 BAND = f"{PERCENTILES[0]} to {PERCENTILES[-1]} %"
-"""What the bands of all figures are."""
+"""Label of the percentile bands in all figures."""
 
 
 def value_text(axis: StudyAxis, value: Any) -> str:
-    """Return one value of an axis as it is read."""
+    """Return one value of an axis as text."""
     return text(float(value), axis.unit) if axis.numeric else shortened(visible(str(value)), 60)
 
 
 def range_text(axis: StudyAxis) -> str:
-    """Return in words what an axis runs over."""
+    """Return the range or the names of an axis as text."""
     if not axis.varies:
         return f"{value_text(axis, axis.values[0])} alone"
     if not axis.numeric:
@@ -45,7 +45,7 @@ def drops_text(number: int) -> str:
 
 
 def percent(part: float) -> str:
-    """Return a part in percent, in two digits.
+    """Return a fraction as a percentage with two digits.
 
     Examples
     --------
@@ -56,5 +56,5 @@ def percent(part: float) -> str:
 
 
 def with_unit(name: str, unit: str) -> str:
-    """Return a label: a name, and its unit in brackets where it has one."""
+    """Return a label: a name with its unit, if any, in brackets."""
     return f"{name} [{unit}]" if unit else name

@@ -1,4 +1,4 @@
-"""The figure of a study with two axes or more: maps of the results over two of them."""
+"""Figure of a grid with two or more axes: maps of the results over two of them."""
 
 from __future__ import annotations
 
@@ -15,33 +15,33 @@ from vibroimpact.report.layout import WIDTH, label_vertical
 from vibroimpact.studies.report.axes import StudyAxis
 from vibroimpact.studies.report.outputs import Output, on_grid
 from vibroimpact.studies.report.panels import is_log, panels, title_of
-from vibroimpact.studies.report.ticks import Ticks, plain_log_ticks, rising
+from vibroimpact.studies.report.ticks import Ticks, ascending_order, plain_log_ticks
 from vibroimpact.studies.study import Study
 
-_MOST = 400  # levels of an axis that are drawn; a figure has few more pixels
-_LETTERS = 29  # of a label that has room beside a panel
-_BAR, _GAP, _LABELS = 0.1, 0.08, 0.5  # of the colour bar: width, distance, room for its numbers [in]
+_MOST = 400  # maximum number of levels drawn along an axis, close to the resolution of a figure
+_LETTERS = 29  # letters of a label that fit beside a panel
+_BAR, _GAP, _LABELS = 0.1, 0.08, 0.5  # width and distance of the colour bar, and space for its numbers [in]
 
 
 def draw_maps(study: Study, axes: list[StudyAxis], outputs: list[Output], shown: tuple[int, int]) -> Figure:
-    """Draw maps of results.
+    """Draw maps of results over two axes.
 
     Parameters
     ----------
     study : Study
-        On a grid.
+        A study on a grid.
     axes : list of StudyAxis
-        Those with several levels.
+        Its axes with several levels.
     outputs : list of Output
-        What is drawn.
+        The results to draw.
     shown : tuple of int
-        The two axes of the maps; over the others, the median is drawn.
+        Indices of the two axes of the maps; the median is taken over the others.
     """
     across, up = shown
-    if not axes[up].numeric and axes[across].numeric:  # names have more room below
+    if not axes[up].numeric and axes[across].numeric:  # names fit better below
         across, up = up, across
     below, beside = Ticks(axes[across]), Ticks(axes[up])
-    levels = rising(axes[across], _MOST), rising(axes[up], _MOST)
+    levels = ascending_order(axes[across], _MOST), ascending_order(axes[up], _MOST)
     edges = _edges(below, axes[across].values[levels[0]]), _edges(beside, axes[up].values[levels[1]])
     figure, some = panels([below.turned] * len(outputs))
     for number, (panel, output) in enumerate(zip(some, outputs, strict=True)):
@@ -62,7 +62,7 @@ def draw_maps(study: Study, axes: list[StudyAxis], outputs: list[Output], shown:
 
 
 def _draw(figure: Figure, panel: Axes, edges: tuple[Floats, Floats], values: Floats, log: bool) -> None:
-    """Draw one map and its colour bar; what failed is hatched."""
+    """Draw one map and its colour bar; cells without a value are hatched."""
     finite = values[np.isfinite(values)]
     low, high = (float(finite.min()), float(finite.max())) if len(finite) else (0.0, 1.0)
     norm = LogNorm(low, high) if log and low > 0.0 else Normalize(low, high)
@@ -78,7 +78,7 @@ def _draw(figure: Figure, panel: Axes, edges: tuple[Floats, Floats], values: Flo
 
 
 def _medians(values: Floats, across: int, up: int) -> Floats:
-    """Return a result over two axes of the grid: its median over the others."""
+    """Return the median of a result over all axes of the grid but two."""
     if values.ndim == 2:
         return values if across < up else values.T
     moved = np.moveaxis(values, (across, up), (0, 1))
@@ -93,7 +93,7 @@ def _medians(values: Floats, across: int, up: int) -> Floats:
 
 
 def _edges(ticks: Ticks, levels: NDArray[Any]) -> Floats:
-    """Return the edges of cells: half way between levels, on a logarithmic scale by factors."""
+    """Return the edges of the cells: midpoints between levels, geometric ones on a logarithmic scale."""
     places = ticks.places(levels)
     return np.exp(_halves(np.log(places))) if ticks.is_log else _halves(places)
 

@@ -1,4 +1,4 @@
-"""The report of a study: figures, tables of percentiles and of sensitivity, and the page."""
+"""Write the report of a study: figures, tables of percentiles and sensitivity, and the page."""
 
 from __future__ import annotations
 
@@ -11,16 +11,17 @@ from vibroimpact.report.write_files import write_beside
 from vibroimpact.results.tables import write_csv
 from vibroimpact.studies.design import find_design
 from vibroimpact.studies.report.axes import study_axes
-from vibroimpact.studies.report.doubts import COUNTED_FROM, doubt_sentences
 from vibroimpact.studies.report.figures import draw, study_figures
 from vibroimpact.studies.report.labels import drops_text
 from vibroimpact.studies.report.outputs import Output, drawn_outputs, study_outputs
-from vibroimpact.studies.report.restitution import restitution_of, restitution_sentence
+from vibroimpact.studies.report.restitution import restitution_sentence, summarize_restitution
 from vibroimpact.studies.report.sensitivity import Sensitivity, sensitivity_of
 from vibroimpact.studies.report.tables import (
+    COUNTED_FROM,
     PERCENTILE_COLUMNS,
     axes_table,
     counts_sentence,
+    doubt_sentences,
     failures_table,
     percentiles_rows,
     percentiles_table,
@@ -31,27 +32,27 @@ from vibroimpact.studies.report.tables import (
     spread_words,
 )
 from vibroimpact.studies.study import Study
-from vibroimpact.studies.toml import study_toml
+from vibroimpact.studies.study_folder import study_toml
 
 PAGE, FIGURES, SPREADS, SENSITIVITY = "report.html", "figures", "percentiles.csv", "sensitivity.csv"
 
 
 def write_study_report(study: Study, folder: Path) -> None:
-    """Write figures, `percentiles.csv`, `sensitivity.csv` where there is something to tell, and `report.html`.
+    """Write figures, `percentiles.csv`, `sensitivity.csv` if there are sensitivities, and `report.html`.
 
-    All is written beside and then put in its place file by file; figures that there no longer are go.
+    All files are written to a temporary folder and then moved into place one by one; obsolete figures are removed.
 
     Parameters
     ----------
     study : Study
-        What is told.
+        The completed study.
     folder : pathlib.Path
-        That of the study.
+        Folder of the study.
 
     Raises
     ------
     InputError
-        If the folder can't be written to.
+        If the folder can't be written.
     """
     write_beside(folder, partial(_write, study), goes=(SENSITIVITY, f"{FIGURES}/*.*"))
 
@@ -59,7 +60,7 @@ def write_study_report(study: Study, folder: Path) -> None:
 def _write(study: Study, folder: Path) -> None:
     (folder / FIGURES).mkdir()
     outputs = study_outputs(study)
-    found = sensitivity_of(study, [one for one in outputs if one.tells])
+    found = sensitivity_of(study, [one for one in outputs if one.is_informative])
     write_csv(percentiles_rows(outputs), PERCENTILE_COLUMNS, folder / SPREADS)
     if found is not None and found.rows:
         table = sensitivity_rows(found)
@@ -68,7 +69,7 @@ def _write(study: Study, folder: Path) -> None:
 
 
 def _pictures(study: Study, outputs: list[Output], found: Sensitivity | None, folder: Path) -> list[Picture]:
-    """Draw and save the figures one by one, so that no more than one is held."""
+    """Draw and save the figures one by one, so that only one is in memory."""
     pictures = []
     for name, one in study_figures(study, outputs, found).items():
         figure = draw(one)
@@ -84,7 +85,7 @@ def _page(study: Study, outputs: list[Output], found: Sensitivity | None, pictur
         name=study.name[:1].upper() + study.name[1:],
         counts=counts_sentence(study),
         failed=len(study.failures) == study.size,
-        restitution=restitution_sentence(restitution_of(study)),
+        restitution=restitution_sentence(summarize_restitution(study)),
         doubts=doubt_sentences(study),
         counted_from=COUNTED_FROM,
         design=f"{study.design}: {find_design(study.design).meaning}",
@@ -93,7 +94,7 @@ def _page(study: Study, outputs: list[Output], found: Sensitivity | None, pictur
         failures=failures_table(study) if study.failures else None,
         spread_words=spread_words(study),
         percentiles=percentiles_table(outputs),
-        without=[one.title for one in outputs if not one.spread.drops and not one.of_sensor],
+        without=[one.title for one in outputs if not one.spread.drops and not one.is_sensor_reading],
         sensitivity=table,
         sensitivity_words=sensitivity_words(found) if table and found is not None else "",
         notes=found.notes if found is not None else [],

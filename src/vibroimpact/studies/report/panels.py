@@ -1,4 +1,4 @@
-"""Panels of the figures of a study: where they lie, and how results are scaled in them."""
+"""Layout and scales of the panels in the figures of a study."""
 
 from __future__ import annotations
 
@@ -15,20 +15,20 @@ from vibroimpact.studies.report.outputs import Output
 from vibroimpact.studies.report.ticks import plain_log_ticks
 
 _HEIGHT, _WIDE_HEIGHT = 1.9, 3.0
-_BETWEEN = 0.85  # rows: a title, tick labels and a label [in]
-_TURNED = 0.45  # more, where names are turned [in]
-_FACTORS = 30.0  # from the 5th to the 95th percentile; beyond, a logarithmic scale shows more
+_BETWEEN = 0.85  # distance of rows, for a title, tick labels and an axis label [in]
+_TURNED = 0.45  # additional distance for rotated names [in]
+_FACTORS = 30.0  # ratio of the 95th to the 5th percentile above which the scale is logarithmic
 
 
 def panels(turned: Sequence[bool], *, legend: bool = False) -> tuple[Figure, list[Axes]]:
-    """Return a figure with panels, two in a row, the first one at the top; one alone is as wide as the figure.
+    """Return a figure with panels, two per row from the top; a single panel has the full width.
 
     Parameters
     ----------
     turned : sequence of bool
-        For each panel, are there names below it that are turned, and need more room?
+        For each panel, whether the names below it are rotated and need more space.
     legend : bool, default False
-        Is there a legend below all?
+        Whether to leave space for a legend below all panels.
     """
     height = _HEIGHT if len(turned) > 1 else _WIDE_HEIGHT
     rooms = [_TURNED * any(turned[first : first + 2]) for first in range(0, len(turned), 2)]
@@ -44,31 +44,31 @@ def panels(turned: Sequence[bool], *, legend: bool = False) -> tuple[Figure, lis
 
 
 def add_legend(figure: Figure, axes: Axes, enlarged: float = 1.0) -> None:
-    """Write the legend of one panel below all, its marks larger where they are small in the panel."""
+    """Add the legend of one panel below all panels, with marks scaled by a factor."""
     handles, labels = axes.get_legend_handles_labels()
     figure.legend(handles, labels, loc="lower center", ncols=6, handlelength=3.0, columnspacing=1.4, markerscale=enlarged)
 
 
 def title_of(output: Output) -> str:
-    """Return the title of a panel: the result and its unit."""
+    """Return the title of a panel: the result with its unit."""
     return with_unit(lettering(output.title), output.scale.unit)
 
 
 def is_log(output: Output) -> bool:
-    """Does a result spread over so much that its logarithm shows more?"""
+    """Return whether a result is shown on a logarithmic scale, as it spans a large ratio."""
     low, high = output.spread.percentiles[0], output.spread.percentiles[-1]
     return low > 0.0 and high > _FACTORS * low
 
 
 def scale_vertical(axes: Axes, output: Output) -> None:
-    """Give the vertical axis its scale, once all is drawn."""
+    """Set the scale of the vertical axis after drawing."""
     if is_log(output):
         axes.set_yscale("log")
         plain_log_ticks(axes.yaxis)
 
 
 def same_heights(some: list[Axes]) -> None:
-    """Give panels the vertical limits of all of them together."""
+    """Give all panels common vertical limits."""
     limits: list[Any] = [axes.get_ylim() for axes in some]
     for axes in some:
         axes.set_ylim(min(low for low, _ in limits), max(high for _, high in limits))

@@ -1,4 +1,4 @@
-"""Restitution asked of the contact laws of a study, and what the drops achieved: in words, and as a figure."""
+"""Restitution prescribed to the contact laws of a study and achieved by the drops: summary, sentence and figure."""
 
 from __future__ import annotations
 
@@ -12,26 +12,26 @@ from matplotlib.figure import Figure
 from vibroimpact.arrays import Floats
 from vibroimpact.report.layout import label_vertical, new_figure, row_of_axes, wide_axes
 from vibroimpact.report.style import LOOPS, MARKS
-from vibroimpact.studies.report.outputs import independent, some
+from vibroimpact.studies.report.outputs import independent_values, sampled_output
 from vibroimpact.studies.report.panels import add_legend
 from vibroimpact.studies.report.ticks import is_spread_by_factors, plain_log_ticks
 from vibroimpact.studies.study import Study
 from vibroimpact.units.display import fixed
 
-_MOST = 1200  # drops that are drawn
-_FEW, _SOME = 100, 300  # drops up to which marks are large, and are drawn as lines
+_MOST = 1200  # maximum number of drops drawn
+_FEW, _SOME = 100, 300  # drops up to which marks are large, and are drawn as vectors
 _AS_ASKED: dict[str, Any] = {"color": "#888888", "linewidth": 0.9, "linestyle": (0, (4, 2)), "zorder": 1.5, "label": "as asked"}
 
 
-class Restitution(NamedTuple):
-    """Restitution at the first impacts of all drops.
+class RestitutionSummary(NamedTuple):
+    """Restitution at the first impacts of all drops, prescribed ("asked") and achieved.
 
     Attributes
     ----------
     asked, achieved : (float, float) or None
-        The least and the largest; None where there is none.
+        Minimum and maximum; None if there are no values.
     difference : float
-        The median of what was achieved less what was asked; NaN without either.
+        Median of the achieved minus the prescribed value; NaN without either.
     """
 
     asked: tuple[float, float] | None
@@ -39,30 +39,30 @@ class Restitution(NamedTuple):
     difference: float
 
 
-def restitution_of(study: Study) -> Restitution:
-    """Return how restitution asked and achieved compare at the first impacts."""
+def summarize_restitution(study: Study) -> RestitutionSummary:
+    """Return the summary of prescribed and achieved restitution at the first impacts."""
     if "first_restitution_achieved" not in study.shapes:
-        return Restitution(None, None, math.nan)
-    found = independent(study, "first_restitution_achieved")
+        return RestitutionSummary(None, None, math.nan)
+    found = independent_values(study, "first_restitution_achieved")
     achieved = _extremes(found)
     if "first_restitution_asked" not in study.shapes:
-        return Restitution(None, achieved, math.nan)
-    wanted = independent(study, "first_restitution_asked")
+        return RestitutionSummary(None, achieved, math.nan)
+    wanted = independent_values(study, "first_restitution_asked")
     asked = _extremes(wanted)
     found -= wanted
-    del wanted  # there may be millions
+    del wanted  # free memory: there may be millions of values
     found = found[np.isfinite(found)]
-    return Restitution(asked, achieved, float(np.median(found, overwrite_input=True)) if len(found) else math.nan)
+    return RestitutionSummary(asked, achieved, float(np.median(found, overwrite_input=True)) if len(found) else math.nan)
 
 
 def _extremes(values: Floats) -> tuple[float, float] | None:
-    """Return the least and the largest of the finite values."""
+    """Return minimum and maximum of the finite values."""
     low, high = float(np.fmin.reduce(values)), float(np.fmax.reduce(values))
     return (low, high) if math.isfinite(low) else None
 
 
-def restitution_sentence(found: Restitution) -> str:
-    """Return in words what was asked and what was achieved; "" if nothing was achieved."""
+def restitution_sentence(found: RestitutionSummary) -> str:
+    """Return a sentence on prescribed and achieved restitution; "" if there is no achieved value."""
     if found.achieved is None:
         return ""
     achieved = f"the first impacts achieved {_ends(found.achieved)}"
@@ -73,9 +73,9 @@ def restitution_sentence(found: Restitution) -> str:
 
 
 def draw_restitution(study: Study) -> Figure | None:
-    """Draw restitution achieved over that asked, and the difference over the approach speed; None where none is asked.
+    """Draw achieved over prescribed restitution, and their difference over the approach speed; None if none is prescribed.
 
-    Where one restitution alone was asked, what was achieved is drawn over the approach speed instead.
+    If all prescribed values are equal, the achieved restitution is drawn over the approach speed instead.
     """
     found = _asked_achieved_speed(study)
     if found is None:
@@ -108,18 +108,18 @@ def draw_restitution(study: Study) -> Figure | None:
 
 
 def _asked_achieved_speed(study: Study) -> tuple[Floats, Floats, Floats] | None:
-    """Return restitution asked and achieved, and the approach speed, (drops, impacts) each: of all impacts if kept, else the first."""
+    """Return prescribed and achieved restitution and approach speed, (drops, impacts) each: of all impacts if kept, else of the first."""
     names = ("restitution_asked", "restitution_achieved", "approach_speed_m_s")
     if not all(name in study.shapes for name in names):
         names = ("first_restitution_asked", "first_restitution_achieved", "first_approach_speed_m_s")
     if names[0] not in study.shapes:
         return None
-    asked, achieved, speed = (np.atleast_2d(some(study, name, _MOST).T).T for name in names)
+    asked, achieved, speed = (np.atleast_2d(sampled_output(study, name, _MOST).T).T for name in names)
     return (asked, achieved, speed) if (np.isfinite(asked) & np.isfinite(achieved)).any() else None
 
 
 def _plot_impacts(axes: Axes, across: Floats, up: Floats) -> None:
-    """Draw a mark an impact, of the first impacts of each drop."""
+    """Draw the first impacts of each drop, with one mark style per impact."""
     for impact, (mark, (colour, _), x, y) in enumerate(zip(MARKS, LOOPS, across.T, up.T, strict=False)):
         axes.plot(
             x,

@@ -1,4 +1,4 @@
-"""Which swept key moves which result: indices, rank correlations or ranges, as the design of a study allows."""
+"""Sensitivity of the results of a study to its swept keys, by the method that its design allows."""
 
 from __future__ import annotations
 
@@ -8,33 +8,33 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.studies.report.axes import StudyAxis, study_axes
-from vibroimpact.studies.report.outputs import Output, on_grid, read_output, some, some_places
-from vibroimpact.studies.report.ticks import rising
+from vibroimpact.studies.report.outputs import Output, on_grid, read_output, sampled_output, sampled_places
+from vibroimpact.studies.report.ticks import ascending_order
 from vibroimpact.studies.sensitivity import MOST_LEFT_OUT, one_at_a_time, rank_correlations, sobol_indices
 from vibroimpact.studies.study import Study
 
 SOBOL, RANKS, RANGES = "sobol", "ranks", "ranges"
-"""The three ways to tell it."""
+"""The methods: Sobol indices, rank correlations, one-at-a-time ranges."""
 
-_POINTS = 131_072  # of a block that indices are estimated from: a power of two
-_RANKED = 65_536  # drops of which ranks are compared
+_POINTS = 131_072  # maximum number of points of a block for the indices, a power of two
+_RANKED = 65_536  # maximum number of drops for rank correlations
 
 
 class Sensitivity(NamedTuple):
-    """What each key does to each result.
+    """Sensitivity of each result to each key.
 
     Attributes
     ----------
     way : str
         SOBOL, RANKS or RANGES.
     keys : list of str
-        Those that vary; those that are numbers alone for RANKS.
+        Keys that vary; only numeric ones for RANKS.
     rows : dict of str to dict of str to array
-        By the name of the result the columns of the table, one value a key.
+        By name of the result the columns of the table, one value per key.
     strength : dict of str to array
-        By the name of the result, how strong each key is: a total index, the magnitude of a correlation, a relative range.
+        By name of the result the effect of each key: total index, magnitude of the correlation, or relative range.
     notes : list of str
-        What was left out, as sentences.
+        Omissions, as sentences.
     """
 
     way: str
@@ -45,7 +45,7 @@ class Sensitivity(NamedTuple):
 
 
 def sensitivity_of(study: Study, outputs: list[Output]) -> Sensitivity | None:
-    """Return what each key does to each of some results that vary; None in a zip, or without a key that varies."""
+    """Return the sensitivity of the given results that vary; None for the design "zip", or if no key or no result varies."""
     axes = study_axes(study)
     varying = [axis for axis in axes if axis.varies]
     outputs = [one for one in outputs if one.spread.varies]
@@ -57,7 +57,7 @@ def sensitivity_of(study: Study, outputs: list[Output]) -> Sensitivity | None:
 
 
 def strongest(found: Sensitivity, output: str) -> str | None:
-    """Return the key that moves a result most; None where it can't be told."""
+    """Return the key with the largest effect on a result; None if it is undetermined."""
     strength = found.strength.get(output)
     if strength is None or not np.isfinite(strength).any():
         return None
@@ -69,7 +69,7 @@ def _indices(study: Study, axes: list[StudyAxis], outputs: list[Output]) -> Sens
     block = study.size // (2 + len(axes))
     points = min(block, _POINTS)
     for output in outputs:
-        # of a drop that failed there is no value, and its point is left out
+        # failed drops are NaN, and their points are omitted
         parts = [read_output(study, output.name, slice(first, first + points)) for first in range(0, study.size, block)]
         found = sobol_indices(np.concatenate(parts), len(axes), int(study.table["sweep"].get("seed", 0)))
         if found is None:
@@ -103,11 +103,11 @@ def _ranks(study: Study, axes: list[StudyAxis], outputs: list[Output]) -> Sensit
     notes = [f"{', '.join(named)}: names have no order, so that there is no rank correlation with them."] if named else []
     if not numeric:
         return Sensitivity(RANKS, [], {}, {}, notes)
-    places = some_places(study, _RANKED)
+    places = sampled_places(study, _RANKED)
     inputs = np.array([axis.values[places] for axis in numeric])
     rows = {}
     for output in outputs:
-        values = some(study, output.name, _RANKED)
+        values = sampled_output(study, output.name, _RANKED)
         drops = np.full(len(numeric), int(np.isfinite(values).sum()))
         rows[output.name] = {"rank_correlation": rank_correlations(inputs, values), "drops": drops}
     if inputs.shape[1] < study.size:
@@ -117,7 +117,7 @@ def _ranks(study: Study, axes: list[StudyAxis], outputs: list[Output]) -> Sensit
 
 
 def _ranges(study: Study, axes: list[StudyAxis], outputs: list[Output]) -> Sensitivity | None:
-    orders = [rising(axis) for axis in axes]
+    orders = [ascending_order(axis) for axis in axes]
     rows, strength, without = {}, {}, []
     for output in outputs:
         moved = one_at_a_time(on_grid(study, output.name), orders)

@@ -1,4 +1,4 @@
-"""The figure of which swept key moves which result."""
+"""Figure of the sensitivity of the results to the swept keys."""
 
 from __future__ import annotations
 
@@ -16,19 +16,19 @@ from vibroimpact.studies.report.sensitivity import RANGES, RANKS, SOBOL, Sensiti
 from vibroimpact.studies.study import Study
 
 _LEFT, _RIGHT, _BETWEEN = 2.35, 7.8, 0.25  # [in]
-_LINE, _ROW = 0.3, 0.85  # a key, and what a row of panels has around its keys [in]
+_LINE, _ROW = 0.3, 0.85  # height of a key, and of the surroundings of a row of panels [in]
 _COLUMNS = 3
 _MOST_KEYS = 15
-_LETTERS = 24  # of a title that has room over a narrow panel
+_LETTERS = 24  # letters of a title that fit over a narrow panel
 _LABELS = {SOBOL: "Part of the variance", RANKS: "Rank correlation", RANGES: "From the middle [%]"}
 
 
 def draw_sensitivity(study: Study, found: Sensitivity, outputs: list[Output]) -> Figure | None:
-    """Draw indices, correlations or ranges, a panel a result; None where there is nothing to compare."""
+    """Draw indices, correlations or ranges, one panel per result; None with fewer than two keys or no result."""
     shown = [one for one in outputs if one.name in found.rows]
     if not shown or len(found.keys) < 2:
         return None
-    # the strongest key at the top, by all results together
+    # sort the keys by their effect summed over all results, the largest at the top
     order = np.argsort(np.nansum([found.strength[one.name] for one in shown], axis=0), kind="stable")[-_MOST_KEYS:]
     rows, tall = math.ceil(len(shown) / _COLUMNS), _LINE * len(order) + 0.1
     foot = 0.85 if found.way == SOBOL else 0.5
@@ -56,7 +56,7 @@ def draw_sensitivity(study: Study, found: Sensitivity, outputs: list[Output]) ->
 
 
 def _draw(axes: Axes, found: Sensitivity, output: Output, order: np.ndarray[tuple[int], np.dtype[np.intp]]) -> None:
-    """Draw the bars of one result, and a line at what does nothing."""
+    """Draw the bars of one result, and a line at zero effect."""
     row, places = found.rows[output.name], np.arange(len(order))
     if found.way == SOBOL:
         for side, name, colour, label in (
@@ -80,7 +80,7 @@ def _draw(axes: Axes, found: Sensitivity, output: Output, order: np.ndarray[tupl
 
 
 def _same_widths(drawn: list[Axes], way: str) -> None:
-    """Give all panels one scale, except of ranges, which may be as different as the results."""
+    """Give all panels a common scale, except for ranges, which may differ widely between results."""
     if way == RANKS:
         for axes in drawn:
             axes.set_xlim(-1.05, 1.05)

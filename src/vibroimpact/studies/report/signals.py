@@ -1,4 +1,4 @@
-"""The figure of what a sensor recorded in the drops of a study: how its readings spread, and a few of them."""
+"""Figure of the signals of a sensor in the drops of a study: percentile band and single signals."""
 
 from __future__ import annotations
 
@@ -12,34 +12,34 @@ from vibroimpact.files.plain_names import plain_names
 from vibroimpact.report.layout import label_vertical, new_figure, wide_axes
 from vibroimpact.report.lettering import lettering
 from vibroimpact.report.style import ACCENT, INK, LOOPS
-from vibroimpact.studies.columns import SIGNAL
+from vibroimpact.studies.drop_variables import SIGNAL
 from vibroimpact.studies.report.labels import BAND, drops_text, with_unit
-from vibroimpact.studies.report.outputs import some
+from vibroimpact.studies.report.outputs import sampled_output
 from vibroimpact.studies.report.panels import add_legend
 from vibroimpact.studies.study import Study
 from vibroimpact.units.display import Multiple, multiple
 
 MOST = 2
-"""How many sensors are drawn."""
+"""Maximum number of sensors drawn."""
 
-_BYTES = 30e6  # of the signals that are looked at, as floats
-_COLUMNS = 300  # of the band
-_CLOSE = 250  # samples of the few drops from where they begin
+_BYTES = 30e6  # maximum memory of the evaluated signals
+_COLUMNS = 300  # time intervals of the band
+_CLOSE = 250  # samples shown of single signals from their onset
 _FEW = 3
-_BEGINS = 0.02  # of its peak: a signal that is larger has begun
+_BEGINS = 0.02  # fraction of the peak at which a signal has its onset
 
 
 def signal_figures(study: Study) -> dict[str, str]:
-    """Return the names of the figures of sensors, and those of the sensors."""
+    """Return the names of the figures of sensors, with the names of the sensors."""
     sensors = [name.removeprefix(SIGNAL) for name in study.shapes if name.startswith(SIGNAL)]
     return {f"signal_{plain_name}": sensor for sensor, plain_name in list(plain_names(sensors).items())[:MOST]}
 
 
 def draw_signals(study: Study, sensor: str) -> Figure | None:
-    """Draw the signals of a sensor: the 5 to 95 % band of its readings over time, and a few drops from where they begin."""
+    """Draw the signals of a sensor: percentile band of its readings over time, and single signals from their onset."""
     name = f"{SIGNAL}{sensor}"
     samples, unit = study.shapes[name][-1], study.meanings[name][0]
-    signals = some(study, name, max(_FEW, int(_BYTES / (8 * samples))))
+    signals = sampled_output(study, name, max(_FEW, int(_BYTES / (8 * samples))))
     signals = signals[np.isfinite(signals).all(axis=1)]
     if not len(signals) or not np.abs(signals).max() > 0.0:
         return None
@@ -59,7 +59,7 @@ def draw_signals(study: Study, sensor: str) -> Figure | None:
 
 
 def _draw_band(axes: Axes, time: Floats, signals: Floats) -> None:
-    """Draw how far readings reach in short spans of time."""
+    """Draw the percentile band of the readings in short time intervals."""
     spans = np.array_split(np.arange(len(time)), min(_COLUMNS, len(time)))
     parts = np.array([np.percentile(signals[:, span], (0, 5, 50, 95, 100)) for span in spans])
     clock = multiple("s", time)
@@ -73,7 +73,7 @@ def _draw_band(axes: Axes, time: Floats, signals: Floats) -> None:
 
 
 def _draw_few(axes: Axes, time: Floats, signals: Floats, scale: Multiple) -> None:
-    """Draw the drops with the smallest, the middle and the largest peak, each from where its signal begins."""
+    """Draw the signals with the smallest, the median and the largest peak, each from its onset."""
     by_peak = np.argsort(np.abs(signals).max(axis=1), kind="stable")
     chosen = dict.fromkeys([int(by_peak[0]), int(by_peak[len(by_peak) // 2]), int(by_peak[-1])])
     titles = ("smallest peak", "middle peak", "largest peak") if len(chosen) == _FEW else ("smallest peak", "largest peak")
@@ -91,6 +91,6 @@ def _draw_few(axes: Axes, time: Floats, signals: Floats, scale: Multiple) -> Non
 
 
 def _begin(signal: Floats) -> int:
-    """Return the place at which a signal begins to move."""
+    """Return the index of the onset of a signal."""
     moved = np.abs(signal - signal[0])
     return int(np.argmax(moved > _BEGINS * moved.max()))

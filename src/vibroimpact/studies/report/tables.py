@@ -1,4 +1,4 @@
-"""What the report of a study tells in words and tables."""
+"""Sentences and tables of the report of a study."""
 
 from __future__ import annotations
 
@@ -9,16 +9,22 @@ from typing import Any
 import numpy as np
 
 from vibroimpact.arrays import Floats
+from vibroimpact.cases.limit import limits
 from vibroimpact.studies.percentiles import PERCENTILES
 from vibroimpact.studies.report.axes import StudyAxis, study_axes
 from vibroimpact.studies.report.labels import drops_text, percent, range_text, value_text
 from vibroimpact.studies.report.outputs import Output
 from vibroimpact.studies.report.sensitivity import RANKS, SOBOL, Sensitivity
 from vibroimpact.studies.study import Study
+from vibroimpact.studies.unit_slips import study_slips
 from vibroimpact.units.display import digits, fixed
 
 PERCENTILE_COLUMNS = ["output", "unit", "drops", "mean", "standard_deviation", *(f"percentile_{part}" for part in PERCENTILES)]
-"""Of `percentiles.csv`."""
+"""Columns of `percentiles.csv`."""
+
+COUNTED_FROM = "Drops are counted from 0, as in study.nc and drops.csv."
+
+_WORST_KEYS = 4  # keys shown of the worst drop; all are in drops.csv
 
 _COUNT = "number_of_impacts"
 _FAILURES, _REASONS = 10, 5
@@ -27,7 +33,7 @@ _NUMBER = re.compile(r"[-+]?\d+\.?\d*(?:e[-+]?\d+)?")
 
 
 def counts_sentence(study: Study) -> str:
-    """Return how many drops there are and how many failed."""
+    """Return a sentence with the numbers of drops and of failed drops."""
     failed = len(study.failures)
     drops = drops_text(study.size)
     if not failed:
@@ -38,7 +44,7 @@ def counts_sentence(study: Study) -> str:
 
 
 def reasons(study: Study) -> list[tuple[int, str]]:
-    """Return the most frequent reasons of failures: how many drops had each, and the words of the first; numbers in them may differ."""
+    """Return the most frequent reasons of failure (numbers in the text ignored): the number of drops, and the text of the first."""
     found: dict[str, str] = {}
     counts: Counter[str] = Counter()
     for words in study.failures.values():
@@ -49,7 +55,7 @@ def reasons(study: Study) -> list[tuple[int, str]]:
 
 
 def failures_table(study: Study) -> tuple[list[str], list[list[str]]]:
-    """Return the first failures: headers, and rows of the drop's number, its point and the reason."""
+    """Return the table of the first failed drops: headers, and rows with number, point and reason."""
     axes, rows = study_axes(study), []
     for number, reason in list(study.failures.items())[:_FAILURES]:
         rows.append(
@@ -59,15 +65,27 @@ def failures_table(study: Study) -> tuple[list[str], list[list[str]]]:
 
 
 def point_of(study: Study, axes: list[StudyAxis], number: int) -> list[Any]:
-    """Return the values of a drop on the axes, by its number."""
+    """Return the values of the axes for a drop, by its number."""
     if study.is_grid:
         places = np.unravel_index(number, tuple(study.dimensions.values()))
         return [axis.values[place] for axis, place in zip(axes, places, strict=True)]
     return [axis.values[number] for axis in axes]
 
 
+def doubt_sentences(study: Study) -> list[str]:
+    """Return warnings: suspected slips of units, then each limit that drops exceed with the number of drops and the worst of them."""
+    axes, found = study_axes(study), study_slips(study.table, study.coordinates)
+    for limit, drops, worst, number in study.doubts:
+        known = limits().get(limit)
+        title, shown = (known.title, known.shown(number)) if known else (limit.replace("_", " "), digits(number, 3))
+        point = zip(axes, point_of(study, axes, worst), strict=True)
+        where = ", ".join([f"{axis.key} {value_text(axis, value)}" for axis, value in point if axis.varies][:_WORST_KEYS])
+        found.append(f"{title}: {drops:,} of {study.size:,} drops, worst {shown} at drop {worst}{f' ({where})' if where else ''}")
+    return found
+
+
 def axes_table(study: Study, axes: list[StudyAxis]) -> list[tuple[str, str, str]]:
-    """Return what was swept: key, meaning, and what it runs over."""
+    """Return the table of the swept keys: key, meaning, and range."""
     rows = []
     for axis in axes:
         meaning = study.meanings[axis.key][1]
@@ -77,20 +95,20 @@ def axes_table(study: Study, axes: list[StudyAxis]) -> list[tuple[str, str, str]
 
 
 def percentiles_table(outputs: list[Output]) -> tuple[list[str], list[list[str]]]:
-    """Return the spread of the results as text: headers, and a row a result that a drop has."""
+    """Return the table of the statistics of the results as text: headers, and a row per result with values."""
     rows = []
     for one in outputs:
         spread, (unit, size) = one.spread, one.scale
         if not spread.drops:
             continue
-        deviation = spread.standard_deviation if spread.varies or spread.drops < 2 else 0.0  # else it is rounding
+        deviation = spread.standard_deviation if spread.varies or spread.drops < 2 else 0.0  # otherwise it is rounding
         parts = [f"{part:g}" if one.name == _COUNT else digits(part / size) for part in spread.percentiles]
         rows.append([one.title, unit, str(spread.drops), digits(spread.mean / size), digits(deviation / size), *parts])
     return ["Result", "Unit", "Drops", "Mean", "Standard deviation", *(f"{part} %" for part in PERCENTILES)], rows
 
 
 def percentiles_rows(outputs: list[Output]) -> list[dict[str, Any]]:
-    """Return the spread of the results for a CSV file, in SI."""
+    """Return the rows of `percentiles.csv`, in SI units."""
     found = []
     for one in outputs:
         numbers = {"mean": one.spread.mean, "standard_deviation": one.spread.standard_deviation}
@@ -101,7 +119,7 @@ def percentiles_rows(outputs: list[Output]) -> list[dict[str, Any]]:
 
 
 def sensitivity_table(found: Sensitivity, outputs: list[Output]) -> tuple[list[str], list[list[str]]]:
-    """Return headers and rows of the sensitivity: a row a key, two of Sobol's indices, and a column a result."""
+    """Return the table of sensitivities as text: headers, and a row per key (two for Sobol indices) with a column per result."""
     shown = [one for one in outputs if one.name in found.rows]
     columns = {SOBOL: {"first_order": ", alone", "total": ", in all"}, RANKS: {"rank_correlation": ""}}.get(
         found.way, {"relative_range": ""}
@@ -115,7 +133,7 @@ def sensitivity_table(found: Sensitivity, outputs: list[Output]) -> tuple[list[s
 
 
 def sensitivity_rows(found: Sensitivity) -> list[dict[str, Any]]:
-    """Return the sensitivity for a CSV file: a row a result and key."""
+    """Return the rows of `sensitivity.csv`, one per result and key."""
     rows = []
     for output, columns in found.rows.items():
         for place, key in enumerate(found.keys):
@@ -126,7 +144,7 @@ def sensitivity_rows(found: Sensitivity) -> list[dict[str, Any]]:
 
 
 def sensitivity_words(found: Sensitivity) -> str:
-    """Return what the numbers of the sensitivity are."""
+    """Return the explanation of the table of sensitivities."""
     if found.way == SOBOL:
         return (
             "Sobol's indices, in percent of the variance: what a key does alone (first order), and in all, together with others "
@@ -156,7 +174,7 @@ def _percent(part: float) -> str:
 
 
 def spread_words(study: Study) -> str:
-    """Return what the percentiles of a study are."""
+    """Return the explanation of the table of percentiles."""
     failed = " Drops that failed are left out." if study.failures else ""
     words = {
         "grid": "These describe the grid: its levels were chosen, so that they say nothing of how likely a result is.",

@@ -1,4 +1,4 @@
-"""What a sweep prints at its end: how many drops, the results that matter, and the key that moves them most."""
+"""Terminal summary of a completed study: number of drops, main results, and the key with the largest effect on each."""
 
 from __future__ import annotations
 
@@ -9,22 +9,21 @@ from vibroimpact.report.terminal_table import Column, TerminalTable
 from vibroimpact.runs.console import doubt_lines
 from vibroimpact.studies.percentiles import PERCENTILES
 from vibroimpact.studies.report.axes import study_axes
-from vibroimpact.studies.report.doubts import COUNTED_FROM, doubt_sentences
 from vibroimpact.studies.report.labels import percent, with_unit
 from vibroimpact.studies.report.outputs import study_outputs
-from vibroimpact.studies.report.restitution import restitution_of, restitution_sentence
+from vibroimpact.studies.report.restitution import restitution_sentence, summarize_restitution
 from vibroimpact.studies.report.sensitivity import RANKS, SOBOL, Sensitivity, sensitivity_of, strongest
-from vibroimpact.studies.report.tables import counts_sentence, reasons
+from vibroimpact.studies.report.tables import COUNTED_FROM, counts_sentence, doubt_sentences, reasons
 from vibroimpact.studies.study import Study
 from vibroimpact.units.display import digits
 
 _RESULTS, _REASONS = 5, 3
-_TOLD = (5, 50, 95)  # percentiles
-_NARROW = 70  # columns of a terminal
+_TOLD = (5, 50, 95)  # percentiles shown
+_NARROW = 70  # width of a terminal below which sensitivities are not shown
 
 
 def study_summary(study: Study, width: int) -> RenderableType:
-    """Return what a sweep prints in a terminal of a width: no more than a screen."""
+    """Return the summary for a terminal of a width; it fits on a screen."""
     there = [one for one in study_outputs(study, most=_RESULTS + 3) if one.spread.drops]
     outputs = ([one for one in there if one.spread.varies] or there)[:_RESULTS]
     found = sensitivity_of(study, outputs)
@@ -38,7 +37,7 @@ def study_summary(study: Study, width: int) -> RenderableType:
         heading = "moved most, of keys that are numbers, by" if named else "moved most by"
         columns.append(Column(heading, [_strongest(told, one.name) for one in outputs], words=True))
     why = [Text(f" {number}: {words}", style="yellow") for number, words in reasons(study)[:_REASONS]]
-    restitution, doubts = restitution_sentence(restitution_of(study)), doubt_sentences(study)
+    restitution, doubts = restitution_sentence(summarize_restitution(study)), doubt_sentences(study)
     return Group(
         Text(study.name, style="bold"),
         Text(counts_sentence(study)),
@@ -51,7 +50,7 @@ def study_summary(study: Study, width: int) -> RenderableType:
 
 
 def _strongest(found: Sensitivity, output: str) -> str:
-    """Return the key that moves a result most and how strongly; "" where it can't be told."""
+    """Return the key with the largest effect on a result, with its magnitude; "" if undetermined."""
     key = strongest(found, output)
     if key is None:
         return ""

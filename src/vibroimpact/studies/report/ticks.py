@@ -1,4 +1,4 @@
-"""Where the values of an axis lie on a figure, and what is written beside them."""
+"""Positions, ticks and labels of the values of a study axis on a figure."""
 
 from __future__ import annotations
 
@@ -14,19 +14,19 @@ from vibroimpact.studies.report.axes import StudyAxis
 from vibroimpact.studies.report.labels import with_unit
 from vibroimpact.units.display import multiple
 
-_LONGEST = 24  # letters of a name on an axis
-_BESIDE = 36  # letters of all names below a panel
+_LONGEST = 24  # maximum letters of a name on an axis
+_BESIDE = 36  # letters of all names that fit side by side below a panel
 _MOST_NAMES = 12
-_LOOKED_AT = 10_000  # values that tell how an axis is spread
+_LOOKED_AT = 10_000  # values examined for the choice of the scale
 
 
 class Ticks:
-    """An axis on a figure: numbers in a multiple of their unit, or names one beside the other.
+    """An axis of a figure: numbers in a multiple of their unit, or names at equal distances.
 
     Parameters
     ----------
     axis : StudyAxis
-        Of which there may be more values than are shown.
+        The study axis; it may have more values than are shown.
     """
 
     def __init__(self, axis: StudyAxis) -> None:
@@ -43,18 +43,18 @@ class Ticks:
 
     @property
     def turned(self) -> bool:
-        """Are there names that have no room beside each other?"""
+        """Whether the names must be rotated to fit."""
         return sum(len(lettering(name, _LONGEST)) for name in self.names) > _BESIDE
 
     def places(self, values: NDArray[Any]) -> Floats:
-        """Return where values lie."""
+        """Return the positions of values on the axis."""
         if self.names:
             where = {name: float(place) for place, name in enumerate(self.names)}
             return np.array([where[value] for value in values])
         return np.asarray(values, dtype=float) / self._size
 
     def set_on(self, axes: Any, side: str = "x") -> None:
-        """Scale and label an axis of a figure, "x" or "y"."""
+        """Set scale and ticks of an axis of a figure, "x" or "y"."""
         line = axes.xaxis if side == "x" else axes.yaxis
         if self.is_log:
             getattr(axes, f"set_{side}scale")("log")
@@ -68,13 +68,13 @@ class Ticks:
                     text.set(rotation=20, ha="right", rotation_mode="anchor")
 
 
-def rising(axis: StudyAxis, most: int | None = None) -> Indices:
-    """Return where the levels of an axis are in rising order, names as they first come; evenly left out where there are too many.
+def ascending_order(axis: StudyAxis, most: int | None = None) -> Indices:
+    """Return the indices that sort the levels of an axis, names by first occurrence; thinned evenly if there are more than `most`.
 
     Examples
     --------
     >>> axis = StudyAxis("sphere.radius", "m", np.array([0.03, 0.01, 0.02]))
-    >>> rising(axis).tolist(), rising(axis, most=2).tolist()
+    >>> ascending_order(axis).tolist(), ascending_order(axis, most=2).tolist()
     ([1, 2, 0], [1, 0])
     """
     order = np.argsort(Ticks(axis).places(axis.values), kind="stable")
@@ -82,7 +82,7 @@ def rising(axis: StudyAxis, most: int | None = None) -> Indices:
 
 
 def plain_log_ticks(line: Any) -> None:
-    """Label a logarithmic axis at 1, 2 and 5 of each decade, in plain numbers; at the decades alone where there are many."""
+    """Label a logarithmic axis at 1, 2 and 5 of each decade in plain notation, or only at the decades if there are many."""
     from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
     low, high = sorted(line.get_view_interval())
@@ -94,7 +94,7 @@ def plain_log_ticks(line: Any) -> None:
 
 
 def is_spread_by_factors(values: NDArray[Any]) -> bool:
-    """Are levels about the same multiple of the one before, or drawn values spread like that, rather than by even steps?
+    """Return whether levels, or sampled values, are closer to a geometric than to an arithmetic progression.
 
     Examples
     --------
@@ -109,5 +109,5 @@ def is_spread_by_factors(values: NDArray[Any]) -> bool:
 
 
 def _off_a_line(values: Floats) -> float:
-    """Return how far rising values are from even steps, as a part of their range."""
+    """Return the largest deviation of sorted values from equal steps, relative to their range."""
     return float(np.abs((values - values[0]) / (values[-1] - values[0]) - np.linspace(0.0, 1.0, len(values))).max())

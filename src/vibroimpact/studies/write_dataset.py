@@ -1,4 +1,4 @@
-"""The dataset of a study, put together from its chunks."""
+"""Write the dataset of a study, `study.nc`, from its chunks."""
 
 from __future__ import annotations
 
@@ -21,17 +21,17 @@ from vibroimpact.files.check_sums import CHECK_SUMS, file_digest, read_sealed, s
 from vibroimpact.files.hdf5 import CHECKED, chunk_shape, new_array, new_hdf5
 from vibroimpact.results.folder import SUMMARY
 from vibroimpact.studies.chunk_file import chunk_layout, read_chunk
-from vibroimpact.studies.columns import DOUBTS, LIMIT, OUTCOME, SIGNAL
+from vibroimpact.studies.drop_variables import DOUBTS, LIMIT, OUTCOME, SIGNAL
 from vibroimpact.studies.ledger import Span
 from vibroimpact.studies.plan import SAMPLE, Plan
-from vibroimpact.studies.study import DATASET, FAILED_POINT, FAILED_REASON
-from vibroimpact.studies.toml import study_toml
+from vibroimpact.studies.study import FAILED_POINT, FAILED_REASON
+from vibroimpact.studies.study_folder import DATASET, study_toml
 
 Meanings = Mapping[str, tuple[str, str]]
-"""Unit and meaning of variables by their names."""
+"""Unit and meaning of variables by name."""
 
 _IMPACT, _TIME = "impact", "time"
-_MORE = 2**20  # bytes that a file of HDF5 has beside its data, at most
+_MORE = 2**20  # upper bound of the overhead of an HDF5 file [bytes]
 
 
 def write_dataset(
@@ -44,16 +44,16 @@ def write_dataset(
     meanings: Meanings,
     rates: Mapping[str, float],
 ) -> None:
-    """Write `study.nc` from the chunks of a study; chunk by chunk, so that never all of it lies in memory.
+    """Write `study.nc` from the chunks of a study, one chunk in memory at a time.
 
     Parameters
     ----------
     folder : Path
-        That of the study.
+        Folder of the study.
     name : str
-        What the study is called.
+        Title of the study.
     chunks : sequence of Span
-        All of its chunks.
+        All its chunks.
     study : str
         Its fingerprint.
     plan : Plan
@@ -61,23 +61,24 @@ def write_dataset(
     table : mapping
         The case with its [sweep] section.
     meanings : mapping
-        Unit and meaning of swept keys and of what the chunks hold.
+        Unit and meaning of the swept keys and of the variables in the chunks.
     rates : mapping of str to float
-        The rate of each sensor [Hz].
+        Sampling rate of each sensor [Hz].
 
     Raises
     ------
     OSError
-        If there is no room for it.
+        If it can't be written, such as on a full disk.
     """
+    # shapes may differ between chunks: each variable gets the largest
     layout: dict[str, tuple[tuple[int, ...], np.dtype[Any]]] = {}
     for chunk in chunks:
         for variable, ((_, *wide), dtype) in chunk_layout(folder, chunk.number).items():
             before = layout.get(variable, (wide, dtype))[0]
             layout[variable] = (tuple(map(max, before, wide)), dtype)
-    with atomic_file(folder / DATASET) as working:  # last: once it is there, all is
+    with atomic_file(folder / DATASET) as working:  # written last: its presence marks a complete study
         columns = sum(values.nbytes for values in plan.columns.values()) + 8 * plan.size
-        _see_that_there_is_room(working, columns + plan.size * sum(prod(wide) * dtype.itemsize for wide, dtype in layout.values()))
+        _reserve_space(working, columns + plan.size * sum(prod(wide) * dtype.itemsize for wide, dtype in layout.values()))
         with new_hdf5(working) as file:
             file.attrs["title"] = name
             file.attrs["version"] = __version__
@@ -88,27 +89,27 @@ def write_dataset(
             for chunk in chunks:
                 result = read_chunk(folder, chunk, study)
                 for variable, values in result.arrays.items():
-                    _put(data[variable], (), tuple(plan.dimensions.values()), chunk.first, values)
+                    _write_rows(data[variable], (), tuple(plan.dimensions.values()), chunk.first, values)
                 failures |= {chunk.first + place: reason for place, reason in result.failures.items()}
             _write_failures(file, failures)
         summary = {**read_sealed(folder / SUMMARY), CHECK_SUMS: {DATASET: file_digest(working)}}
-        write_file(folder / SUMMARY, sealed(summary).encode())  # before the dataset is there: it is never without
+        write_file(folder / SUMMARY, sealed(summary).encode())  # before the dataset appears, so that it always has a checksum
 
 
 def as_text(value: Any) -> Any:
-    """Return a value as tables hold it: numbers and names as they are, lists and tables as JSON."""
+    """Return a value as a table cell: numbers and names unchanged, lists and tables as JSON."""
     return value if isinstance(value, (str, float, int)) and not isinstance(value, bool) else json.dumps(value)
 
 
-def _see_that_there_is_room(path: Path, size: int) -> None:
-    """Raise OSError unless so many bytes, and some more, can be written, before the work is done."""
+def _reserve_space(path: Path, size: int) -> None:
+    """Reserve disk space for a file of a size plus overhead, and raise OSError early if there is not enough."""
     with path.open("wb") as file:
         if hasattr(os, "posix_fallocate"):
             os.posix_fallocate(file.fileno(), 0, size + _MORE)
 
 
 def _write_coordinates(file: h5py.File, plan: Plan, meanings: Meanings) -> list[h5py.Dataset]:
-    """Write the swept keys; return the scales of the dimensions."""
+    """Write the swept keys, and return the dimension scales."""
     scales = []
     if not plan.is_grid:
         scales = [_scale(file, SAMPLE, np.arange(plan.size), ("1", "number of the drop, from 0"))]
@@ -129,7 +130,7 @@ def _scale(file: h5py.File, name: str, values: NDArray[Any], meaning: tuple[str,
 
 
 def _values(file: h5py.File, name: str, values: NDArray[Any]) -> h5py.Dataset:
-    """Write numbers; or texts, for which HDF5 has no check sum, while that of the file holds them too."""
+    """Write numbers with checksums, or strings, for which HDF5 has none; the checksum of the file covers both."""
     if values.dtype != object:
         return new_array(file, name, values)
     return file.create_dataset(name, data=values, dtype=h5py.string_dtype())
@@ -150,7 +151,7 @@ def _new_variable(
     meanings: Meanings,
     rates: Mapping[str, float],
 ) -> h5py.Dataset:
-    """Make a variable without values: what is not there is not a number, and a drop that is not there failed."""
+    """Create an empty variable; its fill value is NaN for floats, the code of a failed drop for outcomes, else 0."""
     wide, dtype = layout
     own = list(scales)
     if wide and name.startswith(SIGNAL):
@@ -175,15 +176,15 @@ def _new_variable(
 
 
 def _time_scale(file: h5py.File, rates: Mapping[str, float], sensor: str, samples: int) -> h5py.Dataset:
-    """Return the time of a signal: one for all sensors of one rate."""
+    """Return the time scale of a signal; sensors of equal rate share one."""
     name = _TIME if len(set(rates.values())) == 1 else f"{_TIME}_{sensor}"
     if name in file:
         return file[name]
     return _scale(file, name, np.arange(samples) / rates[sensor], ("s", "time since the start"))
 
 
-def _put(data: h5py.Dataset, above: tuple[int, ...], shape: tuple[int, ...], first: int, rows: NDArray[Any]) -> None:
-    """Write rows into the points from `first` on of an array whose points have a shape of several dimensions."""
+def _write_rows(data: h5py.Dataset, above: tuple[int, ...], shape: tuple[int, ...], first: int, rows: NDArray[Any]) -> None:
+    """Write rows into an array at the points from `first` on, counted through the dimensions of the grid `shape`."""
     if len(shape) == 1:
         data[(*above, slice(first, first + len(rows)), *(slice(length) for length in rows.shape[1:]))] = rows
         return
@@ -191,7 +192,7 @@ def _put(data: h5py.Dataset, above: tuple[int, ...], shape: tuple[int, ...], fir
     while len(rows):
         place, start = divmod(first, inner)
         count = min(inner - start, len(rows))
-        _put(data, (*above, place), shape[1:], start, rows[:count])
+        _write_rows(data, (*above, place), shape[1:], start, rows[:count])
         first, rows = first + count, rows[count:]
 
 

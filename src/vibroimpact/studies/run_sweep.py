@@ -1,4 +1,4 @@
-"""Run a study in its folder, to the report."""
+"""Run a study in its folder: computation and report."""
 
 from __future__ import annotations
 
@@ -27,32 +27,32 @@ def run_sweep(
 ) -> Path:
     """Run a study in a folder: `study.nc`, `drops.csv`, a report, and the ledger of its chunks.
 
-    Each chunk of drops is written as soon as it is computed. Whatever stops the run, `resume` goes on after the last of them, and the
-    results are the same to the last bit.
+    Each chunk of drops is written as soon as it is computed. After any interruption, `resume` continues with the missing chunks, and
+    the results are identical to the last bit.
 
     Parameters
     ----------
     sweep : Sweep
-        The study, as `load_sweep` or `read_sweep` reads it.
+        The study, from `load_sweep` or `read_sweep`.
     directory : path
-        The folder to make.
+        The folder to create.
     resume : bool, default False
-        Go on with the study that was begun there; where there is none, begin.
+        Continue the study in the folder; start it if there is none.
     force : bool, default False
-        Replace the folder of a study that is there.
+        Replace an existing study.
     workers : int, default 1
-        How many processes compute; one is this process itself. A script that asks for more must do its work under
+        Number of processes; 1 is this process itself. A script that uses more must be guarded by
         `if __name__ == "__main__":`.
     scheduler : str, optional
-        The address of a Dask scheduler whose workers compute, such as "tcp://10.0.0.5:8786"; "local" starts one with `workers`.
+        Address of a Dask scheduler whose workers compute, such as "tcp://10.0.0.5:8786"; "local" starts one with `workers` workers.
     memory : float, default 5e8
-        About how many bytes the drops of a chunk may take in each process, >= 1e6; what a study was begun with is kept.
+        Approximate memory for the drops of a chunk in each process [bytes], >= 1e6; a resumed study keeps its chunks.
     progress : callable, optional
-        Is told how many drops are done, and of how many. What it raises ends the run, which can be resumed.
+        Called with the number of completed drops and of all drops. An exception that it raises ends the run, which can be resumed.
     modes_progress : callable, optional
-        Is told which part of the modes of elastic bodies is computed, in [0, 1].
+        Called with the completed fraction of the computation of modes of elastic bodies, in [0, 1].
     tell : callable, optional
-        Is told in words what takes long, or is made again.
+        Called with sentences on lengthy steps and recomputed chunks.
 
     Returns
     -------
@@ -62,9 +62,9 @@ def run_sweep(
     Raises
     ------
     InputError
-        If something else is there, another sweep is at work in it, the ledger is damaged, or it is of another study.
+        If the folder contains something else or another study, another process is computing in it, or the ledger is damaged.
     ComputationError
-        If the disk is full, or the workers are gone.
+        If the disk is full, or the workers are lost.
 
     Examples
     --------
@@ -89,6 +89,6 @@ def run_sweep(
         tell=tell,
     )
     if progress is not None:
-        progress(sweep.size, sweep.size)  # who was told to stop while the results were put together does
+        progress(sweep.size, sweep.size)  # lets the callback interrupt before the report
     write_study_report(read_study(folder), folder)
     return folder

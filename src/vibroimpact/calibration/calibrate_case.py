@@ -1,4 +1,4 @@
-"""From a case with a [calibrate] section to a calibration, and on to the calibrated case."""
+"""Calibrate a case with a [calibrate] section, and return the case with the calibrated values."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from vibroimpact.calibration.calibrate import calibrate
+from vibroimpact.calibration.calibrated_drops import impact_count
 from vibroimpact.calibration.calibration import Calibration
-from vibroimpact.calibration.drops import impacts_of
 from vibroimpact.calibration.matching import Tunable
 from vibroimpact.calibration.section import CalibrateSection
 from vibroimpact.calibration.targets import target_of
@@ -28,7 +28,7 @@ from vibroimpact.dynamics.problem import Problem
 from vibroimpact.errors import InputError
 
 MODEL = "adams-impact"
-"""The law that is tuned where none is named."""
+"""The law that is tuned by default."""
 
 _LOCAL = tuple(LocalSection.model_fields)
 _ANY_PAIR = ContactPair(1e9, 0.01, 0.01, 1e8, 0.3)
@@ -36,14 +36,14 @@ _DAMPINGS = ("sphere.damping", "plate.damping")
 
 
 class ToCalibrate(NamedTuple):
-    """A case whose contact law is the one that is tuned; whether the value of the parameter was given, or is only to begin with."""
+    """A case whose contact law is to be tuned, and whether the case gives the value of the parameter or it is only an initial guess."""
 
     case: Case
     given: bool
 
 
 def load_calibration(source: str | PathLike[str]) -> ToCalibrate:
-    """Read a case to calibrate, as `load_case` does; but the parameter that is looked for may be left out.
+    """Read a case to calibrate from a file, as `load_case` does, except that the parameter to be found may be missing.
 
     Examples
     --------
@@ -54,13 +54,14 @@ def load_calibration(source: str | PathLike[str]) -> ToCalibrate:
 
 
 def read_calibration(table: Mapping[str, Any]) -> ToCalibrate:
-    """Read a case to calibrate from a mapping, as a TOML file would hold it.
+    """Read a case to calibrate from a mapping with the structure of a TOML case file.
 
     Raises
     ------
     InputError
-        If it is not a valid case, or nothing is there to match.
+        If it is not a valid case, or defines no target.
     """
+    # the contact law of the case is the target by default, and the law to be tuned takes its place
     whole = dict(table)
     section = dict(whole.get("calibrate") or {}) if isinstance(whole.get("calibrate", {}), dict) else whole["calibrate"]
     contact = whole.get("contact")
@@ -94,16 +95,16 @@ def calibrate_case(
     Parameters
     ----------
     what : ToCalibrate
-        As `load_calibration` or `read_calibration` reads it.
+        The case, as read by `load_calibration` or `read_calibration`.
     progress : callable, optional
         Called with the fraction done, in [0, 1].
     tell : callable, optional
-        Called with a sentence if something is wrong with the store of modes.
+        Called with a sentence if there is a problem with the store of modes.
 
     Raises
     ------
     InputError
-        If no value meets the target, or what was measured can't be read.
+        If no value matches the target, or the measurement can't be read.
 
     Examples
     --------
@@ -115,7 +116,7 @@ def calibrate_case(
     if section is None or section.target is None:
         raise InputError("it is missing; it says what impacts are to be like, such as { restitution = 0.7 }", "calibrate.target")
     problem = problem_of(case, progress, tell)
-    if problem.same_spot and getattr(problem.laws[0], "lasting", False) and impacts_of(problem) > 1:
+    if problem.same_spot and getattr(problem.laws[0], "lasting", False) and impact_count(problem) > 1:
         words = f"{case.contact.law} leaves a dent that the next impact falls into, and each impact is matched on fresh surfaces"
         raise InputError(f"{words}; set it to false, or run.impacts = 1", "drop.same_spot")
     try:
@@ -134,19 +135,19 @@ def calibrate_case(
         )
     except InputError as error:
         raise InputError(error.message, f"calibrate.{error.key}".rstrip(".")) from None
-    tuned = (f"contact.{found.parameter}", found.parameter)  # where it begins says nothing
+    tuned = (f"contact.{found.parameter}", found.parameter)  # its value is only an initial guess, and is not checked for slips of units
     return replace(found, doubts=(*slips(resolved_case(case), tuned), *found.doubts))
 
 
 def calibrated_case(case: Case, found: Calibration) -> Case:
-    """Return a case with the values found: one an impact of a contact law, one in all of the damping of modes.
+    """Return the case with the calibrated values: one per impact for a law parameter, a single one for modal damping.
 
     Parameters
     ----------
     case : Case
-        The case that was calibrated.
+        The calibrated case.
     found : Calibration
-        What was found.
+        Result of its calibration.
     """
     table = {key: value for key, value in resolved_case(case).items() if key != "calibrate"}
     values = found.impacts[1].tolist()
@@ -157,7 +158,7 @@ def calibrated_case(case: Case, found: Calibration) -> Case:
 
 
 def _where(line: str, own_target: bool, own_model: bool) -> str:
-    """Return a fault under the key that it was written at: target and law may come from [contact], the law from calibrate.model."""
+    """Return an error message under the key that the user wrote: target and law may come from [contact], the law from calibrate.model."""
     if not own_target and line.startswith("calibrate.target"):
         return line.replace("calibrate.target", "contact", 1)
     if own_model and line.startswith("contact") and not line.startswith(tuple(f"contact.{key}" for key in _LOCAL)):
@@ -166,14 +167,14 @@ def _where(line: str, own_target: bool, own_model: bool) -> str:
 
 
 def _with_start(contact: dict[str, Any], parameter: str | None) -> dict[str, Any]:
-    """Return a [contact] section in which what is tuned has a value to begin with; the same one if it has."""
+    """Return a [contact] section with an initial guess of the tuned parameter; the same object if it has a value."""
     try:
         section = read_contact(contact)
     except InputError:
-        return contact  # the reader of the case says what is wrong
+        return contact  # reported when the case is read
     law = find_contact_law(section.law)
     if parameter not in {item.name for item in fields(law)}:
-        parameter = None  # one that the law does not have is named later
+        parameter = None  # an unknown parameter is reported later
     for item in fields(law):
         start = item.metadata["example"]
         if item.name in contact or start is None or (parameter is not None and item.name != parameter):

@@ -1,4 +1,4 @@
-"""The scalars of a study as CSV: one row a drop."""
+"""The table `drops.csv` of a study: scalar results, one row per drop."""
 
 from __future__ import annotations
 
@@ -14,28 +14,28 @@ from vibroimpact.cases.limit import limits
 from vibroimpact.dynamics.outcome import OUTCOMES, Outcome
 from vibroimpact.files.atomic_write import atomic_file
 from vibroimpact.studies.chunk_file import ChunkResult, chunk_layout, read_chunk
-from vibroimpact.studies.columns import DOUBTS, OUTCOME, PEAKS, SENSOR_PEAK
-from vibroimpact.studies.dataset import Meanings, as_text
+from vibroimpact.studies.drop_variables import DOUBTS, OUTCOME, PEAKS, SENSOR_PEAK
 from vibroimpact.studies.ledger import Span
 from vibroimpact.studies.plan import Plan
+from vibroimpact.studies.write_dataset import Meanings, as_text
 
 TABLE = "drops.csv"
 MOST_ROWS = 1_000_000
-"""Drops beyond which there is no table: no program that reads one would show it."""
+"""Number of drops above which no table is written, as no program could display it."""
 
 
 def write_drops(folder: Path, chunks: Sequence[Span], study: str, plan: Plan, meanings: Meanings) -> None:
-    """Write one row a drop: its number, its values at the swept keys, its peaks, why it ended, what to doubt of it and why it failed.
+    """Write one row per drop: number, values of the swept keys, peaks, outcome, exceeded limits and reason of failure.
 
     Parameters
     ----------
     folder, chunks, study, plan, meanings
-        As `write_dataset` takes them.
+        As for `write_dataset`.
 
     Raises
     ------
     OSError
-        If there is no room for it.
+        If it can't be written, such as on a full disk.
     """
     kept = {name for chunk in chunks for name in chunk_layout(folder, chunk.number)}
     peaks = [name for name in meanings if name in kept and (name in PEAKS or name.endswith(SENSOR_PEAK))]

@@ -1,4 +1,4 @@
-"""Slips of units in a study: in its case, and in the values that its keys run over."""
+"""Suspected slips of units in a study: in its case, and in the values of its swept keys."""
 
 from __future__ import annotations
 
@@ -15,29 +15,29 @@ from vibroimpact.studies.sweep import Sweep
 from vibroimpact.studies.swept_keys import case_at
 
 
-def slips_of_axes(sweep: Sweep) -> list[str]:
-    """Return a sentence for each swept key of a study with values that look like a slip of a unit."""
+def axis_slips(sweep: Sweep) -> list[str]:
+    """Return a sentence for each swept key with values that suggest a slip of a unit."""
     return swept_slips(resolved_case(sweep.case), sweep.plan.columns)
 
 
-def whole_slips(sweep: Sweep) -> list[str]:
-    """Return a sentence for each number of a study that looks like a slip of a unit, swept or not; each is said once."""
+def sweep_slips(sweep: Sweep) -> list[str]:
+    """Return a sentence for each number of a study, swept or not, that suggests a slip of a unit, without repetition."""
     return _once(resolved_case(sweep.case), sweep.plan.columns)
 
 
 def study_slips(table: Mapping[str, Any], values: Mapping[str, NDArray[Any]]) -> list[str]:
-    """Return what `whole_slips` does, of a study whose results are there.
+    """Return the sentences of `sweep_slips` for a completed study.
 
     Parameters
     ----------
     table : mapping
-        The case, as a TOML file would hold it.
+        The case, with the structure of a TOML case file.
     values : mapping of str to array
-        By the swept key its values, in SI; the first of each is at the first point.
+        By swept key its values in SI units; the first of each belongs to the first point.
     """
     try:
         case: Case = case_at({key: one for key, one in table.items() if key != "sweep"}, {key: one[0] for key, one in values.items()})
-    except InputError:  # the meshes of a study may be gone when its results are read
+    except InputError:  # mesh files may be missing when results are read
         return []
     return _once(resolved_case(case), values)
 

@@ -1,4 +1,4 @@
-"""Measured restitutions above 1: how far they are taken for noise."""
+"""Measured restitutions, and the limit up to which values above 1 are attributed to noise."""
 
 from __future__ import annotations
 
@@ -11,18 +11,18 @@ from vibroimpact.calibration.observations import Observations
 
 _DEVIATIONS = 3.0
 _LEAST, _MOST = 0.01, 0.1
-"""What is believed above 1 where nothing tells the noise, and the most where the scatter does."""
+"""Excess over 1 that is accepted where the noise is unknown, and its upper bound where it is estimated from the scatter."""
 
 
-class Believed(NamedTuple):
-    """The largest restitution that is believed of each impact, (n,), and why, in words."""
+class RestitutionLimit(NamedTuple):
+    """The largest accepted restitution of each impact, (n,), and the reason in words."""
 
     most: Floats
     why: str
 
 
-def restitutions(seen: Observations, radius: float, gravity: float) -> Floats | None:
-    """Return the restitution that was measured of each impact, (n,); None if its rebound was not."""
+def measured_restitutions(seen: Observations, radius: float, gravity: float) -> Floats | None:
+    """Return the measured restitution of each impact, (n,); None if no rebound was measured."""
     if "separation_speed" in seen.wanted:
         return seen.wanted["separation_speed"] / seen.speeds
     if "rebound_height" in seen.wanted:
@@ -30,11 +30,11 @@ def restitutions(seen: Observations, radius: float, gravity: float) -> Floats | 
     return None
 
 
-def believed(speeds: Floats, restitutions: Floats, deviations: Floats | None) -> Believed:
-    """Return up to which value above 1 a measured restitution is taken for noise.
+def restitution_limit(speeds: Floats, restitutions: Floats, deviations: Floats | None) -> RestitutionLimit:
+    """Return the value above 1 up to which a measured restitution is attributed to noise.
 
-    Three standard deviations where these are given. Else three times the scatter of those that are not above 1, about a parabola of
-    the approach speed; never less than 1 %, nor more than 10 %.
+    The limit lies three standard deviations above 1 where these are given. Otherwise it lies three times the scatter of the values
+    not above 1 about a parabola of the approach speed, at least 1 % and at most 10 %.
 
     Parameters
     ----------
@@ -45,21 +45,21 @@ def believed(speeds: Floats, restitutions: Floats, deviations: Floats | None) ->
 
     Examples
     --------
-    >>> believed(np.array([1.0, 2.0]), np.array([1.003, 0.9]), None).most.tolist()
+    >>> restitution_limit(np.array([1.0, 2.0]), np.array([1.003, 0.9]), None).most.tolist()
     [1.01, 1.01]
-    >>> believed(np.array([1.0]), np.array([1.003]), np.array([0.002])).most.tolist()
+    >>> restitution_limit(np.array([1.0]), np.array([1.003]), np.array([0.002])).most.tolist()
     [1.006]
     """
     if deviations is not None:
-        return Believed(1.0 + _DEVIATIONS * deviations, "three standard deviations")
+        return RestitutionLimit(1.0 + _DEVIATIONS * deviations, "three standard deviations")
     some = restitutions <= 1.0
     degree = min(2, len(np.unique(speeds[some])) - 1)
     freedom = int(np.count_nonzero(some)) - degree - 1
     if degree < 0 or freedom < 1:
-        return Believed(np.full(len(speeds), 1.0 + _LEAST), "1 %, as no standard deviation is given")
+        return RestitutionLimit(np.full(len(speeds), 1.0 + _LEAST), "1 %, as no standard deviation is given")
     powers = np.vander(speeds[some] / speeds.max(), degree + 1)
     left = restitutions[some] - powers @ np.linalg.lstsq(powers, restitutions[some], rcond=None)[0]
     scatter = float(np.sqrt(left @ left / freedom))
     part = float(np.clip(_DEVIATIONS * scatter, _LEAST, _MOST))
     why = "three times the scatter of the others" if _LEAST < part < _MOST else f"{100.0 * part:g} %, as no standard deviation is given"
-    return Believed(np.full(len(speeds), 1.0 + part), why)
+    return RestitutionLimit(np.full(len(speeds), 1.0 + part), why)

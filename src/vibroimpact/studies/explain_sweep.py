@@ -1,4 +1,4 @@
-"""A study explained: how many drops, over what, and what is kept."""
+"""Terminal description of a study before it is computed: drops, axes, kept results."""
 
 from __future__ import annotations
 
@@ -7,12 +7,12 @@ from rich.text import Text
 
 from vibroimpact.report.terminal_table import Column, TerminalTable
 from vibroimpact.studies.axes import Axis, Listed, Normal, Spaced
-from vibroimpact.studies.slips import slips_of_axes
 from vibroimpact.studies.sweep import Sweep
+from vibroimpact.studies.unit_slips import axis_slips
 
 
-def sweep_explained(sweep: Sweep) -> RenderableType:
-    """Return what a study would do, for a terminal."""
+def explain_sweep(sweep: Sweep) -> RenderableType:
+    """Return the description of a study for the terminal."""
     section = sweep.section
     drawn = f", drawn with seed {section.seed}" if section.samples else ""
     kept = " and ".join(dict.fromkeys(["peaks", *section.keep])) + f", about {sweep.bytes / 1e6:.3g} MB"
@@ -22,13 +22,13 @@ def sweep_explained(sweep: Sweep) -> RenderableType:
     return Group(
         Text(f"A study of {sweep.size:,} drops: {section.design}{drawn}; keeps {kept}.", style="bold"),
         table,
-        *(Text(f"Doubt: {doubt}.", style="yellow") for doubt in slips_of_axes(sweep)),
+        *(Text(f"Doubt: {doubt}.", style="yellow") for doubt in axis_slips(sweep)),
         Text("The case at its first point:\n"),
     )
 
 
 def _words(axis: Axis, unit: str, *, is_drawn: bool) -> str:
-    """Return in a few words what an axis runs over."""
+    """Return a short description of the values of an axis."""
     if isinstance(axis, Listed):
         shown = [f"{value:g}" if isinstance(value, float) else str(value) for value in axis.values]
         text = ", ".join(shown) if len(shown) <= 8 else f"{len(shown)} values, {shown[0]} to {shown[-1]}"

@@ -1,4 +1,4 @@
-"""Measurements of a sphere that flew through air: evaluated with its drag, or in doubt without."""
+"""Evaluate a measurement with or without aerodynamic drag, and warn where drag was neglected but matters."""
 
 from __future__ import annotations
 
@@ -8,43 +8,43 @@ from typing import NamedTuple
 
 import numpy as np
 
-from vibroimpact.calibration.above_one import restitutions
 from vibroimpact.calibration.air_flights import AirFlights
 from vibroimpact.calibration.flights import Flights
 from vibroimpact.calibration.observations import Observations
+from vibroimpact.calibration.restitution_limit import measured_restitutions
 from vibroimpact.cases.case import Case
 from vibroimpact.cases.rigid import touch_speed
 from vibroimpact.dynamics.air import AIR_DENSITY
 from vibroimpact.errors import InputError
 
-_MATTERS = 0.002  # of a restitution
+_MATTERS = 0.002  # relative change of a restitution by drag above which a warning is given
 
-_ROOM = 2.0  # more than the highest rise, since a fit may go astray before it settles
+_ROOM = 2.0  # margin of the flight tables over the largest rise, for intermediate iterates of a fit
 
 
 class Measurement(NamedTuple):
-    """What was measured: how to evaluate it with given flights (in a vacuum: None), and the highest rise that it tells of [m]."""
+    """A measurement: a function that evaluates it for a model of the flights (None: vacuum), and the largest rise in it [m]."""
 
     evaluated: Callable[[Flights | None], Observations]
     highest: float
 
 
 def speed_at_touch(case: Case, flights: Flights | None) -> float:
-    """Return the speed of the first touch of a case [m/s]: in air, if it falls through that from a height."""
+    """Return the speed at first touch of a case [m/s], with drag if flights are given and the case gives the height."""
     if flights is None or case.drop.height is None:
         return touch_speed(case)
-    return float(flights.falling(np.array(case.drop.height - case.sphere.radius))[0])
+    return float(flights.speed_after_fall(np.array(case.drop.height - case.sphere.radius))[0])
 
 
-def in_air(case: Case, measurement: Measurement, air: bool | None) -> Observations:
-    """Return what a measurement tells, with the drag of air in its flights or without; doubted where nothing says which, and it matters.
+def evaluate(case: Case, measurement: Measurement, air: bool | None) -> Observations:
+    """Return the evaluated measurement, with drag if `air`; if `air` is None, without drag and with a warning where drag matters.
 
     Raises
     ------
     InputError
-        If the measurement tells of no impacts, or of none that there are in air.
+        If the measurement shows no impacts, or flights that are impossible in air.
     """
-    if case.drop.gravity == 0.0:  # no flight ends
+    if case.drop.gravity == 0.0:  # no flight returns
         return measurement.evaluated(None)
     highest = max(measurement.highest, (case.drop.height or 0.0) - case.sphere.radius, 0.5 * touch_speed(case) ** 2 / case.drop.gravity)
     flights = AirFlights(case.drop.gravity, case.sphere.radius, case.sphere.material.density, _ROOM * highest)
@@ -62,9 +62,9 @@ def in_air(case: Case, measurement: Measurement, air: bool | None) -> Observatio
 def _doubt(seen: Observations, measurement: Measurement, flights: Flights, case: Case) -> str:
     try:
         other = measurement.evaluated(flights)
-    except InputError:  # which tells of a sphere that never flew through air
+    except InputError:  # impossible in air, so it was not measured in air
         return ""
-    without, with_air = (restitutions(one, case.sphere.radius, case.drop.gravity) for one in (seen, other))
+    without, with_air = (measured_restitutions(one, case.sphere.radius, case.drop.gravity) for one in (seen, other))
     if without is None or with_air is None or len(without) != len(with_air):
         return ""
     off = with_air / without - 1.0

@@ -1,4 +1,4 @@
-"""The limits of the theory over the drops of a study: the number of each drop, and which of them it is beyond."""
+"""The limits of the theory for the drops of a study: the number compared with each limit, and the limits exceeded."""
 
 from __future__ import annotations
 
@@ -20,24 +20,24 @@ from vibroimpact.dynamics.response import Response
 from vibroimpact.dynamics.truncation import time_of_contact
 from vibroimpact.dynamics.vibrating.sensitivity import change_by_impact
 from vibroimpact.studies.axes import Values
-from vibroimpact.studies.columns import DOUBTS, LIMIT
+from vibroimpact.studies.drop_variables import DOUBTS, LIMIT
 from vibroimpact.studies.swept_keys import with_values
 
 
 def limit_meanings() -> dict[str, tuple[str, str]]:
-    """Return unit and meaning of what a study keeps of limits."""
+    """Return unit and meaning of the variables on limits in a study."""
     return {DOUBTS: ("1", "limits that the drop is beyond"), **{f"{LIMIT}{name}": ("1", limit.meaning) for name, limit in limits().items()}}
 
 
 def limit_columns(drops: Conditions, count: int) -> dict[str, NDArray[Any]]:
-    """Return the numbers of the limits that have a bearing on drops, and a bit for each that a drop is beyond.
+    """Return the numbers of the applicable limits, and a bit mask of the limits that each drop exceeds.
 
     Parameters
     ----------
     drops : Conditions
-        One drop, or a batch of them.
+        Conditions of one drop or of a batch.
     count : int
-        How many.
+        Number of drops.
     """
     numbers, beyond = numbers_of(drops), np.zeros(count, dtype=np.int32)
     for bit, (name, limit) in enumerate(limits().items()):
@@ -51,18 +51,18 @@ def _one_each(number: Any, count: int) -> NDArray[np.float32]:
 
 
 def batch_conditions(case: Case, arrays: Mapping[str, Values], law: ContactLaw, peaks: Mapping[str, NDArray[Any]]) -> Conditions:
-    """Return the conditions of a batch of rigid drops, to which the limits are applied.
+    """Return the conditions of a batch of drops with rigid bodies, for the evaluation of the limits.
 
     Parameters
     ----------
     case : Case
-        That of the first of them.
+        The case of the first of them.
     arrays : mapping of str to array
-        The values at dotted keys in which they differ.
+        The values by dotted key in which they differ.
     law : ContactLaw
-        Of the first impact, with arrays for parameters.
+        The law of the first impact, with array parameters.
     peaks : mapping of str to array
-        What came of them.
+        Their peaks.
     """
     table = with_values(resolved_case(case), {key: values for key, values in arrays.items() if not key.startswith("contact.")})
     given = {item.name: getattr(law, item.name) for item in fields(law)}
@@ -71,7 +71,7 @@ def batch_conditions(case: Case, arrays: Mapping[str, Values], law: ContactLaw, 
 
 
 def drop_conditions(response: Response, peaks: Mapping[str, NDArray[Any]]) -> Conditions:
-    """Return the conditions of one drop, whose bodies may vibrate."""
+    """Return the conditions of one drop, whose bodies may vibrate, for the evaluation of the limits."""
     problem, modes = response.problem, {}
     for body, part in response.truncation.items():
         modes[body] = part, float(getattr(problem, body).modes.frequencies[-1])

@@ -1,4 +1,4 @@
-"""A calibration as JSON, and the tables of it."""
+"""Contents of the files of a calibration: calibration.json, matched.csv and comparison.csv."""
 
 from __future__ import annotations
 
@@ -10,24 +10,24 @@ import numpy as np
 
 from vibroimpact._version import __version__
 from vibroimpact.calibration.calibration import Calibration
-from vibroimpact.calibration.comparison import COMPARED, WAYS, differences, largest_misfit, reference
-from vibroimpact.calibration.outcomes import OUTCOMES
+from vibroimpact.calibration.differences import COMPARED, WAYS, differences, largest_misfit, reference
+from vibroimpact.calibration.matchable import MATCHABLE
 from vibroimpact.cases.build import resolved_case
 from vibroimpact.cases.case import Case
 
 CALIBRATION = "calibration.json"
-_SHORT = {outcome.column: name for name, outcome in OUTCOMES.items()}
+_SHORT = {quantity.column: name for name, quantity in MATCHABLE.items()}
 
 
 def calibration_table(case: Case, found: Calibration) -> dict[str, Any]:
-    """Return a calibration as `calibration.json` holds it; null where there is no value.
+    """Return the contents of `calibration.json`; None where there is no finite value.
 
     Parameters
     ----------
     case : Case
-        The case that was calibrated.
+        The calibrated case.
     found : Calibration
-        What was found.
+        Result of its calibration.
     """
     fit, (speeds, values) = found.fit, found.impacts
     curve = None if found.curve is None else {"approach_speed_m_s": _plain(found.curve[0]), "value": _plain(found.curve[1])}
@@ -65,14 +65,14 @@ def calibration_table(case: Case, found: Calibration) -> dict[str, Any]:
 
 
 def matched_rows(found: Calibration) -> list[dict[str, Any]]:
-    """Return the impacts that were matched, one mapping each: what was wanted, what comes out, and as the case gave it."""
+    """Return the matched impacts, one mapping each: target, computed with the value found, and computed with the given value."""
     rows = []
     for number, label in enumerate(found.observations.labels):
         row: dict[str, Any] = {"label": label, "approach_speed_m_s": float(found.observations.speeds[number])}
         row["value"] = _finite(found.values[number])
         row["low"], row["high"] = (None, None) if found.intervals is None else (_finite(end) for end in found.intervals[number])
         row["given"] = _finite(found.given[number])
-        for name, (column, *_) in OUTCOMES.items():
+        for name, (column, *_) in MATCHABLE.items():
             if name in found.observations.wanted:
                 row[f"wanted_{column}"] = _finite(found.observations.wanted[name][number])
             row[column] = _finite(found.outcomes[name][number])
@@ -83,7 +83,7 @@ def matched_rows(found: Calibration) -> list[dict[str, Any]]:
 
 
 def comparison_rows(found: Calibration) -> list[dict[str, Any]]:
-    """Return the impacts of the drop with each way to give the value, beside what was wanted, one mapping an impact and way."""
+    """Return the impacts of the drop with the target values, one mapping per impact and way of prescribing the value."""
     wanted, off = reference(found), differences(found)
     rows = []
     for way in WAYS:
@@ -100,7 +100,7 @@ def comparison_rows(found: Calibration) -> list[dict[str, Any]]:
 
 
 def columns_of(rows: Sequence[Mapping[str, Any]]) -> list[str]:
-    """Return the columns of rows, in the order in which they are first met."""
+    """Return the columns of the rows in order of first occurrence."""
     return list(dict.fromkeys(name for row in rows for name in row))
 
 

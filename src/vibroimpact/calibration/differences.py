@@ -1,4 +1,4 @@
-"""What a calibration still gets wrong: its drops beside what was wanted, impact by impact."""
+"""Remaining differences between calibrated drops and the target, impact by impact."""
 
 from __future__ import annotations
 
@@ -8,20 +8,20 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.calibration.calibration import Calibration
-from vibroimpact.calibration.outcomes import OUTCOMES
+from vibroimpact.calibration.matchable import MATCHABLE
 
 COMPARED = {
-    OUTCOMES[name].column: OUTCOMES[name].words.capitalize()
+    MATCHABLE[name].column: MATCHABLE[name].words.capitalize()
     for name in ("max_indentation", "max_force", "duration", "rebound_height", "separation_speed")
 }
-"""Columns of the impact table that are compared, and how they are headed."""
+"""Compared columns of the impact table, with their headings."""
 
 WAYS = ("constant", "variable", "function")
-"""The ways to give the value: that of the first impact throughout, each its own, and by the fitted function."""
+"""How the value is prescribed: that of the first impact throughout, one per impact, or by the fitted polynomial."""
 
 
 def reference(found: Calibration) -> dict[str, Floats]:
-    """Return what the impacts of the drop were wanted to be, by column: simulated, or measured where that was of the drop."""
+    """Return the target values of the impacts of the drop by column: simulated, or measured if the measurement is of this drop."""
     number = len(found.impacts[1])
     if "target" in found.drops:
         table = found.drops["target"]
@@ -29,11 +29,11 @@ def reference(found: Calibration) -> dict[str, Floats]:
     if not found.observations.of_the_drop:
         return {}
     seen = found.observations.wanted
-    return {OUTCOMES[name].column: values for name, values in seen.items()}
+    return {MATCHABLE[name].column: values for name, values in seen.items()}
 
 
 def differences(found: Calibration) -> dict[str, Mapping[str, Floats]]:
-    """Return how far each way is off from what was wanted, as a part of it, by column and way; NaN after its last impact.
+    """Return the relative deviations from the target by column and way of prescribing the value; NaN after the last impact.
 
     Examples
     --------
@@ -50,7 +50,7 @@ def differences(found: Calibration) -> dict[str, Mapping[str, Floats]]:
 
 
 def largest_misfit(found: Calibration) -> float:
-    """Return how far the polynomial is off at most from the exact values, over the speeds that it was fitted over."""
+    """Return the largest deviation of the polynomial from the exact values over the fitted range of speeds."""
     return found.fit.function.misfit(*(found.curve if found.curve is not None else (found.observations.speeds, found.values)))
 
 

@@ -1,0 +1,68 @@
+"""The folder of a study: its files, its recovery after a crash, and its TOML text."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import tomli_w
+
+from vibroimpact.files.leftovers import remove
+from vibroimpact.files.recover import clear, recover
+from vibroimpact.studies.chunk_file import CHUNK
+from vibroimpact.studies.chunk_file import FOLDER as CHUNKS
+from vibroimpact.studies.ledger import LEDGER, is_held
+
+DATASET, STUDY = "study.nc", "study.toml"
+
+
+def is_study(folder: Path) -> bool:
+    """Return whether a folder contains a study, complete or not."""
+    return (folder / STUDY).is_file() or (folder / LEDGER).is_file()
+
+
+def has_study(folder: Path) -> bool:
+    """Return whether a folder contains a study, after recovery of an interrupted replacement."""
+    recover(folder)
+    return is_study(folder)
+
+
+def recover_study(folder: Path) -> None:
+    """Clean up after processes that died while computing a study, unless another process is computing it."""
+    recover(folder)
+    if (folder / LEDGER).is_file() and not is_held(folder):
+        clear_study(folder)
+        if (folder / DATASET).is_file():
+            remove(folder / CHUNKS)
+
+
+def clear_study(folder: Path) -> None:
+    """Remove partly written files of a study that no process is computing, and all but complete chunks from the chunk folder."""
+    clear(folder)
+    for path in (folder / CHUNKS).glob("*"):
+        if path.suffix != CHUNK:
+            remove(path)
+
+
+def study_toml(table: Mapping[str, Any]) -> str:
+    """Return the text of `study.toml`, with the swept keys in the order of the dimensions.
+
+    Parameters
+    ----------
+    table : mapping
+        The case with its [sweep] section.
+    """
+    rest = {**table, "sweep": {key: value for key, value in table["sweep"].items() if key != "over"}}
+    lines = [f"{json.dumps(key)} = {_inline(value)}" for key, value in table["sweep"]["over"].items()]
+    return "\n".join([tomli_w.dumps(rest).rstrip(), "", "[sweep.over]", *lines, ""])
+
+
+def _inline(value: Any) -> str:
+    """Return a value as inline TOML; the library would move tables behind the other keys and so change their order."""
+    if isinstance(value, dict):
+        return "{ " + ", ".join(f"{json.dumps(key)} = {_inline(one)}" for key, one in value.items()) + " }"
+    if isinstance(value, list):
+        return "[" + ", ".join(map(_inline, value)) + "]"
+    return tomli_w.dumps({"x": value}).removeprefix("x = ").rstrip()
