@@ -7,7 +7,7 @@ from os import PathLike
 from pathlib import Path
 
 from vibroimpact.files.recover import recover
-from vibroimpact.report.write_files import write_beside
+from vibroimpact.report.page import write_beside
 from vibroimpact.results.folder import read_result
 from vibroimpact.runs.page import write_report
 

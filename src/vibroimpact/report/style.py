@@ -1,4 +1,4 @@
-"""How all figures look: sizes, type, lines that differ in grey too."""
+"""X."""
 
 from __future__ import annotations
 
@@ -7,6 +7,8 @@ from functools import cache
 from typing import Any
 
 import matplotlib as mpl
+
+from vibroimpact.shown import shortened, visible
 
 ENLARGED = 5
 """How many contacts are enlarged at most; more panels would be too narrow to read."""
@@ -114,3 +116,18 @@ def _foreign() -> dict[Any, Any]:
 @cache
 def _defaults() -> dict[Any, Any]:
     return {name: value for name, value in mpl.rcParamsDefault.items() if name not in _OF_THE_PROCESS}
+
+
+def lettering(name: str, most: int = 60) -> str:
+    r"""Return a name such that a figure shows it letter by letter, in one line and not too long.
+
+    A dollar sign would begin a formula, a line break would push the figure's titles apart.
+
+    Examples
+    --------
+    >>> print(lettering(r"a$\frac{$b"))
+    a\$\frac{\$b
+    >>> print(lettering("left\nupper"), lettering("a" * 300, 10))
+    left\nupper aaaa ... a
+    """
+    return shortened(visible(name[: 10 * most]), most).replace("$", r"\$")
