@@ -22,7 +22,7 @@ from vibroimpact.calibration.text import calibration_summary
 from vibroimpact.cases.modes import compute_modes
 from vibroimpact.cli import main
 from vibroimpact.cli.doctor import diagnose
-from vibroimpact.cli.material_text import material_sheet, material_table
+from vibroimpact.cli.material_text import material_library_table, material_sheet
 from vibroimpact.cli.unit_table import converted, unit_table
 from vibroimpact.comparison.comparison import compare_laws
 from vibroimpact.comparison.text import comparison_summary
@@ -89,7 +89,7 @@ def commands(tmp_path_factory: pytest.TempPathFactory, variable: vi.Response) ->
         "export, done": lambda _: export_summary(drop, find_export_format("lammps"), [folder / "drop.in"]),
         "laws": law_table,
         "laws NAME": lambda _: law_sheet("jackson-green-marghitu"),
-        "materials": lambda _: material_table(),
+        "materials": lambda _: material_library_table(),
         "materials NAME": lambda _: material_sheet("granite"),
         "units": lambda _: unit_table(5.115e8, "N/m^1.5"),
         "units --to": lambda _: converted(3.0, "N/µm", "N/m"),

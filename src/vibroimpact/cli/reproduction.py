@@ -1,4 +1,4 @@
-"""The command that reproduces the paper."""
+"""The command `reproduce`, which reproduces the paper."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""X."""
+"""HTML pages of all reports: template, embedded figures, and replacement of report files on disk."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from vibroimpact.files.write_into_folder import write_into
 
 
 class Picture(NamedTuple):
-    """A figure on the page: its name, title, caption and data URI."""
+    """A figure of a page: name, title, caption and data URI."""
 
     name: str
     title: str
@@ -24,9 +24,9 @@ class Picture(NamedTuple):
 
 
 def template(package: str) -> Template:
-    """Return the template of the page of a package, `page.html.j2`, which extends `base.html.j2` here.
+    """Return the page template `page.html.j2` of a package, which extends the `base.html.j2` of this one.
 
-    What it shows is escaped, and it may show nothing that it was not given.
+    Values are escaped, and an undefined variable is an error.
     """
     of = {"page.html.j2": package, "base.html.j2": __package__}
     loader = FunctionLoader(lambda file: files(of[file]).joinpath(file).read_text(encoding="utf-8"))
@@ -35,21 +35,21 @@ def template(package: str) -> Template:
 
 
 def picture(name: str, title: str, words: str, svg: bytes) -> Picture:
-    """Return a figure for a page, which holds it whole."""
+    """Return a figure for a page, embedded as a data URI."""
     return Picture(name, title, words, f"data:image/svg+xml;base64,{b64encode(svg).decode()}")
 
 
-def write_beside(folder: Path, write: Callable[[Path], None], goes: tuple[str, ...] = ()) -> None:
-    """Write the files of a report into a folder that is there: all of them or none.
+def replace_report_files(folder: Path, write: Callable[[Path], None], stale: tuple[str, ...] = ()) -> None:
+    """Replace the files of a report in an existing folder atomically.
 
     Parameters
     ----------
     folder : pathlib.Path
-        Where they go.
+        The existing folder.
     write : callable
-        Writes them into an empty folder.
-    goes : tuple of str
-        Patterns of the files of `folder` that go if they were not written again.
+        Function that writes the files into an empty working folder.
+    stale : tuple of str
+        Patterns of files of `folder` to delete unless they were written again.
 
     Raises
     ------
@@ -57,6 +57,6 @@ def write_beside(folder: Path, write: Callable[[Path], None], goes: tuple[str, .
         If the folder can't be written to.
     """
     try:
-        write_into(folder, write, goes)
+        write_into(folder, write, stale)
     except OSError as error:
         raise InputError(f"{folder}: the report can't be written: {error.strerror or error}") from None

@@ -21,7 +21,7 @@ from vibroimpact.paper.report.outline import PARTS, ReportPart, find_parts, rend
 from vibroimpact.paper.report.page import report_html, report_text
 from vibroimpact.paper.runs import Runs
 from vibroimpact.report.figure_files import save_figures
-from vibroimpact.report.page import write_beside
+from vibroimpact.report.page import replace_report_files
 from vibroimpact.results.folder import SUMMARY, new_folder
 from vibroimpact.results.tables import write_csv
 
@@ -128,7 +128,7 @@ def write_reproduction_report(folder: Path) -> None:
         if rows:
             write_csv(rows, list(rows[0]), working / "values.csv")
 
-    write_beside(folder, write)
+    replace_report_files(folder, write)
 
 
 def read_parts(folder: Path) -> dict[str, dict[str, Any]]:

@@ -16,7 +16,7 @@ from vibroimpact.paper.report.markdown import FIGURES, table
 from vibroimpact.paper.report.outline import CHAPTERS, PARTS
 from vibroimpact.paper.section import Verdict
 from vibroimpact.report.page import template
-from vibroimpact.report.terminal_table import Column, TerminalTable
+from vibroimpact.report.terminal_table import TerminalColumn, TerminalTable
 
 TITLE = "The paper, reproduced"
 
@@ -112,5 +112,7 @@ def _data(file: Path) -> str:
 def verdict_table(parts: Mapping[str, Mapping[str, Any]]) -> TerminalTable:
     """Return the number of values with each verdict, by part."""
     by_part = verdict_counts(parts)
-    verdicts = [Column(verdict.value.replace(" ", "\u00a0"), [str(by[verdict.value]) for by in by_part.values()]) for verdict in Verdict]
-    return TerminalTable([Column("part", list(by_part), words=True), *verdicts], bold=[len(by_part) - 1])
+    verdicts = [
+        TerminalColumn(verdict.value.replace(" ", "\u00a0"), [str(by[verdict.value]) for by in by_part.values()]) for verdict in Verdict
+    ]
+    return TerminalTable([TerminalColumn("part", list(by_part), words=True), *verdicts], bold=[len(by_part) - 1])
