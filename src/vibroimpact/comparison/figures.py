@@ -117,7 +117,7 @@ def spread_labels(places: Sequence[float], gap: float) -> list[float]:
 
     Examples
     --------
-    >>> [round(place, 3) for place in apart([0.1, 0.7, 0.716, 0.72], 0.04)]
+    >>> [round(place, 3) for place in spread_labels([0.1, 0.7, 0.716, 0.72], 0.04)]
     [0.1, 0.7, 0.74, 0.78]
     """
     found: list[float] = []

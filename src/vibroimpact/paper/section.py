@@ -69,7 +69,7 @@ class ComparedValue:
     Examples
     --------
     >>> from vibroimpact.paper.printed import printed
-    >>> Row(printed("type1.rebound_height"), 2.411319, by="a calculation").verdict.value
+    >>> ComparedValue(printed("type1.rebound_height"), 2.411319, by="a calculation").verdict.value
     'reproduced'
     """
 

@@ -26,10 +26,10 @@ from vibroimpact.paper.step_sweep import (
     sweep_steps,
 )
 
-SPHERE = {"max_force": "max_force_N", "rebound_height": "rebound_height_m", "strain_energy": "sphere_strain_J"}
+SPHERE_COLUMNS = {"max_force": "max_force_N", "rebound_height": "rebound_height_m", "strain_energy": "sphere_strain_J"}
 """Printed quantities of the sphere in the first impact, and their names in a run."""
 
-PLATE_QUANTITIES = {
+PLATE_COLUMNS = {
     "plate.kinetic_energy": "plate_kinetic_J",
     "plate.strain_energy": "plate_strain_J",
     "plate.displacement": "plate_displacement_m",
@@ -38,7 +38,7 @@ PLATE_QUANTITIES = {
 }
 """Printed quantities of the plate, and their names in a run."""
 
-_RUN_NAMES = {f"type{kind}.{name}": column for kind in (2, 3) for name, column in SPHERE.items()} | PLATE_QUANTITIES
+_COLUMNS = {f"type{kind}.{name}": column for kind in (2, 3) for name, column in SPHERE_COLUMNS.items()} | PLATE_COLUMNS
 
 _SHARE_HEADINGS = ("motion", "height", "vibration", "lost in the contact", "lost in the modes", "lost by the method")
 
@@ -79,8 +79,8 @@ def _compared_values(runs: Runs) -> tuple[ComparedValue, ...]:
     rows = []
     for kind in (2, 3):
         step, found = _fitted_step(runs, kind)
-        for name in [f"type{kind}.{name}" for name in SPHERE] + (list(PLATE_QUANTITIES) if kind == 3 else []):
-            values = found[_RUN_NAMES[name]]
+        for name in [f"type{kind}.{name}" for name in SPHERE_COLUMNS] + (list(PLATE_COLUMNS) if kind == 3 else []):
+            values = found[_COLUMNS[name]]
             spread = f"{values.min():.4g} to {values.max():.4g}"
             explanation = Explanation(f"{reason}, {spread}", float(values.min()), float(values.max()))
             otherwise = f"an unresolved run gives {spread}, wherever in a step the surfaces meet"
@@ -176,7 +176,7 @@ def _prediction_words(runs: Runs, rows: tuple[ComparedValue, ...]) -> str:
     predicted = [row for row in rows if not row.fitted]
     met, missed = [row for row in predicted if _is_met(row)], [row for row in predicted if not _is_met(row)]
     whole = resolved_impact(superposed(runs, 3, "coarse"))
-    vague = [row for row in met if abs(whole[_RUN_NAMES[row.printed.name]] - row.printed.value) <= row.printed.half]
+    vague = [row for row in met if abs(whole[_COLUMNS[row.printed.name]] - row.printed.value) <= row.printed.half]
     loose = [row for row in met if not row.explanations[0].contains(row.printed)]
     return (
         f"The same step gives Type 3, where nothing is fitted. Of the {len(predicted)} numbers compared here, {len(met)} are met, as far "
@@ -195,7 +195,7 @@ def _counter_evidence(runs: Runs) -> str:
     deep = [1e3 * fall_beyond_touch(kind, float(runs.problem("type1-variable").gravity)) for kind in (2, 3)]
     ranges = [f"{1e3 * found['beyond_touch_m'].min():.2f} to {1e3 * found['beyond_touch_m'].max():.2f} mm" for found in (two, three)]
     at_end = unresolved_impact(superposed(runs, 3, "coarse"), _fitted_step(runs, 3)[0], np.ones(1))
-    off = [_more_text(float(at_end[column][0]) / printed(f"type3.{name}").value - 1.0) for name, column in SPHERE.items()]
+    off = [_more_text(float(at_end[column][0]) / printed(f"type3.{name}").value - 1.0) for name, column in SPHERE_COLUMNS.items()]
     return (
         "What speaks against the reading: with the touch at the same place in a step, the largest force of Type 3 is between "
         f"{_more_text(float(ratio.min()))} and {_more_text(float(ratio.max()))} than that of Type 2; as printed, it is "
@@ -211,13 +211,14 @@ def _outcome(runs: Runs, rows: tuple[ComparedValue, ...]) -> str:
     faster = resolved_impact(superposed(runs, 2, "coarse"))["separation_speed_m_s"] / paper_impact(runs, 2)["separation_speed_m_s"]
     parts = []
     for body, is_plate in (("sphere", False), ("plate", True)):
-        mine = [row for row in rows if not row.fitted and (row.printed.name in PLATE_QUANTITIES) == is_plate]
+        mine = [row for row in rows if not row.fitted and (row.printed.name in PLATE_COLUMNS) == is_plate]
         parts.append(f"{sum(map(_is_met, mine))} of the {len(mine)} numbers of the {body}")
-    found, wanted = _fitted_step(runs, 3)[1], {column: printed(f"type3.{name}").value for name, column in SPHERE.items()}
+    found, wanted = _fitted_step(runs, 3)[1], {column: printed(f"type3.{name}").value for name, column in SPHERE_COLUMNS.items()}
     together = np.sqrt(np.mean([(found[column] / value - 1.0) ** 2 for column, value in wanted.items()], axis=0))
     identified = runs.treated(3, "identified").impacts
     beside = [
-        _more_text(float(identified[SPHERE[name]][0]) / printed(f"type3.{name}").value - 1.0) for name in ("max_force", "rebound_height")
+        _more_text(float(identified[SPHERE_COLUMNS[name]][0]) / printed(f"type3.{name}").value - 1.0)
+        for name in ("max_force", "rebound_height")
     ]
     return (
         f"So the reading accounts for {' and '.join(parts)} in Type 3, each by itself; at the best place of the touch the three of the "
@@ -264,7 +265,7 @@ def _energy_table(runs: Runs) -> TextTable:
 def _plate_table(runs: Runs) -> TextTable:
     (_, found), whole = _fitted_step(runs, 3), resolved_impact(superposed(runs, 3, "coarse"))
     cells = []
-    for name, column in PLATE_QUANTITIES.items():
+    for name, column in PLATE_COLUMNS.items():
         values, value = found[column], printed(name)
         spread = f"{values.min():.4g} to {values.max():.4g}"
         cells.append((f"{value.what} [{value.unit}]", value.text, f"{np.median(values):.4g}", spread, f"{whole[column]:.4g}"))
