@@ -65,9 +65,8 @@ def _run() -> int:
         fail("aborted", 1)
     except Exception as error:
         usage_error: Any = error
-        if not (
-            hasattr(usage_error, "show") and hasattr(usage_error, "exit_code")
-        ):  # not typer's own errors, whose class depends on its version
+        # typer's own errors are told by their methods, since their class depends on its version
+        if not (hasattr(usage_error, "show") and hasattr(usage_error, "exit_code")):
             raise
         usage_error.message = "\n".join(shortened(visible(line), LONGEST_LINE) for line in usage_error.message.split("\n"))
         usage_error.show()

@@ -72,9 +72,8 @@ def say(text: str, *, err: bool = False) -> None:
     from vibroimpact.report.encodable import encodable
 
     stream, text = sys.stderr if err else sys.stdout, "\n".join(map(visible, text.split("\n")))
-    print(
-        encodable(text, getattr(stream, "encoding", None) or "ascii"), file=stream, flush=True
-    )  # flushed, so that a closed pipe raises here and not at exit
+    # flushed, so that a closed pipe raises here and not at exit
+    print(encodable(text, getattr(stream, "encoding", None) or "ascii"), file=stream, flush=True)
 
 
 def never_fail_to_print() -> None:

@@ -74,7 +74,7 @@ def elastic_rows(case: Case) -> list[tuple[str, str]]:
     Raises
     ------
     InputError
-        If a mesh can't be generated, or a point that must lie on it does not.
+        If a mesh can't be generated, or an object that must lie on it does not.
     """
     rows: list[tuple[str, str]] = []
     meshes = meshes_of(case)
