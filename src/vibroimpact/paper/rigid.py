@@ -133,10 +133,9 @@ def dampings_within(runs: Runs, part: float) -> Floats:
     drops = with_law(replace(problem, height=None, speed=speed, impacts=1), damping_max=damping)
     heights = simulate(drops).impacts["rebound_height_m"].reshape(len(speeds), 31)
     wanted = runs.response("type1-theory").impacts["rebound_height_m"]
+    # reversed, since np.interp needs ascending heights, and they fall with the damping
     ends = [
-        np.interp([height * (1.0 - part), height * (1.0 + part)], row[::-1], values[::-1])[
-            ::-1
-        ]  # np.interp needs ascending heights, and they fall with the damping
+        np.interp([height * (1.0 - part), height * (1.0 + part)], row[::-1], values[::-1])[::-1]
         for height, row, values in zip(wanted, heights, damping.reshape(len(speeds), 31), strict=True)
     ]
     return np.array(ends)
