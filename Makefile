@@ -40,7 +40,7 @@ docs: $(VENV)/installed
 
 reproduce: $(VENV)/installed
 	$(BIN)/vibroimpact reproduce -o vibroimpact-paper --force
-	$(BIN)/python -m vibroimpact.paper.report.documented vibroimpact-paper docs
+	$(BIN)/python -m vibroimpact.paper.report.docs_page vibroimpact-paper docs
 
 $(VENV)/bin/python:
 	@command -v $(PYTHON) >/dev/null || { \

@@ -7,7 +7,7 @@ from os import PathLike
 from pathlib import Path
 
 from vibroimpact.files.recover import recover
-from vibroimpact.report.write_files import write_beside
+from vibroimpact.report.page import replace_report_files
 from vibroimpact.results.folder import read_result
 from vibroimpact.runs.page import write_report
 
@@ -37,5 +37,5 @@ def remake_report(directory: str | PathLike[str]) -> Path:
         write_reproduction_report(folder)
         return folder
     result = read_result(directory)
-    write_beside(folder, partial(write_report, result))
+    replace_report_files(folder, partial(write_report, result))
     return folder

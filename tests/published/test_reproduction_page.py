@@ -8,12 +8,11 @@ import pytest
 
 from same_numbers import other_numbers
 from vibroimpact.paper.printed import printed_values
-from vibroimpact.paper.printed_and_computed import Verdict
-from vibroimpact.paper.report.documented import documented
-from vibroimpact.paper.report.outline import CHAPTERS, PARTS
+from vibroimpact.paper.report.docs_page import docs_page_text
+from vibroimpact.paper.report.outline import CHAPTERS, PARTS, RenderedPart, render_part
 from vibroimpact.paper.report.page import report_text
-from vibroimpact.paper.report.rendered_part import Made, make_part
 from vibroimpact.paper.runs import Runs
+from vibroimpact.paper.section import Verdict
 from vibroimpact.report.figure_files import render_svg
 
 PAGE = Path(__file__).parents[2] / "docs" / "reproduction.md"
@@ -39,33 +38,33 @@ def runs() -> Runs:
 
 
 @pytest.fixture(scope="module")
-def rigid_parts(runs: Runs) -> dict[str, Made]:
-    return {part.name: make_part(part, runs) for chapter in RIGID for part in CHAPTERS[chapter]}
+def rigid_parts(runs: Runs) -> dict[str, RenderedPart]:
+    return {part.name: render_part(part, runs) for chapter in RIGID for part in CHAPTERS[chapter]}
 
 
 @pytest.fixture(scope="module")
-def parts(runs: Runs, rigid_parts: dict[str, Made]) -> dict[str, Made]:
-    return {name: rigid_parts.get(name) or make_part(part, runs) for name, part in PARTS.items()}
+def parts(runs: Runs, rigid_parts: dict[str, RenderedPart]) -> dict[str, RenderedPart]:
+    return {name: rigid_parts.get(name) or render_part(part, runs) for name, part in PARTS.items()}
 
 
-def rows_of(parts: dict[str, Made]) -> list[dict]:
+def rows_of(parts: dict[str, RenderedPart]) -> list[dict]:
     return [row for made in parts.values() for row in made.rows]
 
 
 @pytest.fixture(scope="module")
-def rigid_rows(rigid_parts: dict[str, Made]) -> list[dict]:
+def rigid_rows(rigid_parts: dict[str, RenderedPart]) -> list[dict]:
     return rows_of(rigid_parts)
 
 
 @pytest.fixture(scope="module")
-def rows(parts: dict[str, Made]) -> list[dict]:
+def rows(parts: dict[str, RenderedPart]) -> list[dict]:
     return rows_of(parts)
 
 
-def texts(parts: dict[str, Made]) -> tuple[str, str]:
+def texts(parts: dict[str, RenderedPart]) -> tuple[str, str]:
     """The page as it is, and as these parts make it."""
     made = report_text({name: made._asdict() for name, made in parts.items()})
-    return PAGE.read_text(encoding="utf-8"), documented(made)
+    return PAGE.read_text(encoding="utf-8"), docs_page_text(made)
 
 
 def check_numbers(before: str, now: str) -> None:
@@ -74,11 +73,11 @@ def check_numbers(before: str, now: str) -> None:
 
 
 @pytest.mark.slow
-def test_every_number_is_the_one_computed_now(parts: dict[str, Made]) -> None:
+def test_every_number_is_the_one_computed_now(parts: dict[str, RenderedPart]) -> None:
     check_numbers(*texts(parts))
 
 
-def test_numbers_of_rigid_bodies_are_those_computed_now(rigid_parts: dict[str, Made]) -> None:
+def test_numbers_of_rigid_bodies_are_those_computed_now(rigid_parts: dict[str, RenderedPart]) -> None:
     page, text = texts(rigid_parts)
     first, beyond = f"## {RIGID[0]}\n", f"## {list(CHAPTERS)[len(RIGID)]}\n"
     check_numbers(page[page.index(first) : page.index(beyond)], text[text.index(first) : text.index("Not made yet: ")])
@@ -93,7 +92,7 @@ def test_every_printed_value_is_in_the_report(rows: list[dict]) -> None:
     assert {row["name"] for row in rows} == printed_values().keys() - settings
 
 
-def check_figures(parts: dict[str, Made], figures: dict[str, str]) -> None:
+def check_figures(parts: dict[str, RenderedPart], figures: dict[str, str]) -> None:
     assert {name for name, made in parts.items() if made.drawing is not None} == figures.keys()
     for name, begins in figures.items():
         assert f"](figures/{name}.png)" in parts[name].text, name
@@ -102,18 +101,18 @@ def check_figures(parts: dict[str, Made], figures: dict[str, str]) -> None:
         assert (PAGE.parent / "images" / "reproduction" / f"{name}.png").is_file(), name
 
 
-def test_every_figure_of_rigid_bodies_is_there(rigid_parts: dict[str, Made]) -> None:
+def test_every_figure_of_rigid_bodies_is_there(rigid_parts: dict[str, RenderedPart]) -> None:
     check_figures(rigid_parts, {f"fig{number}": f"Figure {number}: " for number in range(3, 9)})
 
 
 @pytest.mark.slow
-def test_every_figure_is_there(parts: dict[str, Made]) -> None:
+def test_every_figure_is_there(parts: dict[str, RenderedPart]) -> None:
     figures = {f"fig{number}": f"Figure {number}: " for number in range(3, 24)} | dict.fromkeys(("recovery", "sampling", "unresolved"), "")
     check_figures(parts, figures)
 
 
 @pytest.mark.slow
-def test_every_figure_is_small(parts: dict[str, Made]) -> None:
+def test_every_figure_is_small(parts: dict[str, RenderedPart]) -> None:
     for name, made in parts.items():
         if made.drawing is not None:
             assert 5_000 < len(render_svg(made.drawing.figure)) < 500_000, name

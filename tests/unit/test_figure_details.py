@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 import vibroimpact as vi
 from support import plain_case
 from vibroimpact.comparison.comparison import compare_laws
-from vibroimpact.comparison.figures import apart, draw_comparison
+from vibroimpact.comparison.figures import draw_comparison, spread_labels
 from vibroimpact.results.deflection import Deflection
 from vibroimpact.results.result import Result, result_of
 from vibroimpact.runs.deflection_figure import draw_deflection
@@ -47,7 +47,7 @@ def test_labels_of_a_comparison_at_one_restitution_do_not_overlap() -> None:
 
 @pytest.mark.parametrize("places", [[], [0.5], [0.1, 0.1001, 0.1002, 0.9], list(np.linspace(0.6, 0.62, 7))])
 def test_places_are_brought_apart_and_no_further(places: list[float]) -> None:
-    found = apart(places, 0.05)
+    found = spread_labels(places, 0.05)
     assert all(above - below >= 0.05 - 1e-12 for below, above in pairwise(found))
     assert all(there >= here for here, there in zip(places, found, strict=True))
     assert found[:1] == places[:1]

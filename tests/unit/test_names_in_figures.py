@@ -13,8 +13,7 @@ import vibroimpact as vi
 from support import plain_case
 from vibroimpact.files.plain_names import plain_names
 from vibroimpact.report.figure_files import render_png, render_svg
-from vibroimpact.report.lettering import lettering
-from vibroimpact.report.style import style
+from vibroimpact.report.style import lettering, style
 from vibroimpact.results.result import Result, result_of
 from vibroimpact.runs.deflection_figure import draw_deflection
 from vibroimpact.runs.sensor_figures import draw_sensor

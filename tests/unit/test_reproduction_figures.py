@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from vibroimpact.dynamics.response import Response
-from vibroimpact.paper.measures import column, falling_potential, largest_of
+from vibroimpact.paper.measures import falling_potential, history_column, largest_of
 from vibroimpact.paper.printed import printed
-from vibroimpact.paper.report.compared import beside_printed
-from vibroimpact.paper.report.paper_figures import PAPER_FIGURES
-from vibroimpact.paper.report.type_figures import ENERGY, MOTION
+from vibroimpact.paper.report.compared_quantity import comparison_sentence
+from vibroimpact.paper.report.elastic_figures import SPHERE_ENERGY, SPHERE_MOTION
+from vibroimpact.paper.report.outline import PAPER_FIGURES
 from vibroimpact.paper.runs import Runs
 from vibroimpact.report.style import style
 from vibroimpact.units.display import digits
@@ -99,12 +99,12 @@ def test_printed_values_are_marked_where_they_lie(runs: Runs) -> None:
 
 
 def test_the_sentence_names_the_nearest_treatment(runs: Runs) -> None:
-    force = MOTION[1]
+    force = SPHERE_MOTION[1]
     far = 100.0 * (force.value(runs.treated(3, "consistent")) / printed("type3.max_force").value - 1.0)
-    sentence = beside_printed(force, (2, 3), runs)
+    sentence = comparison_sentence(force, (2, 3), runs)
     assert "Nearest to that of Type 3 is the consistent treatment" in sentence
     assert f"{digits(far, 2)} % above it." in sentence
-    assert "the paper prints none" in beside_printed(MOTION[2], (2, 3), runs)
+    assert "the paper prints none" in comparison_sentence(SPHERE_MOTION[2], (2, 3), runs)
 
 
 def test_the_sentence_tells_who_keeps_below_a_bound(runs: Runs) -> None:
@@ -112,18 +112,18 @@ def test_the_sentence_tells_who_keeps_below_a_bound(runs: Runs) -> None:
         def treated(self, kind: int, treatment: str) -> Response:
             return self.response("type1-theory") if treatment == "identified" else super().treated(kind, treatment)
 
-    bound = ENERGY[3]
+    bound = SPHERE_ENERGY[3]
 
     def said(low: float, runs: Runs) -> str:
         theory = runs.response("type1-theory")
-        return beside_printed(bound._replace(value=lambda response: low if response is theory else 1.0), (2, 3), runs)
+        return comparison_sentence(bound._replace(value=lambda response: low if response is theory else 1.0), (2, 3), runs)
 
     assert said(1e-9, OneIsLow()).endswith("and so is the identified treatment alone.")
     assert said(1.0, OneIsLow()).endswith("and none is.")
-    assert beside_printed(bound._replace(value=lambda response: 0.0), (2, 3), runs).endswith("and so are all.")
+    assert comparison_sentence(bound._replace(value=lambda response: 0.0), (2, 3), runs).endswith("and so are all.")
 
 
 def test_largest_of_a_timeline(runs: Runs) -> None:
     response = runs.response("type1-theory")
-    assert largest_of(column("position_m"))(response) == 4.0
+    assert largest_of(history_column("position_m"))(response) == 4.0
     assert largest_of(lambda _: (np.zeros(3), np.array([1.0, np.nan, -2.0])))(response) == 2.0

@@ -17,15 +17,13 @@ import pytest
 import vibroimpact as vi
 from vibroimpact.cli import main
 from vibroimpact.paper.printed import printed
-from vibroimpact.paper.printed_and_computed import Row, Verdict
 from vibroimpact.paper.report import folder as module
-from vibroimpact.paper.report.documented import write_documented
+from vibroimpact.paper.report.docs_page import write_docs_page
 from vibroimpact.paper.report.folder import is_reproduction, missing_parts, read_parts, reproduce_paper
-from vibroimpact.paper.report.outline import PARTS, Part, find_parts
-from vibroimpact.paper.report.page import counts, report_html, report_text
-from vibroimpact.paper.report.rendered_part import make_part
+from vibroimpact.paper.report.outline import PARTS, ReportPart, find_parts, render_part
+from vibroimpact.paper.report.page import report_html, report_text, verdict_counts
 from vibroimpact.paper.runs import Runs
-from vibroimpact.paper.section import Section
+from vibroimpact.paper.section import ComparedValue, ReportSection, Verdict
 
 QUICK = ["table1", "section3.1", "fig4"]
 COLUMNS = "part,name,what,place,read,unit,relation,printed,by,computed,difference,allowed,verdict,why"
@@ -139,13 +137,13 @@ def test_counts_tell_each_verdict_apart() -> None:
         return {"title": "T|1", "text": "A text.\n", "rows": [{"verdict": verdict.value} for verdict in verdicts]}
 
     parts = {"table1": part(*Verdict), "fig3": part(), "section3.2": part(Verdict.FITTED, Verdict.FITTED)}
-    assert {name: list(by.values()) for name, by in counts(parts).items()} == {
+    assert {name: list(by.values()) for name, by in verdict_counts(parts).items()} == {
         "table1": [1, 1, 1, 1],
         "section3.2": [0, 0, 2, 0],
         "all": [1, 1, 3, 1],
     }
     assert "| T\\|1 | 1 | 1 | 1 | 1 |" in report_text(parts)
-    assert counts({"fig3": part()}) == {}
+    assert verdict_counts({"fig3": part()}) == {}
     assert "| Part |" not in report_text({"fig3": part()})
     assert "Not made yet" not in report_text({name: part() for name in PARTS})
 
@@ -153,23 +151,23 @@ def test_counts_tell_each_verdict_apart() -> None:
 def test_a_part_is_text_values_and_figure(made: Path) -> None:
     runs = Runs()
     table1, fig3 = PARTS["table1"], PARTS["fig3"]
-    both = make_part(Part("both", table1.section, fig3.draw), runs)
+    both = render_part(ReportPart("both", table1.section, fig3.draw), runs)
     assert both.title == "Table 1: the inputs"
     assert re.findall(r"^#.*", both.text, flags=re.M) == ["### Table 1: the inputs"]
     assert "](figures/both.png)" in both.text
     assert both.drawing is not None
     assert {row["part"] for row in both.rows} == {"both"}
-    drawn = make_part(fig3, runs)
+    drawn = render_part(fig3, runs)
     assert drawn.text.startswith(f"### {drawn.title}\n")
     assert drawn.title.startswith("Figure 3: ")
     assert drawn.rows == []
-    assert make_part(table1, runs).drawing is None
+    assert render_part(table1, runs).drawing is None
 
 
 def test_a_bound_has_neither_difference_nor_allowance() -> None:
-    bound = Row(printed("type2.energy_left"), 88.0, by="a calculation", otherwise="unknown")
-    value = Row(printed("type2.max_force"), 4000.0, by="a calculation", otherwise="unknown")
-    rows = make_part(Part("both", lambda runs: Section("A title", rows=(bound, value))), Runs()).rows
+    bound = ComparedValue(printed("type2.energy_left"), 88.0, by="a calculation", otherwise="unknown")
+    value = ComparedValue(printed("type2.max_force"), 4000.0, by="a calculation", otherwise="unknown")
+    rows = render_part(ReportPart("both", lambda runs: ReportSection("A title", rows=(bound, value))), Runs()).rows
     assert [row["relation"] for row in rows] == ["<", "="]
     assert [row["difference"] is None for row in rows] == [row["allowed"] is None for row in rows] == [True, False]
     assert [(row["printed"], row["computed"], row["why"]) for row in rows] == [("6", 88.0, "unknown"), ("3582.036", 4000.0, "unknown")]
@@ -264,7 +262,7 @@ def test_unknown_parts_are_told_before_anything_is_made(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("error", [vi.ComputationError("the ledger is open"), KeyboardInterrupt(), ValueError("a bug")])
 def test_earlier_parts_stay_when_a_part_fails(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, error: BaseException) -> None:
-    monkeypatch.setitem(PARTS, "fig3", Part("fig3", draw=raises(error)))
+    monkeypatch.setitem(PARTS, "fig3", ReportPart("fig3", draw=raises(error)))
     with pytest.raises(type(error)):
         reproduce_paper(tmp_path / "paper", ["table1", "section3.1", "fig3", "corrections"])
     kept = {"summary.json", "report.md", "report.html", "values.csv", "parts/table1.json", "parts/section3.1.json"}
@@ -295,7 +293,7 @@ def test_a_part_is_there_with_its_figure_or_not_at_all(
 
 def test_what_stopped_the_run_is_told_and_not_what_else_is_damaged(copy: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (copy / "parts" / "table1.json").write_text("")
-    monkeypatch.setitem(PARTS, "fig3", Part("fig3", draw=raises(vi.ComputationError("the ledger is open"))))
+    monkeypatch.setitem(PARTS, "fig3", ReportPart("fig3", draw=raises(vi.ComputationError("the ledger is open"))))
     with pytest.raises(vi.ComputationError, match="the ledger is open"):
         reproduce_paper(copy, ["fig3"])
 
@@ -347,7 +345,7 @@ def test_bad_names_end_with_status_2(
 
 
 def test_an_interrupt_tells_how_to_go_on(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
-    monkeypatch.setitem(PARTS, "fig3", Part("fig3", draw=raises(KeyboardInterrupt())))
+    monkeypatch.setitem(PARTS, "fig3", ReportPart("fig3", draw=raises(KeyboardInterrupt())))
     assert command(monkeypatch, "reproduce", "--only", "table1,fig3", "-o", tmp_path / "paper") == 130
     assert f"go on with: vibroimpact reproduce -o {tmp_path / 'paper'} --only fig3\n" in capsys.readouterr().err
 
@@ -365,7 +363,7 @@ def test_the_page_of_the_documentation(made: Path, tmp_path: Path) -> None:
     images = tmp_path / "images" / "reproduction"
     images.mkdir(parents=True)
     (images / "old.png").write_bytes(b"old")
-    page = write_documented(made, tmp_path)
+    page = write_docs_page(made, tmp_path)
     assert names(tmp_path) == {"reproduction.md", "images/reproduction/fig4.png"}
     assert (images / "fig4.png").read_bytes() == (made / "figures" / "fig4.png").read_bytes()
     text = page.read_text(encoding="utf-8")

@@ -13,28 +13,27 @@ from markdown_it import MarkdownIt
 
 from vibroimpact.errors import InputError
 from vibroimpact.paper import printed as library
-from vibroimpact.paper.printed import Printed, Relation, corrections, printed, printed_values
-from vibroimpact.paper.printed_and_computed import Account, Row, Verdict
+from vibroimpact.paper.printed import PrintedValue, Relation, corrections, printed, printed_values
 from vibroimpact.paper.report.markdown import (
     allowed_text,
     computed_text,
     difference_text,
-    plain,
+    escape_markdown,
     printed_text,
     rows_table,
     section_text,
     table,
     verdict_text,
 )
-from vibroimpact.paper.section import Section, Table
+from vibroimpact.paper.section import ComparedValue, Explanation, ReportSection, TextTable, Verdict
 
 
-def value(text: str, relation: Relation = "=", digits: int | None = None, unit: str = "m") -> Printed:
-    return Printed("a.value", "a value", text, unit, "section 1", "text", relation, digits)
+def value(text: str, relation: Relation = "=", digits: int | None = None, unit: str = "m") -> PrintedValue:
+    return PrintedValue("a.value", "a value", text, unit, "section 1", "text", relation, digits)
 
 
-def row(computed: float, text: str = "2.5", relation: Relation = "=", **more: Any) -> Row:
-    return Row(value(text, relation), computed, by="a calculation", **more)
+def row(computed: float, text: str = "2.5", relation: Relation = "=", **more: Any) -> ComparedValue:
+    return ComparedValue(value(text, relation), computed, by="a calculation", **more)
 
 
 # what is printed ------------------------------------------------------------------------------------------------------
@@ -156,29 +155,29 @@ def test_a_tolerance_takes_the_place_of_the_digits() -> None:
     ],
 )
 def test_an_account_holds_if_the_printed_value_lies_in_its_range(low: float, high: float, holds: bool) -> None:
-    account = Account("read off samples", low, high)
-    assert account.holds(value("2.5")) == holds
-    found = row(9.0, accounts=(account,), otherwise="unknown")
+    explanation = Explanation("read off samples", low, high)
+    assert explanation.holds(value("2.5")) == holds
+    found = row(9.0, explanations=(explanation,), otherwise="unknown")
     assert found.verdict == (Verdict.EXPLAINED if holds else Verdict.NOT_REPRODUCED)
     assert found.reason == ("read off samples" if holds else "unknown")
 
 
 def test_the_first_account_that_holds_counts() -> None:
-    fails, first, second = Account("fails", 0.0, 1.0), Account("first", 2.0, 3.0), Account("second", 2.0, 3.0)
-    assert row(9.0, accounts=(fails, first, second)).reason == "first"
-    assert row(9.0, accounts=(fails,)).reason == ""
+    fails, first, second = Explanation("fails", 0.0, 1.0), Explanation("first", 2.0, 3.0), Explanation("second", 2.0, 3.0)
+    assert row(9.0, explanations=(fails, first, second)).reason == "first"
+    assert row(9.0, explanations=(fails,)).reason == ""
 
 
 def test_what_agrees_needs_no_reason() -> None:
-    agrees = row(2.5, accounts=(Account("read off samples", 2.0, 3.0),), otherwise="unknown")
+    agrees = row(2.5, explanations=(Explanation("read off samples", 2.0, 3.0),), otherwise="unknown")
     assert agrees.verdict == Verdict.REPRODUCED
-    assert agrees.account is None
+    assert agrees.explanation is None
     assert agrees.reason == ""
 
 
 @pytest.mark.parametrize("computed", [2.5, 9.0])
 def test_what_was_fitted_proves_nothing(computed: float) -> None:
-    found = row(computed, accounts=(Account("read off samples", 2.0, 3.0),), otherwise="unknown", fitted=True)
+    found = row(computed, explanations=(Explanation("read off samples", 2.0, 3.0),), otherwise="unknown", fitted=True)
     assert found.verdict == Verdict.FITTED
     assert found.reason == ""
     assert verdict_text(found) == "fitted"
@@ -199,7 +198,7 @@ def test_what_was_fitted_proves_nothing(computed: float) -> None:
         (value("9.8", unit="m/s^2"), "9.8\u00a0m/s²"),
     ],
 )
-def test_a_printed_value_is_shown_as_printed(held: Printed, shown: str) -> None:
+def test_a_printed_value_is_shown_as_printed(held: PrintedValue, shown: str) -> None:
     assert printed_text(held) == shown
 
 
@@ -231,12 +230,14 @@ def test_verdicts_in_words() -> None:
     assert verdict_text(row(2.5)) == "reproduced"
     assert verdict_text(row(9.0)) == "not reproduced"
     assert verdict_text(row(9.0, otherwise="a mesh of our own")) == "not reproduced: a mesh of our own"
-    assert verdict_text(row(9.0, accounts=(Account("read off samples", 2.0, 3.0),))) == "explained: read off samples"
+    assert verdict_text(row(9.0, explanations=(Explanation("read off samples", 2.0, 3.0),))) == "explained: read off samples"
 
 
 def test_a_value_is_said_once_where_several_things_compute_it() -> None:
     held, other = value("2.5"), value("2.5")
-    lines = rows_table([Row(held, 2.5, by="one"), Row(held, 9.0, by="another"), Row(other, 2.5, by="a third")]).splitlines()
+    lines = rows_table(
+        [ComparedValue(held, 2.5, by="one"), ComparedValue(held, 9.0, by="another"), ComparedValue(other, 2.5, by="a third")]
+    ).splitlines()
     said = [line.strip("|").split("|")[:4] for line in lines[2:]]
     whole = [" a value ", " section 1 ", " 2.5\u00a0m "]
     assert said == [[*whole, " one "], ["  ", "  ", "  ", " another "], [*whole, " a third "]]
@@ -245,14 +246,14 @@ def test_a_value_is_said_once_where_several_things_compute_it() -> None:
 @pytest.mark.parametrize("text", ["a|b", "*a* and _b_", "a \\| b", "1 < 2 <b>", "[a](b)", "`a`", "\u22122\u00a0%"])
 def test_words_come_through_markdown_as_they_stand(text: str) -> None:
     page = MarkdownIt("commonmark", {"html": False}).enable("table")
-    assert page.render(plain(text)).strip() == f"<p>{escape(text)}</p>"
+    assert page.render(escape_markdown(text)).strip() == f"<p>{escape(text)}</p>"
     assert page.render(table((text, "b"), [("a", text)])).count(escape(text)) == 2
     assert page.render(table((text, "b"), [("a", text)])).count("<td>") == 2
 
 
 def test_a_section_keeps_its_order() -> None:
-    further = Table(("one", "two"), (("1", "2"),), "Further")
-    text = section_text(Section("A title", ("First.", "Second."), (row(2.5),), (further,), ("At last.",)))
+    further = TextTable(("one", "two"), (("1", "2"),), "Further")
+    text = section_text(ReportSection("A title", ("First.", "Second."), (row(2.5),), (further,), ("At last.",)))
     pieces = ["### A title\n", "First.\n", "Second.\n", "| What |", "**Further**\n", "| one | two |", "At last.\n"]
     assert sorted(pieces, key=text.index) == pieces
-    assert section_text(Section("A title", ("First.",))) == "### A title\n\nFirst.\n"
+    assert section_text(ReportSection("A title", ("First.",))) == "### A title\n\nFirst.\n"

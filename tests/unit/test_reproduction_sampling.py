@@ -10,15 +10,15 @@ import pytest
 from vibroimpact.paper.runs import IMPACTS, Runs
 from vibroimpact.paper.sampling import (
     CONTACTS,
+    contact_pulses,
     error_range,
-    found_spacing,
-    gaps,
     grid_error,
     grid_samples,
     implied_instants,
     output_step,
-    peaks,
-    sampling,
+    sampling_section,
+    spacing_bound,
+    unsampled_gaps,
 )
 
 
@@ -54,7 +54,7 @@ def test_the_range_is_what_samples_at_many_phases_give(runs: Runs) -> None:
     step = 5e-5
     readings = {}
     for name in ("theory", "variable"):
-        peak = peaks(runs)[name, "compression", 4]
+        peak = contact_pulses(runs)[name, "compression", 4]
         phases = np.linspace(0.0, step, 2001)[:, None]
         samples = phases + step * np.arange(10)
         readings[name] = np.interp(samples, peak.times, peak.values, right=0.0).max(axis=1)
@@ -64,11 +64,11 @@ def test_the_range_is_what_samples_at_many_phases_give(runs: Runs) -> None:
 
 
 def test_the_spacing(runs: Runs) -> None:
-    free = gaps(runs)
+    free = unsampled_gaps(runs)
     assert len(free) == len(CONTACTS) == 9
     assert free.max() == pytest.approx(37e-6, abs=0.5e-6)
-    assert found_spacing(runs) == pytest.approx(free.max() * 20.0 ** (1.0 / 9.0))
-    assert found_spacing(runs) < 0.25 * output_step() == 0.25 * 2.5e-4
+    assert spacing_bound(runs) == pytest.approx(free.max() * 20.0 ** (1.0 / 9.0))
+    assert spacing_bound(runs) < 0.25 * output_step() == 0.25 * 2.5e-4
 
 
 def test_the_printed_output_step_gives_other_errors(runs: Runs) -> None:
@@ -83,14 +83,14 @@ def test_the_printed_output_step_gives_other_errors(runs: Runs) -> None:
 def test_a_level_above_the_peak_is_never_passed(runs: Runs) -> None:
     """The third and the fifth impact: what the printed force errors imply is more than there was."""
     assert np.isnan(implied_instants(runs, "force", "constant", 5)).all()
-    peak = peaks(runs)["constant", "force", 5]
+    peak = contact_pulses(runs)["constant", "force", 5]
     up, down = peak.instants(0.5 * peak.value)
     assert up < peak.times[peak.top] < down
     assert peak.lowest(down - up) == pytest.approx(0.5 * peak.value, rel=1e-4)
 
 
 def test_the_section_is_computed(runs: Runs) -> None:
-    section = sampling(runs)
+    section = sampling_section(runs)
     errors, instants = section.tables
     assert len(errors.cells) == 20
     assert len(instants.cells) == 9

@@ -11,15 +11,15 @@ from vibroimpact.contact.laws.hertz import Hertz
 from vibroimpact.contact.laws.newton import Newton
 from vibroimpact.errors import ComputationError, InputError
 from vibroimpact.paper import implicit_euler
-from vibroimpact.paper.implicit_euler import PEAKS, SPENT, unresolved_impact
-from vibroimpact.paper.printed_and_computed import Verdict
+from vibroimpact.paper.implicit_euler import ENERGY_SHARES, PEAKS, unresolved_impact
 from vibroimpact.paper.runs import Runs
-from vibroimpact.paper.step_sweep import COMPARED, closest, paper_impact, resolved, superposed, sweep
-from vibroimpact.paper.unresolved import unresolved, unresolved_range
+from vibroimpact.paper.section import Verdict
+from vibroimpact.paper.step_sweep import COMPARED, closest, paper_impact, resolved_impact, superposed, sweep_steps
+from vibroimpact.paper.unresolved import unresolved_range, unresolved_section
 
 IMPACT = AdamsImpact(stiffness=5.1154524848e8, damping_max=180.0)
 SPHERE = random_modes(3, 6, 12e3, 40e3, 3.0, 1.0)
-PLATE = random_modes(4, 8, 300.0, 8e3, 0.5, 0.1)
+PLATE_QUANTITIES = random_modes(4, 8, 300.0, 8e3, 0.5, 0.1)
 PHASES = np.array([0.1, 0.4, 0.7, 1.0])
 
 
@@ -39,11 +39,13 @@ def test_a_linear_spring_is_as_in_closed_form() -> None:
     assert found["separation_speed_m_s"][0] == pytest.approx(-states[-2].real, rel=1e-10)  # the last one would be pulled back
 
 
-@pytest.mark.parametrize("plate", [pytest.param(None, id="rigid plate"), pytest.param(PLATE, id="elastic plate", marks=pytest.mark.slow)])
+@pytest.mark.parametrize(
+    "plate", [pytest.param(None, id="rigid plate"), pytest.param(PLATE_QUANTITIES, id="elastic plate", marks=pytest.mark.slow)]
+)
 def test_it_converges_at_first_order_to_the_resolved_run(plate: object) -> None:
     """Half the step, half the error, within a tenth; and Richardson's extrapolation is within 1e-3 of the resolved run."""
-    problem = drop_on(IMPACT, PLATE if plate is not None else None, SPHERE, height=0.5, sphere_inside=False)
-    limit = resolved(problem)
+    problem = drop_on(IMPACT, PLATE_QUANTITIES if plate is not None else None, SPHERE, height=0.5, sphere_inside=False)
+    limit = resolved_impact(problem)
     errors = []
     for step in (1.6e-6, 0.8e-6, 0.4e-6):
         found = unresolved_impact(problem, step, PHASES)
@@ -57,18 +59,18 @@ def test_it_converges_at_first_order_to_the_resolved_run(plate: object) -> None:
 
 def test_the_plate_converges_too() -> None:
     """What is followed after separation, to half a period of the lowest mode: within 3 % in steps of 1 µs."""
-    problem = drop_on(IMPACT, PLATE, SPHERE, height=0.5, sphere_inside=False)
-    found, limit = unresolved_impact(problem, 1e-6, PHASES), resolved(problem)
+    problem = drop_on(IMPACT, PLATE_QUANTITIES, SPHERE, height=0.5, sphere_inside=False)
+    found, limit = unresolved_impact(problem, 1e-6, PHASES), resolved_impact(problem)
     for name in PEAKS:
         assert np.median(found[name]) == pytest.approx(limit[name], rel=0.03), name
 
 
 @pytest.mark.parametrize("step", [1e-6, 1e-5, 1e-4, 2.5e-4])
 def test_the_ledger_closes_and_every_loss_of_the_method_is_a_loss(step: float) -> None:
-    problem = drop_on(IMPACT, PLATE, SPHERE, height=0.5, sphere_inside=False)
+    problem = drop_on(IMPACT, PLATE_QUANTITIES, SPHERE, height=0.5, sphere_inside=False)
     found = unresolved_impact(problem, step, PHASES)
     touch = float(problem.sphere.mass) * 9.8 * 0.475
-    assert np.sum([found[name] for name in SPENT], axis=0) == pytest.approx(touch, rel=1e-12)
+    assert np.sum([found[name] for name in ENERGY_SHARES], axis=0) == pytest.approx(touch, rel=1e-12)
     assert found["integrator_J"].min() > 0.0
     assert found["modal_damping_J"].min() > 0.0
 
@@ -93,7 +95,7 @@ def test_other_models_are_refused() -> None:
 
 
 def test_a_sphere_that_does_not_leave_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(implicit_euler, "_MOST_STEPS", 20)
+    monkeypatch.setattr(implicit_euler, "_MAX_STEPS", 20)
     with pytest.raises(ComputationError, match="does not leave the plate within 20 steps"):
         unresolved_impact(drop_on(IMPACT), 1e-6, PHASES)
 
@@ -102,8 +104,8 @@ def test_a_sphere_that_does_not_leave_is_told(monkeypatch: pytest.MonkeyPatch) -
 def test_type_2_and_3_resolved_are_what_short_steps_tend_to(runs: Runs, kind: int) -> None:
     """Coarse mesh: Richardson's extrapolation from steps of 8 and 4 µs, within 1 % of the simulation."""
     problem = superposed(runs, kind, "coarse")
-    both = sweep(problem, (8e-6, 4e-6))
-    limit = resolved(problem)
+    both = sweep_steps(problem, (8e-6, 4e-6))
+    limit = resolved_impact(problem)
     for name in COMPARED:
         longer, shorter = both.median(name)
         assert 2.0 * shorter - longer == pytest.approx(limit[name], rel=0.01), name
@@ -115,7 +117,7 @@ def test_the_paper_in_numbers(runs: Runs) -> None:
     Ours has 181 nodes, and the superposed model does not converge with the mesh: from 500 to 181 nodes the resolved force changes by
     a sixth, and less where the step rules; so 6 %.
     """
-    found = sweep(superposed(runs, 2, "coarse"), (0.94e-4, 1e-4))
+    found = sweep_steps(superposed(runs, 2, "coarse"), (0.94e-4, 1e-4))
     for name, values in zip(COMPARED, ((3598.0, 3466.0), (2.167, 2.155), (0.312, 0.306)), strict=True):
         assert found.median(name) == pytest.approx(values, rel=0.06), name
 
@@ -141,7 +143,7 @@ def test_the_range_holds_the_printed_numbers_of_the_sphere(runs: Runs, kind: int
 @pytest.mark.slow
 def test_the_section_says_what_is_missed(runs: Runs) -> None:
     """Three numbers of the sphere in Type 3 are within the range over the phases; the two energies of the plate are not."""
-    section = unresolved(runs)
+    section = unresolved_section(runs)
     verdicts = {row.printed.name: row.verdict for row in section.rows}
     assert len(section.rows) == 11
     assert [row.printed.name for row in section.rows if row.fitted] == [name for name in verdicts if name.startswith("type2")]

@@ -22,7 +22,7 @@ from vibroimpact.calibration.text import calibration_summary
 from vibroimpact.cases.elastic.modes import compute_modes
 from vibroimpact.cli import main
 from vibroimpact.cli.doctor import diagnose
-from vibroimpact.cli.material_text import material_sheet, material_table
+from vibroimpact.cli.material_text import material_library_table, material_sheet
 from vibroimpact.cli.unit_table import converted, unit_table
 from vibroimpact.comparison.comparison import compare_laws
 from vibroimpact.comparison.text import comparison_summary
@@ -30,8 +30,8 @@ from vibroimpact.exporting.export_format import find_export_format
 from vibroimpact.exporting.text import export_summary, format_table
 from vibroimpact.laws.sheet import law_sheet, law_table
 from vibroimpact.modes.text import modes_summary
-from vibroimpact.paper.printed_and_computed import Verdict
-from vibroimpact.paper.report import summary
+from vibroimpact.paper.report.page import verdict_table
+from vibroimpact.paper.section import Verdict
 from vibroimpact.report.terminal import TerminalConsole
 from vibroimpact.results.result import result_of
 from vibroimpact.runs.console import case_explained, result_summary, versions_table
@@ -89,7 +89,7 @@ def commands(tmp_path_factory: pytest.TempPathFactory, variable: vi.Response) ->
         "export, done": lambda _: export_summary(drop, find_export_format("lammps"), [folder / "drop.in"]),
         "laws": law_table,
         "laws NAME": lambda _: law_sheet("jackson-green-marghitu"),
-        "materials": lambda _: material_table(),
+        "materials": lambda _: material_library_table(),
         "materials NAME": lambda _: material_sheet("granite"),
         "units": lambda _: unit_table(5.115e8, "N/m^1.5"),
         "units --to": lambda _: converted(3.0, "N/µm", "N/m"),
@@ -156,11 +156,10 @@ def test_every_command_is_readable_in_every_encoding(commands: Printed, name: st
         assert max(map(len, lines)) <= width
 
 
-def test_verdicts_of_the_reproduction_fit(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_verdicts_of_the_reproduction_fit() -> None:
     rows = {"rows": [{"verdict": verdict.value} for verdict in Verdict] * 30, "title": "", "text": ""}
-    monkeypatch.setattr(summary, "read_parts", lambda _: {"table1": rows, "section5.2": rows})
     for width in (40, 60):
-        lines = shown(summary.summary_table(Path()), width)
+        lines = shown(verdict_table({"table1": rows, "section5.2": rows}), width)
         assert max(map(len, lines)) <= width
         assert {*_NUMBER.findall(" ".join(lines))} == {"30", "60"}
 

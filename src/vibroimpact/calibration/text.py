@@ -18,7 +18,7 @@ from vibroimpact.calibration.tables import (
     ways_words,
 )
 from vibroimpact.cases.case import Case
-from vibroimpact.report.terminal_table import Column, TerminalTable, numbers
+from vibroimpact.report.terminal_table import TerminalColumn, TerminalTable, numbers
 
 
 def calibration_summary(case: Case, found: Calibration) -> RenderableType:
@@ -45,5 +45,5 @@ def calibration_summary(case: Case, found: Calibration) -> RenderableType:
 def _table(cells: Cells) -> TerminalTable:
     (first, *headers), rows = cells
     names, *columns = zip(*rows, strict=True)
-    key = Column(first[0], names, words=True)
+    key = TerminalColumn(first[0], names, words=True)
     return TerminalTable([key, *(numbers(heading, unit, one) for (heading, unit), one in zip(headers, columns, strict=True))])

@@ -1,4 +1,4 @@
-"""The command line. Every command is a public function of the package with its result printed."""
+"""The command line: each command calls public functions of the package and prints the result."""
 
 from __future__ import annotations
 
@@ -26,9 +26,9 @@ __all__ = ["app", "main"]
 
 
 def main() -> None:
-    """Run the command line; errors of the package end in one message and an exit status."""
+    """Run the command line; an error of the package becomes a message and an exit status."""
     never_fail_to_print()
-    _set_matplotlib_aside()
+    _isolate_matplotlib()
     try:
         sys.exit(_run())
     except InputError as error:
@@ -38,7 +38,7 @@ def main() -> None:
     except MemoryError:
         fail("there is not enough memory for this; use larger elements, or ask for less", 1)
     except BrokenPipeError:
-        # the reader of our output has gone; leave quietly, as other tools do, with what is still to be written
+        # the reader closed the pipe: exit quietly, with the remaining output discarded
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         sys.exit(1)
     except OSError as error:
@@ -46,11 +46,11 @@ def main() -> None:
         fail(f"{where}the computer says: {error.strerror or error}", 1)
 
 
-def _set_matplotlib_aside() -> None:
-    """Keep what somebody has set for figures of their own from this process, before matplotlib reads it."""
+def _isolate_matplotlib() -> None:
+    """Isolate this process from user settings of matplotlib, before it is imported."""
     os.environ["MPLBACKEND"], os.environ["MATPLOTLIBRC"] = "agg", os.devnull
-    logging.getLogger("matplotlib").setLevel(logging.CRITICAL)  # it tells of each line that it does not know
-    settings = Path("matplotlibrc")  # that of the folder one stands in is read in any case
+    logging.getLogger("matplotlib").setLevel(logging.CRITICAL)  # it logs each unknown line of a settings file
+    settings = Path("matplotlibrc")  # one in the working directory is read regardless of MATPLOTLIBRC
     try:
         settings.read_text(encoding="utf-8") if settings.is_file() else None
     except (OSError, ValueError):
@@ -58,15 +58,16 @@ def _set_matplotlib_aside() -> None:
 
 
 def _run() -> int:
-    """Run the command; return its exit status. A wrong option is shown as typer shows it, but cleaned."""
+    """Run the command and return its exit status; typer's own errors are shown without control characters, and shortened."""
     try:
         return app(standalone_mode=False) or 0
     except typer.Abort:
         fail("aborted", 1)
     except Exception as error:
-        wrong: Any = error
-        if not (hasattr(wrong, "show") and hasattr(wrong, "exit_code")):  # typer's own errors; their class moves from version to version
+        usage_error: Any = error
+        # typer's own errors are told by their methods, since their class depends on its version
+        if not (hasattr(usage_error, "show") and hasattr(usage_error, "exit_code")):
             raise
-        wrong.message = "\n".join(shortened(visible(line), LONGEST_LINE) for line in wrong.message.split("\n"))
-        wrong.show()
-        return int(wrong.exit_code)
+        usage_error.message = "\n".join(shortened(visible(line), LONGEST_LINE) for line in usage_error.message.split("\n"))
+        usage_error.show()
+        return int(usage_error.exit_code)

@@ -1,4 +1,4 @@
-"""The command that finds the damping of a wanted or measured rebound."""
+"""The command `calibrate`, which finds the damping for a required or measured rebound."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from vibroimpact.cli.shared import CaseArgument, Force, app, console, note, say, stem, whole_or_nothing
+from vibroimpact.cli.shared import CaseArgument, Force, app, console, exit_on_interrupt, note, say, stem
 
 
 @app.command()
@@ -34,7 +34,7 @@ def calibrate(
     target = Path(f"{stem(case)}-calibrated") if output is None else output
     check_free(target, force=force)
     screen = console()
-    with whole_or_nothing():
+    with exit_on_interrupt():
         with patient_progress("calibrating", screen) as progress:
             found = prefix_errors(case, lambda: calibrate_case(what, progress, note))
         folder = save_calibration(what.case, found, target, force=force)

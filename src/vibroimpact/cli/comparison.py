@@ -1,4 +1,4 @@
-"""The command that runs one case under several laws."""
+"""The command `compare`, which runs one case under several contact laws."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from vibroimpact.cli.shared import CaseArgument, Force, app, console, names_in, say, stem, whole_or_nothing
+from vibroimpact.cli.shared import CaseArgument, Force, app, console, exit_on_interrupt, names_in, say, stem
 from vibroimpact.errors import InputError
 
 
@@ -45,7 +45,7 @@ def compare(
     target = Path(f"{stem(case)}-compared") if output is None else output
     check_free(target, force=force)
     screen = console()
-    with whole_or_nothing():
+    with exit_on_interrupt():
         with patient_progress("comparing", screen) as progress:
             comparison = compare_laws(
                 found,
@@ -60,7 +60,7 @@ def compare(
 
 
 def _settings(given: list[str]) -> dict[str, object]:
-    """Read KEY=VALUE as a case file would: a number, a list, or a text with its unit."""
+    """Return the settings in texts KEY=VALUE, read as in a case file: numbers, lists, or texts with units."""
     import tomllib
 
     settings: dict[str, object] = {}
@@ -71,5 +71,5 @@ def _settings(given: list[str]) -> dict[str, object]:
         try:
             settings[key.strip()] = tomllib.loads(f"value = {value}")["value"]
         except ValueError:
-            settings[key.strip()] = value.strip()  # 5 mm needs no quotes here
+            settings[key.strip()] = value.strip()  # a quantity such as 5 mm needs no quotes here
     return settings

@@ -1,4 +1,4 @@
-"""Is this installation sound? Versions, and a number that must come out."""
+"""Diagnosis of the installation: versions, the store of modes, and a reference computation."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _FIRST_REBOUND = 6.8386265  # m/s: PAPER, section 4, theory, integrated independ
 
 
 def diagnose() -> list[tuple[str, str]]:
-    """Return what is installed: rows of (what, version or how to get it).
+    """Return the state of the installation as rows (name, version or how to install it).
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Commands for one case: run it, explain it, compute its modes, remake its report."""
+"""The commands for one case: `demo`, `run`, `check`, `modes` and `report`."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from vibroimpact.cli.shared import CaseArgument, Force, app, console, note, say, stem, whole_or_nothing
+from vibroimpact.cli.shared import CaseArgument, Force, app, console, exit_on_interrupt, note, say, stem
 
 
 @app.command()
@@ -70,17 +70,17 @@ def _run(name: str, output: Path | None, *, force: bool) -> None:
 
     case = load_case(name)
     target = Path(stem(name)) if output is None else output
-    check_free(target, force=force)  # before the work, not after it
+    check_free(target, force=force)  # fail before the computation
     for sentence in describe_costs(case):
         note(sentence)
     screen = console()
-    with whole_or_nothing():
+    with exit_on_interrupt():
         with patient_progress("computing modes", screen) as progress:
             problem = prefix_errors(name, lambda: case.to_problem(progress, note))
         with patient_progress("simulating", screen) as progress:
             response = simulate(problem, progress)
         folder = save_result(response, target, force=force)
-    del response  # what is read back may be as large
+    del response  # the result read back may be as large, and both need not fit into memory
     screen.print(result_summary(read_result(folder), screen.width))
     say(f"wrote {folder / 'report.html'}")
 
@@ -109,7 +109,7 @@ def modes(
     for sentence in describe_costs(found, modes_alone=True):
         note(sentence)
     screen = console()
-    with whole_or_nothing():
+    with exit_on_interrupt():
         with patient_progress("computing modes", screen) as progress:
             bodies = prefix_errors(case, lambda: compute_modes(found, progress, note))
         folder = save_modes(found, bodies, target, force=force)

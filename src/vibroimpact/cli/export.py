@@ -1,4 +1,4 @@
-"""The command that writes results for other programs."""
+"""The command `export`, which writes results in the formats of other programs."""
 
 from __future__ import annotations
 

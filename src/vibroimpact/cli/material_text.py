@@ -1,4 +1,4 @@
-"""What the command line prints of materials: the table of all, and one with its sources."""
+"""Console output on materials: the table of all, and the sheet of one with its sources."""
 
 from __future__ import annotations
 
@@ -6,18 +6,18 @@ from rich.console import Group, RenderableType
 from rich.text import Text
 
 from vibroimpact.materials import find_material, material_library
-from vibroimpact.report.terminal_table import Column, TerminalTable, facts, numbers
+from vibroimpact.report.terminal_table import TerminalColumn, TerminalTable, facts, numbers
 
 
-def material_table() -> RenderableType:
+def material_library_table() -> RenderableType:
     """Return the table of shipped materials."""
     library = material_library()
     columns = (
-        Column("name", list(library), words=True),
+        TerminalColumn("name", list(library), words=True),
         numbers("density", "kg/m3", [f"{one.density:g}" for one in library.values()]),
         numbers("Young's", "GPa", [f"{one.youngs_modulus / 1e9:g}" for one in library.values()]),
         numbers("Poisson's", "-", [f"{one.poissons_ratio:g}" for one in library.values()]),
-        Column("what", [one.description for one in library.values()], words=True),
+        TerminalColumn("what", [one.description for one in library.values()], words=True),
     )
     notes = 'Also "rigid" for a plate. "vibroimpact materials NAME" gives the source of each number. Rock and coal vary widely.'
     return Group(TerminalTable(columns), Text(), Text(notes))
@@ -29,7 +29,7 @@ def material_sheet(name: str) -> RenderableType:
     Raises
     ------
     InputError
-        If there is no such material.
+        If the material is unknown.
     """
     material, rows = find_material(name), []
     for key, unit in (

@@ -1,4 +1,4 @@
-"""Commands that tell what there is: units, laws, materials, the schema, this installation."""
+"""The commands for reference: `units`, `laws`, `materials`, `schema` and `doctor`."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def laws(
     if output is not None:
         from vibroimpact.laws.curves import check_picture
 
-        check_picture(output, force=force)  # before the work, not after it
+        check_picture(output, force=force)  # fail before anything is printed or drawn
     screen.print(sheet)
     if output is not None:
         from vibroimpact.laws.curves import save_law_picture
@@ -66,9 +66,9 @@ def materials(
     name: Annotated[str | None, typer.Argument(metavar="[NAME]", help="Show one material, with the source of each number.")] = None,
 ) -> None:
     """List the shipped materials, or one with its sources."""
-    from vibroimpact.cli.material_text import material_sheet, material_table
+    from vibroimpact.cli.material_text import material_library_table, material_sheet
 
-    console().print(material_sheet(name) if name else material_table())
+    console().print(material_sheet(name) if name else material_library_table())
 
 
 @app.command()

@@ -1,4 +1,4 @@
-"""The command that reproduces the paper."""
+"""The command `reproduce`, which reproduces the paper."""
 
 from __future__ import annotations
 
@@ -27,8 +27,8 @@ def reproduce(
     The parts: table1, section3.1, fig3, section3.2, fig4 to fig8, damping, table2, section4, fig9, section5.1, fig10 to fig13,
     section5.2, fig14 to fig17, section5.3, fig18 to fig23, conclusions, recovery, sampling, unresolved, corrections.
     """
-    from vibroimpact.paper.report.folder import missing_parts, reproduce_paper
-    from vibroimpact.paper.report.summary import summary_table
+    from vibroimpact.paper.report.folder import missing_parts, read_parts, reproduce_paper
+    from vibroimpact.paper.report.page import verdict_table
     from vibroimpact.report.progress import patient_progress
 
     names = None if only is None else names_in(only)
@@ -40,5 +40,5 @@ def reproduce(
         left = [name for name in missing_parts(output) if names is not None and name in names]
         some = f" --only {','.join(left)}" if left else ""
         fail(f"interrupted; the parts that are done stay; go on with: vibroimpact reproduce -o {shlex.quote(str(output))}{some}", 130)
-    screen.print(summary_table(folder))
+    screen.print(verdict_table(read_parts(folder)))
     say(f"wrote {folder / 'report.html'}")

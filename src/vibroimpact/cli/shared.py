@@ -1,4 +1,4 @@
-"""What all commands share: the application, common options, the console, and how a run ends in failure."""
+"""Elements common to all commands: the application, options, console output, and exits on failure or interrupt."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from vibroimpact.shown import visible
 if TYPE_CHECKING:
     from rich.console import Console
 
-# heavy imports live inside the commands, so that --help is quick
+# heavy imports are inside the commands, so that --help is fast
 
 app = typer.Typer(
     name="vibroimpact",
@@ -48,53 +48,54 @@ def common(
     """What happens when a particle hits a plate: contact, energy and vibration, in a second."""
 
 
-_LONGEST_STEM = 60  # what is added to it, here and while it is written, fits into the 255 bytes of a name on disk
+_LONGEST_STEM = 60  # leaves room, within the 255 bytes of a file name, for suffixes added here and while writing
 
 
 def stem(case: str) -> str:
-    """Return what a folder made from a case is called."""
+    """Return the base name of folders for a case: its file name, shortened, without unprintable characters."""
     name = Path(case.removeprefix("paper:")).stem[:_LONGEST_STEM]
     return "".join(character if character.isprintable() else "_" for character in name)
 
 
 def console() -> Console:
-    """Return the console, wide where it is no terminal, in letters that it can show."""
+    """Return the console, with a fixed width of 160 off a terminal."""
     from vibroimpact.report.terminal import TerminalConsole
 
     screen = TerminalConsole()
     if not screen.is_terminal:
-        screen = TerminalConsole(width=160)  # a pipe or a file has no width; tables must not be cut
+        screen = TerminalConsole(width=160)  # a pipe or a file has no width of its own
     return screen
 
 
 def say(text: str, *, err: bool = False) -> None:
-    """Print lines, on standard error if so wanted, in letters that the stream has; what they name can't steer the terminal."""
+    """Print lines, transliterated to the encoding of the stream and with control characters escaped."""
     from vibroimpact.report.encodable import encodable
 
     stream, text = sys.stderr if err else sys.stdout, "\n".join(map(visible, text.split("\n")))
-    print(encodable(text, getattr(stream, "encoding", None) or "ascii"), file=stream, flush=True)  # a closed pipe is told here, not at exit
+    # flushed, so that a closed pipe raises here and not at exit
+    print(encodable(text, getattr(stream, "encoding", None) or "ascii"), file=stream, flush=True)
 
 
 def never_fail_to_print() -> None:
-    """Let standard output and error give letters that they lack by their numbers, whatever prints them."""
+    """Let standard output and error escape characters that they can't encode, instead of raising."""
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")
 
 
 def names_in(text: str) -> list[str]:
-    """Return the names in a text that are separated by commas."""
+    """Return the comma-separated names in a text."""
     return [name.strip() for name in text.split(",") if name.strip()]
 
 
 def note(text: str) -> None:
-    """Tell what takes long, apart from what the command prints."""
+    """Print a note on standard error, apart from the output of the command."""
     say(f"vibroimpact: {text}", err=True)
 
 
 @contextmanager
-def whole_or_nothing() -> Iterator[None]:
-    """Say on Ctrl-C that nothing was written: what is done inside is written whole at its end."""
+def exit_on_interrupt() -> Iterator[None]:
+    """Exit on Ctrl-C with the message that nothing was written: results inside are written atomically at the end."""
     try:
         yield
     except KeyboardInterrupt:
@@ -102,15 +103,15 @@ def whole_or_nothing() -> Iterator[None]:
 
 
 @contextmanager
-def stopping(told: str) -> Iterator[Callable[[], bool]]:
-    """Give a function that says whether Ctrl-C was pressed, so that what is under way can be finished; a second one ends all at once.
+def interrupt_flag(message: str) -> Iterator[Callable[[], bool]]:
+    """Yield a function that returns whether SIGINT or SIGTERM was received, so that running work can finish; a second one exits at once.
 
-    An exception that is raised out of a signal may come up where nobody can pass it on, and be lost.
+    An exception raised in a signal handler can surface where it is swallowed, and be lost.
 
     Parameters
     ----------
-    told : str
-        What is said if it ends at once.
+    message : str
+        Message printed on an immediate exit.
     """
     pressed = 0
 
@@ -118,11 +119,11 @@ def stopping(told: str) -> Iterator[Callable[[], bool]]:
         nonlocal pressed
         pressed += 1
         if pressed > 1:
-            note(told)
-            os._exit(130)  # whoever computes for this process ends with it
+            note(message)
+            os._exit(130)  # worker processes end with this one
         note("stopping after the drops that are under way; Ctrl-C once more stops at once")
 
-    before = {number: signal.signal(number, press) for number in (signal.SIGINT, signal.SIGTERM)}  # the second comes from schedulers
+    before = {number: signal.signal(number, press) for number in (signal.SIGINT, signal.SIGTERM)}  # schedulers send SIGTERM
     try:
         yield lambda: pressed > 0
     finally:
@@ -131,6 +132,6 @@ def stopping(told: str) -> Iterator[Callable[[], bool]]:
 
 
 def fail(message: str, status: int) -> NoReturn:
-    """Say what went wrong, and leave with an exit status."""
+    """Print an error message and exit with a status."""
     say("\n".join(f"vibroimpact: {line}" for line in lines_of(message.split("\n"))), err=True)
     sys.exit(status)

@@ -1,4 +1,4 @@
-"""The command that runs a study of many drops."""
+"""The command `sweep`, which runs a study of many drops."""
 
 from __future__ import annotations
 
@@ -10,17 +10,17 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from vibroimpact.cli.shared import app, console, fail, note, say, stem, stopping
+from vibroimpact.cli.shared import app, console, fail, interrupt_flag, note, say, stem
 from vibroimpact.errors import InputError
 
 if TYPE_CHECKING:
     from vibroimpact.studies.sweep import Sweep
 
-MOST_UNASKED = 100_000
-"""Drops beyond which a study must be confirmed by --yes."""
+MOST_DROPS_UNCONFIRMED = 100_000
+"""Number of drops above which a study must be confirmed by --yes."""
 
-MOST_BYTES_UNASKED = 10e9
-"""What results may take on disk before that."""
+MOST_BYTES_UNCONFIRMED = 10e9
+"""Size of the results on disk above which a study must be confirmed [byte]."""
 
 
 @app.command()
@@ -31,7 +31,7 @@ def sweep(
     ] = None,
     resume: Annotated[bool, typer.Option("--resume", help="Go on with the study in the folder; where there is none, begin.")] = False,
     force: Annotated[bool, typer.Option("--force", help="Replace the folder of a study that is there.")] = False,
-    yes: Annotated[bool, typer.Option("--yes", help=f"Run also more than {MOST_UNASKED:,} drops, or 10 GB of results.")] = False,
+    yes: Annotated[bool, typer.Option("--yes", help=f"Run also more than {MOST_DROPS_UNCONFIRMED:,} drops, or 10 GB of results.")] = False,
     processes: Annotated[
         int | None, typer.Option("--processes", metavar="N", min=1, help="How many processes compute; by default one a core.")
     ] = None,
@@ -50,15 +50,15 @@ def sweep(
     target = Path(f"{stem(study)}-sweep") if output is None else output
     options = "" if scheduler is None else f" --scheduler {shlex.quote(scheduler)}"
     command = f"vibroimpact sweep {shlex.quote(study)} -o {shlex.quote(str(target))} --resume{options}"
-    told = f"interrupted; the drops that are done stay; go on with: {command}"
+    message = f"interrupted; the drops that are done stay; go on with: {command}"
     try:
-        with stopping(told) as stopped:  # from here on no Ctrl-C is lost, whatever is imported or begun
-            _sweep(study, target, memory, stopped, resume=resume, force=force, yes=yes, processes=processes, scheduler=scheduler)
+        with interrupt_flag(message) as stopped:  # entered first, so that no Ctrl-C is lost during imports
+            _run_sweep(study, target, memory, stopped, resume=resume, force=force, yes=yes, processes=processes, scheduler=scheduler)
     except KeyboardInterrupt:
-        fail(told, 130)
+        fail(message, 130)
 
 
-def _sweep(
+def _run_sweep(
     study: str,
     target: Path,
     memory: str,
@@ -70,12 +70,12 @@ def _sweep(
     processes: int | None,
     scheduler: str | None,
 ) -> None:
-    """Do what `sweep` was asked for.
+    """Run a study with the options of `sweep`.
 
     Raises
     ------
     KeyboardInterrupt
-        Where it can stop, once it was told to.
+        At the next safe point, once `stopped` returns True.
     """
     from vibroimpact.report.progress import counting_progress, patient_progress
     from vibroimpact.studies.report.text import study_summary
@@ -93,24 +93,24 @@ def _sweep(
     if size < 1e6:
         raise InputError(f"{memory} is too little; it must be 1 MB or more", "--memory")
     found, screen = load_sweep(study), console()
-    _see_that_it_is_wanted(study, found, yes=yes or (resume and has_study(target)))
+    _check_confirmed(study, found, yes=yes or (resume and has_study(target)))
     for doubt in sweep_slips(found):
-        note(f"doubt: {doubt}")  # now, and not only when all is computed
+        note(f"doubt: {doubt}")  # before the computation, not only in the report
     with patient_progress("computing modes", screen) as modes, counting_progress("drops", screen) as count:
 
-        def see_whether_it_goes_on() -> None:
+        def raise_if_stopped() -> None:
             if stopped():
                 raise KeyboardInterrupt
 
         def progress(done: int, total: int) -> None:
             count(done, total)
-            see_whether_it_goes_on()
+            raise_if_stopped()
 
         def modes_progress(done: float) -> None:
             modes(done)
-            see_whether_it_goes_on()
+            raise_if_stopped()
 
-        see_whether_it_goes_on()
+        raise_if_stopped()
         folder = run_sweep(
             found,
             target,
@@ -127,17 +127,17 @@ def _sweep(
     say(f"wrote {folder / 'study.nc'} and {folder / 'report.html'}")
 
 
-def _see_that_it_is_wanted(study: str, found: Sweep, *, yes: bool) -> None:
-    """Raise where a study is large, and nobody has said that it is wanted."""
-    if found.size > MOST_UNASKED and not yes:
+def _check_confirmed(study: str, found: Sweep, *, yes: bool) -> None:
+    """Raise InputError if a study is large and not confirmed."""
+    if found.size > MOST_DROPS_UNCONFIRMED and not yes:
         raise InputError(
-            f"{study}: there would be {found.size:,} drops, more than {MOST_UNASKED:,}; confirm that they are wanted with --yes"
+            f"{study}: there would be {found.size:,} drops, more than {MOST_DROPS_UNCONFIRMED:,}; confirm that they are wanted with --yes"
         )
-    if found.bytes > MOST_BYTES_UNASKED and not yes:
-        words = f"the results would take about {found.bytes / 1e9:.3g} GB, more than {MOST_BYTES_UNASKED / 1e9:g} GB"
+    if found.bytes > MOST_BYTES_UNCONFIRMED and not yes:
+        words = f"the results would take about {found.bytes / 1e9:.3g} GB, more than {MOST_BYTES_UNCONFIRMED / 1e9:g} GB"
         raise InputError(f"{study}: {words}; confirm that they are wanted with --yes, or keep fewer signals")
 
 
 def _cores() -> int:
-    """Return how many cores this process may use."""
+    """Return the number of cores available to this process."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1

@@ -1,4 +1,4 @@
-"""A quantity in the unit systems of contact programs, and what its number is multiplied by."""
+"""Conversion of a quantity to the unit systems of contact programs."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from rich.console import Group, RenderableType
 from rich.text import Text
 
 from vibroimpact.errors import InputError
-from vibroimpact.report.terminal_table import Column, TerminalTable
+from vibroimpact.report.terminal_table import TerminalColumn, TerminalTable
 from vibroimpact.units.reading import convert_units, dimension_of, unit_text
 
 _DIGITS = 10
@@ -19,16 +19,16 @@ _SYSTEMS: dict[str, dict[str, str]] = {
     "cm, g, dyn, s (cgs)": {"force": "dyn", "mass": "g", "length": "cm", "time": "s"},
     "in, lb, lbf, s (Adams IPS)": {"force": "lbf", "mass": "lb", "length": "in", "time": "s"},
 }
-"""Names, and the unit of each dimension. Where force is not mass length / time^2, contact parameters hold the force."""
+"""Unit systems with the unit of each dimension; where force is not mass length / time^2, contact parameters contain the unit of force."""
 
 
 def in_unit_systems(value: float, unit: str) -> list[tuple[str, float, str]]:
-    """Return a quantity in each unit system: the system, the number, the unit.
+    """Return a quantity in each unit system, as (system, number, unit).
 
     Raises
     ------
     InputError
-        If the unit is not known, or holds something else than mass, length and time.
+        If the unit is unknown, dimensionless, or has other dimensions than force, mass, length and time.
 
     Examples
     --------
@@ -47,7 +47,7 @@ def in_unit_systems(value: float, unit: str) -> list[tuple[str, float, str]]:
 
 
 def converted(value: float, unit: str, to: str) -> RenderableType:
-    """Return one conversion, with its factor.
+    """Return one conversion as a line of text, with a note on powers of length.
 
     Raises
     ------
@@ -57,7 +57,7 @@ def converted(value: float, unit: str, to: str) -> RenderableType:
     there = convert_units(value, unit, to)
     power = dimension_of(unit).get("length", 0.0)
     from_metres = value != 0.0 and abs(there / value * 1000.0**-power - 1.0) < 1e-9
-    return Group(Text(f"{number_text(value)} {unit} = {number_text(there)} {to}"), *(_trap(unit) if from_metres else []))
+    return Group(Text(f"{number_text(value)} {unit} = {number_text(there)} {to}"), *(_power_note(unit) if from_metres else []))
 
 
 def unit_table(value: float, unit: str) -> RenderableType:
@@ -70,12 +70,14 @@ def unit_table(value: float, unit: str) -> RenderableType:
     """
     names, values, there = zip(*in_unit_systems(value, unit), strict=True)
     shown = [number_text(one) for one in values]
-    table = TerminalTable([Column("unit system", names, words=True), Column("number", shown), Column("unit", there, words=True)])
-    return Group(Text(f"{number_text(value)} {unit}", style="bold"), table, *_trap(unit))
+    table = TerminalTable(
+        [TerminalColumn("unit system", names, words=True), TerminalColumn("number", shown), TerminalColumn("unit", there, words=True)]
+    )
+    return Group(Text(f"{number_text(value)} {unit}", style="bold"), table, *_power_note(unit))
 
 
 def number_text(number: float) -> str:
-    """Return a number with the digits that are sure, and no rounding noise.
+    """Return a number in ten significant digits, which hides rounding noise.
 
     Examples
     --------
@@ -85,8 +87,8 @@ def number_text(number: float) -> str:
     return f"{number:.{_DIGITS}g}"
 
 
-def _trap(unit: str) -> list[RenderableType]:
-    """Return what is got wrong by hand: that a length to the power p takes the factor to the power p."""
+def _power_note(unit: str) -> list[RenderableType]:
+    """Return the note on a common error by hand: a length to the power p converts with the factor to the power p."""
     dimension = dimension_of(unit)
     power = dimension.get("length", 0.0)
     if "force" not in dimension or power in (0.0, 1.0):

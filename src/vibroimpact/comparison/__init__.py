@@ -1,1 +1,1 @@
-"""One case under several contact laws, side by side."""
+"""Comparison of one case under several contact laws."""

@@ -1,4 +1,4 @@
-"""One drop under several contact laws, and the table of it."""
+"""Comparison of one drop under several contact laws, and the texts and table that report it."""
 
 from __future__ import annotations
 
@@ -29,15 +29,15 @@ class Comparison:
     Parameters
     ----------
     name : str
-        The name of the case.
+        Name of the case.
     results : dict of str to Result
-        The result under each law, by the law's name.
+        Result under each law, by the name of the law.
     laws : dict of str to ContactLaw
-        The law of the first impact.
+        Law of the first impact, by its name.
     speeds : array, shape (S,)
         Approach speeds [m/s].
     restitutions : dict of str to array, shape (S,)
-        The restitution that each law of the first impact achieves at them, without gravity.
+        Restitution that each law of the first impact achieves at these speeds, without gravity.
     """
 
     name: str
@@ -60,7 +60,7 @@ def compare_laws(
     Parameters
     ----------
     case : Case
-        The case; its own law counts only if it is among the laws.
+        The case; its own law is used only if it is among the laws.
     laws : iterable of str
         Names of laws.
     given : mapping of str, optional
@@ -74,7 +74,7 @@ def compare_laws(
     Raises
     ------
     InputError
-        If a law or a parameter is not known or missing, or a law can't achieve the restitution.
+        If a law or parameter is unknown, a parameter is missing, or a law can't achieve the restitution.
 
     Examples
     --------
@@ -100,20 +100,20 @@ _COLUMNS = ("max_indentation_m", "max_force_N", "duration_s", "rebound_height_m"
 
 
 def comparison_title(comparison: Comparison) -> str:
-    """Return what heads a comparison: how many laws, of one drop. The name of the case may name a law that is not among them."""
+    """Return the title of a comparison, without the name of the case, which may mention a law that is not compared."""
     number = len(comparison.results)
     return f"One drop under {number} contact law{'' if number == 1 else 's'}"
 
 
 def comparison_subtitle(comparison: Comparison) -> str:
-    """Return whose drop it is, and how fast it arrives."""
+    """Return the subtitle of a comparison: the case and its first approach speed."""
     speeds = next(iter(comparison.results.values())).impacts["approach_speed_m_s"]
     arrives = f", which arrives at {text(float(speeds[0]), 'm/s')}" if len(speeds) else ""
     return f'The drop is that of the case "{comparison.name}"{arrives}.'
 
 
 def comparison_table(comparison: Comparison) -> tuple[list[tuple[str, str]], list[list[str]]]:
-    """Return headers with units, and a row a law: asked and achieved restitution, and the first impact."""
+    """Return headings with units, and a row for each law: required and achieved restitution, and the first impact."""
     headers = [("Law", ""), ("Impacts", ""), ("Restitution asked", ""), ("achieved, first", ""), ("achieved, last", "")]
     rows = []
     for name, one in comparison.results.items():
@@ -130,13 +130,13 @@ def comparison_table(comparison: Comparison) -> tuple[list[tuple[str, str]], lis
 
 
 def _restitution(result: Result, name: str, at: int) -> str:
-    """Return the restitution of the first or the last impact, in the digits that are certain."""
+    """Return the restitution of the first or last impact, rounded to its significant digits."""
     values = result.impacts[name]
     return column(name, values, result.change_by_impact)[1][at] if len(values) else MISSING
 
 
 def comparison_doubts(comparison: Comparison) -> list[str]:
-    """Return the doubts of the drops under all laws, each once, with the laws that it is of."""
+    """Return the distinct doubts of all drops, each with the laws that it concerns."""
     laws: dict[str, list[str]] = {}
     for name, one in comparison.results.items():
         for doubt in one.doubts:
@@ -146,7 +146,7 @@ def comparison_doubts(comparison: Comparison) -> list[str]:
 
 
 def free_parameter_words(law: ContactLaw) -> str:
-    """Return the free parameter of a law with its value and unit; "nothing to set" if it has none."""
+    """Return the free parameter of a law with its value and unit, or "nothing to set" if the law has none."""
     name = law.free_parameter
     if name is None:
         return "nothing to set"

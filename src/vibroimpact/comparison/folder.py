@@ -1,4 +1,4 @@
-"""Write a comparison of contact laws: data, figures and page."""
+"""Writes a comparison of contact laws as a folder: data, figures and report."""
 
 from __future__ import annotations
 
@@ -40,21 +40,21 @@ _TITLES = {
 
 
 def save_comparison(comparison: Comparison, directory: str | PathLike[str], *, force: bool = False) -> Path:
-    """Write a comparison: `comparison.csv`, `summary.json`, the cases, figures and a page; whole or not at all.
+    """Write a comparison atomically: `comparison.csv`, `summary.json`, the cases, figures and a report.
 
     Parameters
     ----------
     comparison : Comparison
-        What to write.
+        The comparison.
     directory : path
-        The folder to make.
+        The folder to create.
     force : bool, default False
-        Replace a result folder that is there.
+        Replace an existing result folder.
 
     Raises
     ------
     InputError
-        If something is there already, or the place can't be written to.
+        If the folder exists and may not be replaced, or it can't be written to.
     """
     with new_folder(directory, force=force) as folder:
         rows = [{"law": name, **row} for name, one in comparison.results.items() for row in impact_rows(one.impacts)]

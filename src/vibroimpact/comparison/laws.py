@@ -1,4 +1,4 @@
-"""One case under several contact laws."""
+"""Variants of a case under several contact laws."""
 
 from __future__ import annotations
 
@@ -20,8 +20,8 @@ from vibroimpact.shown import shown
 def cases_under(case: Case, laws: Iterable[str], given: Mapping[str, Any] | None = None, achieving: float | None = None) -> dict[str, Case]:
     """Return a case under each of several contact laws.
 
-    A law takes its parameters from `given`; else from the case, if the case's law has one of the same name and unit;
-    else from the bodies.
+    A law takes each parameter from `given`, or else from the law of the case where that has one of the same name and unit, or else
+    from the bodies.
 
     Parameters
     ----------
@@ -37,13 +37,13 @@ def cases_under(case: Case, laws: Iterable[str], given: Mapping[str, Any] | None
     Returns
     -------
     dict of str to Case
-        By the name of the law, in the order asked for.
+        The cases by name of the law, in the order given.
 
     Raises
     ------
     InputError
-        If a law or a key is not known, a parameter is missing, or a law can't achieve the restitution. A law without a
-        free parameter is left as it is.
+        If a law or key is unknown, a parameter is missing, or a law can't achieve the restitution. A law without a free parameter
+        is not tuned.
 
     Examples
     --------
@@ -69,7 +69,7 @@ def _case_under(case: Case, law: type[ContactLaw], given: Mapping[str, Any], ach
     known = {item.name: item for item in fields(law)}
     own = {item.name: item for item in fields(find_contact_law(case.contact.law))}
     contact: dict[str, Any] = {"law": law.name}
-    guessed = []
+    placeholders = []
     for key, value in case.contact.parameters.items():
         if law.name == case.contact.law or (key in known and _unit(known[key]) == _unit(own[key])):
             contact[key] = list(value) if isinstance(value, tuple) else value
@@ -78,16 +78,16 @@ def _case_under(case: Case, law: type[ContactLaw], given: Mapping[str, Any], ach
         if value is not None:
             contact[key] = value
         elif key not in contact and achieving is not None and item.default is MISSING and item.metadata["example"] is not None:
-            contact[key] = item.metadata["example"]  # something to start from, if it is what is tuned
-            guessed.append(key)
-    own_name = case.name or "a drop"  # which may name the case's own law
+            contact[key] = item.metadata["example"]  # placeholder, valid only for the parameter that is tuned
+            placeholders.append(key)
+    own_name = case.name or "a drop"  # it may mention the law of the case
     named = own_name if law.name == case.contact.law else f"{law.name} on the drop of: {own_name}"
     table = {**resolved_case(case), "name": named, "contact": contact}
     try:
         found = read_case(table)
         tuned = contact_laws_of(found)[0].free_parameter
-        if any(key != tuned for key in guessed):  # only what is tuned may be left out
-            table["contact"] = {key: value for key, value in contact.items() if key not in guessed or key == tuned}
+        if any(key != tuned for key in placeholders):  # placeholders of other parameters are dropped, so that these are reported as missing
+            table["contact"] = {key: value for key, value in contact.items() if key not in placeholders or key == tuned}
             found = read_case(table)
         if achieving is None or tuned is None:
             return found
@@ -100,14 +100,14 @@ def _case_under(case: Case, law: type[ContactLaw], given: Mapping[str, Any], ach
 
 
 def _tuned(case: Case, table: Mapping[str, Any], parameter: str, achieving: float) -> Case:
-    """Return a case whose first impact achieves a restitution."""
+    """Return a case with the free parameter of its law tuned so that the first impact achieves a restitution."""
     law, speed = contact_laws_of(case)[0], touch_speed(case)
     tuned = law_achieving(law, achieving, contact_pair(case).effective_mass, speed)
     return read_case({**table, "contact": {**table["contact"], parameter: getattr(tuned, parameter)}})
 
 
 def _check_given(given: Mapping[str, Any], laws: Mapping[str, type[ContactLaw]]) -> None:
-    """Raise unless every given parameter belongs to a law that is compared."""
+    """Raise InputError unless every given parameter belongs to a compared law, with one unit in all of them."""
     keys = {item.name for law in laws.values() for item in fields(law)}
     known = [*keys, *(f"{name}.{item.name}" for name, law in laws.items() for item in fields(law))]
     for key, value in given.items():

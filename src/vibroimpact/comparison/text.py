@@ -13,15 +13,15 @@ from vibroimpact.comparison.comparison import (
     comparison_title,
     free_parameter_words,
 )
-from vibroimpact.report.terminal_table import Column, TerminalTable, facts, numbers
+from vibroimpact.report.terminal_table import TerminalColumn, TerminalTable, facts, numbers
 from vibroimpact.runs.console import doubt_lines
 
 
 def comparison_summary(comparison: Comparison) -> RenderableType:
-    """Return what a comparison prints: a row a law, the parameter that sets the loss of each, and what to doubt."""
+    """Return the console report of a comparison: a row for each law, the free parameter of each law, and the doubts."""
     headers, rows = comparison_table(comparison)
     names, *cells = zip(*rows, strict=True)
-    key = Column(headers[0][0], names, words=True)
+    key = TerminalColumn(headers[0][0], names, words=True)
     table = TerminalTable([key, *(numbers(heading, unit, one) for (heading, unit), one in zip(headers[1:], cells, strict=True))])
     free = facts([(name, free_parameter_words(law), comparison.results[name].status) for name, law in comparison.laws.items()], indent=1)
     note = Text(" Indentation, force, duration, height and energy are those of the first impact.", style="dim")

@@ -11,7 +11,7 @@ from rich.text import Text
 
 from vibroimpact.exporting.drop import Drop
 from vibroimpact.exporting.export_format import ExportFormat, export_formats
-from vibroimpact.report.terminal_table import Column, TerminalTable
+from vibroimpact.report.terminal_table import TerminalColumn, TerminalTable
 
 _MOST = 6
 """Largest number of files that are listed; of more files, the first ones and a count."""
@@ -22,7 +22,9 @@ def format_table() -> RenderableType:
     formats = export_formats()
     said = {"read by": [one.program for one in formats.values()], "files": [one.files for one in formats.values()]}
     said["tested"] = [one.tested for one in formats.values()]
-    table = TerminalTable([Column("format", list(formats), words=True), *(Column(name, cells, words=True) for name, cells in said.items())])
+    table = TerminalTable(
+        [TerminalColumn("format", list(formats), words=True), *(TerminalColumn(name, cells, words=True) for name, cells in said.items())]
+    )
     return Group(table, Text(), Text("vibroimpact export DIR --to FORMAT writes a result folder, or a calibration folder, in one of them."))
 
 

@@ -11,7 +11,7 @@ from rich.text import Text
 
 from vibroimpact.contact.law import CompliantLaw, ContactLaw, contact_laws, find_contact_law
 from vibroimpact.laws.text import SPEED, LawText, ParameterText, asked_and_achieved, law_text, plain_paragraph, short_source
-from vibroimpact.report.terminal_table import Column, TerminalTable
+from vibroimpact.report.terminal_table import TerminalColumn, TerminalTable
 
 _ENDS = {"zero-indentation": "no overlap", "zero-force": "no force", "pull-off": "torn apart"}
 _TENSION = {"none": "never", "cut": "cut", "kept": "yes"}
@@ -27,7 +27,7 @@ def law_table(width: int) -> RenderableType:
         rows.append((name, law_text(law).loss_parameters.replace("nothing is lost", "-"), end, tension, source))
     headings = ("law", "loses by", "ends at", "pulls", "source")
     table = TerminalTable(
-        [Column(words, cells, words=True) for words, cells in zip(headings, zip(*rows, strict=True), strict=True)], indent=0
+        [TerminalColumn(words, cells, words=True) for words, cells in zip(headings, zip(*rows, strict=True), strict=True)], indent=0
     )
     hint = '"vibroimpact laws NAME" prints one with its equation, parameters and sources; with -o PNG it draws its curves.'
     return Group(table, Text(), Text(hint))

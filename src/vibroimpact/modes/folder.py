@@ -35,22 +35,22 @@ MODE_COLUMNS = (
     "effective_mass_z_kg",
 )
 _POINT_COLUMNS = ("body", "point", "mode", "frequency_Hz", "shape_x_per_sqrt_kg", "shape_y_per_sqrt_kg", "shape_z_per_sqrt_kg")
-_SHAPES_WRITTEN = 50  # shapes in the file for ParaView; more make it large without use
+_SHAPES_WRITTEN = 50  # limits the size of the file for ParaView
 
 
 def save_modes(case: Case, modes: Mapping[str, BodyModes], directory: str | PathLike[str], *, force: bool = False) -> Path:
-    """Write the modes of a case into a folder; it appears whole or not at all.
+    """Write the modes of a case into a folder, atomically.
 
     Parameters
     ----------
     case : Case
         The case.
     modes : mapping of str to BodyModes
-        What `compute_modes` returned for it.
+        Modes of its bodies, from `compute_modes`.
     directory : path
-        The folder to make.
+        The folder to create.
     force : bool, default False
-        Replace a result folder that is there.
+        Replace an existing result folder.
 
     Returns
     -------
@@ -61,7 +61,7 @@ def save_modes(case: Case, modes: Mapping[str, BodyModes], directory: str | Path
     Raises
     ------
     InputError
-        If something is there already, or the place can't be written to.
+        If the folder exists and may not be replaced, or it can't be written to.
     """
     with new_folder(directory, force=force) as folder:
         (folder / "case.toml").write_text(tomli_w.dumps(resolved_case(case)), encoding="utf-8")
@@ -69,7 +69,7 @@ def save_modes(case: Case, modes: Mapping[str, BodyModes], directory: str | Path
         points = [row for name, body in modes.items() for row in _point_rows(name, body)]
         if points:
             write_csv(points, list(_POINT_COLUMNS), folder / "points.csv")
-        summary = {"name": case.name, "version": __version__, "modes": {name: _facts(body) for name, body in modes.items()}}
+        summary = {"name": case.name, "version": __version__, "modes": {name: _body_summary(body) for name, body in modes.items()}}
         (folder / SUMMARY).write_text(json.dumps(summary, indent=2, allow_nan=False) + "\n", encoding="utf-8")
         (folder / "figures").mkdir()
         save_figures({f"{name}_modes": draw_modes(body.model, name) for name, body in modes.items()}, folder / "figures")
@@ -109,7 +109,7 @@ def _point_rows(name: str, body: BodyModes) -> list[dict[str, Any]]:
     ]
 
 
-def _facts(body: BodyModes) -> dict[str, Any]:
+def _body_summary(body: BodyModes) -> dict[str, Any]:
     properties = body.model.properties
     return {
         "frequencies_Hz": body.model.frequencies.tolist(),

@@ -1,4 +1,4 @@
-"""Pictures of mode shapes: of a plate the height of its upper side, of any other body its deformed surface."""
+"""Figures of mode shapes: the vertical displacement of the upper side of a plate, the deformed surface of any other body."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ from vibroimpact.report.style import INK, style
 from vibroimpact.structures.modal_model import ModalModel
 from vibroimpact.structures.surface import Faces, outer_faces
 
-_MOST = 12  # pictures in one figure
+_MOST = 12  # mode shapes in a figure
 _COLUMNS = 4
-_FINE = 4  # steps along each side of a face
-_FLAT = 0.25  # of its width: a body thinner than this is drawn as a plate
-_EXAGGERATED = 0.12  # of the body's size: the largest displacement as drawn
+_FINE = 4  # subdivisions of each side of a face
+_FLAT = 0.25  # thickness over width below which a body is drawn as a plate
+_EXAGGERATED = 0.12  # largest drawn displacement over the size of the body
 _COLOURS = "RdBu_r"
-_HEAD, _TITLE = 0.35, 0.3  # room for the heading of the figure, and of each picture [in]
-_AT_REST = 5e-3  # of the largest height: where all is lower there is no line to be drawn
+_HEAD, _TITLE = 0.35, 0.3  # heights of the heading of the figure and of the title of each mode [in]
+_AT_REST = 5e-3  # relative displacement below which a triangle counts as at rest, and has no nodal line
 
 
 def draw_modes(model: ModalModel, name: str) -> Figure:
@@ -36,12 +36,12 @@ def draw_modes(model: ModalModel, name: str) -> Figure:
     model : ModalModel
         The modes.
     name : str
-        What the body is, such as "plate".
+        Name of the body, such as "plate".
 
     Returns
     -------
     matplotlib.figure.Figure
-        Up to twelve pictures.
+        Figure with up to twelve mode shapes.
     """
     number = min(_MOST, len(model.frequencies))
     columns = min(_COLUMNS, number)
@@ -73,13 +73,13 @@ def _hertz(frequency: float) -> str:
 
 
 def _surface(model: ModalModel, flat: bool) -> tuple[Floats, Callable[[int], Floats], Integers]:
-    """Return points of the surface, how a mode displaces them, and the triangles between them."""
+    """Return points of the surface, a function for their displacements in a mode, and the triangles between them."""
     points, faces, triangles, start = [], [], [], 0
     for group in outer_faces(model.mesh):
         local, pattern = _lattice(len(group.corners))
         weights = group.slopes(local)[0]
         at = np.einsum("qk,eki->eqi", weights, model.mesh.nodes[group.connectivity])
-        if flat and not model.mesh.is_flat:  # only what looks up
+        if flat and not model.mesh.is_flat:  # only the faces of the upper side
             upper = at[..., 2].min(axis=1) > model.mesh.nodes[:, 2].max() - 1e-6 * model.mesh.extent.max()
             group = Faces(group.kind, group.corners, group.connectivity[upper])
             at = at[upper]
@@ -96,7 +96,7 @@ def _surface(model: ModalModel, flat: bool) -> tuple[Floats, Callable[[int], Flo
 
 
 def _lattice(corners: int) -> tuple[Floats, Integers]:
-    """Return places on a face of the reference element, and the triangles between them."""
+    """Return a lattice of points on a face of the reference element, and the triangles between them."""
     step = np.arange(_FINE + 1)
     if corners == 4:
         a, b = (side.ravel() for side in np.meshgrid(step, step, indexing="ij"))
@@ -111,7 +111,7 @@ def _lattice(corners: int) -> tuple[Floats, Integers]:
 
 
 def _draw_flat(axes: Axes, points: Floats, moved: Floats, triangles: Integers) -> None:
-    """Draw the height of the upper side, and the lines that stay at rest; in its plane, how far it moves."""
+    """Draw the vertical displacement with its nodal lines; for an in-plane mode the magnitude of the displacement."""
     height = moved[:, 2]
     in_plane = np.abs(height).max() < 0.2 * np.linalg.norm(moved, axis=1).max()
     shown = np.linalg.norm(moved[:, :2], axis=1) if in_plane else height
@@ -136,7 +136,7 @@ def _draw_flat(axes: Axes, points: Floats, moved: Floats, triangles: Integers) -
 
 
 def _draw_solid(axes: Axes, points: Floats, moved: Floats, triangles: Integers) -> None:
-    """Draw the deformed surface, coloured by how far it moves outwards or inwards."""
+    """Draw the deformed surface, coloured by the radial displacement; for a torsional mode by its magnitude."""
     size = float(np.ptp(points, axis=0).max())
     middle = points.mean(axis=0)
     shown = points + _EXAGGERATED * size / np.linalg.norm(moved, axis=1).max() * moved

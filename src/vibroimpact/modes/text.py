@@ -1,4 +1,4 @@
-"""What the command line prints of modes, and of elastic bodies before they are computed."""
+"""Console output on modes, and on elastic bodies before their modes are computed."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from vibroimpact.cases.case import Case
 from vibroimpact.cases.elastic.bodies import elastic_bodies
 from vibroimpact.cases.elastic.meshes import meshes_of
 from vibroimpact.cases.elastic.modes import BodyModes
-from vibroimpact.report.terminal_table import Column, TerminalTable, facts, numbers, with_gap
+from vibroimpact.report.terminal_table import TerminalColumn, TerminalTable, facts, numbers, with_gap
 from vibroimpact.structures.recipe import model_key
 from vibroimpact.structures.store import has_model
 from vibroimpact.units.display import MISSING, column_texts, fixed
@@ -23,7 +23,7 @@ _ROWS = 20
 
 
 def modes_summary(case: Case, modes: Mapping[str, BodyModes]) -> RenderableType:
-    """Return what is printed of the modes of a case: what each body is, its lowest modes, and what to doubt."""
+    """Return the console report on the modes of a case: each body, its lowest modes, and the doubts."""
     parts: list[RenderableType] = [Text(case.name or "modes", style="bold")]
     for name, found in modes.items():
         properties = found.model.properties
@@ -32,49 +32,49 @@ def modes_summary(case: Case, modes: Mapping[str, BodyModes]) -> RenderableType:
                 name,
                 f"{properties.mass:.6g} kg, {found.model.facts['elements']}, {found.model.facts['degrees of freedom']} degrees of freedom",
             ),
-            ("held by", _supports(found.body)),
+            ("held by", _supports_text(found.body)),
             ("rigid motions", str(len(found.model.left))),
             ("damping", found.body.damping.words),
         ]
         if "left out of the file" in found.model.facts:
             rows.append(("left out of the file", found.model.facts["left out of the file"]))
-        parts += [facts(rows), _table(found), *(Text(f"Doubt: {doubt}.", style="yellow") for doubt in found.doubts), Text()]
+        parts += [facts(rows), _mode_table(found), *(Text(f"Doubt: {doubt}.", style="yellow") for doubt in found.doubts), Text()]
     return Group(*parts[:-1])
 
 
-def _table(found: BodyModes) -> TerminalTable:
-    """Return the table of the lowest modes, and of the highest where some between are left out."""
+def _mode_table(found: BodyModes) -> TerminalTable:
+    """Return the table of the lowest modes, and of the highest one if some are omitted."""
     basis, number = found.basis, len(found.basis.frequencies)
     shown = list(range(min(_ROWS, number))) + ([number - 1] if number > _ROWS else [])
     effective = basis.participation[:, 2] ** 2
     columns = (
-        Column("mode", [str(mode + 1) for mode in shown]),
+        TerminalColumn("mode", [str(mode + 1) for mode in shown]),
         numbers("frequency", "Hz", column_texts(basis.frequencies[shown], 6)),
-        numbers("within", "%", _within(found.model.frequency_errors[shown])),
-        Column("damping ratio", column_texts(basis.damping_ratios[shown], 4)),
-        numbers("shape at contact", "1/sqrt kg", _four(basis.contact[shown], float(np.abs(basis.contact).max()))),
-        numbers("effective mass, vertical", "kg", _four(effective[shown], found.model.properties.mass)),
+        numbers("within", "%", _error_texts(found.model.frequency_errors[shown])),
+        TerminalColumn("damping ratio", column_texts(basis.damping_ratios[shown], 4)),
+        numbers("shape at contact", "1/sqrt kg", _fixed_texts(basis.contact[shown], float(np.abs(basis.contact).max()))),
+        numbers("effective mass, vertical", "kg", _fixed_texts(effective[shown], found.model.properties.mass)),
     )
     return TerminalTable(with_gap(columns, _ROWS) if number > _ROWS else columns)
 
 
-def _within(errors: Floats) -> list[str]:
-    """Return in per cent by how much frequencies may be off."""
+def _error_texts(errors: Floats) -> list[str]:
+    """Return relative frequency errors in per cent, as text."""
     return [cell if cell != MISSING else "not known" for cell in column_texts(100.0 * errors, 2)]
 
 
-def _four(values: Floats, whole: float) -> list[str]:
-    """Return numbers with four decimals, or 0 where they are rounding of the whole."""
-    return [fixed(float(value), 4) if abs(value) > 1e-6 * whole else "0" for value in values]
+def _fixed_texts(values: Floats, reference: float) -> list[str]:
+    """Return numbers with four decimals, or 0 where they are rounding errors relative to a reference value."""
+    return [fixed(float(value), 4) if abs(value) > 1e-6 * reference else "0" for value in values]
 
 
 def elastic_rows(case: Case) -> list[tuple[str, str]]:
-    """Return what `check` says of the elastic bodies of a case: their mesh, supports, modes and damping.
+    """Return the facts on the elastic bodies of a case that `check` prints: mesh, modes, damping and supports.
 
     Raises
     ------
     InputError
-        If a mesh can't be made, or what must lie on it does not.
+        If a mesh can't be generated, or an object that must lie on it does not.
     """
     rows: list[tuple[str, str]] = []
     meshes = meshes_of(case)
@@ -91,10 +91,10 @@ def elastic_rows(case: Case) -> list[tuple[str, str]]:
             ),
             ("  modes", f"{kept}, {reduction.method}{', with an attachment mode' if reduction.attachment else ''}; {stored}"),
             ("  damping", body.damping.words),
-            ("  held by", _supports(body)),
+            ("  held by", _supports_text(body)),
         ]
     return rows
 
 
-def _supports(body: ElasticBody) -> str:
+def _supports_text(body: ElasticBody) -> str:
     return "; ".join(support.words for support in body.recipe.supports) or "nothing: it is free"

@@ -1,1 +1,1 @@
-"""The paper reproduced: what it prints, what is computed now, and what the difference means."""
+"""Reproduction of the paper: printed values, values computed here, and a verdict on each difference."""

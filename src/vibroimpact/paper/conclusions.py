@@ -1,4 +1,4 @@
-"""Section 6: the conclusions of the paper, one by one."""
+"""The section on the conclusions of the paper (section 6)."""
 
 from __future__ import annotations
 
@@ -8,23 +8,23 @@ from vibroimpact.paper.measures import energy_released, plate_energy_part
 from vibroimpact.paper.printed import printed
 from vibroimpact.paper.runs import DAMPINGS, TREATMENTS, Runs, history_of
 from vibroimpact.paper.sampling import QUANTITIES
-from vibroimpact.paper.section import Section, Table, holds_text
+from vibroimpact.paper.section import ReportSection, TextTable, holds_text
 
 
-def conclusions(runs: Runs) -> Section:
-    """Return what the paper concludes, and whether it holds."""
+def conclusions(runs: Runs) -> ReportSection:
+    """Return the section that tests each conclusion of the paper."""
     cells = [*_variable_damping(runs), _damping_function(runs)]
     cells += [_elastic_sphere(runs, treatment) for treatment in TREATMENTS]
     cells += [_elastic_plate_as_printed(), *(_elastic_plate(runs, treatment) for treatment in TREATMENTS)]
     cells += [_energy_of_the_plate(runs, treatment) for treatment in TREATMENTS]
     cells += [_consumed(runs, treatment) for treatment in TREATMENTS]
-    return Section(
+    return ReportSection(
         "Section 6: the conclusions",
         (
             "Each conclusion as far as it can be computed. The three treatments are those of section 5.1. Conclusion (5) is advice on "
             "what to measure.",
         ),
-        tables=(Table(("Conclusion", "By", "Does it hold?", "Numbers"), tuple(cells)),),
+        tables=(TextTable(("Conclusion", "By", "Does it hold?", "Numbers"), tuple(cells)),),
     )
 
 
@@ -68,13 +68,13 @@ def _elastic_plate_as_printed() -> tuple[str, ...]:
 
 
 def _lower(by: str, rigid: list[float], elastic: list[float]) -> tuple[str, ...]:
-    """Set rebound height [m] and force [N] on an elastic plate beside those on a rigid one."""
+    """Return the test of conclusion (4), from rebound height [m] and force [N] on a rigid and on an elastic plate."""
     numbers = f"{elastic[0]:.3f} instead of {rigid[0]:.3f} m, {elastic[1]:.0f} instead of {rigid[1]:.0f} N"
     return _ELASTIC_PLATE, by, holds_text(elastic[0] < rigid[0] and elastic[1] < rigid[1]), numbers
 
 
 def _energy_of_the_plate(runs: Runs, treatment: str) -> tuple[str, ...]:
-    """Return the part of the energy released that goes into the plate, its two largest energies added as the paper does."""
+    """Return the test of the plate's share of the energy released, with its two largest energies added as in the paper."""
     response, least = runs.treated(3, treatment), printed("plate.energy_part")
     history, both = history_of(response), plate_energy_part(response)
     at_once = 100.0 * float((history["plate_kinetic_J"] + history["plate_strain_J"]).max()) / energy_released(response)
@@ -83,7 +83,7 @@ def _energy_of_the_plate(runs: Runs, treatment: str) -> tuple[str, ...]:
 
 
 def _consumed(runs: Runs, treatment: str) -> tuple[str, ...]:
-    """Return how much of the energy is dissipated, in contact and in the bodies, by the first separation and by the second touch."""
+    """Return the test of the share of energy dissipated, in contact and bodies, by the first separation and by the second touch."""
     response = runs.treated(3, treatment)
     impacts, put_in = response.impacts, float(response.energy["input_J"])
     history = response.at([impacts["time_s"][0] + impacts["duration_s"][0], impacts["time_s"][1]])

@@ -1,15 +1,16 @@
-r"""One impact in steps that are too long: what the implicit Euler method gives where it does not resolve the contact.
+r"""The implicit Euler method for one impact, with steps that do not resolve the contact.
 
-A demonstration of what an unresolved run gives, and no way to compute an impact. With the oscillators behind the contact as in
-`dynamics.system`, a step h gives, all primed at its end,
+A demonstration of numerical dissipation, not a method to compute impacts. For the modal oscillators of `LinearSystem`, a step h gives,
+with primes for values at its end,
 
 .. math:: v' = v + h (g - F'/m),\qquad s' = s + h v'
 
 .. math:: \dot q_i' = \frac{\dot q_i - h \omega_i^2 q_i - h \chi_i F'}{1 + 2 \zeta_i \omega_i h + \omega_i^2 h^2},\qquad
           q_i' = q_i + h \dot q_i'
 
-so that each newton takes a known amount off the indentation, and one equation for the force F' is left. The method is stable with any
-step because it loses energy: in each step, what the changes of the velocities and of the springs' lengths would hold by themselves.
+so that the indentation at the end of the step is linear in the force, and one scalar equation for F' remains. The method is stable for
+any step because it dissipates energy: in each step the kinetic energy of the changes of the velocities, and the strain energy of the
+changes of the elongations.
 """
 
 from __future__ import annotations
@@ -38,74 +39,75 @@ PEAKS = (
     "plate_acceleration_m_s2",
     "beyond_touch_m",
 )
-"""What is found at its largest: magnitudes, three of the plate's centre of mass; and how far the sphere's centre falls after touch."""
+"""Quantities recorded at their largest magnitude: plate motions of its centre of mass, `beyond_touch_m` the sphere's fall after touch."""
 
-SPENT = ("kinetic_J", "potential_J", "vibration_J", "contact_dissipated_J", "modal_damping_J", "integrator_J")
-"""Where the energy of the touch is at separation: in the sphere's motion and height, in all modes; lost in damping and by the method."""
+ENERGY_SHARES = ("kinetic_J", "potential_J", "vibration_J", "contact_dissipated_J", "modal_damping_J", "integrator_J")
+"""Shares of the energy at separation: motion and height of the sphere, vibration of all modes, losses by damping and by the method."""
 
-_MOST_STEPS = 20_000
+_MAX_STEPS = 20_000
 
 
 def unresolved_impact(problem: Problem, step: float, phases: Floats) -> dict[str, Floats]:
-    """Return what the first impact of a drop comes to in steps of one length, for several places of the touch in a step.
+    """Return the first impact of a drop by the implicit Euler method with a fixed step, for several phases of the touch in a step.
 
-    The force is clipped at zero, as Adams does it. The run goes on to separation, and where the plate vibrates for at least half
-    a period of its lowest mode.
+    The force is clipped at zero, as in Adams. The run ends at separation; with an elastic plate, not before half a period of its lowest
+    mode.
 
     Parameters
     ----------
     problem : Problem
-        One drop of the superposed model: all modes in series with the whole of the law.
+        One drop of the superposed model: all modes in series with the full contact law.
     step : float
-        Length of a step [s], > 0.
+        Step length [s], > 0.
     phases : array, shape (P,)
-        What part of the step in which the surfaces meet is left after that, above 0 up to 1.
+        Fraction of the step in which the surfaces meet that remains after the touch, in (0, 1].
 
     Returns
     -------
     dict of str to array
-        The `PEAKS`; separation_speed_m_s and rebound_height_m; and the shares of energy named by `SPENT`. Each (P,).
+        The `PEAKS`, separation_speed_m_s and rebound_height_m, and the `ENERGY_SHARES`; each of shape (P,).
 
     Raises
     ------
     InputError
-        If the problem is of another model.
+        If the problem is not of the superposed model.
     ComputationError
         If the sphere does not leave the plate within 20,000 steps.
     """
-    (way, plate), (_, on_sphere, on_plate) = (_method(problem, step), problem.plate.modes), slices_of(problem)
-    whole = plate.participation[:, 2] / plate.mass if plate is not None else np.zeros(0)
-    followed = np.pi / float(plate.angular_frequencies.min()) if plate is not None else 0.0
-    state, lost = way.start(phases), np.zeros((3, len(phases)))
+    (method, plate), (_, on_sphere, on_plate) = (_implicit_euler(problem, step), problem.plate.modes), slices_of(problem)
+    centre_weights = plate.participation[:, 2] / plate.mass if plate is not None else np.zeros(0)
+    least_duration = np.pi / float(plate.angular_frequencies.min()) if plate is not None else 0.0
+    # all phases advance in one batch; the slices pick the modes of each body among the oscillators
+    state, losses = method.start(phases), np.zeros((3, len(phases)))
     peaks = {name: np.zeros(len(phases)) for name in PEAKS}
-    parted = {name: np.full(len(phases), np.nan) for name in ("separation_speed_m_s", *SPENT)}
-    apart = np.zeros(len(phases), dtype=bool)
-    for number in range(1, _MOST_STEPS + 1):
-        before, (state, force) = state, way.advance(state)
-        lost = lost + way.lost(before, state, force)
-        kinetic, strain = way.of.energies(state)
-        of_bodies = (strain[:, on_sphere].sum(axis=1), kinetic[:, on_plate].sum(axis=1), strain[:, on_plate].sum(axis=1))
+    at_separation = {name: np.full(len(phases), np.nan) for name in ("separation_speed_m_s", *ENERGY_SHARES)}
+    separated = np.zeros(len(phases), dtype=bool)
+    for number in range(1, _MAX_STEPS + 1):
+        before, (state, force) = state, method.advance(state)
+        losses = losses + method.losses(before, state, force)
+        kinetic, strain = method.system.energies(state)
+        body_energies = (strain[:, on_sphere].sum(axis=1), kinetic[:, on_plate].sum(axis=1), strain[:, on_plate].sum(axis=1))
         acceleration = (state.velocity - before.velocity) / step
-        depth, sinking = centre_of(state, way.mass)
-        of_centre = (part[:, on_plate] @ whole for part in (state.displacement, state.velocity, acceleration))
-        for name, value in zip(PEAKS, (force, *of_bodies, *of_centre, np.maximum(depth, 0.0)), strict=True):
+        depth, sinking = centre_of(state, method.mass)
+        centre_motion = (part[:, on_plate] @ centre_weights for part in (state.displacement, state.velocity, acceleration))
+        for name, value in zip(PEAKS, (force, *body_energies, *centre_motion, np.maximum(depth, 0.0)), strict=True):
             peaks[name] = np.maximum(peaks[name], np.abs(value))
-        leaves = (way.approach(state) < 0.0) & (sinking < 0.0)
-        of_sphere = 0.5 * way.mass * sinking**2, -way.mass * way.gravity * depth
-        now = (-sinking, *of_sphere, (kinetic + strain)[:, 1:].sum(axis=1), *lost)
-        for name, value in zip(parted, now, strict=True):
-            parted[name] = np.where(leaves & ~apart, value, parted[name])
-        apart = leaves
-        if apart.all() and number * step >= followed:
-            return {**peaks, **parted, "rebound_height_m": way.top(problem, parted["separation_speed_m_s"])}
-    raise ComputationError(f"the sphere does not leave the plate within {_MOST_STEPS} steps of {step:g} s")
+        receding = (method.approach(state) < 0.0) & (sinking < 0.0)
+        sphere_energies = 0.5 * method.mass * sinking**2, -method.mass * method.gravity * depth
+        current = (-sinking, *sphere_energies, (kinetic + strain)[:, 1:].sum(axis=1), *losses)
+        for name, value in zip(at_separation, current, strict=True):
+            at_separation[name] = np.where(receding & ~separated, value, at_separation[name])
+        separated = receding  # a sphere that comes back is recorded anew at its next separation
+        if separated.all() and number * step >= least_duration:
+            return {**peaks, **at_separation, "rebound_height_m": method.rebound_height(problem, at_separation["separation_speed_m_s"])}
+    raise ComputationError(f"the sphere does not leave the plate within {_MAX_STEPS} steps of {step:g} s")
 
 
 @dataclass(frozen=True)
-class _Method:
-    """The implicit Euler method for one impact: what stays the same from step to step, in SI."""
+class _ImplicitEuler:
+    """The coefficients of the implicit Euler method that are constant over the steps of an impact [SI]."""
 
-    of: LinearSystem
+    system: LinearSystem
     law: CompliantLaw
     mass: float
     gravity: float
@@ -113,74 +115,74 @@ class _Method:
     step: float
 
     @cached_property
-    def slowed(self) -> Floats:
-        """What a step leaves of the velocity of each oscillator."""
-        return np.asarray(1.0 / (1.0 + self.step * self.of.damping + (self.step * self.of.angular_frequency) ** 2))
+    def velocity_factor(self) -> Floats:
+        """Factor of each oscillator velocity over a step, 1/(1 + 2 zeta omega h + omega^2 h^2)."""
+        return np.asarray(1.0 / (1.0 + self.step * self.system.damping + (self.step * self.system.angular_frequency) ** 2))
 
     @cached_property
-    def pliancy(self) -> float:
-        """By how much a newton opens the contact within a step [m/N]."""
-        return float(self.step**2 * (self.of.shape**2 * self.slowed).sum())
+    def step_compliance(self) -> float:
+        """Decrease of the indentation at the end of a step per unit of force [m/N]."""
+        return float(self.step**2 * (self.system.shape**2 * self.velocity_factor).sum())
 
     def start(self, phases: Floats) -> State:
-        """Return the states before the step in which the surfaces meet: in flight, nothing vibrates."""
+        """Return the states at the start of the step in which the surfaces meet: free flight without vibration."""
         before = (1.0 - phases) * self.step
         approach, speed = -before * (self.touch_speed - 0.5 * self.gravity * before), self.touch_speed - self.gravity * before
-        displacement, velocity = (np.zeros((len(phases), self.of.number)) for _ in range(2))
+        displacement, velocity = (np.zeros((len(phases), self.system.number)) for _ in range(2))
         displacement[:, 0], velocity[:, 0] = self.mass**0.5 * approach, self.mass**0.5 * speed
         return State(displacement, velocity, np.zeros((len(phases), 0)))
 
     def approach(self, state: State) -> Floats:
         """Return the indentation [m]."""
-        return self.of.approach(state)[:, 0]
+        return self.system.approach(state)[:, 0]
 
     def advance(self, state: State) -> tuple[State, Floats]:
-        """Return the states after a step, and the forces then."""
-        of, step = self.of, self.step
-        velocity = self.slowed * (state.velocity + step * (of.load - of.angular_frequency**2 * state.displacement))
+        """Return the states and the contact forces at the end of a step."""
+        system, step = self.system, self.step
+        velocity = self.velocity_factor * (state.velocity + step * (system.load - system.angular_frequency**2 * state.displacement))
         force = self._force(self.approach(self._moved(state, velocity)), self.approach(state))
-        return self._moved(state, velocity - step * force[:, None] * (self.slowed * of.shape)), force
+        return self._moved(state, velocity - step * force[:, None] * (self.velocity_factor * system.shape)), force
 
     def _moved(self, state: State, velocity: Floats) -> State:
-        """Return where a step with these velocities leads."""
+        """Return the state at the end of a step, from the velocities there."""
         return State(state.displacement + self.step * velocity, velocity, state.local)
 
-    def _force(self, reach: Floats, start: Floats) -> Floats:
-        """Return the forces at the end of a step, from the indentations that it would reach without them and those at its start."""
+    def _force(self, free_end: Floats, start: Floats) -> Floats:
+        """Return the forces at the end of a step, from the force-free indentations there and the indentations at its start."""
 
         def excess(force: Floats) -> Floats:
-            end = reach - self.pliancy * force
+            end = free_end - self.step_compliance * force
             static, dissipative = self.law.forces(np.maximum(end, 0.0), (end - start) / self.step, self.touch_speed)
             return np.asarray(force - np.where(end > 0.0, np.maximum(static + dissipative, 0.0), 0.0))
 
-        meets = reach > 0.0
-        if not meets.any():
-            return np.zeros_like(reach)
-        return np.where(meets, find_root(excess, np.zeros_like(reach), np.where(meets, reach / self.pliancy, 1.0)), 0.0)
+        touching = free_end > 0.0
+        if not touching.any():
+            return np.zeros_like(free_end)
+        return np.where(touching, find_root(excess, np.zeros_like(free_end), np.where(touching, free_end / self.step_compliance, 1.0)), 0.0)
 
-    def lost(self, before: State, after: State, force: Floats) -> Floats:
-        """Return what a step loses in the damping of the contact, in that of the modes, and by the method [J] (3, P)."""
-        of, law = self.of, self.law
+    def losses(self, before: State, after: State, force: Floats) -> Floats:
+        """Return the energy dissipated in a step by contact damping, by modal damping and by the method [J], (3, P)."""
+        system, law = self.system, self.law
         start, end = self.approach(before), self.approach(after)
         further, (deep, deeper) = end - start, (np.maximum(start, 0.0), np.maximum(end, 0.0))
         static, _ = law.forces(deeper, further / self.step, self.touch_speed)
         in_motion = 0.5 * ((after.velocity - before.velocity) ** 2).sum(axis=1)
-        in_springs = 0.5 * ((of.angular_frequency * (after.displacement - before.displacement)) ** 2).sum(axis=1)
+        in_springs = 0.5 * ((system.angular_frequency * (after.displacement - before.displacement)) ** 2).sum(axis=1)
         in_contact = static * further - (law.elastic_energy(deeper) - law.elastic_energy(deep))
-        of_modes = self.step * (of.damping * after.velocity**2).sum(axis=1)
-        return np.array([(force - static) * further, of_modes, in_motion + in_springs + in_contact])
+        in_modes = self.step * (system.damping * after.velocity**2).sum(axis=1)
+        return np.array([(force - static) * further, in_modes, in_motion + in_springs + in_contact])
 
-    def top(self, problem: Problem, speed: Floats) -> Floats:
-        """Return how high the centre rises from separation [m]."""
+    def rebound_height(self, problem: Problem, speed: Floats) -> Floats:
+        """Return the rebound height of the sphere's centre [m] from its separation speed."""
         with np.errstate(divide="ignore"):
             return np.asarray(problem.sphere.contact_offset + speed**2 / (2.0 * self.gravity))
 
 
-def _method(problem: Problem, step: float) -> _Method:
-    """Return the method for a problem, if it is of the kind that the method is written for."""
+def _implicit_euler(problem: Problem, step: float) -> _ImplicitEuler:
+    """Return the method for a problem; InputError unless it is one drop of the superposed model under a compliant law without memory."""
     law = problem.law_of(0)
     more = problem.local_element or problem.quasi_static or (problem.sphere_inside and problem.sphere.modes is not None)
     if problem.shape != () or more or not isinstance(law, CompliantLaw) or law.memories():
         raise InputError("the implicit Euler method is for one drop of the superposed model, under a law with a force and no memory")
     mass, gravity = float(problem.sphere.mass), float(problem.gravity)
-    return _Method(system_of(problem, mass, gravity), law, mass, gravity, first_approach_speed(problem), step)
+    return _ImplicitEuler(system_of(problem, mass, gravity), law, mass, gravity, first_approach_speed(problem), step)

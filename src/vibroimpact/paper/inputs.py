@@ -1,4 +1,4 @@
-"""The inputs: Table 1 and section 3.1, beside what the shipped cases have."""
+"""The sections on the inputs: Table 1, contact parameters (section 3.1), meshes (section 4), and the corrections of the paper."""
 
 from __future__ import annotations
 
@@ -7,14 +7,13 @@ from vibroimpact.cases.reader import load_case
 from vibroimpact.cases.rigid import contact_pair
 from vibroimpact.contact.laws.adams_impact import AdamsImpact
 from vibroimpact.dynamics.simulate import simulate
-from vibroimpact.paper.printed import printed
-from vibroimpact.paper.printed_and_computed import Row
+from vibroimpact.paper.printed import corrections, printed
 from vibroimpact.paper.runs import Runs, with_law
-from vibroimpact.paper.section import Section
+from vibroimpact.paper.section import ComparedValue, ReportSection, TextTable
 
 
-def table1(runs: Runs) -> Section:
-    """Return Table 1 beside the shipped case of Type 3, which has all of it."""
+def table1(runs: Runs) -> ReportSection:
+    """Return the section that compares Table 1 with the shipped case of Type 3, which has all of its inputs."""
     case = resolved_case(load_case("paper:type3"))
     sphere, plate, drop = case["sphere"], case["plate"], case["drop"]
     values = {f"{body}.{name}": case[body]["material"][name] for body in ("sphere", "plate") for name in _MATERIAL}
@@ -22,23 +21,23 @@ def table1(runs: Runs) -> Section:
     values |= {f"plate.size.{number}": 1e3 * length for number, length in enumerate(plate["size"], start=1)}
     values |= {f"plate.spacing.{number}": 1e3 * length for number, length in enumerate(plate["supports"][0]["spacing"], start=1)}
     values |= {"gravity": drop["gravity"], "drop.height": drop["height"]}
-    return Section(
+    return ReportSection(
         "Table 1: the inputs",
         ("What the shipped cases have, beside what is printed.",),
-        tuple(Row(printed(name), value, by="the shipped case") for name, value in values.items()),
+        tuple(ComparedValue(printed(name), value, by="the shipped case") for name, value in values.items()),
     )
 
 
 _MATERIAL = ("density", "youngs_modulus", "poissons_ratio")
 
 
-def section_3_1(runs: Runs) -> Section:
-    """Return the parameters of the contact beside Hertz's theory and the shipped cases."""
+def section_3_1(runs: Runs) -> ReportSection:
+    """Return the section that compares the contact parameters with Hertz's theory and the shipped cases."""
     problem, thin = runs.problem("type1-variable"), printed("full_damping_penetration")
     law = problem.laws[0]
     assert isinstance(law, AdamsImpact)
     rebound = simulate(with_law(problem, full_damping_penetration=thin.value)).impacts["rebound_height_m"][0]
-    return Section(
+    return ReportSection(
         "Section 3.1: the contact",
         (
             "IMPACT, the contact of Adams, is Hertz's spring and a dashpot that fades in with the indentation and is full from the "
@@ -46,9 +45,9 @@ def section_3_1(runs: Runs) -> Section:
             "not the one printed.",
         ),
         (
-            Row(printed("stiffness"), float(contact_pair(load_case("paper:type1-variable")).hertz_stiffness), by="Hertz"),
-            Row(printed("exponent"), float(law.exponent), by="Hertz"),
-            Row(
+            ComparedValue(printed("stiffness"), float(contact_pair(load_case("paper:type1-variable")).hertz_stiffness), by="Hertz"),
+            ComparedValue(printed("exponent"), float(law.exponent), by="Hertz"),
+            ComparedValue(
                 thin,
                 float(law.full_damping_penetration),
                 by="the shipped case",
@@ -58,20 +57,33 @@ def section_3_1(runs: Runs) -> Section:
     )
 
 
-def section_4(runs: Runs) -> Section:
-    """Return the meshes beside those of the paper."""
+def section_4(runs: Runs) -> ReportSection:
+    """Return the section that compares the meshes with those of the paper."""
     sphere, plate = (runs.problem("type3").models[body].mesh for body in ("sphere", "plate"))
     counts = {
         "mesh.sphere.nodes": len(sphere.nodes),
         "mesh.sphere.elements": sphere.number_of_elements,
         "mesh.plate.elements": plate.number_of_elements,
     }
-    return Section(
+    return ReportSection(
         "Section 4: the meshes",
         (
             "The meshes of the paper are not to be had. Here the plate has plate elements of order four, and the sphere curved bricks of "
             "second order, fine enough for the modes that are kept. The superposed treatment depends on the mesh whatever is done, as "
             "the forensic section shows.",
         ),
-        tuple(Row(printed(name), float(count), by="the shipped case", otherwise="a mesh of our own") for name, count in counts.items()),
+        tuple(
+            ComparedValue(printed(name), float(count), by="the shipped case", otherwise="a mesh of our own")
+            for name, count in counts.items()
+        ),
+    )
+
+
+def corrections_section(runs: Runs) -> ReportSection:
+    """Return the section that lists the corrections on which all other sections build."""
+    cells = tuple((item.place, item.printed, item.right, item.why) for item in corrections())
+    return ReportSection(
+        "What the paper prints wrongly, or leaves out",
+        ("Everything above was computed with these corrections.",),
+        tables=(TextTable(("Place", "Printed", "Right", "How that is known"), cells),),
     )

@@ -1,4 +1,4 @@
-"""What is measured of a run: quantities over time, and single values."""
+"""Quantities evaluated from a response, and their comparison with a printed value under each treatment."""
 
 from __future__ import annotations
 
@@ -9,22 +9,24 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.dynamics.response import Response
-from vibroimpact.paper.runs import history_of
+from vibroimpact.paper.printed import PrintedValue
+from vibroimpact.paper.runs import TREATMENTS, Runs, history_of
+from vibroimpact.paper.section import ComparedValue, Explanation
 
 Timeline = Callable[[Response], tuple[Floats, Floats]]
-"""From a response to times [s] and values [SI]; NaN where a line is broken."""
+"""Function of a response that returns times [s] and values [SI]; NaN breaks the line."""
 
 Measure = Callable[[Response], float]
-"""From a response to a value [SI]."""
+"""Function of a response that returns a value [SI]."""
 
 
-def column(name: str) -> Timeline:
-    """Return what gives a column of the history."""
+def history_column(name: str) -> Timeline:
+    """Return a function that reads a column of the history."""
     return lambda response: (history_of(response)["time_s"], history_of(response)[name])
 
 
 def falling_potential(response: Response) -> tuple[Floats, Floats]:
-    """Return the potential energy of the sphere, zero where each fall begins; NaN where one fall gives way to the next."""
+    """Return times [s] and the potential energy of the sphere [J], zero at the start of each fall; NaN between falls."""
     history, impacts, problem = history_of(response), response.impacts, response.problem
     gravity = float(problem.gravity)
     tops = impacts["time_s"] + impacts["duration_s"] + impacts["separation_speed_m_s"] / gravity
@@ -38,10 +40,10 @@ def falling_potential(response: Response) -> tuple[Floats, Floats]:
 
 @lru_cache(maxsize=16)
 def sphere_strain(response: Response) -> tuple[Floats, Floats]:
-    """Return times [s] and the strain energy of the sphere [J]: of its modes, or of the local element that stands for them.
+    """Return times [s] and the strain energy of the sphere [J]: of its modes, or of the local element in their place.
 
-    Spring and dashpot of the local element lie side by side and carry the contact force: k x + c dx/dt = F. Between two points of
-    the history F is taken for a straight line, for which x is exact.
+    Spring and dashpot of the local element act in parallel and carry the contact force, k x + c dx/dt = F. F is interpolated linearly
+    between the points of the history, and x is the exact solution for that.
     """
     element, history = response.problem.local_element, history_of(response)
     time, force = history["time_s"], history["force_N"]
@@ -62,7 +64,7 @@ def sphere_strain(response: Response) -> tuple[Floats, Floats]:
 
 
 def sphere_rotation(response: Response) -> tuple[Floats, Floats]:
-    """Return times [s] and the energy of the sphere's rotation [J]; what is below 1e-15 J is rounding, and left out."""
+    """Return times [s] and the rotational energy of the sphere [J], rounded to 1e-15 J to remove rounding noise."""
     history = history_of(response)
     return history["time_s"], np.round(history["sphere_rotational_J"], 15)
 
@@ -73,17 +75,17 @@ def energy_at_separation(response: Response) -> float:
 
 
 def largest_of(timeline: Timeline) -> Measure:
-    """Return what gives the largest magnitude over time."""
+    """Return a function for the largest magnitude over time."""
     return lambda response: float(np.nanmax(np.abs(timeline(response)[1])))
 
 
 def in_first_impact(name: str) -> Measure:
-    """Return what gives a column of the impact table, of the first impact."""
+    """Return a function that reads a column of the impact table at the first impact."""
     return lambda response: float(response.impacts[name][0])
 
 
 def after_each_impact(timeline: Timeline) -> Callable[[Response], Floats]:
-    """Return what gives the largest magnitude after each impact, before the next."""
+    """Return a function for the largest magnitude between each impact and the next."""
 
     def peaks(response: Response) -> Floats:
         (time, values), touches = timeline(response), response.impacts["time_s"]
@@ -94,12 +96,65 @@ def after_each_impact(timeline: Timeline) -> Callable[[Response], Floats]:
 
 
 def energy_released(response: Response) -> float:
-    """Return the potential energy of the sphere that is released down to its deepest point [J]."""
+    """Return the potential energy of the sphere that is released from the start to its lowest point [J]."""
     potential = history_of(response)["potential_J"]
     return float(potential[0] - potential.min())
 
 
 def plate_energy_part(response: Response) -> float:
-    """Return the plate's largest kinetic and its largest strain energy, added, of the energy released [%]: as the paper counts."""
+    """Return the sum of the plate's largest kinetic and largest strain energy over the energy released [%], as in the paper."""
     history = history_of(response)
     return 100.0 * float(history["plate_kinetic_J"].max() + history["plate_strain_J"].max()) / energy_released(response)
+
+
+MESH_DIGITS = 5
+"""Significant digits shown of values that depend on a mesh."""
+
+FITTED = ("type2.max_force", "type2.rebound_height")
+"""The printed values to which the identified treatment was fitted."""
+
+
+def values_by_treatment(
+    runs: Runs, kind: int, value: PrintedValue, measure: Measure, unresolved: tuple[float, float] | None = None
+) -> list[ComparedValue]:
+    """Return a printed value of Type 2 or 3 with the value computed under each treatment.
+
+    Parameters
+    ----------
+    runs : Runs
+        The simulations.
+    kind : int
+        2 or 3.
+    value : PrintedValue
+        The printed value.
+    measure : callable
+        Function of a response that returns the value in the printed unit.
+    unresolved : tuple of two floats, optional
+        Range of the value in unresolved runs of the superposed model.
+    """
+    words = {
+        "consistent": "elastic bodies under this contact law do otherwise, and no setting that was tried gives it",
+        "superposed": "the superposed model, resolved, does otherwise, and no setting that was tried gives it",
+        "identified": "a prediction from Type 2" if kind == 3 else "fitted to force and rebound alone",
+    }
+    if unresolved is not None:
+        low, high = unresolved
+        explanation = Explanation("", low, high)
+        few = "touches these with its few digits" if explanation.holds(value) else "is not among these"
+        inside = "is among these" if explanation.contains(value) else few
+        steps = "in steps fitted to Type 2" if kind == 2 else "in steps found from Type 2"
+        words["superposed"] += (
+            f". A reading: unresolved, on a coarse mesh and {steps}, it gives {low:.4g} to {high:.4g} {value.unit}, and the printed value "
+            f"{inside}"
+        )
+    return [
+        ComparedValue(
+            value,
+            measure(runs.treated(kind, treatment)),
+            by=treatment,
+            otherwise=words[treatment],
+            fitted=treatment == "identified" and value.name in FITTED,
+            digits=MESH_DIGITS,
+        )
+        for treatment in TREATMENTS
+    ]

@@ -1,4 +1,4 @@
-"""What the paper prints: values with their place, unit and digits, and the misprints among its equations."""
+"""Values printed in the paper, with place, unit and significant digits, and corrections of its misprints (`printed.toml`)."""
 
 from __future__ import annotations
 
@@ -13,33 +13,33 @@ from typing import Any, Literal
 from vibroimpact.errors import InputError, did_you_mean
 
 PAPER = '"Study on the Vibroimpact Response of the Particle Elastic Impact on the Metal Plate" (Shock and Vibration)'
-"""What is reproduced."""
+"""Title and journal of the paper."""
 
 Relation = Literal["=", "<", ">"]
 
 
 @dataclass(frozen=True)
-class Printed:
-    """A value that the paper prints.
+class PrintedValue:
+    """A value printed in the paper.
 
     Parameters
     ----------
     name : str
-        What it is called here, such as "type1.rebound_height".
+        Identifier, such as "type1.rebound_height".
     what : str
-        What it is, in words.
+        Description of the quantity.
     text : str
         The number as printed.
     unit : str
-        Its unit; "%" where it is printed in per cent.
+        Unit; "%" where it is printed in per cent.
     place : str
-        Where it stands: table, section and paragraph, or equation.
+        Location in the paper: table, section and paragraph, or equation.
     read : str
-        How it was read.
+        How the number was read.
     relation : {"=", "<", ">"}
-        Is it the value, or is the value said to be below or above it?
+        Whether the paper states the value itself, an upper bound or a lower bound.
     digits : int, optional
-        How many of its digits count, where that can't be seen, as with 200.
+        Number of significant digits, where the text does not show it, as with 200.
 
     Examples
     --------
@@ -59,12 +59,12 @@ class Printed:
 
     @property
     def value(self) -> float:
-        """The number, in the unit printed."""
+        """The number in the printed unit."""
         return float(self.text)
 
     @property
     def half(self) -> float:
-        """Half a unit of its last digit: as far as rounding can have moved it."""
+        """Half a unit of the last significant digit: the largest rounding error."""
         number = Decimal(self.text)
         exponent = int(number.as_tuple().exponent) if self.digits is None else number.adjusted() - self.digits + 1
         return float(Decimal("0.5").scaleb(exponent))
@@ -72,18 +72,18 @@ class Printed:
 
 @dataclass(frozen=True)
 class Correction:
-    """Something that the paper prints wrongly, or leaves out.
+    """A misprint or an omission of the paper.
 
     Parameters
     ----------
     place : str
-        Where it stands.
+        Location in the paper.
     printed : str
-        What is printed.
+        The text as printed.
     right : str
-        What it must be.
+        The corrected text.
     why : str
-        How that is known.
+        Justification of the correction.
     """
 
     place: str
@@ -98,27 +98,27 @@ def _library() -> Mapping[str, Any]:
 
 
 @cache
-def printed_values() -> Mapping[str, Printed]:
-    """Return every value of the paper that is held here, by its name; of a list `NAME.1`, `NAME.2`, ..."""
-    found: dict[str, Printed] = {}
+def printed_values() -> Mapping[str, PrintedValue]:
+    """Return all values of `printed.toml` by name; the items of a list are named `NAME.1`, `NAME.2`, ..."""
+    found: dict[str, PrintedValue] = {}
     for entry in _library()["value"]:
         texts = entry["text"]
         for number, text in enumerate([texts] if isinstance(texts, str) else texts, start=1):
             which = "" if isinstance(texts, str) else f".{number}"
-            value = Printed(**{**entry, "name": f"{entry['name']}{which}", "what": entry["what"].format(number), "text": text})
+            value = PrintedValue(**{**entry, "name": f"{entry['name']}{which}", "what": entry["what"].format(number), "text": text})
             if value.name in found:
                 raise ValueError(f"{value.name} is held twice")
             found[value.name] = value
     return found
 
 
-def printed(name: str) -> Printed:
-    """Return a value of the paper.
+def printed(name: str) -> PrintedValue:
+    """Return a printed value by name.
 
     Raises
     ------
     InputError
-        If there is none of that name.
+        If there is no value of that name.
     """
     values = printed_values()
     if name not in values:
@@ -128,5 +128,5 @@ def printed(name: str) -> Printed:
 
 @cache
 def corrections() -> tuple[Correction, ...]:
-    """Return what the paper prints wrongly or leaves out."""
+    """Return the misprints and omissions of the paper."""
     return tuple(Correction(**entry) for entry in _library()["correction"])

@@ -1,4 +1,4 @@
-"""The simulations that the reproduction needs, each done when it is first asked for, and once."""
+"""The simulations behind the reproduction, run on first use and cached."""
 
 from __future__ import annotations
 
@@ -16,22 +16,22 @@ from vibroimpact.dynamics.simulate import simulate
 from vibroimpact.results.fine_history import fine_history
 
 TREATMENTS = ("consistent", "superposed", "identified")
-"""How the local compliance of elastic bodies is treated; the shipped cases of Types 2 and 3 come in each."""
+"""Treatments of the local compliance of elastic bodies; Types 2 and 3 are shipped as a case for each."""
 
 DAMPINGS = ("constant", "variable")
-"""The simulations of Type 1: one damping for all impacts, or one an impact."""
+"""Simulations of Type 1: the same damping for all impacts, or a damping for each."""
 
 IMPACTS = (1, 2, 3, 4, 5)
-"""The impacts, as the paper counts them."""
+"""Impact numbers, counted from 1 as in the paper."""
 
 
 class Runs:
-    """Responses to the shipped cases of the paper.
+    """Problems and responses of the shipped cases of the paper, cached by name.
 
     Parameters
     ----------
     tell : callable, optional
-        Is told, in words, what takes long.
+        Called with a message before a long computation.
 
     Examples
     --------
@@ -57,26 +57,26 @@ class Runs:
         return self._responses[name]
 
     def treated(self, kind: int, treatment: str) -> Response:
-        """Return the response of Type 2 or 3 under one of the `TREATMENTS`."""
+        """Return the response of Type 2 or 3 (`kind`) under one of the `TREATMENTS`."""
         return self.response(f"type{kind}" if treatment == "consistent" else f"type{kind}-{treatment}")
 
     @cached_property
     def calibration(self) -> Calibration:
-        """The damping of Adams' IMPACT with which each impact is as under the theory."""
+        """The calibrated damping of Adams' IMPACT that reproduces each impact of the theory."""
         return calibrate_case(load_calibration("paper:calibration"))
 
     def below_theory(self, damping: str, column: str) -> Floats:
-        """Return by how much a column of the impact table is below the theory's [%], in the simulation with a damping of `DAMPINGS`."""
+        """Return the shortfall of a column of the impact table against the theory [%], for a simulation of `DAMPINGS`."""
         simulation, theory = (self.response(f"type1-{name}").impacts[column] for name in (damping, "theory"))
         return 100.0 * (1.0 - simulation / theory)
 
 
 @lru_cache(maxsize=16)
 def history_of(response: Response) -> dict[str, Floats]:
-    """Return the history of a response, fine enough for every contact and for the peaks of the plate after it."""
+    """Return the history of a response, sampled finely enough for each contact and for the later peaks of the plate."""
     return fine_history(response)
 
 
 def with_law(problem: Problem, **parameters: Array) -> Problem:
-    """Return a problem with other parameters of its laws, each a number or one a drop."""
+    """Return a problem with other parameters of its contact laws, each a number or an array over drops."""
     return replace(problem, laws=tuple(replace(law, **parameters) for law in problem.laws))

@@ -1,4 +1,4 @@
-"""Where the scatter of Table 2 comes from: peaks that were read off samples."""
+"""The scatter of Table 2 as a sampling error: ranges of peaks read off samples, the spacing they imply, and the section on it."""
 
 from __future__ import annotations
 
@@ -11,22 +11,21 @@ from typing import NamedTuple
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.paper.printed import Printed, printed
-from vibroimpact.paper.printed_and_computed import Account
+from vibroimpact.paper.printed import PrintedValue, printed
 from vibroimpact.paper.runs import DAMPINGS, IMPACTS, Runs
-from vibroimpact.paper.section import Section, Table
+from vibroimpact.paper.section import Explanation, ReportSection, TextTable
 from vibroimpact.units.display import MISSING, digits, fixed
 
 QUANTITIES = {
     "compression": ("indentation_m", "max_indentation_m", "time_of_max_indentation_s"),
     "force": ("force_N", "max_force_N", "time_of_max_force_s"),
 }
-"""What Table 2 compares: its columns in a history and in the impact table."""
+"""Quantities of Table 2: columns of the history, of the largest value and of its time in the impact table."""
 
 _ERRORS = tuple((quantity, damping, impact) for quantity in QUANTITIES for damping in DAMPINGS for impact in IMPACTS)
 
 CONTACTS = tuple((damping, impact) for damping in DAMPINGS for impact in IMPACTS if (damping, impact) != ("variable", 1))
-"""The contacts that Table 2 is about: the first is the same with either damping."""
+"""Contacts of Table 2 by damping and impact; the first contact is the same with either damping, and listed once."""
 
 _POINTS = 1001
 _LEVELS = 1001
@@ -34,19 +33,19 @@ _TAIL = 0.05
 
 
 @dataclass(frozen=True)
-class Peak:
-    """A quantity over one contact, which rises to a peak and falls again.
+class ContactPulse:
+    """The pulse of a quantity over one contact, with a single peak.
 
     Parameters
     ----------
     times : array
         Times since first touch [s].
     values : array
-        The values.
+        Values at these times.
     top : int
-        Where the peak is among them.
+        Index of the peak.
     widths, levels : arrays
-        How long the quantity is above each level [s], narrowest first, and the levels.
+        Duration above each level [s], ascending, and the levels.
     """
 
     times: Floats
@@ -57,53 +56,53 @@ class Peak:
 
     @property
     def value(self) -> float:
-        """The value at the peak."""
+        """Peak value."""
         return float(self.values[self.top])
 
     def instants(self, level: float) -> tuple[float, float]:
-        """Return when the level is passed on the way up and down [s]; NaN of a level above the peak."""
+        """Return the times at which the pulse passes a level, rising and falling [s]; NaN for a level above the peak."""
         if level > self.value:
             return math.nan, math.nan
         before, after = _crossings(self.times, self.values, self.top, np.array([level]))
         return float(before[0]), float(after[0])
 
     def lowest(self, step: float) -> float:
-        """Return the least that the largest of samples `step` [s] apart can be, whatever their phase."""
+        """Return the smallest possible maximum of samples spaced by `step` [s], over all phases of the samples."""
         return float(np.interp(step, self.widths, self.levels))
 
 
 @lru_cache(maxsize=1)
-def peaks(runs: Runs) -> Mapping[tuple[str, str, int], Peak]:
-    """Return the peaks of the theory and of the simulations, by name of the run, quantity and impact, counted from 1."""
+def contact_pulses(runs: Runs) -> Mapping[tuple[str, str, int], ContactPulse]:
+    """Return the pulses of the theory and the simulations, by run, quantity and impact number, counted from 1."""
     found = {}
     for name in ("theory", *DAMPINGS):
         response = runs.response(f"type1-{name}")
         for impact in IMPACTS:
             touch, duration = (float(response.impacts[column][impact - 1]) for column in ("time_s", "duration_s"))
             times = np.linspace(0.0, duration, _POINTS)
-            # a hair inside, so that both ends belong to the contact
+            # slightly inside, so that both end points belong to the contact
             history = response.at(touch + np.clip(times, 1e-9 * duration, (1.0 - 1e-9) * duration))
             for quantity, (column, largest, when) in QUANTITIES.items():
                 at = float(response.impacts[when][impact - 1]) - touch
-                found[name, quantity, impact] = _peak(times, history[column], at, float(response.impacts[largest][impact - 1]))
+                found[name, quantity, impact] = _contact_pulse(times, history[column], at, float(response.impacts[largest][impact - 1]))
     return found
 
 
 def error_range(runs: Runs, step: float, quantity: str, damping: str, impact: int) -> tuple[float, float]:
-    """Return the least and the largest error [%] that can be read off samples, at any phase of those of the theory and the simulation.
+    """Return the range of the error of sampled peaks [%], over all phases of the samples of theory and simulation.
 
     Parameters
     ----------
     runs : Runs
-        The cases.
+        The simulations.
     step : float
         Time between samples [s], >= 0.
     quantity : {"compression", "force"}
-        What is compared.
+        Quantity compared.
     damping : {"constant", "variable"}
-        Which simulation.
+        Simulation.
     impact : int
-        Which impact, from 1.
+        Impact number, from 1.
 
     Examples
     --------
@@ -111,80 +110,80 @@ def error_range(runs: Runs, step: float, quantity: str, damping: str, impact: in
     >>> round(least, 3), round(largest, 3)
     (5.178, 5.178)
     """
-    theory, simulation = peaks(runs)["theory", quantity, impact], peaks(runs)[damping, quantity, impact]
+    theory, simulation = contact_pulses(runs)["theory", quantity, impact], contact_pulses(runs)[damping, quantity, impact]
     lowest = theory.lowest(step)
     least = 100.0 * (1.0 - simulation.value / lowest) if lowest > 0.0 else -math.inf
     return least, 100.0 * (1.0 - simulation.lowest(step) / theory.value)
 
 
 def grid_error(runs: Runs, step: float, quantity: str, damping: str, impact: int) -> float:
-    """Return the error [%] of peaks read off samples at whole multiples of `step` [s] from the start of each run; NaN without any."""
+    """Return the error of peaks sampled at multiples of `step` [s] from the start of each run [%]; NaN without samples in a contact."""
     theory, simulation = (grid_samples(runs, name, step, quantity, impact)[1] for name in ("theory", damping))
     return 100.0 * (1.0 - float(simulation.max()) / float(theory.max())) if len(theory) and len(simulation) else math.nan
 
 
 def grid_samples(runs: Runs, name: str, step: float, quantity: str, impact: int) -> tuple[Floats, Floats]:
-    """Return the samples in a contact at whole multiples of `step` [s] from the start of a run: times since first touch, and values."""
+    """Return the samples of a contact at multiples of `step` [s] from the start of a run: times since first touch [s], and values."""
     touch = float(runs.response(f"type1-{name}").impacts["time_s"][impact - 1])
-    peak = peaks(runs)[name, quantity, impact]
+    peak = contact_pulses(runs)[name, quantity, impact]
     times = np.arange(math.ceil(touch / step), math.floor((touch + peak.times[-1]) / step) + 1) * step - touch
     return times, np.interp(times, peak.times, peak.values)
 
 
-def gaps(runs: Runs, leaving: tuple[str, int] | None = None) -> Floats:
-    """Return how long the contacts with a printed compression error were above it [s]: in none of these times was a sample.
+def unsampled_gaps(runs: Runs, without: tuple[str, int] | None = None) -> Floats:
+    """Return the time that each contact spends above the compression implied by its printed error [s]: no sample lies in it.
 
     The peak of the theory is taken as exact. The first contact is the same with either damping, and counts once.
 
     Parameters
     ----------
     runs : Runs
-        The cases.
-    leaving : tuple of str and int, optional
-        A contact that is left out: its damping and impact.
+        The simulations.
+    without : tuple of str and int, optional
+        Contact to leave out, by damping and impact.
     """
-    left_out = ("constant", 1) if leaving == ("variable", 1) else leaving
+    left_out = ("constant", 1) if without == ("variable", 1) else without
     contacts = [contact for contact in CONTACTS if contact != left_out]
     instants = np.array([implied_instants(runs, "compression", *contact) for contact in contacts])
-    return np.asarray(np.nan_to_num(instants[:, 1] - instants[:, 0]))  # never above what is more than the peak
+    return np.asarray(np.nan_to_num(instants[:, 1] - instants[:, 0]))  # NaN, a level above the peak: no time above it
 
 
-def found_spacing(runs: Runs, leaving: tuple[str, int] | None = None) -> float:
-    """Return the upper bound, at 95 %, of the time between samples in contact [s], from the printed compressions.
+def spacing_bound(runs: Runs, without: tuple[str, int] | None = None) -> float:
+    """Return the upper 95 % confidence bound of the sample spacing in contact [s], from the printed compressions.
 
-    Of samples at a random phase, a gap round the peak is as likely to be of any length up to the time between them.
+    At a random phase the gap around the peak is uniformly distributed between zero and the spacing.
 
     Parameters
     ----------
     runs : Runs
-        The cases.
-    leaving : tuple of str and int, optional
-        A contact that is left out, so that its error can be tested: its damping and impact.
+        The simulations.
+    without : tuple of str and int, optional
+        Contact to leave out, by damping and impact, so that its error can be tested against the bound.
     """
-    free = gaps(runs, leaving)
-    return float(free.max() * _TAIL ** (-1.0 / len(free)))
+    gaps = unsampled_gaps(runs, without)
+    return float(gaps.max() * _TAIL ** (-1.0 / len(gaps)))
 
 
 def output_step() -> float:
-    """Return the output step that the paper prints [s]."""
+    """Return the printed output step [s]: duration over number of steps."""
     return printed("run.duration").value / printed("run.steps").value
 
 
-def sampling(runs: Runs) -> Section:
+def sampling_section(runs: Runs) -> ReportSection:
     """Return the section on the scatter of Table 2.
 
     Parameters
     ----------
     runs : Runs
-        The cases.
+        The simulations.
     """
     instants = _instants(runs)
-    return Section(
+    return ReportSection(
         title="Where the scatter of Table 2 comes from",
-        words=_words(runs),
+        words=_introduction(runs),
         tables=(
             _errors_table(runs),
-            Table(
+            TextTable(
                 ("contact", "by the compression [µs]", "by the force [µs]", "apart at least [µs]"),
                 tuple((f"{damping} damping, impact {impact}", *one.cells) for (damping, impact), one in instants.items()),
                 "When after first touch the printed errors were read, with the exact peaks of the theory",
@@ -194,42 +193,42 @@ def sampling(runs: Runs) -> Section:
     )
 
 
-class Instant(NamedTuple):
-    """How far apart the instants lie that the two errors of a contact tell [s], NaN where one is of no instant; and its cells."""
+class ImpliedInstants(NamedTuple):
+    """Least distance of the instants implied by both errors of a contact [s], NaN if one implies none; and the cells of its row."""
 
-    apart: float
+    distance: float
     cells: tuple[str, ...]
 
 
-def _instants(runs: Runs) -> dict[tuple[str, int], Instant]:
-    """Return when each contact was read; of an error that implies more than the peak there is no instant."""
+def _instants(runs: Runs) -> dict[tuple[str, int], ImpliedInstants]:
+    """Return the instants at which each contact was sampled; an error that implies more than the peak has none."""
     found = {}
     for contact in CONTACTS:
         both = [implied_instants(runs, quantity, *contact) for quantity in QUANTITIES]
-        apart = min(abs(one - other) for one in both[0] for other in both[1])
+        distance = min(abs(one - other) for one in both[0] for other in both[1])
         told = [MISSING if math.isnan(early) else f"{1e6 * early:.1f} or {1e6 * late:.1f}" for early, late in both]
-        found[contact] = Instant(apart, (*told, fixed(1e6 * apart, 1)))
+        found[contact] = ImpliedInstants(distance, (*told, fixed(1e6 * distance, 1)))
     return found
 
 
-def _words(runs: Runs) -> tuple[str, ...]:
-    step, spacing, free = output_step(), found_spacing(runs), gaps(runs)
+def _introduction(runs: Runs) -> tuple[str, ...]:
+    step, spacing, gaps = output_step(), spacing_bound(runs), unsampled_gaps(runs)
     durations = runs.response("type1-theory").impacts["duration_s"]
-    chance = float(free.max() / step) ** len(free)
+    chance = float(gaps.max() / step) ** len(gaps)
     return (
         f"The simulation had one output every {1e3 * step:.2f} ms, and a contact lasts {1e3 * durations.min():.2f} to "
         f"{1e3 * durations.max():.2f} ms. A peak read off samples is too low, by as much as the samples miss it. The first table sets "
         "the errors of exact peaks beside those that can be read off samples of the theory and of the simulation, and beside those "
         "printed [%].",
         f"Outputs every {1e3 * step:.2f} ms do not give the printed errors. If they were read off samples, these left no more "
-        f"than {1e6 * free.max():.0f} µs free round the deepest point, in {len(free)} contacts; at a random phase the chance of "
-        f"that is {digits(chance, 1)}. With equal steps at a random phase the likeliest step in contact is {1e6 * free.max():.0f} µs, and "
+        f"than {1e6 * gaps.max():.0f} µs free round the deepest point, in {len(gaps)} contacts; at a random phase the chance of "
+        f"that is {digits(chance, 1)}. With equal steps at a random phase the likeliest step in contact is {1e6 * gaps.max():.0f} µs, and "
         f"at 95 % it is at most {1e6 * spacing:.0f} µs.",
     )
 
 
-def _errors_table(runs: Runs) -> Table:
-    step, spacing, cells = output_step(), found_spacing(runs), []
+def _errors_table(runs: Runs) -> TextTable:
+    step, spacing, cells = output_step(), spacing_bound(runs), []
     for quantity, damping, impact in _ERRORS:
         which = (quantity, damping, impact)
         (least, most), (low, high) = (error_range(runs, size, *which) for size in (step, spacing))
@@ -251,14 +250,14 @@ def _errors_table(runs: Runs) -> Table:
         f"any phase, {1e6 * spacing:.0f} µs",
         "printed",
     )
-    return Table(headers, tuple(cells), "The errors of Table 2")
+    return TextTable(headers, tuple(cells), "The errors of Table 2")
 
 
-def _conclusion(runs: Runs, instants: tuple[Instant, ...]) -> tuple[str, ...]:
-    step, spacing, theory = output_step(), found_spacing(runs), peaks(runs)["theory", "force", 1]
-    inside = sum(Account("", *error_range(runs, spacing, *which)).holds(table2_error(*which)) for which in _ERRORS)
+def _conclusion(runs: Runs, instants: tuple[ImpliedInstants, ...]) -> tuple[str, ...]:
+    step, spacing, theory = output_step(), spacing_bound(runs), contact_pulses(runs)["theory", "force", 1]
+    inside = sum(Explanation("", *error_range(runs, spacing, *which)).holds(table2_error(*which)) for which in _ERRORS)
     implied = printed("type1.max_force").value / (1.0 - 0.01 * printed("table2.force.constant.1").value)
-    apart = [one.apart for one in instants if not math.isnan(one.apart)]
+    distances = [one.distance for one in instants if not math.isnan(one.distance)]
     return (
         f"{inside} of {len(_ERRORS)} printed errors lie within the range of samples {1e6 * spacing:.0f} µs apart, which was found from the "
         "compressions; in the verdicts of Table 2 each compression is held against the spacing that the other contacts tell. The ranges "
@@ -266,9 +265,9 @@ def _conclusion(runs: Runs, instants: tuple[Instant, ...]) -> tuple[str, ...]:
         f"If so, the theory was sampled too, but more finely: the largest force printed, {printed('type1.max_force').text} N, and its "
         f"printed error imply a peak of {implied:.3f} N, {100.0 * (1.0 - implied / theory.value):.3f} % below the exact "
         f"{theory.value:.3f} N. Where a printed force error is less than the exact one, it is the peak of the theory that was missed.",
-        f"Compression and force are largest at different times. In {len(apart)} of {len(instants)} contacts both printed errors are those "
-        f"of an instant, and the two lie {1e6 * min(apart):.1f} to {1e6 * max(apart):.1f} µs apart; with so few contacts, and two "
-        "instants to choose from for each error, that is no evidence that both were read at one time.",
+        f"Compression and force are largest at different times. In {len(distances)} of {len(instants)} contacts both printed errors are "
+        f"those of an instant, and the two lie {1e6 * min(distances):.1f} to {1e6 * max(distances):.1f} µs apart; with so few contacts, "
+        "and two instants to choose from for each error, that is no evidence that both were read at one time.",
         "Established: the printed errors of Table 2 are not those of exact peaks, as the errors in the text are; most are too large, "
         f"as missed peaks make them; and a plain output every {1e3 * step:.2f} ms would scatter them far more. A reading: that the "
         "solver's own steps, or further outputs at the contact, were drawn, so that there was a sample near each peak.",
@@ -276,38 +275,38 @@ def _conclusion(runs: Runs, instants: tuple[Instant, ...]) -> tuple[str, ...]:
 
 
 def implied_instants(runs: Runs, quantity: str, damping: str, impact: int) -> tuple[float, float]:
-    """Return when after first touch the simulation passes the value that a printed error implies, on the way up and down [s].
+    """Return the times after first touch at which the simulation passes the value of a printed error, rising and falling [s].
 
-    NaN if it implies more than the peak.
+    NaN if the error implies more than the peak.
     """
-    return peaks(runs)[damping, quantity, impact].instants(_level(runs, quantity, damping, impact))
+    return contact_pulses(runs)[damping, quantity, impact].instants(_implied_peak(runs, quantity, damping, impact))
 
 
-def table2_error(quantity: str, damping: str, impact: int) -> Printed:
-    """Return an error that Table 2 prints [%]."""
+def table2_error(quantity: str, damping: str, impact: int) -> PrintedValue:
+    """Return a printed error of Table 2 [%]."""
     return printed(f"table2.{quantity}.{damping}.{impact}")
 
 
-def _level(runs: Runs, quantity: str, damping: str, impact: int) -> float:
-    """Return what was read off the simulation if the peak of the theory is exact."""
+def _implied_peak(runs: Runs, quantity: str, damping: str, impact: int) -> float:
+    """Return the sampled peak of the simulation that a printed error implies, for an exact peak of the theory."""
     error = table2_error(quantity, damping, impact).value
-    return peaks(runs)["theory", quantity, impact].value * (1.0 - 0.01 * error)
+    return contact_pulses(runs)["theory", quantity, impact].value * (1.0 - 0.01 * error)
 
 
-def _peak(times: Floats, values: Floats, at: float, largest: float) -> Peak:
-    """Return a peak with its top put in where it was located."""
+def _contact_pulse(times: Floats, values: Floats, at: float, largest: float) -> ContactPulse:
+    """Return a pulse with its located peak inserted among the samples."""
     top = int(np.searchsorted(times, at))
     times, values = np.insert(times, top, at), np.insert(values, top, largest)
-    # closer together towards the top, where the width goes as the root of what is missing
+    # levels are quadratically denser towards the peak, where the width grows as the root of the distance from it
     levels = largest * (1.0 - np.linspace(0.0, 1.0, _LEVELS) ** 2)
     before, after = _crossings(times, values, top, levels)
-    return Peak(times, values, top, np.maximum.accumulate(after - before), levels)
+    return ContactPulse(times, values, top, np.maximum.accumulate(after - before), levels)
 
 
 def _crossings(times: Floats, values: Floats, top: int, levels: Floats) -> tuple[Floats, Floats]:
-    """Return when levels are first reached and last left.
+    """Return the times at which levels are first reached and last left.
 
-    The force of IMPACT may rise a little once more before release, when its damping fades out.
+    Running maxima make both flanks monotonic: the force of IMPACT may rise again slightly before separation, as its damping fades out.
     """
     up, down = np.maximum.accumulate(values[: top + 1]), np.maximum.accumulate(values[top:][::-1])
     return np.interp(levels, up, times[: top + 1]), np.interp(levels, down, times[top:][::-1])

@@ -1,1 +1,1 @@
-"""What all reports are made with: the style of figures, pages, tables for the terminal, progress."""
+"""The common kit of all reports: figure style and layout, page templates, terminal tables and progress bars."""

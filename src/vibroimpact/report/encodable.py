@@ -1,4 +1,4 @@
-"""Words for a terminal or a file that can't show every letter: readable stand-ins for those that it lacks."""
+"""Transliteration of text to a limited character encoding, for terminals and files."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ _PLAIN_RAISED = str.maketrans(f"⁻⁺·{_SUPERSCRIPTS}", "-+.0123456789")
 
 _TIMES_TEN = re.compile(r"(?<=\d)·10([⁻⁺]?[⁰¹²³⁴⁵⁶⁷⁸⁹]+)")
 
-_STAND_INS = {
+_REPLACEMENTS = {
     "\u00b5": "u",  # micro
     "\u03bc": "u",
     "\u03b5": "e",
@@ -55,17 +55,17 @@ _GREEK = re.compile(r"GREEK (SMALL|CAPITAL) LETTER (\w+)$")
 
 
 def encodable(words: str, encoding: str) -> str:
-    """Return words in letters that an encoding has: as they are where it has them all, else with stand-ins that can be read.
+    """Return a text with characters that an encoding lacks replaced by readable ones.
 
-    Powers and powers of ten are written as in a program, Greek letters by their names, accents are left away; a letter that
-    nothing stands for is given by its number.
+    Powers and powers of ten are written as in a program, Greek letters by name, accents are dropped; any other character becomes its
+    code point as an escape.
 
     Parameters
     ----------
     words : str
-        What is to be shown.
+        The text.
     encoding : str
-        Name of the encoding; one that is not known counts as ASCII.
+        Name of the encoding; an unknown one is treated as ASCII.
 
     Examples
     --------
@@ -82,12 +82,12 @@ def encodable(words: str, encoding: str) -> str:
         return encodable(words, "ascii")
     else:
         return words
-    words = _TIMES_TEN.sub(lambda found: found[0] if _has(encoding, found[0]) else f"e{found[1].translate(_PLAIN_RAISED)}", words)
-    words = _RAISED.sub(lambda found: found[0] if _has(encoding, found[0]) else f"^{found[0].translate(_PLAIN_RAISED)}", words)
-    return "".join(letter if _has(encoding, letter) else _stand_in(letter) for letter in words)
+    words = _TIMES_TEN.sub(lambda found: found[0] if _can_encode(encoding, found[0]) else f"e{found[1].translate(_PLAIN_RAISED)}", words)
+    words = _RAISED.sub(lambda found: found[0] if _can_encode(encoding, found[0]) else f"^{found[0].translate(_PLAIN_RAISED)}", words)
+    return "".join(letter if _can_encode(encoding, letter) else _replacement(letter) for letter in words)
 
 
-def _has(encoding: str, words: str) -> bool:
+def _can_encode(encoding: str, words: str) -> bool:
     try:
         words.encode(encoding)
     except UnicodeEncodeError:
@@ -95,13 +95,13 @@ def _has(encoding: str, words: str) -> bool:
     return True
 
 
-def _stand_in(letter: str) -> str:
-    """Return what stands for a letter that an encoding lacks, in letters that every encoding has."""
-    if letter in _STAND_INS:
-        return _STAND_INS[letter]
+def _replacement(letter: str) -> str:
+    """Return the ASCII replacement of a character."""
+    if letter in _REPLACEMENTS:
+        return _REPLACEMENTS[letter]
     if greek := _GREEK.match(unicodedata.name(letter, "")):
         return greek[2].lower() if greek[1] == "SMALL" else greek[2].capitalize()
     bare = "".join(part for part in unicodedata.normalize("NFKD", letter) if not unicodedata.combining(part))
-    if bare and _has("ascii", bare):
+    if bare and _can_encode("ascii", bare):
         return bare
     return letter.encode("ascii", "backslashreplace").decode("ascii")

@@ -1,4 +1,4 @@
-"""Figures written as files: PNG for everything, SVG for pages."""
+"""Figures rendered as PNG and as SVG, and written as files."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def save_figures(figures: Mapping[str, Figure], directory: Path) -> dict[str, by
     Returns
     -------
     dict of str to bytes
-        The SVG of each figure, so that a page can hold it without drawing it again.
+        The SVG of each figure, to embed in a page without rendering it again.
     """
     pictures = {}
     for name, figure in figures.items():
@@ -34,7 +34,7 @@ def save_figures(figures: Mapping[str, Figure], directory: Path) -> dict[str, by
 
 
 def render_png(figure: Figure) -> bytes:
-    """Return a figure as PNG of 150 dots an inch."""
+    """Return a figure as PNG at 150 dots per inch."""
     with style():
         figure.set_dpi(_DPI)
         canvas = FigureCanvasAgg(figure)
@@ -46,7 +46,7 @@ def render_png(figure: Figure) -> bytes:
 
 
 def render_svg(figure: Figure) -> bytes:
-    """Return a figure as SVG, text as outlines."""
+    """Return a figure as SVG with text as outlines, reproducible byte for byte."""
     with style():
         file = BytesIO()
         FigureCanvasSVG(figure).print_svg(file, metadata={"Date": None})  # type: ignore[no-untyped-call]

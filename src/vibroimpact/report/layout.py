@@ -1,4 +1,4 @@
-"""Where axes go on a figure, in inches: all figures share one grid, and none is searched for when it is drawn."""
+"""Figure layout on a common grid in inches; fixed positions avoid the cost of automatic layout."""
 
 from __future__ import annotations
 
@@ -10,24 +10,24 @@ WIDTH = 8.0
 """Width of every figure [in]."""
 
 _LEFT, _RIGHT, _BETWEEN = 0.8, 7.8, 0.46
-"""Edges of the axes, and the room between two side by side, where tick labels go [in]."""
+"""Left and right edges of the axes, and the gap between neighbouring axes for tick labels [in]."""
 
 _LABEL = 0.18
-"""Where the vertical axes have their labels, from the left edge [in]."""
+"""Distance of vertical axis labels from the left edge [in]."""
 
 
 def new_figure(height: float) -> Figure:
-    """Return a figure of common width and a height [in]."""
+    """Return a figure of common width and given height [in]."""
     return Figure(figsize=(WIDTH, height))
 
 
 def wide_axes(figure: Figure, bottom: float, height: float) -> Axes:
-    """Return axes across the figure, `bottom` above its lower edge [in]."""
+    """Return axes over the full width, `bottom` above the lower edge of the figure [in]."""
     return row_of_axes(figure, 1, bottom, height)[0]
 
 
 def row_of_axes(figure: Figure, count: int, bottom: float, height: float) -> list[Axes]:
-    """Return axes side by side, `bottom` above the figure's lower edge [in]."""
+    """Return axes in a row, `bottom` above the lower edge of the figure [in]."""
     total = figure.get_figheight()
     width = (_RIGHT - _LEFT - (count - 1) * _BETWEEN) / count
     lefts = [_LEFT + number * (width + _BETWEEN) for number in range(count)]
@@ -35,7 +35,7 @@ def row_of_axes(figure: Figure, count: int, bottom: float, height: float) -> lis
 
 
 def label_vertical(axes: Axes, label: str) -> None:
-    """Label the vertical axis at the place that all figures have for it."""
+    """Label the vertical axis, at the position common to all figures."""
     axes.set_ylabel(label)
     figure = axes.get_figure(root=True)
     assert figure is not None
@@ -43,5 +43,5 @@ def label_vertical(axes: Axes, label: str) -> None:
 
 
 def heading(figure: Figure, text: str, bottom: float) -> None:
-    """Write a heading, flush with the axes, over a row of axes."""
+    """Write a heading over a row of axes, aligned with their left edge."""
     figure.text(_LEFT / WIDTH, bottom / figure.get_figheight(), text, fontsize=9.5, va="bottom")

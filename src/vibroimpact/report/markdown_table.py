@@ -1,4 +1,4 @@
-"""A table in Markdown."""
+"""Tables in Markdown."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 
 
 def markdown_table(headings: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    """Return a table in Markdown; the words are Markdown themselves.
+    """Return a table in Markdown; headings and cells are inserted as Markdown, without escaping.
 
     Examples
     --------

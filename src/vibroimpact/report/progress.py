@@ -1,4 +1,4 @@
-"""Progress bars: one that shows itself only when work takes longer than a second, and one that counts what is done."""
+"""Progress bars: one for a fraction done, shown after a delay of a second, and one for a count of items."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, ProgressColumn, Task, TextColumn, TimeRemainingColumn
 from rich.text import Text
 
-_PATIENCE = 1.0  # seconds
+_DELAY = 1.0  # seconds
 
 
 @contextmanager
 def patient_progress(what: str, console: Console) -> Iterator[Callable[[float], None]]:
-    """Give a function that is told the fraction done, in [0, 1]; silent for the first second and off a terminal."""
+    """Yield a callback for the fraction done, in [0, 1]; the bar appears after one second, and only on a terminal."""
     bar = Progress(
         TextColumn("{task.description}"),
         BarColumn(),
@@ -27,24 +27,24 @@ def patient_progress(what: str, console: Console) -> Iterator[Callable[[float], 
     task = bar.add_task(what, total=1.0)
     begin, shown = time.monotonic(), False
 
-    def tell(fraction: float) -> None:
+    def update(fraction: float) -> None:
         nonlocal shown
-        if not shown and console.is_terminal and time.monotonic() - begin > _PATIENCE:
+        if not shown and console.is_terminal and time.monotonic() - begin > _DELAY:
             shown = True
             bar.start()
         if shown:
             bar.update(task, completed=fraction)
 
     try:
-        yield tell
+        yield update
     finally:
-        if shown:  # one that was never started would leave an empty line
+        if shown:  # stopping a bar that was never started prints an empty line
             bar.stop()
 
 
 @contextmanager
 def counting_progress(what: str, console: Console) -> Iterator[Callable[[int, int], None]]:
-    """Give a function that is told how many are done and of how many; it shows their rate and the time left, on a terminal alone."""
+    """Yield a callback for the items done and their total; the bar shows rate and remaining time, and only on a terminal."""
     columns = (
         TextColumn("{task.description}"),
         BarColumn(),
@@ -55,18 +55,18 @@ def counting_progress(what: str, console: Console) -> Iterator[Callable[[int, in
     bar = Progress(*columns, console=console, transient=True, disable=not console.is_terminal, speed_estimate_period=60.0)
     task = None
 
-    def tell(done: int, total: int) -> None:
+    def update(done: int, total: int) -> None:
         nonlocal task
-        if task is None:  # what was done before does not count for the rate
+        if task is None:  # items of an earlier run must not count for the rate
             task = bar.add_task(what, total=total, completed=done)
         bar.update(task, completed=done)
 
     with bar:
-        yield tell
+        yield update
 
 
 class _Rate(ProgressColumn):
-    """How many a second."""
+    """Column with the items per second."""
 
     def render(self, task: Task) -> Text:
         return Text("" if task.speed is None else f"{task.speed:,.3g}/s" if task.speed < 100 else f"{task.speed:,.0f}/s")

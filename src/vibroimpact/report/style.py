@@ -1,4 +1,4 @@
-"""How all figures look: sizes, type, lines that differ in grey too."""
+"""The style of all figures: font sizes, colours, line styles that differ in greyscale too, and safe labels."""
 
 from __future__ import annotations
 
@@ -8,16 +8,18 @@ from typing import Any
 
 import matplotlib as mpl
 
+from vibroimpact.shown import shortened, visible
+
 ENLARGED = 5
-"""How many contacts are enlarged at most; more panels would be too narrow to read."""
+"""Most contacts shown enlarged; more panels would be too narrow to read."""
 
 INK = "#1b1b1b"
 ACCENT = "#0b4f8a"
 MARK = "#b3400e"
 CONTACT = "#e6e6e6"
-"""The main line, what is enlarged, marks, and the ground behind a contact."""
+"""Colours of the main line, of enlarged parts, of marks, and of the background of a contact."""
 
-# luminance falls from line to line, so that they differ in grey print; the dashes differ as well
+# colours of different luminance, and different dashes, keep the lines apart in greyscale print
 LOOPS: tuple[tuple[str, str | tuple[int, tuple[int, ...]]], ...] = (
     ("#00204d", "-"),
     ("#0072b2", (0, (6, 2))),
@@ -28,12 +30,12 @@ LOOPS: tuple[tuple[str, str | tuple[int, tuple[int, ...]]], ...] = (
     ("#c79000", (0, (4, 3))),
     ("#56a8d8", (0, (1, 1))),
 )
-"""Colour and dashes of the loops, in order."""
+"""Colours and dashes of the loops, in order."""
 
 MARKS = ("o", "s", "^", "D", "v")
-"""Marks of the first impacts, in order; as many as are enlarged at most."""
+"""Marks of the first `ENLARGED` impacts, in order."""
 
-# both luminance and hatch tell the bands apart; from the bottom of the stack to its top
+# distinct in luminance and hatch, from the bottom of the stack to its top
 BANDS: dict[str, tuple[str, str]] = {
     "contact_dissipated_J": ("#404040", ""),
     "plastic_work_J": ("#9c6b52", ".."),
@@ -46,7 +48,7 @@ BANDS: dict[str, tuple[str, str]] = {
     "potential_J": ("#d6e6f4", ""),
     "kinetic_J": ("#4a8cc7", "\\\\"),
 }
-"""Colour and hatch of each band of the energy ledger."""
+"""Colour and hatch of each band of the energy balance."""
 
 _SETTINGS: dict[Any, Any] = {
     "font.size": 9.0,
@@ -64,7 +66,7 @@ _SETTINGS: dict[Any, Any] = {
     "axes.grid": True,
     "axes.axisbelow": True,
     "axes.titlelocation": "left",
-    # a fixed place for titles: to search for one takes a third of the time of drawing
+    # automatic title placement takes a third of the drawing time
     "axes.titley": 1.0,
     "axes.formatter.limits": (-4, 5),
     "axes.formatter.useoffset": False,
@@ -82,27 +84,27 @@ _SETTINGS: dict[Any, Any] = {
     "hatch.linewidth": 0.5,
     "figure.facecolor": "white",
     "savefig.facecolor": "white",
-    # a line's points that move it by less than a fifth of a point do not show, and make files large
+    # points that move a line by less than a fifth of a typographic point are invisible, and enlarge the files
     "path.simplify": True,
     "path.simplify_threshold": 0.2,
-    # text as outlines looks the same on every machine, whichever fonts it has
+    # outlines look the same on every machine, whatever its fonts
     "svg.fonttype": "path",
-    # the same result gives the same file, byte for byte
+    # reproducible files, byte for byte
     "svg.hashsalt": "vibroimpact",
 }
 
 
-_OF_THE_PROCESS = ("backend", "backend_fallback", "interactive", "toolbar", "timezone")
-"""Settings that have nothing to do with how figures look; they stay as they are."""
+_PROCESS_SETTINGS = ("backend", "backend_fallback", "interactive", "toolbar", "timezone")
+"""Process-wide settings that do not affect the look of figures, and are left unchanged."""
 
 
 def style() -> AbstractContextManager[None]:
-    """Return a context in which figures have the report's look, whatever matplotlib is set to, and which sets that again at its end."""
-    return mpl.rc_context({**_foreign(), **_SETTINGS})
+    """Return a context manager that applies the report style over any user settings of matplotlib, and restores them on exit."""
+    return mpl.rc_context({**_overridden_defaults(), **_SETTINGS})
 
 
-def _foreign() -> dict[Any, Any]:
-    """Return the defaults of what somebody has set otherwise: text by LaTeX, fonts that a computer may not have, ..."""
+def _overridden_defaults() -> dict[Any, Any]:
+    """Return matplotlib's defaults for settings changed by the user, such as LaTeX text or fonts that may be missing."""
     have = dict(mpl.rcParams.items())
     return {
         name: value
@@ -113,4 +115,19 @@ def _foreign() -> dict[Any, Any]:
 
 @cache
 def _defaults() -> dict[Any, Any]:
-    return {name: value for name, value in mpl.rcParamsDefault.items() if name not in _OF_THE_PROCESS}
+    return {name: value for name, value in mpl.rcParamsDefault.items() if name not in _PROCESS_SETTINGS}
+
+
+def lettering(name: str, most: int = 60) -> str:
+    r"""Return a user-chosen name as a figure label: one line, shortened to `most` characters, with dollar signs escaped.
+
+    Matplotlib would take an unescaped dollar sign as the start of a formula, and a line break would displace the titles.
+
+    Examples
+    --------
+    >>> print(lettering(r"a$\frac{$b"))
+    a\$\frac{\$b
+    >>> print(lettering("left\nupper"), lettering("a" * 300, 10))
+    left\nupper aaaa ... a
+    """
+    return shortened(visible(name[: 10 * most]), most).replace("$", r"\$")

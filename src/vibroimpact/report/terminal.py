@@ -1,4 +1,4 @@
-r"""The console of the command line: what it prints has stand-ins for letters that the terminal lacks, and can't steer it."""
+"""The console of the command line: it transliterates text to the encoding of the terminal, and escapes control characters."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from vibroimpact.shown import visible
 
 
 class TerminalConsole(Console):
-    r"""A console whose texts get stand-ins for letters that the terminal lacks, and show control characters as escapes.
+    r"""A console that transliterates text to the encoding of the terminal, and shows control characters as escapes.
 
     Examples
     --------
@@ -25,9 +25,9 @@ class TerminalConsole(Console):
     """
 
     def render(self, renderable: RenderableType, options: ConsoleOptions | None = None) -> Iterator[Segment]:
-        """Yield what a renderable comes to."""
+        """Yield the segments of a renderable."""
         if isinstance(renderable, Text):
-            words = encodable(renderable.plain, self.encoding)  # before it is wrapped
+            words = encodable(renderable.plain, self.encoding)  # before wrapping, since the width may change
             if words != renderable.plain:
                 renderable = Text(words, renderable.style, justify=renderable.justify, overflow=renderable.overflow)
         for segment in super().render(renderable, options):

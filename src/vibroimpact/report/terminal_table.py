@@ -1,4 +1,4 @@
-"""A table for a terminal of any width: words are wrapped between words, numbers are never cut."""
+"""Tables for terminals of any width: text is wrapped between words, numbers are never truncated."""
 
 from __future__ import annotations
 
@@ -15,27 +15,27 @@ from rich.text import Text
 from vibroimpact.report.encodable import encodable
 
 _BETWEEN = 2
-"""Blanks between two columns."""
+"""Spaces between two columns."""
 
-_PHRASE, _COMFORT = 30, 24
-"""Letters of what may be wrapped word by word, and letters to a line that more than that needs; with less it is put below the row."""
+_WIDEST_PHRASE, _LEAST_LINE = 30, 24
+"""Widest text that may be wrapped to single words, and least line width of wider text; with less, the text goes below its row."""
 
 _NUMBER = re.compile(r"[-\u2212+]?\d+(\.\d*)?")
-_KEPT = "\u00a0"  # no break there
+_NO_BREAK = "\u00a0"  # no-break space
 
 
 @dataclass(frozen=True)
-class Column:
+class TerminalColumn:
     """A column of a `TerminalTable`.
 
     Parameters
     ----------
     heading : str
-        Wrapped between words; what belongs together is joined by no-break spaces.
+        Heading, wrapped between words except at no-break spaces.
     cells : sequence of str
-        A cell a row.
+        One cell per row.
     words : bool
-        Words are flush left and may be wrapped; numbers are aligned at their decimal points and are not.
+        Text, left-aligned and wrapped; otherwise numbers, aligned at the decimal point and never wrapped.
     """
 
     heading: str
@@ -43,54 +43,54 @@ class Column:
     words: bool = False
 
 
-def numbers(heading: str, unit: str, cells: Sequence[str]) -> Column:
-    """Return a column of numbers with its unit in brackets below the heading."""
-    return Column("\n".join(part for part in (heading, f"[{unit.replace(' ', _KEPT)}]" if unit else "") if part), cells)
+def numbers(heading: str, unit: str, cells: Sequence[str]) -> TerminalColumn:
+    """Return a column of numbers with the unit in brackets below the heading."""
+    return TerminalColumn("\n".join(part for part in (heading, f"[{unit.replace(' ', _NO_BREAK)}]" if unit else "") if part), cells)
 
 
 @dataclass(frozen=True)
 class TerminalTable:
-    """A table that fits a terminal: the first column names the rows.
+    """A table that fits the width of a terminal.
 
-    Where it is too wide, first words are wrapped, then long words are put below their row, and at last the numbers go on in a second
-    block of rows below the first.
+    A table that is too wide is reduced in steps: text columns are wrapped, then moved below their row, and finally the number columns
+    are split into further blocks of rows.
 
     Parameters
     ----------
-    columns : sequence of Column
-        The first names the rows and stands in every block.
+    columns : sequence of TerminalColumn
+        The first column names the rows, and is repeated in every block.
     bold : collection of int
-        Rows that stand out.
+        Indices of bold rows.
     indent : int
-        Blanks before every line.
+        Spaces before every line.
     """
 
-    columns: Sequence[Column]
+    columns: Sequence[TerminalColumn]
     bold: Sequence[int] = ()
     indent: int = 1
 
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
-        """Yield the lines, in letters that the terminal has."""
+        """Yield the lines, transliterated to the encoding of the terminal."""
 
-        def shown(words: str) -> str:  # what must not be parted stays so until lines are made
-            return _KEPT.join(encodable(part, options.encoding) for part in words.split(_KEPT))
+        def shown(words: str) -> str:  # no-break spaces are kept until the lines are wrapped
+            return _NO_BREAK.join(encodable(part, options.encoding) for part in words.split(_NO_BREAK))
 
-        columns = [Column(shown(one.heading), [shown(cell) for cell in one.cells], one.words) for one in self.columns]
+        columns = [TerminalColumn(shown(one.heading), [shown(cell) for cell in one.cells], one.words) for one in self.columns]
         for line, style in self._lines(columns, options.max_width):
-            yield Text(line.replace(_KEPT, " "), style=style)
+            yield Text(line.replace(_NO_BREAK, " "), style=style)
 
     @property
     def width(self) -> int:
-        """The width that it likes: no words wrapped, all columns beside each other."""
-        return self.indent + sum(_width(one) for one in self.columns) + _BETWEEN * (len(self.columns) - 1)
+        """Natural width: all columns side by side, no text wrapped."""
+        return self.indent + sum(_natural_width(one) for one in self.columns) + _BETWEEN * (len(self.columns) - 1)
 
     def __rich_measure__(self, console: Console, options: ConsoleOptions) -> Measurement:
-        """Return the narrowest and the widest that it may be."""
+        """Return the minimum and maximum width."""
         return Measurement(min(self.width, options.max_width), self.width)
 
-    def _lines(self, columns: list[Column], width: int) -> Iterable[tuple[str, str]]:
+    def _lines(self, columns: list[TerminalColumn], width: int) -> Iterable[tuple[str, str]]:
         """Yield each line with its style."""
-        blocks, below = _arranged(columns, width - self.indent)
+        blocks, below = _arrange(columns, width - self.indent)
         for number, block in enumerate(blocks):
             if number:
                 yield "", ""
@@ -98,24 +98,25 @@ class TerminalTable:
                 yield f"{' ' * self.indent}{line}".rstrip(), style
 
 
-def with_gap(columns: Sequence[Column], row: int) -> list[Column]:
-    """Return columns with a line before a row that says that others are left out."""
+def with_gap(columns: Sequence[TerminalColumn], row: int) -> list[TerminalColumn]:
+    """Return columns with an ellipsis row inserted before a row, to mark omitted rows."""
     return [
-        Column(one.heading, [*one.cells[:row], "" if place else "...", *one.cells[row:]], one.words) for place, one in enumerate(columns)
+        TerminalColumn(one.heading, [*one.cells[:row], "" if place else "...", *one.cells[row:]], one.words)
+        for place, one in enumerate(columns)
     ]
 
 
 def facts(rows: Iterable[tuple[str, ...]], indent: int = 0) -> TerminalTable:
-    """Return a table of names and what is to be said of each, without headings."""
-    return TerminalTable([Column("", cells, words=True) for cells in zip(*rows, strict=True)], indent=indent)
+    """Return a table of facts, such as names and values, without headings."""
+    return TerminalTable([TerminalColumn("", cells, words=True) for cells in zip(*rows, strict=True)], indent=indent)
 
 
-def _arranged(columns: list[Column], width: int) -> tuple[list[list[tuple[Column, int]]], list[Column]]:
-    """Return blocks of columns with their widths, and the columns of words that go below the rows."""
+def _arrange(columns: list[TerminalColumn], width: int) -> tuple[list[list[tuple[TerminalColumn, int]]], list[TerminalColumn]]:
+    """Return blocks of columns with their widths, and the text columns that go below the rows."""
     key, rest = columns[0], list(columns[1:])
-    below: list[Column] = []
+    below: list[TerminalColumn] = []
     while True:
-        chosen = _fitted([key, *rest], width)
+        chosen = _fitting_widths([key, *rest], width)
         if chosen is not None:
             return [list(zip([key, *rest], chosen, strict=True))], below
         last = next((one for one in reversed(rest) if one.words), None)
@@ -123,24 +124,24 @@ def _arranged(columns: list[Column], width: int) -> tuple[list[list[tuple[Column
             break
         rest.remove(last)
         below.insert(0, last)
-    # numbers alone are too wide
-    first = (key, max(min(_width(key), width // 3), min(_least(key), width // 2)))
-    blocks: list[list[tuple[Column, int]]] = [[first]]
+    # the numbers alone are too wide: split them into blocks that repeat the first column
+    first = (key, max(min(_natural_width(key), width // 3), min(_least_width(key), width // 2)))
+    blocks: list[list[tuple[TerminalColumn, int]]] = [[first]]
     for one in rest:
-        if len(blocks[-1]) > 1 and sum(taken + _BETWEEN for _, taken in blocks[-1]) + _width(one) > width:
+        if len(blocks[-1]) > 1 and sum(taken + _BETWEEN for _, taken in blocks[-1]) + _natural_width(one) > width:
             blocks.append([first])
-        blocks[-1].append((one, _width(one)))
+        blocks[-1].append((one, _natural_width(one)))
     return blocks, below
 
 
-def _fitted(columns: list[Column], width: int) -> list[int] | None:
-    """Return widths with which columns fit beside each other, words wrapped as little as may be; None if they do not."""
-    widths, least = [_width(one) for one in columns], [_least(one) for one in columns]
+def _fitting_widths(columns: list[TerminalColumn], width: int) -> list[int] | None:
+    """Return column widths that fit side by side with the least wrapping; None if there are none."""
+    widths, least = [_natural_width(one) for one in columns], [_least_width(one) for one in columns]
     for number, one in enumerate(columns):
         if one.words:
-            least[number] = min(least[number], width // 2)  # a longer name is broken
+            least[number] = min(least[number], width // 2)  # longer words are broken
         if number and one.words:
-            least[number] = least[number] if widths[number] <= _PHRASE else max(least[number], _COMFORT)
+            least[number] = least[number] if widths[number] <= _WIDEST_PHRASE else max(least[number], _LEAST_LINE)
     room = width - _BETWEEN * (len(columns) - 1)
     while sum(widths) > room:
         widest = max((number for number in range(len(columns)) if widths[number] > least[number]), key=lambda at: widths[at], default=None)
@@ -150,24 +151,24 @@ def _fitted(columns: list[Column], width: int) -> list[int] | None:
     return widths
 
 
-def _width(column: Column) -> int:
-    """Return the width that a column likes: of its cells on one line; and of its heading, which is wrapped to numbers but not to words."""
+def _natural_width(column: TerminalColumn) -> int:
+    """Return the natural width of a column: unwrapped cells, and a heading that is wrapped above numbers but not above text."""
     cells = max((cell_len(cell) for cell in _aligned(column)), default=0)
-    heading = max(map(cell_len, column.heading.split("\n"))) if column.words else _longest(column.heading)
+    heading = max(map(cell_len, column.heading.split("\n"))) if column.words else _longest_word(column.heading)
     return max(cells, heading)
 
 
-def _least(column: Column) -> int:
-    """Return the least width of a column: of its longest word, or of its longest number."""
-    return max(map(_longest, [column.heading, *column.cells]), default=0) if column.words else _width(column)
+def _least_width(column: TerminalColumn) -> int:
+    """Return the least width of a column: its longest word, or the natural width for numbers."""
+    return max(map(_longest_word, [column.heading, *column.cells]), default=0) if column.words else _natural_width(column)
 
 
-def _longest(words: str) -> int:
+def _longest_word(words: str) -> int:
     return max((cell_len(word) for word in re.split("[ \n]", words)), default=0)
 
 
-def _aligned(column: Column) -> list[str]:
-    """Return the cells of numbers with blanks behind them that bring their decimal points below each other."""
+def _aligned(column: TerminalColumn) -> list[str]:
+    """Return the cells of numbers padded on the right, so that right alignment aligns their decimal points."""
     if column.words:
         return list(column.cells)
     found = [_NUMBER.match(cell) for cell in column.cells]
@@ -176,8 +177,8 @@ def _aligned(column: Column) -> list[str]:
     return [cell + " " * (most - after if match else 0) for cell, after, match in zip(column.cells, behind, found, strict=True)]
 
 
-def _block(block: list[tuple[Column, int]], below: list[Column], width: int, bold: set[int]) -> Iterable[tuple[str, str]]:
-    """Yield the lines of a block: its headings, and its rows with what goes below each."""
+def _block(block: list[tuple[TerminalColumn, int]], below: list[TerminalColumn], width: int, bold: set[int]) -> Iterable[tuple[str, str]]:
+    """Yield the lines of a block: headings, and rows with the text below each."""
     if any(one.heading for one, _ in block):
         wrapped = [_wrapped(one.heading, taken) for one, taken in block]
         high = max(map(len, wrapped))
@@ -198,7 +199,7 @@ def _block(block: list[tuple[Column, int]], below: list[Column], width: int, bol
                 yield from ((f"    {line}", style) for line in _wrapped(said, width - 4))
 
 
-def _row(block: list[tuple[Column, int]], cells: list[str]) -> str:
+def _row(block: list[tuple[TerminalColumn, int]], cells: list[str]) -> str:
     """Return one line of a block."""
     filled = []
     for (one, taken), cell in zip(block, cells, strict=True):
@@ -208,6 +209,6 @@ def _row(block: list[tuple[Column, int]], cells: list[str]) -> str:
 
 
 def _wrapped(words: str, width: int) -> list[str]:
-    """Return words in lines of a width, broken between words; a word that is longer than a line is broken within."""
+    """Return a text wrapped to lines of a width; words longer than a line are broken."""
     lines = [line for part in words.split("\n") for line in textwrap.wrap(part, max(width, 1), break_on_hyphens=False)]
     return lines or [""]

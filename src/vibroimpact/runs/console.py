@@ -32,7 +32,7 @@ from vibroimpact.dynamics.problem import STANDARD_GRAVITY
 from vibroimpact.dynamics.restitution import achieved_restitution, law_achieving
 from vibroimpact.errors import InputError
 from vibroimpact.materials import RIGID, Material
-from vibroimpact.report.terminal_table import Column, TerminalTable, facts, numbers, with_gap
+from vibroimpact.report.terminal_table import TerminalColumn, TerminalTable, facts, numbers, with_gap
 from vibroimpact.results.result import Result
 from vibroimpact.runs.deformation import deformation_rows, treatment_sentence
 from vibroimpact.runs.tables import PUT_IN, SUM, column, ledger_table, shown_columns
@@ -84,9 +84,9 @@ def energy_table(result: Result) -> RenderableType:
     shown = [row for row in ledger if row.name != SUM and abs(result.energy.get(row.name, whole)) > 1e-12 * abs(whole)]  # less is rounding
     names = [row.name.removesuffix("_J").replace("_", " ") if row.name != PUT_IN else "put in" for row in shown]
     columns = (
-        Column("energy at the end", names, words=True),
+        TerminalColumn("energy at the end", names, words=True),
         numbers("", unit, [row.energy for row in shown]),
-        Column("%", [row.part for row in shown]),
+        TerminalColumn("%", [row.part for row in shown]),
     )
     closure = Text(f" closure {result.energy['closure_relative']:.1e} of the energy put in", style="dim")
     return Group(TerminalTable(columns, bold=(len(shown) - 1,)), closure)

@@ -10,8 +10,7 @@ from matplotlib.patheffects import withStroke
 from scipy.ndimage import maximum_filter
 
 from vibroimpact.report.layout import WIDTH, new_figure
-from vibroimpact.report.lettering import lettering
-from vibroimpact.report.style import INK
+from vibroimpact.report.style import INK, lettering
 from vibroimpact.results.deflection import Deflection
 from vibroimpact.results.result import Result
 from vibroimpact.units.display import Multiple, digits, multiple, text

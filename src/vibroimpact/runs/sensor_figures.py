@@ -9,8 +9,7 @@ from matplotlib.ticker import MaxNLocator
 
 from vibroimpact.files.plain_names import plain_names
 from vibroimpact.report.layout import label_vertical, new_figure, row_of_axes, wide_axes
-from vibroimpact.report.lettering import lettering
-from vibroimpact.report.style import ACCENT, INK, MARK
+from vibroimpact.report.style import ACCENT, INK, MARK, lettering
 from vibroimpact.results.result import Result
 from vibroimpact.runs.motion_figures import plate_span
 from vibroimpact.runs.spectrum import amplitude_spectrum, first_response

@@ -1,1 +1,1 @@
-"""The figures of the paper drawn anew, and the report that sets what it prints beside what is computed."""
+"""The report of the reproduction: figures, Markdown and HTML pages, and the folder that holds them."""

@@ -1,4 +1,4 @@
-"""The folder of a reproduction: part by part, each whole or not at all, and a report of the parts that are there."""
+"""The folder of a reproduction: parts, each written atomically, and the report on those available."""
 
 from __future__ import annotations
 
@@ -17,12 +17,11 @@ from vibroimpact.files.atomic_write import write_into
 from vibroimpact.files.check_sums import read_sealed, sealed
 from vibroimpact.files.recover import recover
 from vibroimpact.paper.report.markdown import FIGURES
-from vibroimpact.paper.report.outline import PARTS, Part, find_parts
+from vibroimpact.paper.report.outline import PARTS, ReportPart, find_parts, render_part
 from vibroimpact.paper.report.page import report_html, report_text
-from vibroimpact.paper.report.rendered_part import make_part
 from vibroimpact.paper.runs import Runs
 from vibroimpact.report.figure_files import save_figures
-from vibroimpact.report.write_files import write_beside
+from vibroimpact.report.page import replace_report_files
 from vibroimpact.results.folder import SUMMARY, new_folder
 from vibroimpact.results.tables import write_csv
 
@@ -39,20 +38,20 @@ def reproduce_paper(
 ) -> Path:
     """Reproduce the paper, or parts of it, in a folder: report, figures and a table of all values.
 
-    Each part appears whole or not at all, and stays if the run is interrupted.
+    Each part is written atomically, and is kept if the run is interrupted.
 
     Parameters
     ----------
     directory : path
-        The folder to make, or one that was made before: its parts stay, unless they are made anew.
+        The folder to create, or that of an earlier reproduction, whose other parts are kept.
     only : iterable of str, optional
-        Names of parts, such as "table2" and "fig4"; by default all that the folder does not have yet.
+        Names of parts, such as "table2" and "fig4"; by default all parts that the folder lacks.
     force : bool, default False
-        Replace a folder that is there, with all its parts.
+        Replace an existing folder and all its parts.
     progress : callable, optional
-        Is told the fraction done, in [0, 1].
+        Called with the fraction done, in [0, 1].
     tell : callable, optional
-        Is told, in words, what takes long.
+        Called with a message before a long computation.
 
     Returns
     -------
@@ -62,19 +61,19 @@ def reproduce_paper(
     Raises
     ------
     InputError
-        If there is no part of a name, something else is there already, or it can't be written to.
+        If a part is unknown, none is missing, or the folder holds something else or can't be written to.
     """
     folder = Path(directory)
     recover(folder)
-    there = is_reproduction(folder) and not force
+    exists = is_reproduction(folder) and not force
     if isinstance(only, str):
         only = [only]
     elif only is None:
-        only = missing_parts(folder) if there else list(PARTS)
+        only = missing_parts(folder) if exists else list(PARTS)
         if not only:
             raise InputError(f"{folder}: all parts are there already; make some of them anew with --only, or all with --force")
     parts = find_parts(only)
-    if not there:
+    if not exists:
         with new_folder(folder, force=force) as working:
             summary = {"name": "the paper, reproduced", "version": __version__, "reproduction": True}
             (working / SUMMARY).write_text(json.dumps(summary) + "\n", encoding="utf-8")
@@ -85,7 +84,7 @@ def reproduce_paper(
                 progress(done / len(parts))
             _write_part(part, runs, folder)
     except BaseException:
-        with suppress(OSError, InputError):  # what stopped the run is what is to be told
+        with suppress(OSError, InputError):  # the error that stopped the run must not be masked
             write_reproduction_report(folder)
         raise
     write_reproduction_report(folder)
@@ -95,12 +94,12 @@ def reproduce_paper(
 
 
 def missing_parts(directory: str | PathLike[str]) -> list[str]:
-    """Return the names of the parts that a folder does not have yet, or has of another version of this package."""
+    """Return the names of the parts that a folder lacks, or that another version of this package wrote."""
     return [name for name in PARTS if _version(_file(Path(directory), name)) != __version__]
 
 
 def _version(part: Path) -> str | None:
-    """Return by which version a part was made; None if there is none, or it is damaged."""
+    """Return the version of the package that wrote a part; None if the part is missing or damaged."""
     try:
         return str(read_sealed(part)["version"])
     except (OSError, ValueError, KeyError, TypeError):
@@ -108,7 +107,7 @@ def _version(part: Path) -> str | None:
 
 
 def write_reproduction_report(folder: Path) -> None:
-    """Write the report and the table of values from the parts that a folder has.
+    """Write the report and the table of values from the available parts of a folder.
 
     Raises
     ------
@@ -119,7 +118,7 @@ def write_reproduction_report(folder: Path) -> None:
     for name, part in parts.items():
         for picture in re.findall(rf"\]\(({FIGURES}/[^)]+)\.png\)", part["text"]):
             if not (folder / f"{picture}.svg").is_file():
-                raise InputError(f"{folder / picture}.svg: the figure is missing; {_anew(folder, name)}")
+                raise InputError(f"{folder / picture}.svg: the figure is missing; {_repair_hint(folder, name)}")
     rows = [row for part in parts.values() for row in part["rows"]]
     text = report_text(parts)
 
@@ -129,16 +128,16 @@ def write_reproduction_report(folder: Path) -> None:
         if rows:
             write_csv(rows, list(rows[0]), working / "values.csv")
 
-    write_beside(folder, write)
+    replace_report_files(folder, write)
 
 
 def read_parts(folder: Path) -> dict[str, dict[str, Any]]:
-    """Return the parts that a folder has, by their names, in the order of the report.
+    """Return the available parts of a folder by name, in the order of the report.
 
     Raises
     ------
     InputError
-        If it is not the folder of a reproduction, or a part is damaged.
+        If the folder is not that of a reproduction, or a part is damaged.
     """
     if not is_reproduction(folder):
         raise InputError(f"{folder}: this is not the folder of a reproduction")
@@ -151,16 +150,17 @@ def read_parts(folder: Path) -> dict[str, dict[str, Any]]:
                 rows = [{**row, "verdict": str(row["verdict"])} for row in table["rows"]]
                 found[name] = {"title": str(table["title"]), "text": str(table["text"]), "rows": rows}
             except (OSError, ValueError, KeyError, TypeError):
-                raise InputError(f"{file}: the file is damaged; {_anew(folder, name)}") from None
+                raise InputError(f"{file}: the file is damaged; {_repair_hint(folder, name)}") from None
     return found
 
 
-def _anew(folder: Path, name: str) -> str:
+def _repair_hint(folder: Path, name: str) -> str:
+    """Return the command that writes a part again."""
     return f"make it anew: vibroimpact reproduce -o {shlex.quote(str(folder))} --only {name}"
 
 
 def is_reproduction(folder: Path) -> bool:
-    """Is it the folder of a reproduction?"""
+    """Return whether a folder is that of a reproduction."""
     try:
         return bool(json.loads((folder / SUMMARY).read_text(encoding="utf-8")).get("reproduction"))
     except (OSError, ValueError, AttributeError):
@@ -171,16 +171,16 @@ def _file(folder: Path, part: str) -> Path:
     return folder / _PARTS / f"{part}.json"
 
 
-def _write_part(part: Part, runs: Runs, folder: Path) -> None:
-    """Make a part, and put it in place once all of it is there."""
-    made = make_part(part, runs)
+def _write_part(part: ReportPart, runs: Runs, folder: Path) -> None:
+    """Compute a part and write its files atomically."""
+    rendered = render_part(part, runs)
 
     def write(working: Path) -> None:
         for name in (_PARTS, FIGURES):
             (working / name).mkdir()
-        if made.drawing is not None:
-            save_figures({part.name: made.drawing.figure}, working / FIGURES)
-        table = {"version": __version__, "title": made.title, "text": made.text, "rows": made.rows}
+        if rendered.drawing is not None:
+            save_figures({part.name: rendered.drawing.figure}, working / FIGURES)
+        table = {"version": __version__, "title": rendered.title, "text": rendered.text, "rows": rendered.rows}
         _file(working, part.name).write_text(sealed(table), encoding="utf-8")
 
     try:

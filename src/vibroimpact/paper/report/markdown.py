@@ -1,43 +1,42 @@
-"""Sections and figures of the reproduction as Markdown: one text for the report and for the documentation."""
+"""Sections and figures of the reproduction as Markdown, the common source of the report and the page of the documentation."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Sequence
 
-from vibroimpact.paper.printed import Printed
-from vibroimpact.paper.printed_and_computed import Row
+from vibroimpact.paper.printed import PrintedValue
 from vibroimpact.paper.report.drawing import Drawing
-from vibroimpact.paper.section import Section
+from vibroimpact.paper.section import ComparedValue, ReportSection
 from vibroimpact.report.markdown_table import markdown_table
 from vibroimpact.units.display import MISSING, digits
 
 FIGURES = "figures"
-"""The folder of the figures, beside the report."""
+"""Folder of the figures, next to the report."""
 
-_ROUNDING = 1e-7  # per cent: differences that are not the same on all machines
-_APART = "\u00a0"  # a space that does not break
+_ROUNDING = 1e-7  # per cent: smaller differences depend on the machine
+_NO_BREAK = "\u00a0"  # no-break space
 _UNITS = {"1": "", "m^2": "m²", "m/s^2": "m/s²", "kg/m^3": "kg/m³", "N/m^1.5": "N/m¹·⁵", "SI": ""}
 
 
-def section_text(section: Section) -> str:
+def section_text(section: ReportSection) -> str:
     """Return a section as Markdown."""
-    parts = [f"### {plain(section.title)}", *map(plain, section.words)]
+    parts = [f"### {escape_markdown(section.title)}", *map(escape_markdown, section.words)]
     parts += [rows_table(section.rows)] if section.rows else []
     for further in section.tables:
-        parts += [f"**{plain(further.title)}**"] if further.title else []
+        parts += [f"**{escape_markdown(further.title)}**"] if further.title else []
         parts.append(table(further.headers, further.cells))
-    return "\n\n".join([*parts, *map(plain, section.conclusion)]) + "\n"
+    return "\n\n".join([*parts, *map(escape_markdown, section.conclusion)]) + "\n"
 
 
 def drawing_text(name: str, drawing: Drawing, heading: bool = True) -> str:
-    """Return a figure as Markdown: its heading, if it stands by itself, the picture, and what to see in it."""
-    title = f"### {plain(drawing.title)}\n\n" if heading else ""
-    return f"{title}![{plain(drawing.title)}]({FIGURES}/{name}.png)\n\n{plain(drawing.sentence)}\n"
+    """Return a figure as Markdown: an optional heading, the image, and the caption."""
+    title = f"### {escape_markdown(drawing.title)}\n\n" if heading else ""
+    return f"{title}![{escape_markdown(drawing.title)}]({FIGURES}/{name}.png)\n\n{escape_markdown(drawing.sentence)}\n"
 
 
-def rows_table(rows: Sequence[Row]) -> str:
-    """Return printed beside computed; what is printed is said once where several things compute it."""
+def rows_table(rows: Sequence[ComparedValue]) -> str:
+    """Return the table of printed and computed values; consecutive rows of one printed value show it once."""
     cells, before = [], None
     for row in rows:
         again = row.printed is before
@@ -57,8 +56,8 @@ def rows_table(rows: Sequence[Row]) -> str:
     return table(("What", "Where", "Printed", "Computed by", "Computed", "Difference", "Allowed", "Verdict"), cells)
 
 
-def printed_text(value: Printed) -> str:
-    """Return a value as the paper prints it, with its unit.
+def printed_text(value: PrintedValue) -> str:
+    """Return a printed value with its relation and unit.
 
     Examples
     --------
@@ -69,53 +68,53 @@ def printed_text(value: Printed) -> str:
     number = value.text.replace("-", "\u2212")
     if "e" in number:
         number = digits(value.value, len(re.sub(r"e.*|\.", "", number)))
-    sign = "" if value.relation == "=" else f"{value.relation}{_APART}"
+    sign = "" if value.relation == "=" else f"{value.relation}{_NO_BREAK}"
     return f"{sign}{number}{_unit(value)}"
 
 
-def computed_text(row: Row) -> str:
-    """Return the computed value with a digit more than is printed."""
+def computed_text(row: ComparedValue) -> str:
+    """Return the computed value with one digit more than printed, at least four, and at most `row.digits`."""
     significant = len(re.sub(r"e.*", "", row.printed.text).replace(".", "").replace("-", "").lstrip("0"))
     return f"{digits(row.computed, min(max(significant + 1, 4), row.digits))}{_unit(row.printed)}"
 
 
-def difference_text(row: Row) -> str:
-    """Return by which part the computed value differs, in per cent; a dash where a bound is printed."""
+def difference_text(row: ComparedValue) -> str:
+    """Return the relative difference of the computed value in per cent; a dash for a printed bound."""
     if row.printed.relation != "=":
         return MISSING
     part = 100.0 * row.difference
     if abs(part) < _ROUNDING:
         return "0"
-    return f"{'+' if part > 0 else ''}{digits(part, 2)}{_APART}%"
+    return f"{'+' if part > 0 else ''}{digits(part, 2)}{_NO_BREAK}%"
 
 
-def allowed_text(row: Row) -> str:
-    """Return by which part the computed value may be off, in per cent; a dash where a bound is printed."""
-    return f"±{_APART}{digits(100.0 * row.allowed / abs(row.printed.value), 1)}{_APART}%" if row.printed.relation == "=" else MISSING
+def allowed_text(row: ComparedValue) -> str:
+    """Return the allowed relative difference in per cent; a dash for a printed bound."""
+    return f"±{_NO_BREAK}{digits(100.0 * row.allowed / abs(row.printed.value), 1)}{_NO_BREAK}%" if row.printed.relation == "=" else MISSING
 
 
-def verdict_text(row: Row) -> str:
-    """Return the verdict, with its reason."""
+def verdict_text(row: ComparedValue) -> str:
+    """Return the verdict and its reason."""
     return f"{row.verdict.value}: {row.reason}" if row.reason else row.verdict.value
 
 
-def plain(text: str) -> str:
-    """Return a text such that Markdown takes it as it stands.
+def escape_markdown(text: str) -> str:
+    """Return a text with the special characters of Markdown escaped.
 
     Examples
     --------
-    >>> print(plain("E* of |a_b|"))
+    >>> print(escape_markdown("E* of |a_b|"))
     E\\* of \\|a\\_b\\|
     """
     return re.sub(r"([\\`*_|<\[\]])", r"\\\1", text)
 
 
-def _unit(value: Printed) -> str:
-    """Return the unit, set apart from its number by spaces that do not break."""
+def _unit(value: PrintedValue) -> str:
+    """Return the unit with no-break spaces, to follow its number; empty for dimensionless values."""
     unit = _UNITS.get(value.unit, value.unit)
-    return _APART + unit.replace(" ", _APART) if unit else ""
+    return _NO_BREAK + unit.replace(" ", _NO_BREAK) if unit else ""
 
 
 def table(headers: Sequence[str], cells: Iterable[Sequence[str]]) -> str:
-    """Return a table as Markdown; its words are taken as they stand."""
-    return markdown_table([plain(header) for header in headers], ([plain(cell) for cell in line] for line in cells))
+    """Return a table as Markdown, with all cells escaped."""
+    return markdown_table([escape_markdown(header) for header in headers], ([escape_markdown(cell) for cell in line] for line in cells))

@@ -21,10 +21,10 @@ from vibroimpact.units.display import text
 
 _HEIGHT = 4.5
 """Height of the figure [in]."""
-_CENTRE, _UP = (-0.02, 0.03), 0.72
-"""What lies in the middle of the picture, and how much it shows from below to above [m]."""
-_DRAWN_DROP, _BAR_LENGTH, _BESIDE = 0.36, 0.13, 0.05
-"""How high the sphere is drawn, how long the bars are, and how far beside what they measure dimensions stand [m]."""
+_CENTRE, _VIEW_HEIGHT = (-0.02, 0.03), 0.72
+"""Centre of the view, and its height [m]."""
+_DRAWN_DROP, _BAR_LENGTH, _OFFSET = 0.36, 0.13, 0.05
+"""Height at which the sphere is drawn, length of the bars, and offset of dimension lines [m]."""
 _TOP, _FRONT, _SIDE, _BAR, _SHADE, _GROUND = "#dbe3ea", "#aab6c1", "#8e9ba8", "#c3c9cf", "#969fa8", "#f1efea"
 _ROCK, _LIT = np.array([0.24, 0.21, 0.19]), np.array([0.72, 0.67, 0.61])
 
@@ -32,7 +32,7 @@ Point = tuple[float, float, float]
 
 
 def draw_model(runs: Runs) -> Drawing:
-    """Draw the sphere above the plate on its four bars, in parallel projection.
+    """Draw the sphere above the plate on its four bars, in parallel projection, with dimensions.
 
     Parameters
     ----------
@@ -41,27 +41,28 @@ def draw_model(runs: Runs) -> Drawing:
     """
     case = resolved_case(load_case("paper:type3"))
     length, width, thickness = case["plate"]["size"]
-    held = case["plate"]["supports"][0]
-    along, across = held["spacing"]
+    support = case["plate"]["supports"][0]
+    along, across = support["spacing"]
     figure = new_figure(_HEIGHT)
     axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
     axes.set_axis_off()
-    axes.set_xlim(*(_CENTRE[0] + np.array([-0.5, 0.5]) * _UP * WIDTH / _HEIGHT))
-    axes.set_ylim(*(_CENTRE[1] + np.array([-0.5, 0.5]) * _UP))
+    axes.set_xlim(*(_CENTRE[0] + np.array([-0.5, 0.5]) * _VIEW_HEIGHT * WIDTH / _HEIGHT))
+    axes.set_ylim(*(_CENTRE[1] + np.array([-0.5, 0.5]) * _VIEW_HEIGHT))
     foot = -thickness - _BAR_LENGTH
+    # drawn from back to front, since patches cover those drawn before
     _fill(axes, _corners(1.2 * length, 1.25 * width, foot), _GROUND, "none")
-    for x, y in ((-1, 1), (1, 1), (-1, -1), (1, -1)):  # from the back to the front
-        _draw_bar(axes, (0.5 * x * along, 0.5 * y * across), held["radius"], -thickness, foot)
+    for x, y in ((-1, 1), (1, 1), (-1, -1), (1, -1)):
+        _draw_bar(axes, (0.5 * x * along, 0.5 * y * across), support["radius"], -thickness, foot)
     _draw_plate(axes, length, width, thickness)
     _draw_sphere(axes, case["sphere"]["radius"], case["drop"]["height"])
     half, deep = 0.5 * length, 0.5 * width
-    _draw_dimension(axes, (-half, deep, 0.0), (half, deep, 0.0), (0.0, _BESIDE), _millimetres(length))
-    _draw_dimension(axes, (-half, -deep, 0.0), (-half, deep, 0.0), (-_BESIDE, 0.0), _millimetres(width))
+    _draw_dimension(axes, (-half, deep, 0.0), (half, deep, 0.0), (0.0, _OFFSET), _millimetres(length))
+    _draw_dimension(axes, (-half, -deep, 0.0), (-half, deep, 0.0), (-_OFFSET, 0.0), _millimetres(width))
     half, deep = 0.5 * along, 0.5 * across
-    _draw_dimension(axes, (-half, -deep, foot), (half, -deep, foot), (0.0, -1.8 * _BESIDE), _millimetres(along))
-    _draw_dimension(axes, (half, -deep, foot), (half, deep, foot), (1.8 * _BESIDE, 0.0), _millimetres(across))
-    _draw_words(axes, case)
-    radius = _millimetres(held["radius"])
+    _draw_dimension(axes, (-half, -deep, foot), (half, -deep, foot), (0.0, -1.8 * _OFFSET), _millimetres(along))
+    _draw_dimension(axes, (half, -deep, foot), (half, deep, foot), (1.8 * _OFFSET, 0.0), _millimetres(across))
+    _draw_properties(axes, case)
+    radius = _millimetres(support["radius"])
     sentence = (
         f"To scale but for the drop. The paper gives neither radius nor length of the bars: their radius is drawn as the {radius} of the "
         "patches that hold the elastic plate here. The rigid plate is fixed, so that they play no part."
@@ -74,22 +75,22 @@ def _millimetres(value: float) -> str:
 
 
 def _corners(length: float, width: float, z: float) -> list[Point]:
-    """Return the corners of a rectangle around the middle, from the front left one on."""
+    """Return the corners of a centred rectangle, counterclockwise from the front left one."""
     return [(0.5 * x * length, 0.5 * y * width, z) for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
 
 
-def _seen(points: Sequence[Point | Floats]) -> Floats:
-    """Return where points appear on the picture (points, 2)."""
+def _projected(points: Sequence[Point | Floats]) -> Floats:
+    """Return the projection of points, (points, 2)."""
     return np.column_stack(project(*np.array(points, dtype=float).T))
 
 
 def _fill(axes: Axes, points: list[Point], colour: str, edge: str = INK) -> None:
-    axes.add_patch(Polygon(_seen(points), facecolor=colour, edgecolor=edge, linewidth=0.7, joinstyle="round"))
+    axes.add_patch(Polygon(_projected(points), facecolor=colour, edgecolor=edge, linewidth=0.7, joinstyle="round"))
 
 
 def _draw_bar(axes: Axes, at: tuple[float, float], radius: float, top: float, foot: float) -> None:
-    """Draw an upright cylinder: what is seen of it, and its right side in the shade."""
-    (across, upper), (_, lower) = _seen([(*at, top), (*at, foot)])
+    """Draw the visible side of an upright cylinder, with its right part shaded."""
+    (across, upper), (_, lower) = _projected([(*at, top), (*at, foot)])
     for first, colour, edge in ((np.pi, _BAR, INK), (1.65 * np.pi, _SHADE, "none")):
         turn = np.linspace(first, 2.0 * np.pi, 40)
         rim = np.column_stack([across + radius * np.cos(turn), lower + radius * np.sin(TILT) * np.sin(turn)])
@@ -102,7 +103,7 @@ def _draw_plate(axes: Axes, length: float, width: float, thickness: float) -> No
     _fill(axes, [upper[0], upper[1], lower[1], lower[0]], _FRONT)
     _fill(axes, [upper[1], upper[2], lower[2], lower[1]], _SIDE)
     _fill(axes, upper, _TOP)
-    corner = _seen([(0.5 * length, 0.5 * width, -0.5 * thickness)])[0]
+    corner = _projected([(0.5 * length, 0.5 * width, -0.5 * thickness)])[0]
     axes.annotate(
         f"{_millimetres(thickness)} thick",
         corner,
@@ -114,8 +115,8 @@ def _draw_plate(axes: Axes, length: float, width: float, thickness: float) -> No
 
 
 def _draw_sphere(axes: Axes, radius: float, drop: float) -> None:
-    """Draw the sphere above the middle of the plate, and how far it falls."""
-    (across, ground), (_, centre) = _seen([(0.0, 0.0, 0.0), (0.0, 0.0, _DRAWN_DROP)])
+    """Draw the sphere above the centre of the plate, with its drop height on a broken dimension line."""
+    (across, ground), (_, centre) = _projected([(0.0, 0.0, 0.0), (0.0, 0.0, _DRAWN_DROP)])
     axes.plot([across, across], [ground, centre], color=INK, linewidth=0.6, linestyle=(0, (10, 3, 2, 3)))
     axes.plot(across, ground, "+", color=INK, markersize=7.0, markeredgewidth=0.8)
     for part in np.linspace(1.0, 0.0, 40):  # rings towards the light
@@ -138,12 +139,12 @@ _ARROW = {"arrowstyle": "<|-|>,head_width=0.13,head_length=0.35", "color": ACCEN
 
 
 def _draw_dimension(axes: Axes, start: Point, end: Point, aside: tuple[float, float], words: str) -> None:
-    """Draw a dimension between two points, so far aside along x and y."""
+    """Draw a dimension line between two points, offset along x and y."""
     ends = np.array([start, end])
     shift = np.array([*aside, 0.0])
     for near, far in zip(ends, ends + 1.15 * shift, strict=True):
-        axes.plot(*_seen([near, far]).T, color=ACCENT, linewidth=0.5)
-    first, last = _seen([*(ends + shift)])
+        axes.plot(*_projected([near, far]).T, color=ACCENT, linewidth=0.5)
+    first, last = _projected([*(ends + shift)])
     axes.annotate("", first, last, arrowprops=_ARROW)
     slope = np.degrees(np.arctan2(last[1] - first[1], last[0] - first[0]))
     box = {"facecolor": "white", "edgecolor": "none", "pad": 1.0}
@@ -151,13 +152,13 @@ def _draw_dimension(axes: Axes, start: Point, end: Point, aside: tuple[float, fl
     axes.text(across, up, words, fontsize=8.0, ha="center", va="center", rotation=slope, rotation_mode="anchor", bbox=box)
 
 
-def _draw_words(axes: Axes, case: Mapping[str, Any]) -> None:
-    """Write what the bodies are made of."""
+def _draw_properties(axes: Axes, case: Mapping[str, Any]) -> None:
+    """Write the materials of the bodies, gravity and the support."""
     lines = []
     for body in ("sphere", "plate"):
-        made = case[body]["material"]
-        stiff = f"E = {made['youngs_modulus'] / 1e9:g} GPa, \u03bd = {made['poissons_ratio']:g}"
-        lines.append(f"{body}: {made['density']:g} kg/m³, {stiff}")
+        material = case[body]["material"]
+        stiff = f"E = {material['youngs_modulus'] / 1e9:g} GPa, \u03bd = {material['poissons_ratio']:g}"
+        lines.append(f"{body}: {material['density']:g} kg/m³, {stiff}")
     lines.append(f"gravity: {case['drop']['gravity']:g} m/s²")
     axes.text(0.025, 0.965, "\n".join(lines), transform=axes.transAxes, fontsize=8.0, va="top", linespacing=1.5)
     axes.text(0.025, 0.04, "four bars, fixed to the ground", transform=axes.transAxes, fontsize=8.0)

@@ -1,87 +1,110 @@
-"""The parts of the reproduction, in the order of its report."""
+"""The outline of the reproduction: its chapters and parts, and the rendering of a part as text, values and figure."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
-from typing import NamedTuple
+from collections.abc import Callable, Iterable, Mapping
+from functools import partial
+from typing import Any, NamedTuple
 
 from vibroimpact.errors import InputError
 from vibroimpact.paper.conclusions import conclusions
-from vibroimpact.paper.coupled import section_5_1
-from vibroimpact.paper.energies import section_5_2
-from vibroimpact.paper.inputs import section_3_1, section_4, table1
-from vibroimpact.paper.misprints import misprints
-from vibroimpact.paper.recovery_section import recovery
+from vibroimpact.paper.elastic import section_5_1, section_5_2, section_5_3
+from vibroimpact.paper.inputs import corrections_section, section_3_1, section_4, table1
+from vibroimpact.paper.recovery import recovery_section
 from vibroimpact.paper.report.drawing import Drawing
-from vibroimpact.paper.report.paper_figures import PAPER_FIGURES
+from vibroimpact.paper.report.elastic_figures import (
+    PLATE_QUANTITIES,
+    SPHERE_ENERGY,
+    SPHERE_MOTION,
+    draw_plate_quantity,
+    draw_sphere_quantity,
+)
+from vibroimpact.paper.report.markdown import drawing_text, section_text
+from vibroimpact.paper.report.mesh_figure import draw_meshes
+from vibroimpact.paper.report.model_figure import draw_model
 from vibroimpact.paper.report.recovery_figure import draw_recovery
+from vibroimpact.paper.report.rigid_figures import RIGID_FIGURES, draw_rigid
 from vibroimpact.paper.report.sampling_figure import draw_sampling
 from vibroimpact.paper.report.unresolved_figure import draw_unresolved
-from vibroimpact.paper.rigid import damping, section_3_2
+from vibroimpact.paper.rigid import damping_section, section_3_2, table2
 from vibroimpact.paper.runs import Runs
-from vibroimpact.paper.sampling import sampling
-from vibroimpact.paper.section import Section
-from vibroimpact.paper.table2 import table2
-from vibroimpact.paper.unresolved import unresolved
-from vibroimpact.paper.vibration import section_5_3
+from vibroimpact.paper.sampling import sampling_section
+from vibroimpact.paper.section import ComparedValue, ReportSection
+from vibroimpact.paper.unresolved import unresolved_section
 from vibroimpact.registry import find_named
+from vibroimpact.report.style import style
 
 
-class Part(NamedTuple):
-    """A part of the reproduction: words and numbers, a figure, or both.
+class ReportPart(NamedTuple):
+    """A part of the reproduction: a section, a figure, or both.
 
     Parameters
     ----------
     name : str
-        What `--only` calls it.
+        Name in the option `--only`.
     section : callable, optional
-        Makes the words and numbers.
+        Function that computes the section.
     draw : callable, optional
-        Draws the figure.
+        Function that draws the figure.
     """
 
     name: str
-    section: Callable[[Runs], Section] | None = None
+    section: Callable[[Runs], ReportSection] | None = None
     draw: Callable[[Runs], Drawing] | None = None
 
 
-def _figures(first: int, last: int) -> tuple[Part, ...]:
+PAPER_FIGURES: Mapping[str, Callable[[Runs], Drawing]] = {
+    "fig3": draw_model,
+    **{f"fig{figure.number}": partial(draw_rigid, figure) for figure in RIGID_FIGURES},
+    "fig9": draw_meshes,
+    **{f"fig{quantity.number}": partial(draw_sphere_quantity, quantity) for quantity in (*SPHERE_MOTION, *SPHERE_ENERGY)},
+    **{f"fig{quantity.number}": partial(draw_plate_quantity, quantity) for quantity in PLATE_QUANTITIES},
+}
+"""Functions that draw the figures of the paper, by name and in its order."""
+
+
+def _figures(first: int, last: int) -> tuple[ReportPart, ...]:
     names = [f"fig{number}" for number in range(first, last + 1)]
-    return tuple(Part(name, draw=PAPER_FIGURES[name]) for name in names)
+    return tuple(ReportPart(name, draw=PAPER_FIGURES[name]) for name in names)
 
 
-CHAPTERS: dict[str, tuple[Part, ...]] = {
-    "The inputs": (Part("table1", table1), Part("section3.1", section_3_1), *_figures(3, 3)),
+CHAPTERS: dict[str, tuple[ReportPart, ...]] = {
+    "The inputs": (ReportPart("table1", table1), ReportPart("section3.1", section_3_1), *_figures(3, 3)),
     "Type 1: repeated impacts of rigid bodies": (
-        Part("section3.2", section_3_2),
+        ReportPart("section3.2", section_3_2),
         *_figures(4, 8),
-        Part("damping", damping),
-        Part("table2", table2),
+        ReportPart("damping", damping_section),
+        ReportPart("table2", table2),
     ),
-    "Types 1, 2 and 3: elastic bodies": (Part("section4", section_4), *_figures(9, 9), Part("section5.1", section_5_1), *_figures(10, 13)),
-    "The energy of the sphere": (Part("section5.2", section_5_2), *_figures(14, 17)),
-    "The vibration of the plate": (Part("section5.3", section_5_3), *_figures(18, 23)),
-    "The conclusions": (Part("conclusions", conclusions),),
+    "Types 1, 2 and 3: elastic bodies": (
+        ReportPart("section4", section_4),
+        *_figures(9, 9),
+        ReportPart("section5.1", section_5_1),
+        *_figures(10, 13),
+    ),
+    "The energy of the sphere": (ReportPart("section5.2", section_5_2), *_figures(14, 17)),
+    "The vibration of the plate": (ReportPart("section5.3", section_5_3), *_figures(18, 23)),
+    "The conclusions": (ReportPart("conclusions", conclusions),),
     "Forensics: what the numbers tell that the text does not": (
-        Part("recovery", recovery, draw_recovery),
-        Part("sampling", sampling, draw_sampling),
-        Part("unresolved", unresolved, draw_unresolved),
+        ReportPart("recovery", recovery_section, draw_recovery),
+        ReportPart("sampling", sampling_section, draw_sampling),
+        ReportPart("unresolved", unresolved_section, draw_unresolved),
     ),
-    "Corrections": (Part("corrections", misprints),),
+    "Corrections": (ReportPart("corrections", corrections_section),),
 }
 """The chapters of the report, and the parts of each."""
 
-PARTS: dict[str, Part] = {part.name: part for parts in CHAPTERS.values() for part in parts}
-"""All parts by their names, in the order of the report."""
+PARTS: dict[str, ReportPart] = {part.name: part for parts in CHAPTERS.values() for part in parts}
+"""All parts by name, in the order of the report."""
 
 
-def find_parts(names: Iterable[str]) -> list[Part]:
-    """Return the parts of some names, in the order of the report.
+def find_parts(names: Iterable[str]) -> list[ReportPart]:
+    """Return the parts with the given names, in the order of the report.
 
     Raises
     ------
     InputError
-        If there is no part of a name, or no name.
+        If a name is unknown, or no name is given.
 
     Examples
     --------
@@ -92,3 +115,57 @@ def find_parts(names: Iterable[str]) -> list[Part]:
     if not wanted:
         raise InputError(f"name at least one of {', '.join(PARTS)}")
     return [part for name, part in PARTS.items() if name in wanted]
+
+
+class RenderedPart(NamedTuple):
+    """A rendered part of the reproduction.
+
+    Parameters
+    ----------
+    title : str
+        Heading.
+    text : str
+        Paragraphs, tables and the reference to the figure, as Markdown.
+    rows : list of mappings
+        Printed and computed values, as rows of `values.csv`.
+    drawing : Drawing, optional
+        The figure.
+    """
+
+    title: str
+    text: str
+    rows: list[dict[str, Any]]
+    drawing: Drawing | None
+
+
+def render_part(part: ReportPart, runs: Runs) -> RenderedPart:
+    """Return a part, computed and rendered."""
+    section = part.section(runs) if part.section is not None else None
+    with style():
+        drawing = part.draw(runs) if part.draw is not None else None
+    texts = [] if section is None else [section_text(section)]
+    if drawing is not None:
+        texts.append(drawing_text(part.name, drawing, heading=section is None))
+    title = section.title if section is not None else drawing.title if drawing is not None else part.name
+    return RenderedPart(title, "\n".join(texts), [_values_row(part.name, row) for row in (section.rows if section else ())], drawing)
+
+
+def _values_row(part: str, row: ComparedValue) -> dict[str, Any]:
+    """Return a compared value as a row of `values.csv`, in full precision."""
+    value = row.printed
+    return {
+        "part": part,
+        "name": value.name,
+        "what": value.what,
+        "place": value.place,
+        "read": value.read,
+        "unit": value.unit,
+        "relation": value.relation,
+        "printed": value.text,
+        "by": row.by,
+        "computed": row.computed,
+        "difference": row.difference if value.relation == "=" else None,
+        "allowed": row.allowed if value.relation == "=" else None,
+        "verdict": row.verdict.value,
+        "why": row.reason,
+    }

@@ -1,4 +1,4 @@
-"""The report of the reproduction, put together from its parts: Markdown, and the same as one HTML file."""
+"""The report of the reproduction, assembled from its parts: Markdown, HTML, and the table of verdicts on the terminal."""
 
 from __future__ import annotations
 
@@ -12,10 +12,11 @@ from markdown_it import MarkdownIt
 
 from vibroimpact._version import __version__
 from vibroimpact.paper.printed import PAPER
-from vibroimpact.paper.printed_and_computed import Verdict
 from vibroimpact.paper.report.markdown import FIGURES, table
 from vibroimpact.paper.report.outline import CHAPTERS, PARTS
+from vibroimpact.paper.section import Verdict
 from vibroimpact.report.page import template
+from vibroimpact.report.terminal_table import TerminalColumn, TerminalTable
 
 TITLE = "The paper, reproduced"
 
@@ -26,15 +27,15 @@ def report_text(parts: Mapping[str, Mapping[str, Any]]) -> str:
     Parameters
     ----------
     parts : mapping of str to mapping
-        The parts that are there: their "title", "text" and "rows", by their names.
+        The available parts by name, each with "title", "text" and "rows".
     """
     missing = [name for name in PARTS if name not in parts]
     chapters = {chapter: [part.name for part in members if part.name in parts] for chapter, members in CHAPTERS.items()}
     pieces = [f"# {TITLE}\n", *(f"{words}\n" for words in (*_OPENING, *(() if missing else _IN_SHORT)))]
-    pieces += [f"- [{chapter}](#{_anchor(chapter)})" for chapter, there in chapters.items() if there]
+    pieces += [f"- [{chapter}](#{_anchor(chapter)})" for chapter, available in chapters.items() if available]
     pieces += ["", *_summary(parts)]
-    for chapter, there in chapters.items():
-        pieces += [f"## {chapter}\n", *(str(parts[name]["text"]) for name in there)] if there else []
+    for chapter, available in chapters.items():
+        pieces += [f"## {chapter}\n", *(str(parts[name]["text"]) for name in available)] if available else []
     if missing:
         pieces.append(f"Not made yet: {', '.join(missing)}. `vibroimpact reproduce -o DIR` makes them.\n")
     pieces.append(f"Made by vibroimpact {__version__}: `vibroimpact reproduce`.\n")
@@ -42,7 +43,7 @@ def report_text(parts: Mapping[str, Mapping[str, Any]]) -> str:
 
 
 def _anchor(heading: str) -> str:
-    """Return what a heading is called in links, as GitHub does."""
+    """Return the anchor of a heading, formed as on GitHub."""
     return re.sub(r"[^\w -]", "", heading.lower()).replace(" ", "-")
 
 
@@ -67,8 +68,8 @@ _IN_SHORT = (
 )
 
 
-def counts(parts: Mapping[str, Mapping[str, Any]]) -> dict[str, dict[str, int]]:
-    """Return how many rows of each part, and of "all", have each verdict; nothing if no part has rows."""
+def verdict_counts(parts: Mapping[str, Mapping[str, Any]]) -> dict[str, dict[str, int]]:
+    """Return the number of rows with each verdict, by part and for "all"; an empty dict if no part has rows."""
     found = {name: [row["verdict"] for row in part["rows"]] for name, part in parts.items() if part["rows"]}
     if found:
         found["all"] = [verdict for verdicts in list(found.values()) for verdict in verdicts]
@@ -76,7 +77,8 @@ def counts(parts: Mapping[str, Mapping[str, Any]]) -> dict[str, dict[str, int]]:
 
 
 def _summary(parts: Mapping[str, Mapping[str, Any]]) -> list[str]:
-    found = counts(parts)
+    """Return the table of verdicts as Markdown, in a list that is empty if no part has rows."""
+    found = verdict_counts(parts)
     if not found:
         return []
     cells = [(str(parts[name]["title"]) if name in parts else "All", *map(str, by.values())) for name, by in found.items()]
@@ -84,16 +86,17 @@ def _summary(parts: Mapping[str, Mapping[str, Any]]) -> list[str]:
 
 
 def report_html(text: str, folder: Path) -> str:
-    """Return the report as one HTML page that needs neither network nor script.
+    """Return the report as a self-contained HTML page without scripts.
 
     Parameters
     ----------
     text : str
         The report as Markdown.
     folder : pathlib.Path
-        Where its figures are.
+        Folder with the figures.
     """
     body = MarkdownIt("commonmark", {"html": False}).enable("table").render(text)
+    # figures are embedded, tables can scroll, headings get anchors, and verdicts get classes for their colours
     body = re.sub(r'src="(' + FIGURES + r'/[^"]+)\.png"', lambda found: f'src="{_data(folder / f"{found[1]}.svg")}"', body)
     body = re.sub(r"<table>(.*?)</table>", r'<div class="wide"><table class="words">\1</table></div>', body, flags=re.S)
     body = re.sub(r"<h2>(.*?)</h2>", lambda found: f'<h2 id="{_anchor(found[1])}">{found[1]}</h2>', body)
@@ -104,3 +107,12 @@ def report_html(text: str, folder: Path) -> str:
 
 def _data(file: Path) -> str:
     return f"data:image/svg+xml;base64,{b64encode(file.read_bytes()).decode()}"
+
+
+def verdict_table(parts: Mapping[str, Mapping[str, Any]]) -> TerminalTable:
+    """Return the number of values with each verdict, by part."""
+    by_part = verdict_counts(parts)
+    verdicts = [
+        TerminalColumn(verdict.value.replace(" ", "\u00a0"), [str(by[verdict.value]) for by in by_part.values()]) for verdict in Verdict
+    ]
+    return TerminalTable([TerminalColumn("part", list(by_part), words=True), *verdicts], bold=[len(by_part) - 1])

@@ -1,4 +1,4 @@
-"""The figure of the restitution and the full-damping penetration: each piece of evidence a line, and where they cross."""
+"""The figure of the restitution and the full-damping penetration: each piece of evidence as a line with a band, and the joint estimate."""
 
 from __future__ import annotations
 
@@ -10,38 +10,40 @@ from matplotlib.ticker import MaxNLocator
 
 from vibroimpact.paper.evidence import PENETRATIONS, RESTITUTIONS, Evidence
 from vibroimpact.paper.printed import printed
-from vibroimpact.paper.recovery import Recovery, implied_restitution, off_joint, penetration_bands, recover
+from vibroimpact.paper.recovery import RecoveredParameters, implied_restitution, off_joint, penetration_bands, recover_parameters
 from vibroimpact.paper.report.drawing import Drawing
 from vibroimpact.paper.runs import Runs
 from vibroimpact.report.layout import label_vertical, new_figure, row_of_axes
 from vibroimpact.report.style import LOOPS, MARK
 
-_AROUND = (2.0e-4, 1.2e-7)
-"""What is enlarged, to either side of the joint estimate: restitution [-], penetration [m]."""
+_ZOOM = (2.0e-4, 1.2e-7)
+"""Half-widths of the enlarged window around the joint estimate: restitution [-], penetration [m]."""
 
-_BEYOND = 20.0
+_SEARCH_MARGIN = 20.0
+"""Margin of the searched restitutions around the window, in half-widths of the band."""
+
 _POINTS, _ROWS = 401, 121
 
 
 class _Window(NamedTuple):
-    """A part of the plane: ranges of the restitution and of the penetration [m]."""
+    """A window of the plane: ranges of the restitution [-] and of the penetration [m]."""
 
     restitutions: tuple[float, float]
     penetrations: tuple[float, float]
 
 
 def draw_recovery(runs: Runs) -> Drawing:
-    """Draw what each printed number implies of the restitution and the full-damping penetration.
+    """Draw the restitution and the full-damping penetration that each printed number implies.
 
     Parameters
     ----------
     runs : Runs
-        The cases.
+        The simulations.
     """
-    found = recover(runs)
+    found = recover_parameters(runs)
     e, d = found.restitution.value, found.penetration.value
     given = printed("full_damping_penetration")
-    close = _Window((e - _AROUND[0], e + _AROUND[0]), (d - _AROUND[1], d + _AROUND[1]))
+    close = _Window((e - _ZOOM[0], e + _ZOOM[0]), (d - _ZOOM[1], d + _ZOOM[1]))
     figure = new_figure(4.95)
     whole, enlarged = row_of_axes(figure, 2, 1.4, 3.2)
     _draw_lines(whole, found, _Window(RESTITUTIONS, PENETRATIONS))
@@ -65,18 +67,18 @@ def draw_recovery(runs: Runs) -> Drawing:
         figure,
         "What the printed numbers imply: restitution and full-damping penetration",
         "Each printed number is a line in the plane of the two, with a band as wide as rounding or its own scatter allows, where "
-        f"it is not wider than the picture. {_crossing(found)}",
+        f"it is not wider than the picture. {_caption(found)}",
     )
 
 
-def _shown(found: Recovery) -> list[Evidence]:
-    """Return the evidence that is drawn: what was not read off samples."""
+def _drawn_evidence(found: RecoveredParameters) -> list[Evidence]:
+    """Return the evidence to draw: that without sampling bias."""
     return [one for one in found.evidence if not one.sampled]
 
 
-def _crossing(found: Recovery) -> str:
-    """Say how near the lines pass to the joint estimate, and which of them the printed penetration meets."""
-    off = [off_joint(found, one) for one in _shown(found)]
+def _caption(found: RecoveredParameters) -> str:
+    """Return the sentences on the distances of the joint estimate and of the printed penetration from the bands."""
+    off = [off_joint(found, one) for one in _drawn_evidence(found)]
     given = printed("full_damping_penetration").value
     met = penetration_bands(found, given)
     return (
@@ -86,23 +88,25 @@ def _crossing(found: Recovery) -> str:
     )
 
 
-def _draw_lines(axes: Axes, found: Recovery, window: _Window) -> None:
-    """Draw the lines of the evidence, and their bands."""
+def _draw_lines(axes: Axes, found: RecoveredParameters, window: _Window) -> None:
+    """Draw the lines of the evidence with their bands."""
     across, up = np.array(window.restitutions), np.geomspace(*window.penetrations, _ROWS)
-    for (colour, dashes), one in zip(LOOPS, _shown(found), strict=False):
-        by, through = found.alone[one.name]
-        look: dict[str, Any] = {"color": colour, "linestyle": dashes, "linewidth": 1.4}
-        if by is None and through is not None:
-            half = 1e6 * one.reach * through.deviation
-            axes.axhspan(1e6 * through.value - half, 1e6 * through.value + half, color=colour, alpha=0.13, linewidth=0.0)
-            axes.axhline(1e6 * through.value, label=one.name, **look)
-        elif by is not None:
-            half = one.reach * by.deviation
-            searched = (across[0] - _BEYOND * half, across[1] + _BEYOND * half)
+    for (colour, dashes), one in zip(LOOPS, _drawn_evidence(found), strict=False):
+        restitution_alone, penetration_alone = found.alone[one.name]
+        style: dict[str, Any] = {"color": colour, "linestyle": dashes, "linewidth": 1.4}
+        if restitution_alone is None and penetration_alone is not None:
+            half = 1e6 * one.reach * penetration_alone.deviation
+            axes.axhspan(
+                1e6 * penetration_alone.value - half, 1e6 * penetration_alone.value + half, color=colour, alpha=0.13, linewidth=0.0
+            )
+            axes.axhline(1e6 * penetration_alone.value, label=one.name, **style)
+        elif restitution_alone is not None:
+            half = one.reach * restitution_alone.deviation
+            searched = (across[0] - _SEARCH_MARGIN * half, across[1] + _SEARCH_MARGIN * half)
             restitutions = np.linspace(max(RESTITUTIONS[0], searched[0]), min(RESTITUTIONS[1], searched[1]), _POINTS)
             line = implied_restitution(one, restitutions, up)
-            if half < 0.5 * (across[1] - across[0]):  # else it would only dye the ground
+            if half < 0.5 * (across[1] - across[0]):  # a wider band would only tint the background
                 axes.fill_betweenx(1e6 * up, line - half, line + half, color=colour, alpha=0.13, linewidth=0.0)
-            axes.plot(line, 1e6 * up, label=one.name, **look)
+            axes.plot(line, 1e6 * up, label=one.name, **style)
     axes.set_xlim(*across)
     axes.set_ylim(*(1e6 * end for end in window.penetrations))

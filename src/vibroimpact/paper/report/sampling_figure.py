@@ -1,4 +1,4 @@
-"""The figure of the scatter of Table 2: the errors that can be read off samples, and one contact as it was sampled."""
+"""The figure of the scatter of Table 2: ranges of the errors of sampled peaks, and the sampling of one contact."""
 
 from __future__ import annotations
 
@@ -12,20 +12,20 @@ from vibroimpact.paper.runs import DAMPINGS, IMPACTS, Runs
 from vibroimpact.paper.sampling import (
     CONTACTS,
     QUANTITIES,
+    contact_pulses,
     error_range,
-    found_spacing,
     grid_error,
     grid_samples,
     implied_instants,
     output_step,
-    peaks,
+    spacing_bound,
     table2_error,
 )
 from vibroimpact.report.layout import heading, label_vertical, new_figure, row_of_axes, wide_axes
 from vibroimpact.report.style import ACCENT, CONTACT, INK, MARK
 
-_APART = 0.19
-"""How far the two dampings stand from the number of the impact."""
+_OFFSET = 0.19
+"""Horizontal offset of the two dampings from the impact number."""
 
 _HEIGHT = 6.57
 _WIDTHS = (0.30, 0.16)
@@ -34,14 +34,14 @@ _CURVES = {"compression": (ACCENT, "-"), "force": (MARK, (0, (6, 2)))}
 
 
 def draw_sampling(runs: Runs) -> Drawing:
-    """Draw the errors of Table 2 beside those that can be read off samples.
+    """Draw the errors of Table 2 with the ranges of the errors of sampled peaks.
 
     Parameters
     ----------
     runs : Runs
-        The cases.
+        The simulations.
     """
-    step, spacing = output_step(), found_spacing(runs)
+    step, spacing = output_step(), spacing_bound(runs)
     figure = new_figure(_HEIGHT)
     for axes, quantity in zip(row_of_axes(figure, 2, 3.72, 2.25), QUANTITIES, strict=True):
         _draw_errors(axes, runs, quantity, step, spacing)
@@ -50,8 +50,11 @@ def draw_sampling(runs: Runs) -> Drawing:
             handles = axes.get_legend_handles_labels()
     figure.legend(*handles, loc="center", bbox_to_anchor=(0.5, 3.04 / _HEIGHT), ncols=3, handlelength=1.8)
     heading(figure, "The errors of Table 2", 6.25)
-    told = [contact for contact in CONTACTS if not np.isnan([implied_instants(runs, quantity, *contact) for quantity in QUANTITIES]).any()]
-    damping, impact = max(told, key=lambda contact: grid_error(runs, step, "force", *contact))
+    # the contact drawn below has sampling instants for both errors, and the largest error on the printed grid
+    candidates = [
+        contact for contact in CONTACTS if not np.isnan([implied_instants(runs, quantity, *contact) for quantity in QUANTITIES]).any()
+    ]
+    damping, impact = max(candidates, key=lambda contact: grid_error(runs, step, "force", *contact))
     _draw_contact(wide_axes(figure, 0.52, 1.95), runs, damping, impact, step)
     return Drawing(
         figure,
@@ -63,9 +66,9 @@ def draw_sampling(runs: Runs) -> Drawing:
 
 
 def _draw_errors(axes: Axes, runs: Runs, quantity: str, step: float, spacing: float) -> None:
-    """Draw the ten errors of a quantity."""
+    """Draw the ten errors of a quantity: exact, printed, and the ranges of both spacings."""
     ends = []
-    for damping, side in zip(DAMPINGS, (-_APART, _APART), strict=True):
+    for damping, side in zip(DAMPINGS, (-_OFFSET, _OFFSET), strict=True):
         for impact in IMPACTS:
             first, at = impact == 1, impact + side
             low, high = error_range(runs, spacing, quantity, damping, impact)
@@ -98,11 +101,11 @@ def _draw_errors(axes: Axes, runs: Runs, quantity: str, step: float, spacing: fl
 
 
 def _draw_contact(axes: Axes, runs: Runs, damping: str, impact: int, step: float) -> None:
-    """Draw compression and force of one contact in parts of the theory's peaks, and when they were read."""
+    """Draw compression and force of one contact relative to the theory's peaks, with the instants at which they were sampled."""
     for quantity, (colour, dashes) in _CURVES.items():
-        simulation, theory = (peaks(runs)[name, quantity, impact] for name in (damping, "theory"))
-        part = 100.0 / theory.value
-        axes.plot(1e6 * simulation.times, part * simulation.values, color=colour, linestyle=dashes, label=f"{quantity} of the simulation")
+        simulation, theory = (contact_pulses(runs)[name, quantity, impact] for name in (damping, "theory"))
+        scale = 100.0 / theory.value
+        axes.plot(1e6 * simulation.times, scale * simulation.values, color=colour, linestyle=dashes, label=f"{quantity} of the simulation")
         value = 100.0 - table2_error(quantity, damping, impact).value
         moments = [1e6 * time for time in implied_instants(runs, quantity, damping, impact)]
         axes.plot(
@@ -116,7 +119,7 @@ def _draw_contact(axes: Axes, runs: Runs, damping: str, impact: int, step: float
             label=f"printed {quantity}",
         )
         times, values = grid_samples(runs, damping, step, quantity, impact)
-        axes.plot(1e6 * times, part * values, "X", color=colour, markersize=7.0, markeredgecolor="white", zorder=4)
+        axes.plot(1e6 * times, scale * values, "X", color=colour, markersize=7.0, markeredgecolor="white", zorder=4)
     axes.plot([], [], "X", color="#6b6b6b", label=f"output every {1e3 * step:.2f} ms")
     end = 1e6 * float(simulation.times[-1])
     axes.axvspan(0.0, end, color=CONTACT, alpha=0.5, linewidth=0.0, zorder=0)

@@ -1,4 +1,4 @@
-"""The figure of the forensic section: the first impact over the length of the step."""
+"""The figure of the unresolved runs: the first impact over the step length."""
 
 from __future__ import annotations
 
@@ -8,16 +8,27 @@ from matplotlib.ticker import MaxNLocator, NullFormatter, NullLocator
 
 from vibroimpact.paper.report.drawing import Drawing
 from vibroimpact.paper.runs import Runs
-from vibroimpact.paper.step_sweep import COMPARED, MESHES, PHASES, STEPS, Mesh, closest, paper_impact, resolved, superposed, sweep
+from vibroimpact.paper.step_sweep import (
+    COMPARED,
+    MESHES,
+    PHASES,
+    STEPS,
+    Mesh,
+    closest,
+    paper_impact,
+    resolved_impact,
+    superposed,
+    sweep_steps,
+)
 from vibroimpact.report.layout import label_vertical, new_figure, row_of_axes
 from vibroimpact.report.style import ACCENT, INK, MARK
 from vibroimpact.units.display import digits
 
 _ROW, _BOTTOM = 1.75, 1.0
-"""Height of a row, and room below all [in]."""
+"""Height of a row, and margin below all rows [in]."""
 
 _LIMIT = 0.7
-"""Where the resolved run is marked, as a part of the shortest step."""
+"""Abscissa at which the resolved run is marked, as a fraction of the shortest step."""
 
 _LABELS = {"max_force_N": ("Force", "kN", 1e-3), "separation_speed_m_s": ("Speed", "m/s", 1.0), "sphere_strain_J": ("Energy", "J", 1.0)}
 _TITLES = ("largest force", "rebound speed", "largest strain energy of the sphere")
@@ -25,7 +36,7 @@ _LINES: dict[Mesh, tuple[str, str | tuple[int, tuple[int, ...]]]] = {"coarse": (
 
 
 def draw_unresolved(runs: Runs) -> Drawing:
-    """Draw the first impact of Types 2 and 3 under the implicit Euler method, over the length of its steps.
+    """Draw the first impact of Types 2 and 3 by the implicit Euler method over the step length.
 
     Parameters
     ----------
@@ -39,7 +50,7 @@ def draw_unresolved(runs: Runs) -> Drawing:
         last = number == len(COMPARED) - 1
         row = row_of_axes(figure, 2, _BOTTOM + (len(COMPARED) - 1 - number) * _ROW, _ROW - 0.45)
         for kind, axes in zip((2, 3), row, strict=True):
-            _draw(axes, runs, kind, name, step)
+            _draw_quantity(axes, runs, kind, name, step)
             axes.set_title(f"Type {kind}: {title}")
             axes.tick_params(labelbottom=last)
             if last:
@@ -49,7 +60,7 @@ def draw_unresolved(runs: Runs) -> Drawing:
             axes.set_ylim(0.0, top)
         label_vertical(row[0], "{} [{}]".format(*_LABELS[name]))
     figure.legend(*row[0].get_legend_handles_labels(), loc="lower center", ncols=3, handlelength=3.0)
-    whole = {kind: resolved(superposed(runs, kind, "coarse")) for kind in (2, 3)}
+    whole = {kind: resolved_impact(superposed(runs, kind, "coarse")) for kind in (2, 3)}
     sentence = (
         "The longer the step, the more energy the method takes. On the coarse mesh the three numbers of Type 2 come nearest to the printed "
         f"ones in steps of {digits(1e6 * step, 2)} µs (off by {digits(100.0 * float(best.misfit(paper_impact(runs, 2))[0]), 2)} %); the "
@@ -58,16 +69,16 @@ def draw_unresolved(runs: Runs) -> Drawing:
     return Drawing(figure, "What an unresolved run gives: the first impact over the length of the step", sentence)
 
 
-def _draw(axes: Axes, runs: Runs, kind: int, name: str, step: float) -> None:
-    """Draw a quantity of a Type on both meshes, with what is printed and what the resolved run gives."""
+def _draw_quantity(axes: Axes, runs: Runs, kind: int, name: str, step: float) -> None:
+    """Draw a quantity of Type 2 or 3 on both meshes, with the printed value and the resolved runs."""
     size = _LABELS[name][2]
     for mesh in MESHES:
         problem, (colour, dashes) = superposed(runs, kind, mesh), _LINES[mesh]
-        swept = sweep(problem)
+        swept = sweep_steps(problem)
         values = size * swept.found[name]
         axes.fill_between(1e6 * swept.steps, values.min(axis=1), values.max(axis=1), color=colour, alpha=0.2, linewidth=0.0)
         axes.plot(1e6 * swept.steps, np.median(values, axis=1), color=colour, linestyle=dashes, label=f"{mesh} mesh, median and range")
-        limit = size * resolved(problem)[name]
+        limit = size * resolved_impact(problem)[name]
         axes.plot(1e6 * _LIMIT * STEPS[0], limit, "<", color=colour, markersize=5.0, clip_on=False, label=f"{mesh} mesh, resolved")
     axes.axhline(size * paper_impact(runs, kind)[name], color=MARK, linewidth=1.0, label="printed")
     axes.axvline(1e6 * step, color=INK, linewidth=0.8, linestyle=(0, (2, 2)), label=f"step fitted to Type 2, {digits(1e6 * step, 2)} µs")

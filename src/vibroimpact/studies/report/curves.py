@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from matplotlib.figure import Figure
 
-from vibroimpact.report.lettering import lettering
-from vibroimpact.report.style import ENLARGED, LOOPS, MARKS
+from vibroimpact.report.style import ENLARGED, LOOPS, MARKS, lettering
 from vibroimpact.studies.drop_variables import PEAK_TABLE
 from vibroimpact.studies.report.axes import StudyAxis
 from vibroimpact.studies.report.outputs import Output, on_grid

@@ -6,8 +6,7 @@ from functools import partial
 from pathlib import Path
 
 from vibroimpact.report.figure_files import save_figures
-from vibroimpact.report.page import Picture, picture, template
-from vibroimpact.report.write_files import write_beside
+from vibroimpact.report.page import Picture, picture, replace_report_files, template
 from vibroimpact.results.tables import write_csv
 from vibroimpact.studies.design import find_design
 from vibroimpact.studies.report.axes import study_axes
@@ -54,7 +53,7 @@ def write_study_report(study: Study, folder: Path) -> None:
     InputError
         If the folder can't be written.
     """
-    write_beside(folder, partial(_write, study), goes=(SENSITIVITY, f"{FIGURES}/*.*"))
+    replace_report_files(folder, partial(_write, study), stale=(SENSITIVITY, f"{FIGURES}/*.*"))
 
 
 def _write(study: Study, folder: Path) -> None:

@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from vibroimpact.report.layout import new_figure, row_of_axes, wide_axes
-from vibroimpact.report.lettering import lettering
+from vibroimpact.report.style import lettering
 from vibroimpact.studies.report.labels import with_unit
 from vibroimpact.studies.report.outputs import Output
 from vibroimpact.studies.report.ticks import plain_log_ticks

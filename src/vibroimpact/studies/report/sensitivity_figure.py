@@ -9,8 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from vibroimpact.report.layout import WIDTH, new_figure
-from vibroimpact.report.lettering import lettering
-from vibroimpact.report.style import ACCENT, INK, MARK
+from vibroimpact.report.style import ACCENT, INK, MARK, lettering
 from vibroimpact.studies.report.outputs import Output
 from vibroimpact.studies.report.sensitivity import RANGES, RANKS, SOBOL, Sensitivity
 from vibroimpact.studies.study import Study

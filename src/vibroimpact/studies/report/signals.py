@@ -10,8 +10,7 @@ from matplotlib.ticker import MaxNLocator
 from vibroimpact.arrays import Floats
 from vibroimpact.files.plain_names import plain_names
 from vibroimpact.report.layout import label_vertical, new_figure, wide_axes
-from vibroimpact.report.lettering import lettering
-from vibroimpact.report.style import ACCENT, INK, LOOPS
+from vibroimpact.report.style import ACCENT, INK, LOOPS, lettering
 from vibroimpact.studies.drop_variables import SIGNAL
 from vibroimpact.studies.report.labels import BAND, drops_text, with_unit
 from vibroimpact.studies.report.outputs import sampled_output

@@ -5,7 +5,7 @@ from __future__ import annotations
 from rich.console import Group, RenderableType
 from rich.text import Text
 
-from vibroimpact.report.terminal_table import Column, TerminalTable
+from vibroimpact.report.terminal_table import TerminalColumn, TerminalTable
 from vibroimpact.runs.console import doubt_lines
 from vibroimpact.studies.percentiles import PERCENTILES
 from vibroimpact.studies.report.axes import study_axes
@@ -28,14 +28,14 @@ def study_summary(study: Study, width: int) -> RenderableType:
     outputs = ([one for one in there if one.spread.varies] or there)[:_RESULTS]
     found = sensitivity_of(study, outputs)
     told = found if width >= _NARROW else None
-    columns = [Column("result", [with_unit(one.title, one.scale.unit) for one in outputs], words=True)]
+    columns = [TerminalColumn("result", [with_unit(one.title, one.scale.unit) for one in outputs], words=True)]
     for part in _TOLD:
         cells = [digits(one.spread.percentiles[PERCENTILES.index(part)] / one.scale.size) for one in outputs]
-        columns.append(Column(f"{part}\u00a0%", cells))
+        columns.append(TerminalColumn(f"{part}\u00a0%", cells))
     if told is not None:
         named = told.way == RANKS and any(not axis.numeric for axis in study_axes(study))
         heading = "moved most, of keys that are numbers, by" if named else "moved most by"
-        columns.append(Column(heading, [_strongest(told, one.name) for one in outputs], words=True))
+        columns.append(TerminalColumn(heading, [_strongest(told, one.name) for one in outputs], words=True))
     why = [Text(f" {number}: {words}", style="yellow") for number, words in reasons(study)[:_REASONS]]
     restitution, doubts = restitution_sentence(summarize_restitution(study)), doubt_sentences(study)
     return Group(

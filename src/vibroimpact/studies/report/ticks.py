@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vibroimpact.arrays import Floats, Indices
-from vibroimpact.report.lettering import lettering
+from vibroimpact.report.style import lettering
 from vibroimpact.studies.report.axes import StudyAxis
 from vibroimpact.studies.report.labels import with_unit
 from vibroimpact.units.display import multiple
