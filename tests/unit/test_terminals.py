@@ -34,7 +34,8 @@ from vibroimpact.paper.printed_and_computed import Verdict
 from vibroimpact.paper.report import summary
 from vibroimpact.report.terminal import TerminalConsole
 from vibroimpact.results.result import result_of
-from vibroimpact.runs.console import case_explained, result_summary, versions_table
+from vibroimpact.runs.case_explained import case_explained
+from vibroimpact.runs.terminal import result_summary, versions_table
 from vibroimpact.studies.compute_study import compute_study
 from vibroimpact.studies.report.explained import sweep_explained
 from vibroimpact.studies.report.text import study_summary

@@ -43,7 +43,7 @@ def check(case: CaseArgument) -> None:
     from vibroimpact.calibration.section import check_target
     from vibroimpact.cases.build import check_drop
     from vibroimpact.cases.reader import load_case, load_table, named
-    from vibroimpact.runs.console import case_explained
+    from vibroimpact.runs.case_explained import case_explained
     from vibroimpact.studies.report.explained import sweep_explained
     from vibroimpact.studies.sweep import read_sweep
 
@@ -64,9 +64,10 @@ def _run(name: str, output: Path | None, *, force: bool) -> None:
     from vibroimpact.cases.reader import load_case, named
     from vibroimpact.dynamics.simulate import simulate
     from vibroimpact.report.progress import patient_progress
-    from vibroimpact.results.folder import check_free, read_result
-    from vibroimpact.runs.console import result_summary
-    from vibroimpact.runs.save import save_result
+    from vibroimpact.results.folder import check_free, new_folder
+    from vibroimpact.runs.page import write_report
+    from vibroimpact.runs.save import write_data
+    from vibroimpact.runs.terminal import result_summary
 
     case = load_case(name)
     target = Path(stem(name)) if output is None else output
@@ -79,10 +80,12 @@ def _run(name: str, output: Path | None, *, force: bool) -> None:
             problem = named(name, lambda: case.to_problem(progress, note))
         with patient_progress("simulating", screen) as progress:
             response = simulate(problem, progress)
-        folder = save_result(response, target, force=force)
-    del response  # what is read back may be as large
-    screen.print(result_summary(read_result(folder), screen.width))
-    say(f"wrote {folder / 'report.html'}")
+        with new_folder(target, force=force) as folder:
+            result = write_data(response, folder)
+            del response  # of a long run it takes as much memory as the result, and drawing takes more
+            write_report(result, folder)
+    screen.print(result_summary(result, screen.width))
+    say(f"wrote {target / 'report.html'}")
 
 
 @app.command()

@@ -28,7 +28,7 @@ def fine_history(response: Response) -> dict[str, Floats]:
     times = []
     for touch, duration in zip(impacts["time_s"][:_VISITS], impacts["duration_s"][:_VISITS], strict=True):
         if plate is not None:
-            times.append(touch + _spread(close_span(1.0 / float(plate.frequencies[0])), plate.frequencies))
+            times.append(touch + _spread(resolved_span(1.0 / float(plate.frequencies[0])), plate.frequencies))
         if sphere is not None:
             times.append(touch + _spread(2.0 * float(duration), sphere.frequencies))
     wanted = np.concatenate([np.zeros(0), *times])
@@ -47,6 +47,6 @@ def _spread(span: float, frequencies: Floats) -> Floats:
     return np.asarray(np.arange(min(_MOST, int(span / step) + 1)) * step)
 
 
-def close_span(period: float) -> float:
+def resolved_span(period: float) -> float:
     """Return how long a plate is followed closely after first touch [s], whose lowest mode has a period [s]."""
     return 1.5 * period

@@ -23,12 +23,10 @@ from vibroimpact.files.damaged_part import check_hdf5
 from vibroimpact.files.hdf5 import why
 from vibroimpact.files.recover import recover
 from vibroimpact.files.write_folder import whole_folder
+from vibroimpact.results.csv_files import write_impacts, write_signal_files
 from vibroimpact.results.netcdf import read_groups, write_groups
 from vibroimpact.results.result import Result
-from vibroimpact.results.signal_csv import write_signal_files
-from vibroimpact.results.summary import summary_of
-from vibroimpact.results.summary_types import check_types
-from vibroimpact.results.tables import write_impacts
+from vibroimpact.results.summary import check_types, summary_of
 
 SUMMARY, CASE, DATA = "summary.json", "case.toml", "result.nc"
 
@@ -143,16 +141,16 @@ def read_result(directory: str | PathLike[str]) -> Result:
             case = tomllib.loads((folder / name).read_text(encoding="utf-8"))
         name = DATA
         check_hdf5(folder / name, expected.get(name))
-        return _result(case, summary, read_groups(folder / name))
+        return _result_from(case, summary, read_groups(folder / name))
     except InputError:
         raise
     except DamageError as error:
-        raise InputError(f"{folder / name}: {error}; {_anew(folder, name)}") from None
+        raise InputError(f"{folder / name}: {error}; {_remedy(folder, name)}") from None
     except Exception as error:  # of many kinds, as files are damaged in many ways
-        raise InputError(f"{folder / name}: the file is missing or damaged: {_why(error)}; {_anew(folder, name)}") from None
+        raise InputError(f"{folder / name}: the file is missing or damaged: {_cause(error)}; {_remedy(folder, name)}") from None
 
 
-def _result(case: Mapping[str, Any], summary: Mapping[str, Any], groups: Mapping[str, Mapping[str, Any]]) -> Result:
+def _result_from(case: Mapping[str, Any], summary: Mapping[str, Any], groups: Mapping[str, Mapping[str, Any]]) -> Result:
     missing = set(IMPACT_COLUMNS) - set(groups["impacts"])
     if missing:
         raise KeyError(f"no {', '.join(sorted(missing))}")
@@ -176,13 +174,13 @@ def _result(case: Mapping[str, Any], summary: Mapping[str, Any], groups: Mapping
     )
 
 
-def _why(error: Exception) -> str:
+def _cause(error: Exception) -> str:
     if isinstance(error, KeyError):
         return f"it has no {error.args[0]}" if error.args and not str(error.args[0]).startswith("no ") else str(error.args[0])
     return why(error)
 
 
-def _anew(folder: Path, name: str) -> str:
+def _remedy(folder: Path, name: str) -> str:
     """Return what to do about a file of a result that is damaged."""
     if name == CASE or not (folder / CASE).is_file():
         return "make the result anew"

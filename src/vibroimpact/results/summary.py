@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from typing import Any
 
+from vibroimpact.results.csv_files import impact_rows
 from vibroimpact.results.result import Result
-from vibroimpact.results.tables import impact_rows
 
 
 def summary_of(result: Result) -> dict[str, Any]:
@@ -50,3 +51,29 @@ def _of_vibration(result: Result) -> dict[str, Any]:
         "change_by_impact": change,
         "sensors": sensors,
     }
+
+
+def check_types(summary: Mapping[str, Any]) -> None:
+    """Raise unless what is read back of a summary is of the kinds that it should be.
+
+    Raises
+    ------
+    ValueError
+        If something is of another kind.
+    """
+    _check("status", isinstance(summary["status"], str))
+    for key, kinds in (("provenance", (str,)), ("deformation", (str, int, float)), ("truncation", (int, float, type(None)))):
+        table = summary.get(key, {})
+        _check(key, isinstance(table, dict) and all(isinstance(value, kinds) for value in table.values()))
+    for body in ("sphere", "plate"):
+        peaks = summary.get(body, {})
+        _check(body, isinstance(peaks, dict) and all(_is_peak(value) for value in peaks.values()))
+
+
+def _is_peak(value: Any) -> bool:
+    return all(one is None or isinstance(one, (int, float)) for one in (value if isinstance(value, list) else [value]))
+
+
+def _check(key: str, right: bool) -> None:
+    if not right:
+        raise ValueError(f"{key} is not of the kind that it should be")

@@ -34,7 +34,7 @@ class SurfaceGrid:
     weights: csr_array
     on_body: Bools
 
-    def of(self, values: Floats) -> Floats:
+    def interpolate(self, values: Floats) -> Floats:
         """Return values at the points (..., rows, columns) of those at the nodes (..., nodes); NaN beside the body."""
         flat = values.reshape(-1, values.shape[-1])
         found = np.asarray((self.weights @ flat.T).T).reshape(-1, *self.on_body.shape)

@@ -20,7 +20,7 @@ from vibroimpact.report.projection import TILT, depth, project, show_whole
 from vibroimpact.report.style import INK, style
 from vibroimpact.results.deflection import Deflection
 from vibroimpact.results.result import Result
-from vibroimpact.runs.windows import touch_height
+from vibroimpact.runs.figure_data import touch_height
 from vibroimpact.units.display import fixed, text
 
 _SIZE, _DPI = (5.8, 3.3), 100
@@ -42,7 +42,7 @@ def animate(result: Result) -> bytes:
     deflection = result.deflection
     assert deflection is not None  # who asks has seen to it
     with style():
-        scene = _Scene(result, deflection)
+        scene = _AnimationScene(result, deflection)
         frames = [Image.fromarray(scene.frame(number)) for number in range(len(deflection.time))]
     palette = _palette()
     plain = [frame.quantize(palette=palette, dither=Image.Dither.NONE) for frame in frames]
@@ -71,7 +71,7 @@ def exaggeration(deflection: Deflection) -> float:
     return float(max((step * power for step in (1.0, 2.0, 5.0) if step * power <= wanted), default=power))
 
 
-class _Scene:
+class _AnimationScene:
     """What is drawn: all that stays is drawn once, and what moves over it."""
 
     def __init__(self, result: Result, deflection: Deflection) -> None:

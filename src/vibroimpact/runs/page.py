@@ -14,8 +14,7 @@ from vibroimpact.report.figure_files import save_figures
 from vibroimpact.report.page import Picture, picture, template
 from vibroimpact.results.result import Result
 from vibroimpact.runs.animation import animate
-from vibroimpact.runs.captions import caption, left_out
-from vibroimpact.runs.captions_motion import animation_caption, sensors_left_out
+from vibroimpact.runs.captions import animation_caption, caption, left_out, sensors_left_out
 from vibroimpact.runs.deformation import deformation_rows, treatment_sentence
 from vibroimpact.runs.figures import draw_figures
 from vibroimpact.runs.sensor_figures import drawn_sensors
@@ -88,7 +87,7 @@ def render_page(result: Result, pictures: Mapping[str, bytes], animation: bytes 
         sensors_left_out=sensors_left_out(result),
         animation=_animation(result, animation),
         animation_file=ANIMATION,
-        case=_as_text(result.case),
+        case=_case_text(result.case),
         doubts=result.doubts,
         provenance=result.provenance,
     )
@@ -107,5 +106,5 @@ def _animation(result: Result, gif: bytes) -> Picture | None:
     return Picture("animation", "Plate and ball in slow motion", animation_caption(result), source)
 
 
-def _as_text(case: Mapping[str, Any]) -> str:
+def _case_text(case: Mapping[str, Any]) -> str:
     return tomli_w.dumps(case) if case else ""

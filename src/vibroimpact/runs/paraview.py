@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.results.deflection import contact_place, first_frames
+from vibroimpact.results.deflection import contact_point_of, frame_times_of
 
 if TYPE_CHECKING:
     from vibroimpact.dynamics.response import Response
@@ -39,7 +39,7 @@ def write_paraview(response: Response, directory: Path) -> None:
     """
     from vibroimpact.meshes.vtu_series import series_size, write_vtu_series  # which loads sparse matrices
 
-    models, times = response.problem.models, first_frames(response)
+    models, times = response.problem.models, frame_times_of(response)
     if not models or not len(times):
         return
     size = sum(series_size(model.mesh, 2 if name == "sphere" else 1) for name, model in models.items())
@@ -77,6 +77,6 @@ def _at_first_touch(response: Response, offset: float) -> Mesh:
     sphere, plate = response.problem.models["sphere"], response.problem.models.get("plate")
     above = np.zeros(3)
     if plate is not None:
-        above = plate.at(np.array([contact_place(response, plate)]))[1][0]
+        above = plate.at(np.array([contact_point_of(response, plate)]))[1][0]
     move = above + np.array([0.0, 0.0, offset]) - sphere.properties.centre
     return replace(sphere.mesh, nodes=sphere.mesh.nodes + move)

@@ -12,9 +12,9 @@ from vibroimpact.report.layout import label_vertical, new_figure, row_of_axes, w
 from vibroimpact.report.lettering import lettering
 from vibroimpact.report.style import ACCENT, INK, MARK
 from vibroimpact.results.result import Result
-from vibroimpact.runs.motion_figures import plate_span
+from vibroimpact.runs.figure_data import decimated, decimated_samples
 from vibroimpact.runs.spectrum import amplitude_spectrum, first_response
-from vibroimpact.runs.windows import thinned, thinned_samples
+from vibroimpact.runs.vibration_figures import plate_span
 from vibroimpact.units.display import Multiple, digits, largest, multiple
 
 MOST = 8
@@ -40,7 +40,7 @@ def draw_sensor(result: Result, name: str) -> Figure:
     figure = new_figure(5.6)
     whole = wide_axes(figure, 3.65, 1.6)
     clock = multiple("s", signal.times(len(signal.value) - 1, len(signal.value)))
-    time, value = thinned_samples(signal)
+    time, value = decimated_samples(signal)
     whole.plot(time / clock.size, value / scale.size, color=INK, linewidth=0.8)
     whole.margins(x=0.01, y=0.08)
     whole.set_title(f"{quantity.capitalize()} at {lettering(name)}, whole run{_mark_range(whole, result, name, scale)}")
@@ -84,7 +84,7 @@ def _draw_spectrum(axes: Axes, result: Result, name: str) -> None:
     found = amplitude_spectrum(signal.value[first_response(result, name)], signal.sensor.rate)
     unit = multiple(signal.sensor.unit, largest(found.amplitude[1:]))
     amplitude, most = found.amplitude[1:] / unit.size, largest(found.amplitude[1:]) / unit.size
-    axes.semilogy(*thinned(found.frequency[1:] / 1e3, np.maximum(amplitude, 1e-12 * most + 1e-300)), color=ACCENT, linewidth=0.8)
+    axes.semilogy(*decimated(found.frequency[1:] / 1e3, np.maximum(amplitude, 1e-12 * most + 1e-300)), color=ACCENT, linewidth=0.8)
     modes = np.array(result.frequencies("plate"))
     modes = modes[modes < 0.5 * signal.sensor.rate] / 1e3
     axes.plot(modes, np.full(len(modes), 0.02), "|", markersize=5, color=MARK, markeredgewidth=0.6, transform=axes.get_xaxis_transform())

@@ -13,7 +13,7 @@ _LONGEST = 2**17
 """Samples that are transformed at most."""
 
 
-class Spectrum(NamedTuple):
+class AmplitudeSpectrum(NamedTuple):
     """A one-sided spectrum: frequencies [Hz], amplitudes in the unit of the signal, and how long a piece it is of [s]."""
 
     frequency: Floats
@@ -21,7 +21,7 @@ class Spectrum(NamedTuple):
     span: float
 
 
-def amplitude_spectrum(values: Floats, rate: float) -> Spectrum:
+def amplitude_spectrum(values: Floats, rate: float) -> AmplitudeSpectrum:
     """Return the amplitude spectrum of a response that starts at once and dies away.
 
     The window is the falling half of Hann's, which leaves the start as it is and fades the end out. A steady tone reads its
@@ -44,7 +44,7 @@ def amplitude_spectrum(values: Floats, rate: float) -> Spectrum:
     window = 0.5 + 0.5 * np.cos(np.pi * np.arange(len(values)) / len(values))
     amplitude = np.abs(np.fft.rfft(window * values)) / window.sum()
     amplitude[1:] *= 2.0
-    return Spectrum(np.arange(len(amplitude)) * rate / len(values), amplitude, len(values) / rate)
+    return AmplitudeSpectrum(np.arange(len(amplitude)) * rate / len(values), amplitude, len(values) / rate)
 
 
 def first_response(result: Result, name: str) -> slice:

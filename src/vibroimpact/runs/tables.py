@@ -46,7 +46,7 @@ _SLOW = 0.1  # of the approach speed: what leaves more slowly counts as that
 SUM, PUT_IN = "Sum", "Put in at the start"
 
 
-class Table(NamedTuple):
+class ImpactTable(NamedTuple):
     """A table: headers with their units, rows, and what is left out between `head` and `tail`."""
 
     headers: list[tuple[str, str]]
@@ -64,21 +64,21 @@ class LedgerRow(NamedTuple):
     part: str
 
 
-def impact_table(result: Result) -> Table:
+def impact_table(result: Result) -> ImpactTable:
     """Return the impact table in multiples of units; a long one without its middle."""
     change = result.change_by_impact
     shown = shown_columns(result)
-    columns = [column(name, result.impacts[name], change) for name in shown]
+    columns = [formatted_column(name, result.impacts[name], change) for name in shown]
     headers = [(ALL_IMPACT_COLUMNS[name].label, unit) for name, (unit, _) in zip(shown, columns, strict=True)]
     rows = [list(row) for row in zip(*(cells for _, cells in columns), strict=True)]
     if len(rows) <= _MOST_ROWS:
-        return Table(headers, rows, 0, [])
-    return Table(headers, rows[:_FIRST], len(rows) - _FIRST - _LAST, rows[-_LAST:])
+        return ImpactTable(headers, rows, 0, [])
+    return ImpactTable(headers, rows[:_FIRST], len(rows) - _FIRST - _LAST, rows[-_LAST:])
 
 
 def shown_columns(result: Result) -> list[str]:
     """Return the columns of the impact table that are shown of a result."""
-    told = {"contacts": several_contacts(result.impacts), "sensitivity": takes_digits(result.change_by_impact)}
+    told = {"contacts": several_contacts(result.impacts), "sensitivity": loses_digits(result.change_by_impact)}
     return [name for name in _SHOWN_COLUMNS if told.get(name, True)]
 
 
@@ -91,11 +91,11 @@ def ledger_table(result: Result) -> tuple[str, list[LedgerRow]]:
     """Return the unit of the ledger at the end and its entries, their sum and the energy put in, with the digits that are certain."""
     put_in, scale = result.energy["input_J"], multiple("J", result.energy["input_J"])
     values = {name: result.energy[name] for name in (*LEDGER, *VIBRATION_LEDGER) if name in result.energy}
-    figures = {name: _certain_of(name, result) for name in values}
+    figures = {name: _certain_figures_of_energy(name, result) for name in values}
     values |= {SUM: sum(values.values()), PUT_IN: put_in}
 
     def shown(name: str, value: float, whole: float) -> str:
-        return certain(_beside(value, whole, 6), value, figures.get(name, ALL_FIGURES))
+        return certain(_to_same_decimals(value, whole, 6), value, figures.get(name, ALL_FIGURES))
 
     rows = []
     for name, value in values.items():
@@ -108,13 +108,13 @@ def ledger_table(result: Result) -> tuple[str, list[LedgerRow]]:
 def energy_text(result: Result, *entries: str) -> str:
     """Return the sum of entries of the ledger, with its unit and its part of the energy put in, in the digits that are certain."""
     value, put_in = sum(result.energy[entry] for entry in entries), result.energy["input_J"]
-    figures = min(_certain_of(entry, result) for entry in entries)
+    figures = min(_certain_figures_of_energy(entry, result) for entry in entries)
     scale, part = multiple("J", value), 100.0 * value / put_in
     percent = certain(fixed(part, 1), part, figures)
     return f"{certain(digits(value / scale.size), value / scale.size, figures)}\u00a0{scale.unit} ({percent} %)"
 
 
-def _certain_of(entry: str, result: Result) -> int:
+def _certain_figures_of_energy(entry: str, result: Result) -> int:
     """Return how many significant figures of an entry of the ledger are certain.
 
     Energy goes with the square of the speed, and changes twice as much. What is left in motion or stored is as certain as the speed
@@ -136,7 +136,7 @@ def _certain_of(entry: str, result: Result) -> int:
     return int(certain_figures(2.0 * change[-1] * max(1.0, energy / value if value > 0.0 else 1.0)))
 
 
-def _beside(value: float, whole: float, significant: int) -> str:
+def _to_same_decimals(value: float, whole: float, significant: int) -> str:
     """Return a part with the decimals of its whole, so that they add up by eye; a very small one in digits of its own."""
     if abs(value) < 1e-12 * whole:
         return "0"
@@ -146,7 +146,7 @@ def _beside(value: float, whole: float, significant: int) -> str:
     return fixed(value, decimals) if abs(value) >= 100.0 * 10.0**-decimals else digits(value, 3)
 
 
-def figures_of(name: str, change: Floats) -> Indices:
+def significant_figures(name: str, change: Floats) -> Indices:
     """Return how many significant figures are certain of a column of the impact table, for each impact.
 
     Parameters
@@ -158,7 +158,7 @@ def figures_of(name: str, change: Floats) -> Indices:
 
     Examples
     --------
-    >>> figures_of("max_force_N", np.array([0.0, 0.003])).tolist(), figures_of("time_s", np.array([0.0, 0.003])).tolist()
+    >>> significant_figures("max_force_N", np.array([0.0, 0.003])).tolist(), significant_figures("time_s", np.array([0.0, 0.003])).tolist()
     ([17, 3], [17, 17])
     """
     if name in _EXACT:
@@ -166,19 +166,19 @@ def figures_of(name: str, change: Floats) -> Indices:
     return certain_figures(np.concatenate([change[:1], change[:-1]]) if name in _ARRIVAL else change)
 
 
-def entry_text(result: Result, impact: int, name: str, unit: str) -> str:
+def impact_text(result: Result, impact: int, name: str, unit: str) -> str:
     """Return an entry of the impact table with its unit, in the digits that it has where the drop is sensitive."""
-    value, figures = float(result.impacts[name][impact]), int(figures_of(name, result.change_by_impact)[impact])
+    value, figures = float(result.impacts[name][impact]), int(significant_figures(name, result.change_by_impact)[impact])
     best = multiple(unit, value)
     return f"{certain(digits(value / best.size), value / best.size, figures)}\u00a0{best.unit}".rstrip("\u00a0")
 
 
-def takes_digits(change: Floats) -> bool:
+def loses_digits(change: Floats) -> bool:
     """Do some impacts have fewer significant figures than tables show, as a change of the drop grows?"""
     return bool(certain_figures(change).min(initial=_SHOWN) < _SHOWN)
 
 
-def column(name: str, values: Floats, change: Floats | None = None) -> tuple[str, list[str]]:
+def formatted_column(name: str, values: Floats, change: Floats | None = None) -> tuple[str, list[str]]:
     """Return unit and cells of a column of the impact table, with the digits that they have where a change of the drop grows."""
     kind = ALL_IMPACT_COLUMNS[name].values
     if kind == "count":
@@ -186,7 +186,7 @@ def column(name: str, values: Floats, change: Floats | None = None) -> tuple[str
     if kind == "factor":
         return "", [digits(value, 2) for value in values]
     unit, values, cells = _cells(name, values)
-    figures = figures_of(name, np.zeros(len(values)) if change is None else change).tolist()
+    figures = significant_figures(name, np.zeros(len(values)) if change is None else change).tolist()
     return unit, [certain(cell, value, number) for cell, value, number in zip(cells, values, figures, strict=True)]
 
 

@@ -18,7 +18,7 @@ from vibroimpact.paper.report.compared import Compared
 from vibroimpact.paper.report.line_styles import LOOKS
 from vibroimpact.report.layout import heading, label_vertical, new_figure, row_of_axes
 from vibroimpact.report.style import INK
-from vibroimpact.runs.windows import thinned, window
+from vibroimpact.runs.figure_data import decimated, history_window
 from vibroimpact.units.display import multiple
 
 _BOTTOM, _BETWEEN, _TOP = 0.85, 0.4, 0.56
@@ -86,7 +86,7 @@ def _after_touch(shown: Compared, response: Response, span: float) -> tuple[Floa
     """Return times since first touch [s] and values, around the first impact."""
     time, values = shown.timeline(response)
     touch = float(response.impacts["time_s"][0])
-    part = window({"time_s": time, "value": values}, touch - _BEFORE * span, touch + span)
+    part = history_window({"time_s": time, "value": values}, touch - _BEFORE * span, touch + span)
     return part["time_s"] - touch, part["value"]
 
 
@@ -104,7 +104,7 @@ def _draw_column(
     scale = multiple(shown.unit, list(marks.values()) if nothing else everything)
     for axes, lines, row in zip(column, rows.values(), parts, strict=True):
         for line, (time, values) in zip(lines, row, strict=True):
-            axes.plot(*thinned(time / clock, values / scale.size), **LOOKS[line.place])
+            axes.plot(*decimated(time / clock, values / scale.size), **LOOKS[line.place])
         if not any(np.any(values) for _, values in row):
             axes.text(0.5, 0.4, "zero", transform=axes.transAxes, ha="center", fontsize=8.0)
     low, high = (float(pick(everything)) / scale.size for pick in (np.nanmin, np.nanmax))

@@ -23,8 +23,8 @@ from vibroimpact.paper.report.rendered_part import make_part
 from vibroimpact.paper.runs import Runs
 from vibroimpact.report.figure_files import save_figures
 from vibroimpact.report.write_files import write_beside
+from vibroimpact.results.csv_files import write_csv
 from vibroimpact.results.folder import SUMMARY, new_folder
-from vibroimpact.results.tables import write_csv
 
 _PARTS = "parts"
 

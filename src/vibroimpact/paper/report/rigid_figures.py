@@ -17,7 +17,7 @@ from vibroimpact.paper.report.drawing import Drawing
 from vibroimpact.paper.report.line_styles import LOOKS
 from vibroimpact.paper.runs import Runs, history_of
 from vibroimpact.report.layout import heading, label_vertical, new_figure, row_of_axes, wide_axes
-from vibroimpact.runs.windows import MARGIN, thinned, window
+from vibroimpact.runs.figure_data import MARGIN, decimated, history_window
 from vibroimpact.units.display import digits, fixed, largest, multiple, text
 
 THEORY, CONSTANT, VARIABLE = "theory", "constant damping", "variable damping"
@@ -81,7 +81,7 @@ def _draw_run(axes: Axes, responses: Responses, what: RigidFigure) -> None:
     scale = multiple(what.unit, [largest(history_of(response)[what.column]) for response in responses.values()])
     for (name, response), look in zip(responses.items(), LOOKS, strict=False):
         history = history_of(response)
-        axes.plot(*thinned(history["time_s"], history[what.column] / scale.size), label=name, **look)
+        axes.plot(*decimated(history["time_s"], history[what.column] / scale.size), label=name, **look)
     axes.set_title(f"{what.quantity[0].upper()}{what.quantity[1:]}: whole run")
     axes.set_xlabel("Time [s]")
     label_vertical(axes, f"{_short(what)} [{scale.unit}]")
@@ -110,7 +110,7 @@ def _draw_contacts(figure: Figure, responses: Responses, what: RigidFigure) -> N
 def _contact(response: Response, impact: int, column: str) -> tuple[Floats, Floats]:
     """Return a column around a contact, with time since first touch [s]; of the position, what it is above that of first touch."""
     touch, duration = (float(response.impacts[name][impact]) for name in ("time_s", "duration_s"))
-    part = window(history_of(response), touch - MARGIN * duration, touch + (1.0 + MARGIN) * duration)
+    part = history_window(history_of(response), touch - MARGIN * duration, touch + (1.0 + MARGIN) * duration)
     base = float(response.problem.sphere.contact_offset) if column == "position_m" else 0.0
     return part["time_s"] - touch, part[column] - base
 

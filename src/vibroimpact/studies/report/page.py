@@ -8,7 +8,7 @@ from pathlib import Path
 from vibroimpact.report.figure_files import save_figures
 from vibroimpact.report.page import Picture, picture, template
 from vibroimpact.report.write_files import write_beside
-from vibroimpact.results.tables import write_csv
+from vibroimpact.results.csv_files import write_csv
 from vibroimpact.studies.design import find_design
 from vibroimpact.studies.report.axes import study_axes
 from vibroimpact.studies.report.doubts import COUNTED_FROM, doubt_sentences

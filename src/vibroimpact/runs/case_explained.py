@@ -1,12 +1,11 @@
-"""What the command line prints of a drop: its results, and a case explained."""
+"""A case explained in the terminal: its resolved values, what to expect of a run, its cost and the doubts about it."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Container, Iterable
+from collections.abc import Container
 from dataclasses import fields
 
-import numpy as np
 from rich.console import Group, RenderableType
 from rich.text import Text
 
@@ -27,89 +26,12 @@ from vibroimpact.cases.rigid import (
 )
 from vibroimpact.cases.schema import SensorSection
 from vibroimpact.contact.law import CompliantLaw, ContactLaw, unit_of
-from vibroimpact.dynamics.columns import ALL_IMPACT_COLUMNS
 from vibroimpact.dynamics.problem import STANDARD_GRAVITY
 from vibroimpact.dynamics.restitution import achieved_restitution, law_achieving
 from vibroimpact.errors import InputError
 from vibroimpact.materials import RIGID, Material
-from vibroimpact.report.terminal_table import Column, TerminalTable, facts, numbers, with_gap
-from vibroimpact.results.result import Result
-from vibroimpact.runs.deformation import deformation_rows, treatment_sentence
-from vibroimpact.runs.tables import PUT_IN, SUM, column, ledger_table, shown_columns
-
-_FIRST_LEFT_OUT = (
-    "max_acceleration_m_s2",
-    "energy_lost_J",
-    "separation_speed_m_s",
-    "restitution_asked",
-    "max_indentation_m",
-    "contacts",
-    "rebound_height_m",
-    "duration_s",
-    "approach_speed_m_s",
-)
-"""Columns that a narrow terminal does without, in this order, until the others fit."""
-_FIRST_ROWS, _LAST_ROWS = 15, 3
-
-
-def impact_table(result: Result, width: int) -> RenderableType:
-    """Return the table of impacts for a terminal of a width: columns that do not fit are left out, numbers are not cut.
-
-    The middle of a long table is left out. Units are those of the page; numbers have the digits that they have where the drop is
-    sensitive.
-    """
-    impacts, change = result.impacts, result.change_by_impact
-    number = len(impacts["impact"])
-    if not number:
-        return Text("No impact within the run.")
-    rows = [index for index in range(number) if not _FIRST_ROWS <= index < number - _LAST_ROWS]
-    asked = bool(np.isfinite(impacts["restitution_asked"]).any())
-    shown = [name for name in shown_columns(result) if asked or name != "restitution_asked"]
-    cells = {name: column(name, impacts[name], change) for name in shown}
-    columns = {
-        name: numbers(ALL_IMPACT_COLUMNS[name].short, unit, [shown[index] for index in rows]) for name, (unit, shown) in cells.items()
-    }
-    left_out = [name for name in _FIRST_LEFT_OUT if name in columns]
-    while left_out and TerminalTable(tuple(columns.values())).width > width:
-        del columns[left_out.pop(0)]
-    table = TerminalTable(with_gap(tuple(columns.values()), _FIRST_ROWS) if len(rows) < number else tuple(columns.values()))
-    note = Text(" A wider terminal shows more columns; impacts.csv has all, in SI units.", style="dim")
-    return Group(table, *([note] if len(columns) < len(cells) else []))
-
-
-def energy_table(result: Result) -> RenderableType:
-    """Return the ledger at the end of the run, without the entries that are zero."""
-    unit, ledger = ledger_table(result)
-    whole = result.energy["input_J"]
-    shown = [row for row in ledger if row.name != SUM and abs(result.energy.get(row.name, whole)) > 1e-12 * abs(whole)]  # less is rounding
-    names = [row.name.removesuffix("_J").replace("_", " ") if row.name != PUT_IN else "put in" for row in shown]
-    columns = (
-        Column("energy at the end", names, words=True),
-        numbers("", unit, [row.energy for row in shown]),
-        Column("%", [row.part for row in shown]),
-    )
-    closure = Text(f" closure {result.energy['closure_relative']:.1e} of the energy put in", style="dim")
-    return Group(TerminalTable(columns, bold=(len(shown) - 1,)), closure)
-
-
-def result_summary(result: Result, width: int) -> RenderableType:
-    """Return what a run prints in a terminal of a width: the tables, the status, and what to doubt."""
-    return Group(
-        Text(result.name, style="bold"),
-        impact_table(result, width),
-        Text(),
-        energy_table(result),
-        Text(),
-        Text(result.status),
-        *_deformation(result),
-        *doubt_lines(result.doubts),
-    )
-
-
-def _deformation(result: Result) -> list[RenderableType]:
-    """Return how the bodies deform, where they do: a sentence, and its numbers."""
-    rows, sentence = deformation_rows(result), treatment_sentence(result)
-    return [Text(), *([Text(sentence)] if sentence else []), *([facts(rows, indent=1)] if rows else [])] if rows or sentence else []
+from vibroimpact.report.terminal_table import facts
+from vibroimpact.runs.terminal import doubt_lines
 
 
 def _below(case: Case) -> str:
@@ -233,11 +155,6 @@ def _restitution_lines(law: ContactLaw, mass: float, speed: float) -> list[str]:
     return lines
 
 
-def versions_table(rows: Iterable[tuple[str, str]]) -> RenderableType:
-    """Return a plain table of two columns."""
-    return facts(rows)
-
-
 def _stuff(material: Material) -> str:
     name = material.name or "a material"
     return (
@@ -245,8 +162,3 @@ def _stuff(material: Material) -> str:
         if material is RIGID
         else f"{name} (E {material.youngs_modulus:.4g} Pa, nu {material.poissons_ratio:g}, {material.density:g} kg/m3)"
     )
-
-
-def doubt_lines(found: Iterable[str]) -> list[RenderableType]:
-    """Return what to doubt, a paragraph each."""
-    return [Text(f"Doubt: {doubt}.", style="yellow") for doubt in found]

@@ -10,7 +10,7 @@ from vibroimpact.arrays import Floats, Indices
 from vibroimpact.report.layout import label_vertical, new_figure, wide_axes
 from vibroimpact.report.style import ENLARGED, LOOPS, MARK
 from vibroimpact.results.result import Result
-from vibroimpact.runs.windows import contacts, pressed
+from vibroimpact.runs.figure_data import contact_history, contacts_with_duration
 from vibroimpact.units.display import Multiple, multiple, text
 
 _MOST_OTHERS = 60
@@ -19,7 +19,7 @@ _MOST_OTHERS = 60
 
 def draw_loops(result: Result) -> Figure:
     """Draw force over indentation of the contacts, labelled by impact and approach speed."""
-    figure, found = new_figure(5.0), contacts(result)
+    figure, found = new_figure(5.0), contacts_with_duration(result)
     axes = wide_axes(figure, 0.5, 4.2)
     depth, force = multiple("m", result.impacts["max_indentation_m"]), multiple("N", result.impacts["max_force_N"])
     labelled = found if len(found) <= len(LOOPS) else found[:ENLARGED]
@@ -37,7 +37,7 @@ def draw_loops(result: Result) -> Figure:
 
 
 def _loop(result: Result, impact: int, depth: Multiple, force: Multiple) -> tuple[Floats, Floats]:
-    part = pressed(result, impact)
+    part = contact_history(result, impact)
     return part["indentation_m"] / depth.size, part["force_N"] / force.size
 
 
@@ -62,5 +62,5 @@ def _mark_largest_forces(axes: Axes, result: Result, shown: Indices, depth: Mult
 
 def _indentation_at(result: Result, shown: Indices, when: Floats) -> Floats:
     """Return the indentation of each contact at a time in it [m]."""
-    parts = [pressed(result, impact) for impact in shown]
+    parts = [contact_history(result, impact) for impact in shown]
     return np.array([np.interp(time, part["time_s"], part["indentation_m"]) for time, part in zip(when, parts, strict=True)])

@@ -11,7 +11,7 @@ from vibroimpact.dynamics.columns import ALL_HISTORY_COLUMNS
 from vibroimpact.report.layout import label_vertical, new_figure, wide_axes
 from vibroimpact.report.style import BANDS, INK
 from vibroimpact.results.result import Result
-from vibroimpact.runs.windows import MARGIN, around, enlarged
+from vibroimpact.runs.figure_data import MARGIN, enlarged_contacts, history_around
 from vibroimpact.units.display import Multiple, multiple
 
 _MOTIONS = {
@@ -26,7 +26,7 @@ _COLUMNS = 110
 
 def draw_ledger(result: Result) -> Figure:
     """Draw the ledger's entries stacked, over the whole run and through the first contact where it has a duration."""
-    scale, shown = multiple("J", result.energy["input_J"]), enlarged(result)
+    scale, shown = multiple("J", result.energy["input_J"]), enlarged_contacts(result)
     figure = new_figure(3.3 + (2.8 if len(shown) else 0.0))
     whole = wide_axes(figure, figure.get_figheight() - 2.3, 2.0)
     _draw_run(whole, result, scale)
@@ -40,7 +40,7 @@ def draw_ledger(result: Result) -> Figure:
 
 def _draw_run(axes: Axes, result: Result, scale: Multiple) -> None:
     history = bands_of(result.history)
-    kept = _that_show(result)
+    kept = _drawn_points(result)
     clock = multiple("s", history["time_s"])
     _stack(axes, result, {name: values[kept] for name, values in history.items()}, clock, scale)
     sinks = np.min(history["potential_J"]) < -0.01 * result.energy["input_J"]
@@ -50,7 +50,7 @@ def _draw_run(axes: Axes, result: Result, scale: Multiple) -> None:
 
 def _draw_contact(axes: Axes, result: Result, impact: int, scale: Multiple) -> None:
     duration = result.impacts["duration_s"][impact]
-    part = _resampled(bands_of(around(result, impact)))
+    part = _resampled(bands_of(history_around(result, impact)))
     clock = multiple("s", duration)
     _stack(axes, result, part, clock, scale)
     for edge in (0.0, duration / clock.size):
@@ -88,7 +88,7 @@ def bands_of(history: dict[str, Floats]) -> dict[str, Floats]:
     return bands
 
 
-def _that_show(result: Result) -> Indices:
+def _drawn_points(result: Result) -> Indices:
     """Return which points of the history to draw: evenly spread ones, and those just beside the first contacts."""
     time, touch = result.history["time_s"], result.impacts["time_s"][:45]
     release = touch + result.impacts["duration_s"][:45]

@@ -20,40 +20,35 @@ _COLUMNS = 1500
 _AT_ONCE = 2**17  # points that are sorted at once
 
 
-def contacts(result: Result) -> Indices:
+def contacts_with_duration(result: Result) -> Indices:
     """Return which impacts, counted from 0, have a duration; none with an instantaneous law."""
     found: Indices = np.flatnonzero(result.impacts["duration_s"] > 0.0)
     return found
 
 
-def enlarged(result: Result) -> Indices:
+def enlarged_contacts(result: Result) -> Indices:
     """Return which contacts, counted from 0, are worth enlarging: the first few, unless one fills the run by itself."""
     span = result.history["time_s"][-1] - result.history["time_s"][0]
-    found = contacts(result)
+    found = contacts_with_duration(result)
     short: Indices = found[result.impacts["duration_s"][found] < 0.5 * span]
     return short[:ENLARGED]
 
 
-def around(result: Result, impact: int) -> dict[str, Floats]:
+def history_around(result: Result, impact: int) -> dict[str, Floats]:
     """Return the history around a contact, with time counted from first touch [s]."""
     touch, duration = result.impacts["time_s"][impact], result.impacts["duration_s"][impact]
-    part = window(result.history, touch - MARGIN * duration, touch + (1.0 + MARGIN) * duration)
+    part = history_window(result.history, touch - MARGIN * duration, touch + (1.0 + MARGIN) * duration)
     return {**part, "time_s": part["time_s"] - touch}
 
 
-def within(result: Result, impact: int) -> dict[str, Floats]:
-    """Return the history from first touch to release."""
-    touch = result.impacts["time_s"][impact]
-    return window(result.history, touch, touch + result.impacts["duration_s"][impact])
-
-
-def pressed(result: Result, impact: int) -> dict[str, Floats]:
+def contact_history(result: Result, impact: int) -> dict[str, Floats]:
     """Return the history of a contact, from where the surfaces meet to where they part.
 
     The flight's side of both ends shows the jump of the force there; but in flight there is no indentation, so it is left
     out where the surfaces meet in a dent or part with their neck drawn out. So is the rest of a sphere that stays.
     """
-    part = within(result, impact)
+    touch = result.impacts["time_s"][impact]
+    part = history_window(result.history, touch, touch + result.impacts["duration_s"][impact])
     away = np.abs(part["indentation_m"]) > 1e-9 * np.max(np.abs(part["indentation_m"]))
     first, last = int(away[1] and not away[0]), len(away) - int(away[-2] and not away[-1])
     if result.impacts["separation_speed_m_s"][impact] == 0.0:
@@ -62,7 +57,7 @@ def pressed(result: Result, impact: int) -> dict[str, Floats]:
     return {name: values[first:last] for name, values in part.items()}
 
 
-def window(history: dict[str, Floats], start: float, end: float) -> dict[str, Floats]:
+def history_window(history: dict[str, Floats], start: float, end: float) -> dict[str, Floats]:
     """Return the history between two times [s], with a point on each edge that lies within the run."""
     time = history["time_s"]
     first, last = np.searchsorted(time, start, side="left"), np.searchsorted(time, end, side="right")
@@ -83,22 +78,22 @@ def touch_height(result: Result) -> float:
     return float(result.history["position_m"][first])
 
 
-def gravity(result: Result) -> float:
+def gravity_of(result: Result) -> float:
     """Return the acceleration of gravity [m/s2]: every run begins in flight."""
     return -float(result.history["acceleration_m_s2"][0])
 
 
-def thinned(x: Floats, y: Floats) -> tuple[Floats, Floats]:
+def decimated(x: Floats, y: Floats) -> tuple[Floats, Floats]:
     """Return a long line with the points that show: in each column of the figure its ends and its extremes."""
-    return _thinned(len(x), lambda first, last: (x[first:last], y[first:last]))
+    return _decimated(len(x), lambda first, last: (x[first:last], y[first:last]))
 
 
-def thinned_samples(signal: Signal) -> tuple[Floats, Floats]:
-    """Return times [s] and values of the samples of a signal that show, as `thinned` does."""
-    return _thinned(len(signal.value), lambda first, last: (signal.times(first, last), signal.value[first:last]))
+def decimated_samples(signal: Signal) -> tuple[Floats, Floats]:
+    """Return times [s] and values of the samples of a signal that show, as `decimated` does."""
+    return _decimated(len(signal.value), lambda first, last: (signal.times(first, last), signal.value[first:last]))
 
 
-def _thinned(count: int, part: Callable[[int, int], tuple[Floats, Floats]]) -> tuple[Floats, Floats]:
+def _decimated(count: int, part: Callable[[int, int], tuple[Floats, Floats]]) -> tuple[Floats, Floats]:
     """Return the points that show of a line of so many points, which is looked at in parts: columns of a long one fill gigabytes."""
     if count <= 4 * _COLUMNS:
         return part(0, count)
