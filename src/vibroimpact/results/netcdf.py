@@ -1,4 +1,4 @@
-"""The result as a NetCDF-4 file: groups of variables with units, on dimension scales, through h5py."""
+"""NetCDF-4 file of a result: groups of variables with units and dimension scales, written and read with h5py."""
 
 from __future__ import annotations
 
@@ -17,9 +17,11 @@ from vibroimpact.files.plain_names import plain_names
 from vibroimpact.results.deflection import Deflection
 from vibroimpact.results.result import Result
 
+_AT_ONCE = 2**20  # sample times that are computed and written in one block
+
 
 def write_groups(result: Result, path: Path) -> None:
-    """Write a result as groups of a NetCDF-4 file: impacts, history, energy, and the signals and the deflection if there are any."""
+    """Write a result to a NetCDF-4 file: groups for impacts, history and energy, and for signals and deflection if there are any."""
     with new_hdf5(path) as file:
         file.attrs["title"] = result.name
         file.attrs["status"] = result.status
@@ -35,20 +37,20 @@ def write_groups(result: Result, path: Path) -> None:
 
 
 def read_groups(path: Path) -> dict[str, dict[str, Any]]:
-    """Return the variables of each group of a file that `write_groups` wrote, of which all check sums hold.
+    """Return the variables of each group of a file written by `write_groups`, after verifying their checksums.
 
     Returns
     -------
     dict of str to dict
-        "impacts", "history" and "energy" by their columns; "sensors": the signals by the names of their sensors; and
-        "deflection": the keyword "deflection", which may be None.
+        "impacts", "history" and "energy": arrays by column name; "sensors": signals by sensor name; and "deflection": the
+        deflection, or None, under the key "deflection".
 
     Raises
     ------
     DamageError
-        If a variable is not as it was written.
+        If a variable does not match its checksum.
     OSError, ValueError, KeyError, TypeError
-        If the file is missing, or damaged in another way.
+        If the file is missing or otherwise damaged.
     """
     with h5py.File(path, "r") as file:
         groups: dict[str, dict[str, Any]] = {
@@ -58,7 +60,7 @@ def read_groups(path: Path) -> dict[str, dict[str, Any]]:
 
 
 def _write_group(file: h5py.File, name: str, dimension: str, columns: Mapping[str, Any], meaning: Mapping[str, tuple[str, str]]) -> None:
-    """Write columns of one length; the column `dimension` is their coordinate."""
+    """Write columns of equal length as a group; the column `dimension` is their coordinate variable."""
     group = file.create_group(name, track_order=True)
     scale = None
     for column in (dimension, *(key for key in meaning if key != dimension)):
@@ -71,11 +73,8 @@ def _write_group(file: h5py.File, name: str, dimension: str, columns: Mapping[st
             data.dims[0].attach_scale(scale)
 
 
-_AT_ONCE = 2**20  # times of samples that are written at once
-
-
 def write_signals(file: h5py.File, signals: Mapping[str, Signal]) -> None:
-    """Write each signal as a group of `sensors`, with `time_s` and `value`; nothing if there is none."""
+    """Write each signal as a subgroup of `sensors` with the variables `time_s` and `value`; no group without signals."""
     for name, plain in plain_names(list(signals)).items():
         signal = signals[name]
         sensor, group = signal.sensor, file.create_group(f"sensors/{plain}", track_order=True)
@@ -87,6 +86,7 @@ def write_signals(file: h5py.File, signals: Mapping[str, Signal]) -> None:
         for fact, value in zip(facts, (signal.uncertainty, signal.peak, signal.overload_time), strict=True):
             group.attrs[fact] = value
         number = len(signal.value)
+        # a signal holds no array of times, which would take as much memory as its values: they are written in blocks
         time = group.create_dataset("time_s", (number,), np.float64, chunks=chunk_shape((number,), 8), **PACKED)
         for first in range(0, number, _AT_ONCE):
             time[first : first + _AT_ONCE] = signal.times(first, first + _AT_ONCE)
@@ -98,7 +98,10 @@ def write_signals(file: h5py.File, signals: Mapping[str, Signal]) -> None:
 
 
 def read_signals(file: h5py.File) -> dict[str, Signal]:
-    """Return the signals by the names of their sensors; what an accelerometer added is in them, and only the case tells it."""
+    """Return the signals by sensor name.
+
+    The properties of an accelerometer are not stored, only their effect on the values; the case holds them.
+    """
     found = {}
     for group in file["sensors"].values() if "sensors" in file else ():
         name, told = str(group.attrs["name"]), group.attrs
@@ -111,7 +114,7 @@ def read_signals(file: h5py.File) -> dict[str, Signal]:
 
 
 def write_deflection(file: h5py.File, deflection: Deflection | None) -> None:
-    """Write the plate's upper side as the group `deflection`; nothing if there is none."""
+    """Write the deflection of the plate's upper side as the group `deflection`; no group if it is None."""
     if deflection is None:
         return
     group = file.create_group("deflection", track_order=True)
@@ -139,7 +142,7 @@ def write_deflection(file: h5py.File, deflection: Deflection | None) -> None:
 
 
 def read_deflection(file: h5py.File) -> Deflection | None:
-    """Return the plate's upper side; None if the file has none."""
+    """Return the deflection of the plate's upper side; None if the file has no such group."""
     if "deflection" not in file:
         return None
     group = file["deflection"]

@@ -1,4 +1,4 @@
-"""What `summary.json` holds of a result."""
+"""The content of `summary.json`, and a check of its types when it is read."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from vibroimpact.results.result import Result
 
 
 def summary_of(result: Result) -> dict[str, Any]:
-    """Return a result in short: the impact table, the ledger at the end, and of bodies that vibrate their peaks."""
+    """Return the summary of a result: impact table, final energy ledger, doubts, provenance, and peaks of elastic bodies."""
     return {
         "name": result.name,
         "status": result.status,
@@ -25,7 +25,7 @@ def summary_of(result: Result) -> dict[str, Any]:
 
 
 def _of_vibration(result: Result) -> dict[str, Any]:
-    """Return what the summary has only where bodies vibrate; None in it where a number does not exist."""
+    """Return the entries of a summary that exist only where bodies vibrate; None stands for a number that is not finite."""
     if not result.vibrates:
         return {}
     truncation = {name: value if math.isfinite(value) else None for name, value in result.truncation.items()}
@@ -54,12 +54,14 @@ def _of_vibration(result: Result) -> dict[str, Any]:
 
 
 def check_types(summary: Mapping[str, Any]) -> None:
-    """Raise unless what is read back of a summary is of the kinds that it should be.
+    """Check the types of the entries of a summary that a result is built from.
 
     Raises
     ------
     ValueError
-        If something is of another kind.
+        If an entry has another type than `summary_of` writes.
+    KeyError
+        If the status is missing.
     """
     _check("status", isinstance(summary["status"], str))
     for key, kinds in (("provenance", (str,)), ("deformation", (str, int, float)), ("truncation", (int, float, type(None)))):

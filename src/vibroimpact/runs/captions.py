@@ -1,4 +1,4 @@
-"""What to see in each figure, in a sentence or two, with the numbers of the run."""
+"""Captions of the figures and of the animation of a run, with its numbers."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ from vibroimpact.units.display import certain, digits, fixed, text
 
 
 def caption(name: str, result: Result) -> str:
-    """Return the caption of a figure that the result has."""
+    """Return the caption of a figure of the result, by the name that `draw_figures` gives it."""
     if name in (sensors := drawn_sensors(result)):
         return sensor_caption(result, sensors[name])
     return _WRITERS[name](result)
 
 
 def left_out(result: Result) -> str:
-    """Return a sentence about figures that this run does not have; empty if it has all."""
+    """Return a sentence stating which figures of contact do not exist and why; empty if all exist."""
     if len(contacts_with_duration(result)):
         return ""
     if not len(result.impacts["time_s"]):
@@ -107,7 +107,7 @@ def _energy(result: Result) -> str:
 
 
 def _vibration(result: Result) -> str:
-    """Tell where the energy of vibration went: what is left of it, and what its damping took."""
+    """Return a sentence on the energy of vibration: the part dissipated by damping, and the part left at the end."""
     damped = energy_text(result, "sphere_damping_J", "plate_damping_J")
     left = energy_text(result, "sphere_vibration_J", "sphere_strain_J", "plate_kinetic_J", "plate_strain_J")
     return f" The damping of the bodies took {damped}, and {left} are still in their motion."
@@ -115,13 +115,13 @@ def _vibration(result: Result) -> str:
 
 def _enlarged(result: Result) -> str:
     total = len(contacts_with_duration(result))
-    return (
-        f"Of the {total} contacts the first {ENLARGED} are enlarged." if len(enlarged_contacts(result)) < total and total > ENLARGED else ""
-    )
+    if total <= ENLARGED or len(enlarged_contacts(result)) >= total:
+        return ""
+    return f"Of the {total} contacts the first {ENLARGED} are enlarged."
 
 
 def _in_whole_run(result: Result) -> str:
-    """Tell that contacts look like lines in the whole run, where they do."""
+    """Return a sentence stating that contacts are too short to be resolved in the whole run; empty if they take over 2 % of it."""
     found, span = contacts_with_duration(result), result.history["time_s"][-1]
     part = float(np.sum(result.impacts["duration_s"][found])) / span
     if part > 0.02:
@@ -130,7 +130,7 @@ def _in_whole_run(result: Result) -> str:
 
 
 def sphere_energy_caption(result: Result) -> str:
-    """Return the caption of the figure of the sphere's energy."""
+    """Return the caption of the figure of the sphere's energies."""
     history, put_in = result.history, result.energy["input_J"]
     words = f"The fall gives the centre {text(float(history['kinetic_J'].max()), 'J')} of kinetic energy."
     if "sphere" not in result.peaks:
@@ -157,7 +157,7 @@ def plate_motion_caption(result: Result) -> str:
 
 
 def plate_energy_caption(result: Result) -> str:
-    """Return the caption of the figure of the plate's energy."""
+    """Return the caption of the figure of the plate's energies."""
     peaks, put_in = result.peaks["plate"], result.energy["input_J"]
     kinetic, strain = (_part(float(np.max(peaks[name])), put_in) for name in ("max_kinetic_energy_J", "max_strain_energy_J"))
     change = text(float(np.abs(result.history["plate_potential_J"]).max()), "J")
@@ -166,8 +166,8 @@ def plate_energy_caption(result: Result) -> str:
 
 
 def deflection_caption(result: Result) -> str:
-    """Return the caption of the pictures of the plate's deflection."""
-    assert result.deflection is not None  # there is a picture of it
+    """Return the caption of the maps of the plate's deflection."""
+    assert result.deflection is not None  # as the figure exists
     largest = float(np.nanmax(np.abs(result.deflection.height)))
     words = "All pictures are in one scale; the numbers in the corners are the least and the largest displacement upwards, in its unit."
     watched = " Triangles: sensors." if result.signals else ""
@@ -176,7 +176,7 @@ def deflection_caption(result: Result) -> str:
 
 def animation_caption(result: Result) -> str:
     """Return the caption of the animation."""
-    assert result.deflection is not None  # there is an animation of it
+    assert result.deflection is not None  # as the animation exists
     factor = exaggeration(result.deflection)
     return (
         f"The first visit in slow motion, from above and aside. The plate's deflection is drawn {factor:g} times too large; the ball "
@@ -214,13 +214,13 @@ def sensor_caption(result: Result, name: str) -> str:
 
 
 def sensors_left_out(result: Result) -> str:
-    """Return a sentence about sensors that are not drawn; empty if all are."""
+    """Return a sentence stating that only some sensors are drawn; empty if all are."""
     more = len(result.signals) - MOST
     return f"Of the {len(result.signals)} sensors the first {MOST} are drawn; the signals of all are in result.nc." if more > 0 else ""
 
 
 def _after_first(result: Result, *names: str) -> float:
-    """Return the sum of columns at the first release."""
+    """Return the sum of columns of the history at the first release."""
     release = float(result.impacts["time_s"][0] + result.impacts["duration_s"][0])
     last = np.searchsorted(result.history["time_s"], release, side="right") - 1
     return float(sum(result.history[name][last] for name in names))

@@ -1,4 +1,4 @@
-"""A case explained in the terminal: its resolved values, what to expect of a run, its cost and the doubts about it."""
+"""Explanation of a case in a terminal: resolved values, expected contact, cost and doubts."""
 
 from __future__ import annotations
 
@@ -34,8 +34,8 @@ from vibroimpact.report.terminal_table import facts
 from vibroimpact.runs.terminal import doubt_lines
 
 
-def _below(case: Case) -> str:
-    """Return what the sphere falls on, in words."""
+def _plate_text(case: Case) -> str:
+    """Return a description of the plate, or of the sphere in its place."""
     plate = case.plate
     if plate.radius is not None:
         return f"in its place a sphere, radius {plate.radius:g} m, {'free' if plate.supports == 'free' else 'rigid, held fixed'}"
@@ -44,18 +44,27 @@ def _below(case: Case) -> str:
 
 
 def case_explained(case: Case, aside: Container[str] = ()) -> RenderableType:
-    """Return what a case means: the resolved numbers, what to expect, and what to doubt; but slips of units at keys told elsewhere."""
+    """Return the explanation of a case: resolved values, expected contact, cost, and doubts.
+
+    Parameters
+    ----------
+    case : Case
+        The case; it is not run.
+    aside : container of str
+        Keys of the case whose implausible values are reported elsewhere, and not doubted here.
+    """
     laws, pair, speed = contact_laws_of(case), contact_pair(case), first_speed(case)
     mass, radius, gravity = mass_of_sphere(case), case.sphere.radius, case.drop.gravity
     rows: list[tuple[str, str]] = [
-        ("sphere", f"radius {radius:g} m, mass {mass:.6g} kg, {case.sphere.model}, of {_stuff(case.sphere.material)}"),
-        ("plate", f"{_below(case)}, of {_stuff(case.plate.material)}"),
+        ("sphere", f"radius {radius:g} m, mass {mass:.6g} kg, {case.sphere.model}, of {_material_text(case.sphere.material)}"),
+        ("plate", f"{_plate_text(case)}, of {_material_text(case.plate.material)}"),
         *_elastic_rows(case),
         *_coupling_rows(case),
         ("effective modulus", f"{pair.effective_modulus:.6g} Pa"),
         ("first approach speed", f"{speed:.6g} m/s, gravity {gravity:g} m/s2"),
         ("contact law", f"{case.contact.law}: {laws[0].equation}"),
     ]
+    # a list in the case gives one law per impact: parameters that differ are shown for each
     for item in fields(laws[0]):
         values = [getattr(law, item.name) for law in laws]
         if values[0] is None or (item.metadata["memory"] and not any(values)):
@@ -74,6 +83,7 @@ def case_explained(case: Case, aside: Container[str] = ()) -> RenderableType:
     if isinstance(laws[0], CompliantLaw) and laws[0].lasting:
         where = "on the same spot: the dent of the last one lasts" if case.drop.same_spot else "on fresh surfaces"
         rows.append(("each impact", f"{where} (drop.same_spot = {str(case.drop.same_spot).lower()})"))
+    # restitution and expected contact are those of rigid bodies, and labelled so where the bodies deform
     rigid = not deforms(case) or is_free_sphere(case)
     label = "restitution" if rigid else "restitution if rigid"
     rows += [("" if number else label, line) for number, line in enumerate(_restitution_lines(laws[0], pair.effective_mass, speed))]
@@ -89,13 +99,13 @@ def case_explained(case: Case, aside: Container[str] = ()) -> RenderableType:
 def _elastic_rows(case: Case) -> list[tuple[str, str]]:
     if not elastic_names(case):
         return []
-    from vibroimpact.modes.text import elastic_rows  # which loads sparse matrices
+    from vibroimpact.modes.text import elastic_rows  # here, as it imports scipy.sparse
 
     return elastic_rows(case)
 
 
 def _coupling_rows(case: Case) -> list[tuple[str, str]]:
-    """Say how local indentation is treated, and what is watched."""
+    """Return rows on the treatment of local indentation and on the sensors."""
     if not deforms(case):
         return []
     local = case.contact.local
@@ -118,7 +128,7 @@ def _coupling_rows(case: Case) -> list[tuple[str, str]]:
 
 
 def _accelerometer(sensor: SensorSection) -> list[str]:
-    """Say what reads a sensor's acceleration, where something does."""
+    """Return a description of a sensor's accelerometer; empty without one."""
     meter = sensor.accelerometer
     if meter is None:
         return []
@@ -133,7 +143,7 @@ def _accelerometer(sensor: SensorSection) -> list[str]:
 
 
 def _filter(sensor: SensorSection) -> str:
-    """Say what keeps a sensor's samples from folding."""
+    """Return a description of a sensor's anti-alias filter."""
     if sensor.filter == "none":
         return "no anti-alias filter"
     corner = f" at {sensor.corner:g} Hz" if sensor.corner else ""
@@ -141,7 +151,7 @@ def _filter(sensor: SensorSection) -> str:
 
 
 def _restitution_lines(law: ContactLaw, mass: float, speed: float) -> list[str]:
-    """Say what a law achieves, and what to ask it for where that is something else."""
+    """Return sentences on the restitution that a law achieves, and on the parameter that would achieve the one asked."""
     achieved = float(achieved_restitution(law, mass, speed))
     asked = getattr(law, "restitution", achieved) if law.free_parameter == "restitution" else achieved
     if abs(achieved - asked) < 5e-4:
@@ -155,7 +165,7 @@ def _restitution_lines(law: ContactLaw, mass: float, speed: float) -> list[str]:
     return lines
 
 
-def _stuff(material: Material) -> str:
+def _material_text(material: Material) -> str:
     name = material.name or "a material"
     return (
         name

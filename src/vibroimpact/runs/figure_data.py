@@ -1,4 +1,4 @@
-"""Parts of a result that a figure shows: contacts, windows of the history, as many points as show."""
+"""Data drawn by the figures of a run: selected contacts, time windows of the history, and min-max decimated lines."""
 
 from __future__ import annotations
 
@@ -12,22 +12,22 @@ from vibroimpact.report.style import ENLARGED
 from vibroimpact.results.result import Result
 
 MARGIN = 0.15
-"""What an enlarged contact shows before touch and after release, as a part of its duration."""
+"""Time shown before first touch and after release of an enlarged contact, relative to its duration."""
 
 _COLUMNS = 1500
-"""Into how many columns a long history is sorted: more than a figure has pixels that matter."""
+"""Number of columns into which a long line is divided: more than the resolution of a figure."""
 
-_AT_ONCE = 2**17  # points that are sorted at once
+_AT_ONCE = 2**17  # points sorted at once, which bounds the memory of the sort
 
 
 def contacts_with_duration(result: Result) -> Indices:
-    """Return which impacts, counted from 0, have a duration; none with an instantaneous law."""
+    """Return the indices of the impacts with a finite contact duration, counted from 0; empty for an instantaneous law."""
     found: Indices = np.flatnonzero(result.impacts["duration_s"] > 0.0)
     return found
 
 
 def enlarged_contacts(result: Result) -> Indices:
-    """Return which contacts, counted from 0, are worth enlarging: the first few, unless one fills the run by itself."""
+    """Return the indices of the contacts drawn enlarged, counted from 0: the first five shorter than half of the run."""
     span = result.history["time_s"][-1] - result.history["time_s"][0]
     found = contacts_with_duration(result)
     short: Indices = found[result.impacts["duration_s"][found] < 0.5 * span]
@@ -35,30 +35,31 @@ def enlarged_contacts(result: Result) -> Indices:
 
 
 def history_around(result: Result, impact: int) -> dict[str, Floats]:
-    """Return the history around a contact, with time counted from first touch [s]."""
+    """Return the history from shortly before to shortly after a contact, with time counted from first touch [s]."""
     touch, duration = result.impacts["time_s"][impact], result.impacts["duration_s"][impact]
     part = history_window(result.history, touch - MARGIN * duration, touch + (1.0 + MARGIN) * duration)
     return {**part, "time_s": part["time_s"] - touch}
 
 
 def contact_history(result: Result, impact: int) -> dict[str, Floats]:
-    """Return the history of a contact, from where the surfaces meet to where they part.
+    """Return the history of a contact from first touch to release, as drawn over indentation.
 
-    The flight's side of both ends shows the jump of the force there; but in flight there is no indentation, so it is left
-    out where the surfaces meet in a dent or part with their neck drawn out. So is the rest of a sphere that stays.
+    At each end the history has a point in flight as well, which shows the jump of the force but has zero indentation. It is left out
+    where contact begins or ends at another indentation: in a permanent dent, or with an adhesive neck. The rest of a sphere that stays
+    is left out too.
     """
     touch = result.impacts["time_s"][impact]
     part = history_window(result.history, touch, touch + result.impacts["duration_s"][impact])
     away = np.abs(part["indentation_m"]) > 1e-9 * np.max(np.abs(part["indentation_m"]))
     first, last = int(away[1] and not away[0]), len(away) - int(away[-2] and not away[-1])
     if result.impacts["separation_speed_m_s"][impact] == 0.0:
-        # it stays: what follows is its rest, to which its motion was not followed
+        # the sphere stays: the last point is its state of rest, which is not the end of the computed motion
         last = int(np.searchsorted(part["time_s"], part["time_s"][-1])) + 1
     return {name: values[first:last] for name, values in part.items()}
 
 
 def history_window(history: dict[str, Floats], start: float, end: float) -> dict[str, Floats]:
-    """Return the history between two times [s], with a point on each edge that lies within the run."""
+    """Return the history between two times [s], interpolated linearly at each of them that lies within the run."""
     time = history["time_s"]
     first, last = np.searchsorted(time, start, side="left"), np.searchsorted(time, end, side="right")
     before = [start] if first < len(time) and time[0] < start < time[first] else []
@@ -71,7 +72,7 @@ def history_window(history: dict[str, Floats], start: float, end: float) -> dict
 
 
 def touch_height(result: Result) -> float:
-    """Return the height of the sphere's centre at first touch [m]; NaN if the plate is never touched."""
+    """Return the height of the sphere's centre at first touch [m]; NaN without an impact."""
     if not len(result.impacts["time_s"]):
         return float("nan")
     first = np.searchsorted(result.history["time_s"], result.impacts["time_s"][0])
@@ -79,22 +80,29 @@ def touch_height(result: Result) -> float:
 
 
 def gravity_of(result: Result) -> float:
-    """Return the acceleration of gravity [m/s2]: every run begins in flight."""
+    """Return the gravitational acceleration [m/s2]: that of the first point of the history, as every run begins in free flight."""
     return -float(result.history["acceleration_m_s2"][0])
 
 
 def decimated(x: Floats, y: Floats) -> tuple[Floats, Floats]:
-    """Return a long line with the points that show: in each column of the figure its ends and its extremes."""
+    """Return a line reduced to its visible points: the first, last, lowest and highest in each column of the figure.
+
+    `x` ascends. Lines of up to 6000 points are returned as they are.
+    """
     return _decimated(len(x), lambda first, last: (x[first:last], y[first:last]))
 
 
 def decimated_samples(signal: Signal) -> tuple[Floats, Floats]:
-    """Return times [s] and values of the samples of a signal that show, as `decimated` does."""
+    """Return times [s] and values of a signal, reduced to its visible samples as by `decimated`."""
     return _decimated(len(signal.value), lambda first, last: (signal.times(first, last), signal.value[first:last]))
 
 
 def _decimated(count: int, part: Callable[[int, int], tuple[Floats, Floats]]) -> tuple[Floats, Floats]:
-    """Return the points that show of a line of so many points, which is looked at in parts: columns of a long one fill gigabytes."""
+    """Return the visible points of a line of `count` points, of which `part(first, last)` returns x and y.
+
+    A long line is decimated in blocks, and the blocks' points once more: sorting all points at once would take several times the
+    memory of the line.
+    """
     if count <= 4 * _COLUMNS:
         return part(0, count)
     edges = np.linspace(part(0, 1)[0][0], part(count - 1, count)[0][0], _COLUMNS + 1)[1:-1]
@@ -104,7 +112,7 @@ def _decimated(count: int, part: Callable[[int, int], tuple[Floats, Floats]]) ->
 
 
 def _showing(x: Floats, y: Floats, edges: Floats) -> tuple[Floats, Floats]:
-    """Return the ends and the extremes of a line in each of the columns between edges."""
+    """Return the first, last, lowest and highest point of a line in each column, given the x of the edges between the columns."""
     column = np.searchsorted(edges, x, side="right")
     starts = np.flatnonzero(np.diff(column, prepend=-1))
     ends = np.append(starts[1:], len(x)) - 1

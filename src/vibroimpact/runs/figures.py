@@ -1,4 +1,4 @@
-"""The figures of the report of a run."""
+"""All figures of the report of a run."""
 
 from __future__ import annotations
 
@@ -21,15 +21,14 @@ def draw_figures(result: Result) -> dict[str, Figure]:
     Parameters
     ----------
     result : Result
-        A run of one drop.
+        Result of one drop.
 
     Returns
     -------
     dict of str to Figure
-        In the order of the report: `position`, `force`, `velocity`, `acceleration`, `force_indentation`
-        and `energy`; where bodies vibrate also `sphere_energy`, `plate_motion`, `plate_energy`, `deflection` and one
-        for each sensor. Those of force, acceleration and indentation are left out where no contact has a
-        duration: with an instantaneous law they do not exist.
+        Figures by name, in the order of the report: `position`, `force`, `velocity`, `acceleration`, `force_indentation` and `energy`;
+        where bodies vibrate also `sphere_energy`, `plate_motion`, `plate_energy`, `deflection` and one per sensor. Force, acceleration
+        and force over indentation exist only for contacts of finite duration, not with an instantaneous law.
     """
     in_contact = bool(len(contacts_with_duration(result)))
     with style():

@@ -1,4 +1,4 @@
-"""The figures of one quantity over time: the whole run, and below it the first contacts enlarged."""
+"""Figures of position, force, velocity and acceleration over time: the whole run, and below it the first contacts enlarged."""
 
 from __future__ import annotations
 
@@ -28,29 +28,29 @@ from vibroimpact.runs.tables import impact_text
 from vibroimpact.units.display import Multiple, multiple
 
 _RUN_HEIGHT, _ROW_HEIGHT = 2.7, 2.5
-"""How much of a figure the whole run and the enlarged contacts take [in]."""
+"""Heights of the parts of a figure that show the whole run and the enlarged contacts [in]."""
 
 Marks = Callable[[Result], tuple[Floats, Floats]]
-"""Times [s] and values to mark, from the impact table: its peaks were located, not picked from samples."""
+"""Function returning times [s] and values to mark. They come from the impact table, whose extremes are located, not sampled."""
 
 
 class PlottedQuantity(NamedTuple):
-    """What a figure over time shows.
+    """Specification of a figure of one quantity over time.
 
     Parameters
     ----------
     column : str
         Column of the history.
     title, label, enlarged_label : str
-        What the figure is called, and its vertical axes without the unit.
+        Title of the figure, and labels of the vertical axes of the whole run and of the enlarged contacts, without unit.
     run_marks, contact_marks : callable
-        What is marked in the whole run and in the enlarged contacts.
+        Points marked in the whole run and in the enlarged contacts.
     run_meaning, contact_meaning : str
-        What the marks mean.
+        Meaning of the marks.
     headline : callable
-        What the title of an enlarged contact tells of it, from the result and the impact, counted from 0.
+        Value in the title of an enlarged contact, from the result and the index of the impact, counted from 0.
     from_touch : bool
-        Do the enlarged contacts count from the value at first touch?
+        Whether the enlarged contacts show the difference from the value at first touch.
     """
 
     column: str
@@ -71,7 +71,7 @@ class PlottedQuantity(NamedTuple):
 
 
 def draw_history(result: Result, quantity: PlottedQuantity) -> Figure:
-    """Draw a quantity over the whole run and, where there are any, the first contacts enlarged."""
+    """Draw a quantity over the whole run and over the first contacts enlarged, if there are any."""
     shown = enlarged_contacts(result)
     figure = new_figure(_RUN_HEIGHT + (_ROW_HEIGHT if len(shown) else 0.0))
     _draw_run(wide_axes(figure, figure.get_figheight() - _RUN_HEIGHT + 0.5, _RUN_HEIGHT - 0.8), result, quantity)
@@ -103,6 +103,7 @@ def _draw_contacts(figure: Figure, result: Result, quantity: PlottedQuantity, sh
         touch, span = impacts["time_s"][impact], impacts["duration_s"][impact] / clock.size
         axes.axvspan(0.0, span, color=CONTACT, linewidth=0, zorder=0)
         axes.plot(part["time_s"] / clock.size, (part[quantity.column] - base) / scale.size, color=ACCENT, linewidth=1.4)
+        # marks of this contact: those within its duration, with a margin for rounding
         here = np.abs(times - touch - 0.5 * impacts["duration_s"][impact]) <= 0.5001 * impacts["duration_s"][impact]
         _mark(axes, times[here] - touch, values[here] - base, clock, scale)
         axes.set_xlim(-MARGIN * span, (1.0 + MARGIN) * span)
@@ -120,7 +121,7 @@ def _draw_contacts(figure: Figure, result: Result, quantity: PlottedQuantity, sh
 
 
 def _mark(axes: Axes, times: Floats, values: Floats, clock: Multiple, scale: Multiple) -> bool:
-    """Mark points, smaller where they are many; return whether there were any."""
+    """Mark points, with smaller symbols where there are many; return whether there are any."""
     x, y = decimated(times / clock.size, values / scale.size)
     size = 4.5 if len(x) <= 30 else 2.5
     axes.plot(x, y, "o", markersize=size, markerfacecolor="white", markeredgecolor=MARK, markeredgewidth=1.0, clip_on=False, zorder=3)
@@ -135,12 +136,12 @@ def _no_marks(result: Result) -> Points:
 
 
 def tops_of_rebounds(result: Result) -> Points:
-    """Return when [s] and how high [m] the sphere's centre is at the top of each rebound within the run."""
+    """Return times [s] and heights of the sphere's centre [m] at the apex of each rebound within the run."""
     impacts, down = result.impacts, gravity_of(result)
     if down <= 0.0:
         return _no_marks(result)
     top = impacts["time_s"] + impacts["duration_s"] + impacts["separation_speed_m_s"] / down
-    # the bounce in which a run ends, or comes to rest, is not followed up to its top
+    # a rebound during which the run ends or comes to rest does not reach its apex in the history
     reached = np.interp(top, result.history["time_s"], result.history["position_m"], right=np.nan)
     height = impacts["rebound_height_m"]
     seen = np.abs(reached - height) < 0.01 * (height - touch_height(result))
@@ -149,7 +150,7 @@ def tops_of_rebounds(result: Result) -> Points:
 
 def _largest_indentations(result: Result) -> Points:
     when = result.impacts["time_of_max_indentation_s"]
-    if result.vibrates:  # then the sphere and what it presses on both move
+    if result.vibrates:  # the plate moves too: position and indentation do not add up to the height at first touch
         return when, np.interp(when, result.history["time_s"], result.history["position_m"])
     return when, touch_height(result) - result.impacts["max_indentation_m"]
 
@@ -160,7 +161,7 @@ def _force_peaks(result: Result) -> Points:
 
 
 def _acceleration_peaks(result: Result) -> Points:
-    # a contact gentler than gravity has its largest magnitude in flight, not at its largest force
+    # a contact of less than gravitational acceleration has its largest magnitude in flight, not at the largest force
     found = result.impacts["max_acceleration_m_s2"] > gravity_of(result)
     return result.impacts["time_of_max_force_s"][found], result.impacts["max_acceleration_m_s2"][found]
 

@@ -1,4 +1,4 @@
-"""What the command line prints of a drop: its results, and a case explained."""
+"""Result of one drop as printed in a terminal: impact table, energy ledger, status and doubts."""
 
 from __future__ import annotations
 
@@ -25,15 +25,14 @@ _FIRST_LEFT_OUT = (
     "duration_s",
     "approach_speed_m_s",
 )
-"""Columns that a narrow terminal does without, in this order, until the others fit."""
+"""Columns left out in a narrow terminal, in this order, until the others fit."""
 _FIRST_ROWS, _LAST_ROWS = 15, 3
 
 
 def impact_table_for_terminal(result: Result, width: int) -> RenderableType:
-    """Return the table of impacts for a terminal of a width: columns that do not fit are left out, numbers are not cut.
+    """Return the impact table for a terminal of a given width in characters.
 
-    The middle of a long table is left out. Units are those of the page; numbers have the digits that they have where the drop is
-    sensitive.
+    Columns that do not fit are left out, as are the middle rows of a long table. Units and certain figures are those of the report.
     """
     impacts, change = result.impacts, result.change_by_impact
     number = len(impacts["impact"])
@@ -55,10 +54,11 @@ def impact_table_for_terminal(result: Result, width: int) -> RenderableType:
 
 
 def energy_table_for_terminal(result: Result) -> RenderableType:
-    """Return the ledger at the end of the run, without the entries that are zero."""
+    """Return the final energy ledger for a terminal, without entries that are zero to rounding."""
     unit, ledger = ledger_table(result)
     whole = result.energy["input_J"]
-    shown = [row for row in ledger if row.name != SUM and abs(result.energy.get(row.name, whole)) > 1e-12 * abs(whole)]  # less is rounding
+    # entries below 1e-12 of the energy put in are rounding errors
+    shown = [row for row in ledger if row.name != SUM and abs(result.energy.get(row.name, whole)) > 1e-12 * abs(whole)]
     names = [row.name.removesuffix("_J").replace("_", " ") if row.name != PUT_IN else "put in" for row in shown]
     columns = (
         Column("energy at the end", names, words=True),
@@ -70,7 +70,7 @@ def energy_table_for_terminal(result: Result) -> RenderableType:
 
 
 def result_summary(result: Result, width: int) -> RenderableType:
-    """Return what a run prints in a terminal of a width: the tables, the status, and what to doubt."""
+    """Return what a run prints in a terminal of a given width in characters: tables, status, model of deformation, and doubts."""
     return Group(
         Text(result.name, style="bold"),
         impact_table_for_terminal(result, width),
@@ -84,16 +84,16 @@ def result_summary(result: Result, width: int) -> RenderableType:
 
 
 def _deformation(result: Result) -> list[RenderableType]:
-    """Return how the bodies deform, where they do: a sentence, and its numbers."""
+    """Return a sentence and numbers on how deformation is modelled; empty for rigid bodies."""
     rows, sentence = deformation_rows(result), treatment_sentence(result)
     return [Text(), *([Text(sentence)] if sentence else []), *([facts(rows, indent=1)] if rows else [])] if rows or sentence else []
 
 
 def versions_table(rows: Iterable[tuple[str, str]]) -> RenderableType:
-    """Return a plain table of two columns."""
+    """Return name-value pairs as a plain table of two columns."""
     return facts(rows)
 
 
 def doubt_lines(found: Iterable[str]) -> list[RenderableType]:
-    """Return what to doubt, a paragraph each."""
+    """Return doubts as paragraphs for the terminal, one each."""
     return [Text(f"Doubt: {doubt}.", style="yellow") for doubt in found]

@@ -1,4 +1,4 @@
-"""A figure of several quantities over time: a row each, the whole run at the left and the first visit at the right."""
+"""Figures of vibrating bodies over time: energies of the sphere, motion and energies of the plate, one row per quantity."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ from vibroimpact.runs.figure_data import decimated, history_window
 from vibroimpact.units.display import Multiple, multiple
 
 _ROW, _BOTTOM, _TOP = 1.35, 0.5, 0.12
-"""Height of a row, and room below all and above all [in]."""
+"""Height of a row, and margins below and above all rows [in]."""
 
 _BEFORE = 0.06
-"""What is shown before first touch, as a part of what is shown after it."""
+"""Time shown before first touch, relative to that shown after it."""
 
 
 class Panel(NamedTuple):
-    """A row: the columns of the history whose sum it exceeds_rounding, their SI unit and its title."""
+    """Row of a figure: the columns of the history whose sum is drawn, their SI unit and the title."""
 
     columns: tuple[str, ...]
     unit: str
@@ -34,18 +34,18 @@ class Panel(NamedTuple):
 
 
 def draw_panels(result: Result, title: str, panels: Sequence[Panel], span: float) -> Figure:
-    """Draw quantities over time.
+    """Draw quantities over time, one row each: the whole run at the left, the first visit at the right.
 
     Parameters
     ----------
     result : Result
-        A run with an impact.
+        Result with at least one impact.
     title : str
-        What they are.
+        Title of the figure.
     panels : sequence of Panel
-        The rows.
+        The rows, from the top.
     span : float
-        How much is shown from the first touch on, at the right [s].
+        Time shown after first touch at the right [s].
     """
     touch = float(result.impacts["time_s"][0])
     whole = result.history
@@ -60,7 +60,7 @@ def draw_panels(result: Result, title: str, panels: Sequence[Panel], span: float
         _draw(left, whole["time_s"], values, INK, clocks[0], scale)
         _shade_contacts(right, result, touch, clocks[1])
         _draw(right, close["time_s"] - touch, enlarged, ACCENT, clocks[1], own)
-        if own != scale:
+        if own != scale:  # the title at the left names the unit of the row
             right.set_title(f"[{own.unit}]")
         right.set_xlim(-_BEFORE * span / clocks[1].size, span / clocks[1].size)
         left.set_title(f"{panel.title} [{scale.unit}]")
@@ -80,7 +80,7 @@ def _draw(axes: Axes, time: Floats, values: Floats, colour: str, clock: Multiple
 
 
 def _shade_contacts(axes: Axes, result: Result, touch: float, clock: Multiple) -> None:
-    """Shade where the surfaces overlap: a visit may be of several contacts."""
+    """Shade the time spans in contact during the first visit, which may consist of several contacts."""
     first = history_window(result.history, touch, touch + float(result.impacts["duration_s"][0]))
     inside = np.flatnonzero((first["indentation_m"] > 0.0) | (first["force_N"] != 0.0))
     for run in np.split(inside, np.flatnonzero(np.diff(inside) > 1) + 1) if len(inside) else ():
@@ -110,33 +110,36 @@ _PLATE_ENERGY = (
     Panel(("plate_potential_J",), "J", "Change of the potential energy"),
 )
 _VISIT = 1.6
-"""How much of the first visit is shown, in its durations."""
+"""Time shown after first touch in the figure of the sphere, relative to the duration of the first visit."""
 
 
 def draw_sphere_energy(result: Result) -> Figure:
-    """Draw where the energy of the sphere is."""
+    """Draw the energies of the sphere: kinetic and potential, and those of its modes and rotation that are not negligible."""
     modes = _SPHERE_MODES if "sphere" in result.peaks else ()
     rows = _SPHERE + tuple(panel for panel in modes if exceeds_rounding(result, panel.columns[0]))
     return draw_panels(result, "Energy of the sphere", rows, _VISIT * float(result.impacts["duration_s"][0]))
 
 
 def draw_plate_motion(result: Result) -> Figure:
-    """Draw how the plate moves, as a whole and where it is hit."""
+    """Draw the motion of the plate: that of its centre of mass, and the displacement at the contact point."""
     return draw_panels(result, "Motion of the plate, upwards", _PLATE_MOTION, plate_span(result))
 
 
 def draw_plate_energy(result: Result) -> Figure:
-    """Draw where the energy of the plate is."""
+    """Draw the energies of the plate: kinetic, strain, their sum, and the change of its potential energy."""
     return draw_panels(result, "Energy of the plate", _PLATE_ENERGY, plate_span(result))
 
 
 def plate_span(result: Result) -> float:
-    """Return how long after first touch the plate is shown [s]: until it has moved up and down, or is hit again."""
+    """Return the time after first touch for which the plate is shown [s].
+
+    It is 1.5 periods of the lowest mode, but ends at the next impact or the end of the run, and is at least 1.2 contact durations.
+    """
     touches, duration = result.impacts["time_s"], float(result.impacts["duration_s"][0])
     until = float(touches[1]) if len(touches) > 1 else float(result.history["time_s"][-1])
     return max(min(resolved_span(1.0 / result.frequencies("plate")[0]), until - float(touches[0])), 1.2 * duration)
 
 
 def exceeds_rounding(result: Result, column: str) -> bool:
-    """Is an energy more than rounding of what was put in?"""
+    """Return whether an energy exceeds rounding error, 1e-12 of the energy put in."""
     return bool(result.history[column].max() > 1e-12 * result.energy["input_J"])
