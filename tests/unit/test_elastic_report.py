@@ -116,6 +116,10 @@ def test_folder_holds_what_it_should(folder: Path) -> None:
     assert len([name for name in names if name.endswith(".vtu")]) == 80
 
 
+def test_a_result_prints_the_same_from_memory_as_from_its_folder(result: Result, response: vi.Response) -> None:
+    assert printed(result_of(response)) == printed(result)
+
+
 def test_summary_has_the_promised_peaks(folder: Path, response: vi.Response) -> None:
     summary = json.loads((folder / "summary.json").read_text())
     assert list(summary["impacts"][0]) == [*IMPACT_COLUMNS, *VIBRATION_IMPACT_COLUMNS]

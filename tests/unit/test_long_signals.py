@@ -9,7 +9,7 @@ import pytest
 
 from vibroimpact.dynamics.sensors.recording import Signal
 from vibroimpact.dynamics.sensors.sensor import Sensor
-from vibroimpact.runs import figure_data as excerpt
+from vibroimpact.runs import figure_data
 from vibroimpact.runs.figure_data import decimated, decimated_samples
 
 COUNT = 3_000_000
@@ -38,7 +38,7 @@ def test_a_line_looked_at_in_parts_is_that_of_the_whole(monkeypatch: pytest.Monk
     y = np.round(RANDOM[:100_000], 1)  # with many equal extremes
     x = np.sort(np.abs(RANDOM[:100_000]))
     whole = decimated(x, y)
-    monkeypatch.setattr(excerpt, "_AT_ONCE", 1777)
+    monkeypatch.setattr(figure_data, "_AT_ONCE", 1777)
     for ours, theirs in zip(decimated(x, y), whole, strict=True):
         np.testing.assert_array_equal(ours, theirs)
     assert len(whole[0]) <= 4 * 1500

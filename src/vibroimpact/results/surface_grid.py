@@ -46,7 +46,7 @@ def surface_grid(mesh: Mesh) -> SurfaceGrid:
     """Return a grid of about 3000 points over the upper side of a mesh, with a grid point at the middle of its bounding box.
 
     The outer faces are subdivided into triangles smaller than the grid steps, and each grid point is interpolated in the uppermost
-    triangle that contains it. No element coordinates have to be inverted, and the mesh may have any outline and holes.
+    triangle that contains it. This avoids the inverse mapping to element coordinates, and the mesh may have any outline and holes.
 
     Examples
     --------
