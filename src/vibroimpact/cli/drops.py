@@ -82,7 +82,7 @@ def _run(name: str, output: Path | None, *, force: bool) -> None:
             response = simulate(problem, progress)
         with new_folder(target, force=force) as folder:
             result = write_data(response, folder)
-            del response  # of a long run it takes as much memory as the result, and drawing takes more
+            del response  # of a long run it may take as much memory as the result: release it before figures are drawn
             write_report(result, folder)
     screen.print(result_summary(result, screen.width))
     say(f"wrote {target / 'report.html'}")

@@ -13,7 +13,7 @@ from vibroimpact.runs.paraview import write_paraview
 
 
 def save_result(response: Response, directory: str | PathLike[str], *, force: bool = False) -> Path:
-    """Write the result folder of one drop: data, figures and report. The write is atomic: no incomplete folder is ever left.
+    """Write the result folder of one drop: data, figures and report. The write is atomic: the folder appears complete or not at all.
 
     Parameters
     ----------
