@@ -28,8 +28,7 @@ def variable() -> vi.Response:
 def few_pictures(monkeypatch: pytest.MonkeyPatch) -> None:
     """Draw no more than one figure of a run, and none of a study, where none is looked at: they take longest of all that is written."""
     from vibroimpact.report.style import style
-    from vibroimpact.runs.histories import draw_history
-    from vibroimpact.runs.quantities import POSITION
+    from vibroimpact.runs.history_figures import POSITION, draw_history
 
     def draw(result: Result) -> dict[str, Figure]:
         with style():

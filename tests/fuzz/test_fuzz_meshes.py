@@ -14,7 +14,7 @@ import vibroimpact as vi
 from attack import failures, number, seed
 from support import plain_case
 from vibroimpact.meshes.mesh_file import read_mesh
-from vibroimpact.runs.console import case_explained
+from vibroimpact.runs.case_explained import case_explained
 
 NASTRAN = """\
 SOL 103

@@ -28,20 +28,20 @@ from vibroimpact.dynamics.columns import (
     VIBRATION_LEDGER,
     meanings,
 )
+from vibroimpact.results.deflection import frame_times
 from vibroimpact.results.folder import write_result
-from vibroimpact.results.frames import frame_times
 from vibroimpact.results.result import Result, result_of
 from vibroimpact.results.surface_grid import surface_grid
 from vibroimpact.runs import paraview
 from vibroimpact.runs.animation import animate, exaggeration
-from vibroimpact.runs.console import result_summary
 from vibroimpact.runs.deformation import counted_twice, deformation_rows, treatment_sentence
+from vibroimpact.runs.energy_figure import bands_of
 from vibroimpact.runs.figures import draw_figures
-from vibroimpact.runs.ledger import bands_of
 from vibroimpact.runs.page import render_page
 from vibroimpact.runs.paraview import write_paraview
 from vibroimpact.runs.spectrum import amplitude_spectrum
 from vibroimpact.runs.tables import impact_table
+from vibroimpact.runs.terminal import result_summary
 from vibroimpact.structures.lattice import box_mesh
 
 SPHERE = {"radius": "25 mm", "material": "rock-paper", "model": "elastic", "modes": 6, "damping": 0.02, "mesh": {"elements_across": 4}}
@@ -114,6 +114,10 @@ def test_folder_holds_what_it_should(folder: Path) -> None:
     expected |= {"sensors/fast_one.csv", "sensors/slow_one.csv", "paraview/plate.pvd", "paraview/sphere.pvd"}
     assert {name for name in names if not name.endswith(".vtu")} == expected
     assert len([name for name in names if name.endswith(".vtu")]) == 80
+
+
+def test_a_result_prints_the_same_from_memory_as_from_its_folder(result: Result, response: vi.Response) -> None:
+    assert printed(result_of(response)) == printed(result)
 
 
 def test_summary_has_the_promised_peaks(folder: Path, response: vi.Response) -> None:
@@ -370,10 +374,10 @@ def test_a_grid_lies_on_the_uppermost_face_and_leaves_holes_out() -> None:
     block = box_mesh((1.0, 0.5, 0.1), (4, 2, 2), "hex20")
     grid = surface_grid(block)
     assert grid.on_body.all()
-    np.testing.assert_allclose(grid.of(block.nodes[:, 2]), 0.05, atol=1e-12)
+    np.testing.assert_allclose(grid.interpolate(block.nodes[:, 2]), 0.05, atol=1e-12)
     x, y = np.meshgrid(grid.x, grid.y)
-    np.testing.assert_allclose(grid.of(block.nodes[:, 0]), x, atol=1e-9)
-    np.testing.assert_allclose(grid.of(block.nodes[:, 1]), y, atol=1e-9)
+    np.testing.assert_allclose(grid.interpolate(block.nodes[:, 0]), x, atol=1e-9)
+    np.testing.assert_allclose(grid.interpolate(block.nodes[:, 1]), y, atol=1e-9)
     first = block.blocks[0]
     middle = block.nodes[first.connectivity].mean(axis=1)
     kept = ~((middle[:, 0] > 0.0) & (middle[:, 1] > 0.0))

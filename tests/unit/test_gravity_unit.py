@@ -12,7 +12,7 @@ from scipy.constants import g as standard_gravity
 import vibroimpact as vi
 from support import plain_case
 from vibroimpact.cases.case import case_schema
-from vibroimpact.runs.console import case_explained
+from vibroimpact.runs.case_explained import case_explained
 from vibroimpact.units.reading import to_si
 
 

@@ -15,7 +15,7 @@ from vibroimpact.contact.laws.walton_braun import WaltonBraun
 from vibroimpact.dynamics.impact_rows import ImpactRows
 from vibroimpact.dynamics.packed_list import PackedList
 from vibroimpact.dynamics.phase_plane.collocation import PlaneRule
-from vibroimpact.results import fine_history as kept
+from vibroimpact.results import fine_history
 
 BALL = vi.Body(mass=0.09, contact_offset=0.025)
 
@@ -119,9 +119,9 @@ def test_a_history_that_is_too_long_keeps_its_first_impacts_whole_and_every_even
 
 def test_what_is_written_of_a_history_is_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
     response = vi.simulate(drop(40))
-    whole = len(kept.fine_history(response)["time_s"])
-    monkeypatch.setattr(kept, "MOST_POINTS", whole // 2)
-    assert len(kept.fine_history(response)["time_s"]) <= whole // 2
+    whole = len(fine_history.fine_history(response)["time_s"])
+    monkeypatch.setattr(fine_history, "MOST_POINTS", whole // 2)
+    assert len(fine_history.fine_history(response)["time_s"]) <= whole // 2
 
 
 def test_a_table_of_no_impact_has_all_columns() -> None:

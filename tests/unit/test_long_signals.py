@@ -9,8 +9,8 @@ import pytest
 
 from vibroimpact.dynamics.sensors.recording import Signal
 from vibroimpact.dynamics.sensors.sensor import Sensor
-from vibroimpact.runs import windows as excerpt
-from vibroimpact.runs.windows import thinned, thinned_samples
+from vibroimpact.runs import figure_data
+from vibroimpact.runs.figure_data import decimated, decimated_samples
 
 COUNT = 3_000_000
 RANDOM = np.random.default_rng(0).standard_normal(COUNT)
@@ -37,9 +37,9 @@ def test_the_largest_magnitude() -> None:
 def test_a_line_looked_at_in_parts_is_that_of_the_whole(monkeypatch: pytest.MonkeyPatch) -> None:
     y = np.round(RANDOM[:100_000], 1)  # with many equal extremes
     x = np.sort(np.abs(RANDOM[:100_000]))
-    whole = thinned(x, y)
-    monkeypatch.setattr(excerpt, "_AT_ONCE", 1777)
-    for ours, theirs in zip(thinned(x, y), whole, strict=True):
+    whole = decimated(x, y)
+    monkeypatch.setattr(figure_data, "_AT_ONCE", 1777)
+    for ours, theirs in zip(decimated(x, y), whole, strict=True):
         np.testing.assert_array_equal(ours, theirs)
     assert len(whole[0]) <= 4 * 1500
 
@@ -48,7 +48,7 @@ def test_what_a_figure_takes_does_not_grow_with_the_signal() -> None:
     """Columns, differences and orders of all samples at once took eight times the signal."""
     tracemalloc.start()
     before = tracemalloc.get_traced_memory()[0]
-    thinned_samples(SIGNAL)
+    decimated_samples(SIGNAL)
     peak = tracemalloc.get_traced_memory()[1] - before
     tracemalloc.stop()
     assert peak < 4.0 * RANDOM.nbytes

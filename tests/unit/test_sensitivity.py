@@ -19,9 +19,9 @@ from vibroimpact.cases.doubts import doubts
 from vibroimpact.contact.laws.hertz import Hertz
 from vibroimpact.results.result import Result, result_of
 from vibroimpact.results.summary import summary_of
-from vibroimpact.runs.console import result_summary
-from vibroimpact.runs.quantities import ACCELERATION, FORCE, POSITION, VELOCITY
+from vibroimpact.runs.history_figures import ACCELERATION, FORCE, POSITION, VELOCITY
 from vibroimpact.runs.tables import impact_table
+from vibroimpact.runs.terminal import result_summary
 
 CHANGES = np.array([1e-9, 2e-3, 0.1, 10.0])
 

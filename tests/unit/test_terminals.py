@@ -34,7 +34,8 @@ from vibroimpact.paper.report.page import verdict_table
 from vibroimpact.paper.section import Verdict
 from vibroimpact.report.terminal import TerminalConsole
 from vibroimpact.results.result import result_of
-from vibroimpact.runs.console import case_explained, result_summary, versions_table
+from vibroimpact.runs.case_explained import case_explained
+from vibroimpact.runs.terminal import result_summary, versions_table
 from vibroimpact.studies.compute_study import compute_study
 from vibroimpact.studies.explain_sweep import explain_sweep
 from vibroimpact.studies.report.text import study_summary

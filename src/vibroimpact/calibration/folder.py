@@ -27,8 +27,8 @@ from vibroimpact.cases.case import Case
 from vibroimpact.files.check_sums import CHECK_SUMS, file_digest, sealed
 from vibroimpact.report.figure_files import save_figures
 from vibroimpact.report.page import picture, template
+from vibroimpact.results.csv_files import write_csv
 from vibroimpact.results.folder import SUMMARY, new_folder
-from vibroimpact.results.tables import write_csv
 
 _TITLES = {
     "parameter": ("The value over the approach speed", "Each impact by itself, and the polynomial through them."),

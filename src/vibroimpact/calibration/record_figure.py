@@ -12,7 +12,7 @@ from matplotlib.ticker import MaxNLocator
 from vibroimpact.calibration.overlay import Overlay
 from vibroimpact.report.layout import label_vertical, new_figure, row_of_axes, wide_axes
 from vibroimpact.report.style import ACCENT, INK, MARK
-from vibroimpact.runs.windows import thinned
+from vibroimpact.runs.figure_data import decimated
 from vibroimpact.units.display import Multiple, multiple
 
 _FEW = 400  # samples up to which points are drawn; more would overlap
@@ -63,10 +63,10 @@ def _draw_position(one: Overlay) -> Figure:
     known = np.isfinite(simulated)
     fine = multiple("m", apart[known])
     _measured(upper, time, position, clock, scale)
-    upper.plot(*thinned(time[known] / clock.size, simulated[known] / scale.size), color=ACCENT, label="simulated", zorder=3)
+    upper.plot(*decimated(time[known] / clock.size, simulated[known] / scale.size), color=ACCENT, label="simulated", zorder=3)
     upper.set_title("Height of the sphere's centre, from the first impact on as simulated")
     label_vertical(upper, f"Height [{scale.unit}]")
-    lower.plot(*thinned(time[known] / clock.size, apart[known] / fine.size), color=MARK, linewidth=0.9)
+    lower.plot(*decimated(time[known] / clock.size, apart[known] / fine.size), color=MARK, linewidth=0.9)
     lower.set_title("Measured less simulated")
     label_vertical(lower, f"Difference [{fine.unit}]")
     lower.set_xlabel(f"Time [{clock.unit}]")
@@ -79,4 +79,4 @@ def _measured(axes: Axes, time: np.ndarray, values: np.ndarray, clock: Multiple,
     if len(time) <= _FEW:
         axes.plot(time / clock.size, values / scale.size, "o", color=MARK, markersize=2.5, label="measured")
     else:
-        axes.plot(*thinned(time / clock.size, values / scale.size), color=INK, linewidth=2.2, alpha=0.45, label="measured")
+        axes.plot(*decimated(time / clock.size, values / scale.size), color=INK, linewidth=2.2, alpha=0.45, label="measured")

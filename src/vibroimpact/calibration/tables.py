@@ -9,7 +9,7 @@ from vibroimpact.calibration.calibration import Calibration
 from vibroimpact.calibration.differences import COMPARED, WAYS, differences, largest_misfit
 from vibroimpact.calibration.matchable import MATCHABLE, REBOUNDS
 from vibroimpact.calibration.tunables import law_parameter
-from vibroimpact.runs.tables import column
+from vibroimpact.runs.tables import formatted_column
 from vibroimpact.units.display import column_texts, digits, fixed, largest, text
 
 _MOST_ROWS = 50
@@ -38,7 +38,7 @@ def values_table(found: Calibration) -> Cells:
         columns.append(column_texts(found.given, 6))
     for name in found.weights:
         header = MATCHABLE[name].words.capitalize()
-        unit, cells = column(MATCHABLE[name].column, np.concatenate([seen.wanted[name], found.outcomes[name]]))
+        unit, cells = formatted_column(MATCHABLE[name].column, np.concatenate([seen.wanted[name], found.outcomes[name]]))
         headers += [(f"{header} wanted", unit), ("found", unit)]
         columns += [cells[: len(seen.speeds)], cells[len(seen.speeds) :]]
         if found.as_given:

@@ -43,7 +43,7 @@ def check(case: CaseArgument) -> None:
     from vibroimpact.calibration.section import check_target
     from vibroimpact.cases.build import check_drop
     from vibroimpact.cases.reader import load_case, load_table, prefix_errors
-    from vibroimpact.runs.console import case_explained
+    from vibroimpact.runs.case_explained import case_explained
     from vibroimpact.studies.explain_sweep import explain_sweep
     from vibroimpact.studies.sweep import read_sweep
 
@@ -64,9 +64,10 @@ def _run(name: str, output: Path | None, *, force: bool) -> None:
     from vibroimpact.cases.reader import load_case, prefix_errors
     from vibroimpact.dynamics.simulate import simulate
     from vibroimpact.report.progress import patient_progress
-    from vibroimpact.results.folder import check_free, read_result
-    from vibroimpact.runs.console import result_summary
-    from vibroimpact.runs.save import save_result
+    from vibroimpact.results.folder import check_free, new_folder
+    from vibroimpact.runs.page import write_report
+    from vibroimpact.runs.save import write_data
+    from vibroimpact.runs.terminal import result_summary
 
     case = load_case(name)
     target = Path(stem(name)) if output is None else output
@@ -79,10 +80,12 @@ def _run(name: str, output: Path | None, *, force: bool) -> None:
             problem = prefix_errors(name, lambda: case.to_problem(progress, note))
         with patient_progress("simulating", screen) as progress:
             response = simulate(problem, progress)
-        folder = save_result(response, target, force=force)
-    del response  # the result read back may be as large, and both need not fit into memory
-    screen.print(result_summary(read_result(folder), screen.width))
-    say(f"wrote {folder / 'report.html'}")
+        with new_folder(target, force=force) as folder:
+            result = write_data(response, folder)
+            del response  # of a long run it may take as much memory as the result: release it before figures are drawn
+            write_report(result, folder)
+    screen.print(result_summary(result, screen.width))
+    say(f"wrote {target / 'report.html'}")
 
 
 @app.command()

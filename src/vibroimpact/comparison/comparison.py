@@ -16,7 +16,7 @@ from vibroimpact.dynamics.columns import ALL_IMPACT_COLUMNS
 from vibroimpact.dynamics.restitution import achieved_restitution
 from vibroimpact.dynamics.simulate import simulate
 from vibroimpact.results.result import Result, result_of
-from vibroimpact.runs.tables import column
+from vibroimpact.runs.tables import formatted_column
 from vibroimpact.units.display import MISSING, text
 
 _SPEEDS = 61
@@ -122,7 +122,7 @@ def comparison_table(comparison: Comparison) -> tuple[list[tuple[str, str]], lis
     for name in _COLUMNS:
         first = np.array([one.impacts[name][0] if len(one.impacts[name]) else np.nan for one in comparison.results.values()])
         change = np.array([one.change_by_impact[0] if len(one.impacts[name]) else 0.0 for one in comparison.results.values()])
-        unit, cells = column(name, first, change)
+        unit, cells = formatted_column(name, first, change)
         headers.append((ALL_IMPACT_COLUMNS[name].label, unit))
         for row, cell in zip(rows, cells, strict=True):
             row.append(cell)
@@ -132,7 +132,7 @@ def comparison_table(comparison: Comparison) -> tuple[list[tuple[str, str]], lis
 def _restitution(result: Result, name: str, at: int) -> str:
     """Return the restitution of the first or last impact, rounded to its significant digits."""
     values = result.impacts[name]
-    return column(name, values, result.change_by_impact)[1][at] if len(values) else MISSING
+    return formatted_column(name, values, result.change_by_impact)[1][at] if len(values) else MISSING
 
 
 def comparison_doubts(comparison: Comparison) -> list[str]:

@@ -13,7 +13,7 @@ from vibroimpact.arrays import Floats
 from vibroimpact.report.layout import label_vertical, new_figure, wide_axes
 from vibroimpact.report.style import LOOPS, style
 from vibroimpact.results.result import Result
-from vibroimpact.runs.windows import contacts, pressed, thinned
+from vibroimpact.runs.figure_data import contact_history, contacts_with_duration, decimated
 from vibroimpact.units.display import multiple
 
 _HEIGHT, _LINE = 3.6, 0.2
@@ -44,7 +44,7 @@ def draw_comparison(results: Mapping[str, Result], speeds: Floats, restitutions:
         `position`, `force`, `force_indentation` and `restitution`; the two of force only if a law has one.
     """
     styles = {name: _line_style(number) for number, name in enumerate(results)}
-    forceful = {name: one for name, one in results.items() if len(contacts(one))}
+    forceful = {name: one for name, one in results.items() if len(contacts_with_duration(one))}
     with style():
         figures = {"position": _draw_positions(results, styles)}
         if forceful:
@@ -63,7 +63,7 @@ def _draw_positions(results: Mapping[str, Result], styles: Mapping[str, Any]) ->
         time, height = one.history["time_s"], one.history["position_m"]
         if one.status.startswith("At rest"):  # the history ends at rest; extend the line to the longest run
             time, height = np.append(time, end), np.append(height, height[-1])
-        axes.plot(*thinned(time / clock.size, height / scale.size), label=name, **styles[name])
+        axes.plot(*decimated(time / clock.size, height / scale.size), label=name, **styles[name])
     axes.set_title("Height of the sphere's centre")
     axes.set_xlabel(f"Time [{clock.unit}]")
     label_vertical(axes, f"Height above the plate [{scale.unit}]")
@@ -72,9 +72,9 @@ def _draw_positions(results: Mapping[str, Result], styles: Mapping[str, Any]) ->
 
 def _draw_first_contacts(results: Mapping[str, Result], styles: Mapping[str, Any], column: str, unit: str, label: str) -> Figure:
     figure, axes = _axes(len(results))
-    parts = {name: pressed(one, contacts(one)[0]) for name, one in results.items()}
+    parts = {name: contact_history(one, contacts_with_duration(one)[0]) for name, one in results.items()}
     for name, one in results.items():
-        parts[name]["time_s"] = parts[name]["time_s"] - one.impacts["time_s"][contacts(one)[0]]
+        parts[name]["time_s"] = parts[name]["time_s"] - one.impacts["time_s"][contacts_with_duration(one)[0]]
     across = multiple(unit, np.concatenate([part[column] for part in parts.values()]))
     force = multiple("N", np.concatenate([part["force_N"] for part in parts.values()]))
     for name, part in parts.items():

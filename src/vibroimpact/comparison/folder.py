@@ -21,8 +21,8 @@ from vibroimpact.comparison.figures import draw_comparison
 from vibroimpact.dynamics.columns import impact_columns
 from vibroimpact.report.figure_files import save_figures
 from vibroimpact.report.page import picture, template
+from vibroimpact.results.csv_files import impact_rows, write_csv
 from vibroimpact.results.folder import SUMMARY, new_folder
-from vibroimpact.results.tables import impact_rows, write_csv
 
 _TITLES = {
     "position": ("Position", "The sphere's centre above the plate, under each law."),

@@ -11,7 +11,7 @@ from vibroimpact.dynamics.columns import Column, history_columns, impact_columns
 from vibroimpact.errors import InputError
 from vibroimpact.exporting.drop import Drop
 from vibroimpact.files.plain_names import one_line, plain_names
-from vibroimpact.results.signal_csv import TableColumn, signal_columns
+from vibroimpact.results.csv_files import TableColumn, signal_columns
 
 Table = dict[str, TableColumn]
 

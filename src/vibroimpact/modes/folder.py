@@ -19,9 +19,9 @@ from vibroimpact.meshes.write_nastran import write_nastran
 from vibroimpact.meshes.write_vtu import write_vtu
 from vibroimpact.modes.shapes import draw_modes
 from vibroimpact.report.figure_files import save_figures
+from vibroimpact.results.csv_files import write_csv
 from vibroimpact.results.folder import SUMMARY, new_folder
 from vibroimpact.results.peaks import known_errors
-from vibroimpact.results.tables import write_csv
 
 MODE_COLUMNS = (
     "body",

@@ -1,1 +1,1 @@
-"""The result of a run as plain data, and the folder that holds it."""
+"""The result of one simulated drop as plain data, and the result folder that stores it."""

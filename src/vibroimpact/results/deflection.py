@@ -1,4 +1,4 @@
-"""How the plate's upper side is deflected at chosen times, on a regular grid."""
+"""Deflection of the plate's upper side at selected times, sampled on a regular grid."""
 
 from __future__ import annotations
 
@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vibroimpact.arrays import Floats
-from vibroimpact.results.frames import frame_times
 from vibroimpact.results.surface_grid import surface_grid
 
 if TYPE_CHECKING:
@@ -18,24 +17,31 @@ if TYPE_CHECKING:
 
 
 _FRAMES = 96
+"""Number of frame times, at most."""
+_IN_VISIT = 20
+"""Frames during the first visit."""
+_PER_PERIOD = 24
+"""Frames per period of the lowest mode, at the largest step."""
+_GROWTH = 1.15
+"""Ratio of successive steps after the first visit."""
 
 
 @dataclass(frozen=True)
 class Deflection:
-    """The plate's upper side at some times.
+    """Vertical displacement of the plate's upper side at selected times.
 
     Parameters
     ----------
     time : array, shape (frames,)
-        Since the start [s].
+        Times since the start of the run [s].
     x, y : array, shape (columns,) and (rows,)
-        Of the grid [m], as in the plate's own coordinates.
+        Grid coordinates in the plate's own coordinate system [m].
     height : array, shape (frames, rows, columns)
-        Displacement of the upper side, upwards [m], single precision; NaN beside the plate.
+        Displacement of the upper side, positive upwards [m], in single precision; NaN at grid points outside the plate.
     sphere_position : array, shape (frames,)
         Height of the sphere's centre above the plate's upper surface at rest [m].
     contact_deflection : array, shape (frames,)
-        Displacement of the plate at the contact point, upwards [m].
+        Displacement of the plate at the contact point, positive upwards [m].
     contact : tuple of two floats
         x and y of the contact point [m].
     """
@@ -49,8 +55,11 @@ class Deflection:
     contact: tuple[float, float]
 
 
-def first_frames(response: Response) -> Floats:
-    """Return times from just before the first touch on [s]; none if there is no impact, or nothing vibrates in modes."""
+def frame_times_of(response: Response) -> Floats:
+    """Return the frame times of a run [s], from just before the first touch on; empty without an impact or without modes.
+
+    The period that spaces the last frames is that of the lowest mode of the plate, or of the sphere if the plate has no modes.
+    """
     problem, impacts = response.problem, response.impacts
     modes = problem.plate.modes or problem.sphere.modes
     if modes is None or not len(impacts["impact"]):
@@ -60,13 +69,14 @@ def first_frames(response: Response) -> Floats:
 
 
 def deflection_of(response: Response) -> Deflection | None:
-    """Return the deflection of the plate of a run; None if its mesh is not known, or it is never touched."""
-    model, time = response.problem.models.get("plate"), first_frames(response)
+    """Return the plate's deflection at the frame times of a run; None if the plate has no modal model with a mesh, or no impact occurs."""
+    model, time = response.problem.models.get("plate"), frame_times_of(response)
     if model is None or not len(time):
         return None
     grid = surface_grid(model.mesh)
+    # interpolated once per mode: the deflection at any time is then a product with the modal coordinates
     vertical = model.shapes.reshape(len(model.shapes), len(model.mesh.nodes), -1)[:, :, 2]
-    height = response.modal(time)["plate"] @ grid.of(vertical).reshape(len(vertical), -1)
+    height = response.modal(time)["plate"] @ grid.interpolate(vertical).reshape(len(vertical), -1)
     history = response.at(time)
     return Deflection(
         time,
@@ -75,16 +85,42 @@ def deflection_of(response: Response) -> Deflection | None:
         height.reshape(len(time), *grid.on_body.shape).astype(np.float32),
         history["position_m"],
         history["plate_deflection_m"],
-        contact_place(response, model),
+        contact_point_of(response, model),
     )
 
 
-def contact_place(response: Response, model: ModalModel) -> tuple[float, float]:
-    """Return x and y of the contact point in the coordinates of the plate's mesh [m]; its middle, if no case tells."""
-    from vibroimpact.structures.surface import place_of  # which loads sparse matrices
+def contact_point_of(response: Response, model: ModalModel) -> tuple[float, float]:
+    """Return x and y of the contact point in the coordinates of the plate's mesh [m]; the middle of the plate if the case gives none."""
+    from vibroimpact.structures.surface import place_of  # here, as it imports scipy.sparse
 
     source = response.problem.source or {}
     mesh = source.get("plate", {}).get("mesh")
     spot = (mesh.get("contact") if isinstance(mesh, dict) else None) or source.get("drop", {}).get("position") or (0.0, 0.0)
     x, y = place_of(model.mesh, spot if isinstance(spot, str) else (spot[0], spot[1]), "upper")
     return x, y
+
+
+def frame_times(touch: float, duration: float, period: float, end: float, count: int) -> Floats:
+    """Return frame times [s]: equally spaced through the first visit, then with steps that grow geometrically up to a limit.
+
+    Parameters
+    ----------
+    touch, duration : float
+        Time of first touch and duration of the first visit [s].
+    period : float
+        Period of the lowest mode [s].
+    end : float
+        End of the run [s].
+    count : int
+        Number of frames; times outside the run are dropped.
+
+    Examples
+    --------
+    >>> frame_times(1.0, 1e-3, 0.1, 2.0, 96)[[0, 2, 22, -1]].round(4).tolist()
+    [0.9999, 1.0, 1.001, 1.1925]
+    """
+    step = min(duration, 3.0 * period) / _IN_VISIT  # a sphere that stays has no release to bound the duration
+    in_visit = touch + step * np.arange(-2, _IN_VISIT + 3)
+    steps = np.minimum(step * _GROWTH ** np.arange(count - len(in_visit)), max(step, period / _PER_PERIOD))
+    times = np.concatenate([in_visit, in_visit[-1] + np.cumsum(steps)])
+    return np.asarray(times[(times >= 0.0) & (times <= end)])

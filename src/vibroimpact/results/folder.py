@@ -1,4 +1,4 @@
-"""The result folder: there whole or not at all, and read back."""
+"""Result folders: atomic creation, writing of the data files, and reading with verification of checksums."""
 
 from __future__ import annotations
 
@@ -23,18 +23,15 @@ from vibroimpact.files.check_sums import CHECK_SUMS, DamageError, check_file, fi
 from vibroimpact.files.damaged_part import check_hdf5
 from vibroimpact.files.hdf5 import short_reason
 from vibroimpact.files.recover import recover
+from vibroimpact.results.csv_files import write_impacts, write_signal_files
 from vibroimpact.results.netcdf import read_groups, write_groups
 from vibroimpact.results.result import Result
-from vibroimpact.results.signal_csv import write_signal_files
-from vibroimpact.results.summary import summary_of
-from vibroimpact.results.summary_types import check_types
-from vibroimpact.results.tables import write_impacts
+from vibroimpact.results.summary import check_types, summary_of
 
 SUMMARY, CASE, DATA = "summary.json", "case.toml", "result.nc"
 
 LONGEST_FOLDER_NAME = 200
-"""Bytes; most disks take 255, and while it is written a folder has a longer name."""
-
+"""In bytes. Most file systems allow 255; the temporary folder of an atomic write has a longer name than the final one."""
 
 _OTHER_FOLDERS = {
     "laws": "this is a comparison of contact laws, not the result of a run; make it anew with compare",
@@ -43,24 +40,24 @@ _OTHER_FOLDERS = {
     "study": "this is a study of many drops, not the result of a run; its results are in study.nc",
     "modes": "these are modes of elastic bodies, not the result of a run; make them anew with modes",
 }
-"""What a folder is whose summary has one of these keys."""
+"""Messages for folders that are not results of a run, by the key that identifies them in `summary.json`."""
 
 
 @contextmanager
 def new_folder(directory: str | PathLike[str], *, force: bool = False) -> Iterator[Path]:
-    """Give a folder to fill, which becomes `directory` when the block ends without an error.
+    """Context manager of an atomic folder write: yield a temporary folder that becomes `directory` when the block succeeds.
 
     Parameters
     ----------
     directory : path
-        Where it is to be.
+        Final path of the folder.
     force : bool, default False
-        Replace a result folder that is there; nothing else is ever replaced.
+        Replace an existing result folder; nothing else is ever replaced.
 
     Raises
     ------
     InputError
-        If something is there already, or the place can't be written to.
+        If the path exists and may not be replaced, or can't be written to.
     """
     target = Path(directory)
     check_free(target, force=force)
@@ -74,12 +71,12 @@ def new_folder(directory: str | PathLike[str], *, force: bool = False) -> Iterat
 
 
 def check_free(directory: str | PathLike[str], *, force: bool = False) -> None:
-    """Raise unless a result folder may be written to `directory`; what a process that died has left of it is put right.
+    """Check that a result folder may be written to `directory`, after recovering from an interrupted write to it.
 
     Raises
     ------
     InputError
-        If something is there that may not be replaced.
+        If the path is not valid, exists and may not be replaced, or lies where nothing can be written.
     """
     target = Path(directory)
     if "\0" in str(target):
@@ -106,8 +103,12 @@ def check_free(directory: str | PathLike[str], *, force: bool = False) -> None:
 
 
 def write_result(result: Result, directory: Path) -> None:
-    """Write the data files of a result into a folder: case.toml, impacts.csv, summary.json, result.nc, and short signals as CSV."""
-    if result.case:  # a problem made in Python has no case; its provenance says what it was
+    """Write the data files of a result into an existing folder.
+
+    These are `case.toml`, `impacts.csv`, `result.nc`, `summary.json` with the checksums of the first and third, and `sensors/*.csv` for
+    signals that are not too long.
+    """
+    if result.case:  # a problem defined in Python has no case; its provenance holds its representation
         (directory / CASE).write_text(tomli_w.dumps(result.case), encoding="utf-8")
     write_impacts(result.impacts, directory / "impacts.csv")
     write_groups(result, directory / DATA)
@@ -117,18 +118,32 @@ def write_result(result: Result, directory: Path) -> None:
 
 
 def read_result(directory: str | PathLike[str]) -> Result:
-    """Read a result folder.
+    """Read a result folder and verify the checksums of its files.
+
+    Parameters
+    ----------
+    directory : path
+        Result folder, as written by `save_result` or `vibroimpact run`.
+
+    Returns
+    -------
+    Result
+        The result as stored.
 
     Raises
     ------
     InputError
-        If it is not a result folder, or a file of it is missing or damaged.
+        If it is not a result folder, or one of its files is missing or damaged.
+
+    See Also
+    --------
+    vibroimpact.save_result : writes one.
     """
     folder = Path(directory)
-    recover(folder)
+    recover(folder)  # an interrupted replacement may have left the folder under its temporary name
     if not (folder / SUMMARY).is_file():
         raise InputError(f"{folder}: this is not a result folder; it has no {SUMMARY}")
-    name = SUMMARY
+    name = SUMMARY  # the file being read: error messages name it
     try:
         summary = read_sealed(folder / name)
         for key, words in _OTHER_FOLDERS.items():
@@ -143,16 +158,17 @@ def read_result(directory: str | PathLike[str]) -> Result:
             case = tomllib.loads((folder / name).read_text(encoding="utf-8"))
         name = DATA
         check_hdf5(folder / name, expected.get(name))
-        return _result(case, summary, read_groups(folder / name))
+        return _result_from(case, summary, read_groups(folder / name))
     except InputError:
         raise
     except DamageError as error:
-        raise InputError(f"{folder / name}: {error}; {_anew(folder, name)}") from None
-    except Exception as error:  # of many kinds, as files are damaged in many ways
-        raise InputError(f"{folder / name}: the file is missing or damaged: {_why(error)}; {_anew(folder, name)}") from None
+        raise InputError(f"{folder / name}: {error}; {_remedy(folder, name)}") from None
+    except Exception as error:  # damaged files raise many types of exceptions
+        raise InputError(f"{folder / name}: the file is missing or damaged: {_cause(error)}; {_remedy(folder, name)}") from None
 
 
-def _result(case: Mapping[str, Any], summary: Mapping[str, Any], groups: Mapping[str, Mapping[str, Any]]) -> Result:
+def _result_from(case: Mapping[str, Any], summary: Mapping[str, Any], groups: Mapping[str, Mapping[str, Any]]) -> Result:
+    """Return a result from the case, the summary and the groups of the NetCDF file, after checking its columns."""
     missing = set(IMPACT_COLUMNS) - set(groups["impacts"])
     if missing:
         raise KeyError(f"no {', '.join(sorted(missing))}")
@@ -176,14 +192,15 @@ def _result(case: Mapping[str, Any], summary: Mapping[str, Any], groups: Mapping
     )
 
 
-def _why(error: Exception) -> str:
+def _cause(error: Exception) -> str:
+    """Return the cause of a failed read in words."""
     if isinstance(error, KeyError):
         return f"it has no {error.args[0]}" if error.args and not str(error.args[0]).startswith("no ") else str(error.args[0])
     return short_reason(error)
 
 
-def _anew(folder: Path, name: str) -> str:
-    """Return what to do about a file of a result that is damaged."""
+def _remedy(folder: Path, name: str) -> str:
+    """Return a sentence on how to restore a damaged file of a result."""
     if name == CASE or not (folder / CASE).is_file():
         return "make the result anew"
     return f"make it anew with: vibroimpact run {shlex.quote(str(folder / CASE))} -o {shlex.quote(str(folder))} --force"

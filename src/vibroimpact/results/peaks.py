@@ -1,4 +1,4 @@
-"""The peaks of bodies that vibrate, as `summary.json` tells them."""
+"""Peak values of the motion of elastic bodies, as stored in `summary.json`."""
 
 from __future__ import annotations
 
@@ -18,17 +18,18 @@ Peaks = dict[str, Any]
 
 
 def peaks_of(response: Response, history: Mapping[str, Floats]) -> dict[str, Peaks]:
-    """Return the peaks of the bodies that have modes, by the name of the body.
+    """Return peak values and frequencies of the bodies that have modes, by body name.
 
-    Displacement, velocity and acceleration are vertical magnitudes of the centre of mass; the displacement counts from where it
-    is at the start, the plate's from rest. They are the largest of the points of the history, and of the impact table.
+    Displacement, velocity and acceleration are largest magnitudes of the vertical motion of the centre of mass; the sphere's
+    displacement is relative to its initial position, the plate's to its position at rest. The maxima are over the points of the
+    history; the sphere's acceleration also includes that of the impact table.
 
     Parameters
     ----------
     response : Response
-        A run of one drop.
+        Response of one drop.
     history : mapping of str to array
-        Its history.
+        Its history, as returned by `fine_history`.
     """
     problem, found = response.problem, {}
     if problem.sphere.modes is not None:
@@ -64,7 +65,14 @@ def _peaks(modes: ModalBasis, displacement: Floats, velocity: Floats, accelerati
 
 
 def known_errors(errors: Floats | None, number: int) -> list[float | None]:
-    """Return the relative errors of frequencies as JSON holds them: None where one is not known.
+    """Return relative frequency errors as a list for JSON, None where an error is unknown.
+
+    Parameters
+    ----------
+    errors : array or None
+        Relative errors of the frequencies, NaN where unknown; None if all are.
+    number : int
+        Number of frequencies.
 
     Examples
     --------

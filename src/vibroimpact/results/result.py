@@ -1,4 +1,4 @@
-"""A finished run as plain data: what a result folder holds, and what a report is made from."""
+"""The result of one drop as plain data: the content of a result folder and the input of its report."""
 
 from __future__ import annotations
 
@@ -28,32 +28,32 @@ from vibroimpact.results.peaks import Peaks, peaks_of
 
 @dataclass(frozen=True)
 class Result:
-    """One drop's result.
+    """Result of one drop.
 
     Parameters
     ----------
     case : mapping
-        The resolved case, in SI, as `case.toml` holds it; empty for a problem made in Python.
+        Resolved case in SI units, as in `case.toml`; empty for a problem defined in Python.
     impacts : dict of str to array
-        The impact table, (impacts,) a column.
+        Impact table: columns of shape (impacts,).
     history : dict of str to array
-        The history on a grid that resolves every contact, (times,) a column.
+        History on a time grid that resolves every contact, but for very long runs: columns of shape (times,).
     energy : dict of str to float
-        The ledger at the end.
+        Energy ledger at the end of the run: energies [J], and the relative closure.
     status : str
-        Why the run ended.
+        Sentence stating why and when the run ended.
     provenance : mapping
-        Version, time and machine that made it.
+        Software versions, platform, time of creation and tolerance.
     deformation : mapping
-        How the deformation of the bodies is modelled: words and numbers, whose names end in their units.
+        Facts about how the deformation of the bodies is modelled: words, and numbers whose keys end in their units.
     truncation : mapping of str to float
-        About how far the largest force is off for the modes left out, as a part of it, by the name of the body.
+        Estimated relative error of the largest force due to modal truncation, by body name.
     peaks : mapping
-        Peaks and frequencies of "sphere" and "plate", where they have modes.
+        Peak values and frequencies of "sphere" and "plate", where these have modes.
     signals : mapping of str to Signal
-        What the sensors recorded.
+        Sensor signals, by sensor name.
     deflection : Deflection, optional
-        The plate's upper side at chosen times.
+        Deflection of the plate's upper side at selected times.
 
     The last five are empty where nothing but the contact deforms.
     """
@@ -72,30 +72,30 @@ class Result:
 
     @property
     def vibrates(self) -> bool:
-        """Does anything but the contact deform?"""
+        """Whether anything but the contact deforms, or anything but the sphere moves: the history then has further columns."""
         return "plate_deflection_m" in self.history
 
     def frequencies(self, body: str) -> list[float]:
-        """Return the frequencies of the modes of "sphere" or "plate" [Hz], ascending; none of a rigid one."""
+        """Return the modal frequencies of "sphere" or "plate" [Hz], ascending; an empty list for a rigid body."""
         found = self.peaks.get(body, {}).get("frequencies_Hz", [])
         return found if isinstance(found, list) else []
 
     @property
     def change_by_impact(self) -> Floats:
-        """Relative change of each impact [-] for one in the drop that nobody can rule out: of 1e-9, or of the tolerance if larger."""
+        """Relative change of each impact [-] for a relative perturbation of the drop of 1e-9, or of the tolerance if larger."""
         return change_by_impact(self.impacts, float(self.provenance.get("tolerance", RELATIVE_CHANGE)))
 
     @property
     def doubts(self) -> list[str]:
-        """What to doubt of it: where its assumptions are strained."""
+        """Doubts about the result: sentences naming assumptions and ranges of validity that the run exceeds."""
         found = doubts(self.case, self._seen)
-        found += str(self.deformation.get("doubts", "")).splitlines()  # of the meshes
+        found += str(self.deformation.get("doubts", "")).splitlines()  # about the meshes
         highest = max(self.frequencies("plate"), default=math.nan)
         return found + sensor_doubts(self.case, self.signals, highest, float(self._seen.duration))
 
     @property
     def _seen(self) -> DropSummary:
-        """What came of the drop, to which the limits of the theory are applied."""
+        """The outcomes of the drop that the limits of the theory are checked against."""
         if not len(self.impacts["impact"]):
             return DropSummary()
         force, depth = (float(self.impacts[name].max()) for name in ("max_force_N", "max_indentation_m"))
@@ -107,17 +107,17 @@ class Result:
 
     @property
     def name(self) -> str:
-        """The name of the case."""
+        """Name of the case; "a drop" if it has none."""
         return str(self.case.get("name", "")) or "a drop"
 
 
 def result_of(response: Response) -> Result:
-    """Return the result of a response to one drop.
+    """Return the result of a response to one drop: its tables, refined history, peaks, signals and deflection.
 
     Raises
     ------
     InputError
-        If the response is of several drops.
+        If the response is of several drops, or keeps no history.
     """
     history = fine_history(response)
     return Result(

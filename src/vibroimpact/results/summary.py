@@ -1,16 +1,17 @@
-"""What `summary.json` holds of a result."""
+"""The content of `summary.json`, and a check of its types when it is read."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from typing import Any
 
+from vibroimpact.results.csv_files import impact_rows
 from vibroimpact.results.result import Result
-from vibroimpact.results.tables import impact_rows
 
 
 def summary_of(result: Result) -> dict[str, Any]:
-    """Return a result in short: the impact table, the ledger at the end, and of bodies that vibrate their peaks."""
+    """Return the summary of a result: impact table, final energy ledger, doubts, provenance, and peaks of elastic bodies."""
     return {
         "name": result.name,
         "status": result.status,
@@ -24,7 +25,7 @@ def summary_of(result: Result) -> dict[str, Any]:
 
 
 def _of_vibration(result: Result) -> dict[str, Any]:
-    """Return what the summary has only where bodies vibrate; None in it where a number does not exist."""
+    """Return the entries of a summary that exist only where bodies vibrate; None stands for a number that is not finite."""
     if not result.vibrates:
         return {}
     truncation = {name: value if math.isfinite(value) else None for name, value in result.truncation.items()}
@@ -50,3 +51,31 @@ def _of_vibration(result: Result) -> dict[str, Any]:
         "change_by_impact": change,
         "sensors": sensors,
     }
+
+
+def check_types(summary: Mapping[str, Any]) -> None:
+    """Check the types of the entries of a summary that a result is built from.
+
+    Raises
+    ------
+    ValueError
+        If an entry has another type than `summary_of` writes.
+    KeyError
+        If the status is missing.
+    """
+    _check("status", isinstance(summary["status"], str))
+    for key, kinds in (("provenance", (str,)), ("deformation", (str, int, float)), ("truncation", (int, float, type(None)))):
+        table = summary.get(key, {})
+        _check(key, isinstance(table, dict) and all(isinstance(value, kinds) for value in table.values()))
+    for body in ("sphere", "plate"):
+        peaks = summary.get(body, {})
+        _check(body, isinstance(peaks, dict) and all(_is_peak(value) for value in peaks.values()))
+
+
+def _is_peak(value: Any) -> bool:
+    return all(one is None or isinstance(one, (int, float)) for one in (value if isinstance(value, list) else [value]))
+
+
+def _check(key: str, right: bool) -> None:
+    if not right:
+        raise ValueError(f"{key} is not of the kind that it should be")

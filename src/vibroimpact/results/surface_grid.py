@@ -1,4 +1,4 @@
-"""A regular grid over the upper side of a mesh, and how its points move with the nodes."""
+"""Interpolation of nodal values of a mesh onto a regular grid over its upper side."""
 
 from __future__ import annotations
 
@@ -14,19 +14,19 @@ if TYPE_CHECKING:
     from scipy.sparse import csr_array
 
 POINTS = 3000
-"""About how many points a grid has."""
+"""Approximate number of grid points."""
 
-_FEWEST, _MOST = 11, 241  # along one side
-_EDGE = 1e-6  # of a triangle: a point on its edge is on it, in spite of rounding
-_FINE = 3  # steps of the surface within one of the grid: between its points it is straight
+_FEWEST, _MOST = 11, 241  # points along one side
+_EDGE = 1e-6  # tolerance of barycentric coordinates and grid steps: a point on the edge of a triangle counts as inside it
+_FINE = 3  # subdivisions of a face per grid step: the triangles between the subdivision points are flat
 
 
 @dataclass(frozen=True)
 class SurfaceGrid:
-    """Points over the upper side of a mesh.
+    """Regular grid over the upper side of a mesh, with interpolation weights.
 
-    `x`, `y` [m] (columns,), (rows,). `weights`: how the points, row by row, move with the nodes. `on_body` (rows, columns):
-    which of them lie on the body.
+    `x`, `y`: grid coordinates [m], (columns,) and (rows,). `weights`: interpolation matrix (rows * columns, nodes), grid points in
+    row-major order. `on_body`: mask of the grid points that lie on the body, (rows, columns).
     """
 
     x: Floats
@@ -34,8 +34,8 @@ class SurfaceGrid:
     weights: csr_array
     on_body: Bools
 
-    def of(self, values: Floats) -> Floats:
-        """Return values at the points (..., rows, columns) of those at the nodes (..., nodes); NaN beside the body."""
+    def interpolate(self, values: Floats) -> Floats:
+        """Return nodal values (..., nodes) interpolated to the grid points (..., rows, columns); NaN outside the body."""
         flat = values.reshape(-1, values.shape[-1])
         found = np.asarray((self.weights @ flat.T).T).reshape(-1, *self.on_body.shape)
         found[:, ~self.on_body] = np.nan
@@ -43,10 +43,10 @@ class SurfaceGrid:
 
 
 def surface_grid(mesh: Mesh) -> SurfaceGrid:
-    """Return a grid of about 3000 points over a mesh, with a point in the middle.
+    """Return a grid of about 3000 points over the upper side of a mesh, with a grid point at the middle of its bounding box.
 
-    The outer faces are cut into triangles much smaller than the steps of the grid, of which each point takes the uppermost:
-    that needs no search for a point's place in its element, and a mesh may have any outline and holes.
+    The outer faces are subdivided into triangles smaller than the grid steps, and each grid point is interpolated in the uppermost
+    triangle that contains it. This avoids the inverse mapping to element coordinates, and the mesh may have any outline and holes.
 
     Examples
     --------
@@ -64,11 +64,12 @@ def surface_grid(mesh: Mesh) -> SurfaceGrid:
     x, y = np.linspace(low[0], high[0], columns), np.linspace(low[1], high[1], rows)
     step = np.array([x[1] - x[0], y[1] - y[0]])
     at, motion, triangles = _triangles(mesh, step)
-    corner = (at[:, :2] - low) / step  # in steps of the grid
+    corner = (at[:, :2] - low) / step  # in grid steps
     found = np.full(columns * rows, -np.inf)
     nodes, weight = np.zeros((len(found), 3), dtype=np.int64), np.zeros((len(found), 3))
     first = np.ceil(corner[triangles].min(axis=1) - _EDGE).astype(int)
     last = np.floor(corner[triangles].max(axis=1) + _EDGE).astype(int)
+    # small triangles cover few grid points: a loop over these offsets tests all triangles at once
     reach = (last - first).max(axis=0, initial=-1) + 1
     for column in range(reach[0]):
         for row in range(reach[1]):
@@ -78,7 +79,7 @@ def surface_grid(mesh: Mesh) -> SurfaceGrid:
             inside = share.min(axis=1) >= -_EDGE
             here, share = here[inside], share[inside]
             height = np.einsum("tk,tk->t", share, at[triangles[here], 2])
-            order = np.argsort(height, kind="stable")  # of several above one another the uppermost is written last
+            order = np.argsort(height, kind="stable")  # of triangles at the same grid point the uppermost is assigned last
             index, height = (point[here, 1] * columns + point[here, 0])[order], height[order]
             higher = height > found[index]
             index = index[higher]
@@ -89,7 +90,7 @@ def surface_grid(mesh: Mesh) -> SurfaceGrid:
 
 
 def _shares(corner: Floats, point: Integers) -> Floats:
-    """Return the barycentric coordinates of points in triangles (triangles, 3); of a triangle without area -1."""
+    """Return the barycentric coordinates of points in triangles, (triangles, 3); -1 for triangles of zero area."""
     a, b = corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]
     to = point - corner[:, 0]
     area = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
@@ -103,7 +104,10 @@ def _shares(corner: Floats, point: Integers) -> Floats:
 
 
 def _triangles(mesh: Mesh, step: Floats) -> tuple[Floats, csr_array, Integers]:
-    """Return points of the outer faces, how they move with the nodes, and small triangles between them."""
+    """Return subdivision points of the outer faces, their interpolation matrix from the nodes, and the triangles between them.
+
+    The points have shape (points, 3) [m], the matrix (points, nodes), and the triangles, as point numbers, (triangles, 3).
+    """
     from scipy.sparse import csr_array, vstack
 
     from vibroimpact.structures.surface import outer_faces
@@ -112,6 +116,7 @@ def _triangles(mesh: Mesh, step: Floats) -> tuple[Floats, csr_array, Integers]:
     for group in outer_faces(mesh):
         corner = mesh.nodes[group.connectivity[:, list(group.corners)], :2]
         size = np.ptp(corner, axis=1) / step
+        # faces with the same number of subdivisions share one lattice of reference points
         for fine in np.unique(cuts := np.maximum(1, np.ceil(_FINE * size.max(axis=1))).astype(int)):
             nodes = group.connectivity[cuts == fine]
             local, pattern = _lattice(len(group.corners), int(fine))
@@ -128,7 +133,7 @@ def _triangles(mesh: Mesh, step: Floats) -> tuple[Floats, csr_array, Integers]:
 
 
 def _lattice(corners: int, fine: int) -> tuple[Floats, Integers]:
-    """Return places on a face of the reference element, `fine` steps along each side, and the triangles between them."""
+    """Return lattice points on a reference face, `fine` steps along each side, and the triangles between them as point numbers."""
     a, b = (side.ravel() for side in np.meshgrid(np.arange(fine + 1), np.arange(fine + 1), indexing="ij"))
     if corners == 3:
         a, b = a[a + b <= fine], b[a + b <= fine]

@@ -1,4 +1,4 @@
-"""The animation of plate and ball: the deflected plate in space, drawn by a parallel projection."""
+"""Animation of plate and sphere: the deflected plate in parallel projection, with exaggerated deflection."""
 
 from __future__ import annotations
 
@@ -20,29 +20,35 @@ from vibroimpact.report.projection import TILT, depth, project, show_whole
 from vibroimpact.report.style import INK, style
 from vibroimpact.results.deflection import Deflection
 from vibroimpact.results.result import Result
-from vibroimpact.runs.windows import touch_height
+from vibroimpact.runs.figure_data import touch_height
 from vibroimpact.units.display import fixed, text
 
 _SIZE, _DPI = (5.8, 3.3), 100
 _CELLS = 22
-"""Along the longer side of the plate: more do not show."""
+"""Number of cells along the longer side of the plate; more would not be visible."""
 _HEIGHT = 0.16
-"""Of the plate's larger side: the largest deflection as drawn."""
+"""Largest drawn deflection, relative to the longer side of the plate."""
 _MILLISECONDS = 70
-"""A frame."""
+"""Duration of a frame."""
 _MAP, _SHADES = "RdBu_r", 25
-"""Colours of the plate, and how many shades of them there are."""
+"""Colour map of the plate, and number of its shades in the palette."""
 
 
 def animate(result: Result) -> bytes:
-    """Return plate and ball around the first visit as a GIF; the plate's deflection is exaggerated by a factor that is told.
+    """Return an animation of plate and sphere around the first visit as GIF.
 
-    The ball and its gap to the plate are to scale. Time runs the slower the faster things happen; each frame tells its own.
+    The plate's deflection is exaggerated by a factor stated in the picture; the sphere and its gap to the plate are to scale. Frames
+    are closer in time where the motion is fast, and each states its time.
+
+    Parameters
+    ----------
+    result : Result
+        Result with a deflection.
     """
     deflection = result.deflection
-    assert deflection is not None  # who asks has seen to it
+    assert deflection is not None  # checked by the caller
     with style():
-        scene = _Scene(result, deflection)
+        scene = _AnimationScene(result, deflection)
         frames = [Image.fromarray(scene.frame(number)) for number in range(len(deflection.time))]
     palette = _palette()
     plain = [frame.quantize(palette=palette, dither=Image.Dither.NONE) for frame in frames]
@@ -52,7 +58,7 @@ def animate(result: Result) -> bytes:
 
 
 def _palette() -> Image.Image:
-    """Return a picture with the colours of all frames: those of the plate, as bright and under a line, and greys."""
+    """Return an image with the palette of all frames: the colours of the plate, the same darkened for mesh lines, and greys."""
     plate = 255.0 * colormaps[_MAP](np.linspace(0.0, 1.0, _SHADES))[:, :3]
     greys = np.repeat(np.linspace(0.0, 255.0, _SHADES)[:, None], 3, axis=1)
     colours = np.concatenate([plate, 0.8 * plate, greys]).round().astype(np.uint8)
@@ -62,7 +68,7 @@ def _palette() -> Image.Image:
 
 
 def exaggeration(deflection: Deflection) -> float:
-    """Return the factor by which the deflection is drawn too large: 1, 2 or 5 times a power of ten."""
+    """Return the factor by which the deflection is exaggerated: 1, 2 or 5 times a power of ten; 1 if there is no deflection."""
     largest = float(np.nanmax(np.abs(deflection.height)))
     if largest == 0.0:
         return 1.0
@@ -71,8 +77,8 @@ def exaggeration(deflection: Deflection) -> float:
     return float(max((step * power for step in (1.0, 2.0, 5.0) if step * power <= wanted), default=power))
 
 
-class _Scene:
-    """What is drawn: all that stays is drawn once, and what moves over it."""
+class _AnimationScene:
+    """Drawing of the frames: the static background is rendered once, and the moving artists are drawn over copies of it."""
 
     def __init__(self, result: Result, deflection: Deflection) -> None:
         self.deflection, self.factor = deflection, exaggeration(deflection)
@@ -121,19 +127,20 @@ class _Scene:
         show_whole(self.axes, (float(across.min()), float(across.max())), (float(up.min()) - 0.3 * swing, top), _SIZE[0] / _SIZE[1])
 
     def _ball_height(self, frame: int | slice) -> Floats:
-        """Return where the ball's centre is drawn: over the exaggerated plate at its true gap."""
+        """Return the drawn height of the sphere's centre [m]: at its true gap above the exaggerated plate."""
         down = self.deflection.contact_deflection[frame]
         return np.asarray(self.deflection.sphere_position[frame] - down + self.factor * down)
 
     def frame(self, number: int) -> NDArray[np.uint8]:
-        """Return the pixels of a frame."""
+        """Return a frame as an image, (height, width, 3)."""
         deflection = self.deflection
         height = self.factor * deflection.height[number][np.ix_(self.rows, self.columns)].astype(float)
         across, up = project(self.x, self.y, height)
         corner = np.stack([across, up], axis=-1)
         cells = np.stack([corner[:-1, :-1], corner[:-1, 1:], corner[1:, 1:], corner[1:, :-1]], axis=2).reshape(-1, 4, 2)
         mean = 0.25 * (height[:-1, :-1] + height[:-1, 1:] + height[1:, 1:] + height[1:, :-1]).ravel()
-        order = np.argsort(-depth(self.x, self.y)[:-1, :-1].ravel(), kind="stable")  # the farthest first
+        # painter's algorithm: the farthest cells are drawn first
+        order = np.argsort(-depth(self.x, self.y)[:-1, :-1].ravel(), kind="stable")
         order = order[np.isfinite(mean[order])]
         self.plate.set_verts(cells[order])
         self.plate.set_array(mean[order])

@@ -1,4 +1,4 @@
-"""What to see in each figure, in a sentence or two, with the numbers of the run."""
+"""Captions of the figures and of the animation of a run, with its numbers."""
 
 from __future__ import annotations
 
@@ -7,29 +7,24 @@ import numpy as np
 from vibroimpact.dynamics.problem import STANDARD_GRAVITY
 from vibroimpact.report.style import ENLARGED
 from vibroimpact.results.result import Result
-from vibroimpact.runs.captions_motion import (
-    deflection_caption,
-    plate_energy_caption,
-    plate_motion_caption,
-    sensor_caption,
-    sphere_energy_caption,
-)
-from vibroimpact.runs.sensor_figures import drawn_sensors
-from vibroimpact.runs.tables import energy_text, entry_text, figures_of
-from vibroimpact.runs.windows import contacts, enlarged
+from vibroimpact.runs.animation import exaggeration
+from vibroimpact.runs.figure_data import contacts_with_duration, enlarged_contacts
+from vibroimpact.runs.sensor_figures import MOST, drawn_sensors
+from vibroimpact.runs.spectrum import amplitude_spectrum, first_response
+from vibroimpact.runs.tables import energy_text, impact_text, significant_figures
 from vibroimpact.units.display import certain, digits, fixed, text
 
 
 def caption(name: str, result: Result) -> str:
-    """Return the caption of a figure that the result has."""
+    """Return the caption of a figure of the result, by the name that `draw_figures` gives it."""
     if name in (sensors := drawn_sensors(result)):
         return sensor_caption(result, sensors[name])
     return _WRITERS[name](result)
 
 
 def left_out(result: Result) -> str:
-    """Return a sentence about figures that this run does not have; empty if it has all."""
-    if len(contacts(result)):
+    """Return a sentence stating which figures of contact do not exist and why; empty if all exist."""
+    if len(contacts_with_duration(result)):
         return ""
     if not len(result.impacts["time_s"]):
         return "The sphere does not reach the plate in this run, so there are no figures of contact force, acceleration and indentation."
@@ -45,7 +40,7 @@ def _position(result: Result) -> str:
         return f"The sphere's centre starts {start} above the plate and has not touched it when the run ends."
     words = f"The sphere's centre starts {start} above the plate's surface."
     deepest = int(np.argmax(result.impacts["max_indentation_m"]))
-    if len(contacts(result)):
+    if len(contacts_with_duration(result)):
         depth = text(float(result.impacts["max_indentation_m"][deepest]), "m")
         words += f" The largest indentation, {depth}, is that of impact {deepest + 1}."
     rebound = float(result.impacts["rebound_height_m"][0])
@@ -57,7 +52,7 @@ def _position(result: Result) -> str:
 def _force(result: Result) -> str:
     impacts, most = result.impacts, int(np.nanargmax(result.impacts["max_force_N"]))
     lead = float(impacts["time_of_max_indentation_s"][most] - impacts["time_of_max_force_s"][most])
-    words = f"The largest force, {entry_text(result, most, 'max_force_N', 'N')}, acts in impact {most + 1}"
+    words = f"The largest force, {impact_text(result, most, 'max_force_N', 'N')}, acts in impact {most + 1}"
     if lead > 0.001 * impacts["duration_s"][most]:
         words += f", {text(lead, 's', 3)} before the largest indentation: damping adds to the force on the way in"
     return f"{words}. {_in_whole_run(result)}".strip()
@@ -77,22 +72,22 @@ def _velocity(result: Result) -> str:
 def _acceleration(result: Result) -> str:
     most = int(np.nanargmax(result.impacts["max_acceleration_m_s2"]))
     value = float(result.impacts["max_acceleration_m_s2"][most]) / STANDARD_GRAVITY
-    times = certain(digits(value, 3), value, int(figures_of("max_acceleration_m_s2", result.change_by_impact)[most]))
+    times = certain(digits(value, 3), value, int(significant_figures("max_acceleration_m_s2", result.change_by_impact)[most]))
     return (
-        f"The largest magnitude, {entry_text(result, most, 'max_acceleration_m_s2', 'm/s2')} in impact {most + 1}, is {times} times "
+        f"The largest magnitude, {impact_text(result, most, 'max_acceleration_m_s2', 'm/s2')} in impact {most + 1}, is {times} times "
         f"standard gravity. {_in_whole_run(result)}"
     ).strip()
 
 
 def _loops(result: Result) -> str:
-    found, lost = contacts(result), result.impacts["energy_lost_J"]
+    found, lost = contacts_with_duration(result), result.impacts["energy_lost_J"]
     if result.impacts["separation_speed_m_s"][found[-1]] == 0.0:
         return (
             f"In impact {found[-1] + 1} the sphere stays; what energy it still has is written off in the ledger, and its curve ends there."
         )
     if np.max(lost) < 1e-9 * result.energy["input_J"]:
         return "The way in and the way out coincide: no energy is lost in contact."
-    first, last = (entry_text(result, impact, "energy_lost_J", "J") for impact in (found[0], found[-1]))
+    first, last = (impact_text(result, impact, "energy_lost_J", "J") for impact in (found[0], found[-1]))
     also = " and what goes into the sphere's own vibration. Lost" if "sphere" in result.peaks else ""
     if result.deformation.get("treatment") == "identified":
         also = " and what the local element still holds at release. Lost"
@@ -112,24 +107,127 @@ def _energy(result: Result) -> str:
 
 
 def _vibration(result: Result) -> str:
-    """Tell where the energy of vibration went: what is left of it, and what its damping took."""
+    """Return a sentence on the energy of vibration: the part dissipated by damping, and the part left at the end."""
     damped = energy_text(result, "sphere_damping_J", "plate_damping_J")
     left = energy_text(result, "sphere_vibration_J", "sphere_strain_J", "plate_kinetic_J", "plate_strain_J")
     return f" The damping of the bodies took {damped}, and {left} are still in their motion."
 
 
 def _enlarged(result: Result) -> str:
-    total = len(contacts(result))
-    return f"Of the {total} contacts the first {ENLARGED} are enlarged." if len(enlarged(result)) < total and total > ENLARGED else ""
+    total = len(contacts_with_duration(result))
+    if total <= ENLARGED or len(enlarged_contacts(result)) >= total:
+        return ""
+    return f"Of the {total} contacts the first {ENLARGED} are enlarged."
 
 
 def _in_whole_run(result: Result) -> str:
-    """Tell that contacts look like lines in the whole run, where they do."""
-    found, span = contacts(result), result.history["time_s"][-1]
+    """Return a sentence stating that contacts are too short to be resolved in the whole run; empty if they take over 2 % of it."""
+    found, span = contacts_with_duration(result), result.history["time_s"][-1]
     part = float(np.sum(result.impacts["duration_s"][found])) / span
     if part > 0.02:
         return ""
     return f"Contact takes {digits(100.0 * part, 2)} % of the run, so it shows as thin lines in the whole run and is enlarged beneath."
+
+
+def sphere_energy_caption(result: Result) -> str:
+    """Return the caption of the figure of the sphere's energies."""
+    history, put_in = result.history, result.energy["input_J"]
+    words = f"The fall gives the centre {text(float(history['kinetic_J'].max()), 'J')} of kinetic energy."
+    if "sphere" not in result.peaks:
+        return f"{words} The sphere has no modes in this run."
+    strain, left = float(history["sphere_strain_J"].max()), _after_first(result, "sphere_strain_J", "sphere_vibration_J")
+    words += (
+        f" Its modes hold up to {_part(strain, put_in)} as strain; {_part(left, put_in)} are left in its vibration at the first release."
+    )
+    turning = float(history["sphere_rotational_J"].max())
+    return f"{words} The energy of its rotation stays below {digits(max(turning, 1e-15 * put_in), 1)}\u00a0J."
+
+
+def plate_motion_caption(result: Result) -> str:
+    """Return the caption of the figure of the plate's motion."""
+    peaks = result.peaks["plate"]
+    names = (("max_displacement_m", "m"), ("max_velocity_m_s", "m/s"), ("max_acceleration_m_s2", "m/s2"))
+    most = [text(float(np.max(peaks[name])), unit) for name, unit in names]
+    there = text(float(np.abs(result.history["plate_deflection_m"]).max()), "m")
+    words = f"The centre of mass moves by up to {most[0]}, at up to {most[1]} and {most[2]}; the contact point by up to {there}."
+    lowest = result.frequencies("plate")[0]
+    if lowest * float(result.impacts["duration_s"][0]) > 0.25:
+        return words
+    return f"{words} The lowest mode, of {digits(lowest)}\u00a0Hz, is slow: the sphere has left before the plate turns back."
+
+
+def plate_energy_caption(result: Result) -> str:
+    """Return the caption of the figure of the plate's energies."""
+    peaks, put_in = result.peaks["plate"], result.energy["input_J"]
+    kinetic, strain = (_part(float(np.max(peaks[name])), put_in) for name in ("max_kinetic_energy_J", "max_strain_energy_J"))
+    change = text(float(np.abs(result.history["plate_potential_J"]).max()), "J")
+    words = f"At most {kinetic} of what was put in is kinetic energy of the plate, and {strain} strain energy."
+    return f"{words} Its potential energy changes by up to {change}, which the strain of its own weight makes up for."
+
+
+def deflection_caption(result: Result) -> str:
+    """Return the caption of the maps of the plate's deflection."""
+    assert result.deflection is not None  # as the figure exists
+    largest = float(np.nanmax(np.abs(result.deflection.height)))
+    words = "All pictures are in one scale; the numbers in the corners are the least and the largest displacement upwards, in its unit."
+    watched = " Triangles: sensors." if result.signals else ""
+    return f"Displacement of the upper side, up to {text(largest, 'm')} in all frames. {words}{watched}"
+
+
+def animation_caption(result: Result) -> str:
+    """Return the caption of the animation."""
+    assert result.deflection is not None  # as the animation exists
+    factor = exaggeration(result.deflection)
+    return (
+        f"The first visit in slow motion, from above and aside. The plate's deflection is drawn {factor:g} times too large; the ball "
+        "and its gap to the plate are to scale. Frames follow each other the closer the faster things happen: each tells its time."
+    )
+
+
+_FILTERS = {
+    "sigma-delta": "behind the filter of a sigma-delta converter, whose delay is taken out",
+    "butterworth": "behind a Butterworth filter of order eight, with its delay",
+    "none": "without an anti-alias filter: what is faster than half of that is folded back",
+}
+
+
+def sensor_caption(result: Result, name: str) -> str:
+    """Return the caption of the figure of a sensor."""
+    signal = result.signals[name]
+    sensor, part = signal.sensor, first_response(result, name)
+    words = (
+        f"Largest magnitude {text(signal.largest, sensor.unit)}, of {len(signal.value)} samples at {digits(sensor.rate)}"
+        f"\u00a0Hz, {_FILTERS[sensor.filter]}."
+    )
+    if signal.overload_time > 0.0:
+        words += " Its accelerometer is overdriven: what is beyond its range is cut off before the filter, which may overshoot the cut."
+    values = signal.value[part]
+    if len(values) < 4 or not np.any(values):
+        return words
+    found = amplitude_spectrum(values, sensor.rate)
+    top = 1 + int(found.amplitude[1:].argmax())
+    return (
+        f"{words} The spectrum is one-sided, of {text(found.span, 's', 3)} from the first touch on, faded out by the falling half of "
+        f"Hann's window; a steady tone would read its amplitude. Its highest point lies at "
+        f"{digits(float(found.frequency[top]), 3)}\u00a0Hz; ticks mark the plate's modes."
+    )
+
+
+def sensors_left_out(result: Result) -> str:
+    """Return a sentence stating that only some sensors are drawn; empty if all are."""
+    more = len(result.signals) - MOST
+    return f"Of the {len(result.signals)} sensors the first {MOST} are drawn; the signals of all are in result.nc." if more > 0 else ""
+
+
+def _after_first(result: Result, *names: str) -> float:
+    """Return the sum of columns of the history at the first release."""
+    release = float(result.impacts["time_s"][0] + result.impacts["duration_s"][0])
+    last = np.searchsorted(result.history["time_s"], release, side="right") - 1
+    return float(sum(result.history[name][last] for name in names))
+
+
+def _part(value: float, whole: float) -> str:
+    return f"{text(value, 'J')} ({fixed(100.0 * value / whole, 2)}\u00a0%)"
 
 
 _WRITERS = {

@@ -1,4 +1,4 @@
-"""The figure of the plate's deflection: a map at each of six times."""
+"""Figure of the plate's deflection: maps at six times."""
 
 from __future__ import annotations
 
@@ -17,23 +17,22 @@ from vibroimpact.units.display import Multiple, digits, multiple, text
 
 _COLUMNS, _ROWS = 3, 2
 _LEFT, _BETWEEN, _TITLE, _HEAD, _FOOT = 0.2, 0.14, 0.26, 0.38, 0.62
-"""Room at the side, between pictures, and for their titles, the heading and the scale [in]."""
-
+"""Space at the side, between maps, and for their titles, the heading and the colour bar [in]."""
 
 _AT_REST = 0.015
-"""Of the largest deflection: where all around is less there is no line."""
+"""Relative to the largest deflection of a map: where all neighbouring points are below, no contour lines are drawn."""
 
 _ROUNDING = 1e-9
-"""Of the largest deflection: less is none."""
+"""Relative to the largest deflection of all maps: smaller values are drawn as zero."""
 
 _HALO = [withStroke(linewidth=1.8, foreground="white", alpha=0.8)]
-"""Around the names of sensors, which lie on dark ground too."""
+"""Outline of sensor names, which makes them legible on dark colours."""
 
 
 def draw_deflection(result: Result) -> Figure:
-    """Draw the plate from above at six times from the first touch on, all in one scale."""
+    """Draw the plate's deflection from above at six times after first touch, all on one colour scale."""
     deflection = result.deflection
-    assert deflection is not None  # who asks has seen to it
+    assert deflection is not None  # checked by the caller
     touch, frames = float(result.impacts["time_s"][0]), chosen_frames(result, deflection)
     shape = np.ptp(deflection.y) / np.ptp(deflection.x)
     across = (WIDTH - 2.0 * _LEFT - (_COLUMNS - 1) * _BETWEEN) / _COLUMNS
@@ -57,7 +56,7 @@ def draw_deflection(result: Result) -> Figure:
 
 
 def chosen_frames(result: Result, deflection: Deflection) -> list[int]:
-    """Return the frames to show: in mid-contact, at release, and on to the last in steps that grow."""
+    """Return the indices of the frames drawn: in mid-contact, at release, and up to the last at geometrically growing times."""
     touch, duration = (float(result.impacts[name][0]) for name in ("time_s", "duration_s"))
     after = float(deflection.time[-1]) - touch
     wanted = touch + np.append(0.5 * duration, np.geomspace(min(duration, 0.3 * after), after, _COLUMNS * _ROWS - 1))
@@ -79,12 +78,11 @@ def _draw(axes: Axes, result: Result, deflection: Deflection, frame: int, scale:
         interpolation="bilinear",
         aspect="auto",
     )
-    own = float(np.nanmax(np.abs(height)))
-    own = own or 1.0
+    own = float(np.nanmax(np.abs(height))) or 1.0
     levels = own * np.linspace(-0.9, 0.9, 7)
     levels[3] = 0.0
     styles = ["--"] * 3 + ["-"] * 4
-    # where the plate hardly moves, or is held, the line at rest would wander
+    # where the plate is held or hardly moves, the zero contour would follow rounding errors
     hidden = (maximum_filter(np.nan_to_num(np.abs(height)), 3) < _AT_REST * own) | np.all(still, axis=0)
     lined = np.ma.masked_where(hidden, height)
     axes.contour(deflection.x, deflection.y, lined, levels=levels, colors=INK, linewidths=[0.5] * 3 + [0.9] + [0.5] * 3, linestyles=styles)
@@ -109,6 +107,6 @@ def _draw(axes: Axes, result: Result, deflection: Deflection, frame: int, scale:
 
 
 def sensor_places(result: Result) -> list[tuple[str, float, float]]:
-    """Return name, x and y [m] of the sensors whose places the case gives as numbers."""
+    """Return name, x and y [m] of the sensors whose positions the case gives as coordinates."""
     sensors = result.case.get("sensors", [])
     return [(one["name"], *map(float, one["position"])) for one in sensors if not isinstance(one["position"], str)]

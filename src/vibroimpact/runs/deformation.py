@@ -1,4 +1,4 @@
-"""How the deformation of the bodies was modelled, said in a sentence, and its numbers."""
+"""Text on how the deformation of the bodies is modelled: a sentence, and a table of compliances and estimated errors."""
 
 from __future__ import annotations
 
@@ -25,12 +25,15 @@ _SENTENCES = {
 
 
 def treatment_sentence(result: Result) -> str:
-    """Return what was done, in a sentence; empty where nothing tells it."""
+    """Return a sentence on the treatment of local indentation; empty if the result states none."""
     return _SENTENCES.get(str(result.deformation.get("treatment", "")), "")
 
 
 def counted_twice(result: Result) -> float:
-    """Return which part of the contact's own compliance the modes of the sphere count again; NaN if they do not."""
+    """Return the ratio of the sphere's modal compliance to the secant compliance of the contact law in impact 1.
+
+    It is the part of local indentation counted twice with superposed compliances; NaN for other treatments or without an impact.
+    """
     modal = result.deformation.get("sphere_modal_compliance_m_N")
     if result.deformation.get("treatment") != "superposed" or modal is None or not len(result.impacts["impact"]):
         return math.nan
@@ -38,7 +41,7 @@ def counted_twice(result: Result) -> float:
 
 
 def deformation_rows(result: Result) -> list[tuple[str, str]]:
-    """Return the numbers of it: what each is, and its value with its unit."""
+    """Return the rows of a table on deformation: description, and value with unit."""
     facts, rows = result.deformation, []
     for name, words in (
         ("plate_static_compliance_m_N", "Static compliance of the plate at the contact point"),
@@ -69,7 +72,7 @@ def deformation_rows(result: Result) -> list[tuple[str, str]]:
 
 
 def _local_element(result: Result) -> list[tuple[str, str]]:
-    """Return stiffness and damping of the local element: identified, or given in the case."""
+    """Return rows of stiffness and damping of the local element, identified or given in the case; empty without one."""
     contact, facts = result.case.get("contact", {}), result.deformation
     stiffness = facts.get("local_stiffness_N_m", contact.get("local_stiffness"))
     damping = facts.get("local_damping_N_s_m", contact.get("local_damping"))

@@ -1,4 +1,4 @@
-"""The figures of the report of a run."""
+"""All figures of the report of a run."""
 
 from __future__ import annotations
 
@@ -7,13 +7,12 @@ from matplotlib.figure import Figure
 from vibroimpact.report.style import style
 from vibroimpact.results.result import Result
 from vibroimpact.runs.deflection_figure import draw_deflection
-from vibroimpact.runs.histories import draw_history
-from vibroimpact.runs.ledger import draw_ledger
-from vibroimpact.runs.loops import draw_loops
-from vibroimpact.runs.motion_figures import draw_plate_energy, draw_plate_motion, draw_sphere_energy
-from vibroimpact.runs.quantities import ACCELERATION, FORCE, POSITION, VELOCITY
+from vibroimpact.runs.energy_figure import draw_ledger
+from vibroimpact.runs.figure_data import contacts_with_duration
+from vibroimpact.runs.force_indentation_figure import draw_loops
+from vibroimpact.runs.history_figures import ACCELERATION, FORCE, POSITION, VELOCITY, draw_history
 from vibroimpact.runs.sensor_figures import draw_sensor, drawn_sensors
-from vibroimpact.runs.windows import contacts
+from vibroimpact.runs.vibration_figures import draw_plate_energy, draw_plate_motion, draw_sphere_energy
 
 
 def draw_figures(result: Result) -> dict[str, Figure]:
@@ -22,17 +21,16 @@ def draw_figures(result: Result) -> dict[str, Figure]:
     Parameters
     ----------
     result : Result
-        A run of one drop.
+        Result of one drop.
 
     Returns
     -------
     dict of str to Figure
-        In the order of the report: `position`, `force`, `velocity`, `acceleration`, `force_indentation`
-        and `energy`; where bodies vibrate also `sphere_energy`, `plate_motion`, `plate_energy`, `deflection` and one
-        for each sensor. Those of force, acceleration and indentation are left out where no contact has a
-        duration: with an instantaneous law they do not exist.
+        Figures by name, in the order of the report: `position`, `force`, `velocity`, `acceleration`, `force_indentation` and `energy`;
+        where bodies vibrate also `sphere_energy`, `plate_motion`, `plate_energy`, `deflection` and one per sensor. Force, acceleration
+        and force over indentation exist only for contacts of finite duration, not with an instantaneous law.
     """
-    in_contact = bool(len(contacts(result)))
+    in_contact = bool(len(contacts_with_duration(result)))
     with style():
         figures = {"position": draw_history(result, POSITION)}
         if in_contact:

@@ -1,4 +1,4 @@
-"""The report of a run: numbers first, then figures, the case and where it comes from, on one page."""
+"""HTML report of a run: tables, figures, animation, case and provenance on one page."""
 
 from __future__ import annotations
 
@@ -14,8 +14,7 @@ from vibroimpact.report.figure_files import save_figures
 from vibroimpact.report.page import Picture, picture, template
 from vibroimpact.results.result import Result
 from vibroimpact.runs.animation import animate
-from vibroimpact.runs.captions import caption, left_out
-from vibroimpact.runs.captions_motion import animation_caption, sensors_left_out
+from vibroimpact.runs.captions import animation_caption, caption, left_out, sensors_left_out
 from vibroimpact.runs.deformation import deformation_rows, treatment_sentence
 from vibroimpact.runs.figures import draw_figures
 from vibroimpact.runs.sensor_figures import drawn_sensors
@@ -37,18 +36,18 @@ _TITLES = {
 
 
 ANIMATION = "figures/plate.gif"
-_LARGEST_HELD = 1_500_000  # bytes of an animation that the page holds
+_LARGEST_HELD = 1_500_000  # bytes of the largest animation embedded in the page
 
 
 def write_report(result: Result, directory: Path) -> None:
-    """Write `report.html`, and the figures that it shows under `figures`, into a directory.
+    """Write `report.html` into a directory, and its figures and animation into the folder `figures`.
 
     Parameters
     ----------
     result : Result
-        A run of one drop.
+        Result of one drop.
     directory : pathlib.Path
-        An existing directory.
+        Existing directory.
     """
     (directory / "figures").mkdir(exist_ok=True)
     pictures = save_figures(draw_figures(result), directory / "figures")
@@ -59,16 +58,16 @@ def write_report(result: Result, directory: Path) -> None:
 
 
 def render_page(result: Result, pictures: Mapping[str, bytes], animation: bytes = b"") -> str:
-    """Return the report as one HTML page that needs neither network nor script.
+    """Return the report as one self-contained HTML page without scripts.
 
     Parameters
     ----------
     result : Result
-        A run of one drop.
+        Result of one drop.
     pictures : mapping of str to bytes
-        Each figure as SVG, by its name, in the order of the page.
+        Figures as SVG by name, in the order of the page.
     animation : bytes, optional
-        Plate and ball as GIF; a large one is not held by the page, which then names its file.
+        Animation of plate and sphere as GIF. One of more than 1.5 MB is not embedded; the page then only links to its file.
     """
     unit, ledger = ledger_table(result)
     return template(__package__).render(
@@ -88,7 +87,7 @@ def render_page(result: Result, pictures: Mapping[str, bytes], animation: bytes 
         sensors_left_out=sensors_left_out(result),
         animation=_animation(result, animation),
         animation_file=ANIMATION,
-        case=_as_text(result.case),
+        case=_case_text(result.case),
         doubts=result.doubts,
         provenance=result.provenance,
     )
@@ -100,12 +99,12 @@ def _pictures(result: Result, pictures: Mapping[str, bytes]) -> list[Picture]:
 
 
 def _animation(result: Result, gif: bytes) -> Picture | None:
-    """Return the animation for the page; without source, if it is too large to be held."""
+    """Return the animation for the page, with an empty source if it is too large to embed; None if there is none."""
     if not gif:
         return None
     source = f"data:image/gif;base64,{b64encode(gif).decode()}" if len(gif) <= _LARGEST_HELD else ""
     return Picture("animation", "Plate and ball in slow motion", animation_caption(result), source)
 
 
-def _as_text(case: Mapping[str, Any]) -> str:
+def _case_text(case: Mapping[str, Any]) -> str:
     return tomli_w.dumps(case) if case else ""

@@ -1,4 +1,4 @@
-"""The moving bodies of a run for ParaView, while the plate is hit for the first time."""
+"""ParaView files of the moving elastic bodies during and after the first visit."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.results.deflection import contact_place, first_frames
+from vibroimpact.results.deflection import contact_point_of, frame_times_of
 
 if TYPE_CHECKING:
     from vibroimpact.dynamics.response import Response
@@ -19,27 +19,28 @@ if TYPE_CHECKING:
 
 
 _FRAMES = 40
+"""Number of frames, at most."""
 _MOST_BYTES = 40e6
-"""All files together: of a fine mesh there are fewer frames."""
+"""Limit of the size of all files together, which reduces the number of frames of fine meshes."""
 
 
 def write_paraview(response: Response, directory: Path) -> None:
-    """Write `plate.pvd` and `sphere.pvd` with their files into the folder `paraview` of a directory.
+    """Write `plate.pvd` and `sphere.pvd` with their data files into the folder `paraview` of a directory.
 
-    Both lie in the coordinates of the plate. `displacement_m` is from where the plate is at rest and the sphere just touches it;
-    `deformation_m`, of the sphere, is what its modes add to the motion of its centre. There is no folder where no body has modes,
-    nothing is touched, or even a few frames would be too large.
+    Both use the coordinates of the plate. `displacement_m` is relative to the configuration in which the plate is at rest and the
+    sphere just touches it; `deformation_m`, of the sphere only, is the modal displacement without the motion of its centre. No folder
+    is written if no body has a modal model, there is no impact, or two frames would already exceed 40 MB.
 
     Parameters
     ----------
     response : Response
-        A run of one drop.
+        Response of one drop.
     directory : pathlib.Path
-        An existing directory.
+        Existing directory.
     """
-    from vibroimpact.meshes.vtu_series import series_size, write_vtu_series  # which loads sparse matrices
+    from vibroimpact.meshes.vtu_series import series_size, write_vtu_series  # here, as it imports scipy.sparse
 
-    models, times = response.problem.models, first_frames(response)
+    models, times = response.problem.models, frame_times_of(response)
     if not models or not len(times):
         return
     size = sum(series_size(model.mesh, 2 if name == "sphere" else 1) for name, model in models.items())
@@ -67,16 +68,16 @@ def write_paraview(response: Response, directory: Path) -> None:
 
 
 def _moved(model: ModalModel, modal: Floats) -> Iterator[Floats]:
-    """Return how the nodes are displaced (nodes, 3) [m], for each time."""
+    """Yield the nodal displacements at each time, (nodes, 3) [m]."""
     for one in modal:
         yield (one @ model.shapes).reshape(len(model.mesh.nodes), -1)[:, :3]
 
 
 def _at_first_touch(response: Response, offset: float) -> Mesh:
-    """Return the mesh of the sphere where it just touches the plate, in the coordinates of the plate."""
+    """Return the mesh of the sphere at the position where it just touches the plate, in the coordinates of the plate."""
     sphere, plate = response.problem.models["sphere"], response.problem.models.get("plate")
     above = np.zeros(3)
     if plate is not None:
-        above = plate.at(np.array([contact_place(response, plate)]))[1][0]
+        above = plate.at(np.array([contact_point_of(response, plate)]))[1][0]
     move = above + np.array([0.0, 0.0, offset]) - sphere.properties.centre
     return replace(sphere.mesh, nodes=sphere.mesh.nodes + move)

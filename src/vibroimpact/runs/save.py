@@ -1,4 +1,4 @@
-"""Write a whole result folder."""
+"""Writing of the result folder of one drop: data files, ParaView files, figures and report."""
 
 from __future__ import annotations
 
@@ -7,22 +7,22 @@ from pathlib import Path
 
 from vibroimpact.dynamics.response import Response
 from vibroimpact.results.folder import new_folder, write_result
-from vibroimpact.results.result import result_of
+from vibroimpact.results.result import Result, result_of
 from vibroimpact.runs.page import write_report
 from vibroimpact.runs.paraview import write_paraview
 
 
 def save_result(response: Response, directory: str | PathLike[str], *, force: bool = False) -> Path:
-    """Write the result folder of one drop: data, figures and report; it appears whole or not at all.
+    """Write the result folder of one drop: data, figures and report. The write is atomic: the folder appears complete or not at all.
 
     Parameters
     ----------
     response : Response
-        The response to one drop.
+        Response to one drop.
     directory : path
-        The folder to make.
+        Folder to create.
     force : bool, default False
-        Replace a result folder that is there.
+        Replace an existing result folder.
 
     Returns
     -------
@@ -32,11 +32,28 @@ def save_result(response: Response, directory: str | PathLike[str], *, force: bo
     Raises
     ------
     InputError
-        If something is there already, or the place can't be written to.
+        If the path exists and may not be replaced, or can't be written to.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> import vibroimpact as vi
+    >>> with tempfile.TemporaryDirectory() as place:
+    ...     folder = vi.save_result(vi.simulate(vi.load_case("paper:type1-theory")), f"{place}/theory")
+    ...     len(vi.read_result(folder).impacts["impact"])
+    5
     """
     with new_folder(directory, force=force) as folder:
-        result = result_of(response)
-        write_result(result, folder)
-        write_paraview(response, folder)
-        write_report(result, folder)
+        write_report(write_data(response, folder), folder)
     return Path(directory)
+
+
+def write_data(response: Response, folder: Path) -> Result:
+    """Write the data and ParaView files of one drop into a folder, and return the result that they hold.
+
+    Figures and report need the result only: a caller that is done with the response can release its memory before they are drawn.
+    """
+    result = result_of(response)
+    write_result(result, folder)
+    write_paraview(response, folder)
+    return result

@@ -1,4 +1,4 @@
-"""The figure of a sensor: its signal over the whole run, after the first touch, and the spectrum of that."""
+"""Figure of a sensor: its signal over the whole run and after the first touch, and the amplitude spectrum of the response."""
 
 from __future__ import annotations
 
@@ -11,35 +11,35 @@ from vibroimpact.files.plain_names import plain_names
 from vibroimpact.report.layout import label_vertical, new_figure, row_of_axes, wide_axes
 from vibroimpact.report.style import ACCENT, INK, MARK, lettering
 from vibroimpact.results.result import Result
-from vibroimpact.runs.motion_figures import plate_span
+from vibroimpact.runs.figure_data import decimated, decimated_samples
 from vibroimpact.runs.spectrum import amplitude_spectrum, first_response
-from vibroimpact.runs.windows import thinned, thinned_samples
+from vibroimpact.runs.vibration_figures import plate_span
 from vibroimpact.units.display import Multiple, digits, largest, multiple
 
 MOST = 8
-"""How many sensors are drawn; the signals of the others are in the data."""
+"""Number of sensors drawn; the signals of all are in the data files."""
 
 _NEAR = 0.3
-"""Of its range that a signal reaches where the range is drawn."""
+"""Part of its range that a signal must reach for the range to be drawn."""
 
 _DECADES = 4.5
-"""How far below its peak a spectrum is shown."""
+"""Decades below its peak down to which a spectrum is shown."""
 
 
 def drawn_sensors(result: Result) -> dict[str, str]:
-    """Return the sensors that are drawn: the names of their figures, and their own."""
+    """Return the names of the sensors that are drawn, by the name of the figure; none without an impact."""
     plain = plain_names(list(result.signals))
     return {f"sensor_{plain[name]}": name for name in list(result.signals)[:MOST] if len(result.impacts["time_s"])}
 
 
 def draw_sensor(result: Result, name: str) -> Figure:
-    """Draw what a sensor recorded, and its spectrum from the first touch to the next."""
+    """Draw the signal of a sensor, and its amplitude spectrum from the first touch to the next."""
     signal = result.signals[name]
     scale, quantity = multiple(signal.sensor.unit, signal.largest), signal.sensor.quantity
     figure = new_figure(5.6)
     whole = wide_axes(figure, 3.65, 1.6)
     clock = multiple("s", signal.times(len(signal.value) - 1, len(signal.value)))
-    time, value = thinned_samples(signal)
+    time, value = decimated_samples(signal)
     whole.plot(time / clock.size, value / scale.size, color=INK, linewidth=0.8)
     whole.margins(x=0.01, y=0.08)
     whole.set_title(f"{quantity.capitalize()} at {lettering(name)}, whole run{_mark_range(whole, result, name, scale)}")
@@ -54,12 +54,15 @@ def draw_sensor(result: Result, name: str) -> Figure:
 
 
 def _mark_range(axes: Axes, result: Result, name: str, scale: Multiple) -> str:
-    """Draw the range of a sensor's accelerometer where the signal comes near it; return what the title says of it, if it has one."""
+    """Draw the range of a sensor's accelerometer if the signal comes near it; return the part of the title that states the range.
+
+    It is empty for a sensor without a range.
+    """
     given = {one["name"]: one.get("accelerometer", {}).get("range") for one in result.case.get("sensors", ())}
     if (end := given.get(name)) is None:
         return ""
     words = f"range ±{digits(end / scale.size, 3)} {scale.unit}"
-    if largest(result.signals[name].value) < _NEAR * end:  # the axes would show the range, and not the signal
+    if largest(result.signals[name].value) < _NEAR * end:  # drawn to the range, the signal would be too small to read
         return f" ({words}, beyond the axes)"
     for side in (-end, end):
         axes.axhline(side / scale.size, color=MARK, linewidth=0.8, linestyle=(0, (5, 3)))
@@ -83,7 +86,7 @@ def _draw_spectrum(axes: Axes, result: Result, name: str) -> None:
     found = amplitude_spectrum(signal.value[first_response(result, name)], signal.sensor.rate)
     unit = multiple(signal.sensor.unit, largest(found.amplitude[1:]))
     amplitude, most = found.amplitude[1:] / unit.size, largest(found.amplitude[1:]) / unit.size
-    axes.semilogy(*thinned(found.frequency[1:] / 1e3, np.maximum(amplitude, 1e-12 * most + 1e-300)), color=ACCENT, linewidth=0.8)
+    axes.semilogy(*decimated(found.frequency[1:] / 1e3, np.maximum(amplitude, 1e-12 * most + 1e-300)), color=ACCENT, linewidth=0.8)
     modes = np.array(result.frequencies("plate"))
     modes = modes[modes < 0.5 * signal.sensor.rate] / 1e3
     axes.plot(modes, np.full(len(modes), 0.02), "|", markersize=5, color=MARK, markeredgewidth=0.6, transform=axes.get_xaxis_transform())

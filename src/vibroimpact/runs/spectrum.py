@@ -1,4 +1,4 @@
-"""The amplitude spectrum of what a sensor recorded after the first touch."""
+"""Amplitude spectrum of a sensor signal after the first touch."""
 
 from __future__ import annotations
 
@@ -10,29 +10,34 @@ from vibroimpact.arrays import Floats
 from vibroimpact.results.result import Result
 
 _LONGEST = 2**17
-"""Samples that are transformed at most."""
+"""Largest number of samples transformed."""
 
 
-class Spectrum(NamedTuple):
-    """A one-sided spectrum: frequencies [Hz], amplitudes in the unit of the signal, and how long a piece it is of [s]."""
+class AmplitudeSpectrum(NamedTuple):
+    """One-sided amplitude spectrum: frequencies [Hz], amplitudes in the unit of the signal, and length of the record [s]."""
 
     frequency: Floats
     amplitude: Floats
     span: float
 
 
-def amplitude_spectrum(values: Floats, rate: float) -> Spectrum:
-    """Return the amplitude spectrum of a response that starts at once and dies away.
+def amplitude_spectrum(values: Floats, rate: float) -> AmplitudeSpectrum:
+    """Return the amplitude spectrum of a decaying response that starts abruptly.
 
-    The window is the falling half of Hann's, which leaves the start as it is and fades the end out. A steady tone reads its
-    amplitude; a transient reads less the longer the piece is.
+    The window is the falling half of a Hann window, which keeps the onset and tapers the end. The spectrum is scaled so that a steady
+    tone has its amplitude; a transient has a lower one the longer the record is.
 
     Parameters
     ----------
     values : array
-        The samples.
+        Samples.
     rate : float
-        Samples per second [Hz].
+        Sampling rate [Hz].
+
+    Returns
+    -------
+    AmplitudeSpectrum
+        Spectrum from 0 to half of the sampling rate.
 
     Examples
     --------
@@ -44,11 +49,11 @@ def amplitude_spectrum(values: Floats, rate: float) -> Spectrum:
     window = 0.5 + 0.5 * np.cos(np.pi * np.arange(len(values)) / len(values))
     amplitude = np.abs(np.fft.rfft(window * values)) / window.sum()
     amplitude[1:] *= 2.0
-    return Spectrum(np.arange(len(amplitude)) * rate / len(values), amplitude, len(values) / rate)
+    return AmplitudeSpectrum(np.arange(len(amplitude)) * rate / len(values), amplitude, len(values) / rate)
 
 
 def first_response(result: Result, name: str) -> slice:
-    """Return which samples of a sensor lie between the first touch and the next one, or the end; at most 131072."""
+    """Return the slice of a sensor's samples from the first touch to the next, or to the end; at most 131072 samples."""
     touches, signal = result.impacts["time_s"], result.signals[name]
     first = signal.first_at(float(touches[0])) if len(touches) else 0
     last = signal.first_at(float(touches[1])) if len(touches) > 1 else len(signal.value)

@@ -1,4 +1,4 @@
-"""The tables of the page, as text that is ready to show."""
+"""Impact table and energy ledger as text, with units and the number of significant figures that are certain."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from vibroimpact.results.result import Result
 from vibroimpact.units.display import ALL_FIGURES, certain, certain_figures, column_texts, digits, fixed, multiple
 
 _MOST_ROWS, _FIRST, _LAST = 50, 45, 3
-"""A table of more rows shows only its first and last ones."""
+"""A table of more rows shows only its first 45 and last three."""
 
 _SHOWN = 6  # significant figures in a table
 _DIGITS = 5
 
 _EXACT = ("impact", "contacts", "restitution_asked", "sensitivity")
 _ARRIVAL = ("time_s", "approach_speed_m_s")
-"""Columns of which a change of the drop takes no digits, and those that have the digits of the impact before."""
+"""Columns unaffected by a perturbation of the drop, and those as certain as the outcome of the previous impact."""
 
 _SHOWN_COLUMNS = (
     "impact",
@@ -39,15 +39,15 @@ _SHOWN_COLUMNS = (
     "contacts",
     "sensitivity",
 )
-"""The columns of the impact table that are shown: that of contacts where a visit has more than one, as the plate comes back to the sphere
-or the sphere's own vibration does, and that of sensitivity where it takes digits away."""
+"""Columns shown of the impact table. That of contacts is shown only if a visit has several, caused by vibration of the plate or the
+sphere, and that of sensitivity only if it reduces the number of certain figures."""
 
-_SLOW = 0.1  # of the approach speed: what leaves more slowly counts as that
+_SLOW = 0.1  # relative to the approach speed: lowest separation speed used in estimating the certainty of energies
 SUM, PUT_IN = "Sum", "Put in at the start"
 
 
-class Table(NamedTuple):
-    """A table: headers with their units, rows, and what is left out between `head` and `tail`."""
+class ImpactTable(NamedTuple):
+    """Impact table as text: headers with units, the rows of `head` and `tail`, and the number of rows left out between them."""
 
     headers: list[tuple[str, str]]
     head: list[list[str]]
@@ -56,7 +56,7 @@ class Table(NamedTuple):
 
 
 class LedgerRow(NamedTuple):
-    """An entry of the ledger: its name, what it is, its energy and its part of the energy put in [%]."""
+    """Row of the ledger as text: name of the entry, title, energy, and percentage of the energy put in."""
 
     name: str
     title: str
@@ -64,38 +64,38 @@ class LedgerRow(NamedTuple):
     part: str
 
 
-def impact_table(result: Result) -> Table:
-    """Return the impact table in multiples of units; a long one without its middle."""
+def impact_table(result: Result) -> ImpactTable:
+    """Return the impact table of the report, in suitable multiples of SI units; a long one without its middle rows."""
     change = result.change_by_impact
     shown = shown_columns(result)
-    columns = [column(name, result.impacts[name], change) for name in shown]
+    columns = [formatted_column(name, result.impacts[name], change) for name in shown]
     headers = [(ALL_IMPACT_COLUMNS[name].label, unit) for name, (unit, _) in zip(shown, columns, strict=True)]
     rows = [list(row) for row in zip(*(cells for _, cells in columns), strict=True)]
     if len(rows) <= _MOST_ROWS:
-        return Table(headers, rows, 0, [])
-    return Table(headers, rows[:_FIRST], len(rows) - _FIRST - _LAST, rows[-_LAST:])
+        return ImpactTable(headers, rows, 0, [])
+    return ImpactTable(headers, rows[:_FIRST], len(rows) - _FIRST - _LAST, rows[-_LAST:])
 
 
 def shown_columns(result: Result) -> list[str]:
-    """Return the columns of the impact table that are shown of a result."""
-    told = {"contacts": several_contacts(result.impacts), "sensitivity": takes_digits(result.change_by_impact)}
+    """Return the names of the columns of the impact table that are shown for a result."""
+    told = {"contacts": several_contacts(result.impacts), "sensitivity": loses_digits(result.change_by_impact)}
     return [name for name in _SHOWN_COLUMNS if told.get(name, True)]
 
 
 def several_contacts(impacts: Mapping[str, Floats]) -> bool:
-    """Has any visit more than one contact?"""
+    """Return whether any visit consists of more than one contact."""
     return bool(np.max(impacts.get("contacts", np.ones(1)), initial=1.0) > 1.0)
 
 
 def ledger_table(result: Result) -> tuple[str, list[LedgerRow]]:
-    """Return the unit of the ledger at the end and its entries, their sum and the energy put in, with the digits that are certain."""
+    """Return the final ledger as text: its unit, and a row for each entry, their sum and the energy put in, in certain figures."""
     put_in, scale = result.energy["input_J"], multiple("J", result.energy["input_J"])
     values = {name: result.energy[name] for name in (*LEDGER, *VIBRATION_LEDGER) if name in result.energy}
-    figures = {name: _certain_of(name, result) for name in values}
+    figures = {name: _certain_figures_of_energy(name, result) for name in values}
     values |= {SUM: sum(values.values()), PUT_IN: put_in}
 
     def shown(name: str, value: float, whole: float) -> str:
-        return certain(_beside(value, whole, 6), value, figures.get(name, ALL_FIGURES))
+        return certain(_to_same_decimals(value, whole, 6), value, figures.get(name, ALL_FIGURES))
 
     rows = []
     for name, value in values.items():
@@ -106,20 +106,20 @@ def ledger_table(result: Result) -> tuple[str, list[LedgerRow]]:
 
 
 def energy_text(result: Result, *entries: str) -> str:
-    """Return the sum of entries of the ledger, with its unit and its part of the energy put in, in the digits that are certain."""
+    """Return the sum of entries of the ledger as text, with unit and percentage of the energy put in, in certain figures."""
     value, put_in = sum(result.energy[entry] for entry in entries), result.energy["input_J"]
-    figures = min(_certain_of(entry, result) for entry in entries)
+    figures = min(_certain_figures_of_energy(entry, result) for entry in entries)
     scale, part = multiple("J", value), 100.0 * value / put_in
     percent = certain(fixed(part, 1), part, figures)
     return f"{certain(digits(value / scale.size), value / scale.size, figures)}\u00a0{scale.unit} ({percent} %)"
 
 
-def _certain_of(entry: str, result: Result) -> int:
-    """Return how many significant figures of an entry of the ledger are certain.
+def _certain_figures_of_energy(entry: str, result: Result) -> int:
+    """Return the number of certain significant figures of an entry of the ledger.
 
-    Energy goes with the square of the speed, and changes twice as much. What is left in motion or stored is as certain as the speed
-    after the last impact, and no more than the energy that the sphere left with; what was lost is as certain as the impacts that lost
-    it, each by its part.
+    The relative change of an energy is twice that of the speed. For lost energy it is the mean over the impacts, weighted by the energy
+    lost in each. For energy in motion or stored it is that of the last impact, or more where the entry is smaller than the energy with
+    which the sphere left: this changes as a whole, whatever share of it the entry is.
     """
     impacts, change = result.impacts, np.minimum(np.nan_to_num(result.change_by_impact, nan=1.0), 1.0)
     if not len(change) or not change[-1] > 0.0:
@@ -130,14 +130,14 @@ def _certain_of(entry: str, result: Result) -> int:
     first, closing, separation = (
         float(impacts[name][place]) for name, place in (("approach_speed_m_s", 0), ("approach_speed_m_s", -1), ("separation_speed_m_s", -1))
     )
-    # the change of a slow speed is told as a part of a tenth of that of approach
+    # the change of a slow separation speed is relative to a tenth of the approach speed
     energy = result.energy["input_J"] * separation * max(separation, _SLOW * closing) / first**2
     value = abs(result.energy[entry])
     return int(certain_figures(2.0 * change[-1] * max(1.0, energy / value if value > 0.0 else 1.0)))
 
 
-def _beside(value: float, whole: float, significant: int) -> str:
-    """Return a part with the decimals of its whole, so that they add up by eye; a very small one in digits of its own."""
+def _to_same_decimals(value: float, whole: float, significant: int) -> str:
+    """Return a part of a sum as text with the decimals of the total; a very small part has its own significant digits."""
     if abs(value) < 1e-12 * whole:
         return "0"
     decimals = max(0, significant - 1 - math.floor(math.log10(whole)))
@@ -146,19 +146,19 @@ def _beside(value: float, whole: float, significant: int) -> str:
     return fixed(value, decimals) if abs(value) >= 100.0 * 10.0**-decimals else digits(value, 3)
 
 
-def figures_of(name: str, change: Floats) -> Indices:
-    """Return how many significant figures are certain of a column of the impact table, for each impact.
+def significant_figures(name: str, change: Floats) -> Indices:
+    """Return the number of certain significant figures of a column of the impact table, for each impact.
 
     Parameters
     ----------
     name : str
-        The column.
+        Name of the column.
     change : array, shape (impacts,)
-        Relative change of each impact [-] for one in the drop that nobody can rule out.
+        Relative change of each impact [-] for an unavoidable perturbation of the drop, as `Result.change_by_impact`.
 
     Examples
     --------
-    >>> figures_of("max_force_N", np.array([0.0, 0.003])).tolist(), figures_of("time_s", np.array([0.0, 0.003])).tolist()
+    >>> significant_figures("max_force_N", np.array([0.0, 0.003])).tolist(), significant_figures("time_s", np.array([0.0, 0.003])).tolist()
     ([17, 3], [17, 17])
     """
     if name in _EXACT:
@@ -166,38 +166,48 @@ def figures_of(name: str, change: Floats) -> Indices:
     return certain_figures(np.concatenate([change[:1], change[:-1]]) if name in _ARRIVAL else change)
 
 
-def entry_text(result: Result, impact: int, name: str, unit: str) -> str:
-    """Return an entry of the impact table with its unit, in the digits that it has where the drop is sensitive."""
-    value, figures = float(result.impacts[name][impact]), int(figures_of(name, result.change_by_impact)[impact])
+def impact_text(result: Result, impact: int, name: str, unit: str) -> str:
+    """Return an entry of the impact table as text with its unit, in certain figures."""
+    value, figures = float(result.impacts[name][impact]), int(significant_figures(name, result.change_by_impact)[impact])
     best = multiple(unit, value)
     return f"{certain(digits(value / best.size), value / best.size, figures)}\u00a0{best.unit}".rstrip("\u00a0")
 
 
-def takes_digits(change: Floats) -> bool:
-    """Do some impacts have fewer significant figures than tables show, as a change of the drop grows?"""
+def loses_digits(change: Floats) -> bool:
+    """Return whether some impact has fewer certain significant figures than tables show."""
     return bool(certain_figures(change).min(initial=_SHOWN) < _SHOWN)
 
 
-def column(name: str, values: Floats, change: Floats | None = None) -> tuple[str, list[str]]:
-    """Return unit and cells of a column of the impact table, with the digits that they have where a change of the drop grows."""
+def formatted_column(name: str, values: Floats, change: Floats | None = None) -> tuple[str, list[str]]:
+    """Return the unit and the cells of a column of the impact table as text, in certain figures.
+
+    Parameters
+    ----------
+    name : str
+        Name of the column.
+    values : array, shape (rows,)
+        Values in SI units.
+    change : array, shape (rows,), optional
+        Relative change of each row's impact [-], as `Result.change_by_impact`; by default 0, which leaves all figures.
+    """
     kind = ALL_IMPACT_COLUMNS[name].values
     if kind == "count":
         return "", [fixed(value, 0) for value in values]
     if kind == "factor":
         return "", [digits(value, 2) for value in values]
     unit, values, cells = _cells(name, values)
-    figures = figures_of(name, np.zeros(len(values)) if change is None else change).tolist()
+    figures = significant_figures(name, np.zeros(len(values)) if change is None else change).tolist()
     return unit, [certain(cell, value, number) for cell, value, number in zip(cells, values, figures, strict=True)]
 
 
 def _cells(name: str, values: Floats) -> tuple[str, Floats, list[str]]:
-    """Return the unit in which a column is shown, its values in it, and these as texts."""
+    """Return the unit in which a column is shown, its values in this unit, and their texts."""
     column = ALL_IMPACT_COLUMNS[name]
     if column.values == "ratio":
         return "", values, [fixed(value, _DIGITS) for value in values]
     scale = multiple(column.unit, values)
     values = values / scale.size
     if column.values == "time":
-        # times are compared with each other: a microsecond counts, however late it is
+        # times are compared with each other: their absolute resolution is a microsecond, also late in a run
         return scale.unit, values, [fixed(value, 6 if scale.unit == "s" else 3) for value in values]
     return scale.unit, values, column_texts(values, _DIGITS)

@@ -6,7 +6,7 @@ from vibroimpact.exporting.drop import Drop
 from vibroimpact.exporting.drop_tables import Table, tables_of
 from vibroimpact.exporting.export_format import ExportFormat
 from vibroimpact.files.plain_names import plain_names
-from vibroimpact.results.signal_csv import signal_csv
+from vibroimpact.results.csv_files import signal_csv
 
 
 def write(drop: Drop) -> dict[str, bytes]:

@@ -22,8 +22,8 @@ from vibroimpact.paper.report.page import report_html, report_text
 from vibroimpact.paper.runs import Runs
 from vibroimpact.report.figure_files import save_figures
 from vibroimpact.report.page import replace_report_files
+from vibroimpact.results.csv_files import write_csv
 from vibroimpact.results.folder import SUMMARY, new_folder
-from vibroimpact.results.tables import write_csv
 
 _PARTS = "parts"
 

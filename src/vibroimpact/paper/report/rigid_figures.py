@@ -16,7 +16,7 @@ from vibroimpact.paper.printed import printed
 from vibroimpact.paper.report.drawing import LINE_STYLES, Drawing
 from vibroimpact.paper.runs import Runs, history_of
 from vibroimpact.report.layout import heading, label_vertical, new_figure, row_of_axes, wide_axes
-from vibroimpact.runs.windows import MARGIN, thinned, window
+from vibroimpact.runs.figure_data import MARGIN, decimated, history_window
 from vibroimpact.units.display import digits, fixed, largest, multiple, text
 
 THEORY, CONSTANT, VARIABLE = "theory", "constant damping", "variable damping"
@@ -80,7 +80,7 @@ def _draw_run(axes: Axes, responses: Responses, content: RigidFigure) -> None:
     scale = multiple(content.unit, [largest(history_of(response)[content.column]) for response in responses.values()])
     for (name, response), style in zip(responses.items(), LINE_STYLES, strict=False):
         history = history_of(response)
-        axes.plot(*thinned(history["time_s"], history[content.column] / scale.size), label=name, **style)
+        axes.plot(*decimated(history["time_s"], history[content.column] / scale.size), label=name, **style)
     axes.set_title(f"{content.quantity[0].upper()}{content.quantity[1:]}: whole run")
     axes.set_xlabel("Time [s]")
     label_vertical(axes, f"{_axis_label(content)} [{scale.unit}]")
@@ -109,7 +109,7 @@ def _draw_contacts(figure: Figure, responses: Responses, content: RigidFigure) -
 def _contact(response: Response, impact: int, column: str) -> tuple[Floats, Floats]:
     """Return a column around a contact over the time since first touch [s]; positions relative to that of first touch."""
     touch, duration = (float(response.impacts[name][impact]) for name in ("time_s", "duration_s"))
-    part = window(history_of(response), touch - MARGIN * duration, touch + (1.0 + MARGIN) * duration)
+    part = history_window(history_of(response), touch - MARGIN * duration, touch + (1.0 + MARGIN) * duration)
     base = float(response.problem.sphere.contact_offset) if column == "position_m" else 0.0
     return part["time_s"] - touch, part[column] - base
 

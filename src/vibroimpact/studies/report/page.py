@@ -7,7 +7,7 @@ from pathlib import Path
 
 from vibroimpact.report.figure_files import save_figures
 from vibroimpact.report.page import Picture, picture, replace_report_files, template
-from vibroimpact.results.tables import write_csv
+from vibroimpact.results.csv_files import write_csv
 from vibroimpact.studies.design import find_design
 from vibroimpact.studies.report.axes import study_axes
 from vibroimpact.studies.report.figures import draw, study_figures

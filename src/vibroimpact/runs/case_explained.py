@@ -1,12 +1,11 @@
-"""What the command line prints of a drop: its results, and a case explained."""
+"""Explanation of a case in a terminal: resolved values, expected contact, cost and doubts."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Container, Iterable
+from collections.abc import Container
 from dataclasses import fields
 
-import numpy as np
 from rich.console import Group, RenderableType
 from rich.text import Text
 
@@ -27,93 +26,16 @@ from vibroimpact.cases.rigid import (
 )
 from vibroimpact.cases.schema import SensorSection
 from vibroimpact.contact.law import CompliantLaw, ContactLaw, unit_of
-from vibroimpact.dynamics.columns import ALL_IMPACT_COLUMNS
 from vibroimpact.dynamics.problem import STANDARD_GRAVITY
 from vibroimpact.dynamics.restitution import achieved_restitution, law_achieving
 from vibroimpact.errors import InputError
 from vibroimpact.materials import RIGID, Material
-from vibroimpact.report.terminal_table import TerminalColumn, TerminalTable, facts, numbers, with_gap
-from vibroimpact.results.result import Result
-from vibroimpact.runs.deformation import deformation_rows, treatment_sentence
-from vibroimpact.runs.tables import PUT_IN, SUM, column, ledger_table, shown_columns
-
-_FIRST_LEFT_OUT = (
-    "max_acceleration_m_s2",
-    "energy_lost_J",
-    "separation_speed_m_s",
-    "restitution_asked",
-    "max_indentation_m",
-    "contacts",
-    "rebound_height_m",
-    "duration_s",
-    "approach_speed_m_s",
-)
-"""Columns that a narrow terminal does without, in this order, until the others fit."""
-_FIRST_ROWS, _LAST_ROWS = 15, 3
+from vibroimpact.report.terminal_table import facts
+from vibroimpact.runs.terminal import doubt_lines
 
 
-def impact_table(result: Result, width: int) -> RenderableType:
-    """Return the table of impacts for a terminal of a width: columns that do not fit are left out, numbers are not cut.
-
-    The middle of a long table is left out. Units are those of the page; numbers have the digits that they have where the drop is
-    sensitive.
-    """
-    impacts, change = result.impacts, result.change_by_impact
-    number = len(impacts["impact"])
-    if not number:
-        return Text("No impact within the run.")
-    rows = [index for index in range(number) if not _FIRST_ROWS <= index < number - _LAST_ROWS]
-    asked = bool(np.isfinite(impacts["restitution_asked"]).any())
-    shown = [name for name in shown_columns(result) if asked or name != "restitution_asked"]
-    cells = {name: column(name, impacts[name], change) for name in shown}
-    columns = {
-        name: numbers(ALL_IMPACT_COLUMNS[name].short, unit, [shown[index] for index in rows]) for name, (unit, shown) in cells.items()
-    }
-    left_out = [name for name in _FIRST_LEFT_OUT if name in columns]
-    while left_out and TerminalTable(tuple(columns.values())).width > width:
-        del columns[left_out.pop(0)]
-    table = TerminalTable(with_gap(tuple(columns.values()), _FIRST_ROWS) if len(rows) < number else tuple(columns.values()))
-    note = Text(" A wider terminal shows more columns; impacts.csv has all, in SI units.", style="dim")
-    return Group(table, *([note] if len(columns) < len(cells) else []))
-
-
-def energy_table(result: Result) -> RenderableType:
-    """Return the ledger at the end of the run, without the entries that are zero."""
-    unit, ledger = ledger_table(result)
-    whole = result.energy["input_J"]
-    shown = [row for row in ledger if row.name != SUM and abs(result.energy.get(row.name, whole)) > 1e-12 * abs(whole)]  # less is rounding
-    names = [row.name.removesuffix("_J").replace("_", " ") if row.name != PUT_IN else "put in" for row in shown]
-    columns = (
-        TerminalColumn("energy at the end", names, words=True),
-        numbers("", unit, [row.energy for row in shown]),
-        TerminalColumn("%", [row.part for row in shown]),
-    )
-    closure = Text(f" closure {result.energy['closure_relative']:.1e} of the energy put in", style="dim")
-    return Group(TerminalTable(columns, bold=(len(shown) - 1,)), closure)
-
-
-def result_summary(result: Result, width: int) -> RenderableType:
-    """Return what a run prints in a terminal of a width: the tables, the status, and what to doubt."""
-    return Group(
-        Text(result.name, style="bold"),
-        impact_table(result, width),
-        Text(),
-        energy_table(result),
-        Text(),
-        Text(result.status),
-        *_deformation(result),
-        *doubt_lines(result.doubts),
-    )
-
-
-def _deformation(result: Result) -> list[RenderableType]:
-    """Return how the bodies deform, where they do: a sentence, and its numbers."""
-    rows, sentence = deformation_rows(result), treatment_sentence(result)
-    return [Text(), *([Text(sentence)] if sentence else []), *([facts(rows, indent=1)] if rows else [])] if rows or sentence else []
-
-
-def _below(case: Case) -> str:
-    """Return what the sphere falls on, in words."""
+def _plate_text(case: Case) -> str:
+    """Return a description of the plate, or of the sphere in its place."""
     plate = case.plate
     if plate.radius is not None:
         return f"in its place a sphere, radius {plate.radius:g} m, {'free' if plate.supports == 'free' else 'rigid, held fixed'}"
@@ -122,18 +44,27 @@ def _below(case: Case) -> str:
 
 
 def case_explained(case: Case, aside: Container[str] = ()) -> RenderableType:
-    """Return what a case means: the resolved numbers, what to expect, and what to doubt; but slips of units at keys told elsewhere."""
+    """Return the explanation of a case: resolved_case values, expected contact, cost, and doubts.
+
+    Parameters
+    ----------
+    case : Case
+        The case; it is not run.
+    aside : container of str
+        Keys of the case whose implausible values are reported elsewhere, and not doubted here.
+    """
     laws, pair, speed = contact_laws_of(case), contact_pair(case), touch_speed(case)
     mass, radius, gravity = mass_of_sphere(case), case.sphere.radius, case.drop.gravity
     rows: list[tuple[str, str]] = [
-        ("sphere", f"radius {radius:g} m, mass {mass:.6g} kg, {case.sphere.model}, of {_stuff(case.sphere.material)}"),
-        ("plate", f"{_below(case)}, of {_stuff(case.plate.material)}"),
+        ("sphere", f"radius {radius:g} m, mass {mass:.6g} kg, {case.sphere.model}, of {_material_text(case.sphere.material)}"),
+        ("plate", f"{_plate_text(case)}, of {_material_text(case.plate.material)}"),
         *_elastic_rows(case),
         *_coupling_rows(case),
         ("effective modulus", f"{pair.effective_modulus:.6g} Pa"),
         ("first approach speed", f"{speed:.6g} m/s, gravity {gravity:g} m/s2"),
         ("contact law", f"{case.contact.law}: {laws[0].equation}"),
     ]
+    # a list in the case gives one law per impact: parameters that differ are shown for each
     for item in fields(laws[0]):
         values = [getattr(law, item.name) for law in laws]
         if values[0] is None or (item.metadata["memory"] and not any(values)):
@@ -152,6 +83,7 @@ def case_explained(case: Case, aside: Container[str] = ()) -> RenderableType:
     if isinstance(laws[0], CompliantLaw) and laws[0].lasting:
         where = "on the same spot: the dent of the last one lasts" if case.drop.same_spot else "on fresh surfaces"
         rows.append(("each impact", f"{where} (drop.same_spot = {str(case.drop.same_spot).lower()})"))
+    # restitution and expected contact are those of rigid bodies, and labelled so where the bodies deform
     rigid = not deforms(case) or is_free_sphere(case)
     label = "restitution" if rigid else "restitution if rigid"
     rows += [("" if number else label, line) for number, line in enumerate(_restitution_lines(laws[0], pair.effective_mass, speed))]
@@ -167,13 +99,13 @@ def case_explained(case: Case, aside: Container[str] = ()) -> RenderableType:
 def _elastic_rows(case: Case) -> list[tuple[str, str]]:
     if not elastic_names(case):
         return []
-    from vibroimpact.modes.text import elastic_rows  # which loads sparse matrices
+    from vibroimpact.modes.text import elastic_rows  # here, as it imports scipy.sparse
 
     return elastic_rows(case)
 
 
 def _coupling_rows(case: Case) -> list[tuple[str, str]]:
-    """Say how local indentation is treated, and what is watched."""
+    """Return rows on the treatment of local indentation and on the sensors."""
     if not deforms(case):
         return []
     local = case.contact.local
@@ -196,7 +128,7 @@ def _coupling_rows(case: Case) -> list[tuple[str, str]]:
 
 
 def _accelerometer(sensor: SensorSection) -> list[str]:
-    """Say what reads a sensor's acceleration, where something does."""
+    """Return a description of a sensor's accelerometer; empty without one."""
     meter = sensor.accelerometer
     if meter is None:
         return []
@@ -211,7 +143,7 @@ def _accelerometer(sensor: SensorSection) -> list[str]:
 
 
 def _filter(sensor: SensorSection) -> str:
-    """Say what keeps a sensor's samples from folding."""
+    """Return a description of a sensor's anti-alias filter."""
     if sensor.filter == "none":
         return "no anti-alias filter"
     corner = f" at {sensor.corner:g} Hz" if sensor.corner else ""
@@ -219,7 +151,7 @@ def _filter(sensor: SensorSection) -> str:
 
 
 def _restitution_lines(law: ContactLaw, mass: float, speed: float) -> list[str]:
-    """Say what a law achieves, and what to ask it for where that is something else."""
+    """Return sentences on the restitution that a law achieves, and on the parameter that would achieve the one asked."""
     achieved = float(achieved_restitution(law, mass, speed))
     asked = getattr(law, "restitution", achieved) if law.free_parameter == "restitution" else achieved
     if abs(achieved - asked) < 5e-4:
@@ -233,20 +165,10 @@ def _restitution_lines(law: ContactLaw, mass: float, speed: float) -> list[str]:
     return lines
 
 
-def versions_table(rows: Iterable[tuple[str, str]]) -> RenderableType:
-    """Return a plain table of two columns."""
-    return facts(rows)
-
-
-def _stuff(material: Material) -> str:
+def _material_text(material: Material) -> str:
     name = material.name or "a material"
     return (
         name
         if material is RIGID
         else f"{name} (E {material.youngs_modulus:.4g} Pa, nu {material.poissons_ratio:g}, {material.density:g} kg/m3)"
     )
-
-
-def doubt_lines(found: Iterable[str]) -> list[RenderableType]:
-    """Return what to doubt, a paragraph each."""
-    return [Text(f"Doubt: {doubt}.", style="yellow") for doubt in found]

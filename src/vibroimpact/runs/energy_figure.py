@@ -1,4 +1,4 @@
-"""The figure of the energy ledger: where the energy put in is, over time."""
+"""Figure of the energy ledger over time, as stacked bands."""
 
 from __future__ import annotations
 
@@ -11,22 +11,22 @@ from vibroimpact.dynamics.columns import ALL_HISTORY_COLUMNS
 from vibroimpact.report.layout import label_vertical, new_figure, wide_axes
 from vibroimpact.report.style import BANDS, INK
 from vibroimpact.results.result import Result
-from vibroimpact.runs.windows import MARGIN, around, enlarged
+from vibroimpact.runs.figure_data import MARGIN, enlarged_contacts, history_around
 from vibroimpact.units.display import Multiple, multiple
 
 _MOTIONS = {
     "sphere_motion_J": ("vibration of the sphere", "sphere_vibration_J", "sphere_strain_J"),
     "plate_motion_J": ("motion of the plate", "plate_kinetic_J", "plate_strain_J"),
 }
-"""Bands of two entries each: what they are called, and which."""
+"""Bands that sum two entries of the ledger: label, kinetic and strain energy."""
 
 _COLUMNS = 110
-"""How many points an edge of a band has at least, but for those at impacts; filled areas make large files."""
+"""Number of points along the edge of a band, besides those at impacts: filled areas with many points make large files."""
 
 
 def draw_ledger(result: Result) -> Figure:
-    """Draw the ledger's entries stacked, over the whole run and through the first contact where it has a duration."""
-    scale, shown = multiple("J", result.energy["input_J"]), enlarged(result)
+    """Draw the entries of the ledger as stacked bands, over the whole run and over the first enlarged contact, if there is one."""
+    scale, shown = multiple("J", result.energy["input_J"]), enlarged_contacts(result)
     figure = new_figure(3.3 + (2.8 if len(shown) else 0.0))
     whole = wide_axes(figure, figure.get_figheight() - 2.3, 2.0)
     _draw_run(whole, result, scale)
@@ -40,7 +40,7 @@ def draw_ledger(result: Result) -> Figure:
 
 def _draw_run(axes: Axes, result: Result, scale: Multiple) -> None:
     history = bands_of(result.history)
-    kept = _that_show(result)
+    kept = _drawn_points(result)
     clock = multiple("s", history["time_s"])
     _stack(axes, result, {name: values[kept] for name, values in history.items()}, clock, scale)
     sinks = np.min(history["potential_J"]) < -0.01 * result.energy["input_J"]
@@ -50,7 +50,7 @@ def _draw_run(axes: Axes, result: Result, scale: Multiple) -> None:
 
 def _draw_contact(axes: Axes, result: Result, impact: int, scale: Multiple) -> None:
     duration = result.impacts["duration_s"][impact]
-    part = _resampled(bands_of(around(result, impact)))
+    part = _resampled(bands_of(history_around(result, impact)))
     clock = multiple("s", duration)
     _stack(axes, result, part, clock, scale)
     for edge in (0.0, duration / clock.size):
@@ -63,13 +63,13 @@ def _draw_contact(axes: Axes, result: Result, impact: int, scale: Multiple) -> N
 def _stack(axes: Axes, result: Result, part: dict[str, Floats], clock: Multiple, scale: Multiple) -> None:
     time, whole = part["time_s"] / clock.size, bands_of(result.history)
     shown = [name for name in BANDS if name in part]
-    # below the height of first touch the potential energy is negative: the other bands stand on it
+    # below the height of first touch the potential energy is negative: the stack starts from it
     bottom = sum((np.minimum(part[name], 0.0) for name in shown), np.zeros_like(time)) / scale.size
     for name in shown:
         label = _MOTIONS[name][0] if name in _MOTIONS else ALL_HISTORY_COLUMNS[name].short
         colour, hatch = BANDS[name]
         if name == "contact_dissipated_J" and "plate_motion_J" in part:
-            label = "damping of the contact"  # beside that of the bodies
+            label = "damping of the contact"  # as opposed to that of the bodies
         top = bottom + np.maximum(part[name], 0.0) / scale.size
         if np.any(whole[name] > 1e-6 * result.energy["input_J"]):
             axes.fill_between(time, bottom, top, facecolor=colour, hatch=hatch, edgecolor="#3d3d3d", linewidth=0.3, label=label)
@@ -81,29 +81,32 @@ def _stack(axes: Axes, result: Result, part: dict[str, Floats], clock: Multiple,
 
 
 def bands_of(history: dict[str, Floats]) -> dict[str, Floats]:
-    """Return time and bands of a history. Kinetic and strain energy of a body that vibrates change into each other: they are one."""
+    """Return the time and the energies of the bands of a history [SI].
+
+    Kinetic and strain energy of a vibrating body alternate, so they are summed to one band.
+    """
     bands = {name: values for name, values in history.items() if name in BANDS or name == "time_s"}
     if "plate_strain_J" in history:
         bands |= {name: history[kinetic] + history[strain] for name, (_, kinetic, strain) in _MOTIONS.items()}
     return bands
 
 
-def _that_show(result: Result) -> Indices:
-    """Return which points of the history to draw: evenly spread ones, and those just beside the first contacts."""
+def _drawn_points(result: Result) -> Indices:
+    """Return the indices of the points of the history to draw: evenly spaced ones, and those at touch and release of the first contacts."""
     time, touch = result.history["time_s"], result.impacts["time_s"][:45]
     release = touch + result.impacts["duration_s"][:45]
     count = min(max(4 * len(touch), _COLUMNS), 2 * _COLUMNS)
     spread = np.searchsorted(time, np.linspace(time[0], time[-1], count))
-    # a contact that is long enough to be seen here is steeper than a flight
+    # energies change faster in contact than in flight: a contact long enough to be visible gets more points
     close = np.searchsorted(time, np.linspace(time[0], time[-1], 4 * _COLUMNS))
     close = close[result.history["indentation_m"][close.clip(max=len(time) - 1)] > 0.0]
     beside = [np.searchsorted(time, touch), np.searchsorted(time, release, side="right") - 1, [len(time) - 1]]
     kept = np.unique(np.concatenate([spread, close, *beside]).clip(0, len(time) - 1))
-    # what a local element holds at release is lost at once: the bands go on from where it is
+    # energy stored in a local element at release is lost at once: keep the first point from release on without it
     calm = np.flatnonzero(result.history["contact_elastic_J"] <= 1e-4 * result.energy["input_J"])
     after = np.searchsorted(calm, np.searchsorted(time, release, side="right") - 1)
     kept = np.union1d(kept, calm[after[after < len(calm)]])
-    # one that is not would show as a hairline wherever a point happened to fall into it
+    # a contact too short to be visible would show as a hairline wherever a point happens to lie inside it
     impact = np.searchsorted(result.impacts["time_s"], time[kept], side="right") - 1
     brief = np.append(result.impacts["duration_s"], 0.0)[impact] < 3.0 * (time[-1] - time[0]) / _COLUMNS
     inside = result.history["contact_elastic_J"][kept] > 1e-4 * result.energy["input_J"]
@@ -111,6 +114,6 @@ def _that_show(result: Result) -> Indices:
 
 
 def _resampled(part: dict[str, Floats]) -> dict[str, Floats]:
-    """Return a smooth part of the history at evenly spaced times."""
+    """Return a part of the history interpolated linearly at equally spaced times."""
     time = np.linspace(part["time_s"][0], part["time_s"][-1], _COLUMNS)
     return {name: np.interp(time, part["time_s"], part[name]) for name in part}

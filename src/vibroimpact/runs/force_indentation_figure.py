@@ -1,4 +1,4 @@
-"""The figure of contact force over indentation: one loop a contact."""
+"""Figure of contact force over indentation: one hysteresis loop per contact."""
 
 from __future__ import annotations
 
@@ -10,16 +10,16 @@ from vibroimpact.arrays import Floats, Indices
 from vibroimpact.report.layout import label_vertical, new_figure, wide_axes
 from vibroimpact.report.style import ENLARGED, LOOPS, MARK
 from vibroimpact.results.result import Result
-from vibroimpact.runs.windows import contacts, pressed
+from vibroimpact.runs.figure_data import contact_history, contacts_with_duration
 from vibroimpact.units.display import Multiple, multiple, text
 
 _MOST_OTHERS = 60
-"""How many unlabelled loops are drawn at most; more would only blacken the corner near zero."""
+"""Largest number of unlabelled loops; more would only fill the corner near the origin."""
 
 
 def draw_loops(result: Result) -> Figure:
-    """Draw force over indentation of the contacts, labelled by impact and approach speed."""
-    figure, found = new_figure(5.0), contacts(result)
+    """Draw contact force over indentation, with the first contacts labelled by impact and approach speed."""
+    figure, found = new_figure(5.0), contacts_with_duration(result)
     axes = wide_axes(figure, 0.5, 4.2)
     depth, force = multiple("m", result.impacts["max_indentation_m"]), multiple("N", result.impacts["max_force_N"])
     labelled = found if len(found) <= len(LOOPS) else found[:ENLARGED]
@@ -37,12 +37,12 @@ def draw_loops(result: Result) -> Figure:
 
 
 def _loop(result: Result, impact: int, depth: Multiple, force: Multiple) -> tuple[Floats, Floats]:
-    part = pressed(result, impact)
+    part = contact_history(result, impact)
     return part["indentation_m"] / depth.size, part["force_N"] / force.size
 
 
 def _draw_others(axes: Axes, result: Result, others: Indices, depth: Multiple, force: Multiple) -> None:
-    """Draw the loops that have no label as one line with gaps, thin and grey."""
+    """Draw the unlabelled loops as one thin grey line with gaps."""
     if not len(others):
         return
     drawn = others[np.unique(np.linspace(0, len(others) - 1, _MOST_OTHERS).round().astype(int))]
@@ -61,6 +61,6 @@ def _mark_largest_forces(axes: Axes, result: Result, shown: Indices, depth: Mult
 
 
 def _indentation_at(result: Result, shown: Indices, when: Floats) -> Floats:
-    """Return the indentation of each contact at a time in it [m]."""
-    parts = [pressed(result, impact) for impact in shown]
+    """Return the indentation of each contact at a given time during it [m], interpolated linearly."""
+    parts = [contact_history(result, impact) for impact in shown]
     return np.array([np.interp(time, part["time_s"], part["indentation_m"]) for time, part in zip(when, parts, strict=True)])
