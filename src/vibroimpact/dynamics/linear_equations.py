@@ -9,17 +9,17 @@ import numpy as np
 from vibroimpact.arrays import Floats
 
 
-def times(matrices: Floats, values: Floats) -> Floats:
+def stacked_matvec(matrices: Floats, values: Floats) -> Floats:
     """Return matrices (B, M, M) times values (B, M)."""
     return np.asarray((matrices @ values[:, :, None])[:, :, 0])
 
 
-def solutions(matrices: Floats, right: Floats) -> Floats:
+def stacked_solve(matrices: Floats, right: Floats) -> Floats:
     """Return the solutions of B systems of linear equations, (B, M); NaN where a matrix (B, M, M) is singular."""
     return _each(np.linalg.solve, matrices, right[:, :, None])[:, :, 0]
 
 
-def inverses(matrices: Floats) -> Floats:
+def stacked_inverse(matrices: Floats) -> Floats:
     """Return the inverse of each matrix (B, M, M); NaN where it is singular."""
     return _each(np.linalg.inv, matrices)
 

@@ -12,13 +12,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vibroimpact.arrays import Bools, Floats
-from vibroimpact.dynamics.lockstep import computed
+from vibroimpact.dynamics.lockstep import run_coroutine
 from vibroimpact.dynamics.system import MovingBody, System
-from vibroimpact.dynamics.vibrating.free_motion import Apart
+from vibroimpact.dynamics.vibrating.active_contact import ContactDefinition
+from vibroimpact.dynamics.vibrating.free_motion import FreePhase
 from vibroimpact.dynamics.vibrating.linear_system import LinearSystem, State
 from vibroimpact.dynamics.vibrating.march import March
 from vibroimpact.dynamics.vibrating.stretch import VibratingStretch
-from vibroimpact.dynamics.vibrating.touching import Law
 from vibroimpact.errors import ComputationError, InputError
 
 _LONGEST = 1e9  # seconds
@@ -140,7 +140,7 @@ class SystemResponse:
     def _starts(self) -> Floats:
         return np.array([part.start for part in self._march.parts])
 
-    def _parts_at(self, times: Floats) -> Iterator[tuple[VibratingStretch | Apart, Bools, Floats]]:
+    def _parts_at(self, times: Floats) -> Iterator[tuple[VibratingStretch | FreePhase, Bools, Floats]]:
         """Yield each motion of the history with the times that lie in it: which, and since its start [s]."""
         index = np.maximum(np.searchsorted(self._starts, times, side="right") - 1, 0)
         for number in np.unique(index):
@@ -155,7 +155,7 @@ class SystemResponse:
             state = motion.state(since)
             displacement[here], velocity[here] = state.displacement, state.velocity
             if isinstance(motion, VibratingStretch):
-                motion.forget()
+                motion.clear_cache()
         return State(displacement, velocity, np.zeros((len(times), 0)))
 
     def _parts(self, name: str, state: State, shape: tuple[int, ...]) -> tuple[Floats, Floats, Floats]:
@@ -209,10 +209,12 @@ def simulate_system(system: System, *, duration: float, progress: Callable[[floa
             "no surfaces will ever touch: none approach each other at the start, and gravity, if there is any, lets both bodies of each "
             "contact fall alike; give a body a velocity, or hold one"
         )
-    march = March(linear, [Law(one.law, one.series, not one.same_spot) for one in system.contacts.values()], start, system.tolerance)
-    computed(march.course(duration, progress))
+    march = March(
+        linear, [ContactDefinition(one.law, one.series, not one.same_spot) for one in system.contacts.values()], start, system.tolerance
+    )
+    run_coroutine(march.run_until(duration, progress))
     names = list(system.contacts)
-    forces = np.array([impact.force.top() for impact in march.impacts]).reshape(-1, 2)
+    forces = np.array([impact.force.locate() for impact in march.impacts]).reshape(-1, 2)
     columns = {
         "contact": np.array([names[impact.contact] for impact in march.impacts]),
         "time_s": np.array([impact.start for impact in march.impacts]),
@@ -220,7 +222,7 @@ def simulate_system(system: System, *, duration: float, progress: Callable[[floa
         "closing_speed_m_s": np.array([impact.closing_speed for impact in march.impacts]),
         "max_force_N": forces[:, 0],
         "time_of_max_force_s": forces[:, 1],
-        "max_indentation_m": np.array([impact.indentation.top()[0] for impact in march.impacts]),
+        "max_indentation_m": np.array([impact.indentation.locate()[0] for impact in march.impacts]),
         "impulse_N_s": np.array([impact.impulse for impact in march.impacts]),
     }
     energy = _ledger(linear, start, march)
@@ -237,10 +239,12 @@ def _ledger(linear: LinearSystem, start: State, march: March) -> dict[str, float
         "kinetic_J": kinetic,
         "potential_J": potential,
         "strain_J": strain,
-        "contact_elastic_J": sum(float(touch.local.own_energy(touch.own(linear, march.state))) for touch in march.touching.values()),
+        "contact_elastic_J": sum(
+            float(touch.local.energy_at_indentation(touch.law_indentation(linear, march.state))) for touch in march.active.values()
+        ),
         "modal_damping_J": float(march.lost[:-1].sum()),
         "contact_dissipated_J": float(march.lost[-1]),
-        "plastic_work_J": march.plastic + sum(touch.plastic(linear, march.state) for touch in march.touching.values()),
+        "plastic_work_J": march.plastic + sum(touch.plastic_work(linear, march.state) for touch in march.active.values()),
     }
     moved = begun + max(abs(potential), kinetic)
     return {**energy, "input_J": begun, "closure_relative": abs(sum(energy.values()) - begun) / moved if moved else 0.0}

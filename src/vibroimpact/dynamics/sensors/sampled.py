@@ -13,12 +13,12 @@ import numpy as np
 from vibroimpact.arrays import Bools, Floats
 from vibroimpact.dynamics.sensors.antialias import FINENESS, REACH, kernel
 from vibroimpact.dynamics.sensors.filtered_chain import FilteredChain, filter_gains, filtered_chain
-from vibroimpact.dynamics.sensors.lying_chain import lying_chain, lying_pulses
 from vibroimpact.dynamics.sensors.measuring_chain import MeasuringChain
 from vibroimpact.dynamics.sensors.pole_pairs import PolePairs
 from vibroimpact.dynamics.sensors.pulses import force_derivatives, pulses
-from vibroimpact.dynamics.vibrating.lying import Lying
+from vibroimpact.dynamics.sensors.rest_chain import rest_chain, rest_pulses
 from vibroimpact.dynamics.vibrating.oscillators import Oscillators
+from vibroimpact.dynamics.vibrating.rest_motion import RestMotion
 from vibroimpact.dynamics.vibrating.stretch import VibratingStretch
 
 if TYPE_CHECKING:
@@ -48,7 +48,7 @@ class _Span:
     place: Floats
     times: list[Floats] = field(default_factory=list)
     impulses: list[Floats] = field(default_factory=list)
-    lying: Lying | None = None
+    rest: RestMotion | None = None
 
 
 def follow_filtered(filtered: FilteredChain, segments: Sequence[VibratingSegment], count: int, levels: Floats | None = None) -> Floats:
@@ -68,8 +68,8 @@ def follow_filtered(filtered: FilteredChain, segments: Sequence[VibratingSegment
     rate, values = filtered.rate, np.zeros((len(filtered.outputs[0]), count))
     blocks = _blocks(filtered.chain.of, filtered.outputs, rate)
     for span in _spans(filtered.chain, segments, rate):
-        if span.lying is not None:
-            _lie(filtered, span.lying, span, values, levels)
+        if span.rest is not None:
+            _lie(filtered, span.rest, span, values, levels)
             break
         first, last = _samples(span.start, rate), _samples(span.end, rate)
         if span.end >= segments[-1].end:
@@ -111,13 +111,13 @@ def follow_at_instants(chain: MeasuringChain, rate: float, segments: Sequence[Vi
         place = np.concatenate([_place(segment), own], axis=1)
         if last > first:
             offset = first / rate - segment.start
-            if isinstance(segment.moving, VibratingStretch):
-                values[:, first:last] = _in_contact(chain, segment.moving, own, offset + np.arange(last - first) / rate)
-                segment.moving.forget()
-            elif isinstance(segment.moving, Lying):
-                together = lying_chain(chain, segment.moving, own + _laid_down(segments)[:, None])
-                _blocks(together.of, together.outputs, rate).follow(values[:, first:last], together.place, offset)
-                values[:, first:last] += together.constant[:, None]
+            if isinstance(segment.trajectory, VibratingStretch):
+                values[:, first:last] = _in_contact(chain, segment.trajectory, own, offset + np.arange(last - first) / rate)
+                segment.trajectory.clear_cache()
+            elif isinstance(segment.trajectory, RestMotion):
+                chained = rest_chain(chain, segment.trajectory, own + _laid_down(segments)[:, None])
+                _blocks(chained.of, chained.outputs, rate).follow(values[:, first:last], chained.place, offset)
+                values[:, first:last] += chained.constant[:, None]
             else:
                 blocks.follow(values[:, first:last], place, offset)
         own = _own_later(chain, segment, own)
@@ -126,11 +126,11 @@ def follow_at_instants(chain: MeasuringChain, rate: float, segments: Sequence[Vi
 
 def longest_span(segments: Sequence[VibratingSegment], rate: float) -> float:
     """Return how long a part of the history with contact lasts at most [s] that is followed at once."""
-    stretches = (segment.end - segment.start for segment in segments if isinstance(segment.moving, VibratingStretch))
+    stretches = (segment.end - segment.start for segment in segments if isinstance(segment.trajectory, VibratingStretch))
     return max(REACH / rate, *stretches, 0.0)
 
 
-def _lie(filtered: FilteredChain, lying: Lying, span: _Span, values: Floats, levels: Floats | None) -> None:
+def _lie(filtered: FilteredChain, rest: RestMotion, span: _Span, values: Floats, levels: Floats | None) -> None:
     """Add the outputs from where a sphere lies on the plate on, to the end of `values` (S, samples).
 
     What the filter looks back on is of the same motion once it has reached beyond its beginning. Until then the force of that motion
@@ -138,17 +138,17 @@ def _lie(filtered: FilteredChain, lying: Lying, span: _Span, values: Floats, lev
     """
     rate, chain = filtered.rate, filtered.chain
     first = _samples(span.start, rate)
-    times, impulses = lying_pulses(lying, 2.0 * np.pi * _BAND * rate, (first + 2 * REACH) / rate - span.start)
+    times, impulses = rest_pulses(rest, 2.0 * np.pi * _BAND * rate, (first + 2 * REACH) / rate - span.start)
     filtered.add(values, span.start + times, impulses, first + REACH)
     later = values[:, first + REACH :]
     if not later.shape[1]:
         return
-    together = lying_chain(chain, lying, span.place[:, chain.modes :])
-    pairs = PolePairs(together.of.angular_frequency**2, together.of.damping)
-    outputs = pairs.product(together.outputs, filter_gains(together.of, rate))
-    _blocks(together.of, outputs, rate).follow(later, together.place, first / rate - span.start, levels)
+    chained = rest_chain(chain, rest, span.place[:, chain.modes :])
+    pairs = PolePairs(chained.of.angular_frequency**2, chained.of.damping)
+    outputs = pairs.product(chained.outputs, filter_gains(chained.of, rate))
+    _blocks(chained.of, outputs, rate).follow(later, chained.place, first / rate - span.start, levels)
     passed = float(kernel(np.arange(-REACH * FINENESS, REACH * FINENESS + 1) / FINENESS).sum()) / FINENESS
-    later += passed * together.constant[:, None]
+    later += passed * chained.constant[:, None]
 
 
 def _laid_down(segments: Sequence[VibratingSegment]) -> Floats:
@@ -156,12 +156,12 @@ def _laid_down(segments: Sequence[VibratingSegment]) -> Floats:
 
     It is an impulse of the contact, which makes surface and sphere move as one.
     """
-    before, lying = segments[-2] if len(segments) > 1 else None, segments[-1].moving
+    before, rest = segments[-2] if len(segments) > 1 else None, segments[-1].trajectory
     if before is None:
         return np.zeros(2)
     of = segments[-1].system
     shape, velocity = of.shape[0, of.ground], before.state(np.array([before.end - before.start])).velocity[0, of.ground]
-    change = lying.start.velocity[of.ground] - velocity
+    change = rest.start.velocity[of.ground] - velocity
     return np.array([0.0, float(shape @ change) / float(shape @ shape) if shape.any() else 0.0])
 
 
@@ -172,9 +172,9 @@ def _samples(time: float, rate: float) -> int:
 
 def _place(segment: VibratingSegment) -> Floats:
     """Return displacements and velocities of the plate's modes at the start of a segment, (2, modes)."""
-    moving = segment.moving
+    trajectory = segment.trajectory
     ground = segment.system.ground
-    return np.stack([moving.start.displacement[ground], moving.start.velocity[ground]])
+    return np.stack([trajectory.start.displacement[ground], trajectory.start.velocity[ground]])
 
 
 def _spans(chain: MeasuringChain, segments: Sequence[VibratingSegment], rate: float) -> Iterator[_Span]:
@@ -183,14 +183,14 @@ def _spans(chain: MeasuringChain, segments: Sequence[VibratingSegment], rate: fl
     fastest = max(2.0 * np.pi * _BAND * rate, float(chain.of.angular_frequency[chain.modes :].max(initial=0.0)))
     span: _Span | None = None
     for segment in segments:
-        if isinstance(segment.moving, Lying):
+        if isinstance(segment.trajectory, RestMotion):
             laid = _laid_down(segments)
             if span is not None:
                 span.times.append(np.array([segment.start]))
                 span.impulses.append(-laid[1:])
                 yield span
             place = np.concatenate([_place(segment), own + laid[:, None]], axis=1)
-            yield _Span(segment.start, segment.end, place, lying=segment.moving)
+            yield _Span(segment.start, segment.end, place, rest=segment.trajectory)
             return
         if span is not None and not (span.times and segment.end - span.start <= reach and segment is not segments[-1]):
             yield span
@@ -199,8 +199,8 @@ def _spans(chain: MeasuringChain, segments: Sequence[VibratingSegment], rate: fl
             span = _Span(segment.start, segment.end, np.concatenate([_place(segment), own], axis=1))
         span.end = segment.end
         pushed = None
-        if isinstance(segment.moving, VibratingStretch):
-            times, impulses = pushed = pulses(segment.moving, fastest)
+        if isinstance(segment.trajectory, VibratingStretch):
+            times, impulses = pushed = pulses(segment.trajectory, fastest)
             span.times.append(segment.start + times)
             span.impulses.append(impulses)
         own = _own_later(chain, segment, own, pushed)
@@ -215,8 +215,8 @@ def _own_later(chain: MeasuringChain, segment: VibratingSegment, own: Floats, pu
     of = chain.own
     length = segment.end - segment.start
     later = _free(of, own, np.array(length))
-    if isinstance(segment.moving, VibratingStretch):
-        times, impulses = pushed or pulses(segment.moving, float(of.angular_frequency.max()))
+    if isinstance(segment.trajectory, VibratingStretch):
+        times, impulses = pushed or pulses(segment.trajectory, float(of.angular_frequency.max()))
         later = later - np.tensordot(_impulse_answers(of, length - times), impulses, (1, 0))
     return later
 

@@ -14,15 +14,15 @@ from vibroimpact.dynamics.contact import CAPTURED, RIDING, SETTLED, Contact, Pie
 from vibroimpact.dynamics.encounter import Encounter
 from vibroimpact.dynamics.flight import Flight
 from vibroimpact.dynamics.leg import Leg
-from vibroimpact.dynamics.lockstep import Course, side_by_side
+from vibroimpact.dynamics.lockstep import Coroutine, run_in_lockstep
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.rigid.bodies import Motions, RigidBodies
+from vibroimpact.dynamics.vibrating.contact_equilibrium import ContactEquilibrium
 from vibroimpact.dynamics.vibrating.linear_system import FreeMotion, LinearSystem, State
-from vibroimpact.dynamics.vibrating.lying import Lying, lay_down
 from vibroimpact.dynamics.vibrating.next_touch import next_touch
-from vibroimpact.dynamics.vibrating.riding import Riding
+from vibroimpact.dynamics.vibrating.rest_motion import RestMotion, bring_to_rest
 from vibroimpact.dynamics.vibrating.sensitivity import Neighbours
-from vibroimpact.dynamics.vibrating.visit import Visit, visit
+from vibroimpact.dynamics.vibrating.visit import Visit, follow_visit
 
 if TYPE_CHECKING:
     from vibroimpact.structures.modal_model import ModalBasis  # which loads sparse matrices
@@ -87,12 +87,12 @@ class VibratingBodies(RigidBodies):
         self.columns = tuple(ALL_IMPACT_COLUMNS)
         pairs = list(zip(mass.tolist(), gravity.tolist(), strict=True))
         self.system = system_of(problem, *pairs[0])
-        alike = {(mass, gravity): self.system.falling(mass**-0.5, gravity * mass**0.5) for mass, gravity in set(pairs)}
-        self.systems = [alike[pair] for pair in pairs]
+        distinct = {(mass, gravity): self.system.with_sphere(mass**-0.5, gravity * mass**0.5) for mass, gravity in set(pairs)}
+        self.systems = [distinct[pair] for pair in pairs]
         self.displacement, self.velocity = np.zeros((size, self.system.number)), np.zeros((size, self.system.number))
         self.local = np.zeros((size, len(self.system.rate)))
         self.lost = np.zeros((size, self.system.number + 1))
-        self.lying: list[Lying | None] = [None] * size
+        self.lying: list[RestMotion | None] = [None] * size
         self.left = np.full(size, np.nan)
         self.neighbours = Neighbours(problem, mass, self.system)
 
@@ -114,8 +114,8 @@ class VibratingBodies(RigidBodies):
         motions = tuple(FreeMotion(self.systems[drop], self.state(drop, *sphere)) for drop, *sphere in starts)
         level = law.touch_level + np.zeros(len(motions))
         touch = flight.start + np.array([next_touch(motion, float(at), np.inf) for motion, at in zip(motions, level, strict=True)])
-        met = np.isfinite(touch)
-        return touch, -self.rigid_speed(drops, flight.at(np.where(met, touch, flight.start))[1]), motions
+        touches = np.isfinite(touch)
+        return touch, -self.rigid_speed(drops, flight.at(np.where(touches, touch, flight.start))[1]), motions
 
     def pass_flight(self, drops: Drops, motions: Motions, elapsed: Floats) -> None:
         """Let the coordinates of drops move freely."""
@@ -135,19 +135,19 @@ class VibratingBodies(RigidBodies):
 
     def collide(
         self, drops: Drops, encounter: Encounter, place: tuple[Floats, Floats], limits: tuple[Floats, Floats], row: dict[str, Floats]
-    ) -> Course[tuple[Contact, Floats, Floats]]:
+    ) -> Coroutine[tuple[Contact, Floats, Floats]]:
         """Take drops through their visits, side by side."""
         (gaps, velocities), (rest_speed, until) = place, limits
-        starts, courses = [], []
+        starts, followed = [], []
         for number, drop in enumerate(drops):
             one, problem = encounter.pick(np.array([number])), self.problem
             # as Hertz's contact takes longer with a larger mass: where the plate is free, the two have a smaller one
             lighter = float(self.systems[drop].mass[0] / one.mass[0]) ** 0.4
             start, pace = self.state(drop, gaps[number], velocities[number]), 3.0 * lighter * float(one.depth[0] / one.speed_scale[0])
             rules = (problem.tolerance, pace, not problem.same_spot, float(rest_speed[number]), float(until[number]))
-            courses.append(visit(self.systems[drop], one.law.take(0), problem.quasi_static, start, *rules))
+            followed.append(follow_visit(self.systems[drop], one.law.take(0), problem.quasi_static, start, *rules))
             starts.append(start)
-        visits = yield from side_by_side(courses)
+        visits = yield from run_in_lockstep(followed)
         for number, (drop, start, found) in enumerate(zip(drops, starts, visits, strict=True)):
             system = self.systems[drop]
             before, after = (float(np.sum(system.energies(state), axis=0)[system.vibrating].sum()) for state in (start, found.state))
@@ -156,11 +156,11 @@ class VibratingBodies(RigidBodies):
             self.lost[drop, :-1] += found.lost[:-1]
             self.place(drop, found.state)
             if found.outcome in (CAPTURED, SETTLED, RIDING):
-                riding = Riding(system, found.local)
-                self.left[drop] = riding.excess(found.state, found.stored)
+                equilibrium = ContactEquilibrium(system, found.local)
+                self.left[drop] = equilibrium.excess(found.state, found.stored)
                 if found.outcome != RIDING:
-                    self.lying[drop] = lying = lay_down(riding, found.state, found.stored)
-                    self.left[drop] = lying.left
+                    self.lying[drop] = lying = bring_to_rest(equilibrium, found.state, found.stored)
+                    self.left[drop] = lying.excess
         force, when = (np.array([getattr(found, name) for found in visits]) for name in ("max_force", "time_of_max_force"))
         return contact_of(visits, encounter.law), force, when
 
@@ -175,8 +175,8 @@ class VibratingBodies(RigidBodies):
     def laid(self, drops: Drops, law: ContactLaw, weight: Floats, energy: Floats) -> dict[str, Floats]:
         """Return how drops lie that have been laid down: `sag` [m], `stored` and `written_off` [J]."""
         lying = [found for drop in drops if (found := self.lying[drop]) is not None]
-        told = [(found.riding.sag, found.riding.stored, found.written_off) for found in lying]
-        return dict(zip(("sag", "stored", "written_off"), np.array(told).reshape(-1, 3).T, strict=True))
+        rows = [(found.equilibrium.sag, found.equilibrium.stored, found.written_off) for found in lying]
+        return dict(zip(("sag", "stored", "written_off"), np.array(rows).reshape(-1, 3).T, strict=True))
 
     def follow(self, drops: Drops, elapsed: Floats, sag: Floats, stored: Floats) -> tuple[Floats, Floats, Floats]:
         """Let drops lie on what vibrates, and move with it."""
@@ -191,7 +191,7 @@ class VibratingBodies(RigidBodies):
             ends[number] = -float(depth), -float(sinking), float(lying.stored(time)[0])
         return ends[:, 0], ends[:, 1], ends[:, 2]
 
-    def growth(self, leg: Leg) -> Course[Floats]:
+    def growth(self, leg: Leg) -> Coroutine[Floats]:
         """Return the growth that a second drop beside each shows."""
         return (yield from self.neighbours.follow(leg))
 

@@ -31,7 +31,7 @@ class ContactHistory:
     delta: Floats
     work: float
     dissipated: float
-    broken: float = 0.0
+    separation_loss: float = 0.0
 
     @property
     def force(self) -> Floats:
@@ -46,7 +46,7 @@ class ContactHistory:
     def law_force_at(self, x: Floats) -> Floats:
         """Return the force that the law gives [N] at x in [0, 1], before any clip."""
         weights = self.rule.weights(np.asarray(x, dtype=float)).T
-        static, dissipative = self.local.own_forces(weights @ self.delta, weights @ self.rate)
+        static, dissipative = self.local.forces_at_indentation(weights @ self.delta, weights @ self.rate)
         return np.asarray(static + dissipative)
 
     def force_at(self, x: Floats) -> Floats:

@@ -12,7 +12,7 @@ from vibroimpact.dynamics.vibrating.local import LocalContact
 
 
 @dataclass(frozen=True)
-class Apart:
+class FreePhase:
     """Free motion between two contacts, or inside an indentation once the law has stopped pushing.
 
     `length` [s]. `recoiling`: contacts, by their numbers, that hold in their indentation what is lost as it recovers; where none is, all
@@ -33,7 +33,7 @@ class Apart:
         """How long it lasts [s], as an array of one."""
         return np.array([self.length])
 
-    def take(self, drops: Bools) -> Apart:
+    def take(self, drops: Bools) -> FreePhase:
         """Return itself: it is of one drop."""
         return self
 
@@ -47,13 +47,13 @@ class Apart:
 
     def lost_at(self, state: State) -> Floats:
         """Return the same of states that the motion comes to."""
-        lost, of = self.free.lost_at(state), self.free.system
+        lost, system = self.free.lost_at(state), self.free.system
         for number, local in self.recoiling:
-            lost[..., -1] += given_up(of, number, local, self.free.start, state)
+            lost[..., -1] += recoil_loss(system, number, local, self.free.start, state)
         return lost
 
 
-def given_up(system: LinearSystem, number: int, local: LocalContact, before: State, now: State) -> Floats:
+def recoil_loss(system: LinearSystem, number: int, local: LocalContact, before: State, now: State) -> Floats:
     """Return what a contact that recoils without a force loses of the energy in its indentation from a state to others [J]."""
     begun, left = (local.elastic_energy(np.maximum(system.approach(at)[..., number], local.release_level)) for at in (before, now))
     return np.asarray(begun - left)

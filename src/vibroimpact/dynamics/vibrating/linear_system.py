@@ -73,7 +73,7 @@ class LinearSystem(Oscillators):
     below: Bools
     rate: Floats
     mobility: Floats
-    at: Indices
+    local_contact: Indices
 
     @cached_property
     def views(self) -> dict[tuple[int, ...], Any]:
@@ -81,16 +81,16 @@ class LinearSystem(Oscillators):
         return {}
 
     @cached_property
-    def shared(self) -> dict[tuple[int, ...], Any]:
+    def shared_modes(self) -> dict[tuple[int, ...], Any]:
         """What is kept of how some contacts see its modes, by their numbers; systems with the same modes have it in common."""
         return {}
 
-    def falling(self, shape: float, load: float) -> LinearSystem:
+    def with_sphere(self, shape: float, load: float) -> LinearSystem:
         """Return the same system with a sphere of another mass and weight: its fall is the first coordinate."""
         shapes, loads = self.shape.copy(), self.load.copy()
         shapes[:, 0], loads[0] = shape, load
         found = replace(self, shape=shapes, load=loads)
-        found.__dict__["shared"] = self.shared
+        found.__dict__["shared_modes"] = self.shared_modes
         return found
 
     @cached_property
@@ -109,29 +109,29 @@ class LinearSystem(Oscillators):
         return ~self.rigid
 
     @cached_property
-    def outer(self) -> Floats:
+    def outer_shape(self) -> Floats:
         """The shapes of the coordinates outside the contacts, zero of those inside (contacts, n)."""
         return np.where(self.inside, 0.0, self.shape)
 
     @cached_property
-    def inner(self) -> Floats:
+    def inner_shape(self) -> Floats:
         """The shapes of those inside, zero of the others (contacts, n)."""
-        return self.shape - self.outer
+        return self.shape - self.outer_shape
 
     @cached_property
-    def of_bodies(self) -> Floats:
+    def indentation_shape(self) -> Floats:
         """The shapes of rigid motions and of the modes that count in the indentation (contacts, n)."""
         return np.where(self.below | self.rigid, self.shape, 0.0)
 
     @cached_property
-    def of_rigid(self) -> Floats:
+    def rigid_shape(self) -> Floats:
         """The shapes of the rigid motions, zero of the others (contacts, n)."""
         return np.where(self.rigid, self.shape, 0.0)
 
     @cached_property
     def mass(self) -> Floats:
         """The mass that the rigid motions give each contact [kg] (contacts,): of a free body and a held one the former's."""
-        return np.asarray(1.0 / (self.of_rigid**2).sum(axis=1))
+        return np.asarray(1.0 / (self.rigid_shape**2).sum(axis=1))
 
     @cached_property
     def gravity(self) -> Floats:
@@ -141,9 +141,9 @@ class LinearSystem(Oscillators):
         return np.where(np.abs(found) > _ALIKE * np.abs(parts).sum(axis=1), found, 0.0)
 
     @cached_property
-    def with_local(self) -> Floats:
+    def local_incidence(self) -> Floats:
         """One where a massless element is in series with a contact (contacts, k)."""
-        return np.asarray(self.at == np.arange(len(self.shape))[:, None], dtype=float)
+        return np.asarray(self.local_contact == np.arange(len(self.shape))[:, None], dtype=float)
 
     @cached_property
     def local_compliance(self) -> Floats:
@@ -158,7 +158,7 @@ class LinearSystem(Oscillators):
     @cached_property
     def compliance(self) -> Floats:
         """Static compliance of all that vibrates and of the massless elements, seen from each contact [m/N] (contacts,)."""
-        return np.asarray(self.shape**2 @ self.flexibility + self.with_local @ self.local_compliance)
+        return np.asarray(self.shape**2 @ self.flexibility + self.local_incidence @ self.local_compliance)
 
     def energies(self, state: State) -> tuple[Floats, Floats]:
         """Return kinetic and strain energy of each coordinate [J]; states may have leading axes."""
@@ -170,36 +170,36 @@ class LinearSystem(Oscillators):
 
     def mechanical_energy(self, state: State) -> Floats:
         """Return kinetic, potential and strain energy [J], without what the contact laws hold."""
-        of_all = sum(part.sum(axis=-1) for part in self.energies(state))
-        return np.asarray(of_all - state.displacement @ self.load + self.local_energy(state))
+        total = sum(part.sum(axis=-1) for part in self.energies(state))
+        return np.asarray(total - state.displacement @ self.load + self.local_energy(state))
 
     def common_energy(self, state: State) -> Floats:
         """Return the kinetic energy of rigid motions that leave the first approach as it is [J]: of two free bodies flying on."""
         if np.count_nonzero(self.rigid) == 1:
             return np.zeros(state.velocity.shape[:-1])
-        along = state.velocity @ self.of_rigid[0]
+        along = state.velocity @ self.rigid_shape[0]
         return np.asarray(0.5 * ((state.velocity[..., self.rigid] ** 2).sum(axis=-1) - self.mass[0] * along**2))
 
     def approach(self, state: State) -> Floats:
         """Return the approach of the surfaces [m], negative where there is a gap (..., contacts)."""
-        return np.asarray(self.offset + state.displacement @ self.shape.T + state.local @ self.with_local.T)
+        return np.asarray(self.offset + state.displacement @ self.shape.T + state.local @ self.local_incidence.T)
 
     def rates(self, state: State) -> Floats:
         """Return the rate of that without contact force [m/s] (..., contacts)."""
-        return np.asarray(state.velocity @ self.shape.T - (state.local * self.rate) @ self.with_local.T)
+        return np.asarray(state.velocity @ self.shape.T - (state.local * self.rate) @ self.local_incidence.T)
 
     def outer_rates(self, state: State) -> Floats:
         """Return the rate that the dashpot of a contact law feels, without contact force [m/s] (..., contacts)."""
-        return np.asarray(state.velocity @ self.outer.T - (state.local * self.rate) @ self.with_local.T)
+        return np.asarray(state.velocity @ self.outer_shape.T - (state.local * self.rate) @ self.local_incidence.T)
 
     def rigid_motion(self, state: State) -> tuple[Floats, Floats]:
         """Return what the rigid motions alone make of the approach [m], and of its rate [m/s] (..., contacts)."""
-        return self.offset + state.displacement @ self.of_rigid.T, state.velocity @ self.of_rigid.T
+        return self.offset + state.displacement @ self.rigid_shape.T, state.velocity @ self.rigid_shape.T
 
     def accelerations(self, state: State, force: Floats) -> Floats:
         """Return the accelerations of the coordinates outside the contacts, under contact forces [N] (T, contacts): (T, n)."""
-        own = self.load - self.damping * state.velocity - self.angular_frequency**2 * state.displacement
-        return np.asarray(own - force @ self.outer)
+        unforced = self.load - self.damping * state.velocity - self.angular_frequency**2 * state.displacement
+        return np.asarray(unforced - force @ self.outer_shape)
 
 
 @dataclass(frozen=True)
@@ -211,13 +211,15 @@ class FreeMotion:
 
     def state(self, time: Floats) -> State:
         """Return the state at times since the start [s] (...)."""
-        of, start, time = self.system, self.start, np.asarray(time, dtype=float)
+        system, start, time = self.system, self.start, np.asarray(time, dtype=float)
         later = time[..., None]
-        cosine, sine = of.propagators(time)
+        cosine, sine = system.propagators(time)
         return State(
-            cosine * start.displacement + sine * start.velocity + 0.5 * of.load * later**2,
-            (cosine - of.damping * sine) * start.velocity - of.angular_frequency**2 * sine * start.displacement + of.load * later,
-            start.local * np.exp(-of.rate * later),
+            cosine * start.displacement + sine * start.velocity + 0.5 * system.load * later**2,
+            (cosine - system.damping * sine) * start.velocity
+            - system.angular_frequency**2 * sine * start.displacement
+            + system.load * later,
+            start.local * np.exp(-system.rate * later),
         )
 
     def lost_by(self, time: Floats) -> Floats:
@@ -226,9 +228,9 @@ class FreeMotion:
 
     def lost_at(self, state: State) -> Floats:
         """Return the same of states that the motion comes to."""
-        of = self.system
-        coordinates = np.where(of.rigid, 0.0, sum(of.energies(self.start)) - sum(of.energies(state)))
-        massless = of.local_energy(self.start) - of.local_energy(state)
+        system = self.system
+        coordinates = np.where(system.rigid, 0.0, sum(system.energies(self.start)) - sum(system.energies(state)))
+        massless = system.local_energy(self.start) - system.local_energy(state)
         return np.concatenate([coordinates, massless[..., None]], axis=-1)
 
     def motion(self, time: Floats) -> tuple[Floats, Floats]:

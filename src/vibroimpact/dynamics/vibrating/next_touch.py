@@ -33,22 +33,22 @@ def next_touch(motion: FreeMotion, level: float, until: float, contact: int = 0)
     contact : int, default 0
         Which contact of the system.
     """
-    of, gravity = motion.system, float(motion.system.gravity[contact])
-    omega, size, local = of.angular_frequency, np.abs(of.shape[contact]), of.with_local[contact]
-    time = time_to_part(motion, level, contact)
+    system, gravity = motion.system, float(motion.system.gravity[contact])
+    omega, size, local = system.angular_frequency, np.abs(system.shape[contact]), system.local_incidence[contact]
+    time = time_to_separation(motion, level, contact)
     if not time < until:
         return np.inf
     for _ in range(_MOST_STEPS):
         state = motion.state(np.array(time))
-        gap, opening = level - float(of.approach(state)[contact]), -float(of.rates(state)[contact])
+        gap, opening = level - float(system.approach(state)[contact]), -float(system.rates(state)[contact])
         if time > 0.0 and opening <= 0.0 and gap <= -4e-16 * opening * time:
             return time
-        swing, reach = _swing(of, state), _reach(of, state, contact)
-        approach, speed = (float(part[contact]) for part in of.rigid_motion(state))
+        peak_speeds, reach = _peak_speeds(system, state), _displacement_bound(system, state, contact)
+        approach, speed = (float(part[contact]) for part in system.rigid_motion(state))
         far = _fall_time(approach, speed, gravity, level - reach)
         most = (
-            float(size @ (swing * omega * (1.0 + 2.0 * of.damping_ratio)))
-            + float(np.abs(state.local) @ (local * of.rate**2))
+            float(size @ (peak_speeds * omega * (1.0 + 2.0 * system.damping_ratio)))
+            + float(np.abs(state.local) @ (local * system.rate**2))
             + abs(gravity)
         )
         if most > 0.0:
@@ -65,18 +65,18 @@ def next_touch(motion: FreeMotion, level: float, until: float, contact: int = 0)
     return time
 
 
-def time_to_part(motion: FreeMotion, level: float, contact: int = 0) -> float:
+def time_to_separation(motion: FreeMotion, level: float, contact: int = 0) -> float:
     """Return when surfaces that overlap beyond a level have come back to it [s]; 0 if they do not, infinite if they never will."""
-    of, time = motion.system, 0.0
+    system, time = motion.system, 0.0
     for _ in range(_MOST_HORIZONS):
         state = motion.state(np.array(time))
-        approach, rate = float(of.approach(state)[contact]), float(of.rates(state)[contact])
+        approach, rate = float(system.approach(state)[contact]), float(system.rates(state)[contact])
         horizon = 2.0 * (approach - level) / abs(rate) if rate else 1e-6
-        terms = float(np.abs(of.shape[contact]) @ np.abs(state.displacement)) + abs(float(of.offset[contact]))
+        terms = float(np.abs(system.shape[contact]) @ np.abs(state.displacement)) + abs(float(system.offset[contact]))
         if approach <= level + (_ROUNDING * terms if rate < 0.0 else 0.0):
             return time
-        sunk, sinking = (float(part[contact]) for part in of.rigid_motion(state))
-        if of.gravity[contact] >= 0.0 and sinking >= 0.0 and sunk - _reach(of, state, contact) > level:
+        rigid_approach, rigid_rate = (float(part[contact]) for part in system.rigid_motion(state))
+        if system.gravity[contact] >= 0.0 and rigid_rate >= 0.0 and rigid_approach - _displacement_bound(system, state, contact) > level:
             return np.inf  # the sphere sinks farther than the surface ever reaches
         times = time + horizon * _SAMPLES
         parted = motion.motion(times)[0][:, contact] <= level
@@ -87,15 +87,15 @@ def time_to_part(motion: FreeMotion, level: float, contact: int = 0) -> float:
     return np.inf
 
 
-def _swing(of: LinearSystem, state: State) -> Floats:
+def _peak_speeds(system: LinearSystem, state: State) -> Floats:
     """Return how fast each mode can ever become again."""
-    return np.where(of.rigid, 0.0, np.sqrt(2.0 * sum(of.energies(state))))
+    return np.where(system.rigid, 0.0, np.sqrt(2.0 * sum(system.energies(state))))
 
 
-def _reach(of: LinearSystem, state: State, contact: int) -> float:
+def _displacement_bound(system: LinearSystem, state: State, contact: int) -> float:
     """Return how far the surfaces' own motion can ever take them towards each other, or apart [m]."""
-    of_modes = np.abs(of.shape[contact]) @ (_swing(of, state) * np.sqrt(of.flexibility))
-    return float(of_modes + np.abs(state.local) @ of.with_local[contact])
+    modal = np.abs(system.shape[contact]) @ (_peak_speeds(system, state) * np.sqrt(system.flexibility))
+    return float(modal + np.abs(state.local) @ system.local_incidence[contact])
 
 
 def _fall_time(approach: float, speed: float, gravity: float, level: float) -> float:

@@ -24,6 +24,7 @@ import numpy as np
 
 from vibroimpact.arrays import Complex, Floats
 from vibroimpact.dynamics.collocation import Map, Rule, collocation_rule
+from vibroimpact.dynamics.linear_equations import stacked_matvec
 from vibroimpact.dynamics.vibrating.linear_system import LinearSystem, State
 
 NODES = 12
@@ -31,7 +32,7 @@ NODES = 12
 
 
 @dataclass(frozen=True)
-class Spectrum:
+class RadauEigenbasis:
     """A collocation rule with the eigenvalues of its integration matrix, of each conjugate pair one (H,).
 
     `constant`, `time`: a constant of one, and time, in the eigenvectors (H,). `inward` (N, 2 H): to the eigenvectors, real and imaginary
@@ -48,19 +49,19 @@ class Spectrum:
 
     def to_eigenvectors(self, values: Floats) -> Complex:
         """Return values at the nodes (..., N) in the eigenvectors (..., H)."""
-        return _rows_times(values, self.inward).view(np.complex128)
+        return _rows_matmul(values, self.inward).view(np.complex128)
 
     def to_nodes(self, values: Complex) -> Floats:
         """Return the same the other way."""
-        return _rows_times(values.view(np.float64), self.outward)
+        return _rows_matmul(values.view(np.float64), self.outward)
 
     def matrices(self, values: Complex) -> Floats:
         """Return the matrices from nodes to nodes (..., N, N) of what is diagonal in the eigenvectors (..., H)."""
-        return _rows_times(values.view(np.float64), self.filters).reshape(*values.shape[:-1], NODES, NODES)
+        return _rows_matmul(values.view(np.float64), self.filters).reshape(*values.shape[:-1], NODES, NODES)
 
 
 @cache
-def spectrum(time_map: Map, root: int) -> Spectrum:
+def radau_eigenbasis(time_map: Map, root: int) -> RadauEigenbasis:
     """Return the spectrum of a rule."""
     rule = collocation_rule(NODES, time_map, root)
     values, vectors = np.linalg.eig(rule.integral)
@@ -73,7 +74,7 @@ def spectrum(time_map: Map, root: int) -> Spectrum:
     back[there] = np.linalg.inv(parts[:, there])  # of the real matrix, so that there and back is nothing but rounding
     inverse = back[:, 0] + 1j * back[:, 1]
     filters = (vectors.T[:, :, None] * inverse[:, None, :]).reshape(len(half), -1)
-    return Spectrum(
+    return RadauEigenbasis(
         rule,
         values,
         np.asarray(inverse.sum(axis=1), dtype=np.complex128),
@@ -84,7 +85,7 @@ def spectrum(time_map: Map, root: int) -> Spectrum:
     )
 
 
-class ModesSeen:
+class ContactModes:
     """The modes and massless elements of a system as some of its contacts see them.
 
     `modes`, `rigid`: where the modes and the rigid motions are among the coordinates. `shapes`: of the modes outside the contacts and, if
@@ -96,18 +97,18 @@ class ModesSeen:
     def __init__(self, system: LinearSystem, contacts: Sequence[int]) -> None:
         rows, first = list(contacts), int(system.rigid.sum())
         assert system.rigid[:first].all()  # rigid motions come first
-        self.rigid, self.modes = slice(0, first), slice(first, None)
-        self.frequency_squared, self.damping = system.angular_frequency[self.modes] ** 2, system.damping[self.modes]
-        outer, inner = (part[rows][:, self.modes] for part in (system.outer, system.inner))
+        self.rigid_slice, self.mode_slice = slice(0, first), slice(first, None)
+        self.frequency_squared, self.damping = system.angular_frequency[self.mode_slice] ** 2, system.damping[self.mode_slice]
+        outer, inner = (part[rows][:, self.mode_slice] for part in (system.outer_shape, system.inner_shape))
         self.inside = bool(inner.any())
         self.shapes = np.stack([outer, inner] if self.inside else [outer])
         self.pairs = np.ascontiguousarray(self.shapes[:, :, None] * self.shapes[:, None])
-        self.rate, self.with_local = system.rate, system.with_local[rows]
-        self.local_mobility = self.with_local * system.mobility
+        self.rate, self.local_incidence = system.rate, system.local_incidence[rows]
+        self.local_mobility = self.local_incidence * system.mobility
         self.kind = (system.number, first, len(rows), len(self.rate), self.inside)
 
 
-class Seen:
+class ContactView:
     """A system as some of its contacts see it.
 
     `of`: its modes, which several systems may share. `rigid`: shapes of its rigid motions (c, r), and `rigid_pairs`: the sums of their
@@ -115,33 +116,33 @@ class Seen:
     move the contacts (n,).
     """
 
-    def __init__(self, system: LinearSystem, contacts: Sequence[int], of: ModesSeen) -> None:
+    def __init__(self, system: LinearSystem, contacts: Sequence[int], modes: ContactModes) -> None:
         rows = list(contacts)
-        self.system, self.contacts, self.of = system, rows, of
-        self.rigid = system.shape[rows][:, of.rigid]
-        self.rigid_pairs, self.gravity, self.offset = self.rigid @ self.rigid.T, system.gravity[rows], system.offset[rows]
-        self.touched = system.of_rigid[rows].any(axis=0)
+        self.system, self.contacts, self.modes = system, rows, modes
+        self.rigid_shapes = system.shape[rows][:, modes.rigid_slice]
+        self.rigid_pairs, self.gravity, self.offset = self.rigid_shapes @ self.rigid_shapes.T, system.gravity[rows], system.offset[rows]
+        self.active_rigid = system.rigid_shape[rows].any(axis=0)
         self.mass = system.mass[rows]
 
     @cached_property
-    def without_load(self) -> Seen:
+    def without_load(self) -> ContactView:
         """The same without gravity and gaps, as differences between two motions feel it."""
         system = self.system
-        return Seen(replace(system, offset=np.zeros_like(system.offset), load=np.zeros_like(system.load)), self.contacts, self.of)
+        return ContactView(replace(system, offset=np.zeros_like(system.offset), load=np.zeros_like(system.load)), self.contacts, self.modes)
 
 
-def seen_by(system: LinearSystem, contacts: Iterable[int]) -> Seen:
+def contact_view(system: LinearSystem, contacts: Iterable[int]) -> ContactView:
     """Return a system as some of its contacts see it; made once."""
     numbers = tuple(contacts)
     if numbers not in system.views:
-        if numbers not in system.shared:
-            system.shared[numbers] = ModesSeen(system, numbers)
-        system.views[numbers] = Seen(system, numbers, system.shared[numbers])
-    found: Seen = system.views[numbers]
+        if numbers not in system.shared_modes:
+            system.shared_modes[numbers] = ContactModes(system, numbers)
+        system.views[numbers] = ContactView(system, numbers, system.shared_modes[numbers])
+    found: ContactView = system.views[numbers]
     return found
 
 
-class Together:
+class StackedSystems:
     """B systems of one kind, as c of their contacts see them, and their states at the start of a stretch.
 
     `rigid_pairs` [1/kg] (B, c, c), `gravity` [m/s^2] (B, c). `start`: with a leading axis of B. `displacement`, `velocity`: of the modes
@@ -150,28 +151,28 @@ class Together:
     the same.
     """
 
-    def __init__(self, seen: Sequence[Seen], start: Sequence[State]) -> None:
-        first, self.seen = seen[0].of, seen
-        self.modes, self.rigid, self.inside = first.modes, first.rigid, first.inside
-        distinct = seen[:1] if all(one.of is first for one in seen) else seen
+    def __init__(self, views: Sequence[ContactView], start: Sequence[State]) -> None:
+        first, self.views = views[0].modes, views
+        self.mode_slice, self.rigid_slice, self.inside = first.mode_slice, first.rigid_slice, first.inside
+        distinct = views[:1] if all(one.modes is first for one in views) else views
 
         def of_modes(name: str) -> Floats:
-            return np.array([getattr(one.of, name) for one in distinct])
+            return np.array([getattr(one.modes, name) for one in distinct])
 
         self.frequency_squared, self.damping = of_modes("frequency_squared"), of_modes("damping")
         self.shapes, self.pairs = of_modes("shapes"), of_modes("pairs")
-        self.rate, self.with_local, self.local_mobility = of_modes("rate"), of_modes("with_local"), of_modes("local_mobility")
+        self.rate, self.local_incidence, self.local_mobility = of_modes("rate"), of_modes("local_incidence"), of_modes("local_mobility")
         self.massless = bool(len(first.rate))
-        self.rigid_pairs, self.gravity = np.array([one.rigid_pairs for one in seen]), np.array([one.gravity for one in seen])
+        self.rigid_pairs, self.gravity = np.array([one.rigid_pairs for one in views]), np.array([one.gravity for one in views])
         place, speed = np.array([one.displacement for one in start]), np.array([one.velocity for one in start])
         self.start = State(place, speed, np.array([one.local for one in start]))
-        self.displacement, self.velocity = place[:, self.modes], speed[:, self.modes]
-        rigid = np.array([one.rigid for one in seen])
-        self.outer_rate = _times(rigid, speed[:, self.rigid]) + _times(self.shapes[:, 0], self.velocity)
-        self.inner_rate = _times(self.shapes[:, -1], self.velocity) if self.inside else np.zeros_like(self.outer_rate)
-        self.begun_rate = self.outer_rate - _times(self.with_local, self.start.local * self.rate)
-        sunk = _times(rigid, place[:, self.rigid]) + _times(self.shapes.sum(axis=1), self.displacement)
-        self.approach = np.array([one.offset for one in seen]) + sunk + _times(self.with_local, self.start.local)
+        self.displacement, self.velocity = place[:, self.mode_slice], speed[:, self.mode_slice]
+        rigid = np.array([one.rigid_shapes for one in views])
+        self.outer_rate = stacked_matvec(rigid, speed[:, self.rigid_slice]) + stacked_matvec(self.shapes[:, 0], self.velocity)
+        self.inner_rate = stacked_matvec(self.shapes[:, -1], self.velocity) if self.inside else np.zeros_like(self.outer_rate)
+        self.begun_rate = self.outer_rate - stacked_matvec(self.local_incidence, self.start.local * self.rate)
+        sunk = stacked_matvec(rigid, place[:, self.rigid_slice]) + stacked_matvec(self.shapes.sum(axis=1), self.displacement)
+        self.approach = np.array([one.offset for one in views]) + sunk + stacked_matvec(self.local_incidence, self.start.local)
 
     def impedance(self, sigma: Complex) -> Complex:
         """Return 1 + 2 zeta omega sigma + omega^2 sigma^2 of each mode, for sigma (B, H): (B, m, H)."""
@@ -181,11 +182,11 @@ class Together:
         found += 1.0
         return np.asarray(found)
 
-    def drive(self, at: Spectrum, length: Floats) -> Complex:
+    def drive(self, basis: RadauEigenbasis, length: Floats) -> Complex:
         """Return what drives each mode without contact forces, its motion at the start going on: (B, m, H)."""
         stiffness = self.frequency_squared * self.velocity
         pull = self.damping * self.velocity + self.frequency_squared * self.displacement
-        return np.asarray(pull[:, :, None] * -at.constant - stiffness[:, :, None] * (length[:, None] * at.time)[:, None])
+        return np.asarray(pull[:, :, None] * -basis.constant - stiffness[:, :, None] * (length[:, None] * basis.time)[:, None])
 
 
 class Receptance:
@@ -196,97 +197,94 @@ class Receptance:
     besides of the approach and of its rate, (B, M, M); the last two are None where no coordinate lies inside the contacts.
     """
 
-    def __init__(self, systems: Together, at: Spectrum, length: Floats) -> None:
-        self.systems, self.at, self.length = systems, at, length
-        of, rule = systems, at.rule
-        self.sigma = length[:, None] * at.values
+    def __init__(self, systems: StackedSystems, basis: RadauEigenbasis, length: Floats) -> None:
+        self.systems, self.basis, self.length = systems, basis, length
+        rule = basis.rule
+        self.sigma = length[:, None] * basis.values
         sigma = self.sigma[:, None, None]  # (B, 1, 1, H)
-        self.admittance = 1.0 / of.impedance(self.sigma)
-        self.responses = of.drive(at, length)
+        self.admittance = 1.0 / systems.impedance(self.sigma)
+        self.responses = systems.drive(basis, length)
         self.responses *= self.admittance
-        self.driven = summed(of.shapes, self.responses)  # (B, 1 or 2, c, H)
+        self.driven = sum_modes(systems.shapes, self.responses)  # (B, 1 or 2, c, H)
         self.moved = sigma * self.driven
-        self.massless = 1.0 / (1.0 + of.rate[:, :, None] * self.sigma[:, None])
-        if of.massless:
-            pulled = self.massless * (of.rate * of.start.local)[:, :, None]
-            self.moved[:, 0] -= at.constant * summed(of.with_local, pulled)
+        self.massless = 1.0 / (1.0 + systems.rate[:, :, None] * self.sigma[:, None])
+        if systems.massless:
+            pulled = self.massless * (systems.rate * systems.start.local)[:, :, None]
+            self.moved[:, 0] -= basis.constant * sum_modes(systems.local_incidence, pulled)
         whole_moved = sigma[:, 0] * self.moved.sum(axis=1)
-        by_modes = at.to_nodes(np.concatenate([self.moved, whole_moved[:, None]], axis=1))  # (B, 2 or 3, c, N)
+        by_modes = basis.to_nodes(np.concatenate([self.moved, whole_moved[:, None]], axis=1))  # (B, 2 or 3, c, N)
         time = (length[:, None] * rule.time)[:, None]
-        gravity = of.gravity[:, :, None] * time
-        rate = closing = of.outer_rate[:, :, None] + gravity + by_modes[:, 0]
-        if of.inside:
-            closing = rate + (of.inner_rate[:, :, None] + by_modes[:, 1])
-        whole = (of.outer_rate + of.inner_rate)[:, :, None] + 0.5 * gravity
-        approach = of.approach[:, :, None] + time * whole + by_modes[:, -1]
-        size = of.gravity.shape[1] * NODES
+        gravity = systems.gravity[:, :, None] * time
+        rate = closing = systems.outer_rate[:, :, None] + gravity + by_modes[:, 0]
+        if systems.inside:
+            closing = rate + (systems.inner_rate[:, :, None] + by_modes[:, 1])
+        whole = (systems.outer_rate + systems.inner_rate)[:, :, None] + 0.5 * gravity
+        approach = systems.approach[:, :, None] + time * whole + by_modes[:, -1]
+        size = systems.gravity.shape[1] * NODES
         self.rate, self.closing, self.approach = rate.reshape(-1, size), closing.reshape(-1, size), approach.reshape(-1, size)
-        self.squares = summed(of.pairs, self.admittance)  # (B, 1 or 2, c, c, H)
+        self.squares = sum_modes(systems.pairs, self.admittance)  # (B, 1 or 2, c, c, H)
         rates, wide = sigma[:, None] * self.squares, sigma[:, None]
-        if of.massless:
-            rates[:, 0] += _on_diagonal(summed(of.local_mobility, self.massless))
+        if systems.massless:
+            rates[:, 0] += _on_diagonal(sum_modes(systems.local_mobility, self.massless))
         self.rates = rates[:, 0]
         rates[:, 1:] *= wide
         parts = np.concatenate([wide * rates[:, :1], rates, wide * self.squares[:, 1:]], axis=1)
-        found = at.matrices(parts).transpose(1, 0, 2, 4, 3, 5)  # (2 or 4, B, c, N, c, N)
-        rigid, across = of.rigid_pairs[:, :, None, :, None], length[:, None, None, None, None]
+        found = basis.matrices(parts).transpose(1, 0, 2, 4, 3, 5)  # (2 or 4, B, c, N, c, N)
+        rigid, across = systems.rigid_pairs[:, :, None, :, None], length[:, None, None, None, None]
         found[0] += rigid * (across * across) * rule.integral_twice[:, None]
         found[1] += rigid * across * rule.integral[:, None]
         matrices = found.reshape(len(found), -1, size, size)
-        self.by_force, self.rate_by = matrices[:2]
-        self.by_static: Floats | None = matrices[2] if of.inside else None
-        self.closing_by_static: Floats | None = matrices[3] if of.inside else None
+        self.approach_by_force, self.rate_by_force = matrices[:2]
+        self.approach_by_static: Floats | None = matrices[2] if systems.inside else None
+        self.closing_by_static: Floats | None = matrices[3] if systems.inside else None
 
     def by_length(self, force: Floats, static: Floats) -> tuple[Floats, Floats, Floats]:
         """Return how approach, rate and closing rate at the nodes change with the length, under forces there [N]: (B, M) each."""
-        of, at, rule, values = self.systems, self.at, self.at.rule, self.at.values
+        systems, basis, rule, values = self.systems, self.basis, self.basis.rule, self.basis.values
         shape, of_each, sigma = force.shape, (len(force), -1, NODES), self.sigma[:, None, None]
-        pushed = at.to_eigenvectors(force.reshape(of_each))  # (B, c, H)
-        growth = 2.0 * of.frequency_squared[:, :, None] * self.sigma[:, None] + of.damping[:, :, None]  # of the impedance with sigma
+        pushed = basis.to_eigenvectors(force.reshape(of_each))  # (B, c, H)
+        growth = (
+            2.0 * systems.frequency_squared[:, :, None] * self.sigma[:, None] + systems.damping[:, :, None]
+        )  # of the impedance with sigma
         softer = growth * self.admittance
         drive = values * softer * self.responses
         softer *= -self.admittance
-        drive += (of.frequency_squared * of.velocity)[:, :, None] * at.time * self.admittance
-        driven, squares = -summed(of.shapes, drive), summed(of.pairs, softer)
+        drive += (systems.frequency_squared * systems.velocity)[:, :, None] * basis.time * self.admittance
+        driven, squares = -sum_modes(systems.shapes, drive), sum_modes(systems.pairs, softer)
         rates = self.squares[:, 0] + sigma * squares[:, 0]
         moved = values * self.driven + sigma * driven
-        if of.massless:
+        if systems.massless:
             slower = self.massless**2
-            pulled = slower * (of.rate**2 * of.start.local)[:, :, None]
-            moved[:, 0] += at.constant * values * summed(of.with_local, pulled)
-            rates -= _on_diagonal(summed(of.local_mobility, slower * of.rate[:, :, None]))
+            pulled = slower * (systems.rate**2 * systems.start.local)[:, :, None]
+            moved[:, 0] += basis.constant * values * sum_modes(systems.local_incidence, pulled)
+            rates -= _on_diagonal(sum_modes(systems.local_mobility, slower * systems.rate[:, :, None]))
         across = sigma[:, 0]
-        whole = values * self.moved.sum(axis=1) + across * moved.sum(axis=1) - values * _met(self.rates + sigma * rates, pushed)
-        moved[:, 0] -= values * _met(rates, pushed)
-        if of.inside:
-            statically = at.to_eigenvectors(static.reshape(of_each))
-            whole -= values * _met(2.0 * sigma * self.squares[:, 1] + sigma * sigma * squares[:, 1], statically)
-            moved[:, 1] -= values * _met(self.squares[:, 1] + sigma * squares[:, 1], statically)
-        by_modes = at.to_nodes(np.concatenate([moved, whole[:, None]], axis=1))
-        gravity, long = of.gravity[:, :, None], self.length[:, None, None]
-        speed = (of.outer_rate + of.inner_rate)[:, :, None]
-        heavy = of.rigid_pairs @ force.reshape(of_each)
+        whole = values * self.moved.sum(axis=1) + across * moved.sum(axis=1) - values * _complex_matvec(self.rates + sigma * rates, pushed)
+        moved[:, 0] -= values * _complex_matvec(rates, pushed)
+        if systems.inside:
+            statically = basis.to_eigenvectors(static.reshape(of_each))
+            whole -= values * _complex_matvec(2.0 * sigma * self.squares[:, 1] + sigma * sigma * squares[:, 1], statically)
+            moved[:, 1] -= values * _complex_matvec(self.squares[:, 1] + sigma * squares[:, 1], statically)
+        by_modes = basis.to_nodes(np.concatenate([moved, whole[:, None]], axis=1))
+        gravity, long = systems.gravity[:, :, None], self.length[:, None, None]
+        speed = (systems.outer_rate + systems.inner_rate)[:, :, None]
+        heavy = systems.rigid_pairs @ force.reshape(of_each)
         rate = gravity * rule.time + by_modes[:, 0] - heavy @ rule.integral.T
         approach = rule.time * (speed + gravity * long * rule.time) + by_modes[:, -1] - 2.0 * long * (heavy @ rule.integral_twice.T)
-        closing = rate + by_modes[:, 1] if of.inside else rate
+        closing = rate + by_modes[:, 1] if systems.inside else rate
         return approach.reshape(shape), rate.reshape(shape), closing.reshape(shape)
 
 
-def summed(shapes: Floats, values: Complex) -> Complex:
+def sum_modes(shapes: Floats, values: Complex) -> Complex:
     """Return modal values (B, m, H) summed with shapes (B or 1, ..., m) as weights, (B, ..., H)."""
     size, number = values.shape[0], values.shape[1]
     rows = shapes.reshape(len(shapes), math.prod(shapes.shape[1:-1]), number)
     return (rows @ values.view(np.float64)).view(np.complex128).reshape(size, *shapes.shape[1:-1], values.shape[2])
 
 
-def _rows_times(values: Floats, matrix: Floats) -> Floats:
+def _rows_matmul(values: Floats, matrix: Floats) -> Floats:
     """Return values (B, ..., I) times a matrix (I, J), in one product a system, (B, ..., J)."""
     return (values.reshape(len(values), -1, len(matrix)) @ matrix).reshape(*values.shape[:-1], matrix.shape[1])
-
-
-def _times(matrices: Floats, values: Floats) -> Floats:
-    """Return matrices (B or 1, c, m) times values (B, m), (B, c)."""
-    return np.asarray((matrices @ values[:, :, None])[:, :, 0])
 
 
 def _on_diagonal(values: Complex) -> Complex:
@@ -294,6 +292,6 @@ def _on_diagonal(values: Complex) -> Complex:
     return np.asarray(values[:, None] * np.eye(values.shape[1])[:, :, None])
 
 
-def _met(matrices: Complex, values: Complex) -> Complex:
+def _complex_matvec(matrices: Complex, values: Complex) -> Complex:
     """Return matrices (B, c, c, H) times values (B, c, H)."""
     return np.asarray((matrices * values[:, None]).sum(axis=2))

@@ -12,13 +12,13 @@ from vibroimpact.arrays import Bools, Complex, Floats
 from vibroimpact.dynamics.collocation import Rule
 from vibroimpact.dynamics.vibrating.contact_history import ContactHistory
 from vibroimpact.dynamics.vibrating.linear_system import LinearSystem, State
-from vibroimpact.dynamics.vibrating.receptance import Seen, Spectrum, Together
+from vibroimpact.dynamics.vibrating.receptance import ContactView, RadauEigenbasis, StackedSystems
 
 _RIGID_ROUNDING = 2e-15  # of the kinetic energy of the bodies that touch, which may move fast together
 _ROUNDING = 2e-14  # of the energy of the modes, which may be much more than that of a soft touch
 
 
-class Motion(NamedTuple):
+class StretchMotion(NamedTuple):
     """How the coordinates move through a stretch.
 
     `accelerations` and `velocities` of the coordinates (N, n), and rates of the massless elements, `massless` (N, k), at the nodes;
@@ -44,8 +44,8 @@ class VibratingStretch:
     the size that matters; the error at the end goes with its square.
     """
 
-    seen: Seen
-    spectrum: Spectrum
+    view: ContactView
+    basis: RadauEigenbasis
     length: float
     start: State
     contacts: tuple[ContactHistory, ...]
@@ -55,7 +55,7 @@ class VibratingStretch:
     @property
     def system(self) -> LinearSystem:
         """What moves."""
-        return self.seen.system
+        return self.view.system
 
     @property
     def duration(self) -> Floats:
@@ -69,7 +69,7 @@ class VibratingStretch:
     @property
     def rule(self) -> Rule:
         """Nodes and time map."""
-        return self.spectrum.rule
+        return self.basis.rule
 
     @cached_property
     def force(self) -> Floats:
@@ -77,13 +77,13 @@ class VibratingStretch:
         return np.stack([contact.force for contact in self.contacts])
 
     @cached_property
-    def motion(self) -> Motion:
+    def motion(self) -> StretchMotion:
         """The motion of the coordinates."""
-        systems, length = Together([self.seen], [self.start]), np.array([self.length])
-        admittance = 1.0 / systems.impedance(length[:, None] * self.spectrum.values)
-        responses = systems.drive(self.spectrum, length) * admittance
+        systems, length = StackedSystems([self.view], [self.start]), np.array([self.length])
+        admittance = 1.0 / systems.impedance(length[:, None] * self.basis.values)
+        responses = systems.drive(self.basis, length) * admittance
         static = np.array([[contact.static for contact in self.contacts]])
-        return motions_of(systems, self.spectrum, length, (admittance, responses), self.force[None], static)[0]
+        return stretch_motions(systems, self.basis, length, (admittance, responses), self.force[None], static)[0]
 
     @property
     def accelerations(self) -> Floats:
@@ -100,10 +100,10 @@ class VibratingStretch:
         """The state at the end."""
         return self.motion.end
 
-    def closing(self, contact: int = 0) -> Floats:
+    def closing_rates(self, contact: int = 0) -> Floats:
         """Return the rate of the approach of the surfaces, coordinates inside the contact included, at the start and the nodes (N + 1,)."""
-        rate, inner = self.contacts[contact].rate, self.system.inner[self.seen.contacts[contact]]
-        if not self.seen.of.inside:
+        rate, inner = self.contacts[contact].rate, self.system.inner_shape[self.view.contacts[contact]]
+        if not self.view.modes.inside:
             return rate
         return np.asarray(rate + np.concatenate([self.start.velocity[None], self.velocities]) @ inner)
 
@@ -121,23 +121,23 @@ class VibratingStretch:
     def indentations(self, contact: int = 0) -> Floats:
         """Return how far the centre above has come to the surface below at a contact [m], at the start and the nodes (N + 1,)."""
         number = self.contacts[contact].number
-        shape = self.system.of_bodies[number]
+        shape = self.system.indentation_shape[number]
         begun = float(self.system.offset[number] + self.start.displacement @ shape)
         return np.append(begun, begun + self.length * (self.rule.integral @ (self.velocities @ shape)))
 
     @cached_property
     def powers(self) -> Floats:
         """What is lost at the nodes [W], (N, n + 1), for histories: in each coordinate; last, in the laws and the massless elements."""
-        of = self.system
+        system = self.system
         in_laws = sum(contact.power for contact in self.contacts)
-        lost = in_laws + (self.motion.massless**2 / of.mobility).sum(axis=1)
-        return np.concatenate([of.damping * self.velocities**2, lost[:, None]], axis=1)
+        lost = in_laws + (self.motion.massless**2 / system.mobility).sum(axis=1)
+        return np.concatenate([system.damping * self.velocities**2, lost[:, None]], axis=1)
 
     @cached_property
     def lost(self) -> Floats:
         """What is lost over the stretch, with what is at its end [J], (n + 1,) as in `powers`."""
         lost = self.motion.lost.copy()
-        lost[-1] += sum(contact.dissipated + contact.broken for contact in self.contacts)
+        lost[-1] += sum(contact.dissipated + contact.separation_loss for contact in self.contacts)
         return lost
 
     def lost_by(self, time: Floats) -> Floats:
@@ -151,7 +151,7 @@ class VibratingStretch:
             return np.zeros(len(self.contacts))
         return np.asarray(self.force @ self.rule.end_slope / self.length)
 
-    def forget(self) -> None:
+    def clear_cache(self) -> None:
         """Let go of the motion of the coordinates at the nodes, which is found again when it is asked for; what is at the end is kept."""
         if "motion" in self.__dict__:
             _ = self.end, self.lost
@@ -172,9 +172,9 @@ class VibratingStretch:
         return bool(abs(gain + self.lost.sum()) <= 0.06 * tolerance * energy + self.motion.rounding)
 
 
-def motions_of(
-    systems: Together, at: Spectrum, length: Floats, modes: tuple[Complex, Complex], force: Floats, static: Floats
-) -> list[Motion]:
+def stretch_motions(
+    systems: StackedSystems, basis: RadauEigenbasis, length: Floats, modes: tuple[Complex, Complex], force: Floats, static: Floats
+) -> list[StretchMotion]:
     """Return how the coordinates of B systems move through stretches.
 
     Parameters
@@ -190,27 +190,27 @@ def motions_of(
     force, static : array, shape (B, c, N)
         The contact forces at the nodes, and their static part [N].
     """
-    rule, (admittance, responses), start, across = at.rule, modes, systems.start, length[:, None]
-    pushed = at.to_eigenvectors(force)  # (B, c, H)
-    parts = [pushed, at.to_eigenvectors(static)] if systems.inside else [pushed]
-    driven = sum(_pulled(systems.shapes[:, number], part) for number, part in enumerate(parts))
+    rule, (admittance, responses), start, across = basis.rule, modes, systems.start, length[:, None]
+    pushed = basis.to_eigenvectors(force)  # (B, c, H)
+    parts = [pushed, basis.to_eigenvectors(static)] if systems.inside else [pushed]
+    driven = sum(_modal_forces(systems.shapes[:, number], part) for number, part in enumerate(parts))
     accelerations = np.empty((*start.displacement.shape, len(rule.nodes)))
-    accelerations[:, systems.modes] = at.to_nodes(responses - driven * admittance)
-    load = np.array([seen.system.load for seen in systems.seen])
-    rigid = np.array([seen.rigid for seen in systems.seen])
-    accelerations[:, systems.rigid] = load[:, systems.rigid, None] - rigid.swapaxes(1, 2) @ force
+    accelerations[:, systems.mode_slice] = basis.to_nodes(responses - driven * admittance)
+    load = np.array([view.system.load for view in systems.views])
+    rigid = np.array([view.rigid_shapes for view in systems.views])
+    accelerations[:, systems.rigid_slice] = load[:, systems.rigid_slice, None] - rigid.swapaxes(1, 2) @ force
     velocities = accelerations @ rule.integral.T
     velocities *= across[:, :, None]
     velocities += start.velocity[:, :, None]
     displacement = start.displacement + velocities @ rule.integral[-1] * across
     local, massless = start.local, np.zeros((*start.local.shape, len(rule.nodes)))
     if systems.massless:
-        yielding = _pulled(systems.local_mobility, pushed) + (systems.rate * local)[:, :, None] * at.constant
-        massless = at.to_nodes(-yielding / (1.0 + systems.rate[:, :, None] * (across * at.values)[:, None]))
+        yielding = _modal_forces(systems.local_mobility, pushed) + (systems.rate * local)[:, :, None] * basis.constant
+        massless = basis.to_nodes(-yielding / (1.0 + systems.rate[:, :, None] * (across * basis.values)[:, None]))
         local = local + massless @ rule.integral[-1] * across
     end = State(displacement, velocities[:, :, -1].copy(), local)
     frequency, damping, springs, mobility = (
-        np.array([getattr(seen.system, name) for seen in systems.seen]) for name in ("angular_frequency", "damping", "rate", "mobility")
+        np.array([getattr(view.system, name) for view in systems.views]) for name in ("angular_frequency", "damping", "rate", "mobility")
     )
     lost = np.empty((len(force), accelerations.shape[1] + 1))
     lost[:, :-1] = damping * (velocities**2 @ rule.integral[-1]) * across
@@ -220,14 +220,17 @@ def motions_of(
     gain += (end.displacement - start.displacement) * (0.5 * frequency**2 * (end.displacement + start.displacement) - load)
     in_springs = 0.5 * (end.local - start.local) * (end.local + start.local) * springs / mobility
     grown = (gain.sum(axis=1) + in_springs.sum(axis=1)).tolist()
-    begun, touched = 0.5 * (start.velocity**2 + (frequency * start.displacement) ** 2), np.array([seen.touched for seen in systems.seen])
-    rounding = (begun * np.where(frequency > 0.0, _ROUNDING, _RIGID_ROUNDING * touched)).sum(axis=1).tolist()
+    begun, active_rigid = (
+        0.5 * (start.velocity**2 + (frequency * start.displacement) ** 2),
+        np.array([view.active_rigid for view in systems.views]),
+    )
+    rounding = (begun * np.where(frequency > 0.0, _ROUNDING, _RIGID_ROUNDING * active_rigid)).sum(axis=1).tolist()
     return [
-        Motion(accelerations[one].T, velocities[one].T, massless[one].T, end.take(one), grown[one], rounding[one], lost[one])
+        StretchMotion(accelerations[one].T, velocities[one].T, massless[one].T, end.take(one), grown[one], rounding[one], lost[one])
         for one in range(len(force))
     ]
 
 
-def _pulled(shapes: Floats, forces: Complex) -> Complex:
+def _modal_forces(shapes: Floats, forces: Complex) -> Complex:
     """Return what forces at contacts (B, c, H) do to modes of shapes (B or 1, c, m), (B, m, H)."""
     return np.asarray((shapes.swapaxes(1, 2) @ forces.view(np.float64)).view(np.complex128))

@@ -46,7 +46,7 @@ def least_energy(system: LinearSystem, approach: float, stored: float) -> float:
     return stored - weight * approach - 0.5 * float(system.compliance[0]) * weight * weight
 
 
-def stays_below(system: LinearSystem, law: CompliantLaw, state: State, speed: float) -> bool:
+def separates_slower_than(system: LinearSystem, law: CompliantLaw, state: State, speed: float) -> bool:
     """Tell whether a sphere that is apart from the surface can nowhere any more leave it at a speed [m/s], whatever still moves.
 
     Parameters
@@ -64,7 +64,7 @@ def stays_below(system: LinearSystem, law: CompliantLaw, state: State, speed: fl
     return float(system.mechanical_energy(state)) < least + 0.5 * float(system.mass[0]) * speed**2
 
 
-def may_stay(system: LinearSystem, state: State, force: float, indentation: float) -> bool:
+def near_equilibrium(system: LinearSystem, state: State, force: float, indentation: float) -> bool:
     """Tell whether it is worth asking if a sphere that rides stays, which takes the modes of sphere and oscillators together.
 
     It is not where the force is far from the weight, nor where the speed is too high: the force takes it away and gives it back, at
@@ -80,7 +80,7 @@ def may_stay(system: LinearSystem, state: State, force: float, indentation: floa
 
 
 @dataclass(frozen=True, eq=False)
-class Riding:
+class ContactEquilibrium:
     """Small oscillations of a sphere and what it lies on about their equilibrium, as one linear system.
 
     Parameters
@@ -103,7 +103,8 @@ class Riding:
     def share(self) -> float:
         """The part of the static force that is there without motion: less than one where a law pushes less on the way out."""
         static, dissipative = (
-            float(part[0]) for part in self.local.own_forces(static_indentation(self.local.law, np.array([self.weight])), np.zeros(1))
+            float(part[0])
+            for part in self.local.forces_at_indentation(static_indentation(self.local.law, np.array([self.weight])), np.zeros(1))
         )
         return 1.0 + dissipative / static if dissipative else 1.0
 
@@ -120,15 +121,15 @@ class Riding:
     @cached_property
     def stored(self) -> float:
         """What the contact holds at equilibrium, and gives back [J]."""
-        return self.share * float(self.local.own_energy(np.array([self.sag]))[0])
+        return self.share * float(self.local.energy_at_indentation(np.array([self.sag]))[0])
 
     @cached_property
     def contact(self) -> tuple[float, float]:
         """Stiffness [N/m] and damping [N s/m] of the contact at equilibrium."""
         sag, slow = np.array([self.sag]), np.array([1e-3 * np.sqrt(self.system.gravity[0] * abs(self.sag)) + 1e-12])
-        now = self.local.linearised(sag, slow)
+        now = self.local.linearise(sag, slow)
         stiffness = self.share * float(now.stiffness[0] / now.slope[0])
-        towards, away = (self.local.own_forces(sag, rate)[1] for rate in (slow, -slow))
+        towards, away = (self.local.forces_at_indentation(sag, rate)[1] for rate in (slow, -slow))
         return max(stiffness, _NONE), max(float((towards - away)[0] / (2.0 * slow[0])), 0.0)
 
     @cached_property
@@ -137,13 +138,13 @@ class Riding:
         return 1.0 / (1.0 / self.contact[0] + float(self.system.local_compliance.sum()))
 
     @cached_property
-    def equilibrium(self) -> State:
+    def state(self) -> State:
         """The state of equilibrium."""
-        of, weight = self.system, self.weight
-        displacement, local = -weight * of.shape[0] * of.flexibility, -weight * of.local_compliance
-        apart = self.approach - displacement @ of.shape[0] - local.sum()
-        rigid = of.of_rigid[0]
-        return State(displacement + rigid * apart * float(of.mass[0]), np.zeros_like(displacement), local)
+        system, weight = self.system, self.weight
+        displacement, local = -weight * system.shape[0] * system.flexibility, -weight * system.local_compliance
+        apart = self.approach - displacement @ system.shape[0] - local.sum()
+        rigid = system.rigid_shape[0]
+        return State(displacement + rigid * apart * float(system.mass[0]), np.zeros_like(displacement), local)
 
     @property
     def linear(self) -> bool:
@@ -151,29 +152,29 @@ class Riding:
         return bool(self.system.gravity[0] > 0.0 and _NONE < self.contact[0] < np.inf)
 
     @property
-    def pull(self) -> Floats:
+    def shape(self) -> Floats:
         """By how much each coordinate adds to the approach [kg^-1/2] (n,)."""
         return np.asarray(self.system.shape[0])
 
     @cached_property
     def modes(self) -> tuple[Floats, Floats]:
         """Angular frequencies [rad/s] and shapes (n, n), a column a mode, of all coordinates together on the spring of the contact."""
-        stiffness = np.diag(self.system.angular_frequency**2) + self.stiffness * np.outer(self.pull, self.pull)
+        stiffness = np.diag(self.system.angular_frequency**2) + self.stiffness * np.outer(self.shape, self.shape)
         squares, shapes = np.linalg.eigh(stiffness)
         return np.sqrt(np.maximum(squares, _NONE)), shapes
 
     def deviation(self, state: State) -> tuple[Floats, Floats]:
         """Return how far from equilibrium the coordinates are [kg^1/2 m], and their rates (n,)."""
-        return state.displacement - self.equilibrium.displacement, state.velocity.copy()
+        return state.displacement - self.state.displacement, state.velocity.copy()
 
     def force_bound(self, state: State) -> float:
         """Return by how much the force of the contact can ever differ from the weight [N], from a state on, however the modes meet."""
         (omega, shapes), (place, speed) = self.modes, self.deviation(state)
-        swing = np.hypot(shapes.T @ place, (shapes.T @ speed) / omega)
-        lag = state.local + self.system.local_compliance * (self.weight + self.stiffness * float(self.pull @ place))
-        return float(self.stiffness * np.abs(self.pull @ shapes) @ swing + self.contact[0] * np.abs(lag).sum())
+        amplitude = np.hypot(shapes.T @ place, (shapes.T @ speed) / omega)
+        lag = state.local + self.system.local_compliance * (self.weight + self.stiffness * float(self.shape @ place))
+        return float(self.stiffness * np.abs(self.shape @ shapes) @ amplitude + self.contact[0] * np.abs(lag).sum())
 
-    def stays(self, state: State) -> bool:
+    def cannot_separate(self, state: State) -> bool:
         """Tell whether nothing that still moves can lift the sphere off, by the bound of the force."""
         return self.force_bound(state) < _MARGIN * self.weight
 
@@ -183,16 +184,18 @@ class Riding:
         return energy + self.share * stored - least_energy(self.system, self.approach, self.stored)
 
 
-def coupled_oscillators(riding: Riding) -> tuple[Oscillators, Floats]:
+def coupled_oscillators(equilibrium: ContactEquilibrium) -> tuple[Oscillators, Floats]:
     """Return sphere and modes as oscillators that go on apart from each other, and the parts that take what each loses.
 
     Damping is that of each coupled mode: what it hands from one to another is left out. The parts are (n, n + 1): a row a coupled
     mode; what each coordinate takes, and, last, the contact.
     """
-    (omega, shapes), of, damping = riding.modes, riding.system, riding.contact[1]
-    if of.rate.size:  # the dashpots of the massless elements follow the force that their springs carry
-        damping = (riding.stiffness / riding.contact[0]) ** 2 * damping + riding.stiffness**2 * (of.local_compliance**2 / of.mobility).sum()
-    lost = np.concatenate([shapes**2 * of.damping[:, None], damping * (riding.pull @ shapes)[None] ** 2])
+    (omega, shapes), system, damping = equilibrium.modes, equilibrium.system, equilibrium.contact[1]
+    if system.rate.size:  # the dashpots of the massless elements follow the force that their springs carry
+        damping = (equilibrium.stiffness / equilibrium.contact[0]) ** 2 * damping + equilibrium.stiffness**2 * (
+            system.local_compliance**2 / system.mobility
+        ).sum()
+    lost = np.concatenate([shapes**2 * system.damping[:, None], damping * (equilibrium.shape @ shapes)[None] ** 2])
     whole = lost.sum(axis=0)
-    coupled = Oscillators(omega, 0.5 * whole / omega, riding.pull @ shapes)
+    coupled = Oscillators(omega, 0.5 * whole / omega, equilibrium.shape @ shapes)
     return coupled, np.where(whole > 0.0, lost / np.where(whole > 0.0, whole, 1.0), 0.0).T

@@ -23,8 +23,8 @@ from vibroimpact.dynamics.sensors.antialias import Section
 from vibroimpact.dynamics.sensors.measuring_chain import MeasuringChain, of_section, point_at
 from vibroimpact.dynamics.sensors.pole_pairs import PolePairs
 from vibroimpact.dynamics.sensors.pulses import gauss_rule
-from vibroimpact.dynamics.vibrating.lying import Lying
 from vibroimpact.dynamics.vibrating.oscillators import Oscillators
+from vibroimpact.dynamics.vibrating.rest_motion import RestMotion
 
 _FAST = 16.0
 """Times what a linear system answers to: what swings faster acts on it as one impulse, to the square of one over it."""
@@ -33,7 +33,7 @@ _TURN = 10.0
 
 
 @dataclass(frozen=True)
-class LyingChain:
+class RestChain:
     """Oscillators that move freely from a place on, and what they are worth in the outputs.
 
     `of`: the coupled oscillators, then the pairs of poles of the chain for each output. `outputs`: (2, S, n). `place`: displacements and
@@ -46,7 +46,7 @@ class LyingChain:
     constant: Floats
 
 
-def lying_chain(chain: MeasuringChain, lying: Lying, own: Floats) -> LyingChain:
+def rest_chain(chain: MeasuringChain, rest: RestMotion, own: Floats) -> RestChain:
     """Return a measuring chain as free oscillators, as it is while a sphere lies on the plate.
 
     Parameters
@@ -58,11 +58,11 @@ def lying_chain(chain: MeasuringChain, lying: Lying, own: Floats) -> LyingChain:
     own : array, shape (2, pairs of poles)
         Where the pairs of poles of the chain itself are as that begins.
     """
-    riding, coupled = lying.riding, lying.coupled
-    at, shapes, ground = PolePairs(coupled.angular_frequency**2, coupled.damping), riding.modes[1], riding.system.ground
-    force = -math.sqrt(riding.system.mass[0]) * shapes[0] * at.power(2)
+    equilibrium, coupled = rest.equilibrium, rest.coupled
+    at, shapes, ground = PolePairs(coupled.angular_frequency**2, coupled.damping), equilibrium.modes[1], equilibrium.system.ground
+    force = -math.sqrt(equilibrium.system.mass[0]) * shapes[0] * at.power(2)
     moved = chain.shapes @ shapes[ground] * at.power(0)[:, None] - chain.compliance[:, None] * force[:, None]  # (2, S, coupled)
-    static = chain.shapes @ riding.equilibrium.displacement[ground] - chain.compliance * riding.weight
+    static = chain.shapes @ equilibrium.state.displacement[ground] - chain.compliance * equilibrium.weight
     poles = chain.own
     sections = list(zip((poles.angular_frequency**2).tolist(), poles.damping.tolist(), strict=True))
     passed = at.low_pass(sections)
@@ -71,22 +71,22 @@ def lying_chain(chain: MeasuringChain, lying: Lying, own: Floats) -> LyingChain:
             [at.product(one, at.product(at.power(order), passed)) for one, order in zip(moved.swapaxes(0, 1), chain.orders, strict=True)], 1
         )
     ]
-    places = [lying.begun]
+    places = [rest.start_coupled]
     for number, section in enumerate(sections):
         driven = at.product(moved, at.inverse(at.quadratic(*section))[:, None])
-        now = np.stack([_value(driven, lying.begun), _value(at.product(driven, at.power(1)[:, None]), lying.begun)])
+        now = np.stack([_value(driven, rest.start_coupled), _value(at.product(driven, at.power(1)[:, None]), rest.start_coupled)])
         now[0] += static / section[0]
-        places.append(_of_points(chain, section, lying, own[:, [number]]) - now)
+        places.append(_of_points(chain, section, rest, own[:, [number]]) - now)
         outputs.append(of_section(number, sections, chain.orders) * np.eye(len(static)))
     constant = np.where(np.asarray(chain.orders) == 0, static, 0.0)
-    of = reduce(_beside, [coupled, *(poles.pick(np.full(len(static), number)) for number in range(len(sections)))])
-    return LyingChain(of, np.concatenate(outputs, axis=-1), np.concatenate(places, axis=1), constant)
+    of = reduce(_concatenate, [coupled, *(poles.pick(np.full(len(static), number)) for number in range(len(sections)))])
+    return RestChain(of, np.concatenate(outputs, axis=-1), np.concatenate(places, axis=1), constant)
 
 
-def _of_points(chain: MeasuringChain, section: Section, lying: Lying, own: Floats) -> Floats:
+def _of_points(chain: MeasuringChain, section: Section, rest: RestMotion, own: Floats) -> Floats:
     """Return where a pair of poles driven by the motion of each point is, (2, S), from where it is under minus the force, (2, 1)."""
-    plate, ground = chain.plate, lying.riding.system.ground
-    modes = np.stack([lying.start.displacement[ground], lying.start.velocity[ground]])
+    plate, ground = chain.plate, rest.equilibrium.system.ground
+    modes = np.stack([rest.start.displacement[ground], rest.start.velocity[ground]])
     found = []
     at_modes, at = PolePairs(plate.angular_frequency**2, plate.damping), PolePairs(np.array([section[0]]), np.array([section[1]]))
     by_modes, by_own = at_modes.inverse(at_modes.quadratic(*section)), point_at(section, plate, chain.shapes, chain.compliance)
@@ -106,7 +106,7 @@ def _value(element: Floats, place: Floats) -> Floats:
     return np.asarray(_terms(element, place).sum(axis=-1))
 
 
-def lying_pulses(lying: Lying, fastest: float, length: float) -> tuple[Floats, Floats]:
+def rest_pulses(rest: RestMotion, fastest: float, length: float) -> tuple[Floats, Floats]:
     """Return times since the sphere was laid down [s] and impulses [N s] that act on a smooth linear system as the force does.
 
     Parameters
@@ -118,8 +118,8 @@ def lying_pulses(lying: Lying, fastest: float, length: float) -> tuple[Floats, F
     length : float
         Up to when it matters [s].
     """
-    riding, of, (place, speed) = lying.riding, lying.coupled, lying.begun
-    share = -math.sqrt(riding.system.mass[0]) * riding.modes[1][0]  # of an acceleration in the force
+    equilibrium, of, (place, speed) = rest.equilibrium, rest.coupled, rest.start_coupled
+    share = -math.sqrt(equilibrium.system.mass[0]) * equilibrium.modes[1][0]  # of an acceleration in the force
     fast = (of.damping_ratio < 1.0) & (of.angular_frequency > _FAST * fastest)
     at_once = -float(share[fast] @ speed[fast])  # the whole impulse of a swing that dies, or averages, away
     slow, share = of.pick(~fast), share[~fast]
@@ -128,7 +128,7 @@ def lying_pulses(lying: Lying, fastest: float, length: float) -> tuple[Floats, F
     stiffness, displacement, velocity = slow.angular_frequency**2, place[~fast], speed[~fast]
     place = cosine * displacement + sine * velocity
     speed = -stiffness * sine * displacement + (cosine - slow.damping * sine) * velocity
-    force = riding.weight - (stiffness * place + slow.damping * speed) @ share
+    force = equilibrium.weight - (stiffness * place + slow.damping * speed) @ share
     return np.append(0.0, times), np.append(at_once, weights * force)
 
 
@@ -144,10 +144,10 @@ def _graded_rule(length: float, fastest: float, of: Oscillators) -> tuple[Floats
     return (ends[:-1, None] + spans * x).ravel(), (spans * weights).ravel()
 
 
-def _beside(one: Oscillators, other: Oscillators) -> Oscillators:
+def _concatenate(one: Oscillators, other: Oscillators) -> Oscillators:
     """Return oscillators side by side."""
-    return Oscillators(*(np.concatenate(pair) for pair in zip(_parts(one), _parts(other), strict=True)))
+    return Oscillators(*(np.concatenate(pair) for pair in zip(_fields(one), _fields(other), strict=True)))
 
 
-def _parts(of: Oscillators) -> tuple[Floats, Floats, Floats]:
+def _fields(of: Oscillators) -> tuple[Floats, Floats, Floats]:
     return of.angular_frequency, of.damping_ratio, of.shape

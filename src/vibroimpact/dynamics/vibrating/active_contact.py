@@ -21,35 +21,35 @@ _NOTHING = 2e-15  # of the energy of the motion
 
 
 @dataclass(frozen=True)
-class Law:
+class ContactDefinition:
     """The law of a contact of a march and what is in series with it; `forgets`: does each impact find fresh surfaces?"""
 
     law: CompliantLaw
     series: QuasiStatic
-    forgets: bool
+    fresh_surface: bool
 
 
-class Peak:
+class ContactPeak:
     """The largest value of a quantity in a contact, which is sought only once it is asked for.
 
     `near`: the largest at a node so far.
     """
 
     def __init__(self) -> None:
-        self.near = 0.0
+        self.nodal_max = 0.0
         self._candidates: list[tuple[float, float, VibratingStretch, Callable[[Floats], Floats]]] = []
 
-    def note(self, near: float, start: float, stretch: VibratingStretch, values: Callable[[Floats], Floats]) -> None:
+    def add(self, nodal_max: float, start: float, stretch: VibratingStretch, values: Callable[[Floats], Floats]) -> None:
         """Note a stretch that starts at a time [s], the largest value at its nodes, and its values at x in [0, 1]."""
-        if near >= _PEAK * self.near:
-            self._candidates.append((near, start, stretch, values))
-            self.near = max(self.near, near)
+        if nodal_max >= _PEAK * self.nodal_max:
+            self._candidates.append((nodal_max, start, stretch, values))
+            self.nodal_max = max(self.nodal_max, nodal_max)
 
-    def top(self) -> tuple[float, float]:
+    def locate(self) -> tuple[float, float]:
         """Return the largest value, and when it is reached [s]; zeros if there is none."""
         found = (0.0, 0.0)
-        for near, start, stretch, values in self._candidates:
-            if near >= _PEAK * self.near:
+        for nodal_max, start, stretch, values in self._candidates:
+            if nodal_max >= _PEAK * self.nodal_max:
                 x = np.array([highest(values)])
                 if (value := float(values(x)[0])) > found[0]:
                     found = value, start + stretch.length * float(stretch.rule.map_time(x)[0])
@@ -67,19 +67,19 @@ class Impact:
     start: float
     closing_speed: float
     end: float = np.nan
-    force: Peak = field(default_factory=Peak)
-    indentation: Peak = field(default_factory=Peak)
+    force: ContactPeak = field(default_factory=ContactPeak)
+    indentation: ContactPeak = field(default_factory=ContactPeak)
     impulse: float = 0.0
 
 
-def highest_peak(peaks: Sequence[Peak]) -> tuple[float, float]:
+def locate_highest_peak(peaks: Sequence[ContactPeak]) -> tuple[float, float]:
     """Return the largest value of several peaks, and when it is reached [s]."""
-    near = _PEAK * max(peak.near for peak in peaks)
-    return max((peak.top() for peak in peaks if peak.near >= near), key=lambda top: top[0])
+    nodal_max = _PEAK * max(peak.nodal_max for peak in peaks)
+    return max((peak.locate() for peak in peaks if peak.nodal_max >= nodal_max), key=lambda locate: locate[0])
 
 
 @dataclass
-class Touching:
+class ActiveContact:
     """A contact whose surfaces overlap.
 
     `mass`: that it moves [kg]. `delta`: its law's own indentation [m]. `speed`, `span`: of its motion [m/s], and about how long it lasts
@@ -109,17 +109,17 @@ class Touching:
         """Return by how much the surfaces overlap beyond where they part [m], not less than zero."""
         return max(float(system.approach(state)[self.number]) - self.local.release_level, 0.0)
 
-    def own(self, system: LinearSystem, state: State) -> float:
+    def law_indentation(self, system: LinearSystem, state: State) -> float:
         """Return the own indentation of its law in a state [m]."""
-        return float(self.local.own(self.overlap(system, state) + self.local.release_level))
+        return float(self.local.indentation_at(self.overlap(system, state) + self.local.release_level))
 
-    def plastic(self, system: LinearSystem, state: State) -> float:
+    def plastic_work(self, system: LinearSystem, state: State) -> float:
         """Return the plastic work since what its law remembers [J], in a state."""
-        return float(self.local.law.plastic_work(np.asarray(max(self.own(system, state), self.local.least))))
+        return float(self.local.law.plastic_work(np.asarray(max(self.law_indentation(system, state), self.local.release_indentation))))
 
-    def held_at(self, delta: float) -> float:
+    def stored_energy_at(self, delta: float) -> float:
         """Return the energy stored at an indentation of its law [J], without what is rounding."""
-        held = float(self.local.own_energy(delta))
+        held = float(self.local.energy_at_indentation(delta))
         return held if abs(held) > _NOTHING * self.energy else 0.0
 
 
@@ -138,10 +138,10 @@ def motion_speed(system: LinearSystem, number: int, law: CompliantLaw, closing: 
     return max(closing, float(np.sqrt(gravity * sag)))
 
 
-def note_peaks(impact: Impact, stretch: VibratingStretch, place: int, start: float) -> None:
+def record_peaks(impact: Impact, stretch: VibratingStretch, place: int, start: float) -> None:
     """Note the forces and indentations of one of its contacts within a stretch that starts at a time [s], and its impulse."""
     rule, contact, indentations = stretch.rule, stretch.contacts[place], stretch.indentations(place)
     force = float(contact.force.max()) if contact.local.law.tension == "kept" else max(float(contact.force.max()), 0.0)
-    impact.force.note(force, start, stretch, contact.force_at)
-    impact.indentation.note(float(indentations[1:].max()), start, stretch, lambda x: np.asarray(rule.weights(x).T @ indentations))
+    impact.force.add(force, start, stretch, contact.force_at)
+    impact.indentation.add(float(indentations[1:].max()), start, stretch, lambda x: np.asarray(rule.weights(x).T @ indentations))
     impact.impulse += stretch.length * float(rule.integral[-1] @ contact.force)

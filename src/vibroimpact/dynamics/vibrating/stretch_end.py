@@ -7,21 +7,21 @@ from dataclasses import replace
 import numpy as np
 
 from vibroimpact.dynamics.collocation import Map
-from vibroimpact.dynamics.lockstep import Course, asked
+from vibroimpact.dynamics.lockstep import Coroutine, solve
 from vibroimpact.dynamics.vibrating.events import GRID, Event, first_event
-from vibroimpact.dynamics.vibrating.receptance import NODES, spectrum
-from vibroimpact.dynamics.vibrating.solve_stretch import StretchProblem
+from vibroimpact.dynamics.vibrating.receptance import NODES, radau_eigenbasis
+from vibroimpact.dynamics.vibrating.solve_stretches import StretchProblem
 from vibroimpact.dynamics.vibrating.stretch import VibratingStretch
 
 _EASY = 0.01  # of the roughness that is allowed: what the next stretch should have
-_MOST_AIMS = 4  # until the first event of a stretch is found
+_MOST_ATTEMPTS = 4  # until the first event of a stretch is found
 _BEFORE_END = 0.98  # of a stretch: what is seen later is its end
 _AT_END = 1e-12  # of a stretch: nearer to its end is at its end
 
 
-def end_at(
+def solve_to_event(
     stretch: VibratingStretch, event: Event, tolerance: float, energy: float, speed: float, span: float
-) -> Course[tuple[Event, VibratingStretch] | None]:
+) -> Coroutine[tuple[Event, VibratingStretch] | None]:
     """Return the first event of a stretch, and the stretch that ends there; None if it is not found.
 
     What was seen in a solution that is not resolved may not be there, or something else before it.
@@ -37,8 +37,8 @@ def end_at(
     energy, speed, span : float
         Energy [J] and speed [m/s] of the motion, and about how long a contact lasts [s].
     """
-    for _ in range(_MOST_AIMS):
-        ended = yield from asked(_aimed(stretch, event))
+    for _ in range(_MOST_ATTEMPTS):
+        ended = yield from solve(_problem_to_event(stretch, event))
         if not ended.solved or not 0.0 < ended.length <= (1.0 + _AT_END) * stretch.length:
             return None
         before = first_event(ended, speed, span)
@@ -48,7 +48,7 @@ def end_at(
     return None
 
 
-def before_event(stretch: VibratingStretch, event: Event, tolerance: float, energy: float) -> float:
+def length_before_event(stretch: VibratingStretch, event: Event, tolerance: float, energy: float) -> float:
     """Return how long a stretch may be at most, if its event was not found [s].
 
     It is short of the event, if there is one: of what is not resolved, that is not certain.
@@ -57,29 +57,33 @@ def before_event(stretch: VibratingStretch, event: Event, tolerance: float, ener
     return stretch.length * float(stretch.rule.map_time(np.array([near]))[0])
 
 
-def growth(stretch: VibratingStretch, tolerance: float) -> float:
+def length_growth(stretch: VibratingStretch, tolerance: float) -> float:
     """Return how many times as long the next stretch may be, by how fast the last coefficients of the force go with the length."""
     return float(min(max((_EASY * tolerance**0.5 / max(stretch.roughness, 1e-300)) ** (1.0 / NODES), 0.7), 4.0))
 
 
-def broken(stretch: VibratingStretch, place: int, held: float) -> VibratingStretch:
+def with_separation_loss(stretch: VibratingStretch, place: int, held: float) -> VibratingStretch:
     """Return a stretch at whose end a contact breaks, with what it held [J]."""
     contacts = list(stretch.contacts)
-    contacts[place] = replace(contacts[place], broken=held)
+    contacts[place] = replace(contacts[place], separation_loss=held)
     found = replace(stretch, contacts=tuple(contacts))
     found.__dict__["motion"] = stretch.motion  # which is the same
     return found
 
 
-def _aimed(stretch: VibratingStretch, event: Event) -> StretchProblem:
+def _problem_to_event(stretch: VibratingStretch, event: Event) -> StretchProblem:
     """Return what is to be solved for a stretch that ends at an event that was seen in another."""
     rule, contacts = stretch.rule, stretch.contacts
-    time_map: Map = "touch" if rule.time_map == "touch" else "release" if event.aim.name in ("parted", "no push") else "inside"
+    time_map: Map = "touch" if rule.time_map == "touch" else "release" if event.condition.name in ("parted", "no push") else "inside"
     part = float(rule.map_time(np.array([event.x]))[0])
-    to = spectrum(time_map, rule.root).rule
+    to = radau_eigenbasis(time_map, rule.root).rule
     weights = rule.weights(rule.unmap_time(part * to.time)).T
     delta = np.stack([weights @ contact.delta for contact in contacts])
-    force = np.stack([np.add(*contact.local.own_forces(row, weights @ contact.rate)) for contact, row in zip(contacts, delta, strict=True)])
+    force = np.stack(
+        [np.add(*contact.local.forces_at_indentation(row, weights @ contact.rate)) for contact, row in zip(contacts, delta, strict=True)]
+    )
     locals_, begun = [contact.local for contact in contacts], [float(contact.delta[0]) for contact in contacts]
     length = part * stretch.length
-    return StretchProblem(stretch.seen, locals_, time_map, length, stretch.start, begun, guess=(delta, force), aim=event.aim)
+    return StretchProblem(
+        stretch.view, locals_, time_map, length, stretch.start, begun, guess=(delta, force), end_condition=event.condition
+    )
