@@ -1,4 +1,8 @@
-"""Runs several generators round by round, and solves what they ask for in groups: many drops at once."""
+"""Concurrent simulation of many drops: coroutines yield subproblems, which are solved in groups of one kind.
+
+Each drop is a generator. In each round all generators run until they yield subproblems, such as stretches of contact; those of the same
+kind are solved together as arrays, and the solutions are sent back.
+"""
 
 from __future__ import annotations
 
@@ -7,32 +11,32 @@ from typing import Any, Protocol, Self, TypeVar
 
 import numpy as np
 
-_MOST_COORDINATES = 30_000  # coordinates that are computed at once: their arrays stay in the cache
+_MOST_COORDINATES = 30_000  # in one group, so that its arrays fit in the processor's cache
 
 
 class Subproblem(Protocol):
-    """What a course asks for."""
+    """A subproblem that a coroutine yields, to be solved together with others of its kind."""
 
     @property
     def kind(self) -> object:
-        """What has to be the same for problems that are solved together."""
+        """Key that subproblems must share to be solved together."""
 
     @property
     def size(self) -> int:
-        """How many coordinates it has."""
+        """Number of coordinates, by which the size of groups is limited."""
 
     @classmethod
     def solve_group(cls, problems: Sequence[Self]) -> Sequence[Any]:
-        """Return the solutions of problems of one kind."""
+        """Return the solutions of subproblems of one kind."""
 
 
 Result = TypeVar("Result")
 Coroutine = Generator[list[Any], list[Any], Result]
-"""A computation that yields lists of problems, gets back their solutions, and returns what came of it."""
+"""A generator that yields lists of subproblems, receives their solutions, and returns a result."""
 
 
 def solve(problem: Subproblem) -> Coroutine[Any]:
-    """Return the solution of a problem, or raise what kept it from being solved."""
+    """Yield one subproblem and return its solution, or raise the exception that its solver raised."""
     (found,) = yield [problem]
     if isinstance(found, Exception):
         raise found
@@ -40,7 +44,7 @@ def solve(problem: Subproblem) -> Coroutine[Any]:
 
 
 def run_in_lockstep(coroutines: Iterable[Coroutine[Result]]) -> Coroutine[list[Result]]:
-    """Return what comes of courses, as one course: in each round all that go on ask for what they need next."""
+    """Return the results of several coroutines, combined into one: each round yields the subproblems of all that are still running."""
     running = list(coroutines)
     found: dict[int, Result] = {}
     pending: dict[int, list[Any]] = {}
@@ -63,8 +67,8 @@ def run_in_lockstep(coroutines: Iterable[Coroutine[Result]]) -> Coroutine[list[R
 
 
 def run_coroutine(coroutine: Coroutine[Result]) -> Result:
-    """Return what comes of a course, whose problems are solved in groups of a kind."""
-    with np.errstate(all="ignore"):  # guesses may be wild; what is not finite is found and tried again
+    """Run a coroutine to its end, solving its subproblems in groups, and return its result."""
+    with np.errstate(all="ignore"):  # Newton iterates may overflow; results that are not finite are detected and retried
         try:
             problems = next(coroutine)
             while True:
@@ -75,6 +79,7 @@ def run_coroutine(coroutine: Coroutine[Result]) -> Result:
 
 
 def _solve_in_groups(problems: list[Any]) -> list[Any]:
+    """Return the solutions of subproblems in order, solved in groups of the same type and kind."""
     groups: dict[object, list[int]] = {}
     for number, problem in enumerate(problems):
         groups.setdefault((type(problem), problem.kind), []).append(number)
@@ -89,10 +94,10 @@ def _solve_in_groups(problems: list[Any]) -> list[Any]:
 
 
 def _solve_group(problems: list[Any]) -> list[Any]:
-    """Return the solutions of problems of one kind; in place of one, what it raises."""
+    """Return the solutions of subproblems of one kind; in place of a failed one, the exception."""
     try:
         return list(problems[0].solve_group(problems))
-    except Exception as error:  # as of a law of another package, which must not end the others
+    except Exception as error:  # raised by a user's contact law, for example: solve one by one, so that only that drop fails
         if len(problems) == 1:
             return [error]
         return [found for problem in problems for found in _solve_group([problem])]

@@ -1,4 +1,4 @@
-"""Simulate a system of several bodies with several contacts, and what came of it."""
+"""Simulation of a system of several bodies with several contacts, and its response."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ from vibroimpact.dynamics.vibrating.stretch import VibratingStretch
 from vibroimpact.errors import ComputationError, InputError
 
 _LONGEST = 1e9  # seconds
-_CLOSURE = 1e-6  # of the energy put in: more missing is an error
+_CLOSURE = 1e-6  # largest relative error of the energy balance
 
 
 @dataclass(frozen=True)
 class BodyMotion:
-    """How a body moves at some times: arrays have the shape of the times and a last axis.
+    """Motion of a body at given times; arrays have the shape of the times and a last axis.
 
     Attributes
     ----------
@@ -53,17 +53,17 @@ class SystemResponse:
     Attributes
     ----------
     system : System
-        What was simulated.
+        The system.
     impacts : dict of str to array
-        One entry an impact of a contact, in the order in which they begin: `contact`, its name; `time_s`, when the surfaces touch;
-        `closing_speed_m_s`; `duration_s`, NaN of one that lasts at the end; `max_force_N`, `time_of_max_force_s`, `max_indentation_m`,
-        `impulse_N_s`.
+        One entry per impact of a contact, in the order in which they begin: `contact`, its name; `time_s`, of first touch;
+        `closing_speed_m_s`; `duration_s`, NaN if the contact is still closed at the end; `max_force_N`, `time_of_max_force_s`,
+        `max_indentation_m`, `impulse_N_s`.
     energy : dict of str to float
         At the end [J]: `kinetic_J` and `potential_J` of all coordinates, `strain_J` of the modes, `contact_elastic_J`,
-        `modal_damping_J`, `contact_dissipated_J`, `plastic_work_J`; `input_J` at the start; `closure_relative`, what is missing as a
-        part of what moved.
+        `modal_damping_J`, `contact_dissipated_J`, `plastic_work_J`; `input_J` at the start; `closure_relative`, the error of the energy
+        balance relative to `input_J` plus the larger of `kinetic_J` and the magnitude of `potential_J`.
     end_time : float
-        When the run ended [s].
+        End of the run [s].
 
     See Also
     --------
@@ -80,7 +80,7 @@ class SystemResponse:
         return f"<SystemResponse: {len(self.impacts['time_s'])} impacts in {self.end_time:g} s>"
 
     def at(self, times: Any) -> dict[str, BodyMotion]:
-        """Return how the bodies move at times.
+        """Return the motion of all bodies at given times.
 
         Parameters
         ----------
@@ -126,7 +126,7 @@ class SystemResponse:
         return np.asarray(sum(mass * moved[name].velocity for name, mass in free.items()))
 
     def _times(self, times: Any) -> Floats:
-        """Return times within the run."""
+        """Return times as an array of floats; raise unless all lie within the run."""
         try:
             found = np.asarray(times)
             found = found.astype(float) if found.dtype.kind in "iuf" else np.full(1, np.nan)
@@ -141,7 +141,7 @@ class SystemResponse:
         return np.array([part.start for part in self._march.parts])
 
     def _parts_at(self, times: Floats) -> Iterator[tuple[VibratingStretch | FreePhase, Bools, Floats]]:
-        """Yield each motion of the history with the times that lie in it: which, and since its start [s]."""
+        """Yield each motion of the history with a mask of the times within it, and these times since its start [s]."""
         index = np.maximum(np.searchsorted(self._starts, times, side="right") - 1, 0)
         for number in np.unique(index):
             part, here = self._march.parts[int(number)], index == number
@@ -169,24 +169,24 @@ class SystemResponse:
 def simulate_system(system: System, *, duration: float, progress: Callable[[float], None] | None = None) -> SystemResponse:
     """Simulate several bodies with several contacts.
 
-    Between contacts all motion is in closed form; through them it is integrated to the tolerance of the system, with all contacts that
-    act at once as one system of equations.
+    Motion between contacts is in closed form; contacts are integrated to the tolerance of the system, and all that act at the same time are
+    solved as one system of equations.
 
     Parameters
     ----------
     system : System
         Bodies and contacts.
     duration : float
-        When to stop [s], > 0.
+        Duration of the run [s], > 0.
     progress : callable, optional
-        Called with a number from 0 to 1 as it goes on.
+        Called with a number from 0 to 1 as the run proceeds.
 
     Raises
     ------
     InputError
-        If the duration is impossible, or no surfaces will ever touch.
+        If the duration is not a number in range, or no surfaces can ever touch.
     ComputationError
-        If a contact can't be integrated to the tolerance, the energy ledger does not close, or contacts follow each other without end.
+        If a contact can't be integrated to the tolerance, the energy balance does not close, or contacts follow each other without end.
 
     Examples
     --------
@@ -232,7 +232,7 @@ def simulate_system(system: System, *, duration: float, progress: Callable[[floa
 
 
 def _ledger(linear: LinearSystem, start: State, march: March) -> dict[str, float]:
-    """Return where the energy is at the end."""
+    """Return the energy balance at the end of a run [J]."""
     kinetic, strain = (float(part.sum()) for part in linear.energies(march.state))
     begun, potential = float(linear.energies(start)[0].sum()), -float(march.state.displacement @ linear.load)
     energy = {
@@ -251,6 +251,6 @@ def _ledger(linear: LinearSystem, start: State, march: March) -> dict[str, float
 
 
 def _motion(body: MovingBody, place: Floats, speed: Floats, modal: Floats) -> BodyMotion:
-    """Return how a body moves, from its rigid motions and its modal coordinates."""
+    """Return the motion of a body from its rigid motions and its modal coordinates."""
     along, turning = body.coordinates()
     return BodyMotion(place @ along, speed @ along, place @ turning, speed @ turning, modal)
