@@ -1,16 +1,16 @@
-r"""A sphere that lies on what vibrates: their equilibrium under its weight, and what it takes to leave it.
+r"""Equilibrium of a sphere under its weight on bodies that vibrate, small oscillations about it, and criteria of rest.
 
-At equilibrium the contact carries the weight m g, and what is behind it has yielded by :math:`C m g`, with the static
-compliance :math:`C = \sum_i \chi_i^2 / \omega_i^2 + \sum_k 1/k_k` of oscillators and massless elements. Of all states with a
-given approach y of the surfaces, the one with the least energy is at rest and has
+At equilibrium the contact carries the weight m g, and the bodies have deflected by :math:`C m g`, with the static compliance
+:math:`C = \sum_i \chi_i^2 / \omega_i^2 + \sum_k 1/k_k` of oscillators and massless elements. Of all states with a given approach y of the
+surfaces, the one of least energy is at rest and has
 
 .. math:: E(y) = U(y) - m g y - \tfrac12 C (m g)^2
 
-where U is what the contact holds. So surfaces part only where at least E of the approach of release is left: a **barrier of
-energy**, which holds for any law, any damping and any motion. It is strict where much is left that hardly reaches the contact,
-as in springs of 3 Hz; there the **bound of the force** says more. Small motions about the equilibrium are those of one linear
-system, the sphere on the spring of its contact and all oscillators, with modes of its own, and the energy of each bounds what it
-can ever add to the force of the contact.
+with the energy U stored by the contact. Surfaces therefore separate only if the energy is at least E at the approach of release: an
+**energy barrier**, which holds for any law, any damping and any motion. It is of little use where much energy is in modes that hardly move
+the contact, as of a plate on springs of 3 Hz; there the **bound of the force** is sharper. Small oscillations about the equilibrium are
+those of one linear system, the sphere on the spring of its contact and all oscillators; the energy of each of its modes bounds its
+contribution to the contact force.
 """
 
 from __future__ import annotations
@@ -28,47 +28,48 @@ from vibroimpact.dynamics.vibrating.local import LocalContact
 from vibroimpact.dynamics.vibrating.oscillators import Oscillators
 
 _MARGIN = 0.5
-"""Part of the weight by which the force may vary where a sphere stays: so near to the weight the spring of a contact is nearly
-linear (that of Hertz's law has 0.79 to 1.14 of its stiffness), and what damping hands from mode to mode finds room."""
+"""Largest variation of the force at rest, relative to the weight. So near to the weight the spring of a contact is nearly linear (that of
+Hertz's law keeps 0.79 to 1.14 of its stiffness), with a reserve for the coupling of modes by damping.
+"""
 
 _NONE = 1e-300
-"""What stands for no stiffness [N/m], as of Hertz's law where there is no weight."""
+"""Stands for zero stiffness [N/m], as of Hertz's law without weight."""
 
 
 def weight_on(system: LinearSystem) -> float:
-    """Return the weight on the contact of a system that has one [N]."""
+    """Return the weight on the contact of a system with one contact [N]."""
     return float(system.mass[0] * system.gravity[0])
 
 
 def least_energy(system: LinearSystem, approach: float, stored: float) -> float:
-    """Return the least energy of a state with an approach of the surfaces [m] at which the contact holds `stored` [J]."""
+    """Return the least energy of a state with an approach of the surfaces [m] at which the contact stores `stored` [J]."""
     weight = weight_on(system)
     return stored - weight * approach - 0.5 * float(system.compliance[0]) * weight * weight
 
 
 def separates_slower_than(system: LinearSystem, law: CompliantLaw, state: State, speed: float) -> bool:
-    """Tell whether a sphere that is apart from the surface can nowhere any more leave it at a speed [m/s], whatever still moves.
+    """Whether a sphere apart from the surface can nowhere reach a separation speed any more, for lack of energy.
 
     Parameters
     ----------
     system : LinearSystem
-        The sphere and what vibrates.
+        The sphere and the bodies that vibrate.
     law : CompliantLaw
         The law of the next contact.
     state : State
-        Where everything is.
+        The current state.
     speed : float
-        Speed of the sphere beside a surface at rest [m/s].
+        Speed of the sphere relative to a surface at rest [m/s].
     """
     least = least_energy(system, float(law.touch_level), 0.0)
     return float(system.mechanical_energy(state)) < least + 0.5 * float(system.mass[0]) * speed**2
 
 
 def near_equilibrium(system: LinearSystem, state: State, force: float, indentation: float) -> bool:
-    """Tell whether it is worth asking if a sphere that rides stays, which takes the modes of sphere and oscillators together.
+    """Whether a riding sphere may be at rest, by a necessary condition that needs no eigenvalues.
 
-    It is not where the force is far from the weight, nor where the speed is too high: the force takes it away and gives it back, at
-    no lower an angular frequency than that by the trace of the flexibility, on a contact about as stiff as force over indentation.
+    The force must be close to the weight, and the speed low: the force decelerates and accelerates the sphere at no lower an angular
+    frequency than that from the trace of the flexibility, on a contact with about the stiffness of force over indentation.
     """
     weight, mass = weight_on(system), float(system.mass[0])
     most = _MARGIN * weight
@@ -81,12 +82,12 @@ def near_equilibrium(system: LinearSystem, state: State, force: float, indentati
 
 @dataclass(frozen=True, eq=False)
 class ContactEquilibrium:
-    """Small oscillations of a sphere and what it lies on about their equilibrium, as one linear system.
+    """Equilibrium of a sphere on bodies that vibrate, and small oscillations about it as one linear system.
 
     Parameters
     ----------
     system : LinearSystem
-        The sphere, whose weight is greater than 0 and which is the first coordinate, and what vibrates.
+        The sphere, whose weight is greater than 0 and which is the first coordinate, and the bodies that vibrate.
     local : LocalContact
         The contact that carries the weight.
     """
@@ -101,7 +102,7 @@ class ContactEquilibrium:
 
     @cached_property
     def share(self) -> float:
-        """The part of the static force that is there without motion: less than one where a law pushes less on the way out."""
+        """Ratio of the force without motion to the static force: less than one where a law pushes less in restitution."""
         static, dissipative = (
             float(part[0])
             for part in self.local.forces_at_indentation(static_indentation(self.local.law, np.array([self.weight])), np.zeros(1))
@@ -115,12 +116,12 @@ class ContactEquilibrium:
 
     @cached_property
     def approach(self) -> float:
-        """Approach of the surfaces at equilibrium, with what is in series with the law [m]."""
+        """Approach of the surfaces at equilibrium, with the compliance in series with the law [m]."""
         return float(self.local.approach_at(np.array([self.sag]))[0])
 
     @cached_property
     def stored(self) -> float:
-        """What the contact holds at equilibrium, and gives back [J]."""
+        """Energy stored in the contact at equilibrium that it gives back [J]."""
         return self.share * float(self.local.energy_at_indentation(np.array([self.sag]))[0])
 
     @cached_property
@@ -134,12 +135,12 @@ class ContactEquilibrium:
 
     @cached_property
     def stiffness(self) -> float:
-        """Stiffness of the contact and of the massless elements in series [N/m]."""
+        """Stiffness of the contact in series with the massless elements [N/m]."""
         return 1.0 / (1.0 / self.contact[0] + float(self.system.local_compliance.sum()))
 
     @cached_property
     def state(self) -> State:
-        """The state of equilibrium."""
+        """State at equilibrium."""
         system, weight = self.system, self.weight
         displacement, local = -weight * system.shape[0] * system.flexibility, -weight * system.local_compliance
         apart = self.approach - displacement @ system.shape[0] - local.sum()
@@ -148,47 +149,47 @@ class ContactEquilibrium:
 
     @property
     def linear(self) -> bool:
-        """Does the contact push, on a spring?"""
+        """Whether there is a weight, and a finite stiffness of the contact under it."""
         return bool(self.system.gravity[0] > 0.0 and _NONE < self.contact[0] < np.inf)
 
     @property
     def shape(self) -> Floats:
-        """By how much each coordinate adds to the approach [kg^-1/2] (n,)."""
+        """Derivative of the approach by each coordinate [kg^-1/2] (n,)."""
         return np.asarray(self.system.shape[0])
 
     @cached_property
     def modes(self) -> tuple[Floats, Floats]:
-        """Angular frequencies [rad/s] and shapes (n, n), a column a mode, of all coordinates together on the spring of the contact."""
+        """Angular frequencies [rad/s] and mode shapes (n, n), one column per mode, of all coordinates coupled by the spring of the contact."""
         stiffness = np.diag(self.system.angular_frequency**2) + self.stiffness * np.outer(self.shape, self.shape)
         squares, shapes = np.linalg.eigh(stiffness)
         return np.sqrt(np.maximum(squares, _NONE)), shapes
 
     def deviation(self, state: State) -> tuple[Floats, Floats]:
-        """Return how far from equilibrium the coordinates are [kg^1/2 m], and their rates (n,)."""
+        """Return the displacements from equilibrium [kg^1/2 m], and their rates (n,)."""
         return state.displacement - self.state.displacement, state.velocity.copy()
 
     def force_bound(self, state: State) -> float:
-        """Return by how much the force of the contact can ever differ from the weight [N], from a state on, however the modes meet."""
+        """Return the largest possible deviation of the contact force from the weight [N] from a state on, for any phases of the modes."""
         (omega, shapes), (place, speed) = self.modes, self.deviation(state)
         amplitude = np.hypot(shapes.T @ place, (shapes.T @ speed) / omega)
         lag = state.local + self.system.local_compliance * (self.weight + self.stiffness * float(self.shape @ place))
         return float(self.stiffness * np.abs(self.shape @ shapes) @ amplitude + self.contact[0] * np.abs(lag).sum())
 
     def cannot_separate(self, state: State) -> bool:
-        """Tell whether nothing that still moves can lift the sphere off, by the bound of the force."""
+        """Whether the bound of the force excludes that the sphere separates."""
         return self.force_bound(state) < _MARGIN * self.weight
 
     def excess(self, state: State, stored: float) -> float:
-        """Return what sphere, oscillators and contact, which holds `stored` [J], can give back down to their equilibrium [J]."""
+        """Return the energy of sphere, oscillators and contact, which stores `stored` [J], above their equilibrium [J]."""
         energy = float(self.system.mechanical_energy(state) - self.system.common_energy(state))
         return energy + self.share * stored - least_energy(self.system, self.approach, self.stored)
 
 
 def coupled_oscillators(equilibrium: ContactEquilibrium) -> tuple[Oscillators, Floats]:
-    """Return sphere and modes as oscillators that go on apart from each other, and the parts that take what each loses.
+    """Return the coupled modes of sphere and bodies as independent oscillators, and the distribution of the energy that each loses.
 
-    Damping is that of each coupled mode: what it hands from one to another is left out. The parts are (n, n + 1): a row a coupled
-    mode; what each coordinate takes, and, last, the contact.
+    Each coupled mode has its own damping; the coupling of modes by damping is neglected. The distribution is (n, n + 1): a row per coupled
+    mode, with the part lost in each coordinate, and last in the contact.
     """
     (omega, shapes), system, damping = equilibrium.modes, equilibrium.system, equilibrium.contact[1]
     if system.rate.size:  # the dashpots of the massless elements follow the force that their springs carry

@@ -42,7 +42,7 @@ class FreePhase:
         return self.free.state(time)
 
     def lost_by(self, time: Floats) -> Floats:
-        """Return the energy lost since the start [J] at times since then [s], (..., n + 1): in each coordinate, and last in the contacts."""
+        """Return the energy lost since the start [J] at times since then [s], (..., n + 1): in each coordinate; last, in the contacts."""
         return self.lost_at(self.free.state(time))
 
     def lost_at(self, state: State) -> Floats:

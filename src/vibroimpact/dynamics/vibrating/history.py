@@ -1,4 +1,4 @@
-"""The columns of a history of bodies that vibrate."""
+"""Columns of the history of one drop whose bodies vibrate."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def vibrating_history(problem: Problem, segment: VibratingSegment, time: Floats)
         "kinetic_J": 0.5 * mass * fall_speed**2,
         "potential_J": -mass * gravity * depth,
         "contact_elastic_J": stored,
-        "contact_dissipated_J": lost[:, -1].copy(),  # else the history of every mode stays in memory
+        "contact_dissipated_J": lost[:, -1].copy(),  # a view would keep the losses of all modes in memory
         "plastic_work_J": segment.lost_before[-1] + plastic,
         "written_off_at_rest_J": (motion.written_off if isinstance(motion, RestMotion) else 0.0) * same,
         **_body_columns(problem, system, state, lost, force),
@@ -60,14 +60,14 @@ def vibrating_history(problem: Problem, segment: VibratingSegment, time: Floats)
 
 
 def _contact_energies(local: LocalContact, system: LinearSystem, state: State) -> tuple[Floats, Floats]:
-    """Return what the contact holds, and its plastic work since what the law remembers [J]."""
+    """Return the energy stored by the contact, and its plastic work since the last update of the law's memory [J]."""
     approach = np.maximum(system.approach(state)[:, 0], local.release_level)
     plastic = local.plastic_work(approach) if local.law.yields else np.zeros_like(approach)
     return np.asarray(local.elastic_energy(approach)), np.asarray(plastic)
 
 
 def _body_columns(problem: Problem, system: LinearSystem, state: State, lost: Floats, force: Floats) -> dict[str, Floats]:
-    """Return the columns that only bodies that vibrate have."""
+    """Return the columns that only vibrating bodies have."""
     (_, sphere, _), bases, gravity = slices_of(problem), bases_of_plate(problem), float(problem.gravity)
     kinetic, strain = system.energies(state)
     displacement, velocity, acceleration = (
@@ -93,7 +93,7 @@ def _body_columns(problem: Problem, system: LinearSystem, state: State, lost: Fl
 
 
 def _rotational(bases: Sequence[ModalBasis | None], velocity: Floats) -> Floats:
-    """Return the energy of turning as a whole [J], from the velocities of the coordinates of a body (T, n)."""
+    """Return the rotational energy of a body [J], from the velocities of its coordinates (T, n)."""
     turning = [basis.rotation for basis in bases if basis is not None and basis.rotation is not None]
     if sum(map(len, turning)) != velocity.shape[1] or not turning:
         return np.zeros(len(velocity))

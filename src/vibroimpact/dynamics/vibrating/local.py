@@ -1,4 +1,4 @@
-r"""The contact law of one impact as the bodies feel it: with the quasi-static compliance in series."""
+"""Contact law of one impact with a quasi-static compliance in series."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.quasi_static import QuasiStatic
 
 _MOST_ITERATIONS = 40
-_STEP = 1e-7
-_CONVERGED = 1e-8
+_STEP = 1e-7  # relative step of finite differences
+_CONVERGED = 1e-8  # relative Newton step, after which the next would be below rounding
 _TABLE_ROWS = 200
-_TENSILE_POINTS, _LEAST_SLOPE = 2000, 0.5
+_TENSILE_POINTS, _LEAST_SLOPE = 2000, 0.5  # a smaller slope of the approach by the indentation means that the contact snaps off
 _OFFSETS = np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
-"""What is added to indentation and rate for the force, and for its two derivatives."""
+"""Steps of indentation and rate for the force and its two finite differences."""
 
 
 class Linearised(NamedTuple):
-    """Forces [N] at the law's own indentations, the approach of the surfaces there [m], and derivatives.
+    """Forces [N] at indentations of the law, approach of the surfaces there [m], and their derivatives.
 
     `slope`: of the approach by the indentation [-]. `stiffness`: of the static force by it [N/m]. `dissipative_by_delta` [N/m] and
     `dissipative_by_rate` [N s/m]: of the dissipative force.
@@ -41,20 +41,20 @@ class Linearised(NamedTuple):
 
 @dataclass(frozen=True)
 class LocalContact:
-    r"""A law and what is in series with it, for one impact.
+    r"""A contact law and the quasi-static compliance in series with it, for one impact.
 
-    The bodies approach each other in the contact by :math:`y = \delta + s(F_s)`, with the law's own indentation
-    :math:`\delta` and its static force :math:`F_s`. Its dissipative force acts beside both, at a rate of its own:
-    in series with the damped force, what is negative, as the term of a sphere of finite size, would be unstable.
+    The approach of the surfaces is :math:`y = \delta + s(F_s)`, with the indentation :math:`\delta` of the law and its static force
+    :math:`F_s`. The dissipative force acts parallel to both, at a rate of its own: a negative compliance, as the finite-size term of a
+    sphere has, would be unstable in series with a damped force.
 
     Parameters
     ----------
     law : CompliantLaw
         The law, of one drop.
     series : QuasiStatic
-        What is in series with it.
+        The compliance in series with it.
     approach_speed : float or array
-        Closing speed of the surfaces at this touch [m/s]; an array of several contacts that are `stacked`.
+        Closing speed of the surfaces at this touch [m/s]; an array for stacked contacts.
     """
 
     law: CompliantLaw
@@ -62,17 +62,17 @@ class LocalContact:
     approach_speed: Array
 
     def forces(self, approach: Array, rate: Array) -> tuple[Array, Array]:
-        """Return the static and the dissipative force [N], before any clip, at the approach y [m] and its rate [m/s]."""
+        """Return the static and the dissipative force [N], before clipping, at the approach y [m] and its rate [m/s]."""
         return self.law.forces(self.indentation_at(approach), rate, self.approach_speed)
 
-    # in terms of the law's own indentation ---------------------------------------------------------
+    # in terms of the indentation of the law ---------------------------------------------------------
 
     def forces_at_indentation(self, delta: Array, rate: Array) -> tuple[Array, Array]:
-        """Return the static and the dissipative force [N], before any clip, at an indentation of the law [m] and a rate [m/s]."""
+        """Return the static and the dissipative force [N], before clipping, at an indentation of the law [m] and a rate [m/s]."""
         return self.law.forces(np.maximum(delta, self.release_indentation), rate, self.approach_speed)
 
     def linearise(self, delta: Array, rate: Array) -> Linearised:
-        """Return the same with what Newton's method needs; the derivatives are differences. Beyond release, nothing changes any more."""
+        """Return forces, approach and derivatives at indentations [m] and rates [m/s], by finite differences; constant beyond release."""
         held, reached = delta > self.release_indentation, np.maximum(delta, self.release_indentation)
         step, faster = _STEP * (np.abs(reached).max(axis=0) + 1e-300), _STEP * (np.abs(rate).max(axis=0) + 1e-300)
         offsets = _OFFSETS.reshape(2, 3, *(1,) * delta.ndim)
@@ -85,26 +85,26 @@ class LocalContact:
         return Linearised(static[0], dissipative[0], approach, slope, stiffness, by_delta, by_rate)
 
     def refine_indentation(self, delta: Array, approach: Array) -> Array:
-        """Return the law's own indentation at an approach [m], from one that is as near as rounding leaves it; (B,) of B contacts."""
+        """Return the indentation of the law at an approach [m] by one Newton step from a close estimate; (B,) for B contacts."""
         if not self.series:
             return approach
         now = self.linearise(delta[None], np.zeros((1, len(delta))))
         return np.maximum(delta + ((approach - now.approach) / now.slope)[0], self.release_indentation)
 
     def approximate_indentation(self, approach: Array) -> Array:
-        """Return the law's own indentation at an approach [m], roughly."""
+        """Return the indentation of the law at an approach [m], interpolated in a table."""
         if not self.series:
             return approach
         return np.interp(approach, *self._table(self._scale(approach)))
 
     def energy_at_indentation(self, delta: Array) -> Array:
-        """Return the energy stored at an indentation of the law [J]."""
+        """Return the stored energy at an indentation of the law [J]."""
         delta = np.maximum(delta, self.release_indentation)
         stored = self.law.elastic_energy(delta)
         return stored + self.series.energy(self._static(delta)) if self.series else stored
 
     def work_at_indentation(self, delta: Array) -> Array:
-        """Return the energy stored and the plastic work together at an indentation of the law [J]."""
+        """Return the sum of stored energy and plastic work at an indentation of the law [J]."""
         return self.energy_at_indentation(delta) + self.law.plastic_work(np.maximum(delta, self.release_indentation))
 
     def approach_at(self, delta: Array) -> Array:
@@ -112,9 +112,9 @@ class LocalContact:
         return delta + self.series.indentation(self._static(delta)) if self.series else delta
 
     def indentation_at(self, approach: Array) -> Array:
-        """Return the law's own indentation [m] at an approach [m].
+        """Return the indentation of the law [m] at an approach [m], by Newton's method.
 
-        NaN where there is none, as the compliance taken out in series outweighs that of the law: the case is ill-posed.
+        NaN where no solution exists, as a negative compliance in series exceeds that of the law: the problem is ill-posed.
         """
         approach = np.asarray(approach, dtype=float)
         if not self.series:
@@ -127,16 +127,16 @@ class LocalContact:
             slope = 1.0 + self.series.compliance(force) * ((deeper - force) / step)
             change = (delta + self.series.indentation(force) - approach) / slope
             delta = np.maximum(delta - change, self.release_indentation)
-            if np.abs(change).max() <= _CONVERGED * size:  # and the next change would be below rounding
+            if np.abs(change).max() <= _CONVERGED * size:
                 break
         return np.where(slope > 0.0, delta, np.nan)
 
     def _scale(self, approach: Array) -> float:
-        """Return a size for approaches [m]."""
+        """Return a length scale of approaches [m]."""
         return max(float(np.abs(approach).max()), -2.0 * self.release_indentation) + 1e-300
 
     def _table(self, size: float) -> tuple[Array, Array]:
-        """Return approaches and the law's indentations at them, to start from; for approaches up to a size [m]."""
+        """Return a cached table of approaches and indentations of the law, for approaches up to a size [m]."""
         reach = math.frexp(size)[1]
         if reach not in self._tables:
             delta = self.release_indentation + 2.0 * math.ldexp(1.0, reach) * np.linspace(0.0, 1.0, _TABLE_ROWS) ** 2
@@ -148,57 +148,58 @@ class LocalContact:
         return {}
 
     def _static(self, delta: Array) -> Array:
+        """Return the static force at an indentation of the law [N]."""
         delta = np.asarray(delta, dtype=float)
         return self.law.forces(delta, np.zeros_like(delta), self.approach_speed)[0]
 
-    # the law's levels and energies, in terms of the approach --------------------------------------
+    # levels and energies in terms of the approach ---------------------------------------------------
 
     @cached_property
     def touch_level(self) -> float:
-        """Approach at which the surfaces meet [m]."""
+        """Approach at touch [m]."""
         return float(self.approach_at(np.asarray(self.law.touch_level, dtype=float)))
 
     @cached_property
     def release_level(self) -> float:
-        """Approach at which they part [m]."""
+        """Approach at release [m]."""
         return float(self.approach_at(np.asarray(self.release_indentation)))
 
     @cached_property
     def release_indentation(self) -> float:
-        """The law's own indentation at which they part [m]: where what is in series tears a sticking contact off, before the law does."""
+        """Indentation of the law at release [m]; with a compliance in series a sticking contact may snap off before the law releases."""
         least, touch = float(self.law.release_level), float(self.law.touch_level)
         if not self.series or not least < touch:
             return least
-        delta = least + (touch - least) * np.linspace(0.0, 1.0, _TENSILE_POINTS) ** 6  # steeper and steeper towards the end
+        delta = least + (touch - least) * np.linspace(0.0, 1.0, _TENSILE_POINTS) ** 6  # graded towards release
         torn = np.flatnonzero(np.gradient(self.approach_at(delta), delta) < _LEAST_SLOPE)
         return float(delta[torn[-1]]) if torn.size else least
 
     def elastic_energy(self, approach: Array) -> Array:
-        """Return the energy stored by the law and in series with it [J]."""
+        """Return the energy stored by the law and in series with it [J], at an approach [m]."""
         return self.energy_at_indentation(self.indentation_at(approach))
 
     def plastic_work(self, approach: Array) -> Array:
-        """Return the work spent on plastic deformation since what the law remembers [J]."""
+        """Return the plastic work since the last update of the law's memory [J], at an approach [m]."""
         return self.law.plastic_work(self.indentation_at(approach))
 
     def after_compression(self, deepest: float) -> LocalContact:
-        """Return the contact once it has been as deep as an approach of `deepest` [m]."""
+        """Return the contact after a largest approach of `deepest` [m]."""
         return self.after_indentation(self.indentation_at(deepest))
 
     def after_indentation(self, deepest: Array) -> LocalContact:
-        """Return the same once the law's own indentation has been `deepest` [m]."""
+        """Return the contact after a largest indentation of the law of `deepest` [m]."""
         return replace(self, law=self.law.after_compression(deepest)) if self.updates_memory(deepest) else self
 
     def updates_memory(self, deepest: Array) -> bool:
-        """Will the law remember an indentation of its own of `deepest` [m]?"""
+        """Whether an indentation of the law of `deepest` [m] changes its memory."""
         before, after = self.law.memories(), self.law.after_compression(deepest).memories()
         return not all(np.all(before[name] == after[name]) for name in before)
 
 
 def stack_contacts(contacts: Sequence[LocalContact]) -> LocalContact:
-    """Return contacts of one law as one contact whose parameters are arrays, one value a system.
+    """Return contacts of one law as one contact with arrays of parameters, one value per system.
 
-    It serves for `linearised`, `near`, `own_forces` and `own_work` alone.
+    It supports `linearise`, `refine_indentation`, `forces_at_indentation` and `work_at_indentation` only.
     """
     first, *others = contacts
     if not others:

@@ -1,8 +1,8 @@
-"""A system through its contacts: flights in closed form, stretches of contact, and the events that end them.
+"""Time marching of a linear system through its contacts: flights in closed form, stretches of contact, and the events that end them.
 
-While no contact pushes, all motion is known in closed form and the march goes to the next touch. Else it goes by stretches whose length
-adapts to what the bodies do. In each the first event is sought: surfaces part, the force of a law that may not pull becomes zero, a
-breakpoint of a law is crossed, an approach turns; or other surfaces touch meanwhile. The stretch is solved again so that it ends there.
+While no contact pushes, the motion is known in closed form, and the march advances to the next touch. Otherwise it advances by stretches
+of adaptive length. Each is searched for its first event: separation, zero force of a law that may not pull, a breakpoint of a law, a turn
+of an approach, or a touch at another contact. The stretch is then solved again so that it ends there.
 """
 
 from __future__ import annotations
@@ -39,8 +39,8 @@ from vibroimpact.dynamics.vibrating.stretch import VibratingStretch
 from vibroimpact.dynamics.vibrating.stretch_end import length_before_event, length_growth, solve_to_event, with_separation_loss
 from vibroimpact.errors import ComputationError
 
-_FIRST_LENGTH = 0.125  # of the span of a contact: the first stretch
-_TOUCH_SLACK = 1e-12  # of the deepest indentation: by less surfaces have not touched while other contacts push
+_FIRST_LENGTH = 0.125  # of the duration of a contact: length of the first stretch
+_TOUCH_SLACK = 1e-12  # of the deepest indentation: a smaller overlap is no touch while other contacts push
 _MOST_STRETCHES = 200_000
 _MOST_CORRECTIONS = 8
 _ROUNDING = 1e-14  # of the deepest indentation
@@ -53,32 +53,32 @@ class NotIntegrable(ComputationError):
 
 @dataclass(frozen=True)
 class MotionPart:
-    """A part of a march: when it begins [s], and its motion."""
+    """A part of the history of a march: its start [s] and its motion."""
 
     start: float
     motion: VibratingStretch | FreePhase
 
 
 class March:
-    """A system on its way through contacts.
+    """Time marching of a system through its contacts.
 
-    `time` [s], `state`: where it is. `touching`: the contacts whose surfaces overlap, by number. `known`: the laws of the next contacts,
-    with what they remember. `dents`: the laws of the last, where the next one does not find its dent again and surfaces may still be in
-    it. `parts`: its history. `impacts`: what came of each contact. `lost` [J], (n + 1,): in each coordinate, and in the contacts;
-    `plastic` [J].
+    `time` [s], `state`: current ones. `next_length`: of the next stretch [s]. `active`: contacts whose surfaces overlap, by number.
+    `next_laws`: laws of the next impacts, with their memory. `dents`: laws of the last impacts where the next one meets undeformed
+    surfaces, while surfaces may still overlap the dent. `parts`: the history. `impacts`: one record per impact. `lost` [J], (n + 1,):
+    energy lost in each coordinate, and in the contacts; `plastic`: plastic work [J].
 
     Parameters
     ----------
     system : LinearSystem
-        What moves.
-    laws : sequence of Law
-        Of its contacts.
+        The system.
+    definitions : sequence of ContactDefinition
+        Its contacts.
     state : State
-        At the start.
+        State at the start.
     tolerance : float
         Relative error allowed at the end of each stretch.
     scale : tuple of two floats, optional
-        Speed of the motion [m/s], and about how long a contact lasts [s]; else each contact has its own.
+        Speed of the motion [m/s] and approximate duration of a contact [s]; by default each contact has its own.
     """
 
     def __init__(
@@ -99,7 +99,7 @@ class March:
         self.lost, self.plastic = np.zeros(system.number + 1), 0.0
 
     def run_until(self, end: float, progress: Callable[[float], None] | None = None) -> Coroutine[None]:
-        """Go on until a time [s]; a contact under way then is cut short.
+        """Advance to a time [s]; a contact in progress is cut off there.
 
         Raises
         ------
@@ -119,7 +119,7 @@ class March:
                 progress(self.time / end)
 
     def step(self, longest: float) -> Coroutine[bool]:
-        """Take one part of the history, no longer than asked for [s]; return whether it was taken, and need not be tried with less."""
+        """Advance by one part of the history of at most a length [s]; return False if it has to be retried with a shorter stretch."""
         pushing = [contact for contact in self.active.values() if contact.pushes]
         if pushing:
             return (yield from self.step_contact(pushing, longest))
@@ -129,7 +129,7 @@ class March:
     # without contact forces -------------------------------------------------------------------------
 
     def step_free(self, longest: float) -> None:
-        """Move freely to the next touch, or to where a law that recoils pushes again or its surfaces part."""
+        """Advance in free motion to the next touch, or to where a recoiling contact pushes again or separates."""
         free = FreeMotion(self.system, self.state)
         apart = [number for number in range(len(self.definitions)) if number not in self.active]
         touches = {number: self.next_touch(free, number, longest) for number in apart}
@@ -146,22 +146,22 @@ class March:
                 self.begin_contact(number, law)
 
     def next_touch(self, free: FreeMotion, number: int, longest: float) -> tuple[float, CompliantLaw]:
-        """Return when a contact touches in free motion [s from here], and under which law."""
+        """Return when a contact next touches in free motion [s from here], and under which law."""
         law, dent = self.next_laws[number], self.dents.get(number)
         if dent is not None:
             parted = time_to_separation(free, float(law.touch_level), number)
             again = next_touch(free, float(dent.release_level), min(parted, longest), number)
-            if again < parted:  # back into the dent before they had parted from it
+            if again < parted:  # they touch the dent again before they have separated from it
                 return again, dent
         return next_touch(free, float(law.touch_level), longest, number), law
 
     def append_free(self, free: FreeMotion, length: float) -> None:
-        """Take a free motion of a length [s] into the history."""
+        """Append a free motion of a length [s] to the history."""
         motion = FreePhase(free, length, tuple((number, contact.local) for number, contact in self.active.items()))
         self.append_motion(motion, free.state(np.array(length)), motion.lost_by(np.array(length)))
 
     def end_recoil(self, contact: ActiveContact, *, parts: bool) -> None:
-        """Go on with a contact that has parted, or pushes again."""
+        """End the recoil of a contact, which separates or pushes again."""
         if parts:
             self.end_contact(contact)
         else:
@@ -170,12 +170,12 @@ class March:
     # from touch to release --------------------------------------------------------------------------
 
     def begin_contact(self, number: int, law: CompliantLaw | None = None) -> ActiveContact:
-        """Let surfaces touch, under the law that is known or another."""
+        """Begin an impact at a contact, under its next law or a given one."""
         system, state, law = self.system, self.state, self.next_laws[number] if law is None else law
         closing = closing_speed(system, state, number)
         under_way = [contact.impact.closing_speed for contact in self.active.values()]
         if under_way and closing < 1e-3 * max(under_way):
-            closing = max(under_way)  # surfaces that lay against each other, and others push together
+            closing = max(under_way)  # surfaces that touch almost without speed, pressed together by other contacts
         local = LocalContact(law, self.definitions[number].series, closing)
         impact = Impact(number, self.time, closing)
         self.impacts.append(impact)
@@ -188,13 +188,13 @@ class March:
         return contact
 
     def _scale(self, number: int, law: CompliantLaw, closing: float) -> tuple[float, float]:
-        """Return the speed of the motion in a contact [m/s], and about how long it lasts [s]."""
+        """Return the speed of the motion in a contact [m/s] and its approximate duration [s]."""
         mass, speed = float(self.system.mass[number]), motion_speed(self.system, number, law, closing)
         depth = float(free_depth(law, np.array([0.5 * mass * speed**2]), np.zeros(1))[0] - law.touch_level)
         return speed, 3.0 * depth / speed
 
     def end_contact(self, contact: ActiveContact) -> None:
-        """Let surfaces part; the law goes on with what it remembers, if that outlasts the contact."""
+        """End an impact; the law keeps its memory where it is lasting and the next impact falls on the same spot."""
         contact.impact.end = self.time
         law = self.definitions[contact.number]
         if not law.fresh_surface and law.law.lasting:
@@ -206,12 +206,12 @@ class March:
     # under contact forces ---------------------------------------------------------------------------
 
     def step_contact(self, pushing: list[ActiveContact], longest: float) -> Coroutine[bool]:
-        """Take one stretch, up to its first event; return False if it has to be tried again with less."""
+        """Advance by one stretch of contact, up to its first event; return False if it has to be retried with a shorter one."""
         system, state = self.system, self.state
         for contact in pushing:
             if contact.fresh:
                 continue
-            # what ends with a stretch as another contact does, or by less than rounding tells
+            # events at the end of the last stretch: another contact ended it, or this one is within rounding of its event
             rounding = _ROUNDING * contact.impact.indentation.nodal_max
             if contact.overlap(system, state) <= rounding and float(system.rates(state)[contact.number]) < 0.0:
                 self.dissipate_stored(contact)
@@ -233,13 +233,14 @@ class March:
         )
         event = first_event(stretch, speed, span) if stretch.solved else None
         other = self.first_other_event(stretch) if stretch.solved else None
-        if event is not None and (other is None or event.x <= other.x):  # which may be all that keeps the stretch from being resolved
+        # an event of the pushing contacts: also tried if the stretch is not resolved, as the event may be the only reason
+        if event is not None and (other is None or event.x <= other.x):
             found = yield from solve_to_event(stretch, event, self.tolerance, energy, speed, span)
             if found is None:
                 self.next_length = 0.5 * min(self.next_length, length_before_event(stretch, event, self.tolerance, energy))
                 return False
             missed = self.first_other_event(found[1])
-            if missed is not None:  # it lies between what was seen of the event and where it is
+            if missed is not None:  # the event has moved behind one at another contact
                 self.next_length = 0.5 * found[1].length * float(found[1].rule.map_time(np.array([missed.x]))[0])
                 return False
             self.end(pushing, *found)
@@ -264,7 +265,7 @@ class March:
         name, place = event.condition.name, event.condition.contact
         contact = pushing[place]
         parts = name == "parted" or (name == "no push" and self.separates_at_zero_force(contact, stretch.end))
-        if parts:  # what is still stored is lost, of a sticking contact that breaks or of a surface that lags behind
+        if parts:  # stored energy is lost where a sticking contact breaks, or where the surface recovers more slowly than the bodies part
             stretch = with_separation_loss(stretch, place, contact.stored_energy_at(float(stretch.contacts[place].delta[-1])))
         self.accept(pushing, stretch)
         if parts:
@@ -275,12 +276,12 @@ class March:
             self.update_memory(contact)
 
     def update_memory(self, contact: ActiveContact) -> None:
-        """Let a law remember how deep it has been."""
+        """Update the memory of a law with its largest indentation."""
         self.plastic += float(contact.local.law.plastic_work(contact.delta))
         contact.local = contact.local.after_indentation(contact.delta)
 
     def end_force(self, contact: ActiveContact) -> None:
-        """Let a contact recoil, or part if it ends with its force, where its last stretch ended."""
+        """Begin the recoil of a contact, or end it if its law releases at zero force, at the end of its last stretch."""
         if self.separates_at_zero_force(contact, self.state):
             self.dissipate_stored(contact, contact.delta)
             self.end_contact(contact)
@@ -288,7 +289,7 @@ class March:
             contact.pushes = False
 
     def dissipate_stored(self, contact: ActiveContact, delta: float | None = None) -> None:
-        """Lose what a contact still holds as it ends with a stretch that was taken already, where it parts or at an indentation [m]."""
+        """Add the energy that a contact stores at release, or at an indentation [m], to the losses of the last accepted stretch."""
         last, held = self.parts[-1], contact.stored_energy_at(contact.local.release_indentation if delta is None else delta)
         if held and isinstance(last.motion, VibratingStretch) and contact.number in last.motion.view.contacts:
             place = last.motion.view.contacts.index(contact.number)
@@ -296,41 +297,41 @@ class March:
         self.lost[-1] += held
 
     def separates_at_zero_force(self, contact: ActiveContact, state: State) -> bool:
-        """Does a contact end as its force does? If its law does, and its surfaces will part; else they come back into the indentation."""
+        """Whether a contact ends with its force: its law does, and the surfaces will separate; otherwise they close again."""
         if contact.local.law.contact_end != "zero-force":
             return False
         return bool(np.isfinite(time_to_separation(FreeMotion(self.system, state), contact.local.release_level, contact.number)))
 
     def stretch_problem(self, pushing: list[ActiveContact], time_map: Map, length: float) -> StretchProblem:
-        """Return what is to be solved for a stretch of a length [s] from here."""
+        """Return the problem of a stretch of a length [s] from the current state."""
         contacts, begun, trend = zip(*((contact.local, contact.delta, contact.trend) for contact in pushing), strict=True)
         return StretchProblem(
             contact_view(self.system, (contact.number for contact in pushing)), contacts, time_map, length, self.state, begun, trend
         )
 
     def accept(self, pushing: list[ActiveContact], stretch: VibratingStretch) -> None:
-        """Take a stretch into the history."""
+        """Append a stretch to the history, and update the contacts at its end."""
         for place, (contact, history, trend) in enumerate(zip(pushing, stretch.contacts, stretch.trend.tolist(), strict=True)):
             record_peaks(contact.impact, stretch, place, self.time)
             contact.delta, contact.force, contact.trend = float(history.delta[-1]), float(history.force[-1]), trend
             contact.fresh, contact.closing = False, float(stretch.closing_rates(place)[-1]) if contact.local.law.memories() else np.inf
         end, lost = stretch.end, stretch.lost
         for contact in self.active.values():
-            if not contact.pushes:  # what recoils beside it
+            if not contact.pushes:  # recoiling contacts, which are not part of the stretch
                 self.lost[-1] += float(recoil_loss(self.system, contact.number, contact.local, self.state, end))
         self.append_motion(stretch, end, lost)
-        stretch.clear_cache()  # thousands of stretches would not fit into memory
+        stretch.clear_cache()  # bounds the memory of long runs
 
     def append_motion(self, motion: VibratingStretch | FreePhase, state: State, lost: Floats) -> None:
-        """Go on to the end of a part of the history."""
+        """Append a motion to the history, and advance to its end."""
         self.parts.append(MotionPart(self.time, motion))
         self.lost += lost
         self.time, self.state = self.time + motion.length, state
 
-    # what ends a stretch besides its own contacts ----------------------------------------------------
+    # events of contacts that are not part of a stretch -----------------------------------------------
 
     def first_other_event(self, stretch: VibratingStretch) -> OtherEvent | None:
-        """Return the first touch, or end of a recoil, of another contact within a stretch."""
+        """Return the first touch, or end of a recoil, of another contact within a stretch; or None."""
         numbers = [number for number in range(len(self.definitions)) if number not in stretch.view.contacts]
         if not numbers:
             return None
@@ -356,12 +357,12 @@ class March:
         return min(seen, key=lambda other: other.x, default=None)
 
     def overlap_beyond(self, number: int, slack: float, states: State, law: CompliantLaw | None = None) -> Floats:
-        """Return by how much surfaces overlap beyond a slack [m], under the law that is known, or beyond the dent of another."""
+        """Return the overlap of surfaces beyond a slack [m], under the next law, or beyond the dent of another."""
         level = self.next_laws[number].touch_level if law is None else law.release_level
         return np.asarray(self.system.approach(states)[..., number] - float(level) - slack)
 
     def begin_contacts(self, number: int, slack: float, before: State) -> None:
-        """Let a contact touch, and all others that overlap by half a slack [m] now and did not before."""
+        """Begin an impact at a contact, and at all others that overlap by half a slack [m] and did not before."""
         self.begin_contact(number)
         for other in range(len(self.definitions)):
             apart = other not in self.active and float(self.overlap_beyond(other, slack, before)) <= 0.0
@@ -371,10 +372,11 @@ class March:
     def solve_to_other_event(
         self, pushing: list[ActiveContact], stretch: VibratingStretch, other: OtherEvent
     ) -> Coroutine[VibratingStretch | None]:
-        """Solve a stretch again so that it ends where another contact touches or its recoil ends; None if that is not found."""
+        """Solve a stretch again so that it ends where another contact touches or its recoil ends; return None if that fails."""
         rule, whole = stretch.rule, stretch.length
         low, high = (whole * float(rule.map_time(np.array([x]))[0]) for x in (max(other.x - GRID[1], 0.0), other.x))
         length = float(find_root(along_motion(stretch, other.value), np.array([low]), np.array([high]))[0])
+        # Newton's method for the length, with the rate of the event function by a finite difference
         for _ in range(_MOST_CORRECTIONS):
             ended: VibratingStretch = yield from solve(self.stretch_problem(pushing, rule.time_map, length))
             if not ended.solved:
@@ -392,7 +394,7 @@ class March:
 
 @dataclass(frozen=True)
 class OtherEvent:
-    """What may end a stretch besides its own contacts: where a value of the state becomes positive, and what is done then."""
+    """Event of a contact that is not part of a stretch: its function of the state, positive after the event, and the action it causes."""
 
     value: Callable[[State], Floats]
     act: Callable[[], object]
@@ -400,6 +402,6 @@ class OtherEvent:
 
 
 def _first_crossing(values: Floats) -> float | None:
-    """Return the x of the first point of the grid at which values have become positive."""
+    """Return the x of the first grid point at which values have become positive, or None."""
     crossed = (values[1:] > 0.0) & (values[:-1] <= 0.0)
     return float(GRID[1:][crossed][0]) if crossed.any() else None

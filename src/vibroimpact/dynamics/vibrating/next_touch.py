@@ -67,7 +67,7 @@ def next_touch(motion: FreeMotion, level: float, until: float, contact: int = 0)
 
 
 def time_to_separation(motion: FreeMotion, level: float, contact: int = 0) -> float:
-    """Return when surfaces that overlap beyond a level have separated to it [s]; 0 if they do not overlap, infinite if they never separate."""
+    """Return when surfaces that overlap beyond a level separate to it [s]; 0 if they do not overlap, infinite if they never separate."""
     system, time = motion.system, 0.0
     for _ in range(_MOST_HORIZONS):
         state = motion.state(np.array(time))

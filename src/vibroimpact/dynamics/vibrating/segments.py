@@ -1,4 +1,4 @@
-"""The history of one drop whose bodies vibrate, as a row of segments that can be asked at any time within them."""
+"""History of one drop whose bodies vibrate, as a sequence of segments that can be evaluated at any time within them."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ if TYPE_CHECKING:
 
 _STRETCH_POINTS, _GAP_POINTS = 49, 25
 _FREE_POINTS, _LATER_POINTS, _PERIODS = 2001, 1001, 10.0
-"""How a free motion is drawn: so many points in so many periods of the lowest mode, and so many in what is left."""
+"""Grid of a free motion: points in the first periods of the lowest mode, points in the remainder, and number of those periods."""
 
 
 @dataclass(frozen=True)
 class VibratingSegment:
-    """A part of the history of one drop: a flight, a stretch of contact, a gap between two, or rest.
+    """A segment of the history of one drop: a flight, a stretch of contact, a gap between two contacts, or rest.
 
-    `start`, `end` [s]. `spent`: energy lost before [J], (n + 2,): in each coordinate, in the contact, in plastic deformation.
+    `start`, `end` [s]. `lost_before`: energy lost before [J], (n + 2,): in each coordinate, in the contact, in plastic deformation.
     """
 
     start: float
@@ -36,24 +36,24 @@ class VibratingSegment:
 
     @property
     def trajectory(self) -> VibratingStretch | FreeMotion | RestMotion:
-        """What can be asked for states."""
+        """The motion that gives states at times since the start of the segment."""
         return self.motion.free if isinstance(self.motion, FreePhase) else self.motion
 
     @property
     def system(self) -> LinearSystem:
-        """What moves."""
+        """The linear system."""
         trajectory = self.trajectory
         return (trajectory.equilibrium if isinstance(trajectory, RestMotion) else trajectory).system
 
     @property
     def in_contact(self) -> bool:
-        """Do the surfaces overlap?"""
+        """Whether the surfaces overlap."""
         return isinstance(self.motion, (VibratingStretch, RestMotion)) or (
             isinstance(self.motion, FreePhase) and self.motion.local is not None
         )
 
     def grid(self) -> Floats:
-        """Times since its start that draw the segment well [s]."""
+        """Times since the start that resolve the segment in a graph [s]."""
         span = self.end - self.start
         if isinstance(self.motion, VibratingStretch):
             return np.asarray(span * self.motion.rule.map_time(np.linspace(0.0, 1.0, _STRETCH_POINTS)))
@@ -65,7 +65,7 @@ class VibratingSegment:
 
     @property
     def lost_after(self) -> Floats:
-        """Energy lost by its end [J], as in `spent`."""
+        """Energy lost by the end [J], as in `lost_before`."""
         if isinstance(self.motion, VibratingStretch):
             (contact,), lost = self.motion.contacts, self.motion.lost
             local = contact.local
@@ -86,10 +86,10 @@ def vibrating_timeline(legs: Sequence[Leg], lying: RestMotion | None, end: float
     ----------
     legs : sequence of Leg
         Its flights and visits.
-    lying : Lying or None
-        How it lies, if it comes to rest.
+    lying : RestMotion or None
+        Its motion at rest, if it comes to rest.
     end : float
-        When the run ends [s].
+        End of the run [s].
     """
     segments: list[VibratingSegment] = []
     lost_before = np.zeros(legs[0].motions[0].system.number + 2)

@@ -1,10 +1,10 @@
-r"""How a small change of the drop grows from impact to impact, where bodies vibrate.
+r"""Growth of a small change of the drop from impact to impact, where bodies vibrate.
 
-A second drop, begun from a height or with a speed that differs by a small part, stays beside the first by a difference that obeys the
-linearised equations of motion. It is carried along the history that was computed: in closed form through flights, by one linear solve
-through each stretch of contact. Where the contact force jumps, as a dashpot meets the surface, the two drops meet the jump at different
-times: if the second is later by :math:`\delta t`, the difference gains :math:`(f_- - f_+)\,\delta t`, with the rates f of the state
-before and after (P. C. Mueller, Chaos, Solitons & Fractals 5:1671, 1995).
+The difference of a neighbouring drop, from a slightly different height or speed, obeys the linearised equations of motion. It is
+propagated along the computed history: in closed form through flights, by one linear solve through each stretch of contact. Where the
+contact force jumps, as when a dashpot meets the surface, the two drops meet the jump at different times: if the second is later by
+:math:`\delta t`, the difference gains :math:`(f_- - f_+)\,\delta t`, with the rates f of the state before and after (P. C. Mueller,
+Chaos, Solitons & Fractals 5:1671, 1995).
 """
 
 from __future__ import annotations
@@ -29,15 +29,15 @@ if TYPE_CHECKING:
     from vibroimpact.dynamics.leg import Leg
 
 RELATIVE_CHANGE = 1e-9
-"""A relative change of the drop that nobody can rule out: of 4 m, 4 nm."""
+"""A relative change of the drop that cannot be excluded in practice: 4 nm of 4 m."""
 
-_STEP = 1e-6  # relative, of what a law knows of its contact: for differences
-_JUMP = 1e-6  # of the force: less is no jump
-_SLOW = 0.1  # of the speed at which the surfaces meet: what leaves more slowly counts as that
+_STEP = 1e-6  # relative step of a law's parameters, for finite differences
+_JUMP = 1e-6  # of the force: a smaller change is no jump
+_SLOW = 0.1  # of the closing speed: lower bound of the separation speed in a relative change
 
 
 class Neighbours:
-    """Second drops beside those of a run, carried along as it goes."""
+    """Neighbouring drops of a run, one of each, propagated along with it."""
 
     def __init__(self, problem: Problem, mass: Floats, system: LinearSystem) -> None:
         by_height = problem.speed is None
@@ -45,16 +45,16 @@ class Neighbours:
         self._drops = [_Neighbour(system, value, by_height) for value in (np.sqrt(mass) * changed).tolist()]
 
     def follow(self, leg: Leg) -> Coroutine[Floats]:
-        r"""Return how a relative change of the drop has grown by the impact of a leg [-], one value a drop of its contact.
+        """Return the growth of a relative change of the drop by the impact of a leg [-], one value per drop of its contact.
 
         The drop is changed in its height, or in its speed where that is given. The growth is the largest of the relative changes of the
-        speed at which the surfaces meet, of the largest force, and of the speed of separation (as a part of at least a tenth of the
-        former). Of a rigid drop it would be 0.6 from a height, as Hertz's force goes with its power 0.6.
+        closing speed, of the largest force, and of the separation speed (relative to at least a tenth of the closing speed). For a rigid
+        drop from a height it would be 0.6, as Hertz's force goes with the power 0.6 of the height.
 
         Parameters
         ----------
         leg : Leg
-            The next flight and contact of the drops; something in them vibrates.
+            The next flight and contact of the drops, of which a body vibrates.
         """
         for drop, motion, length in zip(leg.drops, leg.motions, leg.flight_end - leg.flight.start, strict=True):
             self._drops[drop].fly(motion, float(length))
@@ -72,7 +72,7 @@ class Neighbours:
 def change_by_impact(impacts: Mapping[str, Floats], tolerance: float) -> Floats:
     """Return the relative change of each impact for one of 1e-9 in the drop [-]; 0 where nothing vibrates.
 
-    Each contact is integrated to a tolerance, which grows likewise: where it is larger, it counts instead.
+    The integration error, of the relative size of the tolerance, grows likewise: a tolerance above 1e-9 takes the place of it.
 
     Examples
     --------
@@ -84,10 +84,10 @@ def change_by_impact(impacts: Mapping[str, Floats], tolerance: float) -> Floats:
 
 @dataclass
 class _VisitDifferences:
-    """A visit so far.
+    """Differences recorded during a visit.
 
-    `speed`, `closing`: speed at which the surfaces met, and its difference [m/s]. `force`: the largest at a node [N]. `strongest`: the
-    stretch where it is, and the difference of the force at the nodes [N].
+    `speed`, `closing`: closing speed, and its difference [m/s]. `force`: largest force at a node [N]. `strongest`: the stretch with that
+    force, and the difference of the force at its nodes [N].
     """
 
     speed: float
@@ -97,27 +97,27 @@ class _VisitDifferences:
 
 
 class _Neighbour:
-    """The difference of a second drop from the first, per unit relative change of the drop.
+    """Difference of a neighbouring drop, per unit relative change of the drop.
 
-    The equations of motion do not depend on time itself, so that the two need not be compared at equal times: whenever a contact
-    begins or ends, the second drop is compared when it begins or ends for that one.
+    The equations of motion are autonomous, so the drops need not be compared at equal times: whenever a contact begins or ends, each drop
+    is taken at its own time of that event.
     """
 
     def __init__(self, system: LinearSystem, value: float, by_height: bool) -> None:
         self.difference = State(np.zeros(system.number), np.zeros(system.number), np.zeros(len(system.rate)))
         if by_height:
-            self.difference.displacement[0] = -value  # height is up, approach is down
+            self.difference.displacement[0] = -value  # height is measured upwards, the coordinate of the approach downwards
         else:
             self.difference.velocity[0] = value
         self.separated = True
-        self.last_stretch: VibratingStretch | None = None  # which the drops have just left
+        self.last_stretch: VibratingStretch | None = None  # the preceding stretch, if the drops come from one
         self.force_difference = 0.0  # difference of the force at its end
-        self.local: LocalContact | None = None  # the last contact as the first drop felt it
-        self.law_differences: dict[str, float] = {}  # differences of what the law knows: the speed of first touch, and what it remembers
+        self.local: LocalContact | None = None  # the last contact of the reference drop
+        self.law_differences: dict[str, float] = {}  # differences of the law's closing speed and memory
         self.visit: _VisitDifferences | None = None
 
     def fly(self, motion: FreeMotion, length: float, inside: bool = False) -> None:
-        """Go through free motion, `inside` the indentation or apart."""
+        """Propagate through free motion, in recoil (`inside`) or between contacts."""
         if not inside:
             self.separate()
         system, before = motion.system, self.difference
@@ -127,7 +127,7 @@ class _Neighbour:
         self.separated, self.last_stretch = not inside, None
 
     def pass_visit(self, motions: Sequence[VibratingStretch | FreePhase]) -> Coroutine[None]:
-        """Go through the parts of a visit."""
+        """Propagate through the parts of a visit."""
         for motion in motions:
             if isinstance(motion, FreePhase):
                 self.fly(motion.free, motion.length, inside=motion.local is not None)
@@ -135,7 +135,7 @@ class _Neighbour:
                 yield from self.pass_through(motion)
 
     def pass_through(self, stretch: VibratingStretch) -> Coroutine[None]:
-        """Go through a stretch of contact."""
+        """Propagate through a stretch of contact."""
         if self.separated:
             self.begin_contact(stretch)
         elif stretch.contacts[0].local is not self.local:
@@ -149,7 +149,7 @@ class _Neighbour:
             self.visit.force, self.visit.strongest = force, (stretch, force_difference)
 
     def leave(self, speed: float) -> float:
-        """Leave at a speed upwards; return how the change has grown in the visit."""
+        """End a visit with a speed upwards [m/s]; return the growth of the change."""
         self.separate()
         visit, self.visit = self.visit, None
         if visit is None or visit.strongest is None:
@@ -162,7 +162,7 @@ class _Neighbour:
         return max(abs(visit.closing) / visit.speed, abs(force_change), abs(speed_change))
 
     def begin_contact(self, stretch: VibratingStretch) -> None:
-        """Meet the surface with the stretch that begins there."""
+        """Shift the difference to the touch of each drop, where a stretch begins, and take the differences of the law's closing speed and memory."""
         system, start, local = stretch.system, stretch.start, stretch.contacts[0].local
         same_surface = self.local is not None and self.local.law.memories() == local.law.memories()
         self.law_differences = {name: self.law_differences.get(name, 0.0) if same_surface else 0.0 for name in local.law.memories()}
@@ -176,14 +176,14 @@ class _Neighbour:
         self.visit = self.visit or _VisitDifferences(local.approach_speed, closing)
 
     def separate(self) -> None:
-        """Compare the drops when their surfaces part, if they do."""
+        """Shift the difference to the separation of each drop, if they come from a stretch."""
         if self.last_stretch is not None:
             excess = float(self.last_stretch.system.approach(self.difference)[0])
             self.shift_to_event(self.last_stretch, excess, float(self.last_stretch.closing_rates()[-1]))
         self.last_stretch = None
 
     def update_memory(self, stretch: VibratingStretch) -> None:
-        """Let the law remember how deep the contact has been: the second drop deeper by the difference of the approach."""
+        """Update the differences of the law's memory at a turn: the largest indentation differs by the difference of the approach."""
         assert self.local is not None  # it is in contact
         assert self.last_stretch is not None
         system, local, after = stretch.system, self.local, stretch.contacts[0].local
@@ -208,7 +208,7 @@ class _Neighbour:
         self.local = after
 
     def force_jumps(self, stretch: VibratingStretch) -> bool:
-        """Does the force jump where a stretch follows the last one?"""
+        """Whether the force jumps between the last stretch and the next one."""
         assert self.last_stretch is not None
         (contact,) = stretch.contacts
         before, after = (
@@ -218,14 +218,17 @@ class _Neighbour:
         return bool(abs(float(after[0]) - before) > _JUMP * abs(before))
 
     def shift_to_event(self, stretch: VibratingStretch, excess: float, rate: float) -> None:
-        """Compare the drops at the end of a stretch, where what ends it exceeds by `excess` in the second drop and grows at a rate."""
+        """Shift the difference at the end of a stretch to the event of each drop.
+
+        The event function of the neighbouring drop exceeds that of the reference drop by `excess`, and grows at a rate.
+        """
         (contact,) = stretch.contacts
         rates = _state_rates(stretch.system, stretch.end, float(contact.force[-1]), float(contact.static[-1]))
         self.difference = _shifted(self.difference, rates, -excess / rate)
 
 
 def _state_rates(system: LinearSystem, state: State, force: float, static: float) -> State:
-    """Return how a state changes under a contact force, and its static part [N]."""
+    """Return the time derivative of a state under a contact force and its static part [N]."""
     pushed = system.outer_shape[0] * force + (system.shape[0] - system.outer_shape[0]) * static
     return State(
         state.velocity,
@@ -235,12 +238,12 @@ def _state_rates(system: LinearSystem, state: State, force: float, static: float
 
 
 def _shifted(difference: State, rates: State, time: float) -> State:
-    """Return the difference if the second drop is looked at later by a time, per unit relative change."""
+    """Return the difference if the neighbouring drop is taken later by a time, per unit relative change."""
     return State(*(one + time * rate for one, rate in zip(vars(difference).values(), vars(rates).values(), strict=True)))
 
 
 def _law_variations(local: LocalContact, law_differences: dict[str, float]) -> list[tuple[LocalContact, float]]:
-    """Return contacts whose law knows something a little differently, each with how many times its change there is."""
+    """Return contacts with one parameter of the law varied by a finite difference, each with the factor of that variation."""
     found = []
     for name, change in law_differences.items():
         if change == 0.0:

@@ -1,8 +1,8 @@
-r"""Solve stretches of contact on the nodes of Radau collocation, each up to an event where one ends it.
+"""Newton's method for stretches of contact on the nodes of Radau collocation, each up to an event where one ends it.
 
-The unknowns are the contact forces and the laws' own indentations at the nodes and, where an event ends the stretch, how long it
-lasts. All else is linear in the forces (`receptance`). Stretches of several systems are solved together where these have the same modes,
-the same contacts push, and the same law acts there.
+The unknowns are the contact forces and the indentations of the laws at the nodes and, where an event ends the stretch, its length. All
+other quantities are linear in the forces (`receptance`). Stretches of several systems are solved together if their numbers of modes,
+contacts, laws and end conditions are of the same kind.
 """
 
 from __future__ import annotations
@@ -23,16 +23,17 @@ from vibroimpact.dynamics.vibrating.receptance import NODES, ContactView, Recept
 from vibroimpact.dynamics.vibrating.stretch import VibratingStretch, stretch_motions
 
 _MOST_ITERATIONS = 25
-_LENGTH_FACTOR = 3.0  # times: by no more does a sweep change the length that is sought
+_LENGTH_FACTOR = 3.0  # largest factor by which one iteration changes an unknown length
 _CONVERGED, _STALLED = 1e-13, 1e-11
-_INEXACT = 1e-6  # of a step of Newton's method: what the next one is at least, as derivatives are differences
+_INEXACT = 1e-6  # of a Newton step: least size of the next one, as the derivatives are finite differences
 
 
 @dataclass(frozen=True)
 class EndCondition:
-    """What ends a stretch: surfaces part, a law pushes no more, its indentation comes to a `level` [m], or an approach turns.
+    """Condition at the end of a stretch whose length is unknown.
 
-    `contact`: of which of those that push.
+    "parted": the surfaces separate, and "breakpoint": both at a `level` of the law's indentation [m]; "no push": zero force; "turn": zero
+    rate of the approach. `contact`: index among the contacts that push.
     """
 
     name: Literal["parted", "no push", "breakpoint", "turn"]
@@ -46,24 +47,24 @@ class StretchProblem:
 
     Parameters
     ----------
-    seen : Seen
-        The system, as the contacts that push see it.
-    locals : sequence of LocalContact
-        The law of each, and what is in series with it.
+    view : ContactView
+        The system, reduced to the contacts that push.
+    contacts : sequence of LocalContact
+        The law of each, and the compliance in series with it.
     time_map : {"touch", "inside", "release"}
-        In which root of time the forces are smooth.
+        Time map in which the forces are smooth.
     length : float
-        How long the stretch lasts [s]; with an aim, about how long.
+        Length of the stretch [s]; with an end condition, its initial guess.
     start : State
-        Where it begins.
+        State at the start.
     begun : sequence of float
-        The laws' own indentations there [m], nearly.
+        Indentations of the laws at the start [m], approximately.
     trend : sequence of float
-        About how fast the forces change at the start [N/s], where there is no guess.
+        Approximate rates of change of the forces at the start [N/s], used where there is no guess.
     guess : tuple of two arrays, shape (c, N), optional
-        Those indentations [m] and the forces [N] at the nodes, nearly.
-    aim : Aim, optional
-        What ends the stretch; its length is found.
+        Initial guess of the indentations of the laws [m] and of the forces [N] at the nodes.
+    end_condition : EndCondition, optional
+        Condition at the end, from which the length is found.
     """
 
     view: ContactView
@@ -78,7 +79,7 @@ class StretchProblem:
 
     @property
     def kind(self) -> tuple[object, ...]:
-        """What has to be the same for stretches that are solved together."""
+        """Key that stretches must share to be solved together."""
         laws = tuple((type(local.law), bool(local.series)) for local in self.contacts)
         end_condition = (
             None
@@ -91,17 +92,17 @@ class StretchProblem:
 
     @property
     def size(self) -> int:
-        """How many coordinates the system has."""
+        """Number of coordinates of the system."""
         return self.view.system.number
 
     @classmethod
     def solve_group(cls, problems: Sequence[Self]) -> list[VibratingStretch]:
-        """Return the motion through stretches of one kind."""
+        """Return the solved stretches of problems of one kind."""
         return solve_stretches(problems)
 
 
 def solve_stretches(problems: Sequence[StretchProblem]) -> list[VibratingStretch]:
-    """Return the motion through stretches of contact of one kind, by Newton's method."""
+    """Return the solved stretches of problems of one kind, by Newton's method."""
     first, number = problems[0], len(problems)
     basis = radau_eigenbasis(first.time_map, max(local.law.root for local in first.contacts))
     systems = StackedSystems([problem.view for problem in problems], [problem.start for problem in problems])
@@ -112,22 +113,22 @@ def solve_stretches(problems: Sequence[StretchProblem]) -> list[VibratingStretch
     start_delta = np.array([local.refine_indentation(begun[:, place], start_approach[:, place]) for place, local in enumerate(stacked)]).T
     receptance = Receptance(systems, basis, length)
     delta, force = _first_guess(problems, stacked, receptance, start_delta) if first.guess is None else _guesses(problems)
+    # a scale of the forces, for motions that change their rate within the stretch
     largest = np.abs(receptance.rate).reshape(number, -1, NODES).max(axis=2) / length[:, None]
     scale = (np.array([problem.view.mass for problem in problems]) * (largest + np.abs(systems.gravity))).max(axis=1)
     static, size = np.zeros_like(force), np.full(number, np.inf)
     solved, iterating = np.zeros(number, dtype=bool), np.ones(number, dtype=bool)
     for _ in range(_MOST_ITERATIONS):
         law = linearise_contacts(stacked, delta, receptance.rate - stacked_matvec(receptance.rate_by_force, force))
-        iterating = iterating & (
-            law.slope.min(axis=1) > 0.0
-        )  # else what is taken out in series outweighs the law: there is no such contact
+        # a negative compliance in series that exceeds that of the law makes the problem ill-posed: stop
+        iterating = iterating & (law.slope.min(axis=1) > 0.0)
         if not iterating.any():
             break
         delta_step, force_step, length_step = _newton_step(law, receptance, delta, force, event)
         by_static = law.stiffness * delta_step
         previous = static, delta, force
         static, delta, force = law.static - by_static, delta - delta_step, force - force_step
-        if not iterating.all():  # some are where they have come to
+        if not iterating.all():  # keep the iterates of those that have stopped
             pairs = zip((static, delta, force), previous, strict=True)
             static, delta, force = (np.where(iterating[:, None], *pair) for pair in pairs)
         step_size = np.maximum(np.abs(force_step), np.abs(by_static)).max(axis=1) / (scale + np.abs(force).max(axis=1))
@@ -138,7 +139,7 @@ def solve_stretches(problems: Sequence[StretchProblem]) -> list[VibratingStretch
             length = length - length_step
             receptance, step_size = Receptance(systems, basis, length), np.maximum(step_size, np.abs(length_step) / length)
         last_size, size = size, step_size
-        # what the next step would be: of a method that converges quadratically, but for its derivatives
+        # predicted size of the next step: quadratic convergence, limited by the finite-difference derivatives
         next_size = size * np.minimum(np.maximum((size / last_size) ** 2, _INEXACT), 1.0)
         done = (next_size < _CONVERGED) | ((size < _STALLED) & (size > 0.3 * last_size))
         solved |= iterating & done
@@ -157,22 +158,22 @@ def _stretches(
     found: tuple[Floats, Floats, Floats],
     solved: Bools,
 ) -> list[VibratingStretch]:
-    """Return stretches as they were solved.
+    """Return the solved stretches from their indentations and forces at the nodes.
 
     Parameters
     ----------
     problems : sequence of StretchProblem
-        What was solved.
-    locals_ : sequence of LocalContact
-        The contacts of all of them, `stacked`.
-    here : Receptance
-        How their surfaces move.
+        The problems.
+    stacked : sequence of LocalContact
+        The contacts of all of them, as `stack_contacts` gives them.
+    receptance : Receptance
+        Motion of their surfaces.
     length : array, shape (B,)
-        How long they last [s].
+        Their lengths [s].
     begun : tuple of two arrays, shape (B, c)
-        Approaches of the surfaces and the laws' own indentations at the start [m].
+        Approaches of the surfaces and indentations of the laws at the start [m].
     found : tuple of three arrays, shape (B, M)
-        Static forces [N], own indentations [m] and forces [N] at the nodes.
+        Static forces [N], indentations of the laws [m] and forces [N] at the nodes.
     solved : array of bool, shape (B,)
         Whether Newton's method converged.
     """
@@ -184,7 +185,7 @@ def _stretches(
     if receptance.approach_by_static is not None:
         approach -= stacked_matvec(receptance.approach_by_static, static)
     begun_rate, shape = systems.begun_rate, (*start_approach.shape, NODES)
-    if systems.massless:  # a dashpot takes up a jump of the force at once
+    if systems.massless:  # the rate of a massless element jumps with the force
         at_start = (rate.reshape(shape) @ basis.rule.weights_at_start)[..., 0]
         begun_rate = np.where(systems.local_incidence.any(axis=2), at_start, begun_rate)
     static, force = static.reshape(shape), force.reshape(shape)
@@ -222,7 +223,7 @@ def _stretches(
 
 
 def _guesses(problems: Sequence[StretchProblem]) -> tuple[Floats, Floats]:
-    """Return the guesses of indentations and forces at the nodes (B, M)."""
+    """Return the given initial guesses of indentations and forces at the nodes (B, M)."""
     delta, force = (np.array(parts) for parts in zip(*(problem.guess for problem in problems if problem.guess), strict=True))
     return delta.reshape(len(problems), -1), force.reshape(len(problems), -1)
 
@@ -230,7 +231,7 @@ def _guesses(problems: Sequence[StretchProblem]) -> tuple[Floats, Floats]:
 def _first_guess(
     problems: Sequence[StretchProblem], stacked: Sequence[LocalContact], receptance: Receptance, begun: Floats
 ) -> tuple[Floats, Floats]:
-    """Return what the forces at the start, going on, make of indentations and forces at the nodes (B, M)."""
+    """Return initial guesses of indentations and forces at the nodes (B, M), by extrapolating the forces at the start linearly."""
     rates, shape = receptance.systems.begun_rate, (*begun.shape, NODES)
     parts = np.array([local.forces_at_indentation(begun[:, place], rates[:, place]) for place, local in enumerate(stacked)])
     trend = np.array([problem.trend for problem in problems])
@@ -251,7 +252,7 @@ def _first_guess(
 
 
 class _EndConditions(NamedTuple):
-    """What ends stretches: its name, the levels of indentations [m] (B,), and the last node of the contact in which it happens (B,)."""
+    """End conditions of stretches: their name, levels of indentation [m] (B,), and the last node of the contact of each (B,)."""
 
     name: str
     levels: Floats
@@ -259,7 +260,7 @@ class _EndConditions(NamedTuple):
 
 
 def _end_conditions(problems: Sequence[StretchProblem]) -> _EndConditions | None:
-    """Return what ends stretches, or None if their lengths are given."""
+    """Return the end conditions of stretches, or None if their lengths are given."""
     conditions = [problem.end_condition for problem in problems if problem.end_condition is not None]
     if not conditions:
         return None
@@ -273,10 +274,10 @@ def _end_conditions(problems: Sequence[StretchProblem]) -> _EndConditions | None
 def _newton_step(
     law: Linearised, receptance: Receptance, delta: Floats, force: Floats, event: _EndConditions | None
 ) -> tuple[Floats, Floats, Floats]:
-    r"""Return by how much Newton's method takes back the indentations, the forces (B, M), and the lengths (B,).
+    r"""Return the Newton steps of the indentations, the forces (B, M) and the lengths (B,), to be subtracted.
 
-    The equations are, with the approach y that goes with an indentation, :math:`y(\delta) = y_0(h) - G(h) F - G_s(h) F_s(\delta)` and
-    :math:`F = F_{law}(\delta, \dot y_0(h) - R(h) F)`. Their indentations are eliminated.
+    With the approach y that belongs to an indentation, the equations are :math:`y(\delta) = y_0(h) - G(h) F - G_s(h) F_s(\delta)` and
+    :math:`F = F_{law}(\delta, \dot y_0(h) - R(h) F)`. The indentations are eliminated from the linearised equations.
     """
     reduced = eliminate_indentations(law, receptance)
     residual = law.approach - receptance.approach + stacked_matvec(receptance.approach_by_force, force)
@@ -291,7 +292,7 @@ def _newton_step(
     length_step = -reduced.indentations(approach)
     row, slope, event_residual = _event_row(law, receptance, reduced, (delta, force), event, closing, length_step, free_delta)
     number, size = force.shape
-    matrix = np.empty((number, size + 1, size + 1))  # the length as a part of itself
+    matrix = np.empty((number, size + 1, size + 1))  # the last unknown is the relative change of the length
     matrix[:, :-1, :-1] = reduced.jacobian
     matrix[:, :-1, -1] = (reduced.force_by_delta * length_step - law.dissipative_by_rate * rate) * receptance.length[:, None]
     matrix[:, -1, :-1], matrix[:, -1, -1] = row, slope * receptance.length
@@ -301,11 +302,11 @@ def _newton_step(
 
 
 class ReducedEquations(NamedTuple):
-    """What the indentations leave behind when they are eliminated from the linearised equations of B stretches; M = c N.
+    """Linearised equations of B stretches after elimination of the indentations; M = c N.
 
-    `inward`: how the indentations answer to an approach that is missing [-] (B, M, M), or (B, M) where each answers to its own alone.
-    `taken`: by how much forces take them back [m/N] (B, M, M). `push`: derivative of the force by the indentation [N/m] (B, M).
-    `jacobian`: of the equations of the forces that are left [-] (B, M, M).
+    `inverse`: derivative of the indentations by the residual of the approach [-] (B, M, M), or its diagonal (B, M). `by_force`: minus their
+    derivative by the forces [m/N] (B, M, M). `force_by_delta`: derivative of the law's force by the indentation [N/m] (B, M). `jacobian`:
+    of the remaining equations in the forces [-] (B, M, M).
     """
 
     inverse: Floats
@@ -314,12 +315,12 @@ class ReducedEquations(NamedTuple):
     jacobian: Floats
 
     def indentations(self, residual: Floats) -> Floats:
-        """Return the indentations for an approach that is missing [m] (B, M)."""
+        """Return the change of the indentations for a residual of the approach [m] (B, M)."""
         return self.inverse * residual if self.inverse.ndim == 2 else stacked_matvec(self.inverse, residual)
 
 
 def eliminate_indentations(law: Linearised, receptance: Receptance) -> ReducedEquations:
-    """Return the linearised equations of stretches without their indentations."""
+    """Return the linearised equations of stretches, reduced to the forces."""
     diagonal = np.arange(law.slope.shape[1])
     if receptance.approach_by_static is None:
         inverse = 1.0 / law.slope
@@ -346,7 +347,7 @@ def _event_row(
     length_step: Floats,
     free_delta: Floats,
 ) -> tuple[Floats, Floats, Floats]:
-    """Return the rows of events in the Jacobians (B, M): by the forces, by the length; and what they leave, in units of a force (B,)."""
+    """Return the row of the end condition in each Jacobian (B, M), its last entry (B,) and its residual (B,), scaled to units of force."""
     (name, levels, last), (delta, force), rows = event, at_nodes, np.arange(len(free_delta))
     if name == "no push":
         row = np.zeros_like(force)

@@ -1,4 +1,4 @@
-"""Where a stretch of contact ends: solved again so that it ends at the first event in it, and how long the next may be."""
+"""End of a stretch of contact: solving it again up to its first event, and choosing the length of the next one."""
 
 from __future__ import annotations
 
@@ -13,29 +13,29 @@ from vibroimpact.dynamics.vibrating.receptance import NODES, radau_eigenbasis
 from vibroimpact.dynamics.vibrating.solve_stretches import StretchProblem
 from vibroimpact.dynamics.vibrating.stretch import VibratingStretch
 
-_EASY = 0.01  # of the roughness that is allowed: what the next stretch should have
-_MOST_ATTEMPTS = 4  # until the first event of a stretch is found
-_BEFORE_END = 0.98  # of a stretch: what is seen later is its end
-_AT_END = 1e-12  # of a stretch: nearer to its end is at its end
+_EASY = 0.01  # target roughness of the next stretch, relative to the root of the tolerance
+_MOST_ATTEMPTS = 4  # solutions per stretch, until no earlier event is found
+_BEFORE_END = 0.98  # in x: an event beyond is the one at the end
+_AT_END = 1e-12  # relative: an event may lie so far beyond the end of the first solution
 
 
 def solve_to_event(
     stretch: VibratingStretch, event: Event, tolerance: float, energy: float, speed: float, span: float
 ) -> Coroutine[tuple[Event, VibratingStretch] | None]:
-    """Return the first event of a stretch, and the stretch that ends there; None if it is not found.
+    """Return the first event of a stretch, and the stretch solved up to it; None if that fails.
 
-    What was seen in a solution that is not resolved may not be there, or something else before it.
+    An event of a solution that is not resolved may be spurious, or preceded by another one.
 
     Parameters
     ----------
     stretch : VibratingStretch
-        The stretch in which the event was seen.
+        The stretch with the event.
     event : Event
-        The first that was seen.
+        Its first event.
     tolerance : float
         Relative error allowed at the end.
     energy, speed, span : float
-        Energy [J] and speed [m/s] of the motion, and about how long a contact lasts [s].
+        Energy [J] and speed [m/s] of the motion, and approximate duration of a contact [s].
     """
     for _ in range(_MOST_ATTEMPTS):
         ended = yield from solve(_problem_to_event(stretch, event))
@@ -49,30 +49,30 @@ def solve_to_event(
 
 
 def length_before_event(stretch: VibratingStretch, event: Event, tolerance: float, energy: float) -> float:
-    """Return how long a stretch may be at most, if its event was not found [s].
+    """Return an upper bound of the length of a stretch whose event was not found [s].
 
-    It is short of the event, if there is one: of what is not resolved, that is not certain.
+    It ends short of the event if the stretch is resolved; otherwise the event is not certain, and the bound is the whole length.
     """
     near = max(event.x, GRID[1]) if stretch.resolved(tolerance, energy) else 1.0
     return stretch.length * float(stretch.rule.map_time(np.array([near]))[0])
 
 
 def length_growth(stretch: VibratingStretch, tolerance: float) -> float:
-    """Return how many times as long the next stretch may be, by how fast the last coefficients of the force go with the length."""
+    """Return the ratio of the lengths of the next stretch and this one, 0.7 to 4, from the convergence of its Legendre coefficients."""
     return float(min(max((_EASY * tolerance**0.5 / max(stretch.roughness, 1e-300)) ** (1.0 / NODES), 0.7), 4.0))
 
 
 def with_separation_loss(stretch: VibratingStretch, place: int, held: float) -> VibratingStretch:
-    """Return a stretch at whose end a contact breaks, with what it held [J]."""
+    """Return a stretch at whose end a contact loses its stored energy [J]."""
     contacts = list(stretch.contacts)
     contacts[place] = replace(contacts[place], separation_loss=held)
     found = replace(stretch, contacts=tuple(contacts))
-    found.__dict__["motion"] = stretch.motion  # which is the same
+    found.__dict__["motion"] = stretch.motion  # unchanged
     return found
 
 
 def _problem_to_event(stretch: VibratingStretch, event: Event) -> StretchProblem:
-    """Return what is to be solved for a stretch that ends at an event that was seen in another."""
+    """Return the problem of a stretch that ends at an event of another, with that solution as the initial guess."""
     rule, contacts = stretch.rule, stretch.contacts
     time_map: Map = "touch" if rule.time_map == "touch" else "release" if event.condition.name in ("parted", "no push") else "inside"
     part = float(rule.map_time(np.array([event.x]))[0])

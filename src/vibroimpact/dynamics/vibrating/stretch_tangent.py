@@ -1,7 +1,7 @@
-r"""How a small difference between two drops goes through a stretch of contact: the linearised equations of motion.
+"""Tangent problem of a stretch of contact: propagation of a small difference of the state by the linearised equations of motion.
 
-The force at the nodes of a stretch solves equations whose Jacobian is at hand, and all else is linear in it: so a difference of the
-state at the start gives that at the end by one more linear solve. Differences are those at equal times.
+The nodal forces of a stretch solve equations whose Jacobian is known, and all other quantities are linear in the forces. A difference of
+the state at the start gives that at the end by one more linear solve. Differences are taken at equal times.
 """
 
 from __future__ import annotations
@@ -23,16 +23,16 @@ from vibroimpact.dynamics.vibrating.stretch import VibratingStretch, stretch_mot
 
 @dataclass(frozen=True)
 class TangentProblem:
-    """A second drop beside one that goes through a stretch of contact.
+    """Difference between a neighbouring motion and one that has been solved, through a stretch of one contact.
 
     Parameters
     ----------
     stretch : VibratingStretch
-        A stretch of one contact that was solved.
+        The solved stretch.
     difference : State
-        That of the second drop at its start, to first order.
-    asides : sequence of (LocalContact, float)
-        Contacts whose laws know something a little differently, as the second drop's does, and how many times their change of force counts.
+        Difference of the state at its start, to first order.
+    variations : sequence of (LocalContact, float)
+        Contacts with one parameter of the law varied, each with the factor by which the change of its force counts.
     """
 
     stretch: VibratingStretch
@@ -41,23 +41,23 @@ class TangentProblem:
 
     @property
     def kind(self) -> tuple[object, ...]:
-        """What has to be the same for differences that go through their stretches together."""
+        """Key that problems must share to be solved together."""
         local = self.stretch.contacts[0].local
         return self.stretch.view.modes.kind, self.stretch.rule.time_map, type(local.law), bool(local.series), len(self.variations)
 
     @property
     def size(self) -> int:
-        """How many coordinates the system has."""
+        """Number of coordinates of the system."""
         return self.stretch.system.number
 
     @classmethod
     def solve_group(cls, problems: Sequence[Self]) -> list[tuple[State, Floats]]:
-        """Return what `differences_through` does."""
+        """Return the results of `propagate_differences`."""
         return propagate_differences(problems)
 
 
 def propagate_differences(problems: Sequence[TangentProblem]) -> list[tuple[State, Floats]]:
-    """Return the differences of second drops at the ends of stretches, and those of their contact forces at the nodes [N] (N,)."""
+    """Return the differences of the state at the ends of stretches, and of the contact forces at their nodes [N] (N,)."""
     stretches, (first, *_) = [problem.stretch for problem in problems], problems
     contacts, basis = [stretch.contacts[0] for stretch in stretches], first.stretch.basis
     systems = StackedSystems([stretch.view.without_load for stretch in stretches], [problem.difference for problem in problems])
@@ -66,6 +66,7 @@ def propagate_differences(problems: Sequence[TangentProblem]) -> list[tuple[Stat
     law = linearise_contacts([stack_contacts([contact.local for contact in contacts])], delta, rates)
     reduced = eliminate_indentations(law, receptance)
     missing, changed, known = receptance.approach.copy(), law.dissipative_by_rate * receptance.rate, np.zeros_like(receptance.rate)
+    # varied parameters of the law change its forces and its approach at fixed indentations and rates
     for of_all in zip(*(problem.variations for problem in problems), strict=True):
         other = linearise_contacts([stack_contacts([varied for varied, _ in of_all])], delta, rates)
         weight = np.array([weight for _, weight in of_all])[:, None]

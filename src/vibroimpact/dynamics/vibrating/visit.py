@@ -1,11 +1,9 @@
-"""One visit of a sphere to a surface that vibrates, or vibrating itself: from first touch to the last release.
+"""A visit: the impact of a sphere on a surface, from first touch to the last release, where bodies vibrate.
 
-The contact is marched through by stretches whose length adapts to what the bodies do. In each the first event is
-sought: the surfaces part, the force of a law that may not pull becomes zero, a breakpoint of the law is crossed, the
-indentation turns; and the stretch is solved again so that it ends there. Once the surfaces have parted, the sphere is
-followed to the top of its flight: if the surface meets it again before, the visit goes on with another contact. So it does
-where the sphere leaves more slowly than the rest speed, though something that still moves could lift it higher: it chatters, and
-then rides, until it is thrown off, or nothing can lift it any more (`riding`), or it has been followed for long enough.
+The contact is integrated by a `March`. After separation the sphere is followed to the top of its flight: if the surfaces touch again
+before, the visit continues with another contact. It also continues where the sphere separates more slowly than the rest speed while the
+vibration could still lift it: it chatters and then rides, until it separates, no energy is left to lift it (`contact_equilibrium`), or a
+limit of stretches or time is reached.
 """
 
 from __future__ import annotations
@@ -29,19 +27,19 @@ from vibroimpact.dynamics.vibrating.next_touch import next_touch, time_to_separa
 from vibroimpact.dynamics.vibrating.stretch import VibratingStretch
 
 MOST_STEPS, MOST_STEPS_TO_A_TIME = 5_000, 20_000
-"""How many stretches of contact a visit is followed for: some ten seconds' work; and where the run has an end in time."""
+"""Largest number of stretches of contact in a visit, some ten seconds' work; and where the run has an end in time."""
 
-_LONG = 10.0  # times the span of a contact: a sphere that long in touch rides
+_LONG = 10.0  # in durations of a contact: a sphere in contact for longer rides
 
 
 @dataclass
 class Visit:
-    """A visit as it came out; `outcome` is RELEASED, SETTLED, CAPTURED, RIDING or FAILED.
+    """Result of a visit; `outcome` is RELEASED, SETTLED, CAPTURED, RIDING or FAILED.
 
-    `state`: of everything at the end. `duration`: from first touch to last release [s]. `contacts`: how many.
-    `max_indentation`, `max_force` and when they are reached since first touch [m, N, s]. `lost` [J], (n + 1,): in each
-    coordinate, and in the contact. `plastic` [J]. `law`: with what it remembers. `stored`: energy left in the contact [J].
-    `local`: the contact that the sphere lies in, if it does.
+    `state`: at the end. `duration`: from first touch to last release [s]. `contacts`: number of contacts. `max_indentation`, `max_force`
+    and their times since first touch [m, N, s]. `lost` [J], (n + 1,): energy lost in each coordinate, and in the contact. `plastic`:
+    plastic work [J]. `law`: with its memory at the end. `stored`: energy left in the contact [J]. `local`: the contact in which the sphere
+    rests, if so.
     """
 
     system: LinearSystem
@@ -77,23 +75,23 @@ def follow_visit(
     Parameters
     ----------
     system : LinearSystem
-        Of one drop: with one contact.
+        System of one drop, with one contact.
     law : CompliantLaw
         The law, of one drop.
     series : QuasiStatic
-        What is in series with it.
+        The compliance in series with it.
     state : State
-        At first touch.
+        State at first touch.
     tolerance : float
         Relative error allowed at the end of each stretch.
-    pace : float
-        About how long a contact lasts [s].
-    forgets : bool, default False
-        Does the next impact find fresh surfaces, even where the law leaves a dent?
+    contact_duration : float
+        Approximate duration of a contact [s].
+    fresh_surface : bool, default False
+        Whether the next impact meets undeformed surfaces, even where the law leaves a dent.
     rest_speed : float, default 0
-        A sphere that leaves more slowly, and can nowhere leave faster any more, is at rest [m/s].
+        A sphere that separates more slowly, and can no more separate faster, is at rest [m/s].
     until : float, default infinite
-        When to stop a sphere that rides [s since first touch]; a contact of usual length is finished.
+        End of a ride [s since first touch]; a contact of usual duration is completed.
     """
     speed = motion_speed(system, 0, law, closing_speed(system, state, 0))
     march = March(system, [ContactDefinition(law, series, fresh_surface)], state, tolerance, (speed, contact_duration))
@@ -101,7 +99,7 @@ def follow_visit(
 
 
 class _VisitMarch:
-    """A march of one contact, and the rules that end it."""
+    """March of one contact with the rules that end a visit."""
 
     def __init__(self, march: March, rest_speed: float, until: float) -> None:
         self.march, self.rest_speed, self.until = march, rest_speed, until
@@ -114,6 +112,7 @@ class _VisitMarch:
     # one contact after another ----------------------------------------------------------------------
 
     def run(self) -> Coroutine[Visit]:
+        """Return the visit."""
         march, contacts = self.march, 1
         while True:
             outcome = yield from self.contact()
@@ -130,7 +129,7 @@ class _VisitMarch:
             contacts += 1
         local = self.active.local
         if outcome == SETTLED and float(self.system.approach(march.state)[0]) <= float(self.next_law.touch_level):
-            local = replace(local, law=self.next_law)  # the dent it has left is forgotten
+            local = replace(local, law=self.next_law)  # the next contact does not meet the dent
         deepest, hardest = (locate_highest_peak([getattr(impact, name) for impact in march.impacts]) for name in ("indentation", "force"))
         return Visit(
             self.system,
@@ -151,7 +150,7 @@ class _VisitMarch:
     # one contact -----------------------------------------------------------------------------------
 
     def contact(self) -> Coroutine[int]:
-        """March through one contact; return how it ended."""
+        """March through one contact; return its outcome."""
         march, begun = self.march, self.march.time
         while 0 in march.active:
             self.stretches += self.active.pushes
@@ -167,12 +166,12 @@ class _VisitMarch:
         return RELEASED
 
     def end_in_contact(self, outcome: int) -> int:
-        """End the visit in contact."""
+        """End the visit in contact, with its stored energy."""
         self.stored = float(self.active.local.energy_at_indentation(self.active.delta))
         return outcome
 
     def captured(self) -> bool:
-        """Is there too little energy left to get out of the indentation?"""
+        """Whether the energy is too small to lift the sphere out of its indentation."""
         active, local = self.active, self.active.local
         state = self.march.state
         energy = float(self.system.mechanical_energy(state) - self.system.common_energy(state)) + float(
@@ -182,7 +181,7 @@ class _VisitMarch:
         return energy < barrier + self.march.tolerance**2 * active.energy
 
     def at_rest(self) -> bool:
-        """Does the contact carry the weight, with too little left at the contact to lift the sphere off it?"""
+        """Whether the contact carries the weight, and the bound of its force excludes separation."""
         last, local = self.march.parts[-1].motion, self.active.local
         if not isinstance(last, VibratingStretch):
             return False
@@ -196,20 +195,20 @@ class _VisitMarch:
 
     @property
     def separation_speed(self) -> float:
-        """How fast the centres move apart [m/s]."""
+        """Speed at which the centres move apart [m/s]."""
         return -float(self.system.rigid_motion(self.march.state)[1][0])
 
     # apart -----------------------------------------------------------------------------------------
 
     @property
     def next_law(self) -> CompliantLaw:
-        """The law of the next contact, once the surfaces have parted."""
+        """Law of the next contact after separation."""
         return self.march.next_laws[0]
 
     def touches_again(self, without_limit: bool) -> bool:
-        """Follow the free sphere to the top of its flight, or farther; return whether the surfaces meet again before.
+        """Follow the free sphere to the top of its flight, or without limit; return whether the surfaces touch again before.
 
-        Where the next contact would begin with fresh surfaces, the visit goes on at least until these have parted.
+        Where the next contact meets undeformed surfaces, the visit continues at least until these have separated.
         """
         march, separation_speed, gravity = self.march, self.separation_speed, self.gravity
         free = FreeMotion(self.system, march.state)
@@ -218,16 +217,16 @@ class _VisitMarch:
         level = float(next_law.touch_level)
         parted = time_to_separation(free, level)
         if law.release_level > level and (again := next_touch(free, float(law.release_level), parted)) < parted:
-            time = again  # before they had parted: into the same dent
+            time = again  # before separation: into the same dent
         else:
             law = law if law.lasting else next_law
             time = next_touch(free, float(law.touch_level), max(top, parted))
         if not np.isfinite(time):
-            if separation_speed < 0.0:  # the next touch is nearer than rounding tells
+            if separation_speed < 0.0:  # the next touch is within rounding of this one
                 self.active = march.begin_contact(0, law)
             return False
         if without_limit and separation_speed > 0.0 and time > self.until - march.time:
-            return False  # the run ends before
+            return False  # after the end of the run
         march.append_free(free, time)
         self.active = march.begin_contact(0, law)
         return True
