@@ -1,13 +1,13 @@
-r"""A measuring chain while a sphere lies on the plate, in closed form: both move as one linear system about their equilibrium.
+r"""A measuring chain while a sphere is at rest on the plate, in closed form: both move as one linear system about their equilibrium.
 
-With the coupled oscillators c of sphere and plate, of shapes S (rows: the sphere times the root of its mass, then the modes of the plate),
-the plate's modes move by :math:`q = q_0 + S c`, and the contact force is what the motion of the sphere takes,
+With the coupled oscillators c of sphere and plate and their mode shapes S (rows: the sphere, scaled by the root of its mass, then the modes
+of the plate), the modes of the plate move by :math:`q = q_0 + S c`, and the contact force follows from the acceleration of the sphere,
 
 .. math:: F = m g - m \ddot s = m g - \sqrt m \sum_j S_{0j}\,\ddot c_j .
 
-So the motion of a point, and all that a chain makes of it, is a transfer function seen at the poles of the coupled oscillators
-(`pole_pairs`), and a constant. What the pairs of poles of the chain still do of all before is a free motion of their own: as of each point
-another, they are taken once for each output.
+The motion of a point and the outputs of a chain are therefore transfer functions at the poles of the coupled oscillators (`pole_pairs`),
+plus a constant. The pairs of poles of the instruments also perform a free motion of their own from their previous state; as it differs from
+point to point, they are repeated for each output.
 """
 
 from __future__ import annotations
@@ -20,79 +20,84 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.dynamics.sensors.antialias import Section
-from vibroimpact.dynamics.sensors.measuring_chain import MeasuringChain, of_section, point_at
+from vibroimpact.dynamics.sensors.measuring_chain import MeasuringChain, point_receptance, section_outputs
 from vibroimpact.dynamics.sensors.pole_pairs import PolePairs
 from vibroimpact.dynamics.sensors.pulses import gauss_rule
 from vibroimpact.dynamics.vibrating.oscillators import Oscillators
 from vibroimpact.dynamics.vibrating.rest_motion import RestMotion
 
 _FAST = 16.0
-"""Times what a linear system answers to: what swings faster acts on it as one impulse, to the square of one over it."""
+"""Oscillations faster than this multiple of the system's highest frequency act as one impulse, with an error of one over its square."""
 _TURN = 10.0
-"""Radians, or time constants, in a panel of Gauss's rule."""
+"""Radians, or time constants, per panel of Gauss's rule."""
 
 
 @dataclass(frozen=True)
 class RestChain:
-    """Oscillators that move freely from a place on, and what they are worth in the outputs.
+    """Oscillators in free motion, and their weights in the outputs.
 
-    `of`: the coupled oscillators, then the pairs of poles of the chain for each output. `outputs`: (2, S, n). `place`: displacements and
-    velocities as the sphere is laid down, (2, n). `constant`: what the weight adds to each output (S,).
+    `oscillators`: the coupled oscillators, then the pairs of poles of the instruments for each output. `outputs`: weights (2, S, n).
+    `initial`: displacements and velocities when the sphere comes to rest, (2, n). `constant`: contribution of the weight to each output
+    (S,).
     """
 
-    of: Oscillators
+    oscillators: Oscillators
     outputs: Floats
-    place: Floats
+    initial: Floats
     constant: Floats
 
 
-def rest_chain(chain: MeasuringChain, rest: RestMotion, own: Floats) -> RestChain:
-    """Return a measuring chain as free oscillators, as it is while a sphere lies on the plate.
+def rest_chain(chain: MeasuringChain, rest: RestMotion, instrument_state: Floats) -> RestChain:
+    """Return a measuring chain as free oscillators, while a sphere is at rest on the plate.
 
     Parameters
     ----------
     chain : MeasuringChain
         From the contact force to the outputs.
-    lying : Lying
-        How sphere and plate move.
-    own : array, shape (2, pairs of poles)
-        Where the pairs of poles of the chain itself are as that begins.
+    rest : RestMotion
+        Motion of sphere and plate.
+    instrument_state : array, shape (2, pairs of poles)
+        State of the instruments' pairs of poles at the beginning.
     """
     equilibrium, coupled = rest.equilibrium, rest.coupled
-    at, shapes, ground = PolePairs(coupled.angular_frequency**2, coupled.damping), equilibrium.modes[1], equilibrium.system.ground
-    force = -math.sqrt(equilibrium.system.mass[0]) * shapes[0] * at.power(2)
-    moved = chain.shapes @ shapes[ground] * at.power(0)[:, None] - chain.compliance[:, None] * force[:, None]  # (2, S, coupled)
+    poles, shapes, ground = PolePairs(coupled.angular_frequency**2, coupled.damping), equilibrium.modes[1], equilibrium.system.ground
+    force = -math.sqrt(equilibrium.system.mass[0]) * shapes[0] * poles.power(2)
+    moved = chain.shapes @ shapes[ground] * poles.power(0)[:, None] - chain.compliance[:, None] * force[:, None]  # (2, S, coupled)
     static = chain.shapes @ equilibrium.state.displacement[ground] - chain.compliance * equilibrium.weight
-    poles = chain.own
-    sections = list(zip((poles.angular_frequency**2).tolist(), poles.damping.tolist(), strict=True))
-    passed = at.low_pass(sections)
+    instrument = chain.instrument
+    sections = list(zip((instrument.angular_frequency**2).tolist(), instrument.damping.tolist(), strict=True))
+    passed = poles.low_pass(sections)
     outputs = [
         np.stack(
-            [at.product(one, at.product(at.power(order), passed)) for one, order in zip(moved.swapaxes(0, 1), chain.orders, strict=True)], 1
+            [
+                poles.product(one, poles.product(poles.power(order), passed))
+                for one, order in zip(moved.swapaxes(0, 1), chain.orders, strict=True)
+            ],
+            1,
         )
     ]
     places = [rest.start_coupled]
     for number, section in enumerate(sections):
-        driven = at.product(moved, at.inverse(at.quadratic(*section))[:, None])
-        now = np.stack([_value(driven, rest.start_coupled), _value(at.product(driven, at.power(1)[:, None]), rest.start_coupled)])
+        driven = poles.product(moved, poles.inverse(poles.quadratic(*section))[:, None])
+        now = np.stack([_value(driven, rest.start_coupled), _value(poles.product(driven, poles.power(1)[:, None]), rest.start_coupled)])
         now[0] += static / section[0]
-        places.append(_of_points(chain, section, rest, own[:, [number]]) - now)
-        outputs.append(of_section(number, sections, chain.orders) * np.eye(len(static)))
+        places.append(_driven_section_states(chain, section, rest, instrument_state[:, [number]]) - now)
+        outputs.append(section_outputs(number, sections, chain.orders) * np.eye(len(static)))
     constant = np.where(np.asarray(chain.orders) == 0, static, 0.0)
-    of = reduce(_concatenate, [coupled, *(poles.pick(np.full(len(static), number)) for number in range(len(sections)))])
-    return RestChain(of, np.concatenate(outputs, axis=-1), np.concatenate(places, axis=1), constant)
+    oscillators = reduce(_concatenate, [coupled, *(instrument.pick(np.full(len(static), number)) for number in range(len(sections)))])
+    return RestChain(oscillators, np.concatenate(outputs, axis=-1), np.concatenate(places, axis=1), constant)
 
 
-def _of_points(chain: MeasuringChain, section: Section, rest: RestMotion, own: Floats) -> Floats:
-    """Return where a pair of poles driven by the motion of each point is, (2, S), from where it is under minus the force, (2, 1)."""
+def _driven_section_states(chain: MeasuringChain, section: Section, rest: RestMotion, instrument_state: Floats) -> Floats:
+    """Return the states of a pair of poles driven by the motion of each point, (2, S), from its state under minus the force, (2, 1)."""
     plate, ground = chain.plate, rest.equilibrium.system.ground
     modes = np.stack([rest.start.displacement[ground], rest.start.velocity[ground]])
     found = []
-    at_modes, at = PolePairs(plate.angular_frequency**2, plate.damping), PolePairs(np.array([section[0]]), np.array([section[1]]))
-    by_modes, by_own = at_modes.inverse(at_modes.quadratic(*section)), point_at(section, plate, chain.shapes, chain.compliance)
+    at_modes, poles = PolePairs(plate.angular_frequency**2, plate.damping), PolePairs(np.array([section[0]]), np.array([section[1]]))
+    by_modes, by_own = at_modes.inverse(at_modes.quadratic(*section)), point_receptance(section, plate, chain.shapes, chain.compliance)
     for order in (0, 1):
         of_modes = chain.shapes @ _terms(at_modes.product(by_modes, at_modes.power(order)), modes)
-        found.append(of_modes + _value(at.product(by_own, at.power(order)[:, None]), own))
+        found.append(of_modes + _value(poles.product(by_own, poles.power(order)[:, None]), instrument_state))
     return np.stack(found)
 
 
@@ -102,27 +107,27 @@ def _terms(element: Floats, place: Floats) -> Floats:
 
 
 def _value(element: Floats, place: Floats) -> Floats:
-    """Return their sum, (...)."""
+    """Return the sums of a q + b q' over the oscillators, (...)."""
     return np.asarray(_terms(element, place).sum(axis=-1))
 
 
 def rest_pulses(rest: RestMotion, fastest: float, length: float) -> tuple[Floats, Floats]:
-    """Return times since the sphere was laid down [s] and impulses [N s] that act on a smooth linear system as the force does.
+    """Return times since rest began [s] and impulses [N s] that are equivalent to the contact force for a smooth linear system.
 
     Parameters
     ----------
-    lying : Lying
-        How sphere and plate move.
+    rest : RestMotion
+        Motion of sphere and plate.
     fastest : float
-        The highest angular frequency that the system answers to [rad/s].
+        Highest angular frequency to which the system responds [rad/s].
     length : float
-        Up to when it matters [s].
+        Duration [s].
     """
-    equilibrium, of, (place, speed) = rest.equilibrium, rest.coupled, rest.start_coupled
-    share = -math.sqrt(equilibrium.system.mass[0]) * equilibrium.modes[1][0]  # of an acceleration in the force
-    fast = (of.damping_ratio < 1.0) & (of.angular_frequency > _FAST * fastest)
-    at_once = -float(share[fast] @ speed[fast])  # the whole impulse of a swing that dies, or averages, away
-    slow, share = of.pick(~fast), share[~fast]
+    equilibrium, oscillators, (place, speed) = rest.equilibrium, rest.coupled, rest.start_coupled
+    share = -math.sqrt(equilibrium.system.mass[0]) * equilibrium.modes[1][0]  # contribution of an acceleration to the force
+    fast = (oscillators.damping_ratio < 1.0) & (oscillators.angular_frequency > _FAST * fastest)
+    at_once = -float(share[fast] @ speed[fast])  # total impulse of oscillations that decay or average out
+    slow, share = oscillators.pick(~fast), share[~fast]
     times, weights = _graded_rule(length, fastest, slow)
     cosine, sine = slow.propagators(times)
     stiffness, displacement, velocity = slow.angular_frequency**2, place[~fast], speed[~fast]
@@ -132,11 +137,11 @@ def rest_pulses(rest: RestMotion, fastest: float, length: float) -> tuple[Floats
     return np.append(0.0, times), np.append(at_once, weights * force)
 
 
-def _graded_rule(length: float, fastest: float, of: Oscillators) -> tuple[Floats, Floats]:
-    """Return nodes [s] and weights [s] of Gauss's rule up to a time: panels for the waves, ever shorter towards 0 for what dies at once."""
-    swinging = of.angular_frequency[of.damping_ratio < 1.0].max(initial=0.0)
+def _graded_rule(length: float, fastest: float, oscillators: Oscillators) -> tuple[Floats, Floats]:
+    """Return nodes [s] and weights [s] of Gauss's rule up to a time, with panels for the oscillations, graded towards 0 for fast decays."""
+    swinging = oscillators.angular_frequency[oscillators.damping_ratio < 1.0].max(initial=0.0)
     panel = length / math.ceil(max(1.0, (fastest + swinging) * length / _TURN))
-    dying = float((2.0 * of.damping_ratio * of.angular_frequency).max(initial=0.0))
+    dying = float((2.0 * oscillators.damping_ratio * oscillators.angular_frequency).max(initial=0.0))
     halvings = math.ceil(math.log2(max(1.0, dying * panel / _TURN)))
     ends = np.concatenate([[0.0], panel * 0.5 ** np.arange(halvings, 0, -1), panel * np.arange(1, round(length / panel) + 1)])
     x, weights = gauss_rule(_TURN)
@@ -145,9 +150,10 @@ def _graded_rule(length: float, fastest: float, of: Oscillators) -> tuple[Floats
 
 
 def _concatenate(one: Oscillators, other: Oscillators) -> Oscillators:
-    """Return oscillators side by side."""
+    """Return the oscillators of both."""
     return Oscillators(*(np.concatenate(pair) for pair in zip(_fields(one), _fields(other), strict=True)))
 
 
-def _fields(of: Oscillators) -> tuple[Floats, Floats, Floats]:
-    return of.angular_frequency, of.damping_ratio, of.shape
+def _fields(oscillators: Oscillators) -> tuple[Floats, Floats, Floats]:
+    """Return the arrays of oscillators."""
+    return oscillators.angular_frequency, oscillators.damping_ratio, oscillators.shape

@@ -159,7 +159,7 @@ class ContactEquilibrium:
 
     @cached_property
     def modes(self) -> tuple[Floats, Floats]:
-        """Angular frequencies [rad/s] and mode shapes (n, n), one column per mode, of all coordinates coupled by the spring of the contact."""
+        """Angular frequencies [rad/s] and mode shapes (n, n), a column per mode, of all coordinates coupled by the contact spring."""
         stiffness = np.diag(self.system.angular_frequency**2) + self.stiffness * np.outer(self.shape, self.shape)
         squares, shapes = np.linalg.eigh(stiffness)
         return np.sqrt(np.maximum(squares, _NONE)), shapes

@@ -162,7 +162,7 @@ class _Neighbour:
         return max(abs(visit.closing) / visit.speed, abs(force_change), abs(speed_change))
 
     def begin_contact(self, stretch: VibratingStretch) -> None:
-        """Shift the difference to the touch of each drop, where a stretch begins, and take the differences of the law's closing speed and memory."""
+        """Shift the difference to the touch of each drop, and take the differences of the law's closing speed and memory."""
         system, start, local = stretch.system, stretch.start, stretch.contacts[0].local
         same_surface = self.local is not None and self.local.law.memories() == local.law.memories()
         self.law_differences = {name: self.law_differences.get(name, 0.0) if same_surface else 0.0 for name in local.law.memories()}
