@@ -60,7 +60,7 @@ class FilteredChain:
     answers: Floats
 
     def add(self, values: Floats, times: Floats, impulses: Floats, last: int) -> None:
-        """Add the response to impulses [N s] at times [s] to `values` (S, samples), which begin at time zero, up to before the `last` sample."""
+        """Add the response to impulses [N s] at times [s] to `values` (S, samples), which begin at time zero, for samples before `last`."""
         first, spread = _spread_on_grid(times * (self.rate * FINENESS), impulses)
         width = len(spread)
         begin = max(0, -((REACH * FINENESS - first) // FINENESS))  # the first sample whose kernel reaches the impulses
