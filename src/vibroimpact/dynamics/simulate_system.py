@@ -138,6 +138,7 @@ class SystemResponse:
 
     @cached_property
     def _starts(self) -> Floats:
+        """Starts of the parts of the history [s]."""
         return np.array([part.start for part in self._march.parts])
 
     def _parts_at(self, times: Floats) -> Iterator[tuple[VibratingStretch | FreePhase, Bools, Floats]]:
@@ -225,6 +226,7 @@ def simulate_system(system: System, *, duration: float, progress: Callable[[floa
         "max_indentation_m": np.array([impact.indentation.locate()[0] for impact in march.impacts]),
         "impulse_N_s": np.array([impact.impulse for impact in march.impacts]),
     }
+    # an independent check of the integration
     energy = _ledger(linear, start, march)
     if not energy["closure_relative"] <= _CLOSURE:
         raise ComputationError(f"the energy ledger does not close: {energy['closure_relative']:.2g} of the energy that moved is missing")

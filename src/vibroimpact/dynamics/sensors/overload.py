@@ -84,11 +84,11 @@ def _through_poles(found: Overload, antialias: AntiAlias, finer: int, count: int
 
     cut = np.flatnonzero(found.excess)
     begin, end = cut[0], min(cut[-1] + 1 + _RINGING * finer, len(found.excess))
-    whole = np.zeros(end)
+    response = np.zeros(end)
     for (level, slope), (stiffness, damping) in parallel(antialias.sections):
         numerator, denominator, _ = cont2discrete(([slope, level], [1.0, damping, stiffness]), 1.0 / found.rate, method="foh")
-        whole[begin:] += lfilter(np.ravel(numerator), denominator, found.excess[begin:end])
+        response[begin:] += lfilter(np.ravel(numerator), denominator, found.excess[begin:end])
     taken = np.zeros(count)
-    samples = whole[::finer][:count]
+    samples = response[::finer][:count]
     taken[: len(samples)] = samples
     return taken

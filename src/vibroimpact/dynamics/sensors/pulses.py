@@ -35,9 +35,15 @@ def _panels(number: int) -> tuple[Floats, Floats]:
 def pulses(stretch: VibratingStretch, fastest: float, until: Floats | None = None) -> tuple[Floats, Floats]:
     """Return times since the start [s] and impulses [N s] that are equivalent to the force for a linear system.
 
-    Parameters ---------- stretch : VibratingStretch     The stretch of contact. fastest : float     Highest angular frequency to which the
-    system responds [rad/s]. until : array, shape (T,), optional     Ascending times since the start [s]: the results are then (T, nodes),
-    of the force between each and the previous one, or the start. By     default they cover the whole stretch.
+    Parameters
+    ----------
+    stretch : VibratingStretch
+        The stretch of contact.
+    fastest : float
+        Highest angular frequency to which the system responds [rad/s].
+    until : array, shape (T,), optional
+        Ascending times since the start [s]: the results are then (T, nodes), of the force between each and the previous one, or the
+        start. By default they cover the whole stretch.
     """
     length, rule = stretch.length, stretch.rule
     if until is None and fastest * length < _SLOW:

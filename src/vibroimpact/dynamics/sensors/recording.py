@@ -150,6 +150,7 @@ def _recorded(
     shapes = np.stack([np.concatenate([basis.points[one.name] for basis in bases]) @ np.asarray(one.direction) for one in group])
     compliance = np.array([modes.residuals.get(one.name, _NONE) @ np.asarray(one.direction) for one in group])
     orders = [one.order for one in group]
+    # a converter's filter is applied in closed form; an analogue one is a part of the chain, sampled at instants
     bare = measuring_chain(plate, shapes, compliance, orders, resonance)
     if antialias.reach:
         known = filtered_chain(bare, sensor.rate, longest_span(segments, sensor.rate))
@@ -159,6 +160,7 @@ def _recorded(
         values = sample_at_instants(chain, sensor.rate, segments, count)
         rate = sensor.rate * (1 if antialias.sections else _WIDER)
         known = filtered_chain(bare, rate, longest_span(segments, rate))
+    # the error by the modes left out, from a model of the next octave
     left_out = filtered_chain(_next_octave_chain(plate, shapes, orders, resonance), known.rate, longest_span(segments, known.rate))
     norm, left_out_norm = (np.linalg.norm(outputs_around_first_contact(one, segments), axis=1) for one in (known, left_out))
     uncertainties = left_out_norm / np.where(norm > 0.0, norm, np.inf)

@@ -187,6 +187,7 @@ def _spans(chain: MeasuringChain, segments: Sequence[VibratingSegment], rate: fl
     span: _Span | None = None
     for segment in segments:
         if isinstance(segment.trajectory, RestMotion):
+            # rest ends the history: its jump is also an impulse on the motion before
             jump = _rest_jump(segments)
             if span is not None:
                 span.times.append(np.array([segment.start]))
@@ -195,6 +196,7 @@ def _spans(chain: MeasuringChain, segments: Sequence[VibratingSegment], rate: fl
             motion_state = np.concatenate([_initial_plate_state(segment), instrument_state + jump[:, None]], axis=1)
             yield _Span(segment.start, segment.end, motion_state, rest=segment.trajectory)
             return
+        # a part grows only while it has contacts, stays within the filter's reach, and the last segment is not reached
         if span is not None and not (span.times and segment.end - span.start <= reach and segment is not segments[-1]):
             yield span
             span = None
@@ -297,15 +299,15 @@ class _Blocks:
         """Write the outputs over blocks that begin with states `places` (blocks, 2, n); the last block may be cut short."""
         displacement, velocity = places[:, 0], places[:, 1]
         push = -(self.oscillators.angular_frequency**2) * displacement - self.oscillators.damping * velocity
-        whole, rest = divmod(values.shape[1], _BLOCK)
-        samples = _BLOCK if whole else rest
+        full_blocks, rest = divmod(values.shape[1], _BLOCK)
+        samples = _BLOCK if full_blocks else rest
         ahead = np.concatenate([self.cosine[:samples].T, self.sine[:samples].T])  # (2 n, samples)
         for value, a, b in zip(values, *self.outputs, strict=True):
             of_each = np.concatenate([a * displacement + b * velocity, a * velocity + b * push], axis=1)
-            if whole:
-                np.matmul(of_each[:whole], ahead, out=value[: whole * _BLOCK].reshape(whole, _BLOCK))
+            if full_blocks:
+                np.matmul(of_each[:full_blocks], ahead, out=value[: full_blocks * _BLOCK].reshape(full_blocks, _BLOCK))
             if rest:
-                value[whole * _BLOCK :] = of_each[-1] @ ahead[:, :rest]
+                value[full_blocks * _BLOCK :] = of_each[-1] @ ahead[:, :rest]
 
     def bound(self, peak_speeds: Floats) -> Floats:
         """Return upper bounds of the magnitudes of the outputs (S,)."""

@@ -197,6 +197,6 @@ def coupled_oscillators(equilibrium: ContactEquilibrium) -> tuple[Oscillators, F
             system.local_compliance**2 / system.mobility
         ).sum()
     lost = np.concatenate([shapes**2 * system.damping[:, None], damping * (equilibrium.shape @ shapes)[None] ** 2])
-    whole = lost.sum(axis=0)
-    coupled = Oscillators(omega, 0.5 * whole / omega, equilibrium.shape @ shapes)
-    return coupled, np.where(whole > 0.0, lost / np.where(whole > 0.0, whole, 1.0), 0.0).T
+    total_loss = lost.sum(axis=0)
+    coupled = Oscillators(omega, 0.5 * total_loss / omega, equilibrium.shape @ shapes)
+    return coupled, np.where(total_loss > 0.0, lost / np.where(total_loss > 0.0, total_loss, 1.0), 0.0).T

@@ -145,6 +145,7 @@ class LocalContact:
 
     @cached_property
     def _tables(self) -> dict[int, tuple[Array, Array]]:
+        """Cache of `_table`, by the binary exponent of the size."""
         return {}
 
     def _static(self, delta: Array) -> Array:

@@ -240,7 +240,7 @@ class March:
                 self.next_length = 0.5 * min(self.next_length, length_before_event(stretch, event, self.tolerance, energy))
                 return False
             missed = self.first_other_event(found[1])
-            if missed is not None:  # the event has moved behind one at another contact
+            if missed is not None:  # an event at another contact lies between the estimate and the solved event
                 self.next_length = 0.5 * found[1].length * float(found[1].rule.map_time(np.array([missed.x]))[0])
                 return False
             self.end(pushing, *found)
@@ -373,8 +373,8 @@ class March:
         self, pushing: list[ActiveContact], stretch: VibratingStretch, other: OtherEvent
     ) -> Coroutine[VibratingStretch | None]:
         """Solve a stretch again so that it ends where another contact touches or its recoil ends; return None if that fails."""
-        rule, whole = stretch.rule, stretch.length
-        low, high = (whole * float(rule.map_time(np.array([x]))[0]) for x in (max(other.x - GRID[1], 0.0), other.x))
+        rule, full_length = stretch.rule, stretch.length
+        low, high = (full_length * float(rule.map_time(np.array([x]))[0]) for x in (max(other.x - GRID[1], 0.0), other.x))
         length = float(find_root(along_motion(stretch, other.value), np.array([low]), np.array([high]))[0])
         # Newton's method for the length, with the rate of the event function by a finite difference
         for _ in range(_MOST_CORRECTIONS):
@@ -384,10 +384,10 @@ class March:
             step = 1e-6 * length
             now, before = other.value(ended.end), other.value(ended.state(np.array([length - step])))[0]
             missing = float(now / (now - before)) * step
-            if abs(missing) <= 1e-13 * whole:
+            if abs(missing) <= 1e-13 * full_length:
                 return ended
             length -= missing
-            if not 0.0 < length <= 1.01 * whole:
+            if not 0.0 < length <= 1.01 * full_length:
                 return None
         return ended
 

@@ -140,8 +140,8 @@ class _Neighbour:
             self.begin_contact(stretch)
         elif stretch.contacts[0].local is not self.local:
             self.update_memory(stretch)
-        variations = TangentProblem(stretch, self.difference, _law_variations(stretch.contacts[0].local, self.law_differences))
-        self.difference, force_difference = yield from solve(variations)
+        problem = TangentProblem(stretch, self.difference, _law_variations(stretch.contacts[0].local, self.law_differences))
+        self.difference, force_difference = yield from solve(problem)
         self.force_difference, self.last_stretch = float(force_difference[-1]), stretch
         assert self.visit is not None  # it has touched
         force = float(stretch.force.max())

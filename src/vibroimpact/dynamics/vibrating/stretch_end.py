@@ -82,8 +82,6 @@ def _problem_to_event(stretch: VibratingStretch, event: Event) -> StretchProblem
     force = np.stack(
         [np.add(*contact.local.forces_at_indentation(row, weights @ contact.rate)) for contact, row in zip(contacts, delta, strict=True)]
     )
-    locals_, begun = [contact.local for contact in contacts], [float(contact.delta[0]) for contact in contacts]
+    laws, begun = [contact.local for contact in contacts], [float(contact.delta[0]) for contact in contacts]
     length = part * stretch.length
-    return StretchProblem(
-        stretch.view, locals_, time_map, length, stretch.start, begun, guess=(delta, force), end_condition=event.condition
-    )
+    return StretchProblem(stretch.view, laws, time_map, length, stretch.start, begun, guess=(delta, force), end_condition=event.condition)
