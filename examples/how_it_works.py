@@ -15,11 +15,11 @@ from numpy.polynomial import legendre
 from scipy.special import betaincinv
 
 import vibroimpact as vi
-from vibroimpact.dynamics.lockstep import computed
-from vibroimpact.dynamics.vibrating.free_motion import Apart
+from vibroimpact.dynamics.lockstep import run_coroutine
+from vibroimpact.dynamics.vibrating.active_contact import ContactDefinition
+from vibroimpact.dynamics.vibrating.free_motion import FreePhase
 from vibroimpact.dynamics.vibrating.march import March
 from vibroimpact.dynamics.vibrating.stretch import VibratingStretch
-from vibroimpact.dynamics.vibrating.touching import Law
 from vibroimpact.structures.modal_model import ModalBasis
 
 BLUE, RED, GREY = "#0b4f8a", "#b3400e", "#6b6b6b"
@@ -47,8 +47,10 @@ def plate(modes: int) -> ModalBasis:
 def marched(system: vi.System, duration: float) -> March:
     """Return what `vi.simulate_system` keeps of a run: its stretches and flights, one after another."""
     linear, start = system.linear()
-    march = March(linear, [Law(one.law, one.series, not one.same_spot) for one in system.contacts.values()], start, system.tolerance)
-    computed(march.course(duration))
+    march = March(
+        linear, [ContactDefinition(one.law, one.series, not one.same_spot) for one in system.contacts.values()], start, system.tolerance
+    )
+    run_coroutine(march.run_until(duration))
     return march
 
 
@@ -136,7 +138,9 @@ def event_after(march: March, index: int) -> str:
     contact = piece.motion.contacts[0]
     if abs(contact.delta[-1] / contact.local.law.breakpoints[0] - 1.0) < 1e-9:
         return "breakpoint"
-    return "" if pushes or follows is None else "no push" if isinstance(follows.motion, Apart) and follows.motion.recoiling else "parted"
+    return (
+        "" if pushes or follows is None else "no push" if isinstance(follows.motion, FreePhase) and follows.motion.recoiling else "parted"
+    )
 
 
 def draw_contact(march: March) -> None:
@@ -227,6 +231,6 @@ for modes in (5, 50, 500, 5000):
     begun = process_time()
     found = marched(system, 1.5e-4)
     stretches = sum(isinstance(piece.motion, VibratingStretch) for piece in found.parts)
-    force = max(impact.force.top()[0] for impact in found.impacts)
+    force = max(impact.force.locate()[0] for impact in found.impacts)
     took, highest = 1e3 * (process_time() - begun), system.linear()[0].angular_frequency.max() / 2e3 / np.pi
     print(f"{modes:4d} modes to {highest:.1f} kHz: largest force {force:6.1f} N, {stretches} stretches, {took:.0f} ms")

@@ -13,7 +13,7 @@ from oracles.simply_supported import simply_supported
 from vibrating import modes_of, random_modes
 from vibroimpact.contact.law import CompliantLaw, contact_laws
 from vibroimpact.contact.pair import ContactPair
-from vibroimpact.dynamics.vibrating.free_motion import Apart
+from vibroimpact.dynamics.vibrating.free_motion import FreePhase
 from vibroimpact.dynamics.vibrating.stretch import VibratingStretch
 
 LAWS = [law for law in contact_laws().values() if issubclass(law, CompliantLaw)]
@@ -99,9 +99,9 @@ def at_rest(response: vi.Response) -> Ball:
     assert lying is not None
     assert contact is not None
     motion = contact.pieces[-1].motion
-    assert isinstance(motion, VibratingStretch | Apart)
+    assert isinstance(motion, VibratingStretch | FreePhase)
     state = motion.end if isinstance(motion, VibratingStretch) else motion.free.state(motion.duration)
-    law, sag = lying.riding.local.law, float(response.rest.sag[0])
+    law, sag = lying.equilibrium.local.law, float(response.rest.sag[0])
     floor = float(law.release_level)
     delta = np.linspace(floor, floor + 6.0 * (sag - floor), ROWS)
     force = np.asarray(law.forces(delta, np.zeros_like(delta), np.ones_like(delta))[0])

@@ -12,7 +12,7 @@ from vibrating import drop_on
 from vibroimpact.contact.laws.adams_impact import AdamsImpact
 from vibroimpact.contact.laws.hunt_crossley import HuntCrossley
 from vibroimpact.contact.quasi_static import QuasiStatic
-from vibroimpact.dynamics.lockstep import computed, side_by_side
+from vibroimpact.dynamics.lockstep import run_coroutine, run_in_lockstep
 from vibroimpact.dynamics.simulate import simulate_together
 from vibroimpact.structures.modal_model import ModalBasis
 
@@ -64,24 +64,24 @@ def test_what_a_law_raises_ends_its_drop_alone() -> None:
 
 @pytest.mark.parametrize("sizes", [[], [3], [0, 2, 1], [1, 1, 5]])
 def test_each_course_gets_its_own_solutions(sizes: list[int]) -> None:
-    class Asked:
+    class Doubled:
         kind, size = 0, 40_000  # so many coordinates that each is solved alone
 
         def __init__(self, value: int) -> None:
             self.value = value
 
         @classmethod
-        def solved(cls, problems: list[Asked]) -> list[int]:
+        def solve_group(cls, problems: list[Doubled]) -> list[int]:
             assert len(problems) == 1
             return [10 * problem.value for problem in problems]
 
-    def course(rounds: int, name: int):  # type: ignore[no-untyped-def]
+    def coroutine(rounds: int, name: int):  # type: ignore[no-untyped-def]
         found = []
         for number in range(rounds):
-            found += yield [Asked(name + number), Asked(name - number)]
+            found += yield [Doubled(name + number), Doubled(name - number)]
         return found
 
-    told = computed(side_by_side(course(rounds, 100 * place) for place, rounds in enumerate(sizes)))
+    told = run_coroutine(run_in_lockstep(coroutine(rounds, 100 * place) for place, rounds in enumerate(sizes)))
     assert told == [
         [10 * value for number in range(rounds) for value in (100 * place + number, 100 * place - number)]
         for place, rounds in enumerate(sizes)

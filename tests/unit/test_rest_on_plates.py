@@ -21,10 +21,10 @@ from vibroimpact.contact.quasi_static import QuasiStatic
 from vibroimpact.dynamics.columns import LEDGER, VIBRATION_LEDGER
 from vibroimpact.dynamics.vibrating import visit
 from vibroimpact.dynamics.vibrating.bodies import centre_of, system_of
+from vibroimpact.dynamics.vibrating.contact_equilibrium import ContactEquilibrium
 from vibroimpact.dynamics.vibrating.linear_system import LinearSystem, State
 from vibroimpact.dynamics.vibrating.local import LocalContact
-from vibroimpact.dynamics.vibrating.lying import lay_down
-from vibroimpact.dynamics.vibrating.riding import Riding
+from vibroimpact.dynamics.vibrating.rest_motion import bring_to_rest
 
 LOSSY = LankaraniNikravesh(stiffness=STIFFNESS, restitution=0.5)
 PAIR = ContactPair(2.4264724e9, 0.025, 0.09032078879, 8e7, 0.28)
@@ -89,7 +89,7 @@ def test_rest_is_the_motion_of_both_together() -> None:
     response = vi.simulate(drop_on(LOSSY, SPRUNG, height=0.2, impacts=None, duration=2.0))
     lying, begun = response.rest.lying[0], float(response.rest.time[0])
     assert lying is not None
-    start, speed, omega, shape = lying.start, lying.riding.local.approach_speed, SPRUNG.angular_frequencies, SPRUNG.contact
+    start, speed, omega, shape = lying.start, lying.equilibrium.local.approach_speed, SPRUNG.angular_frequencies, SPRUNG.contact
 
     def slopes(_: float, y: np.ndarray) -> np.ndarray:
         displacement, velocity = y[2:5], y[5:]
@@ -167,29 +167,31 @@ def test_laying_down_makes_no_energy(seed: int) -> None:
     """Wherever everything is: far, fast, apart or deep."""
     random, system = np.random.default_rng(seed), ball_on_modes(5, seed)
     local = LocalContact(JKR.example(PAIR) if seed % 2 else Hertz(stiffness=1e9), QuasiStatic(), 1.0)
-    riding = Riding(system, local)
+    equilibrium = ContactEquilibrium(system, local)
     for size in (1e-7, 1e-5, 1e-3):
-        at = riding.equilibrium
+        at = equilibrium.state
         moved = size * random.normal(size=(2, 6))
         moved[:, 0] *= 0.1**0.5
         state = State(at.displacement + moved[0], [1.0, *[100.0] * 5] * moved[1], at.local)
         approach = float(system.approach(state)[0])
         stored = float(local.elastic_energy(np.array([approach]))[0]) if approach > local.release_level else 0.0
-        lying = lay_down(riding, state, stored)
-        assert lying.written_off >= -1e-12 * riding.excess(state, stored)
+        lying = bring_to_rest(equilibrium, state, stored)
+        assert lying.written_off >= -1e-12 * equilibrium.excess(state, stored)
         now = lying.state(np.zeros(1))
-        kept = riding.excess(now.take(0), float(lying.stored(np.zeros(1))[0]))
-        assert kept + lying.written_off == pytest.approx(riding.excess(state, stored), rel=1e-6)
+        kept = equilibrium.excess(now.take(0), float(lying.stored(np.zeros(1))[0]))
+        assert kept + lying.written_off == pytest.approx(equilibrium.excess(state, stored), rel=1e-6)
 
 
 def test_the_bound_of_the_force_is_met_and_not_passed() -> None:
     """By the linear motion, over many periods."""
-    riding = Riding(replace(ball_on_modes(4, 1), damping_ratio=np.zeros(5)), LocalContact(Hertz(stiffness=1e9), QuasiStatic(), 1.0))
-    at = riding.equilibrium
+    equilibrium = ContactEquilibrium(
+        replace(ball_on_modes(4, 1), damping_ratio=np.zeros(5)), LocalContact(Hertz(stiffness=1e9), QuasiStatic(), 1.0)
+    )
+    at = equilibrium.state
     state = replace(at, displacement=at.displacement + 1e-8 * np.arange(5.0), velocity=1e-5 * np.array([0.0, 1.0, 1.0, 1.0, 1.0]))
-    lying = lay_down(riding, state, riding.stored)
-    bound = riding.force_bound(lying.state(np.zeros(1)[0]))
-    seen = np.abs(lying.force(np.linspace(0.0, 200.0, 400_001)) - riding.weight).max()
+    lying = bring_to_rest(equilibrium, state, equilibrium.stored)
+    bound = equilibrium.force_bound(lying.state(np.zeros(1)[0]))
+    seen = np.abs(lying.force(np.linspace(0.0, 200.0, 400_001)) - equilibrium.weight).max()
     assert 0.9 * bound < seen <= bound * (1.0 + 1e-9)
 
 

@@ -1,16 +1,16 @@
-r"""Radau collocation on a stretch of contact, in a time that is smooth where the force is not.
+r"""Radau collocation over one stretch of contact, in a time variable in which the contact force is smooth.
 
-A stretch of duration h is mapped from x in [0, 1] by t = h m(x). Hertz's force is not smooth in time where
-it is zero (:math:`\delta^{3/2}`, with :math:`\delta \sim t`), but it is in the root of time, so the maps are,
-with p the `root` of the law (2 for Hertz),
+A stretch of duration h is mapped from x in [0, 1] by t = h m(x). Hertz's force is not smooth in time where it is zero
+(:math:`\delta^{3/2}`, with :math:`\delta \sim t`), but it is smooth in the root of time. With p the `root` of the law (2 for Hertz), the
+maps are
 
 * "touch" :math:`m = x^p`, for a stretch that begins at first touch,
-* "release" :math:`m = 1 - (1 - x)^p`, for one that ends with zero indentation,
-* "inside" :math:`m = x`, for the rest.
+* "release" :math:`m = 1 - (1 - x)^p`, for a stretch that ends with zero indentation,
+* "inside" :math:`m = x`, for all others.
 
-On the nodes :math:`x_i` of Radau's right-hand rule, :math:`\dot y = f` becomes
+On the nodes :math:`x_i` of the right-hand Radau rule, :math:`\dot y = f` becomes
 :math:`y_i = y_0 + h \sum_j Q_{ij} m'_j f_j`, which is of order 2N - 1 at the end of the stretch
-(Hairer and Wanner 1996, section IV.5), and the end is a node, where events can be asked for.
+(Hairer and Wanner 1996, section IV.5). The last node is the end of the stretch, where event conditions are imposed.
 """
 
 from __future__ import annotations
@@ -29,12 +29,12 @@ Map = Literal["touch", "inside", "release"]
 
 @dataclass(frozen=True)
 class Rule:
-    """A Radau rule with a time map; all arrays belong to one (number of nodes, map).
+    """A Radau rule with N nodes under a time map, with its matrices.
 
     Parameters
     ----------
     time_map : {"touch", "inside", "release"}
-        Which map.
+        The time map.
     root : int
         Its power p.
     nodes : array, shape (N,)
@@ -70,7 +70,7 @@ class Rule:
     dense: Floats
 
     def map_time(self, x: Floats) -> Floats:
-        """Return m(x), time as a fraction of the duration."""
+        """Return m(x), the time as a fraction of the duration."""
         if self.time_map == "touch":
             return x**self.root
         if self.time_map == "release":
@@ -78,7 +78,7 @@ class Rule:
         return x
 
     def unmap_time(self, fraction: Floats) -> Floats:
-        """Return the x of a time given as a fraction of the duration; clipped to [0, 1]."""
+        """Return the x of a time given as a fraction of the duration, clipped to [0, 1]."""
         fraction = np.clip(fraction, 0.0, 1.0)
         if self.time_map == "touch":
             return fraction ** (1.0 / self.root)
@@ -88,46 +88,46 @@ class Rule:
 
     @cached_property
     def end_slope(self) -> Floats:
-        """From values at the nodes to the time derivative of the polynomial at the end, times the duration (N,); not after a release."""
+        """Weights (N,) of the nodal values in the time derivative at the end, times the duration; not defined for "release"."""
         order = np.arange(len(self.nodes))
         return np.asarray((order * (order + 1.0)) @ self.coefficients / self.slope[-1])
 
     @cached_property
     def weights_at_start(self) -> Floats:
-        """From values at the nodes to the polynomial through them at 0, (N, 1)."""
+        """Weights of the nodal values in their polynomial at x = 0, (N, 1)."""
         return np.asarray(legendre.legvander(-np.ones(1), len(self.nodes) - 1) @ self.coefficients).T.copy()
 
     def interpolate(self, x: Floats, values: Floats) -> Floats:
-        """Return the polynomial through `values` (N,) or (N, B) at the nodes, at x (T,): (T,) or (T, B)."""
+        """Return the polynomial through nodal `values` (N,) or (N, B), at x (T,): (T,) or (T, B)."""
         return np.asarray(legendre.legvander(2.0 * x - 1.0, len(self.nodes) - 1) @ (self.coefficients @ values))
 
     def integrate(self, x: Floats, values: Floats) -> Floats:
-        """Return the time integral per unit duration of `values` (N,) or (N, B) from 0 to x (T,)."""
+        """Return the time integral per unit duration of nodal `values` (N,) or (N, B), from 0 to x (T,)."""
         slope = self.slope if values.ndim == 1 else self.slope[:, None]
         return np.asarray(legendre.legvander(2.0 * x - 1.0, len(self.nodes)) @ (self.antiderivative @ (slope * values)))
 
     def integral_to(self, x: Floats) -> Floats:
-        """Return the matrix of `integrate`, from values at the nodes to time integrals per unit duration up to x (T,): (T, N)."""
+        """Return the matrix of `integrate`: from nodal values to time integrals per unit duration up to x (T,), of shape (T, N)."""
         return np.asarray(legendre.legvander(2.0 * x - 1.0, len(self.nodes)) @ self.antiderivative * self.slope)
 
     def weights(self, x: Floats) -> Floats:
-        """Return the weights of the values at 0 and at the nodes for the polynomials at x, of any shape: (N + 1, ...)."""
+        """Return the barycentric weights of the values at 0 and at the nodes, for interpolation at x of any shape: (N + 1, ...)."""
         shape = (-1,) + (1,) * x.ndim
         distance = x - np.concatenate([[0.0], self.nodes]).reshape(shape)
-        distance[distance == 0.0] = 1e-300  # at a point, its weight outweighs all others
+        distance[distance == 0.0] = 1e-300  # at a point itself, its weight dominates all others
         weights = self.barycentric.reshape(shape) / distance
         weights /= weights.sum(axis=0)
         return np.asarray(weights)
 
     def tail(self, values: Floats, scale: Floats) -> Floats:
-        """Return the size of the last two Legendre coefficients of m' times `values` (N, B): (B,).
+        """Return the largest of the last two Legendre coefficients of m' times nodal `values` (N, B): (B,).
 
-        Relative to the largest coefficient, or to `scale` (B,) where that is larger.
+        It is relative to the largest coefficient, or to `scale` (B,) where that is larger.
         """
         return self.tail_of_each(values.T, scale)
 
     def tail_of_each(self, values: Floats, scale: Floats) -> Floats:
-        """Return the same of values (..., N), with scales (...)."""
+        """Return `tail` for values (..., N) and scales (...)."""
         spectrum = np.abs((self.slope * values)[..., None, :] @ self.coefficients.T)[..., 0, :]
         return np.asarray(spectrum[..., -2:].max(axis=-1) / np.maximum(spectrum.max(axis=-1), scale))
 
@@ -153,19 +153,19 @@ def collocation_rule(number: int, time_map: Map, root: int = 2) -> Rule:
         time, slope = nodes, np.ones(number)
     integral = integral * slope
     points = np.concatenate([[0.0], nodes])
-    barycentric = 1.0 / np.prod(4.0 * (points[:, None] - points) + np.eye(number + 1), axis=1)  # 4: against underflow
+    barycentric = 1.0 / np.prod(4.0 * (points[:, None] - points) + np.eye(number + 1), axis=1)  # the factor 4 avoids underflow
     dense = legendre.legvander(np.linspace(-1.0, 1.0, 65), number - 1) @ coefficients
     return Rule(time_map, root, nodes, time, slope, integral, integral @ integral, coefficients, antiderivative, barycentric, dense)
 
 
 @cache
 def _radau(number: int) -> tuple[Floats, Floats, Floats, Floats]:
-    """Return nodes on (0, 1], and the matrices to coefficients, to their integral, and of integration."""
+    """Return the nodes on (0, 1], and the matrices to Legendre coefficients, to those of the integral, and of integration at the nodes."""
     polynomial = np.zeros(number + 1)
     polynomial[number], polynomial[number - 1] = 1.0, -1.0  # P_N - P_{N-1} vanishes at the right-hand nodes
     z = np.sort(legendre.legroots(polynomial).real)
     derivative = legendre.legder(polynomial)
-    for _ in range(3):
+    for _ in range(3):  # refine the roots by Newton's method
         z -= legendre.legval(z, polynomial) / legendre.legval(z, derivative)
     z[-1] = 1.0
     coefficients: Floats = np.asarray(np.linalg.inv(legendre.legvander(z, number - 1)), dtype=np.float64)

@@ -1,4 +1,4 @@
-"""Linear equations of several systems at once, of which one may be singular."""
+"""Linear algebra on stacks of small matrices, with NaN results for the singular ones."""
 
 from __future__ import annotations
 
@@ -9,23 +9,26 @@ import numpy as np
 from vibroimpact.arrays import Floats
 
 
-def times(matrices: Floats, values: Floats) -> Floats:
-    """Return matrices (B, M, M) times values (B, M)."""
+def stacked_matvec(matrices: Floats, values: Floats) -> Floats:
+    """Return the products of matrices (B or 1, K, M) and vectors (B, M): (B, K)."""
     return np.asarray((matrices @ values[:, :, None])[:, :, 0])
 
 
-def solutions(matrices: Floats, right: Floats) -> Floats:
-    """Return the solutions of B systems of linear equations, (B, M); NaN where a matrix (B, M, M) is singular."""
+def stacked_solve(matrices: Floats, right: Floats) -> Floats:
+    """Return the solutions (B, M) of B linear systems; NaN where a matrix (B, M, M) is singular."""
     return _each(np.linalg.solve, matrices, right[:, :, None])[:, :, 0]
 
 
-def inverses(matrices: Floats) -> Floats:
+def stacked_inverse(matrices: Floats) -> Floats:
     """Return the inverse of each matrix (B, M, M); NaN where it is singular."""
     return _each(np.linalg.inv, matrices)
 
 
 def _each(function: Callable[..., Floats], *stacks: Floats) -> Floats:
-    """Return a function of each of several matrices, with a NaN result where it is singular: NumPy gives up all for one of them."""
+    """Apply a NumPy function to stacks of matrices, with NaN for the singular ones.
+
+    NumPy raises for the whole stack if one matrix is singular, so the stack is bisected until the singular ones are isolated.
+    """
     try:
         return np.asarray(function(*stacks))
     except np.linalg.LinAlgError:

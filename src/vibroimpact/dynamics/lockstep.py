@@ -1,4 +1,8 @@
-"""Runs several generators round by round, and solves what they ask for in groups: many drops at once."""
+"""Concurrent simulation of many drops: coroutines yield subproblems, which are solved in groups of one kind.
+
+Each drop is a generator. In each round all generators run until they yield subproblems, such as stretches of contact; those of the same
+kind are solved together as arrays, and the solutions are sent back.
+"""
 
 from __future__ import annotations
 
@@ -7,92 +11,93 @@ from typing import Any, Protocol, Self, TypeVar
 
 import numpy as np
 
-_TOGETHER = 30_000  # coordinates that are computed at once: their arrays stay in the cache
+_MOST_COORDINATES = 30_000  # in one group, so that its arrays fit in the processor's cache
 
 
-class Problem(Protocol):
-    """What a course asks for."""
+class Subproblem(Protocol):
+    """A subproblem that a coroutine yields, to be solved together with others of its kind."""
 
     @property
     def kind(self) -> object:
-        """What has to be the same for problems that are solved together."""
+        """Key that subproblems must share to be solved together."""
 
     @property
     def size(self) -> int:
-        """How many coordinates it has."""
+        """Number of coordinates, by which the size of groups is limited."""
 
     @classmethod
-    def solved(cls, problems: Sequence[Self]) -> Sequence[Any]:
-        """Return the solutions of problems of one kind."""
+    def solve_group(cls, problems: Sequence[Self]) -> Sequence[Any]:
+        """Return the solutions of subproblems of one kind."""
 
 
 Result = TypeVar("Result")
-Course = Generator[list[Any], list[Any], Result]
-"""A computation that yields lists of problems, gets back their solutions, and returns what came of it."""
+Coroutine = Generator[list[Any], list[Any], Result]
+"""A generator that yields lists of subproblems, receives their solutions, and returns a result."""
 
 
-def asked(problem: Problem) -> Course[Any]:
-    """Return the solution of a problem, or raise what kept it from being solved."""
+def solve(problem: Subproblem) -> Coroutine[Any]:
+    """Yield one subproblem and return its solution, or raise the exception that its solver raised."""
     (found,) = yield [problem]
     if isinstance(found, Exception):
         raise found
     return found
 
 
-def side_by_side(courses: Iterable[Course[Result]]) -> Course[list[Result]]:
-    """Return what comes of courses, as one course: in each round all that go on ask for what they need next."""
-    running = list(courses)
+def run_in_lockstep(coroutines: Iterable[Coroutine[Result]]) -> Coroutine[list[Result]]:
+    """Return the results of several coroutines, combined into one: each round yields the subproblems of all that are still running."""
+    running = list(coroutines)
     found: dict[int, Result] = {}
-    asked: dict[int, list[Any]] = {}
+    pending: dict[int, list[Any]] = {}
 
-    def go_on(number: int, solutions: list[Any] | None) -> None:
+    def advance(number: int, solutions: list[Any] | None) -> None:
         try:
-            asked[number] = running[number].send(solutions)  # type: ignore[arg-type]
+            pending[number] = running[number].send(solutions)  # type: ignore[arg-type]
         except StopIteration as end:
-            asked.pop(number, None)
+            pending.pop(number, None)
             found[number] = end.value
 
     for number in range(len(running)):
-        go_on(number, None)
-    while asked:
-        counts = [(number, len(problems)) for number, problems in asked.items()]
-        solutions = iter((yield [problem for problems in asked.values() for problem in problems]))
+        advance(number, None)
+    while pending:
+        counts = [(number, len(problems)) for number, problems in pending.items()]
+        solutions = iter((yield [problem for problems in pending.values() for problem in problems]))
         for number, count in counts:
-            go_on(number, [next(solutions) for _ in range(count)])
+            advance(number, [next(solutions) for _ in range(count)])
     return [found[number] for number in range(len(running))]
 
 
-def computed(course: Course[Result]) -> Result:
-    """Return what comes of a course, whose problems are solved in groups of a kind."""
-    with np.errstate(all="ignore"):  # guesses may be wild; what is not finite is found and tried again
+def run_coroutine(coroutine: Coroutine[Result]) -> Result:
+    """Run a coroutine to its end, solving its subproblems in groups, and return its result."""
+    with np.errstate(all="ignore"):  # Newton iterates may overflow; results that are not finite are detected and retried
         try:
-            problems = next(course)
+            problems = next(coroutine)
             while True:
-                problems = course.send(_solved(problems))
+                problems = coroutine.send(_solve_in_groups(problems))
         except StopIteration as end:
             found: Result = end.value
             return found
 
 
-def _solved(problems: list[Any]) -> list[Any]:
+def _solve_in_groups(problems: list[Any]) -> list[Any]:
+    """Return the solutions of subproblems in order, solved in groups of the same type and kind."""
     groups: dict[object, list[int]] = {}
     for number, problem in enumerate(problems):
         groups.setdefault((type(problem), problem.kind), []).append(number)
     found: dict[int, Any] = {}
     for numbers in groups.values():
         first = problems[numbers[0]]
-        most = max(_TOGETHER // max(first.size, 1), 1)
+        most = max(_MOST_COORDINATES // max(first.size, 1), 1)
         for begin in range(0, len(numbers), most):
-            some = numbers[begin : begin + most]
-            found.update(zip(some, _solved_alike([problems[number] for number in some]), strict=True))
+            chunk = numbers[begin : begin + most]
+            found.update(zip(chunk, _solve_group([problems[number] for number in chunk]), strict=True))
     return [found[number] for number in range(len(problems))]
 
 
-def _solved_alike(problems: list[Any]) -> list[Any]:
-    """Return the solutions of problems of one kind; in place of one, what it raises."""
+def _solve_group(problems: list[Any]) -> list[Any]:
+    """Return the solutions of subproblems of one kind; in place of a failed one, the exception."""
     try:
-        return list(problems[0].solved(problems))
-    except Exception as error:  # as of a law of another package, which must not end the others
+        return list(problems[0].solve_group(problems))
+    except Exception as error:  # raised by a user's contact law, for example: solve one by one, so that only that drop fails
         if len(problems) == 1:
             return [error]
-        return [found for problem in problems for found in _solved_alike([problem])]
+        return [found for problem in problems for found in _solve_group([problem])]

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.dynamics.vibrating.lying import Lying
+from vibroimpact.dynamics.vibrating.rest_motion import RestMotion
 
 
 @dataclass(frozen=True)
@@ -28,7 +28,7 @@ class Rest:
     stored: Floats
     written_off: Floats
     left: Floats
-    lying: tuple[Lying | None, ...]
+    lying: tuple[RestMotion | None, ...]
 
     def take(self, index: int) -> Rest:
         """Return the rest of one drop, as that of a batch of one."""

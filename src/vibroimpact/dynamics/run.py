@@ -16,7 +16,7 @@ from vibroimpact.dynamics.energy import CLOSURE_LIMIT, WRITE_OFF_LIMIT, close_le
 from vibroimpact.dynamics.flight import Flight
 from vibroimpact.dynamics.impact_rows import ImpactRows
 from vibroimpact.dynamics.leg import Leg
-from vibroimpact.dynamics.lockstep import Course
+from vibroimpact.dynamics.lockstep import Coroutine
 from vibroimpact.dynamics.outcome import OUTCOMES, Outcome
 from vibroimpact.dynamics.problem import MOST_IMPACTS, Problem
 from vibroimpact.dynamics.response import Response
@@ -89,7 +89,7 @@ class Run:
 
     # one flight and one contact --------------------------------------------------------------------
 
-    def advance(self) -> Course[Leg]:
+    def advance(self) -> Coroutine[Leg]:
         """Advance all moving drops to their next touch and through one contact, and return both as a leg."""
         drops = np.flatnonzero(self.moving)
         flight = Flight(self.time[drops], self.gap[drops], self.velocity[drops], self.gravity[drops])
@@ -118,7 +118,7 @@ class Run:
             self.rows.last["sensitivity"][leg.contact_drops] = growth
         return leg
 
-    def collide(self, leg: Leg, touch: Floats, speed: Floats) -> Course[Leg]:
+    def collide(self, leg: Leg, touch: Floats, speed: Floats) -> Coroutine[Leg]:
         """Solve the contact of drops, write the row of the impact table, and return the leg with the contact."""
         drops, law = leg.contact_drops, self.law(leg.contact_drops)
         row = self.rows.add()
@@ -147,7 +147,7 @@ class Run:
         self.judge(drops[moving], law if moving.all() else law.take(np.flatnonzero(moving)), row)
         return leg
 
-    def deform(self, leg: Leg, encounter: Encounter, touch: Floats, row: dict[str, Floats]) -> Course[tuple[Leg, Floats]]:
+    def deform(self, leg: Leg, encounter: Encounter, touch: Floats, row: dict[str, Floats]) -> Coroutine[tuple[Leg, Floats]]:
         """Return the leg with the contact of drops, and the energy lost in it [J]."""
         drops = leg.contact_drops
         until = (np.inf if self.problem.duration is None else self.problem.duration) - touch

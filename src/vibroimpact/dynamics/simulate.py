@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 
 from vibroimpact.dynamics.collocation import Rule
 from vibroimpact.dynamics.leg import Leg
-from vibroimpact.dynamics.lockstep import Course, computed, side_by_side
+from vibroimpact.dynamics.lockstep import Coroutine, run_coroutine, run_in_lockstep
 from vibroimpact.dynamics.outcome import Outcome
 from vibroimpact.dynamics.packed_list import PackedList
 from vibroimpact.dynamics.phase_plane.collocation import PlaneRule
@@ -57,7 +57,7 @@ def simulate(problem: StatesProblem, progress: Callable[[float], None] | None = 
     >>> simulate(problem).impacts["rebound_height_m"].round(6).tolist()
     [0.35, 0.1625, 0.115625]
     """
-    return computed(_simulated(problem, progress))
+    return run_coroutine(_simulated(problem, progress))
 
 
 def simulate_together(problems: Sequence[StatesProblem]) -> list[Response | Exception]:
@@ -73,18 +73,18 @@ def simulate_together(problems: Sequence[StatesProblem]) -> list[Response | Exce
     list of Response or Exception
         The exception in place of the response where a drop failed; the others are not affected.
     """
-    return computed(side_by_side(_guarded(_simulated(problem)) for problem in problems))
+    return run_coroutine(run_in_lockstep(_guarded(_simulated(problem)) for problem in problems))
 
 
-def _guarded(course: Course[Response]) -> Course[Response | Exception]:
-    """Return the result of a course, or the exception that it raises."""
+def _guarded(coroutine: Coroutine[Response]) -> Coroutine[Response | Exception]:
+    """Return the result of a coroutine, or the exception that it raises."""
     try:
-        return (yield from course)
+        return (yield from coroutine)
     except Exception as error:
         return error
 
 
-def _simulated(problem: StatesProblem, progress: Callable[[float], None] | None = None) -> Course[Response]:
+def _simulated(problem: StatesProblem, progress: Callable[[float], None] | None = None) -> Coroutine[Response]:
     """Return the response of a problem."""
     if not hasattr(problem, "to_problem"):
         raise InputError(f"simulate takes a Problem, or a case as vi.load_case(...) reads it, not {problem!r}")

@@ -1,4 +1,4 @@
-"""Simulate a system of several bodies with several contacts, and what came of it."""
+"""Simulation of a system of several bodies with several contacts, and its response."""
 
 from __future__ import annotations
 
@@ -12,22 +12,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vibroimpact.arrays import Bools, Floats
-from vibroimpact.dynamics.lockstep import computed
+from vibroimpact.dynamics.lockstep import run_coroutine
 from vibroimpact.dynamics.system import MovingBody, System
-from vibroimpact.dynamics.vibrating.free_motion import Apart
+from vibroimpact.dynamics.vibrating.active_contact import ContactDefinition
+from vibroimpact.dynamics.vibrating.free_motion import FreePhase
 from vibroimpact.dynamics.vibrating.linear_system import LinearSystem, State
 from vibroimpact.dynamics.vibrating.march import March
 from vibroimpact.dynamics.vibrating.stretch import VibratingStretch
-from vibroimpact.dynamics.vibrating.touching import Law
 from vibroimpact.errors import ComputationError, InputError
 
 _LONGEST = 1e9  # seconds
-_CLOSURE = 1e-6  # of the energy put in: more missing is an error
+_CLOSURE = 1e-6  # largest relative error of the energy balance
 
 
 @dataclass(frozen=True)
 class BodyMotion:
-    """How a body moves at some times: arrays have the shape of the times and a last axis.
+    """Motion of a body at given times; arrays have the shape of the times and a last axis.
 
     Attributes
     ----------
@@ -53,17 +53,17 @@ class SystemResponse:
     Attributes
     ----------
     system : System
-        What was simulated.
+        The system.
     impacts : dict of str to array
-        One entry an impact of a contact, in the order in which they begin: `contact`, its name; `time_s`, when the surfaces touch;
-        `closing_speed_m_s`; `duration_s`, NaN of one that lasts at the end; `max_force_N`, `time_of_max_force_s`, `max_indentation_m`,
-        `impulse_N_s`.
+        One entry per impact of a contact, in the order in which they begin: `contact`, its name; `time_s`, of first touch;
+        `closing_speed_m_s`; `duration_s`, NaN if the contact is still closed at the end; `max_force_N`, `time_of_max_force_s`,
+        `max_indentation_m`, `impulse_N_s`.
     energy : dict of str to float
         At the end [J]: `kinetic_J` and `potential_J` of all coordinates, `strain_J` of the modes, `contact_elastic_J`,
-        `modal_damping_J`, `contact_dissipated_J`, `plastic_work_J`; `input_J` at the start; `closure_relative`, what is missing as a
-        part of what moved.
+        `modal_damping_J`, `contact_dissipated_J`, `plastic_work_J`; `input_J` at the start; `closure_relative`, the error of the energy
+        balance relative to `input_J` plus the larger of `kinetic_J` and the magnitude of `potential_J`.
     end_time : float
-        When the run ended [s].
+        End of the run [s].
 
     See Also
     --------
@@ -80,7 +80,7 @@ class SystemResponse:
         return f"<SystemResponse: {len(self.impacts['time_s'])} impacts in {self.end_time:g} s>"
 
     def at(self, times: Any) -> dict[str, BodyMotion]:
-        """Return how the bodies move at times.
+        """Return the motion of all bodies at given times.
 
         Parameters
         ----------
@@ -126,7 +126,7 @@ class SystemResponse:
         return np.asarray(sum(mass * moved[name].velocity for name, mass in free.items()))
 
     def _times(self, times: Any) -> Floats:
-        """Return times within the run."""
+        """Return times as an array of floats; raise unless all lie within the run."""
         try:
             found = np.asarray(times)
             found = found.astype(float) if found.dtype.kind in "iuf" else np.full(1, np.nan)
@@ -138,10 +138,11 @@ class SystemResponse:
 
     @cached_property
     def _starts(self) -> Floats:
+        """Starts of the parts of the history [s]."""
         return np.array([part.start for part in self._march.parts])
 
-    def _parts_at(self, times: Floats) -> Iterator[tuple[VibratingStretch | Apart, Bools, Floats]]:
-        """Yield each motion of the history with the times that lie in it: which, and since its start [s]."""
+    def _parts_at(self, times: Floats) -> Iterator[tuple[VibratingStretch | FreePhase, Bools, Floats]]:
+        """Yield each motion of the history with a mask of the times within it, and these times since its start [s]."""
         index = np.maximum(np.searchsorted(self._starts, times, side="right") - 1, 0)
         for number in np.unique(index):
             part, here = self._march.parts[int(number)], index == number
@@ -155,7 +156,7 @@ class SystemResponse:
             state = motion.state(since)
             displacement[here], velocity[here] = state.displacement, state.velocity
             if isinstance(motion, VibratingStretch):
-                motion.forget()
+                motion.clear_cache()
         return State(displacement, velocity, np.zeros((len(times), 0)))
 
     def _parts(self, name: str, state: State, shape: tuple[int, ...]) -> tuple[Floats, Floats, Floats]:
@@ -169,24 +170,24 @@ class SystemResponse:
 def simulate_system(system: System, *, duration: float, progress: Callable[[float], None] | None = None) -> SystemResponse:
     """Simulate several bodies with several contacts.
 
-    Between contacts all motion is in closed form; through them it is integrated to the tolerance of the system, with all contacts that
-    act at once as one system of equations.
+    Motion between contacts is in closed form; contacts are integrated to the tolerance of the system, and all that act at the same time are
+    solved as one system of equations.
 
     Parameters
     ----------
     system : System
         Bodies and contacts.
     duration : float
-        When to stop [s], > 0.
+        Duration of the run [s], > 0.
     progress : callable, optional
-        Called with a number from 0 to 1 as it goes on.
+        Called with a number from 0 to 1 as the run proceeds.
 
     Raises
     ------
     InputError
-        If the duration is impossible, or no surfaces will ever touch.
+        If the duration is not a number in range, or no surfaces can ever touch.
     ComputationError
-        If a contact can't be integrated to the tolerance, the energy ledger does not close, or contacts follow each other without end.
+        If a contact can't be integrated to the tolerance, the energy balance does not close, or contacts follow each other without end.
 
     Examples
     --------
@@ -209,10 +210,12 @@ def simulate_system(system: System, *, duration: float, progress: Callable[[floa
             "no surfaces will ever touch: none approach each other at the start, and gravity, if there is any, lets both bodies of each "
             "contact fall alike; give a body a velocity, or hold one"
         )
-    march = March(linear, [Law(one.law, one.series, not one.same_spot) for one in system.contacts.values()], start, system.tolerance)
-    computed(march.course(duration, progress))
+    march = March(
+        linear, [ContactDefinition(one.law, one.series, not one.same_spot) for one in system.contacts.values()], start, system.tolerance
+    )
+    run_coroutine(march.run_until(duration, progress))
     names = list(system.contacts)
-    forces = np.array([impact.force.top() for impact in march.impacts]).reshape(-1, 2)
+    forces = np.array([impact.force.locate() for impact in march.impacts]).reshape(-1, 2)
     columns = {
         "contact": np.array([names[impact.contact] for impact in march.impacts]),
         "time_s": np.array([impact.start for impact in march.impacts]),
@@ -220,9 +223,10 @@ def simulate_system(system: System, *, duration: float, progress: Callable[[floa
         "closing_speed_m_s": np.array([impact.closing_speed for impact in march.impacts]),
         "max_force_N": forces[:, 0],
         "time_of_max_force_s": forces[:, 1],
-        "max_indentation_m": np.array([impact.indentation.top()[0] for impact in march.impacts]),
+        "max_indentation_m": np.array([impact.indentation.locate()[0] for impact in march.impacts]),
         "impulse_N_s": np.array([impact.impulse for impact in march.impacts]),
     }
+    # an independent check of the integration
     energy = _ledger(linear, start, march)
     if not energy["closure_relative"] <= _CLOSURE:
         raise ComputationError(f"the energy ledger does not close: {energy['closure_relative']:.2g} of the energy that moved is missing")
@@ -230,23 +234,25 @@ def simulate_system(system: System, *, duration: float, progress: Callable[[floa
 
 
 def _ledger(linear: LinearSystem, start: State, march: March) -> dict[str, float]:
-    """Return where the energy is at the end."""
+    """Return the energy balance at the end of a run [J]."""
     kinetic, strain = (float(part.sum()) for part in linear.energies(march.state))
     begun, potential = float(linear.energies(start)[0].sum()), -float(march.state.displacement @ linear.load)
     energy = {
         "kinetic_J": kinetic,
         "potential_J": potential,
         "strain_J": strain,
-        "contact_elastic_J": sum(float(touch.local.own_energy(touch.own(linear, march.state))) for touch in march.touching.values()),
+        "contact_elastic_J": sum(
+            float(touch.local.energy_at_indentation(touch.law_indentation(linear, march.state))) for touch in march.active.values()
+        ),
         "modal_damping_J": float(march.lost[:-1].sum()),
         "contact_dissipated_J": float(march.lost[-1]),
-        "plastic_work_J": march.plastic + sum(touch.plastic(linear, march.state) for touch in march.touching.values()),
+        "plastic_work_J": march.plastic + sum(touch.plastic_work(linear, march.state) for touch in march.active.values()),
     }
     moved = begun + max(abs(potential), kinetic)
     return {**energy, "input_J": begun, "closure_relative": abs(sum(energy.values()) - begun) / moved if moved else 0.0}
 
 
 def _motion(body: MovingBody, place: Floats, speed: Floats, modal: Floats) -> BodyMotion:
-    """Return how a body moves, from its rigid motions and its modal coordinates."""
+    """Return the motion of a body from its rigid motions and its modal coordinates."""
     along, turning = body.coordinates()
     return BodyMotion(place @ along, speed @ along, place @ turning, speed @ turning, modal)

@@ -1,8 +1,7 @@
-r"""Several bodies with several contacts: their statement.
+"""Definition of a system of several bodies with several contacts.
 
-Each body that is free moves as a rigid body, in three translations and, if it has an inertia, three rotations, and vibrates in the modes
-that it has. A contact is a point, a direction and a law. Displacements are small: directions and places stay what they are at the start,
-as they do through impacts.
+Each free body has three translations and, if it has an inertia, three rotations, and the vibration modes it is given. A contact is a
+point, a direction and a law. Displacements are small: directions and points stay those of the start, also through impacts.
 """
 
 from __future__ import annotations
@@ -24,8 +23,8 @@ from vibroimpact.errors import InputError, did_you_mean
 if TYPE_CHECKING:
     from vibroimpact.structures.modal_model import ModalBasis  # which loads sparse matrices
 
-_LARGEST = 1e15  # in SI: what is larger is no length, speed or acceleration of a body
-_UNIT = 1e-9  # by how much the length of a normal may differ from one
+_LARGEST = 1e15  # in SI units: larger values are rejected as lengths, speeds or accelerations
+_UNIT = 1e-9  # largest deviation of the length of a normal from one
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -37,13 +36,13 @@ class MovingBody:
     mass : float
         Mass [kg], > 0; infinite for a body that is held.
     inertia : float or array, shape (3,) or (3, 3), optional
-        Moment of inertia about the centre of mass [kg m^2]. A body without one does not turn.
+        Moment of inertia about the centre of mass [kg m^2]. A body without one does not rotate.
     centre : array, shape (3,)
-        Where the centre of mass is at the start [m].
+        Position of the centre of mass at the start [m].
     velocity, angular_velocity : array, shape (3,)
         Of the centre [m/s], and about it [rad/s], at the start.
     modes : ModalBasis, optional
-        How it vibrates. Its `points` tell how it moves at each contact, by the name of the contact.
+        Vibration modes. Its `points` give the mode shapes at each contact, by the name of the contact.
     """
 
     mass: float
@@ -70,7 +69,7 @@ class MovingBody:
 
     @property
     def held(self) -> bool:
-        """Is it held?"""
+        """Whether the body is held, of infinite mass."""
         return bool(np.isinf(self.mass))
 
     def coordinates(self) -> tuple[Floats, Floats]:
@@ -93,9 +92,9 @@ class PointContact:
     above, below : str
         Names of the bodies.
     law : CompliantLaw
-        Its law.
+        Contact law.
     point : array, shape (3,)
-        Where they touch [m].
+        Contact point [m].
     normal : array, shape (3,)
         Unit vector from the body below to that above.
     gap : float, default 0
@@ -103,7 +102,7 @@ class PointContact:
     series : QuasiStatic, optional
         Quasi-static compliance in series with the law.
     same_spot : bool, default True
-        Does each impact of this contact fall where the last one did? Else it finds fresh surfaces.
+        Whether each impact of this contact falls where the last one did; otherwise it meets undeformed surfaces.
     """
 
     above: str
@@ -146,14 +145,14 @@ class System:
     contacts : mapping of str to PointContact
         By their names; at least one.
     gravity : array, shape (3,), default 0
-        Acceleration of gravity [m/s^2]. Modes are counted from where they rest under it.
+        Acceleration of gravity [m/s^2]. Modal displacements are measured from the equilibrium under it.
     tolerance : float, default 1e-9
         Relative error allowed in the state at the end of each stretch of contact; 1e-13 to 1e-6.
 
     Raises
     ------
     InputError
-        If a contact names no body or one twice, both its bodies are held, or a body with modes does not know how it moves there.
+        If a contact names an unknown body or the same body twice, both its bodies are held, or the modes of a body lack the contact point.
 
     Examples
     --------
@@ -197,7 +196,7 @@ class System:
 
     @cached_property
     def slices(self) -> dict[str, tuple[slice, slice]]:
-        """Where the rigid motions of each body are among the coordinates, and where its modes; first come the former of all bodies."""
+        """Slices of the rigid motions and of the modes of each body among the coordinates; the rigid motions of all bodies come first."""
         rigid = [len(body.coordinates()[0]) for body in self.bodies.values()]
         modes = [0 if body.modes is None else len(body.modes.frequencies) for body in self.bodies.values()]
         at = np.cumsum([0, *rigid, *modes])
@@ -220,6 +219,7 @@ class System:
                 start[rigid] += turning @ body.inertia @ body.angular_velocity
             if body.modes is not None:
                 frequency[vibrating], damping[vibrating] = body.modes.angular_frequencies, body.modes.damping_ratios
+            # the approach of a contact grows with the motion of the body below along the normal, and shrinks with that of the one above
             for row, (where, contact) in enumerate(self.contacts.items()):
                 sign = (contact.below == name) * 1.0 - (contact.above == name)
                 if not sign:
@@ -236,7 +236,7 @@ class System:
 
 
 def _number(name: str, value: object) -> float:
-    """Return a number in SI."""
+    """Return a number as a float; raise InputError unless it is one."""
     if isinstance(value, bool) or not isinstance(value, Real):
         raise InputError(f"{name} must be a number in SI, not {value!r}")
     try:
@@ -246,7 +246,7 @@ def _number(name: str, value: object) -> float:
 
 
 def _array(value: object) -> Floats:
-    """Return numbers that are finite, and not absurdly large; none, if they are not."""
+    """Return an array of finite numbers below 1e15 in magnitude, or an empty one if the value is not such an array."""
     try:
         found = np.asarray(value)
         found = found.astype(float) if found.dtype.kind in "iuf" else np.zeros(0)
@@ -279,7 +279,7 @@ def _inertia(value: object) -> Floats:
 
 
 def _check_modes(modes: ModalBasis) -> None:
-    """Raise unless modes can vibrate."""
+    """Raise InputError unless modes have valid frequencies, damping ratios and point shapes."""
     names = ("frequencies", "damping_ratios", "points")
     if not all(hasattr(modes, name) for name in names) or not isinstance(modes.points, Mapping):
         raise InputError(f"modes must be a ModalBasis, not {type(modes).__name__}", "modes")

@@ -8,7 +8,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.dynamics.lockstep import computed
+from vibroimpact.dynamics.lockstep import run_coroutine
 from vibroimpact.dynamics.phase_plane.contact import contact_solver
 from vibroimpact.dynamics.problem import Problem, StatesProblem
 from vibroimpact.dynamics.response import Response
@@ -72,7 +72,7 @@ def _table_of(problem: Problem) -> Response:
     """Return the response of a block of drops, with arrays of a batch, and without its history."""
     run = Run(problem, contact_solver(problem.laws[0], problem.tolerance, math.prod(problem.shape)))
     while run.moving.any():
-        computed(run.advance())
+        run_coroutine(run.advance())
     return run.batch()
 
 

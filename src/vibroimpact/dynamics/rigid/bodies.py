@@ -12,10 +12,10 @@ from vibroimpact.dynamics.contact import FAILED, Contact
 from vibroimpact.dynamics.encounter import Encounter
 from vibroimpact.dynamics.flight import Flight
 from vibroimpact.dynamics.leg import Leg
-from vibroimpact.dynamics.lockstep import Course
+from vibroimpact.dynamics.lockstep import Coroutine
 from vibroimpact.dynamics.rigid.solve_contact import SolvesContact
 from vibroimpact.dynamics.vibrating.linear_system import FreeMotion
-from vibroimpact.dynamics.vibrating.lying import Lying
+from vibroimpact.dynamics.vibrating.rest_motion import RestMotion
 
 Motions = tuple[FreeMotion, ...]
 """Free motions of the bodies of each drop in a flight; empty for bodies that do not vibrate."""
@@ -37,7 +37,7 @@ class RigidBodies:
     """
 
     left: Floats
-    lying: list[Lying | None]
+    lying: list[RestMotion | None]
 
     def __init__(self, size: int, solve_contact: SolvesContact) -> None:
         self.columns = tuple(IMPACT_COLUMNS)
@@ -61,7 +61,7 @@ class RigidBodies:
 
     def collide(
         self, drops: Drops, encounter: Encounter, place: tuple[Floats, Floats], limits: tuple[Floats, Floats], row: dict[str, Floats]
-    ) -> Course[tuple[Contact, Floats, Floats]]:
+    ) -> Coroutine[tuple[Contact, Floats, Floats]]:
         """Return the contact of drops, its largest force [N], and the time of that since first touch [s].
 
         Parameters
@@ -105,7 +105,7 @@ class RigidBodies:
         """Return further entries of the energy ledger [J] (B,); `local_J` and `local_damping_J` are added to those of the contact."""
         return {}
 
-    def growth(self, leg: Leg) -> Course[Floats]:
+    def growth(self, leg: Leg) -> Coroutine[Floats]:
         """Return the growth of a small relative change of the drop up to the contact of a leg [-], one value per drop; or nothing."""
         yield from ()
         return np.zeros(0)

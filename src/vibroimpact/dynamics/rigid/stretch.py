@@ -10,7 +10,7 @@ import numpy as np
 from vibroimpact.arrays import Bools, Floats, Indices
 from vibroimpact.dynamics.collocation import Rule, collocation_rule
 from vibroimpact.dynamics.encounter import Encounter
-from vibroimpact.dynamics.linear_equations import inverses
+from vibroimpact.dynamics.linear_equations import stacked_inverse
 
 Aim = Literal["duration", "turn", "indentation", "force"]
 """The end of a stretch: a given duration, or the point where the indentation rate is zero, the indentation has a
@@ -224,7 +224,7 @@ class _Newton:
         for _ in range(_SHARED_SWEEPS):
             residual, *motion = self.residual(unknowns)
             if start.inverse is None:
-                start.inverse = inverses(self.jacobian(np.array([middle]), unknowns, *motion))[0]
+                start.inverse = stacked_inverse(self.jacobian(np.array([middle]), unknowns, *motion))[0]
             before, change = change, self.apply(unknowns, start.inverse @ residual) / scale
             worst = change.max()
             stalled = worst > 0.3 * before.max() and bool((change < self.settled).all())
@@ -245,7 +245,7 @@ class _Newton:
         change = np.full(unknowns.shape[1], np.inf)
         for _ in range(_OWN_SWEEPS):
             residual, *motion = self.residual(unknowns)
-            inverse = inverses(self.jacobian(everyone, unknowns, *motion))
+            inverse = stacked_inverse(self.jacobian(everyone, unknowns, *motion))
             change = self.apply(unknowns, np.einsum("bij,jb->ib", inverse, residual)) / (1.0 + np.abs(unknowns).max(axis=0))
             if not (change >= _CONVERGED).any():
                 break

@@ -1,11 +1,11 @@
-r"""What keeps frequencies above half the sampling rate out of samples: a converter's filter, an analogue one, or nothing.
+"""Anti-alias filters of a sensor: a converter's linear-phase filter, an analogue low-pass, or none.
 
-"sigma-delta" is the decimation filter of a delta-sigma converter: a linear-phase low-pass of 66 sampling periods, here the ideal one
-at half the rate under J. F. Kaiser's window (Nonrecursive digital filter design using the I0-sinh window function, Proc. IEEE Int. Symp.
+"sigma-delta" is the decimation filter of a delta-sigma converter: a linear-phase low-pass of 66 sampling periods, here the ideal one at
+half the rate under J. F. Kaiser's window (Nonrecursive digital filter design using the I0-sinh window function, Proc. IEEE Int. Symp.
 Circuits and Systems, 1974): from 0 to 0.45 of the rate flat within 0.001 dB, from 0.55 of it on at least 100 dB down. Its delay of 33
-samples is taken out, so that a sample holds a little of what comes after it. "butterworth" is S. Butterworth's low-pass of order eight
-(On the theory of filter amplifiers, Experimental Wireless 7:536, 1930), causal and with its delay. "none" takes what is there at the
-instants of the samples, and so folds higher frequencies into the band.
+samples is compensated, so that a sample also depends a little on later times. "butterworth" is S. Butterworth's low-pass of order eight (On
+the theory of filter amplifiers, Experimental Wireless 7:536, 1930), causal and with its delay. "none" takes the values at the sampling
+instants, so that higher frequencies alias into the band.
 """
 
 from __future__ import annotations
@@ -20,10 +20,10 @@ from vibroimpact.dynamics.sensors.pole_pairs import PolePairs
 from vibroimpact.dynamics.sensors.sensor import CORNER, Sensor
 
 REACH = 33
-"""Sampling periods over which the filter of a converter looks back, and ahead."""
+"""Half width of the converter's kernel in sampling periods."""
 FINENESS = 8
-"""Points a sampling period at which its kernel, and what answers to it, are known."""
-_KAISER = 10.4  # the window's parameter: 102 dB, and with the reach a transition of a tenth of the rate
+"""Points per sampling period of tables of the kernel and of its responses."""
+_KAISER = 10.4  # Kaiser's parameter: 102 dB, and with the reach a transition band of a tenth of the rate
 _ORDER = 8
 
 Section = tuple[float, float]
@@ -32,7 +32,7 @@ Section = tuple[float, float]
 
 @dataclass(frozen=True)
 class AntiAlias:
-    """An anti-alias filter: the reach of its linear-phase kernel in samples, zero if it has none, and its pairs of poles."""
+    """An anti-alias filter: half width of its linear-phase kernel in samples, zero if it has none, and its pairs of poles."""
 
     reach: int = 0
     sections: tuple[Section, ...] = ()
@@ -54,19 +54,19 @@ def antialias_of(sensor: Sensor) -> AntiAlias:
 
 
 def butterworth(corner: float) -> tuple[Section, ...]:
-    """Return the pairs of poles of a Butterworth low-pass of order eight, whose gain at the corner [Hz] is 1 / sqrt(2)."""
+    """Return the pairs of poles of a Butterworth low-pass of order eight with a gain of 1 / sqrt(2) at the corner frequency [Hz]."""
     omega = 2.0 * math.pi * corner
     angles = (math.pi * (2.0 * number + 1.0) / (2.0 * _ORDER) for number in range(_ORDER // 2))
     return tuple((omega**2, 2.0 * omega * math.sin(angle)) for angle in angles)
 
 
 def kernel(x: Floats) -> Floats:
-    """Return the kernel of a converter's filter at times in sampling periods; times the rate it is [1/s].
+    """Return the converter's kernel at times in sampling periods, per sampling period.
 
     Examples
     --------
     >>> x = np.arange(-REACH * 8, REACH * 8 + 1) / 8
-    >>> round(float(kernel(x).sum() / 8), 5)  # a constant passes as it is
+    >>> round(float(kernel(x).sum() / 8), 5)  # unit gain at frequency zero
     1.0
     """
     window = np.i0(_KAISER * np.sqrt(np.maximum(1.0 - (x / REACH) ** 2, 0.0))) / np.i0(_KAISER)
@@ -74,20 +74,20 @@ def kernel(x: Floats) -> Floats:
 
 
 def kernel_derivatives() -> Floats:
-    """Return the kernel and its first two derivatives [per sampling period, squared], (3, points), at `FINENESS` points a period."""
+    """Return the kernel and its first two derivatives per sampling period, (3, points), at `FINENESS` points per period."""
     points = 2 * REACH * FINENESS
     values = kernel(np.arange(-REACH * FINENESS, REACH * FINENESS + 1) / FINENESS)
-    size = 2 * points  # zeros apart, so that the ends do not meet
+    size = 2 * points  # zero padding against circular wrap-around
     spectrum, slope = np.fft.rfft(values, size), 2j * np.pi * np.fft.rfftfreq(size, 1.0 / FINENESS)
     slope[-1] = 0.0
     return np.stack([values, *(np.fft.irfft(spectrum * slope**order, size)[: points + 1] for order in (1, 2))])
 
 
 def parallel(sections: tuple[Section, ...]) -> list[tuple[Floats, Section]]:
-    """Return a low-pass of pairs of poles as a sum: of each pair the numerator a + b s, (2,), and the pair."""
+    """Return the partial fractions of a low-pass of pairs of poles: of each pair the numerator a + b s, (2,), and the pair."""
     parts = []
     for number, (stiffness, damping) in enumerate(sections):
-        at = PolePairs(np.array([stiffness]), np.array([damping]))
-        value = stiffness * at.low_pass([*sections[:number], *sections[number + 1 :]])
+        poles = PolePairs(np.array([stiffness]), np.array([damping]))
+        value = stiffness * poles.low_pass([*sections[:number], *sections[number + 1 :]])
         parts.append((value[:, 0], sections[number]))
     return parts

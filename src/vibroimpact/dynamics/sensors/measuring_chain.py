@@ -1,13 +1,12 @@
-r"""From the contact force to what a sensor puts out: the plate, a mounted resonance and an analogue filter as one linear system.
+r"""The chain from the contact force to the output of a sensor, as one linear system: plate, mounted resonance, analogue filter.
 
-The plate hangs still until it is hit, so that all that a sensor sees is the answer to the contact force. The displacement of a point is
+The plate is at rest before the first contact, so every sensor records the response to the contact force. The displacement of a point is
 
 .. math:: u(t) = \sum_i \varphi_i\,q_i(t) - C\,F(t)
 
-with C the static compliance between the contact and that point which the modes kept do not carry: those left out are quasi-static. Of
-that a derivative is taken, and a resonance or a filter of pairs of poles follows. The whole is a sum over oscillators, those of the plate
-and one for each of these pairs, all driven by the same force (partial fractions), and of what goes with the force itself and its
-derivatives.
+with the static compliance C between the contact and that point of the modes that are not kept: these respond quasi-statically. A
+derivative of it is taken, and a resonance or a filter of pairs of poles follows. By partial fractions the chain is a sum over oscillators,
+those of the plate and one for each of these pairs, all driven by the contact force, plus terms in the force and its derivatives.
 """
 
 from __future__ import annotations
@@ -23,29 +22,29 @@ from vibroimpact.dynamics.sensors.antialias import Section
 from vibroimpact.dynamics.sensors.pole_pairs import PolePairs
 from vibroimpact.dynamics.vibrating.oscillators import Oscillators
 
-_APART = 1e-6
-"""Relative distance that is kept between poles: of equal ones no partial fractions exist."""
+_POLE_DISTANCE = 1e-6
+"""Least relative distance between poles: of equal ones no partial fractions exist."""
 
 
 @dataclass(frozen=True)
 class MeasuringChain:
-    r"""A linear system from the contact force to S outputs.
+    """A linear system from the contact force to S outputs.
 
     Parameters
     ----------
-    of : Oscillators
-        The modes of the plate, then the pairs of poles of what follows, driven by the force with shape 1.
+    oscillators : Oscillators
+        The modes of the plate, then the pairs of poles of the instruments, driven by the force with shape 1.
     modes : int
-        How many of them are the plate's.
+        Number of modes of the plate among them.
     outputs : array, shape (2, S, n)
-        What the displacement and the velocity of each are worth in each output.
+        Weights of the displacement and the velocity of each in each output.
     direct : array, shape (S, 3)
-        What minus the force, and its first and second derivative, are worth besides.
+        Weights of minus the force, and of its first and second derivative.
     shapes, compliance, orders
-        Of what it was made, as `measuring_chain` takes them.
+        Arguments of `measuring_chain`.
     """
 
-    of: Oscillators
+    oscillators: Oscillators
     modes: int
     outputs: Floats
     direct: Floats
@@ -56,38 +55,38 @@ class MeasuringChain:
     @property
     def pairs(self) -> PolePairs:
         """The poles of all oscillators."""
-        return PolePairs(self.of.angular_frequency**2, self.of.damping)
+        return PolePairs(self.oscillators.angular_frequency**2, self.oscillators.damping)
 
     @property
     def plate(self) -> Oscillators:
         """The modes of the plate."""
-        return self.of.pick(np.arange(self.modes))
+        return self.oscillators.pick(np.arange(self.modes))
 
     @property
-    def own(self) -> Oscillators:
-        """The pairs of poles of what follows."""
-        return self.of.pick(np.arange(self.modes, len(self.of.shape)))
+    def instrument(self) -> Oscillators:
+        """The pairs of poles of the instruments."""
+        return self.oscillators.pick(np.arange(self.modes, len(self.oscillators.shape)))
 
 
 def measuring_chain(
     plate: Oscillators, shapes: Floats, compliance: Floats, orders: Sequence[int], sections: Sequence[Section]
 ) -> MeasuringChain:
-    """Return the chain of sensors that have the same resonance and filter.
+    """Return the chain of sensors with the same resonance and filter.
 
     Parameters
     ----------
     plate : Oscillators
         The modes of the plate.
     shapes : array, shape (S, modes)
-        How the points watched move in them [kg^-1/2].
+        Mode shapes at the points of the sensors [kg^-1/2].
     compliance : array, shape (S,)
-        Between the contact and these points, of the modes left out [m/N].
+        Compliance between the contact and these points of the modes left out [m/N].
     orders : sequence of int
-        Which derivative of the displacement each sensor takes.
+        Order of the derivative of the displacement that each sensor takes.
     sections : sequence of pairs of floats
-        The poles of what follows, each pair with a gain of one at frequency zero.
+        The poles of the instruments, each pair with a gain of one at frequency zero.
     """
-    sections = _apart(sections, plate)
+    sections = _separate_poles(sections, plate)
     at_modes = PolePairs(plate.angular_frequency**2, plate.damping)
     passed = at_modes.low_pass(sections)
     outputs = np.stack([shape * at_modes.product(at_modes.power(order), passed) for shape, order in zip(shapes, orders, strict=True)])
@@ -97,11 +96,11 @@ def measuring_chain(
         direct[:, 0] += np.where(np.asarray(orders) == 2, shapes @ plate.shape, 0.0)
     elif len(sections) == 1:
         direct[:, 0] = np.where(np.asarray(orders) == 2, sections[0][0] * compliance, 0.0)
-    own = [_of_section(number, sections, plate, shapes, compliance, orders) for number in range(len(sections))]
+    instrument = [_section_weights(number, sections, plate, shapes, compliance, orders) for number in range(len(sections))]
     return MeasuringChain(
         _with_sections(plate, sections),
         len(plate.shape),
-        np.concatenate([outputs, *own], axis=-1).transpose(1, 0, 2),
+        np.concatenate([outputs, *instrument], axis=-1).transpose(1, 0, 2),
         direct,
         shapes,
         compliance,
@@ -109,46 +108,48 @@ def measuring_chain(
     )
 
 
-def of_section(number: int, sections: Sequence[Section], orders: Sequence[int]) -> Floats:
-    """Return what one pair of poles, driven by the motion of a point, is worth in the outputs, at these poles, (2, S, 1)."""
+def section_outputs(number: int, sections: Sequence[Section], orders: Sequence[int]) -> Floats:
+    """Return the outputs of one pair of poles driven by the motion of a point, as elements at these poles, (2, S, 1)."""
     stiffness, damping = sections[number]
-    at = PolePairs(np.array([stiffness]), np.array([damping]))
-    passed = stiffness * at.low_pass([*sections[:number], *sections[number + 1 :]])
-    return np.stack([at.product(at.power(order), passed) for order in orders], axis=1)
+    poles = PolePairs(np.array([stiffness]), np.array([damping]))
+    passed = stiffness * poles.low_pass([*sections[:number], *sections[number + 1 :]])
+    return np.stack([poles.product(poles.power(order), passed) for order in orders], axis=1)
 
 
-def point_at(section: Section, plate: Oscillators, shapes: Floats, compliance: Floats) -> Floats:
-    """Return how points move under minus a force, beside what the modes do, at the poles of a section, (2, S, 1)."""
+def point_receptance(section: Section, plate: Oscillators, shapes: Floats, compliance: Floats) -> Floats:
+    """Return the receptance of points to minus the force at the poles of a section, (2, S, 1)."""
     stiffness, damping = section
     receptance = np.stack([plate.angular_frequency**2 - stiffness, plate.damping - damping])
     receptance = PolePairs(np.full_like(plate.shape, stiffness), np.full_like(plate.shape, damping)).inverse(receptance) * plate.shape
-    seen = receptance @ shapes.T  # (2, S)
-    seen[0] += compliance
-    return np.asarray(seen[..., None])
+    receptance_there = receptance @ shapes.T  # (2, S)
+    receptance_there[0] += compliance
+    return np.asarray(receptance_there[..., None])
 
 
-def _of_section(
+def _section_weights(
     number: int, sections: Sequence[Section], plate: Oscillators, shapes: Floats, compliance: Floats, orders: Sequence[int]
 ) -> Floats:
-    """Return what the motion of one pair of poles is worth in each output, (S, 2, 1)."""
+    """Return the weights of the motion of one pair of poles in each output, (S, 2, 1)."""
     stiffness, damping = sections[number]
-    at = PolePairs(np.array([stiffness]), np.array([damping]))
-    seen = at.product(of_section(number, sections, orders), point_at(sections[number], plate, shapes, compliance))
-    return seen.transpose(1, 0, 2)
+    poles = PolePairs(np.array([stiffness]), np.array([damping]))
+    receptance_there = poles.product(
+        section_outputs(number, sections, orders), point_receptance(sections[number], plate, shapes, compliance)
+    )
+    return receptance_there.transpose(1, 0, 2)
 
 
-def _apart(sections: Sequence[Section], plate: Oscillators) -> list[Section]:
-    """Return pairs of poles that lie a little apart from those of the plate and from each other."""
+def _separate_poles(sections: Sequence[Section], plate: Oscillators) -> list[Section]:
+    """Return pairs of poles, shifted slightly where they coincide with those of the plate or with each other."""
     found: list[Section] = []
     for stiffness, damping in sections:
         while True:
             others = PolePairs(
                 np.append(plate.angular_frequency**2, [one for one, _ in found]), np.append(plate.damping, [one for _, one in found])
             )
-            near, slope = np.abs(others.quadratic(stiffness, damping)) < _APART * np.array([[stiffness], [math.sqrt(stiffness)]])
+            near, slope = np.abs(others.quadratic(stiffness, damping)) < _POLE_DISTANCE * np.array([[stiffness], [math.sqrt(stiffness)]])
             if not (near & slope).any():
                 break
-            stiffness *= 1.0 + 3.0 * _APART
+            stiffness *= 1.0 + 3.0 * _POLE_DISTANCE
         found.append((stiffness, damping))
     return found
 

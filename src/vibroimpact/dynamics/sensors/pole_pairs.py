@@ -1,8 +1,8 @@
-r"""Transfer functions seen at the poles of linear oscillators, in real numbers whatever their damping.
+r"""Transfer functions at the poles of linear oscillators, in real arithmetic for any damping.
 
-What an oscillator does without force, :math:`\ddot q = -\omega^2 q - d\,\dot q`, is the exponential of the matrix A of its state
-:math:`(q, \dot q)`. What a linear system makes of that motion is the first row of :math:`f(A)\,(q, \dot q)^T`, with f the system's
-transfer function; and since :math:`A^2 = -\omega^2 - d A`, any :math:`f(A) = a + b A`, so that the output is :math:`a q + b \dot q`.
+The free motion of an oscillator, :math:`\ddot q = -\omega^2 q - d\,\dot q`, is the exponential of the matrix A of its state
+:math:`(q, \dot q)`. The forced output of a linear system driven by that motion is the first row of :math:`f(A)\,(q, \dot q)^T`, with the
+system's transfer function f. Since :math:`A^2 = -\omega^2 - d A`, any :math:`f(A) = a + b A`, and the output is :math:`a q + b \dot q`.
 Elements (a, b) of n oscillators are arrays of shape (2, ..., n).
 """
 
@@ -25,7 +25,7 @@ class PolePairs:
     damping: Floats
 
     def power(self, order: int) -> Floats:
-        """Return the element of the derivative of an order, 0 to 2: that power of A, (2, n)."""
+        """Return the element of the derivative of an order from 0 to 2, that power of A, (2, n)."""
         one, none = np.ones_like(self.stiffness), np.zeros_like(self.stiffness)
         return np.stack([(one, none), (none, one), (-self.stiffness, -self.damping)][order])
 
@@ -39,12 +39,12 @@ class PolePairs:
         return np.stack([a * c - b * d * self.stiffness, a * d + b * c - b * d * self.damping])
 
     def inverse(self, element: Floats) -> Floats:
-        """Return one over an element."""
+        """Return the inverse of an element."""
         a, b = element
         return np.asarray(np.stack([a - self.damping * b, -b]) / (a * a - self.damping * a * b + self.stiffness * b * b))
 
     def low_pass(self, sections: Sequence[tuple[float, float]]) -> Floats:
-        """Return the low-pass of other pairs of poles (stiffness, damping) in a row, whose gain at frequency zero is one, (2, n)."""
+        """Return the low-pass of other pairs of poles (stiffness, damping) in series, with unit gain at frequency zero, (2, n)."""
         passed = math.prod(stiffness for stiffness, _ in sections) * self.power(0)
         for section in sections:
             passed = self.product(passed, self.inverse(self.quadratic(*section)))

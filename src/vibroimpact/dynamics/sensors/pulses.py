@@ -1,4 +1,4 @@
-"""The contact force of a stretch of contact as what drives linear systems: impulses that integrate it exactly, and its derivatives."""
+"""The contact force of a stretch as the input of linear systems: equivalent impulses by quadrature, and its time derivatives."""
 
 from __future__ import annotations
 
@@ -12,37 +12,38 @@ from vibroimpact.arrays import Floats
 from vibroimpact.dynamics.vibrating.stretch import VibratingStretch
 
 _NODES, _TURN = 16, 10.0
-"""Of Gauss's rule on each panel, and radians of the fastest wave in it: to rounding."""
+"""Nodes of Gauss's rule per panel, and radians of the fastest oscillation in it: to rounding."""
 _SLOW = 3.0
-"""Radians in a stretch: what is slower is integrated by the nodes of the stretch itself."""
+"""Radians per stretch below which the nodes of the stretch itself integrate an oscillation."""
 _DEGREE = 16
-"""Of the polynomial whose derivatives are those of the force."""
+"""Degree of the polynomial of the force that is differentiated."""
 
 
 def gauss_rule(radians: float) -> tuple[Floats, Floats]:
-    """Return nodes on [0, 1] and weights of a rule that integrates waves of up to so many radians there."""
+    """Return nodes on [0, 1] and weights of a rule that integrates oscillations of up to so many radians there."""
     return _panels(max(1, math.ceil(radians / _TURN)))
 
 
 @lru_cache(maxsize=64)
 def _panels(number: int) -> tuple[Floats, Floats]:
+    """Return the composite Gauss rule with a number of panels, cached."""
     nodes, weights = np.polynomial.legendre.leggauss(_NODES)
     places = (np.arange(number)[:, None] + 0.5 * (nodes + 1.0)).ravel() / number
     return places, np.tile(0.5 * weights / number, number)
 
 
 def pulses(stretch: VibratingStretch, fastest: float, until: Floats | None = None) -> tuple[Floats, Floats]:
-    """Return times since the start [s] and impulses [N s] that act on a linear system as the force does.
+    """Return times since the start [s] and impulses [N s] that are equivalent to the force for a linear system.
 
     Parameters
     ----------
     stretch : VibratingStretch
         The stretch of contact.
     fastest : float
-        The highest angular frequency that the system answers to [rad/s].
+        Highest angular frequency to which the system responds [rad/s].
     until : array, shape (T,), optional
-        Times since the start [s], in order: then the results are (T, nodes), of the force between each and the one before, or the start.
-        By default it is the whole stretch.
+        Ascending times since the start [s]: the results are then (T, nodes), of the force between each and the previous one, or the
+        start. By default they cover the whole stretch.
     """
     length, rule = stretch.length, stretch.rule
     if until is None and fastest * length < _SLOW:
@@ -50,7 +51,7 @@ def pulses(stretch: VibratingStretch, fastest: float, until: Floats | None = Non
     ends = np.array([length]) if until is None else until
     begins = np.append(0.0, ends[:-1])
     longest = float((ends - begins).max(initial=0.0))
-    nodes, weights = gauss_rule(rule.root * fastest * longest)  # the map of time is so many times steeper, at most
+    nodes, weights = gauss_rule(rule.root * fastest * longest)  # bound of the slope of the time map
     begins, ends = rule.unmap_time(begins / length), rule.unmap_time(ends / length)
     x = begins[:, None] + (ends - begins)[:, None] * nodes
     force = rule.interpolate(x.ravel(), stretch.force[0]).reshape(x.shape)
@@ -62,7 +63,7 @@ def pulses(stretch: VibratingStretch, fastest: float, until: Floats | None = Non
 def force_derivatives(stretch: VibratingStretch, times: Floats) -> Floats:
     """Return the force [N] and its first and second derivative [N/s, N/s^2] at times since the start [s], (3, T).
 
-    At the touch itself the derivatives are those before it, zero: just after it that of a Hertzian force has no bound.
+    At the instant of touch the derivatives are those before it, zero: the second derivative of a Hertzian force is unbounded just after it.
     """
     grid = 0.5 * (1.0 - np.cos(np.pi * (np.arange(_DEGREE + 1) + 0.5) / (_DEGREE + 1)))
     coefficients = np.linalg.solve(legendre.legvander(2.0 * grid - 1.0, _DEGREE), stretch.contacts[0].force_at(grid))

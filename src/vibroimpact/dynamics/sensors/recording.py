@@ -1,4 +1,4 @@
-"""What sensors on the plate record: the motion of their points through a chain of instruments, as samples."""
+"""Signals of sensors on the plate: the motion of points through the instruments, as samples."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.sensors.antialias import Section, antialias_of
 from vibroimpact.dynamics.sensors.filtered_chain import filtered_chain
 from vibroimpact.dynamics.sensors.measuring_chain import MeasuringChain, measuring_chain
-from vibroimpact.dynamics.sensors.overload import finer_rate, overload, taken_away
-from vibroimpact.dynamics.sensors.sampled import around_first_contact, follow_at_instants, follow_filtered, longest_span
+from vibroimpact.dynamics.sensors.overload import clipped_part, finer_rate, overload
+from vibroimpact.dynamics.sensors.sampled import longest_span, outputs_around_first_contact, sample_at_instants, sample_filtered
 from vibroimpact.dynamics.sensors.sensor import Sensor, sample_count
 from vibroimpact.dynamics.vibrating.bodies import bases_of_plate
 from vibroimpact.dynamics.vibrating.oscillators import Oscillators
@@ -26,28 +26,28 @@ if TYPE_CHECKING:
     from vibroimpact.structures.modal_model import ModalBasis
 
 MOST_SAMPLES = 100_000_000
-"""Of one sensor; more do not fit into memory."""
+"""Largest number of samples of one sensor, for lack of memory beyond."""
 _NONE = np.zeros(3)
 _WIDER = 8
-"""Times the rate: up to half of that samples without a filter are taken to hold what is there."""
+"""Multiple of the rate: samples without a filter are taken to contain frequencies up to half of it."""
 
 
 @dataclass(frozen=True)
 class Signal:
-    """What a sensor recorded.
+    """Signal of a sensor.
 
     Parameters
     ----------
     sensor : Sensor
-        What recorded it.
+        The sensor.
     value : array, shape (samples,)
-        What was read at `time`, in the unit of the sensor.
+        Samples at `time`, in the unit of the sensor.
     uncertainty : float, default NaN
-        About how far it may be off for the modes left out, as a part of its rms value around the first contact.
+        Estimated error by the modes left out, relative to the signal's rms value around the first contact.
     peak : float, default NaN
-        The largest magnitude that reached an accelerometer's range, before it is clipped [m/s^2].
+        The largest magnitude at an accelerometer before clipping [m/s^2].
     overload_time : float, default 0
-        For how long it was driven beyond its range, in all [s].
+        Total time beyond its range [s].
     """
 
     sensor: Sensor
@@ -58,7 +58,7 @@ class Signal:
 
     @property
     def time(self) -> Floats:
-        """Times of the samples since the start [s], made anew when they are asked for: they take as much memory as the values."""
+        """Times of the samples since the start [s], recomputed on access, as they take as much memory as the values."""
         return self.times(0, len(self.value))
 
     def times(self, first: int, last: int) -> Floats:
@@ -66,8 +66,8 @@ class Signal:
         return np.arange(first, min(last, len(self.value))) / self.sensor.rate
 
     def first_at(self, time: float) -> int:
-        """Return the number of the first sample that is not before a time [s]; if there is none, how many there are."""
-        about = min(max(int(time * self.sensor.rate) - 2, 0), len(self.value))  # which is off by rounding
+        """Return the number of the first sample that is not before a time [s]; the number of samples if there is none."""
+        about = min(max(int(time * self.sensor.rate) - 2, 0), len(self.value))  # may be off by rounding
         return about + int(np.searchsorted(self.times(about, about + 5), time))
 
     @property
@@ -79,20 +79,19 @@ class Signal:
 def record(problem: Problem, segments: Sequence[VibratingSegment], sensors: Sequence[Sensor], end: float) -> dict[str, Signal]:
     """Return the signals of sensors over a run, by their names.
 
-    The chain is that of an instrument: the motion with all modes kept, and what the contact force does quasi-statically to those left
-    out; the mounted resonance; the range; the anti-alias filter; samples, with their noise and steps. All that is linear in it is
-    computed in closed form, at the samples alone.
+    The chain is that of an instrument: the motion of the modes kept and the quasi-static response of those left out; the mounted resonance;
+    the range; the anti-alias filter; sampling with noise and resolution. All linear parts are computed in closed form, at the samples only.
 
     Parameters
     ----------
     problem : Problem
-        What was simulated.
+        The problem.
     segments : sequence of VibratingSegment
         The history of one drop.
     sensors : sequence of Sensor
-        What is watched.
+        The sensors.
     end : float
-        When the run ends [s].
+        End of the run [s].
 
     Raises
     ------
@@ -110,7 +109,7 @@ def record(problem: Problem, segments: Sequence[VibratingSegment], sensors: Sequ
 
 
 def _checked(problem: Problem, sensors: Sequence[Sensor], end: float) -> ModalBasis:
-    """Return the modes of the plate, if it has any and they know the points that are watched."""
+    """Return the modes of the plate; raise InputError if it is rigid, lacks a point, or there would be too many samples."""
     modes = problem.plate.modes
     if modes is None:
         raise InputError("the plate is rigid, so that its points do not move; give it modes", "sensors")
@@ -127,6 +126,7 @@ def _checked(problem: Problem, sensors: Sequence[Sensor], end: float) -> ModalBa
 
 
 def _plate(problem: Problem) -> Oscillators:
+    """Return the rigid motions and modes of the plate as oscillators."""
     parts = ((basis.angular_frequencies, basis.damping_ratios, basis.contact) for basis in bases_of_plate(problem))
     return Oscillators(*(np.concatenate(part) for part in zip(*parts, strict=True)))
 
@@ -143,51 +143,53 @@ def _resonance(sensor: Sensor) -> tuple[Section, ...]:
 def _recorded(
     problem: Problem, modes: ModalBasis, segments: Sequence[VibratingSegment], group: Sequence[Sensor], end: float
 ) -> dict[str, Signal]:
-    """Return the signals of sensors of one rate, resonance and filter."""
+    """Return the signals of sensors with the same rate, resonance and filter."""
     sensor, plate = group[0], _plate(problem)
-    through, resonance, count = antialias_of(sensor), _resonance(sensor), sample_count(end, sensor.rate)
+    antialias, resonance, count = antialias_of(sensor), _resonance(sensor), sample_count(end, sensor.rate)
     bases = bases_of_plate(problem)
     shapes = np.stack([np.concatenate([basis.points[one.name] for basis in bases]) @ np.asarray(one.direction) for one in group])
     compliance = np.array([modes.residuals.get(one.name, _NONE) @ np.asarray(one.direction) for one in group])
     orders = [one.order for one in group]
+    # a converter's filter is applied in closed form; an analogue one is a part of the chain, sampled at instants
     bare = measuring_chain(plate, shapes, compliance, orders, resonance)
-    if through.reach:
+    if antialias.reach:
         known = filtered_chain(bare, sensor.rate, longest_span(segments, sensor.rate))
-        values = follow_filtered(known, segments, count)
+        values = sample_filtered(known, segments, count)
     else:
-        chain = measuring_chain(plate, shapes, compliance, orders, (*resonance, *through.sections))
-        values = follow_at_instants(chain, sensor.rate, segments, count)
-        rate = sensor.rate * (1 if through.sections else _WIDER)
+        chain = measuring_chain(plate, shapes, compliance, orders, (*resonance, *antialias.sections))
+        values = sample_at_instants(chain, sensor.rate, segments, count)
+        rate = sensor.rate * (1 if antialias.sections else _WIDER)
         known = filtered_chain(bare, rate, longest_span(segments, rate))
-    left_out = filtered_chain(_of_next_octave(plate, shapes, orders, resonance), known.rate, longest_span(segments, known.rate))
-    whole, doubted = (np.linalg.norm(around_first_contact(one, segments), axis=1) for one in (known, left_out))
-    uncertainties = doubted / np.where(whole > 0.0, whole, np.inf)
+    # the error by the modes left out, from a model of the next octave
+    left_out = filtered_chain(_next_octave_chain(plate, shapes, orders, resonance), known.rate, longest_span(segments, known.rate))
+    norm, left_out_norm = (np.linalg.norm(outputs_around_first_contact(one, segments), axis=1) for one in (known, left_out))
+    uncertainties = left_out_norm / np.where(norm > 0.0, norm, np.inf)
     signals = {}
     for number, one in enumerate(group):
         value, meter, facts = values[number], one.accelerometer, {"uncertainty": float(uncertainties[number])}
         if meter is not None and meter.range is not None:
             alone = measuring_chain(plate, shapes[[number]], compliance[[number]], [2], resonance)
-            found = overload(alone, finer_rate(one.rate, meter.resonance), segments, end, through.reach / one.rate, meter.range)
+            found = overload(alone, finer_rate(one.rate, meter.resonance), segments, end, antialias.reach / one.rate, meter.range)
             clipped = one.filter == "none"
-            value = np.clip(value, -meter.range, meter.range) if clipped else value - taken_away(found, through, one.rate, count)
+            value = np.clip(value, -meter.range, meter.range) if clipped else value - clipped_part(found, antialias, one.rate, count)
             facts |= {"peak": found.peak, "overload_time": found.time}
         signals[one.name] = Signal(one, _digitised(one, value), **facts)
     return signals
 
 
-def _of_next_octave(plate: Oscillators, shapes: Floats, orders: Sequence[int], resonance: Sequence[Section]) -> MeasuringChain:
-    """Return the chain of what modes above those kept may do beyond their quasi-static share.
+def _next_octave_chain(plate: Oscillators, shapes: Floats, orders: Sequence[int], resonance: Sequence[Section]) -> MeasuringChain:
+    """Return the chain of the modes left out of the next octave, beyond their quasi-static response, as an estimate.
 
-    They are taken for the like of the last octave, at twice the frequencies, and twice as many, as bending of a plate has them.
+    They are modelled on the last octave kept, at twice the frequencies; twice as many are assumed, as for the bending of a plate.
     """
     last = np.flatnonzero(plate.angular_frequency > 0.5 * plate.angular_frequency.max())
-    above, seen = plate.pick(last), 2.0 * shapes[:, last]
+    above, shapes_above = plate.pick(last), 2.0 * shapes[:, last]
     above = replace(above, angular_frequency=2.0 * above.angular_frequency)
-    return measuring_chain(above, seen, -(seen * above.shape / above.angular_frequency**2).sum(axis=1), orders, resonance)
+    return measuring_chain(above, shapes_above, -(shapes_above * above.shape / above.angular_frequency**2).sum(axis=1), orders, resonance)
 
 
 def _digitised(sensor: Sensor, value: Floats) -> Floats:
-    """Return samples with the noise and the steps of an accelerometer."""
+    """Return samples with the noise and the resolution of an accelerometer."""
     meter = sensor.accelerometer
     if meter is None:
         return value

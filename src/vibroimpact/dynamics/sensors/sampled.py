@@ -1,4 +1,4 @@
-"""The outputs of a measuring chain over the history of one drop, at a constant rate."""
+"""Outputs of a measuring chain over the history of one drop, at a constant sampling rate."""
 
 from __future__ import annotations
 
@@ -13,46 +13,46 @@ import numpy as np
 from vibroimpact.arrays import Bools, Floats
 from vibroimpact.dynamics.sensors.antialias import FINENESS, REACH, kernel
 from vibroimpact.dynamics.sensors.filtered_chain import FilteredChain, filter_gains, filtered_chain
-from vibroimpact.dynamics.sensors.lying_chain import lying_chain, lying_pulses
 from vibroimpact.dynamics.sensors.measuring_chain import MeasuringChain
 from vibroimpact.dynamics.sensors.pole_pairs import PolePairs
 from vibroimpact.dynamics.sensors.pulses import force_derivatives, pulses
-from vibroimpact.dynamics.vibrating.lying import Lying
+from vibroimpact.dynamics.sensors.rest_chain import rest_chain, rest_pulses
 from vibroimpact.dynamics.vibrating.oscillators import Oscillators
+from vibroimpact.dynamics.vibrating.rest_motion import RestMotion
 from vibroimpact.dynamics.vibrating.stretch import VibratingStretch
 
 if TYPE_CHECKING:
     from vibroimpact.dynamics.vibrating.segments import VibratingSegment
 
 _BLOCK, _ROWS = 512, 128
-"""Samples for which propagators are kept, the next block starting from where the last one ended; and blocks done at once, at most."""
+"""Samples per block, for which propagators are cached, and the largest number of blocks computed at once."""
 _KEPT = 2000
-"""Oscillators, at most, whose propagators are kept for the next drop on the same plate: 16 MB."""
+"""Largest number of oscillators whose propagators are cached for the next drop on the same plate: 16 MB."""
 _NEGLIGIBLE = 1e-20
-"""Of the fastest mode: what moves less is left out."""
+"""Peak speed, relative to that of the fastest oscillator, below which an oscillator is omitted."""
 _WORTH = 0.9
-"""Of the oscillators: leaving out fewer than a tenth takes longer than it saves."""
-_BAND = 0.6
-"""Of the rate: what the filter of a converter lets pass ends below it."""
+"""Fraction of the oscillators above which omitting the others takes longer than it saves."""
+_PASS_BAND = 0.6
+"""Fraction of the rate above which a converter's filter passes nothing."""
 
 
 @dataclass
 class _Span:
-    """A part of the history that is followed at once: where its oscillators are at its start, (2, n), and the impulses within it.
+    """A part of the history that is computed at once: state of its oscillators at its start, (2, n), and the impulses within it.
 
-    Over the part in which a sphere lies on the plate the oscillators go on with it, as `lying` says.
+    For the part with the sphere at rest on the plate, `rest` is its motion.
     """
 
     start: float
     end: float
-    place: Floats
+    initial: Floats
     times: list[Floats] = field(default_factory=list)
     impulses: list[Floats] = field(default_factory=list)
-    lying: Lying | None = None
+    rest: RestMotion | None = None
 
 
-def follow_filtered(filtered: FilteredChain, segments: Sequence[VibratingSegment], count: int, levels: Floats | None = None) -> Floats:
-    """Return the outputs of a chain under a converter's filter, (S, count).
+def sample_filtered(filtered: FilteredChain, segments: Sequence[VibratingSegment], count: int, levels: Floats | None = None) -> Floats:
+    """Return the outputs of a chain with a converter's filter, (S, count).
 
     Parameters
     ----------
@@ -61,266 +61,274 @@ def follow_filtered(filtered: FilteredChain, segments: Sequence[VibratingSegment
     segments : sequence of VibratingSegment
         The history of one drop.
     count : int
-        How many samples there are, from the start on.
+        Number of samples from the start on.
     levels : array, shape (S,), optional
-        Free vibration that stays below these magnitudes for good need not be followed: it is left zero.
+        Free vibration whose magnitudes stay below these is left zero.
     """
     rate, values = filtered.rate, np.zeros((len(filtered.outputs[0]), count))
-    blocks = _blocks(filtered.chain.of, filtered.outputs, rate)
+    blocks = _blocks(filtered.chain.oscillators, filtered.outputs, rate)
     for span in _spans(filtered.chain, segments, rate):
-        if span.lying is not None:
-            _lie(filtered, span.lying, span, values, levels)
+        if span.rest is not None:
+            _add_rest(filtered, span.rest, span, values, levels)
             break
-        first, last = _samples(span.start, rate), _samples(span.end, rate)
+        first, last = _first_sample(span.start, rate), _first_sample(span.end, rate)
         if span.end >= segments[-1].end:
             last = max(last, count)
         to = min(last, count - REACH)
         if to > first:
-            blocks.follow(values[:, first + REACH : to + REACH], span.place, first / rate - span.start, levels)
+            blocks.sample(values[:, first + REACH : to + REACH], span.initial, first / rate - span.start, levels)
         if span.times:
             filtered.add(values, np.concatenate(span.times), np.concatenate(span.impulses), last + REACH)
     return values
 
 
-def around_first_contact(filtered: FilteredChain, segments: Sequence[VibratingSegment]) -> Floats:
-    """Return the outputs around the first contact, which finds everything still, as far as the filter reaches, (S, samples)."""
+def outputs_around_first_contact(filtered: FilteredChain, segments: Sequence[VibratingSegment]) -> Floats:
+    """Return the outputs around the first contact, before which everything is at rest, within the filter's reach, (S, samples)."""
     rate = filtered.rate
     span = next((span for span in _spans(filtered.chain, segments, rate) if span.times), None)
     if span is None:
         return np.zeros((len(filtered.answers), 0))
-    first = _samples(span.start, rate) - REACH
-    values = np.zeros((len(filtered.answers), _samples(span.end, rate) + REACH - first))
+    first = _first_sample(span.start, rate) - REACH
+    values = np.zeros((len(filtered.answers), _first_sample(span.end, rate) + REACH - first))
     filtered.add(values, np.concatenate(span.times) - first / rate, np.concatenate(span.impulses), values.shape[1])
     return values
 
 
-def follow_filtered_chain(
+def sample_filtered_chain(
     chain: MeasuringChain, rate: float, segments: Sequence[VibratingSegment], count: int, levels: Floats | None = None
 ) -> Floats:
-    """Return the outputs of a chain once a converter's filter is put behind it, (S, count); see `follow_filtered`."""
-    return follow_filtered(filtered_chain(chain, rate, longest_span(segments, rate)), segments, count, levels)
+    """Return the outputs of a chain followed by a converter's filter, (S, count); see `sample_filtered`."""
+    return sample_filtered(filtered_chain(chain, rate, longest_span(segments, rate)), segments, count, levels)
 
 
-def follow_at_instants(chain: MeasuringChain, rate: float, segments: Sequence[VibratingSegment], count: int) -> Floats:
-    """Return the outputs of a chain at the instants of samples, (S, count), with nothing behind it."""
-    values, blocks = np.zeros((len(chain.direct), count)), _blocks(chain.of, chain.outputs, rate)
-    own = np.zeros((2, len(chain.of.shape) - chain.modes))
+def sample_at_instants(chain: MeasuringChain, rate: float, segments: Sequence[VibratingSegment], count: int) -> Floats:
+    """Return the outputs of a chain at the sampling instants, (S, count), without a further filter."""
+    values, blocks = np.zeros((len(chain.direct), count)), _blocks(chain.oscillators, chain.outputs, rate)
+    instrument_state = np.zeros((2, len(chain.oscillators.shape) - chain.modes))
     for segment in segments:
-        first, last = _samples(segment.start, rate), min(_samples(segment.end, rate), count)
+        first, last = _first_sample(segment.start, rate), min(_first_sample(segment.end, rate), count)
         last = count if segment is segments[-1] else last
-        place = np.concatenate([_place(segment), own], axis=1)
+        motion_state = np.concatenate([_initial_plate_state(segment), instrument_state], axis=1)
         if last > first:
             offset = first / rate - segment.start
-            if isinstance(segment.moving, VibratingStretch):
-                values[:, first:last] = _in_contact(chain, segment.moving, own, offset + np.arange(last - first) / rate)
-                segment.moving.forget()
-            elif isinstance(segment.moving, Lying):
-                together = lying_chain(chain, segment.moving, own + _laid_down(segments)[:, None])
-                _blocks(together.of, together.outputs, rate).follow(values[:, first:last], together.place, offset)
-                values[:, first:last] += together.constant[:, None]
+            if isinstance(segment.trajectory, VibratingStretch):
+                values[:, first:last] = _in_contact(chain, segment.trajectory, instrument_state, offset + np.arange(last - first) / rate)
+                segment.trajectory.clear_cache()
+            elif isinstance(segment.trajectory, RestMotion):
+                chained = rest_chain(chain, segment.trajectory, instrument_state + _rest_jump(segments)[:, None])
+                _blocks(chained.oscillators, chained.outputs, rate).sample(values[:, first:last], chained.initial, offset)
+                values[:, first:last] += chained.constant[:, None]
             else:
-                blocks.follow(values[:, first:last], place, offset)
-        own = _own_later(chain, segment, own)
+                blocks.sample(values[:, first:last], motion_state, offset)
+        instrument_state = _instrument_later(chain, segment, instrument_state)
     return values
 
 
 def longest_span(segments: Sequence[VibratingSegment], rate: float) -> float:
-    """Return how long a part of the history with contact lasts at most [s] that is followed at once."""
-    stretches = (segment.end - segment.start for segment in segments if isinstance(segment.moving, VibratingStretch))
+    """Return the largest length of a part of the history with contact that is computed at once [s]."""
+    stretches = (segment.end - segment.start for segment in segments if isinstance(segment.trajectory, VibratingStretch))
     return max(REACH / rate, *stretches, 0.0)
 
 
-def _lie(filtered: FilteredChain, lying: Lying, span: _Span, values: Floats, levels: Floats | None) -> None:
-    """Add the outputs from where a sphere lies on the plate on, to the end of `values` (S, samples).
+def _add_rest(filtered: FilteredChain, rest: RestMotion, span: _Span, values: Floats, levels: Floats | None) -> None:
+    """Add the outputs from the instant of rest on, to the end of `values` (S, samples).
 
-    What the filter looks back on is of the same motion once it has reached beyond its beginning. Until then the force of that motion
-    adds to what the chain gives of all before.
+    Samples whose kernel lies wholly after that instant see the oscillations at rest alone. For earlier ones the force of these oscillations
+    adds to the response to all previous motion.
     """
     rate, chain = filtered.rate, filtered.chain
-    first = _samples(span.start, rate)
-    times, impulses = lying_pulses(lying, 2.0 * np.pi * _BAND * rate, (first + 2 * REACH) / rate - span.start)
+    first = _first_sample(span.start, rate)
+    times, impulses = rest_pulses(rest, 2.0 * np.pi * _PASS_BAND * rate, (first + 2 * REACH) / rate - span.start)
     filtered.add(values, span.start + times, impulses, first + REACH)
     later = values[:, first + REACH :]
     if not later.shape[1]:
         return
-    together = lying_chain(chain, lying, span.place[:, chain.modes :])
-    pairs = PolePairs(together.of.angular_frequency**2, together.of.damping)
-    outputs = pairs.product(together.outputs, filter_gains(together.of, rate))
-    _blocks(together.of, outputs, rate).follow(later, together.place, first / rate - span.start, levels)
+    chained = rest_chain(chain, rest, span.initial[:, chain.modes :])
+    pairs = PolePairs(chained.oscillators.angular_frequency**2, chained.oscillators.damping)
+    outputs = pairs.product(chained.outputs, filter_gains(chained.oscillators, rate))
+    _blocks(chained.oscillators, outputs, rate).sample(later, chained.initial, first / rate - span.start, levels)
     passed = float(kernel(np.arange(-REACH * FINENESS, REACH * FINENESS + 1) / FINENESS).sum()) / FINENESS
-    later += passed * together.constant[:, None]
+    later += passed * chained.constant[:, None]
 
 
-def _laid_down(segments: Sequence[VibratingSegment]) -> Floats:
-    """Return what laying a sphere down, as the last segment begins, does to displacement and velocity of an oscillator of shape one.
+def _rest_jump(segments: Sequence[VibratingSegment]) -> Floats:
+    """Return the jump of displacement and velocity of an oscillator of shape one at the instant of rest.
 
-    It is an impulse of the contact, which makes surface and sphere move as one.
+    It comes from the contact impulse that makes surface and sphere move as one. The last segment begins at that instant.
     """
-    before, lying = segments[-2] if len(segments) > 1 else None, segments[-1].moving
+    before, rest = segments[-2] if len(segments) > 1 else None, segments[-1].trajectory
     if before is None:
         return np.zeros(2)
-    of = segments[-1].system
-    shape, velocity = of.shape[0, of.ground], before.state(np.array([before.end - before.start])).velocity[0, of.ground]
-    change = lying.start.velocity[of.ground] - velocity
+    oscillators = segments[-1].system
+    shape, velocity = (
+        oscillators.shape[0, oscillators.ground],
+        before.state(np.array([before.end - before.start])).velocity[0, oscillators.ground],
+    )
+    change = rest.start.velocity[oscillators.ground] - velocity
     return np.array([0.0, float(shape @ change) / float(shape @ shape) if shape.any() else 0.0])
 
 
-def _samples(time: float, rate: float) -> int:
+def _first_sample(time: float, rate: float) -> int:
     """Return the number of the first sample that is not before a time."""
     return math.ceil(time * rate - 1e-9)
 
 
-def _place(segment: VibratingSegment) -> Floats:
+def _initial_plate_state(segment: VibratingSegment) -> Floats:
     """Return displacements and velocities of the plate's modes at the start of a segment, (2, modes)."""
-    moving = segment.moving
+    trajectory = segment.trajectory
     ground = segment.system.ground
-    return np.stack([moving.start.displacement[ground], moving.start.velocity[ground]])
+    return np.stack([trajectory.start.displacement[ground], trajectory.start.velocity[ground]])
 
 
 def _spans(chain: MeasuringChain, segments: Sequence[VibratingSegment], rate: float) -> Iterator[_Span]:
-    """Yield the history in parts: neighbouring contacts together, as long as that is not longer than the filter reaches."""
-    own, reach = np.zeros((2, len(chain.of.shape) - chain.modes)), REACH / rate
-    fastest = max(2.0 * np.pi * _BAND * rate, float(chain.of.angular_frequency[chain.modes :].max(initial=0.0)))
+    """Yield the history in parts; neighbouring contacts are combined up to the filter's reach."""
+    instrument_state, reach = np.zeros((2, len(chain.oscillators.shape) - chain.modes)), REACH / rate
+    fastest = max(2.0 * np.pi * _PASS_BAND * rate, float(chain.oscillators.angular_frequency[chain.modes :].max(initial=0.0)))
     span: _Span | None = None
     for segment in segments:
-        if isinstance(segment.moving, Lying):
-            laid = _laid_down(segments)
+        if isinstance(segment.trajectory, RestMotion):
+            # rest ends the history: its jump is also an impulse on the motion before
+            jump = _rest_jump(segments)
             if span is not None:
                 span.times.append(np.array([segment.start]))
-                span.impulses.append(-laid[1:])
+                span.impulses.append(-jump[1:])
                 yield span
-            place = np.concatenate([_place(segment), own + laid[:, None]], axis=1)
-            yield _Span(segment.start, segment.end, place, lying=segment.moving)
+            motion_state = np.concatenate([_initial_plate_state(segment), instrument_state + jump[:, None]], axis=1)
+            yield _Span(segment.start, segment.end, motion_state, rest=segment.trajectory)
             return
+        # a part grows only while it has contacts, stays within the filter's reach, and the last segment is not reached
         if span is not None and not (span.times and segment.end - span.start <= reach and segment is not segments[-1]):
             yield span
             span = None
         if span is None:
-            span = _Span(segment.start, segment.end, np.concatenate([_place(segment), own], axis=1))
+            span = _Span(segment.start, segment.end, np.concatenate([_initial_plate_state(segment), instrument_state], axis=1))
         span.end = segment.end
-        pushed = None
-        if isinstance(segment.moving, VibratingStretch):
-            times, impulses = pushed = pulses(segment.moving, fastest)
+        force_pulses = None
+        if isinstance(segment.trajectory, VibratingStretch):
+            times, impulses = force_pulses = pulses(segment.trajectory, fastest)
             span.times.append(segment.start + times)
             span.impulses.append(impulses)
-        own = _own_later(chain, segment, own, pushed)
+        instrument_state = _instrument_later(chain, segment, instrument_state, force_pulses)
     if span is not None:
         yield span
 
 
-def _own_later(chain: MeasuringChain, segment: VibratingSegment, own: Floats, pushed: tuple[Floats, Floats] | None = None) -> Floats:
-    """Return where the oscillators of the chain itself are at the end of a segment, from where they are at its start."""
-    if not own.shape[1]:
-        return own
-    of = chain.own
+def _instrument_later(
+    chain: MeasuringChain, segment: VibratingSegment, instrument_state: Floats, force_pulses: tuple[Floats, Floats] | None = None
+) -> Floats:
+    """Return the state of the instruments' oscillators at the end of a segment, from that at its start."""
+    if not instrument_state.shape[1]:
+        return instrument_state
+    oscillators = chain.instrument
     length = segment.end - segment.start
-    later = _free(of, own, np.array(length))
-    if isinstance(segment.moving, VibratingStretch):
-        times, impulses = pushed or pulses(segment.moving, float(of.angular_frequency.max()))
-        later = later - np.tensordot(_impulse_answers(of, length - times), impulses, (1, 0))
+    later = _free(oscillators, instrument_state, np.array(length))
+    if isinstance(segment.trajectory, VibratingStretch):
+        times, impulses = force_pulses or pulses(segment.trajectory, float(oscillators.angular_frequency.max()))
+        later = later - np.tensordot(_impulse_answers(oscillators, length - times), impulses, (1, 0))
     return later
 
 
-def _free(of: Oscillators, place: Floats, time: Floats) -> Floats:
+def _free(oscillators: Oscillators, motion_state: Floats, time: Floats) -> Floats:
     """Return displacements and velocities after a free motion of some time [s], (2, ..., n)."""
-    later = of.transition(time)
-    return np.asarray(later[:, 0] * place[0] + later[:, 1] * place[1])
+    later = oscillators.transition(time)
+    return np.asarray(later[:, 0] * motion_state[0] + later[:, 1] * motion_state[1])
 
 
-def _impulse_answers(of: Oscillators, time: Floats) -> Floats:
+def _impulse_answers(oscillators: Oscillators, time: Floats) -> Floats:
     """Return displacements and velocities at times since a unit impulse, (2, times, n)."""
-    cosine, sine = of.propagators(time)
-    return np.stack([sine, cosine - of.damping * sine])
+    cosine, sine = oscillators.propagators(time)
+    return np.stack([sine, cosine - oscillators.damping * sine])
 
 
-def _in_contact(chain: MeasuringChain, stretch: VibratingStretch, own: Floats, times: Floats) -> Floats:
+def _in_contact(chain: MeasuringChain, stretch: VibratingStretch, instrument_state: Floats, times: Floats) -> Floats:
     """Return the outputs at times since the start of a stretch of contact, (S, T)."""
     times = np.clip(times, 0.0, stretch.length)
     state, ground = stretch.state(times), stretch.system.ground
     places = np.stack([state.displacement[:, ground], state.velocity[:, ground]])
-    if own.shape[1]:
-        of = chain.own
-        since, impulses = pulses(stretch, float(of.angular_frequency.max()), times)
-        gained = np.einsum("ktjn,tj->ktn", _impulse_answers(of, times[:, None] - since), impulses)
-        there, reached = np.empty((2, len(times), own.shape[1])), own
+    if instrument_state.shape[1]:
+        oscillators = chain.instrument
+        since, impulses = pulses(stretch, float(oscillators.angular_frequency.max()), times)
+        gained = np.einsum("ktjn,tj->ktn", _impulse_answers(oscillators, times[:, None] - since), impulses)
+        instrument_states, instrument_now = np.empty((2, len(times), instrument_state.shape[1])), instrument_state
         for number, passed in enumerate(np.diff(times, prepend=0.0)):
-            reached = _free(of, reached, np.array(passed)) - gained[:, number]
-            there[:, number] = reached
-        places = np.concatenate([places, there], axis=-1)
+            instrument_now = _free(oscillators, instrument_now, np.array(passed)) - gained[:, number]
+            instrument_states[:, number] = instrument_now
+        places = np.concatenate([places, instrument_states], axis=-1)
     moved = np.einsum("ksn,ktn->st", chain.outputs, places)
     return np.asarray(moved - chain.direct @ force_derivatives(stretch, times))
 
 
 @dataclass(frozen=True)
 class _Blocks:
-    """The oscillators that still move, what they are worth over a block of samples, C and S (samples + 1, n), and in the outputs.
+    """Oscillators in free motion with their weights in the outputs, and their propagators C and S over a block of samples (samples + 1, n).
 
-    `later`: the matrix that takes displacements and velocities a block on, (2, 2, n).
+    `later`: transition matrices of displacements and velocities over a block, (2, 2, n).
     """
 
-    of: Oscillators
+    oscillators: Oscillators
     outputs: Floats
     cosine: Floats
     sine: Floats
     later: Floats
 
     def pick(self, which: Bools) -> _Blocks:
-        """Return some of the oscillators."""
-        of = self.of.pick(np.flatnonzero(which))
-        return _Blocks(of, self.outputs[..., which], self.cosine[:, which], self.sine[:, which], self.later[..., which])
+        """Return a subset of the oscillators."""
+        oscillators = self.oscillators.pick(np.flatnonzero(which))
+        return _Blocks(oscillators, self.outputs[..., which], self.cosine[:, which], self.sine[:, which], self.later[..., which])
 
-    def follow(self, values: Floats, place: Floats, offset: float, levels: Floats | None = None) -> None:
-        """Write the outputs of a free motion from a place on into `values` (S, samples), the first sample `offset` [s] later."""
-        blocks, place, count = self, _free(self.of, place, np.array(offset)), values.shape[1]
-        least, first, rows = _NEGLIGIBLE * _swing(self.of, place).max(initial=0.0), 0, 1
+    def sample(self, values: Floats, motion_state: Floats, offset: float, levels: Floats | None = None) -> None:
+        """Write the outputs of a free motion from a state on into `values` (S, samples), with the first sample `offset` [s] later."""
+        blocks, motion_state, count = self, _free(self.oscillators, motion_state, np.array(offset)), values.shape[1]
+        least, first, rows = _NEGLIGIBLE * _peak_speeds(self.oscillators, motion_state).max(initial=0.0), 0, 1
         while first < count:
-            swing = _swing(blocks.of, place)
-            if levels is not None and np.all(blocks.bound(swing) <= levels):
+            peak_speeds = _peak_speeds(blocks.oscillators, motion_state)
+            if levels is not None and np.all(blocks.bound(peak_speeds) <= levels):
                 break
-            lasting = swing > least  # what damping has taken away need not be followed
+            lasting = peak_speeds > least  # omit oscillators that damping has stopped
             if np.count_nonzero(lasting) < _WORTH * len(lasting):
-                blocks, place = blocks.pick(lasting), place[:, lasting]
+                blocks, motion_state = blocks.pick(lasting), motion_state[:, lasting]
             part = min(_BLOCK * rows, count - first)
-            places = np.empty((-(-part // _BLOCK), *place.shape))
+            places = np.empty((-(-part // _BLOCK), *motion_state.shape))
             for number in range(len(places)):
-                places[number] = place
-                place = blocks.later[:, 0] * place[0] + blocks.later[:, 1] * place[1]
+                places[number] = motion_state
+                motion_state = blocks.later[:, 0] * motion_state[0] + blocks.later[:, 1] * motion_state[1]
             blocks.write(values[:, first : first + part], places)
             first, rows = first + part, min(2 * rows, _ROWS)
 
     def write(self, values: Floats, places: Floats) -> None:
-        """Write the outputs over blocks that begin at places (blocks, 2, n); the last one may be cut short."""
+        """Write the outputs over blocks that begin with states `places` (blocks, 2, n); the last block may be cut short."""
         displacement, velocity = places[:, 0], places[:, 1]
-        push = -(self.of.angular_frequency**2) * displacement - self.of.damping * velocity
-        whole, rest = divmod(values.shape[1], _BLOCK)
-        samples = _BLOCK if whole else rest
+        push = -(self.oscillators.angular_frequency**2) * displacement - self.oscillators.damping * velocity
+        full_blocks, rest = divmod(values.shape[1], _BLOCK)
+        samples = _BLOCK if full_blocks else rest
         ahead = np.concatenate([self.cosine[:samples].T, self.sine[:samples].T])  # (2 n, samples)
         for value, a, b in zip(values, *self.outputs, strict=True):
             of_each = np.concatenate([a * displacement + b * velocity, a * velocity + b * push], axis=1)
-            if whole:
-                np.matmul(of_each[:whole], ahead, out=value[: whole * _BLOCK].reshape(whole, _BLOCK))
+            if full_blocks:
+                np.matmul(of_each[:full_blocks], ahead, out=value[: full_blocks * _BLOCK].reshape(full_blocks, _BLOCK))
             if rest:
-                value[whole * _BLOCK :] = of_each[-1] @ ahead[:, :rest]
+                value[full_blocks * _BLOCK :] = of_each[-1] @ ahead[:, :rest]
 
-    def bound(self, swing: Floats) -> Floats:
-        """Return what the outputs can become at most (S,)."""
-        if not self.of.angular_frequency.all():  # what moves as a rigid body goes on for ever
+    def bound(self, peak_speeds: Floats) -> Floats:
+        """Return upper bounds of the magnitudes of the outputs (S,)."""
+        if not self.oscillators.angular_frequency.all():  # rigid motions are unbounded
             return np.full(self.outputs.shape[1], np.inf)
-        return np.asarray((np.abs(self.outputs[0]) / self.of.angular_frequency + np.abs(self.outputs[1])) @ swing)
+        return np.asarray((np.abs(self.outputs[0]) / self.oscillators.angular_frequency + np.abs(self.outputs[1])) @ peak_speeds)
 
 
-def _blocks(of: Oscillators, outputs: Floats, rate: float) -> _Blocks:
-    propagators = _kept_propagators if len(of.angular_frequency) <= _KEPT else _kept_propagators.__wrapped__
-    return _Blocks(of, outputs, *propagators(of.angular_frequency.tobytes(), of.damping_ratio.tobytes(), rate))
+def _blocks(oscillators: Oscillators, outputs: Floats, rate: float) -> _Blocks:
+    """Return oscillators with propagators over a block of samples, cached for few oscillators."""
+    propagators = _kept_propagators if len(oscillators.angular_frequency) <= _KEPT else _kept_propagators.__wrapped__
+    return _Blocks(oscillators, outputs, *propagators(oscillators.angular_frequency.tobytes(), oscillators.damping_ratio.tobytes(), rate))
 
 
 @lru_cache(maxsize=8)
 def _kept_propagators(frequencies: bytes, ratios: bytes, rate: float) -> tuple[Floats, Floats, Floats]:
-    """Return the propagators of a block of samples, and the transition over it, which drops on the same plate have in common."""
-    of = Oscillators(np.frombuffer(frequencies), np.frombuffer(ratios), np.zeros(len(frequencies) // 8))
-    return *of.propagators(np.arange(_BLOCK + 1) / rate), of.transition(np.array(_BLOCK / rate))
+    """Return the propagators and the transition over a block of samples, cached for drops on the same plate."""
+    oscillators = Oscillators(np.frombuffer(frequencies), np.frombuffer(ratios), np.zeros(len(frequencies) // 8))
+    return *oscillators.propagators(np.arange(_BLOCK + 1) / rate), oscillators.transition(np.array(_BLOCK / rate))
 
 
-def _swing(of: Oscillators, place: Floats) -> Floats:
-    """Return how fast each oscillator can ever become [m/s], from displacements and velocities (2, n)."""
-    return np.asarray(np.hypot(of.angular_frequency * place[0], place[1]))
+def _peak_speeds(oscillators: Oscillators, motion_state: Floats) -> Floats:
+    """Return upper bounds of the future speed of each oscillator [m/s], from displacements and velocities (2, n)."""
+    return np.asarray(np.hypot(oscillators.angular_frequency * motion_state[0], motion_state[1]))

@@ -1,4 +1,4 @@
-"""A sensor on the plate: where it is, what it takes, how it is sampled, and what an accelerometer adds."""
+"""A sensor on the plate: position, quantity, sampling, and the properties of an accelerometer."""
 
 from __future__ import annotations
 
@@ -8,17 +8,18 @@ from typing import Literal
 from vibroimpact.errors import InputError, did_you_mean
 
 FILTERS = ("sigma-delta", "butterworth", "none")
-CORNER = 0.4  # of the rate: that of a Butterworth filter unless it is given
 """The anti-alias filters that a sensor may have."""
+
+CORNER = 0.4  # default corner of a Butterworth filter, relative to the rate
 
 Quantity = Literal["displacement", "velocity", "acceleration"]
 _ORDERS: dict[Quantity, int] = {"displacement": 0, "velocity": 1, "acceleration": 2}
-"""Which derivative of the displacement each quantity is."""
+"""Order of the derivative of the displacement that each quantity is."""
 
 
 @dataclass(frozen=True)
 class Accelerometer:
-    """What an accelerometer adds to the acceleration of its base.
+    """Properties of an accelerometer beyond the acceleration of its base.
 
     Parameters
     ----------
@@ -27,7 +28,7 @@ class Accelerometer:
     damping_ratio : float, default 0.02
         Of that resonance [-].
     range : float, optional
-        Largest magnitude that it puts out [m/s^2]; beyond it is clipped, before the anti-alias filter.
+        Largest magnitude of its output [m/s^2], at which it is clipped before the anti-alias filter.
     noise : float, default 0
         Standard deviation of white noise in its samples [m/s^2]; the same in every run of one seed.
     resolution : float, optional
@@ -46,29 +47,29 @@ class Accelerometer:
 
 @dataclass(frozen=True)
 class Sensor:
-    """A point that is watched, and how it is sampled.
+    """A sensor at a point of the plate, and its sampling.
 
     Parameters
     ----------
     name : str
-        Under which the modes of the plate know the point.
+        Name of the point in the modes of the plate.
     quantity : str, default "acceleration"
         "displacement" [m], "velocity" [m/s] or "acceleration" [m/s^2].
     direction : tuple of three floats, default (0, 0, 1)
-        Unit vector along which it is taken; upwards by default.
+        Unit vector of the measured component; upwards by default.
     rate : float, default 50e3
         Samples per second [Hz], > 0.
     accelerometer : Accelerometer, optional
-        What reads it; without one it is what the point does.
+        The instrument; without one the signal is the motion of the point.
     filter : str, default "sigma-delta"
-        What keeps the frequencies above half the rate from its samples: "sigma-delta", "butterworth" or "none"; see `antialias_of`.
+        Anti-alias filter, against frequencies above half the rate: "sigma-delta", "butterworth" or "none"; see `antialias_of`.
     corner : float, optional
-        Frequency at which a Butterworth filter lets half of the power pass [Hz]; 0.4 of the rate by default.
+        Frequency at which a Butterworth filter passes half of the power [Hz]; 0.4 of the rate by default.
 
     Raises
     ------
     InputError
-        If there is no such filter, it has no corner, or the corner is not below half the rate.
+        If there is no such filter, it takes no corner, or the corner is not below half the rate.
     """
 
     name: str
@@ -98,12 +99,12 @@ class Sensor:
 
     @property
     def order(self) -> int:
-        """Which derivative of the displacement it takes."""
+        """Order of the derivative of the displacement that it takes."""
         return _ORDERS[self.quantity]
 
 
 def sample_count(duration: float, rate: float) -> int:
-    """Return how many samples there are from the start to a time [s], both among them, at a rate [Hz].
+    """Return the number of samples from the start to a time [s], both included, at a rate [Hz].
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""How B drops of bodies that vibrate fly, meet and lie: their systems, where their coordinates are, and what damping takes."""
+"""Drops whose bodies vibrate: their linear systems, flights, contacts and rest, for the run of a batch of B drops."""
 
 from __future__ import annotations
 
@@ -14,27 +14,27 @@ from vibroimpact.dynamics.contact import CAPTURED, RIDING, SETTLED, Contact, Pie
 from vibroimpact.dynamics.encounter import Encounter
 from vibroimpact.dynamics.flight import Flight
 from vibroimpact.dynamics.leg import Leg
-from vibroimpact.dynamics.lockstep import Course, side_by_side
+from vibroimpact.dynamics.lockstep import Coroutine, run_in_lockstep
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.rigid.bodies import Motions, RigidBodies
+from vibroimpact.dynamics.vibrating.contact_equilibrium import ContactEquilibrium
 from vibroimpact.dynamics.vibrating.linear_system import FreeMotion, LinearSystem, State
-from vibroimpact.dynamics.vibrating.lying import Lying, lay_down
 from vibroimpact.dynamics.vibrating.next_touch import next_touch
-from vibroimpact.dynamics.vibrating.riding import Riding
+from vibroimpact.dynamics.vibrating.rest_motion import RestMotion, bring_to_rest
 from vibroimpact.dynamics.vibrating.sensitivity import Neighbours
-from vibroimpact.dynamics.vibrating.visit import Visit, visit
+from vibroimpact.dynamics.vibrating.visit import Visit, follow_visit
 
 if TYPE_CHECKING:
     from vibroimpact.structures.modal_model import ModalBasis  # which loads sparse matrices
 
 
 def system_of(problem: Problem, mass: float, gravity: float) -> LinearSystem:
-    """Return the system of a drop: the fall of the sphere, the rigid motions of the plate, then the modes of both; and the local element.
+    """Return the linear system of a drop: the fall of the sphere, the rigid motions of the plate, the modes of both, and the local element.
 
     Parameters
     ----------
     problem : Problem
-        What is simulated.
+        The problem.
     mass, gravity : float
         Of this drop [kg, m/s^2].
     """
@@ -54,9 +54,9 @@ def system_of(problem: Problem, mass: float, gravity: float) -> LinearSystem:
 
 
 def slices_of(problem: Problem) -> tuple[slice, slice, slice]:
-    """Return where among the coordinates of a drop the rigid motions of the plate are, the modes of the sphere, and those of the plate.
+    """Return the slices of the plate's rigid motions, the sphere's modes and the plate's modes among the coordinates of a drop.
 
-    Before them is the fall of the sphere.
+    The fall of the sphere is the first coordinate.
     """
     rigid = 0 if problem.plate.rigid is None else len(problem.plate.rigid.frequencies)
     ends = np.cumsum([1, rigid, modes_of(problem.sphere), modes_of(problem.plate)]).tolist()
@@ -64,90 +64,90 @@ def slices_of(problem: Problem) -> tuple[slice, slice, slice]:
 
 
 def bases_of_plate(problem: Problem) -> list[ModalBasis]:
-    """Return the rigid motions of a plate that nothing holds, and its modes: what its `ground` coordinates are."""
+    """Return the rigid motions of a plate that is not held, and its modes, in the order of its coordinates."""
     return [basis for basis in (problem.plate.rigid, problem.plate.modes) if basis is not None]
 
 
 def centre_of(state: State, mass: Floats | float) -> tuple[Floats, Floats]:
-    """Return how far down the centre of the sphere of a drop is from where it touches [m], and how fast it comes down [m/s]."""
+    """Return the depth of the sphere's centre below its position at touch [m], and its downward speed [m/s]."""
     root = np.sqrt(mass)
     return np.asarray(state.displacement[..., 0] / root), np.asarray(state.velocity[..., 0] / root)
 
 
 def modes_of(body: Body) -> int:
-    """Return how many modes a body has."""
+    """Return the number of modes of a body."""
     return 0 if body.modes is None else len(body.modes.frequencies)
 
 
 class VibratingBodies(RigidBodies):
-    """The bodies of B drops of which some vibrate: a system a drop, which have their modes in common."""
+    """The bodies of B drops of which some vibrate: one linear system per drop, with the modes in common."""
 
     def __init__(self, problem: Problem, mass: Floats, gravity: Floats) -> None:
         self.problem, self.mass, size = problem, mass, len(mass)
         self.columns = tuple(ALL_IMPACT_COLUMNS)
         pairs = list(zip(mass.tolist(), gravity.tolist(), strict=True))
         self.system = system_of(problem, *pairs[0])
-        alike = {(mass, gravity): self.system.falling(mass**-0.5, gravity * mass**0.5) for mass, gravity in set(pairs)}
-        self.systems = [alike[pair] for pair in pairs]
+        distinct = {(mass, gravity): self.system.with_sphere(mass**-0.5, gravity * mass**0.5) for mass, gravity in set(pairs)}
+        self.systems = [distinct[pair] for pair in pairs]
         self.displacement, self.velocity = np.zeros((size, self.system.number)), np.zeros((size, self.system.number))
         self.local = np.zeros((size, len(self.system.rate)))
         self.lost = np.zeros((size, self.system.number + 1))
-        self.lying: list[Lying | None] = [None] * size
+        self.lying: list[RestMotion | None] = [None] * size
         self.left = np.full(size, np.nan)
         self.neighbours = Neighbours(problem, mass, self.system)
 
     def state(self, drop: int, gap: float, velocity: float) -> State:
         """Return the state of a drop whose sphere has a gap [m] and a velocity upwards [m/s]."""
-        state = State(*(part[drop].copy() for part in (self.displacement, self.velocity, self.local)))  # which go on changing
+        state = State(*(part[drop].copy() for part in (self.displacement, self.velocity, self.local)))  # copies
         root = self.mass[drop] ** 0.5
         state.displacement[0], state.velocity[0] = -root * gap, -root * velocity
         return state
 
     def place(self, drop: int, state: State) -> None:
-        """Note where the coordinates of a drop are."""
+        """Store the state of a drop."""
         self.displacement[drop], self.velocity[drop], self.local[drop] = state.displacement, state.velocity, state.local
 
     def next_touch(self, drops: Drops, flight: Flight, law: ContactLaw) -> tuple[Floats, Floats, Motions]:
-        """Return when the surfaces next meet as they move [s], the speed of the bodies then [m/s], and their free motions."""
+        """Return the times of the next touch [s], the approach speeds of the rigid bodies then [m/s], and the free motions of the drops."""
         assert isinstance(law, CompliantLaw)  # the problem has seen to it
         starts = zip(drops, flight.gap, flight.velocity, strict=True)
         motions = tuple(FreeMotion(self.systems[drop], self.state(drop, *sphere)) for drop, *sphere in starts)
         level = law.touch_level + np.zeros(len(motions))
         touch = flight.start + np.array([next_touch(motion, float(at), np.inf) for motion, at in zip(motions, level, strict=True)])
-        met = np.isfinite(touch)
-        return touch, -self.rigid_speed(drops, flight.at(np.where(met, touch, flight.start))[1]), motions
+        touches = np.isfinite(touch)
+        return touch, -self.rigid_speed(drops, flight.at(np.where(touches, touch, flight.start))[1]), motions
 
     def pass_flight(self, drops: Drops, motions: Motions, elapsed: Floats) -> None:
-        """Let the coordinates of drops move freely."""
+        """Advance the coordinates of drops by free motion."""
         for drop, motion, time in zip(drops, motions, elapsed, strict=True):
             self.lost[drop] += motion.lost_by(time)
             self.place(drop, motion.state(time))
 
     def closing_speed(self, drops: Drops, speed: Floats, velocity: Floats) -> Floats:
-        """Return the speed at which the surfaces approach each other, with what vibrates outside the contact."""
+        """Return the closing speed of the surfaces, with the vibration outside the contact [m/s]."""
         states = (self.state(drop, 0.0, up) for drop, up in zip(drops, velocity, strict=True))
         return np.array([float(self.systems[drop].outer_rates(state)[0]) for drop, state in zip(drops, states, strict=True)])
 
     def rigid_speed(self, drops: Drops, velocity: Floats) -> Floats:
-        """Return the speed at which the bodies part as rigid bodies [m/s], of which the plate may move as well."""
+        """Return the separation speed of the rigid motions [m/s], of sphere and plate."""
         states = (self.state(drop, 0.0, up) for drop, up in zip(drops, velocity, strict=True))
         return np.array([-float(self.systems[drop].rigid_motion(state)[1][0]) for drop, state in zip(drops, states, strict=True)])
 
     def collide(
         self, drops: Drops, encounter: Encounter, place: tuple[Floats, Floats], limits: tuple[Floats, Floats], row: dict[str, Floats]
-    ) -> Course[tuple[Contact, Floats, Floats]]:
-        """Take drops through their visits, side by side."""
+    ) -> Coroutine[tuple[Contact, Floats, Floats]]:
+        """Take drops through their visits, in lockstep."""
         (gaps, velocities), (rest_speed, until) = place, limits
-        starts, courses = [], []
+        starts, followed = [], []
         for number, drop in enumerate(drops):
             one, problem = encounter.pick(np.array([number])), self.problem
-            # as Hertz's contact takes longer with a larger mass: where the plate is free, the two have a smaller one
+            # the duration of Hertz's contact goes with the 0.4th power of the mass; a free plate reduces the effective mass
             lighter = float(self.systems[drop].mass[0] / one.mass[0]) ** 0.4
             start, pace = self.state(drop, gaps[number], velocities[number]), 3.0 * lighter * float(one.depth[0] / one.speed_scale[0])
             rules = (problem.tolerance, pace, not problem.same_spot, float(rest_speed[number]), float(until[number]))
-            courses.append(visit(self.systems[drop], one.law.take(0), problem.quasi_static, start, *rules))
+            followed.append(follow_visit(self.systems[drop], one.law.take(0), problem.quasi_static, start, *rules))
             starts.append(start)
-        visits = yield from side_by_side(courses)
+        visits = yield from run_in_lockstep(followed)
         for number, (drop, start, found) in enumerate(zip(drops, starts, visits, strict=True)):
             system = self.systems[drop]
             before, after = (float(np.sum(system.energies(state), axis=0)[system.vibrating].sum()) for state in (start, found.state))
@@ -156,34 +156,34 @@ class VibratingBodies(RigidBodies):
             self.lost[drop, :-1] += found.lost[:-1]
             self.place(drop, found.state)
             if found.outcome in (CAPTURED, SETTLED, RIDING):
-                riding = Riding(system, found.local)
-                self.left[drop] = riding.excess(found.state, found.stored)
+                equilibrium = ContactEquilibrium(system, found.local)
+                self.left[drop] = equilibrium.excess(found.state, found.stored)
                 if found.outcome != RIDING:
-                    self.lying[drop] = lying = lay_down(riding, found.state, found.stored)
-                    self.left[drop] = lying.left
+                    self.lying[drop] = lying = bring_to_rest(equilibrium, found.state, found.stored)
+                    self.left[drop] = lying.excess
         force, when = (np.array([getattr(found, name) for found in visits]) for name in ("max_force", "time_of_max_force"))
         return contact_of(visits, encounter.law), force, when
 
     def falls_back(self, contact: Contact, law: CompliantLaw, gravity: Floats) -> Bools:
-        """Tell that none does: a visit has followed those that do."""
+        """Return False for all drops: a visit includes the contacts of those that fall back."""
         return np.zeros(len(gravity), dtype=bool)
 
     def rests(self, drops: Drops, velocity: Floats, rest_speed: Floats) -> Bools:
-        """Tell which have been laid down."""
+        """Return which drops have come to rest."""
         return np.array([self.lying[drop] is not None for drop in drops], dtype=bool)
 
     def laid(self, drops: Drops, law: ContactLaw, weight: Floats, energy: Floats) -> dict[str, Floats]:
-        """Return how drops lie that have been laid down: `sag` [m], `stored` and `written_off` [J]."""
+        """Return `sag` [m], `stored` and `written_off` [J] of drops that have come to rest."""
         lying = [found for drop in drops if (found := self.lying[drop]) is not None]
-        told = [(found.riding.sag, found.riding.stored, found.written_off) for found in lying]
-        return dict(zip(("sag", "stored", "written_off"), np.array(told).reshape(-1, 3).T, strict=True))
+        rows = [(found.equilibrium.sag, found.equilibrium.stored, found.written_off) for found in lying]
+        return dict(zip(("sag", "stored", "written_off"), np.array(rows).reshape(-1, 3).T, strict=True))
 
     def follow(self, drops: Drops, elapsed: Floats, sag: Floats, stored: Floats) -> tuple[Floats, Floats, Floats]:
-        """Let drops lie on what vibrates, and move with it."""
+        """Advance drops at rest by their small oscillations; return gaps [m], upward velocities [m/s] and energies in the contacts [J]."""
         ends = np.zeros((len(drops), 3))
         for number, drop in enumerate(drops):
             lying, time = self.lying[drop], elapsed[number : number + 1]
-            assert lying is not None  # it has been laid down
+            assert lying is not None  # it has come to rest
             state = lying.state(time).take(0)
             self.lost[drop] += lying.lost_by(time)[0]
             self.place(drop, state)
@@ -191,12 +191,12 @@ class VibratingBodies(RigidBodies):
             ends[number] = -float(depth), -float(sinking), float(lying.stored(time)[0])
         return ends[:, 0], ends[:, 1], ends[:, 2]
 
-    def growth(self, leg: Leg) -> Course[Floats]:
-        """Return the growth that a second drop beside each shows."""
+    def growth(self, leg: Leg) -> Coroutine[Floats]:
+        """Return the growth of a small change of each drop by the impact of a leg [-]."""
         return (yield from self.neighbours.follow(leg))
 
     def energies(self) -> dict[str, Floats]:
-        """Return the entries of the ledger [J], (B,); what the local elements hold, and lost in flight, apart."""
+        """Return the entries of the energy balance [J], (B,), with separate ones for the local elements."""
         state = State(self.displacement, self.velocity, self.local)
         (kinetic, strain), (rigid, sphere, plate) = self.system.energies(state), slices_of(self.problem)
         return {
@@ -212,7 +212,7 @@ class VibratingBodies(RigidBodies):
 
 
 def contact_of(visits: list[Visit], law: CompliantLaw) -> Contact:
-    """Return visits of several drops as one contact of them all; `law` is theirs before it."""
+    """Return the visits of several drops as one contact; `law` holds their laws before it."""
 
     def gathered(name: str) -> Floats:
         return np.array([getattr(found, name) for found in visits], dtype=float)

@@ -1,4 +1,4 @@
-"""Free motion between two contacts, or inside an indentation once the law has stopped pushing."""
+"""Force-free phase of a visit: between two contacts, or inside an indentation once the law has stopped pushing."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from vibroimpact.dynamics.vibrating.local import LocalContact
 
 
 @dataclass(frozen=True)
-class Apart:
+class FreePhase:
     """Free motion between two contacts, or inside an indentation once the law has stopped pushing.
 
-    `length` [s]. `recoiling`: contacts, by their numbers, that hold in their indentation what is lost as it recovers; where none is, all
-    surfaces are apart.
+    `length` [s]. `recoiling`: contacts, with their numbers, whose surfaces still overlap without a force; the energy stored in their
+    indentation is lost as it recovers. Where it is empty, all surfaces are apart.
     """
 
     free: FreeMotion
@@ -25,16 +25,16 @@ class Apart:
 
     @property
     def local(self) -> LocalContact | None:
-        """The first contact that recoils, if one does."""
+        """The first contact that recoils, or None."""
         return self.recoiling[0][1] if self.recoiling else None
 
     @property
     def duration(self) -> Floats:
-        """How long it lasts [s], as an array of one."""
+        """Its length [s], as an array of one."""
         return np.array([self.length])
 
-    def take(self, drops: Bools) -> Apart:
-        """Return itself: it is of one drop."""
+    def take(self, drops: Bools) -> FreePhase:
+        """Return itself: it belongs to one drop."""
         return self
 
     def state(self, time: Floats) -> State:
@@ -42,18 +42,18 @@ class Apart:
         return self.free.state(time)
 
     def lost_by(self, time: Floats) -> Floats:
-        """Return what is lost since the start [J] at times since then [s], (..., n + 1): in each coordinate; last, in the contacts."""
+        """Return the energy lost since the start [J] at times since then [s], (..., n + 1): in each coordinate; last, in the contacts."""
         return self.lost_at(self.free.state(time))
 
     def lost_at(self, state: State) -> Floats:
-        """Return the same of states that the motion comes to."""
-        lost, of = self.free.lost_at(state), self.free.system
+        """Return the energy lost since the start [J] as in `lost_by`, at states of this motion."""
+        lost, system = self.free.lost_at(state), self.free.system
         for number, local in self.recoiling:
-            lost[..., -1] += given_up(of, number, local, self.free.start, state)
+            lost[..., -1] += recoil_loss(system, number, local, self.free.start, state)
         return lost
 
 
-def given_up(system: LinearSystem, number: int, local: LocalContact, before: State, now: State) -> Floats:
-    """Return what a contact that recoils without a force loses of the energy in its indentation from a state to others [J]."""
+def recoil_loss(system: LinearSystem, number: int, local: LocalContact, before: State, now: State) -> Floats:
+    """Return the stored energy that a recoiling contact has lost between a state and later ones [J]."""
     begun, left = (local.elastic_energy(np.maximum(system.approach(at)[..., number], local.release_level)) for at in (before, now))
     return np.asarray(begun - left)

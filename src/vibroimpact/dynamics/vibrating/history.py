@@ -1,4 +1,4 @@
-"""The columns of a history of bodies that vibrate."""
+"""Columns of the history of one drop whose bodies vibrate."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ import numpy as np
 from vibroimpact.arrays import Floats
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.vibrating.bodies import bases_of_plate, centre_of, slices_of
-from vibroimpact.dynamics.vibrating.free_motion import Apart
+from vibroimpact.dynamics.vibrating.free_motion import FreePhase
 from vibroimpact.dynamics.vibrating.linear_system import LinearSystem, State
 from vibroimpact.dynamics.vibrating.local import LocalContact
-from vibroimpact.dynamics.vibrating.lying import Lying
+from vibroimpact.dynamics.vibrating.rest_motion import RestMotion
 from vibroimpact.dynamics.vibrating.segments import VibratingSegment
 from vibroimpact.dynamics.vibrating.stretch import VibratingStretch
 
@@ -23,77 +23,77 @@ if TYPE_CHECKING:
 
 def vibrating_history(problem: Problem, segment: VibratingSegment, time: Floats) -> dict[str, Floats]:
     """Return all columns at times since the start of a segment [s] (T,)."""
-    of, motion = segment.system, segment.motion
+    system, motion = segment.system, segment.motion
     state, same = segment.state(time), np.ones_like(time)
     mass, gravity = float(problem.sphere.mass), float(problem.gravity)
-    stored, plastic, force, lost = of.local_energy(state), 0.0 * same, 0.0 * same, segment.spent[:-1]
+    stored, plastic, force, lost = system.local_energy(state), 0.0 * same, 0.0 * same, segment.lost_before[:-1]
     if isinstance(motion, VibratingStretch):
         force = motion.contacts[0].force_at(motion.rule.unmap_time(time / motion.length))
         lost = lost + motion.lost_by(time)
-        motion.forget()
-    elif isinstance(motion, Lying):
+        motion.clear_cache()
+    elif isinstance(motion, RestMotion):
         force, lost, stored = motion.force(time), lost + motion.lost_by(time), stored + motion.stored(time)
     else:
         lost = lost + motion.lost_at(state)
-    local = motion.local if isinstance(motion, Apart) else motion.contacts[0].local if isinstance(motion, VibratingStretch) else None
+    local = motion.local if isinstance(motion, FreePhase) else motion.contacts[0].local if isinstance(motion, VibratingStretch) else None
     if local is not None:
-        held, plastic = _held(local, of, state)
-        stored = stored + held
+        contact_energy, plastic = _contact_energies(local, system, state)
+        stored = stored + contact_energy
         if isinstance(motion, VibratingStretch):
             plastic = plastic - local.plastic_work(max(float(motion.contacts[0].approach[0]), local.release_level))
-    depth, sinking = centre_of(state, mass)
+    depth, fall_speed = centre_of(state, mass)
     return {
         "time_s": segment.start + time,
         "position_m": float(problem.sphere.contact_offset) - depth,
-        "velocity_m_s": -sinking,
+        "velocity_m_s": -fall_speed,
         "acceleration_m_s2": force / mass - gravity,
         "force_N": force,
-        "indentation_m": np.maximum(state.displacement @ of.of_bodies[0], 0.0) if segment.in_contact else 0.0 * same,
-        "kinetic_J": 0.5 * mass * sinking**2,
+        "indentation_m": np.maximum(state.displacement @ system.indentation_shape[0], 0.0) if segment.in_contact else 0.0 * same,
+        "kinetic_J": 0.5 * mass * fall_speed**2,
         "potential_J": -mass * gravity * depth,
         "contact_elastic_J": stored,
-        "contact_dissipated_J": lost[:, -1].copy(),  # else the history of every mode stays in memory
-        "plastic_work_J": segment.spent[-1] + plastic,
-        "written_off_at_rest_J": (motion.written_off if isinstance(motion, Lying) else 0.0) * same,
-        **_of_bodies(problem, of, state, lost, force),
+        "contact_dissipated_J": lost[:, -1].copy(),  # a view would keep the losses of all modes in memory
+        "plastic_work_J": segment.lost_before[-1] + plastic,
+        "written_off_at_rest_J": (motion.written_off if isinstance(motion, RestMotion) else 0.0) * same,
+        **_body_columns(problem, system, state, lost, force),
     }
 
 
-def _held(local: LocalContact, of: LinearSystem, state: State) -> tuple[Floats, Floats]:
-    """Return what the contact holds, and its plastic work since what the law remembers [J]."""
-    approach = np.maximum(of.approach(state)[:, 0], local.release_level)
+def _contact_energies(local: LocalContact, system: LinearSystem, state: State) -> tuple[Floats, Floats]:
+    """Return the energy stored by the contact, and its plastic work since the last update of the law's memory [J]."""
+    approach = np.maximum(system.approach(state)[:, 0], local.release_level)
     plastic = local.plastic_work(approach) if local.law.yields else np.zeros_like(approach)
     return np.asarray(local.elastic_energy(approach)), np.asarray(plastic)
 
 
-def _of_bodies(problem: Problem, of: LinearSystem, state: State, lost: Floats, force: Floats) -> dict[str, Floats]:
-    """Return the columns that only bodies that vibrate have."""
+def _body_columns(problem: Problem, system: LinearSystem, state: State, lost: Floats, force: Floats) -> dict[str, Floats]:
+    """Return the columns that only vibrating bodies have."""
     (_, sphere, _), bases, gravity = slices_of(problem), bases_of_plate(problem), float(problem.gravity)
-    kinetic, strain = of.energies(state)
+    kinetic, strain = system.energies(state)
     displacement, velocity, acceleration = (
-        part[:, of.ground] for part in (state.displacement, state.velocity, of.accelerations(state, force[:, None]))
+        part[:, system.ground] for part in (state.displacement, state.velocity, system.accelerations(state, force[:, None]))
     )
-    whole = np.concatenate([np.zeros(0), *(basis.participation[:, 2] for basis in bases)])
+    translation = np.concatenate([np.zeros(0), *(basis.participation[:, 2] for basis in bases)])
     mass = bases[0].mass if bases else np.inf
     return {
         "sphere_vibration_J": kinetic[:, sphere].sum(axis=1),
         "sphere_strain_J": strain[:, sphere].sum(axis=1),
         "sphere_damping_J": lost[:, sphere].sum(axis=1),
         "sphere_rotational_J": _rotational([problem.sphere.modes], state.velocity[:, sphere]),
-        "plate_kinetic_J": kinetic[:, of.ground].sum(axis=1),
-        "plate_strain_J": strain[:, of.ground].sum(axis=1),
-        "plate_damping_J": lost[:, :-1][:, of.ground].sum(axis=1),
+        "plate_kinetic_J": kinetic[:, system.ground].sum(axis=1),
+        "plate_strain_J": strain[:, system.ground].sum(axis=1),
+        "plate_damping_J": lost[:, :-1][:, system.ground].sum(axis=1),
         "plate_rotational_J": _rotational(bases, velocity),
-        "plate_potential_J": gravity * (displacement @ whole),
-        "plate_displacement_m": displacement @ whole / mass,
-        "plate_velocity_m_s": velocity @ whole / mass,
-        "plate_acceleration_m_s2": acceleration @ whole / mass,
-        "plate_deflection_m": displacement @ of.shape[0, of.ground],
+        "plate_potential_J": gravity * (displacement @ translation),
+        "plate_displacement_m": displacement @ translation / mass,
+        "plate_velocity_m_s": velocity @ translation / mass,
+        "plate_acceleration_m_s2": acceleration @ translation / mass,
+        "plate_deflection_m": displacement @ system.shape[0, system.ground],
     }
 
 
 def _rotational(bases: Sequence[ModalBasis | None], velocity: Floats) -> Floats:
-    """Return the energy of turning as a whole [J], from the velocities of the coordinates of a body (T, n)."""
+    """Return the rotational energy of a body [J], from the velocities of its coordinates (T, n)."""
     turning = [basis.rotation for basis in bases if basis is not None and basis.rotation is not None]
     if sum(map(len, turning)) != velocity.shape[1] or not turning:
         return np.zeros(len(velocity))

@@ -1,16 +1,16 @@
-r"""Bodies as one linear system between their contacts.
+r"""The bodies between their contacts as one linear system, and its free motion in closed form.
 
-A body moves as a rigid body and in modes; either is a coordinate q of unit mass, the former with an angular frequency of zero. A local
-element of a spring and a dashpot, without mass, may lie in series with a contact. The contact c knows of all these how far each moves
-the surfaces towards each other, :math:`\chi_{ci}`. With the forces F of the contacts and the load g on each coordinate,
+Every rigid motion and every vibration mode is a coordinate q of unit mass; a rigid motion has an angular frequency of zero. A massless
+local element, a spring parallel to a dashpot, may lie in series with a contact. A coordinate i changes the approach of the surfaces at
+contact c by its shape :math:`\chi_{ci}`. With the contact forces F and the load g on each coordinate,
 
 .. math:: y_c = y_{c0} + \sum_i \chi_{ci} q_i + \sum_k r_k,\qquad \dot r_k + \kappa_k r_k = -\mu_k F_c
 
 .. math:: \ddot q_i + 2 \zeta_i \omega_i \dot q_i + \omega_i^2 q_i = g_i - \sum_c \chi_{ci} F_{ci}
 
-where y is the approach of the surfaces, negative where there is a gap. A coordinate may lie *inside* the contacts of its body: then it
-is in series with the springs of the contact laws alone, :math:`F_{ci}` is that spring's force, and the dashpot of the law spans it; of the
-others :math:`F_{ci} = F_c`.
+where y is the approach of the surfaces, negative where there is a gap. A coordinate may lie *inside* the contacts of its body: it is then
+in series with the springs of the contact laws alone, :math:`F_{ci}` is the force of that spring, and the dashpot of the law spans it. For
+all other coordinates :math:`F_{ci} = F_c`.
 """
 
 from __future__ import annotations
@@ -24,14 +24,14 @@ import numpy as np
 from vibroimpact.arrays import Bools, Floats, Indices
 from vibroimpact.dynamics.vibrating.oscillators import Oscillators
 
-_ALIKE = 1e-12  # of the parts of an acceleration: what is less is rounding
+_ALIKE = 1e-12  # of the sum of the magnitudes of the terms of an acceleration: smaller sums are rounding errors
 
 
 @dataclass(frozen=True)
 class State:
-    """Where everything is: arrays may have leading axes of times.
+    """State of a linear system; arrays may have leading axes of times.
 
-    `displacement` and `velocity` of the coordinates (..., n); `local`, of the massless elements (..., k) [m].
+    `displacement` and `velocity` of the coordinates (..., n); `local`, deformations of the massless elements (..., k) [m].
     """
 
     displacement: Floats
@@ -39,32 +39,32 @@ class State:
     local: Floats
 
     def take(self, index: int) -> State:
-        """Return one along the leading axis."""
+        """Return one state along the leading axis."""
         return State(self.displacement[index], self.velocity[index], self.local[index])
 
 
 @dataclass(frozen=True)
 class LinearSystem(Oscillators):
-    """Coordinates of unit mass, of bodies with contacts, and massless elements of a spring and a dashpot side by side.
+    """Coordinates of unit mass of bodies with contacts, and massless elements of a spring parallel to a dashpot.
 
     Parameters
     ----------
     angular_frequency, damping_ratio : array, shape (n,)
-        [rad/s] and [-]; zero of a motion as a rigid body.
+        [rad/s] and [-]; zero for rigid motions.
     shape : array, shape (contacts, n)
-        chi, by how much each adds to the approach of the surfaces [kg^-1/2].
+        chi, derivative of the approach of the surfaces by each coordinate [kg^-1/2].
     offset : array, shape (contacts,)
         Approach of the surfaces where all coordinates are zero [m].
     load : array, shape (n,)
-        What gravity does to each [kg^1/2 m/s^2]. What vibrates is counted from where it rests under its own weight: zero.
+        Acceleration of each coordinate by gravity [kg^1/2 m/s^2]; zero for modes, which are measured from their static equilibrium.
     inside : array of bool, shape (n,)
-        Which lie inside the contacts.
+        Which coordinates lie inside the contacts.
     below : array of bool, shape (contacts, n)
         Which coordinates count in the indentation of each contact: of a drop those of the body below, of a system all.
     rate, mobility : array, shape (k,)
         Of the massless elements: stiffness over damping [1/s], and one over damping [m/(N s)].
-    at : array of int, shape (k,)
-        Which contact each massless element is in series with.
+    local_contact : array of int, shape (k,)
+        The contact that each massless element is in series with.
     """
 
     offset: Floats
@@ -73,77 +73,77 @@ class LinearSystem(Oscillators):
     below: Bools
     rate: Floats
     mobility: Floats
-    at: Indices
+    local_contact: Indices
 
     @cached_property
     def views(self) -> dict[tuple[int, ...], Any]:
-        """What is kept of how some contacts see it, by their numbers (`receptance`)."""
+        """Cache of the `ContactView` of this system for sets of contacts, by their numbers."""
         return {}
 
     @cached_property
-    def shared(self) -> dict[tuple[int, ...], Any]:
-        """What is kept of how some contacts see its modes, by their numbers; systems with the same modes have it in common."""
+    def shared_modes(self) -> dict[tuple[int, ...], Any]:
+        """Cache of `ContactModes` for sets of contacts, by their numbers; shared by systems with the same modes."""
         return {}
 
-    def falling(self, shape: float, load: float) -> LinearSystem:
-        """Return the same system with a sphere of another mass and weight: its fall is the first coordinate."""
+    def with_sphere(self, shape: float, load: float) -> LinearSystem:
+        """Return the same system with a sphere of another mass and weight, whose fall is the first coordinate."""
         shapes, loads = self.shape.copy(), self.load.copy()
         shapes[:, 0], loads[0] = shape, load
         found = replace(self, shape=shapes, load=loads)
-        found.__dict__["shared"] = self.shared
+        found.__dict__["shared_modes"] = self.shared_modes
         return found
 
     @cached_property
     def rigid(self) -> Bools:
-        """Which coordinates are motions as a rigid body (n,)."""
+        """Mask of the rigid motions (n,)."""
         return np.asarray(self.angular_frequency == 0.0)
 
     @property
     def ground(self) -> Bools:
-        """Of a drop: which are of the body below (n,)."""
+        """Mask of the coordinates of the body below, of a drop (n,)."""
         return np.asarray(self.below[0])
 
     @cached_property
     def vibrating(self) -> Bools:
-        """Which are modes of vibration (n,)."""
+        """Mask of the vibration modes (n,)."""
         return ~self.rigid
 
     @cached_property
-    def outer(self) -> Floats:
-        """The shapes of the coordinates outside the contacts, zero of those inside (contacts, n)."""
+    def outer_shape(self) -> Floats:
+        """Shapes of the coordinates outside the contacts, zero for those inside (contacts, n)."""
         return np.where(self.inside, 0.0, self.shape)
 
     @cached_property
-    def inner(self) -> Floats:
-        """The shapes of those inside, zero of the others (contacts, n)."""
-        return self.shape - self.outer
+    def inner_shape(self) -> Floats:
+        """Shapes of the coordinates inside the contacts, zero for the others (contacts, n)."""
+        return self.shape - self.outer_shape
 
     @cached_property
-    def of_bodies(self) -> Floats:
-        """The shapes of rigid motions and of the modes that count in the indentation (contacts, n)."""
+    def indentation_shape(self) -> Floats:
+        """Shapes of the rigid motions and of the modes that count in the indentation, zero for the others (contacts, n)."""
         return np.where(self.below | self.rigid, self.shape, 0.0)
 
     @cached_property
-    def of_rigid(self) -> Floats:
-        """The shapes of the rigid motions, zero of the others (contacts, n)."""
+    def rigid_shape(self) -> Floats:
+        """Shapes of the rigid motions, zero for the modes (contacts, n)."""
         return np.where(self.rigid, self.shape, 0.0)
 
     @cached_property
     def mass(self) -> Floats:
-        """The mass that the rigid motions give each contact [kg] (contacts,): of a free body and a held one the former's."""
-        return np.asarray(1.0 / (self.of_rigid**2).sum(axis=1))
+        """Effective mass of the rigid motions at each contact [kg] (contacts,): of a free and a held body the mass of the free one."""
+        return np.asarray(1.0 / (self.rigid_shape**2).sum(axis=1))
 
     @cached_property
     def gravity(self) -> Floats:
-        """The acceleration at which gravity makes the surfaces approach each other [m/s^2] (contacts,); zero where both fall alike."""
+        """Acceleration of the approach by gravity [m/s^2] (contacts,); exactly zero where both bodies fall alike."""
         parts = self.shape * self.load
         found = parts.sum(axis=1)
         return np.where(np.abs(found) > _ALIKE * np.abs(parts).sum(axis=1), found, 0.0)
 
     @cached_property
-    def with_local(self) -> Floats:
-        """One where a massless element is in series with a contact (contacts, k)."""
-        return np.asarray(self.at == np.arange(len(self.shape))[:, None], dtype=float)
+    def local_incidence(self) -> Floats:
+        """Incidence matrix: one where a massless element is in series with a contact (contacts, k)."""
+        return np.asarray(self.local_contact == np.arange(len(self.shape))[:, None], dtype=float)
 
     @cached_property
     def local_compliance(self) -> Floats:
@@ -152,83 +152,85 @@ class LinearSystem(Oscillators):
 
     @cached_property
     def flexibility(self) -> Floats:
-        """One over the square of the angular frequency of what vibrates, zero of the others [s^2] (n,)."""
+        """Inverse of the squared angular frequency of each mode, zero for rigid motions [s^2] (n,)."""
         return np.where(self.rigid, 0.0, 1.0 / np.where(self.rigid, 1.0, self.angular_frequency) ** 2)
 
     @cached_property
     def compliance(self) -> Floats:
-        """Static compliance of all that vibrates and of the massless elements, seen from each contact [m/N] (contacts,)."""
-        return np.asarray(self.shape**2 @ self.flexibility + self.with_local @ self.local_compliance)
+        """Static compliance of modes and massless elements at each contact [m/N] (contacts,)."""
+        return np.asarray(self.shape**2 @ self.flexibility + self.local_incidence @ self.local_compliance)
 
     def energies(self, state: State) -> tuple[Floats, Floats]:
-        """Return kinetic and strain energy of each coordinate [J]; states may have leading axes."""
+        """Return the kinetic and the strain energy of each coordinate [J]; states may have leading axes."""
         return 0.5 * state.velocity**2, 0.5 * (self.angular_frequency * state.displacement) ** 2
 
     def local_energy(self, state: State) -> Floats:
-        """Return what the springs of the massless elements hold [J]."""
+        """Return the energy in the springs of the massless elements [J]."""
         return np.asarray(0.5 * (state.local**2 * self.rate / self.mobility).sum(axis=-1))
 
     def mechanical_energy(self, state: State) -> Floats:
-        """Return kinetic, potential and strain energy [J], without what the contact laws hold."""
-        of_all = sum(part.sum(axis=-1) for part in self.energies(state))
-        return np.asarray(of_all - state.displacement @ self.load + self.local_energy(state))
+        """Return the kinetic, potential and strain energy [J], without the energy stored by the contact laws."""
+        total = sum(part.sum(axis=-1) for part in self.energies(state))
+        return np.asarray(total - state.displacement @ self.load + self.local_energy(state))
 
     def common_energy(self, state: State) -> Floats:
-        """Return the kinetic energy of rigid motions that leave the first approach as it is [J]: of two free bodies flying on."""
+        """Return the kinetic energy of rigid motions that do not change the first approach [J], as of two free bodies moving together."""
         if np.count_nonzero(self.rigid) == 1:
             return np.zeros(state.velocity.shape[:-1])
-        along = state.velocity @ self.of_rigid[0]
+        along = state.velocity @ self.rigid_shape[0]
         return np.asarray(0.5 * ((state.velocity[..., self.rigid] ** 2).sum(axis=-1) - self.mass[0] * along**2))
 
     def approach(self, state: State) -> Floats:
         """Return the approach of the surfaces [m], negative where there is a gap (..., contacts)."""
-        return np.asarray(self.offset + state.displacement @ self.shape.T + state.local @ self.with_local.T)
+        return np.asarray(self.offset + state.displacement @ self.shape.T + state.local @ self.local_incidence.T)
 
     def rates(self, state: State) -> Floats:
-        """Return the rate of that without contact force [m/s] (..., contacts)."""
-        return np.asarray(state.velocity @ self.shape.T - (state.local * self.rate) @ self.with_local.T)
+        """Return the rate of the approach without contact force [m/s] (..., contacts)."""
+        return np.asarray(state.velocity @ self.shape.T - (state.local * self.rate) @ self.local_incidence.T)
 
     def outer_rates(self, state: State) -> Floats:
-        """Return the rate that the dashpot of a contact law feels, without contact force [m/s] (..., contacts)."""
-        return np.asarray(state.velocity @ self.outer.T - (state.local * self.rate) @ self.with_local.T)
+        """Return the rate at the dashpot of each contact law without contact force [m/s] (..., contacts)."""
+        return np.asarray(state.velocity @ self.outer_shape.T - (state.local * self.rate) @ self.local_incidence.T)
 
     def rigid_motion(self, state: State) -> tuple[Floats, Floats]:
-        """Return what the rigid motions alone make of the approach [m], and of its rate [m/s] (..., contacts)."""
-        return self.offset + state.displacement @ self.of_rigid.T, state.velocity @ self.of_rigid.T
+        """Return the contribution of the rigid motions, and of the offset, to the approach [m] and to its rate [m/s] (..., contacts)."""
+        return self.offset + state.displacement @ self.rigid_shape.T, state.velocity @ self.rigid_shape.T
 
     def accelerations(self, state: State, force: Floats) -> Floats:
         """Return the accelerations of the coordinates outside the contacts, under contact forces [N] (T, contacts): (T, n)."""
-        own = self.load - self.damping * state.velocity - self.angular_frequency**2 * state.displacement
-        return np.asarray(own - force @ self.outer)
+        unforced = self.load - self.damping * state.velocity - self.angular_frequency**2 * state.displacement
+        return np.asarray(unforced - force @ self.outer_shape)
 
 
 @dataclass(frozen=True)
 class FreeMotion:
-    """Motion without contact force, in closed form, from a state on."""
+    """Motion without contact force from a given state, in closed form."""
 
     system: LinearSystem
     start: State
 
     def state(self, time: Floats) -> State:
         """Return the state at times since the start [s] (...)."""
-        of, start, time = self.system, self.start, np.asarray(time, dtype=float)
+        system, start, time = self.system, self.start, np.asarray(time, dtype=float)
         later = time[..., None]
-        cosine, sine = of.propagators(time)
+        cosine, sine = system.propagators(time)
         return State(
-            cosine * start.displacement + sine * start.velocity + 0.5 * of.load * later**2,
-            (cosine - of.damping * sine) * start.velocity - of.angular_frequency**2 * sine * start.displacement + of.load * later,
-            start.local * np.exp(-of.rate * later),
+            cosine * start.displacement + sine * start.velocity + 0.5 * system.load * later**2,
+            (cosine - system.damping * sine) * start.velocity
+            - system.angular_frequency**2 * sine * start.displacement
+            + system.load * later,
+            start.local * np.exp(-system.rate * later),
         )
 
     def lost_by(self, time: Floats) -> Floats:
-        """Return what is lost since the start [J], (..., n + 1): in each coordinate; last, in the massless elements."""
+        """Return the energy lost since the start [J], (..., n + 1): in each coordinate, and last in the massless elements."""
         return self.lost_at(self.state(time))
 
     def lost_at(self, state: State) -> Floats:
-        """Return the same of states that the motion comes to."""
-        of = self.system
-        coordinates = np.where(of.rigid, 0.0, sum(of.energies(self.start)) - sum(of.energies(state)))
-        massless = of.local_energy(self.start) - of.local_energy(state)
+        """Return the energy lost since the start [J] as in `lost_by`, at states of this motion."""
+        system = self.system
+        coordinates = np.where(system.rigid, 0.0, sum(system.energies(self.start)) - sum(system.energies(state)))
+        massless = system.local_energy(self.start) - system.local_energy(state)
         return np.concatenate([coordinates, massless[..., None]], axis=-1)
 
     def motion(self, time: Floats) -> tuple[Floats, Floats]:

@@ -1,4 +1,4 @@
-r"""The contact law of one impact as the bodies feel it: with the quasi-static compliance in series."""
+"""Contact law of one impact with a quasi-static compliance in series."""
 
 from __future__ import annotations
 
@@ -14,17 +14,17 @@ from vibroimpact.arrays import Array
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.quasi_static import QuasiStatic
 
-_SWEEPS = 40
-_STEP = 1e-7
-_NEAR = 1e-8
-_ROWS = 200
-_PULLED, _TORN = 2000, 0.5
-_ASIDE = np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
-"""What is added to indentation and rate for the force, and for its two derivatives."""
+_MOST_ITERATIONS = 40
+_STEP = 1e-7  # relative step of finite differences
+_CONVERGED = 1e-8  # relative Newton step, after which the next would be below rounding
+_TABLE_ROWS = 200
+_TENSILE_POINTS, _LEAST_SLOPE = 2000, 0.5  # a smaller slope of the approach by the indentation means that the contact snaps off
+_OFFSETS = np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
+"""Steps of indentation and rate for the force and its two finite differences."""
 
 
 class Linearised(NamedTuple):
-    """Forces [N] at the law's own indentations, the approach of the surfaces there [m], and derivatives.
+    """Forces [N] at indentations of the law, approach of the surfaces there [m], and their derivatives.
 
     `slope`: of the approach by the indentation [-]. `stiffness`: of the static force by it [N/m]. `dissipative_by_delta` [N/m] and
     `dissipative_by_rate` [N s/m]: of the dissipative force.
@@ -41,20 +41,20 @@ class Linearised(NamedTuple):
 
 @dataclass(frozen=True)
 class LocalContact:
-    r"""A law and what is in series with it, for one impact.
+    r"""A contact law and the quasi-static compliance in series with it, for one impact.
 
-    The bodies approach each other in the contact by :math:`y = \delta + s(F_s)`, with the law's own indentation
-    :math:`\delta` and its static force :math:`F_s`. Its dissipative force acts beside both, at a rate of its own:
-    in series with the damped force, what is negative, as the term of a sphere of finite size, would be unstable.
+    The approach of the surfaces is :math:`y = \delta + s(F_s)`, with the indentation :math:`\delta` of the law and its static force
+    :math:`F_s`. The dissipative force acts parallel to both, at a rate of its own: a negative compliance, as the finite-size term of a
+    sphere has, would be unstable in series with a damped force.
 
     Parameters
     ----------
     law : CompliantLaw
         The law, of one drop.
     series : QuasiStatic
-        What is in series with it.
+        The compliance in series with it.
     approach_speed : float or array
-        Closing speed of the surfaces at this touch [m/s]; an array of several contacts that are `stacked`.
+        Closing speed of the surfaces at this touch [m/s]; an array for stacked contacts.
     """
 
     law: CompliantLaw
@@ -62,21 +62,21 @@ class LocalContact:
     approach_speed: Array
 
     def forces(self, approach: Array, rate: Array) -> tuple[Array, Array]:
-        """Return the static and the dissipative force [N], before any clip, at the approach y [m] and its rate [m/s]."""
-        return self.law.forces(self.own(approach), rate, self.approach_speed)
+        """Return the static and the dissipative force [N], before clipping, at the approach y [m] and its rate [m/s]."""
+        return self.law.forces(self.indentation_at(approach), rate, self.approach_speed)
 
-    # in terms of the law's own indentation ---------------------------------------------------------
+    # in terms of the indentation of the law ---------------------------------------------------------
 
-    def own_forces(self, delta: Array, rate: Array) -> tuple[Array, Array]:
-        """Return the static and the dissipative force [N], before any clip, at an indentation of the law [m] and a rate [m/s]."""
-        return self.law.forces(np.maximum(delta, self.least), rate, self.approach_speed)
+    def forces_at_indentation(self, delta: Array, rate: Array) -> tuple[Array, Array]:
+        """Return the static and the dissipative force [N], before clipping, at an indentation of the law [m] and a rate [m/s]."""
+        return self.law.forces(np.maximum(delta, self.release_indentation), rate, self.approach_speed)
 
-    def linearised(self, delta: Array, rate: Array) -> Linearised:
-        """Return the same with what Newton's method needs; the derivatives are differences. Beyond release, nothing changes any more."""
-        held, reached = delta > self.least, np.maximum(delta, self.least)
+    def linearise(self, delta: Array, rate: Array) -> Linearised:
+        """Return forces, approach and derivatives at indentations [m] and rates [m/s], by finite differences; constant beyond release."""
+        held, reached = delta > self.release_indentation, np.maximum(delta, self.release_indentation)
         step, faster = _STEP * (np.abs(reached).max(axis=0) + 1e-300), _STEP * (np.abs(rate).max(axis=0) + 1e-300)
-        aside = _ASIDE.reshape(2, 3, *(1,) * delta.ndim)
-        static, dissipative = self.law.forces(reached + step * aside[0], rate + faster * aside[1], self.approach_speed)
+        offsets = _OFFSETS.reshape(2, 3, *(1,) * delta.ndim)
+        static, dissipative = self.law.forces(reached + step * offsets[0], rate + faster * offsets[1], self.approach_speed)
         stiffness = (static[1] - static[0]) * (held / step)
         approach, slope = delta, np.ones_like(delta)
         if self.series:
@@ -84,121 +84,123 @@ class LocalContact:
         by_delta, by_rate = (dissipative[1] - dissipative[0]) * (held / step), (dissipative[2] - dissipative[0]) / faster
         return Linearised(static[0], dissipative[0], approach, slope, stiffness, by_delta, by_rate)
 
-    def near(self, delta: Array, approach: Array) -> Array:
-        """Return the law's own indentation at an approach [m], from one that is as near as rounding leaves it; (B,) of B contacts."""
+    def refine_indentation(self, delta: Array, approach: Array) -> Array:
+        """Return the indentation of the law at an approach [m] by one Newton step from a close estimate; (B,) for B contacts."""
         if not self.series:
             return approach
-        now = self.linearised(delta[None], np.zeros((1, len(delta))))
-        return np.maximum(delta + ((approach - now.approach) / now.slope)[0], self.least)
+        now = self.linearise(delta[None], np.zeros((1, len(delta))))
+        return np.maximum(delta + ((approach - now.approach) / now.slope)[0], self.release_indentation)
 
-    def about(self, approach: Array) -> Array:
-        """Return the law's own indentation at an approach [m], roughly."""
+    def approximate_indentation(self, approach: Array) -> Array:
+        """Return the indentation of the law at an approach [m], interpolated in a table."""
         if not self.series:
             return approach
-        return np.interp(approach, *self._table(self._size(approach)))
+        return np.interp(approach, *self._table(self._scale(approach)))
 
-    def own_energy(self, delta: Array) -> Array:
-        """Return the energy stored at an indentation of the law [J]."""
-        delta = np.maximum(delta, self.least)
+    def energy_at_indentation(self, delta: Array) -> Array:
+        """Return the stored energy at an indentation of the law [J]."""
+        delta = np.maximum(delta, self.release_indentation)
         stored = self.law.elastic_energy(delta)
         return stored + self.series.energy(self._static(delta)) if self.series else stored
 
-    def own_work(self, delta: Array) -> Array:
-        """Return the energy stored and the plastic work together at an indentation of the law [J]."""
-        return self.own_energy(delta) + self.law.plastic_work(np.maximum(delta, self.least))
+    def work_at_indentation(self, delta: Array) -> Array:
+        """Return the sum of stored energy and plastic work at an indentation of the law [J]."""
+        return self.energy_at_indentation(delta) + self.law.plastic_work(np.maximum(delta, self.release_indentation))
 
     def approach_at(self, delta: Array) -> Array:
         """Return the approach y [m] at an indentation of the law [m]."""
         return delta + self.series.indentation(self._static(delta)) if self.series else delta
 
-    def own(self, approach: Array) -> Array:
-        """Return the law's own indentation [m] at an approach [m].
+    def indentation_at(self, approach: Array) -> Array:
+        """Return the indentation of the law [m] at an approach [m], by Newton's method.
 
-        NaN where there is none, as the compliance taken out in series outweighs that of the law: the case is ill-posed.
+        NaN where no solution exists, as a negative compliance in series exceeds that of the law: the problem is ill-posed.
         """
         approach = np.asarray(approach, dtype=float)
         if not self.series:
             return approach
-        size, delta, slope = self._size(approach), self.about(approach), np.ones_like(approach)
+        size, delta, slope = self._scale(approach), self.approximate_indentation(approach), np.ones_like(approach)
         step = _STEP * size
-        aside = np.array([0.0, step]).reshape((2,) + (1,) * approach.ndim)
-        for _ in range(_SWEEPS):
-            force, deeper = self._static(delta + aside)
+        offsets = np.array([0.0, step]).reshape((2,) + (1,) * approach.ndim)
+        for _ in range(_MOST_ITERATIONS):
+            force, deeper = self._static(delta + offsets)
             slope = 1.0 + self.series.compliance(force) * ((deeper - force) / step)
             change = (delta + self.series.indentation(force) - approach) / slope
-            delta = np.maximum(delta - change, self.least)
-            if np.abs(change).max() <= _NEAR * size:  # and the next change would be below rounding
+            delta = np.maximum(delta - change, self.release_indentation)
+            if np.abs(change).max() <= _CONVERGED * size:
                 break
         return np.where(slope > 0.0, delta, np.nan)
 
-    def _size(self, approach: Array) -> float:
-        """Return a size for approaches [m]."""
-        return max(float(np.abs(approach).max()), -2.0 * self.least) + 1e-300
+    def _scale(self, approach: Array) -> float:
+        """Return a length scale of approaches [m]."""
+        return max(float(np.abs(approach).max()), -2.0 * self.release_indentation) + 1e-300
 
     def _table(self, size: float) -> tuple[Array, Array]:
-        """Return approaches and the law's indentations at them, to start from; for approaches up to a size [m]."""
+        """Return a cached table of approaches and indentations of the law, for approaches up to a size [m]."""
         reach = math.frexp(size)[1]
         if reach not in self._tables:
-            delta = self.least + 2.0 * math.ldexp(1.0, reach) * np.linspace(0.0, 1.0, _ROWS) ** 2
+            delta = self.release_indentation + 2.0 * math.ldexp(1.0, reach) * np.linspace(0.0, 1.0, _TABLE_ROWS) ** 2
             self._tables[reach] = np.maximum.accumulate(self.approach_at(delta)), delta
         return self._tables[reach]
 
     @cached_property
     def _tables(self) -> dict[int, tuple[Array, Array]]:
+        """Cache of `_table`, by the binary exponent of the size."""
         return {}
 
     def _static(self, delta: Array) -> Array:
+        """Return the static force at an indentation of the law [N]."""
         delta = np.asarray(delta, dtype=float)
         return self.law.forces(delta, np.zeros_like(delta), self.approach_speed)[0]
 
-    # the law's levels and energies, in terms of the approach --------------------------------------
+    # levels and energies in terms of the approach ---------------------------------------------------
 
     @cached_property
     def touch_level(self) -> float:
-        """Approach at which the surfaces meet [m]."""
+        """Approach at touch [m]."""
         return float(self.approach_at(np.asarray(self.law.touch_level, dtype=float)))
 
     @cached_property
     def release_level(self) -> float:
-        """Approach at which they part [m]."""
-        return float(self.approach_at(np.asarray(self.least)))
+        """Approach at release [m]."""
+        return float(self.approach_at(np.asarray(self.release_indentation)))
 
     @cached_property
-    def least(self) -> float:
-        """The law's own indentation at which they part [m]: where what is in series tears a sticking contact off, before the law does."""
+    def release_indentation(self) -> float:
+        """Indentation of the law at release [m]; with a compliance in series a sticking contact may snap off before the law releases."""
         least, touch = float(self.law.release_level), float(self.law.touch_level)
         if not self.series or not least < touch:
             return least
-        delta = least + (touch - least) * np.linspace(0.0, 1.0, _PULLED) ** 6  # steeper and steeper towards the end
-        torn = np.flatnonzero(np.gradient(self.approach_at(delta), delta) < _TORN)
+        delta = least + (touch - least) * np.linspace(0.0, 1.0, _TENSILE_POINTS) ** 6  # graded towards release
+        torn = np.flatnonzero(np.gradient(self.approach_at(delta), delta) < _LEAST_SLOPE)
         return float(delta[torn[-1]]) if torn.size else least
 
     def elastic_energy(self, approach: Array) -> Array:
-        """Return the energy stored by the law and in series with it [J]."""
-        return self.own_energy(self.own(approach))
+        """Return the energy stored by the law and in series with it [J], at an approach [m]."""
+        return self.energy_at_indentation(self.indentation_at(approach))
 
     def plastic_work(self, approach: Array) -> Array:
-        """Return the work spent on plastic deformation since what the law remembers [J]."""
-        return self.law.plastic_work(self.own(approach))
+        """Return the plastic work since the last update of the law's memory [J], at an approach [m]."""
+        return self.law.plastic_work(self.indentation_at(approach))
 
     def after_compression(self, deepest: float) -> LocalContact:
-        """Return the contact once it has been as deep as an approach of `deepest` [m]."""
-        return self.after_own(self.own(deepest))
+        """Return the contact after a largest approach of `deepest` [m]."""
+        return self.after_indentation(self.indentation_at(deepest))
 
-    def after_own(self, deepest: Array) -> LocalContact:
-        """Return the same once the law's own indentation has been `deepest` [m]."""
-        return replace(self, law=self.law.after_compression(deepest)) if self.learns(deepest) else self
+    def after_indentation(self, deepest: Array) -> LocalContact:
+        """Return the contact after a largest indentation of the law of `deepest` [m]."""
+        return replace(self, law=self.law.after_compression(deepest)) if self.updates_memory(deepest) else self
 
-    def learns(self, deepest: Array) -> bool:
-        """Will the law remember an indentation of its own of `deepest` [m]?"""
+    def updates_memory(self, deepest: Array) -> bool:
+        """Whether an indentation of the law of `deepest` [m] changes its memory."""
         before, after = self.law.memories(), self.law.after_compression(deepest).memories()
         return not all(np.all(before[name] == after[name]) for name in before)
 
 
-def stacked(contacts: Sequence[LocalContact]) -> LocalContact:
-    """Return contacts of one law as one contact whose parameters are arrays, one value a system.
+def stack_contacts(contacts: Sequence[LocalContact]) -> LocalContact:
+    """Return contacts of one law as one contact with arrays of parameters, one value per system.
 
-    It serves for `linearised`, `near`, `own_forces` and `own_work` alone.
+    It supports `linearise`, `refine_indentation`, `forces_at_indentation` and `work_at_indentation` only.
     """
     first, *others = contacts
     if not others:
@@ -212,16 +214,16 @@ def stacked(contacts: Sequence[LocalContact]) -> LocalContact:
         parts = [contact.series for contact in contacts]
         linear, unit, force = (np.array([getattr(part, name) for part in parts]) for name in ("linear", "unit", "force"))
         series = QuasiStatic(linear, unit, tuple(np.array([part.factors for part in parts]).T), force)
-    both = replace(
+    stacked = replace(
         first, series=series, law=first.law.changed(parameters), approach_speed=np.array([contact.approach_speed for contact in contacts])
     )
-    both.__dict__["least"] = np.array([contact.least for contact in contacts])
-    return both
+    stacked.__dict__["release_indentation"] = np.array([contact.release_indentation for contact in contacts])
+    return stacked
 
 
-def linearised(contacts: Sequence[LocalContact], delta: Array, rate: Array) -> Linearised:
+def linearise_contacts(contacts: Sequence[LocalContact], delta: Array, rate: Array) -> Linearised:
     """Return forces and derivatives of c contacts of B systems, at indentations and rates at N nodes (B, c N): (B, c N) each."""
     size = delta.shape[1] // len(contacts)
     ranges = [slice(begin, begin + size) for begin in range(0, delta.shape[1], size)]
-    found = [one.linearised(delta[:, part].T, rate[:, part].T) for one, part in zip(contacts, ranges, strict=True)]
+    found = [one.linearise(delta[:, part].T, rate[:, part].T) for one, part in zip(contacts, ranges, strict=True)]
     return Linearised(*(parts[0].T if len(parts) == 1 else np.concatenate(parts).T for parts in zip(*found, strict=True)))

@@ -1,4 +1,4 @@
-"""The first meeting of a sphere with a surface that moves."""
+"""First touch of moving surfaces in free motion, and the time at which overlapping surfaces separate."""
 
 from __future__ import annotations
 
@@ -9,52 +9,53 @@ from vibroimpact.dynamics.vibrating.linear_system import FreeMotion, LinearSyste
 
 _MOST_STEPS = 100_000
 _MOST_HORIZONS = 10_000
-_ROUNDING = 4e-16  # of the terms of an approach: what is less is not an overlap
+_ROUNDING = 4e-16  # of the sum of the magnitudes of the terms of an approach: a smaller overlap is a rounding error
 _SAMPLES = np.linspace(0.0, 1.0, 33)[1:]
 
 
 def next_touch(motion: FreeMotion, level: float, until: float, contact: int = 0) -> float:
     r"""Return when the indentation first rises to a level [s since the start]; infinite if not before `until`.
 
-    No meeting is stepped over: with a bound M of the acceleration from here on, a gap G that opens at the rate
-    :math:`\dot G` can't close before :math:`\tau = (\dot G + \sqrt{\dot G^2 + 2 M G}) / M`, so the search goes from
-    bound to bound, which are as near as Newton's steps once the meeting is close. Far away, the surface reaches no
-    farther than its energy allows, and the sphere's parabola says when it is that near.
+    No touch is stepped over. With a bound M of the acceleration from here on, a gap G that opens at the rate :math:`\dot G` can't close
+    before :math:`\tau = (\dot G + \sqrt{\dot G^2 + 2 M G}) / M`, so the search advances by these bounds; near the touch they converge as
+    fast as Newton's method. Far away, the displacement of the vibrating surface is bounded by its energy, and the parabola of the rigid
+    motion gives the time until it is that near.
 
     Parameters
     ----------
     motion : FreeMotion
-        From a state on. Where the surfaces overlap beyond the level, as in a dent that the next contact does not find again, they
-        part first.
+        Motion from a state on. Surfaces that overlap beyond the level, as in a dent that does not affect the next contact, separate first.
     level : float
-        Indentation at which the surfaces meet [m].
+        Indentation at which the surfaces touch [m].
     until : float
-        Where to give up [s]; may be infinite.
+        End of the search [s]; may be infinite.
     contact : int, default 0
-        Which contact of the system.
+        Number of the contact in the system.
     """
-    of, gravity = motion.system, float(motion.system.gravity[contact])
-    omega, size, local = of.angular_frequency, np.abs(of.shape[contact]), of.with_local[contact]
-    time = time_to_part(motion, level, contact)
+    system, gravity = motion.system, float(motion.system.gravity[contact])
+    omega, size, local = system.angular_frequency, np.abs(system.shape[contact]), system.local_incidence[contact]
+    time = time_to_separation(motion, level, contact)
     if not time < until:
         return np.inf
     for _ in range(_MOST_STEPS):
         state = motion.state(np.array(time))
-        gap, opening = level - float(of.approach(state)[contact]), -float(of.rates(state)[contact])
+        gap, opening = level - float(system.approach(state)[contact]), -float(system.rates(state)[contact])
+        # the gap is closed to the rounding error of the time
         if time > 0.0 and opening <= 0.0 and gap <= -4e-16 * opening * time:
             return time
-        swing, reach = _swing(of, state), _reach(of, state, contact)
-        approach, speed = (float(part[contact]) for part in of.rigid_motion(state))
+        # the larger of two lower bounds of the time to touch: from the range of the vibration, and from the bound of the acceleration
+        peak_speeds, reach = _peak_speeds(system, state), _displacement_bound(system, state, contact)
+        approach, speed = (float(part[contact]) for part in system.rigid_motion(state))
         far = _fall_time(approach, speed, gravity, level - reach)
         most = (
-            float(size @ (swing * omega * (1.0 + 2.0 * of.damping_ratio)))
-            + float(np.abs(state.local) @ (local * of.rate**2))
+            float(size @ (peak_speeds * omega * (1.0 + 2.0 * system.damping_ratio)))
+            + float(np.abs(state.local) @ (local * system.rate**2))
             + abs(gravity)
         )
         if most > 0.0:
             root = np.sqrt(opening * opening + 2.0 * most * max(gap, 0.0))
             near = (opening + root) / most if opening >= 0.0 else 2.0 * max(gap, 0.0) / (root - opening)
-        else:  # nothing turns it back: without gravity, and nothing vibrates
+        else:  # no acceleration: without gravity and vibration
             near = gap / -opening if opening < 0.0 else np.inf
         step = max(far, near)
         if time + step > until or not np.isfinite(step):
@@ -65,41 +66,41 @@ def next_touch(motion: FreeMotion, level: float, until: float, contact: int = 0)
     return time
 
 
-def time_to_part(motion: FreeMotion, level: float, contact: int = 0) -> float:
-    """Return when surfaces that overlap beyond a level have come back to it [s]; 0 if they do not, infinite if they never will."""
-    of, time = motion.system, 0.0
+def time_to_separation(motion: FreeMotion, level: float, contact: int = 0) -> float:
+    """Return when surfaces that overlap beyond a level separate to it [s]; 0 if they do not overlap, infinite if they never separate."""
+    system, time = motion.system, 0.0
     for _ in range(_MOST_HORIZONS):
         state = motion.state(np.array(time))
-        approach, rate = float(of.approach(state)[contact]), float(of.rates(state)[contact])
+        approach, rate = float(system.approach(state)[contact]), float(system.rates(state)[contact])
         horizon = 2.0 * (approach - level) / abs(rate) if rate else 1e-6
-        terms = float(np.abs(of.shape[contact]) @ np.abs(state.displacement)) + abs(float(of.offset[contact]))
+        terms = float(np.abs(system.shape[contact]) @ np.abs(state.displacement)) + abs(float(system.offset[contact]))
         if approach <= level + (_ROUNDING * terms if rate < 0.0 else 0.0):
             return time
-        sunk, sinking = (float(part[contact]) for part in of.rigid_motion(state))
-        if of.gravity[contact] >= 0.0 and sinking >= 0.0 and sunk - _reach(of, state, contact) > level:
-            return np.inf  # the sphere sinks farther than the surface ever reaches
+        rigid_approach, rigid_rate = (float(part[contact]) for part in system.rigid_motion(state))
+        if system.gravity[contact] >= 0.0 and rigid_rate >= 0.0 and rigid_approach - _displacement_bound(system, state, contact) > level:
+            return np.inf  # the rigid motion closes beyond the range of the vibration: they never separate
         times = time + horizon * _SAMPLES
         parted = motion.motion(times)[0][:, contact] <= level
         later = float(times[parted.argmax() if parted.any() else -1])
-        if later == time:  # rounding alone keeps them together
+        if later == time:  # the time step is below rounding
             return time
         time = later
     return np.inf
 
 
-def _swing(of: LinearSystem, state: State) -> Floats:
-    """Return how fast each mode can ever become again."""
-    return np.where(of.rigid, 0.0, np.sqrt(2.0 * sum(of.energies(state))))
+def _peak_speeds(system: LinearSystem, state: State) -> Floats:
+    """Return an upper bound of the future speed of each mode, from its energy."""
+    return np.where(system.rigid, 0.0, np.sqrt(2.0 * sum(system.energies(state))))
 
 
-def _reach(of: LinearSystem, state: State, contact: int) -> float:
-    """Return how far the surfaces' own motion can ever take them towards each other, or apart [m]."""
-    of_modes = np.abs(of.shape[contact]) @ (_swing(of, state) * np.sqrt(of.flexibility))
-    return float(of_modes + np.abs(state.local) @ of.with_local[contact])
+def _displacement_bound(system: LinearSystem, state: State, contact: int) -> float:
+    """Return an upper bound of the future contribution of modes and massless elements to the approach [m]."""
+    modal = np.abs(system.shape[contact]) @ (_peak_speeds(system, state) * np.sqrt(system.flexibility))
+    return float(modal + np.abs(state.local) @ system.local_incidence[contact])
 
 
 def _fall_time(approach: float, speed: float, gravity: float, level: float) -> float:
-    """Return when a free sphere comes down to a level of its approach [s]; 0 if it is there, infinite if it never will."""
+    """Return when the rigid approach reaches a level [s] under gravity; 0 if it already has, infinite if it never will."""
     height = level - approach
     if height <= 0.0:
         return 0.0

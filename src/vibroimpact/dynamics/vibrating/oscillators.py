@@ -1,4 +1,4 @@
-"""Linear oscillators of unit mass that a force drives, and what their motion is worth later in closed form."""
+"""Linear oscillators of unit mass under a force, and their free motion in closed form."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ class Oscillators:
     Parameters
     ----------
     angular_frequency, damping_ratio : array, shape (n,)
-        [rad/s] and [-]; a motion as a rigid body has neither.
+        [rad/s] and [-]; both zero for a rigid motion.
     shape : array, shape (..., n)
-        By how much each moves where the force acts [kg^-1/2]; a row a force.
+        Displacement per unit coordinate where a force acts [kg^-1/2]; one row per force.
     """
 
     angular_frequency: Floats
@@ -28,7 +28,7 @@ class Oscillators:
 
     @property
     def number(self) -> int:
-        """How many there are."""
+        """Number of oscillators."""
         return len(self.angular_frequency)
 
     @cached_property
@@ -37,18 +37,18 @@ class Oscillators:
         return 2.0 * self.damping_ratio * self.angular_frequency
 
     def pick(self, which: Indices | Bools) -> Oscillators:
-        """Return some of them."""
+        """Return a subset of the oscillators."""
         return Oscillators(self.angular_frequency[which], self.damping_ratio[which], self.shape[..., which])
 
     def transition(self, time: Floats) -> Floats:
-        """Return the matrices that take displacement and velocity of each to those of its free motion later, (2, 2, ..., n)."""
+        """Return the transition matrices of displacement and velocity of each over a free motion of some time [s], (2, 2, ..., n)."""
         cosine, sine = self.propagators(time)
         return np.array([[cosine, sine], [-(self.angular_frequency**2) * sine, cosine - self.damping * sine]])
 
     def propagators(self, time: Floats) -> tuple[Floats, Floats]:
-        """Return what displacement C and velocity S of one at the start are worth in its displacement later, (..., n).
+        """Return the response C to a unit initial displacement and S to a unit initial velocity, after times [s] (...): (..., n) each.
 
-        Then q = C q0 + S v0, and the rates are C' = -omega^2 S and S' = C - 2 zeta omega S, whatever the damping.
+        Then q = C q0 + S v0, and the rates are C' = -omega^2 S and S' = C - 2 zeta omega S, for any damping ratio.
         """
         omega, ratio, t = self.angular_frequency, self.damping_ratio, np.asarray(time)[..., None]
         root = omega * np.sqrt(np.abs(1.0 - ratio * ratio))
@@ -56,7 +56,7 @@ class Oscillators:
         sine = fade * np.where(root > 0.0, np.sin(phase) / np.where(root > 0.0, root, 1.0), t)
         cosine = fade * np.cos(phase)
         over = ratio > 1.0
-        if over.any():  # the slower exponential apart, so that none overflows
+        if over.any():  # overdamped: factor out the slower exponential, so that none overflows
             root, at = root[over], ratio[over] * omega[over]
             slow = np.exp((root - at) * t)
             sine[..., over] = slow * -np.expm1(-2.0 * root * t) / (2.0 * root)

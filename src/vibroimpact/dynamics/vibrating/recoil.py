@@ -1,4 +1,4 @@
-"""A contact that recoils: its law has stopped pushing, and its surfaces still overlap."""
+"""Recoil of a contact: its law has stopped pushing, and its surfaces still overlap."""
 
 from __future__ import annotations
 
@@ -9,50 +9,50 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.contact.roots import find_root
+from vibroimpact.dynamics.vibrating.active_contact import ActiveContact
 from vibroimpact.dynamics.vibrating.linear_system import FreeMotion, LinearSystem, State
 from vibroimpact.dynamics.vibrating.stretch import VibratingStretch
-from vibroimpact.dynamics.vibrating.touching import Touching
 
 _SAMPLES = 65
 
 
-def end_of_recoil(free: FreeMotion, touching: Sequence[Touching], longest: float) -> tuple[float, int, bool] | None:
-    """Return when the first contact that recoils parts or pushes again [s from here], which, and whether it parts."""
+def end_of_recoil(free: FreeMotion, active: Sequence[ActiveContact], longest: float) -> tuple[float, int, bool] | None:
+    """Return when the first recoiling contact separates or pushes again [s from here], its number, and whether it separates; or None."""
     found = None
-    for touch in touching:
-        begun, step = 0.0, _time_to_recoil(free, touch)
+    for contact in active:
+        begun, step = 0.0, _recoil_time_estimate(free, contact)
         while begun < longest:
             times = np.minimum(begun + step * np.linspace(0.0, 1.0, _SAMPLES), longest)
-            ended = _recoil(free.system, touch, free.state(times)) > 0.0
+            ended = _recoil_end_values(free.system, contact, free.state(times)) > 0.0
             if ended[:, 1:].any():
                 index = int(ended[:, 1:].any(axis=0).argmax())
-                kind = int(ended[::-1, index + 1].argmin())  # parted (0), if both
-                value = after(free, partial(recoil_of, free.system, touch, kind))
+                kind = int(ended[::-1, index + 1].argmin())  # separation (0) takes precedence
+                value = along_motion(free, partial(recoil_end_value, free.system, contact, kind))
                 longest = float(find_root(value, times[index : index + 1], times[index + 1 : index + 2])[0])
-                found = longest, touch.number, kind == 0
+                found = longest, contact.number, kind == 0
                 break
             begun, step = begun + step, 2.0 * step
     return found
 
 
-def _time_to_recoil(free: FreeMotion, touch: Touching) -> float:
-    """Return about how long a contact takes to recoil [s]."""
-    above = touch.overlap(free.system, free.start)
-    return max(above / max(-float(free.system.rates(free.start)[touch.number]), 1e-3 * touch.speed), 1e-6 * touch.span)
+def _recoil_time_estimate(free: FreeMotion, contact: ActiveContact) -> float:
+    """Return an estimate of the duration of a recoil [s]."""
+    above = contact.overlap(free.system, free.start)
+    return max(above / max(-float(free.system.rates(free.start)[contact.number]), 1e-3 * contact.speed), 1e-6 * contact.span)
 
 
-def _recoil(system: LinearSystem, touch: Touching, states: State) -> Floats:
-    """Return what is positive where a contact that recoils has parted, and where its law pushes again, (2, T)."""
-    approach, floor = system.approach(states)[..., touch.number], touch.local.release_level
-    static, dissipative = touch.local.forces(np.maximum(approach, floor), system.outer_rates(states)[..., touch.number])
+def _recoil_end_values(system: LinearSystem, contact: ActiveContact, states: State) -> Floats:
+    """Return functions that are positive where a recoiling contact has separated, and where its law pushes again, (2, T)."""
+    approach, floor = system.approach(states)[..., contact.number], contact.local.release_level
+    static, dissipative = contact.local.forces(np.maximum(approach, floor), system.outer_rates(states)[..., contact.number])
     return np.stack([floor - approach, np.where(approach > floor, static + dissipative, -1.0)])
 
 
-def recoil_of(system: LinearSystem, touch: Touching, kind: int, states: State) -> Floats:
-    """Return what is positive where a contact that recoils has parted (0), or where its law pushes again (1), (T,)."""
-    return np.asarray(_recoil(system, touch, states)[kind])
+def recoil_end_value(system: LinearSystem, contact: ActiveContact, kind: int, states: State) -> Floats:
+    """Return a function that is positive where a recoiling contact has separated (kind 0), or where its law pushes again (1), (T,)."""
+    return np.asarray(_recoil_end_values(system, contact, states)[kind])
 
 
-def after(motion: FreeMotion | VibratingStretch, value: Callable[[State], Floats]) -> Callable[[Floats], Floats]:
-    """Return a function of the state as one of the time since the start of a motion [s]."""
+def along_motion(motion: FreeMotion | VibratingStretch, value: Callable[[State], Floats]) -> Callable[[Floats], Floats]:
+    """Return a function of the state as a function of the time since the start of a motion [s]."""
     return lambda time: value(motion.state(time))

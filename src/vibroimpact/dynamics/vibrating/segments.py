@@ -1,4 +1,4 @@
-"""The history of one drop whose bodies vibrate, as a row of segments that can be asked at any time within them."""
+"""History of one drop whose bodies vibrate, as a sequence of segments that can be evaluated at any time within them."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.dynamics.vibrating.free_motion import Apart
+from vibroimpact.dynamics.vibrating.free_motion import FreePhase
 from vibroimpact.dynamics.vibrating.linear_system import FreeMotion, LinearSystem, State
-from vibroimpact.dynamics.vibrating.lying import Lying
+from vibroimpact.dynamics.vibrating.rest_motion import RestMotion
 from vibroimpact.dynamics.vibrating.stretch import VibratingStretch
 
 if TYPE_CHECKING:
@@ -19,87 +19,89 @@ if TYPE_CHECKING:
 
 _STRETCH_POINTS, _GAP_POINTS = 49, 25
 _FREE_POINTS, _LATER_POINTS, _PERIODS = 2001, 1001, 10.0
-"""How a free motion is drawn: so many points in so many periods of the lowest mode, and so many in what is left."""
+"""Grid of a free motion: points in the first periods of the lowest mode, points in the remainder, and number of those periods."""
 
 
 @dataclass(frozen=True)
 class VibratingSegment:
-    """A part of the history of one drop: a flight, a stretch of contact, a gap between two, or rest.
+    """A segment of the history of one drop: a flight, a stretch of contact, a gap between two contacts, or rest.
 
-    `start`, `end` [s]. `spent`: energy lost before [J], (n + 2,): in each coordinate, in the contact, in plastic deformation.
+    `start`, `end` [s]. `lost_before`: energy lost before [J], (n + 2,): in each coordinate, in the contact, in plastic deformation.
     """
 
     start: float
     end: float
-    motion: VibratingStretch | Apart | FreeMotion | Lying
-    spent: Floats
+    motion: VibratingStretch | FreePhase | FreeMotion | RestMotion
+    lost_before: Floats
 
     @property
-    def moving(self) -> VibratingStretch | FreeMotion | Lying:
-        """What can be asked for states."""
-        return self.motion.free if isinstance(self.motion, Apart) else self.motion
+    def trajectory(self) -> VibratingStretch | FreeMotion | RestMotion:
+        """The motion that gives states at times since the start of the segment."""
+        return self.motion.free if isinstance(self.motion, FreePhase) else self.motion
 
     @property
     def system(self) -> LinearSystem:
-        """What moves."""
-        moving = self.moving
-        return (moving.riding if isinstance(moving, Lying) else moving).system
+        """The linear system."""
+        trajectory = self.trajectory
+        return (trajectory.equilibrium if isinstance(trajectory, RestMotion) else trajectory).system
 
     @property
     def in_contact(self) -> bool:
-        """Do the surfaces overlap?"""
-        return isinstance(self.motion, (VibratingStretch, Lying)) or (isinstance(self.motion, Apart) and self.motion.local is not None)
+        """Whether the surfaces overlap."""
+        return isinstance(self.motion, (VibratingStretch, RestMotion)) or (
+            isinstance(self.motion, FreePhase) and self.motion.local is not None
+        )
 
     def grid(self) -> Floats:
-        """Times since its start that draw the segment well [s]."""
+        """Times since the start that resolve the segment in a graph [s]."""
         span = self.end - self.start
         if isinstance(self.motion, VibratingStretch):
             return np.asarray(span * self.motion.rule.map_time(np.linspace(0.0, 1.0, _STRETCH_POINTS)))
-        if isinstance(self.motion, Apart):
+        if isinstance(self.motion, FreePhase):
             return np.linspace(0.0, span, _GAP_POINTS)
         lowest = float(self.system.angular_frequency[self.system.vibrating].min(initial=np.inf))
         early = min(span, _PERIODS * 2.0 * np.pi / lowest) if np.isfinite(lowest) else 0.0
         return np.concatenate([np.linspace(0.0, early, _FREE_POINTS)[:-1], np.linspace(early, span, _LATER_POINTS)])
 
     @property
-    def spent_after(self) -> Floats:
-        """Energy lost by its end [J], as in `spent`."""
+    def lost_after(self) -> Floats:
+        """Energy lost by the end [J], as in `lost_before`."""
         if isinstance(self.motion, VibratingStretch):
             (contact,), lost = self.motion.contacts, self.motion.lost
             local = contact.local
             before, now = np.maximum(contact.approach[[0, -1]], local.release_level)
             plastic = float(local.plastic_work(now) - local.plastic_work(before)) if local.law.yields else 0.0
-            return np.asarray(self.spent + np.append(lost, plastic))
-        return np.asarray(self.spent + np.append(self.motion.lost_by(np.array([self.end - self.start]))[0], 0.0))
+            return np.asarray(self.lost_before + np.append(lost, plastic))
+        return np.asarray(self.lost_before + np.append(self.motion.lost_by(np.array([self.end - self.start]))[0], 0.0))
 
     def state(self, time: Floats) -> State:
         """Return the state at times since the start [s] (T,)."""
-        return self.moving.state(time)
+        return self.trajectory.state(time)
 
 
-def vibrating_timeline(legs: Sequence[Leg], lying: Lying | None, end: float) -> list[VibratingSegment]:
+def vibrating_timeline(legs: Sequence[Leg], lying: RestMotion | None, end: float) -> list[VibratingSegment]:
     """Return the history of one drop as segments in order.
 
     Parameters
     ----------
     legs : sequence of Leg
         Its flights and visits.
-    lying : Lying or None
-        How it lies, if it comes to rest.
+    lying : RestMotion or None
+        Its motion at rest, if it comes to rest.
     end : float
-        When the run ends [s].
+        End of the run [s].
     """
     segments: list[VibratingSegment] = []
-    spent = np.zeros(legs[0].motions[0].system.number + 2)
+    lost_before = np.zeros(legs[0].motions[0].system.number + 2)
     for leg in legs:
         touch = float(leg.flight_end[0])
-        segments.append(VibratingSegment(float(leg.flight.start[0]), touch, leg.motions[0], spent))
-        spent = segments[-1].spent_after
+        segments.append(VibratingSegment(float(leg.flight.start[0]), touch, leg.motions[0], lost_before))
+        lost_before = segments[-1].lost_after
         for piece in leg.contact.pieces if leg.contact is not None else ():
             begin = touch + float(piece.start[0])
-            assert isinstance(piece.motion, (VibratingStretch, Apart))
-            segments.append(VibratingSegment(begin, begin + piece.motion.length, piece.motion, spent))
-            spent = segments[-1].spent_after
+            assert isinstance(piece.motion, (VibratingStretch, FreePhase))
+            segments.append(VibratingSegment(begin, begin + piece.motion.length, piece.motion, lost_before))
+            lost_before = segments[-1].lost_after
     if lying is not None:
-        segments.append(VibratingSegment(segments[-1].end, end, lying, spent))
+        segments.append(VibratingSegment(segments[-1].end, end, lying, lost_before))
     return segments

@@ -1,10 +1,10 @@
-r"""How a small change of the drop grows from impact to impact, where bodies vibrate.
+r"""Growth of a small change of the drop from impact to impact, where bodies vibrate.
 
-A second drop, begun from a height or with a speed that differs by a small part, stays beside the first by a difference that obeys the
-linearised equations of motion. It is carried along the history that was computed: in closed form through flights, by one linear solve
-through each stretch of contact. Where the contact force jumps, as a dashpot meets the surface, the two drops meet the jump at different
-times: if the second is later by :math:`\delta t`, the difference gains :math:`(f_- - f_+)\,\delta t`, with the rates f of the state
-before and after (P. C. Mueller, Chaos, Solitons & Fractals 5:1671, 1995).
+The difference of a neighbouring drop, from a slightly different height or speed, obeys the linearised equations of motion. It is
+propagated along the computed history: in closed form through flights, by one linear solve through each stretch of contact. Where the
+contact force jumps, as when a dashpot meets the surface, the two drops meet the jump at different times: if the second is later by
+:math:`\delta t`, the difference gains :math:`(f_- - f_+)\,\delta t`, with the rates f of the state before and after (P. C. Mueller,
+Chaos, Solitons & Fractals 5:1671, 1995).
 """
 
 from __future__ import annotations
@@ -17,54 +17,54 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.contact.roots import locate_maximum
-from vibroimpact.dynamics.lockstep import Course, asked, side_by_side
+from vibroimpact.dynamics.lockstep import Coroutine, run_in_lockstep, solve
 from vibroimpact.dynamics.problem import Problem
-from vibroimpact.dynamics.vibrating.free_motion import Apart
+from vibroimpact.dynamics.vibrating.free_motion import FreePhase
 from vibroimpact.dynamics.vibrating.linear_system import FreeMotion, LinearSystem, State
 from vibroimpact.dynamics.vibrating.local import LocalContact
 from vibroimpact.dynamics.vibrating.stretch import VibratingStretch
-from vibroimpact.dynamics.vibrating.tangent import Beside
+from vibroimpact.dynamics.vibrating.stretch_tangent import TangentProblem
 
 if TYPE_CHECKING:
     from vibroimpact.dynamics.leg import Leg
 
 RELATIVE_CHANGE = 1e-9
-"""A relative change of the drop that nobody can rule out: of 4 m, 4 nm."""
+"""A relative change of the drop that cannot be excluded in practice: 4 nm of 4 m."""
 
-_STEP = 1e-6  # relative, of what a law knows of its contact: for differences
-_JUMP = 1e-6  # of the force: less is no jump
-_SLOW = 0.1  # of the speed at which the surfaces meet: what leaves more slowly counts as that
+_STEP = 1e-6  # relative step of a law's parameters, for finite differences
+_JUMP = 1e-6  # of the force: a smaller change is no jump
+_SLOW = 0.1  # of the closing speed: lower bound of the separation speed in a relative change
 
 
 class Neighbours:
-    """Second drops beside those of a run, carried along as it goes."""
+    """Neighbouring drops of a run, one of each, propagated along with it."""
 
     def __init__(self, problem: Problem, mass: Floats, system: LinearSystem) -> None:
         by_height = problem.speed is None
         changed = np.broadcast_to(np.asarray(problem.height if by_height else problem.speed, dtype=float), mass.shape)
         self._drops = [_Neighbour(system, value, by_height) for value in (np.sqrt(mass) * changed).tolist()]
 
-    def follow(self, leg: Leg) -> Course[Floats]:
-        r"""Return how a relative change of the drop has grown by the impact of a leg [-], one value a drop of its contact.
+    def follow(self, leg: Leg) -> Coroutine[Floats]:
+        """Return the growth of a relative change of the drop by the impact of a leg [-], one value per drop of its contact.
 
         The drop is changed in its height, or in its speed where that is given. The growth is the largest of the relative changes of the
-        speed at which the surfaces meet, of the largest force, and of the speed of separation (as a part of at least a tenth of the
-        former). Of a rigid drop it would be 0.6 from a height, as Hertz's force goes with its power 0.6.
+        closing speed, of the largest force, and of the separation speed (relative to at least a tenth of the closing speed). For a rigid
+        drop from a height it would be 0.6, as Hertz's force goes with the power 0.6 of the height.
 
         Parameters
         ----------
         leg : Leg
-            The next flight and contact of the drops; something in them vibrates.
+            The next flight and contact of the drops, of which a body vibrates.
         """
-        for drop, flight, length in zip(leg.drops, leg.motions, leg.flight_end - leg.flight.start, strict=True):
-            self._drops[drop].fly(flight, float(length))
+        for drop, motion, length in zip(leg.drops, leg.motions, leg.flight_end - leg.flight.start, strict=True):
+            self._drops[drop].fly(motion, float(length))
         if leg.contact is None:
             return np.zeros(0)
-        motions: dict[int, list[VibratingStretch | Apart]] = {drop: [] for drop in leg.contact_drops.tolist()}
+        motions: dict[int, list[VibratingStretch | FreePhase]] = {drop: [] for drop in leg.contact_drops.tolist()}
         for piece in leg.contact.pieces:
-            assert isinstance(piece.motion, (VibratingStretch, Apart))  # of bodies that vibrate
+            assert isinstance(piece.motion, (VibratingStretch, FreePhase))  # of bodies that vibrate
             motions[int(leg.contact_drops[piece.drops[0]])].append(piece.motion)
-        yield from side_by_side(self._drops[drop].go_through(parts) for drop, parts in motions.items())
+        yield from run_in_lockstep(self._drops[drop].pass_visit(parts) for drop, parts in motions.items())
         ends = zip(leg.contact_drops, leg.contact.final_rate, strict=True)
         return np.array([self._drops[drop].leave(-float(speed)) for drop, speed in ends])
 
@@ -72,7 +72,7 @@ class Neighbours:
 def change_by_impact(impacts: Mapping[str, Floats], tolerance: float) -> Floats:
     """Return the relative change of each impact for one of 1e-9 in the drop [-]; 0 where nothing vibrates.
 
-    Each contact is integrated to a tolerance, which grows likewise: where it is larger, it counts instead.
+    The integration error, of the relative size of the tolerance, grows likewise: a tolerance above 1e-9 takes the place of it.
 
     Examples
     --------
@@ -83,11 +83,11 @@ def change_by_impact(impacts: Mapping[str, Floats], tolerance: float) -> Floats:
 
 
 @dataclass
-class _Visit:
-    """A visit so far.
+class _VisitDifferences:
+    """Differences recorded during a visit.
 
-    `speed`, `closing`: speed at which the surfaces met, and its difference [m/s]. `force`: the largest at a node [N]. `strongest`: the
-    stretch where it is, and the difference of the force at the nodes [N].
+    `speed`, `closing`: closing speed, and its difference [m/s]. `force`: largest force at a node [N]. `strongest`: the stretch with that
+    force, and the difference of the force at its nodes [N].
     """
 
     speed: float
@@ -97,146 +97,155 @@ class _Visit:
 
 
 class _Neighbour:
-    """The difference of a second drop from the first, per unit relative change of the drop.
+    """Difference of a neighbouring drop, per unit relative change of the drop.
 
-    The equations of motion do not depend on time itself, so that the two need not be compared at equal times: whenever a contact
-    begins or ends, the second drop is compared when it begins or ends for that one.
+    The equations of motion are autonomous, so the drops need not be compared at equal times: whenever a contact begins or ends, each drop
+    is taken at its own time of that event.
     """
 
-    def __init__(self, of: LinearSystem, value: float, by_height: bool) -> None:
-        self.difference = State(np.zeros(of.number), np.zeros(of.number), np.zeros(len(of.rate)))
+    def __init__(self, system: LinearSystem, value: float, by_height: bool) -> None:
+        self.difference = State(np.zeros(system.number), np.zeros(system.number), np.zeros(len(system.rate)))
         if by_height:
-            self.difference.displacement[0] = -value  # height is up, approach is down
+            self.difference.displacement[0] = -value  # height is measured upwards, the coordinate of the approach downwards
         else:
             self.difference.velocity[0] = value
-        self.apart = True
-        self.last: VibratingStretch | None = None  # which the drops have just left
-        self.pressed = 0.0  # difference of the force at its end
-        self.local: LocalContact | None = None  # the last contact as the first drop felt it
-        self.knowledge: dict[str, float] = {}  # differences of what the law knows: the speed of first touch, and what it remembers
-        self.visit: _Visit | None = None
+        self.separated = True
+        self.last_stretch: VibratingStretch | None = None  # the preceding stretch, if the drops come from one
+        self.force_difference = 0.0  # difference of the force at its end
+        self.local: LocalContact | None = None  # the last contact of the reference drop
+        self.law_differences: dict[str, float] = {}  # differences of the law's closing speed and memory
+        self.visit: _VisitDifferences | None = None
 
     def fly(self, motion: FreeMotion, length: float, inside: bool = False) -> None:
-        """Go through free motion, `inside` the indentation or apart."""
+        """Propagate through free motion, in recoil (`inside`) or between contacts."""
         if not inside:
-            self.part()
-        of, before = motion.system, self.difference
-        cosine, sine = of.transition(np.array(length)).swapaxes(0, 1)
+            self.separate()
+        system, before = motion.system, self.difference
+        cosine, sine = system.transition(np.array(length)).swapaxes(0, 1)
         place, speed = cosine * before.displacement + sine * before.velocity
-        self.difference = State(place, speed, before.local * np.exp(-of.rate * length))
-        self.apart, self.last = not inside, None
+        self.difference = State(place, speed, before.local * np.exp(-system.rate * length))
+        self.separated, self.last_stretch = not inside, None
 
-    def go_through(self, motions: Sequence[VibratingStretch | Apart]) -> Course[None]:
-        """Go through the parts of a visit."""
+    def pass_visit(self, motions: Sequence[VibratingStretch | FreePhase]) -> Coroutine[None]:
+        """Propagate through the parts of a visit."""
         for motion in motions:
-            if isinstance(motion, Apart):
+            if isinstance(motion, FreePhase):
                 self.fly(motion.free, motion.length, inside=motion.local is not None)
             else:
                 yield from self.pass_through(motion)
 
-    def pass_through(self, stretch: VibratingStretch) -> Course[None]:
-        """Go through a stretch of contact."""
-        if self.apart:
-            self.touch(stretch)
+    def pass_through(self, stretch: VibratingStretch) -> Coroutine[None]:
+        """Propagate through a stretch of contact."""
+        if self.separated:
+            self.begin_contact(stretch)
         elif stretch.contacts[0].local is not self.local:
-            self.turn(stretch)
-        beside = Beside(stretch, self.difference, _asides(stretch.contacts[0].local, self.knowledge))
-        self.difference, pressed = yield from asked(beside)
-        self.pressed, self.last = float(pressed[-1]), stretch
+            self.update_memory(stretch)
+        problem = TangentProblem(stretch, self.difference, _law_variations(stretch.contacts[0].local, self.law_differences))
+        self.difference, force_difference = yield from solve(problem)
+        self.force_difference, self.last_stretch = float(force_difference[-1]), stretch
         assert self.visit is not None  # it has touched
         force = float(stretch.force.max())
         if force > self.visit.force:
-            self.visit.force, self.visit.strongest = force, (stretch, pressed)
+            self.visit.force, self.visit.strongest = force, (stretch, force_difference)
 
     def leave(self, speed: float) -> float:
-        """Leave at a speed upwards; return how the change has grown in the visit."""
-        self.part()
+        """End a visit with a speed upwards [m/s]; return the growth of the change."""
+        self.separate()
         visit, self.visit = self.visit, None
         if visit is None or visit.strongest is None:
             return float("nan")
-        stretch, pressed = visit.strongest
+        stretch, force_difference = visit.strongest
         (contact,) = stretch.contacts
         top = np.array([locate_maximum(contact.force_at)])
-        stronger = float(stretch.rule.interpolate(top, pressed)[0]) / float(contact.force_at(top)[0])
-        slower = float(stretch.system.rigid_motion(self.difference)[1][0]) / max(abs(speed), _SLOW * visit.speed)
-        return max(abs(visit.closing) / visit.speed, abs(stronger), abs(slower))
+        force_change = float(stretch.rule.interpolate(top, force_difference)[0]) / float(contact.force_at(top)[0])
+        speed_change = float(stretch.system.rigid_motion(self.difference)[1][0]) / max(abs(speed), _SLOW * visit.speed)
+        return max(abs(visit.closing) / visit.speed, abs(force_change), abs(speed_change))
 
-    def touch(self, stretch: VibratingStretch) -> None:
-        """Meet the surface with the stretch that begins there."""
-        of, start, local = stretch.system, stretch.start, stretch.contacts[0].local
+    def begin_contact(self, stretch: VibratingStretch) -> None:
+        """Shift the difference to the touch of each drop, and take the differences of the law's closing speed and memory."""
+        system, start, local = stretch.system, stretch.start, stretch.contacts[0].local
         same_surface = self.local is not None and self.local.law.memories() == local.law.memories()
-        self.knowledge = {name: self.knowledge.get(name, 0.0) if same_surface else 0.0 for name in local.law.memories()}
-        level = sum(times * (aside.touch_level - local.touch_level) for aside, times in _asides(local, self.knowledge))
-        rate = float(of.rates(start)[0])
-        later = (level - float(of.approach(self.difference)[0])) / rate
-        self.difference = _later(self.difference, _rates(of, start, 0.0, 0.0), later)
-        closing = float((of.outer_rates if of.outer_rates(start)[0] >= rate else of.rates)(self.difference)[0])
-        self.knowledge["approach_speed"] = closing
-        self.local, self.apart = local, False
-        self.visit = self.visit or _Visit(local.approach_speed, closing)
+        self.law_differences = {name: self.law_differences.get(name, 0.0) if same_surface else 0.0 for name in local.law.memories()}
+        level = sum(weight * (varied.touch_level - local.touch_level) for varied, weight in _law_variations(local, self.law_differences))
+        rate = float(system.rates(start)[0])
+        later = (level - float(system.approach(self.difference)[0])) / rate
+        self.difference = _shifted(self.difference, _state_rates(system, start, 0.0, 0.0), later)
+        closing = float((system.outer_rates if system.outer_rates(start)[0] >= rate else system.rates)(self.difference)[0])
+        self.law_differences["approach_speed"] = closing
+        self.local, self.separated = local, False
+        self.visit = self.visit or _VisitDifferences(local.approach_speed, closing)
 
-    def part(self) -> None:
-        """Compare the drops when their surfaces part, if they do."""
-        if self.last is not None:
-            excess = float(self.last.system.approach(self.difference)[0])
-            self.synchronise(self.last, excess, float(self.last.closing()[-1]))
-        self.last = None
+    def separate(self) -> None:
+        """Shift the difference to the separation of each drop, if they come from a stretch."""
+        if self.last_stretch is not None:
+            excess = float(self.last_stretch.system.approach(self.difference)[0])
+            self.shift_to_event(self.last_stretch, excess, float(self.last_stretch.closing_rates()[-1]))
+        self.last_stretch = None
 
-    def turn(self, stretch: VibratingStretch) -> None:
-        """Let the law remember how deep the contact has been: the second drop deeper by the difference of the approach."""
+    def update_memory(self, stretch: VibratingStretch) -> None:
+        """Update the differences of the law's memory at a turn: the largest indentation differs by the difference of the approach."""
         assert self.local is not None  # it is in contact
-        assert self.last is not None
-        of, local, after = stretch.system, self.local, stretch.contacts[0].local
-        deepest = max(float(of.approach(stretch.start)[0]), local.release_level)
+        assert self.last_stretch is not None
+        system, local, after = stretch.system, self.local, stretch.contacts[0].local
+        deepest = max(float(system.approach(stretch.start)[0]), local.release_level)
         if self.force_jumps(stretch):
             x = np.array([1.0 - _STEP, 1.0])
-            closing, time = self.last.rule.weights(x).T @ self.last.closing(), self.last.length * self.last.rule.map_time(x)
-            faster = float(of.rates(self.difference)[0]) - of.mobility.sum() * self.pressed
-            self.synchronise(self.last, faster, float((closing[1] - closing[0]) / (time[1] - time[0])))
+            closing, time = (
+                self.last_stretch.rule.weights(x).T @ self.last_stretch.closing_rates(),
+                self.last_stretch.length * self.last_stretch.rule.map_time(x),
+            )
+            excess = float(system.rates(self.difference)[0]) - system.mobility.sum() * self.force_difference
+            self.shift_to_event(self.last_stretch, excess, float((closing[1] - closing[0]) / (time[1] - time[0])))
         now = after.law.memories()
         step = _STEP * deepest
         found = dict.fromkeys(now, 0.0)
-        beside = [(local.after_compression(deepest + step), float(of.approach(self.difference)[0]) / step)]
-        beside += [(aside.after_compression(deepest), times) for aside, times in _asides(local, self.knowledge)]
-        for aside, times in beside:
-            for name, value in aside.law.memories().items():
-                found[name] += times * float(value - now[name])
-        self.knowledge.update(found)
+        variations = [(local.after_compression(deepest + step), float(system.approach(self.difference)[0]) / step)]
+        variations += [(varied.after_compression(deepest), weight) for varied, weight in _law_variations(local, self.law_differences)]
+        for varied, weight in variations:
+            for name, value in varied.law.memories().items():
+                found[name] += weight * float(value - now[name])
+        self.law_differences.update(found)
         self.local = after
 
     def force_jumps(self, stretch: VibratingStretch) -> bool:
-        """Does the force jump where a stretch follows the last one?"""
-        assert self.last is not None
+        """Whether the force jumps between the last stretch and the next one."""
+        assert self.last_stretch is not None
         (contact,) = stretch.contacts
-        before, after = float(self.last.force[0, -1]), np.add(*contact.local.own_forces(contact.delta[:1], contact.rate[:1]))
+        before, after = (
+            float(self.last_stretch.force[0, -1]),
+            np.add(*contact.local.forces_at_indentation(contact.delta[:1], contact.rate[:1])),
+        )
         return bool(abs(float(after[0]) - before) > _JUMP * abs(before))
 
-    def synchronise(self, stretch: VibratingStretch, excess: float, rate: float) -> None:
-        """Compare the drops at the end of a stretch, where what ends it exceeds by `excess` in the second drop and grows at a rate."""
+    def shift_to_event(self, stretch: VibratingStretch, excess: float, rate: float) -> None:
+        """Shift the difference at the end of a stretch to the event of each drop.
+
+        The event function of the neighbouring drop exceeds that of the reference drop by `excess`, and grows at a rate.
+        """
         (contact,) = stretch.contacts
-        rates = _rates(stretch.system, stretch.end, float(contact.force[-1]), float(contact.static[-1]))
-        self.difference = _later(self.difference, rates, -excess / rate)
+        rates = _state_rates(stretch.system, stretch.end, float(contact.force[-1]), float(contact.static[-1]))
+        self.difference = _shifted(self.difference, rates, -excess / rate)
 
 
-def _rates(of: LinearSystem, state: State, force: float, static: float) -> State:
-    """Return how a state changes under a contact force, and its static part [N]."""
-    pushed = of.outer[0] * force + (of.shape[0] - of.outer[0]) * static
+def _state_rates(system: LinearSystem, state: State, force: float, static: float) -> State:
+    """Return the time derivative of a state under a contact force and its static part [N]."""
+    pushed = system.outer_shape[0] * force + (system.shape[0] - system.outer_shape[0]) * static
     return State(
         state.velocity,
-        of.load - of.damping * state.velocity - of.angular_frequency**2 * state.displacement - pushed,
-        -of.rate * state.local - of.mobility * force,
+        system.load - system.damping * state.velocity - system.angular_frequency**2 * state.displacement - pushed,
+        -system.rate * state.local - system.mobility * force,
     )
 
 
-def _later(difference: State, rates: State, time: float) -> State:
-    """Return the difference if the second drop is looked at later by a time, per unit relative change."""
+def _shifted(difference: State, rates: State, time: float) -> State:
+    """Return the difference if the neighbouring drop is taken later by a time, per unit relative change."""
     return State(*(one + time * rate for one, rate in zip(vars(difference).values(), vars(rates).values(), strict=True)))
 
 
-def _asides(local: LocalContact, knowledge: dict[str, float]) -> list[tuple[LocalContact, float]]:
-    """Return contacts whose law knows something a little differently, each with how many times its change there is."""
+def _law_variations(local: LocalContact, law_differences: dict[str, float]) -> list[tuple[LocalContact, float]]:
+    """Return contacts with one parameter of the law varied by a finite difference, each with the factor of that variation."""
     found = []
-    for name, change in knowledge.items():
+    for name, change in law_differences.items():
         if change == 0.0:
             continue
         if name == "approach_speed":

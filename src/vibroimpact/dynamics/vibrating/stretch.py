@@ -1,4 +1,4 @@
-"""A stretch of contact as it was solved on the nodes of Radau collocation: its motion, its forces, what it takes."""
+"""A solved stretch of contact: motion of the coordinates, contact forces, energy balance and error measures."""
 
 from __future__ import annotations
 
@@ -12,18 +12,18 @@ from vibroimpact.arrays import Bools, Complex, Floats
 from vibroimpact.dynamics.collocation import Rule
 from vibroimpact.dynamics.vibrating.contact_history import ContactHistory
 from vibroimpact.dynamics.vibrating.linear_system import LinearSystem, State
-from vibroimpact.dynamics.vibrating.receptance import Seen, Spectrum, Together
+from vibroimpact.dynamics.vibrating.receptance import ContactView, RadauEigenbasis, StackedSystems
 
-_RIGID_ROUNDING = 2e-15  # of the kinetic energy of the bodies that touch, which may move fast together
-_ROUNDING = 2e-14  # of the energy of the modes, which may be much more than that of a soft touch
+_RIGID_ROUNDING = 2e-15  # relative rounding error of the kinetic energy of the rigid motions that move the contacts
+_ROUNDING = 2e-14  # relative rounding error of the energy of the modes, which may far exceed that of a soft contact
 
 
-class Motion(NamedTuple):
-    """How the coordinates move through a stretch.
+class StretchMotion(NamedTuple):
+    """Motion of the coordinates through a stretch.
 
-    `accelerations` and `velocities` of the coordinates (N, n), and rates of the massless elements, `massless` (N, k), at the nodes;
-    `end`: the state there. `gain`: what the coordinates and the massless elements have more at the end, without contact laws, and
-    `rounding`: what that may be wrong by [J]. `lost`: what the damping of each takes, and last the massless elements [J] (n + 1,).
+    At the nodes: `accelerations` and `velocities` of the coordinates (N, n), and rates of the massless elements, `massless` (N, k). `end`:
+    the state at the end. `gain`: increase of the energy of coordinates and massless elements, without the contact laws, and `rounding`: its
+    rounding error [J]. `lost`: energy lost by the damping of each coordinate, and last in the massless elements [J] (n + 1,).
     """
 
     accelerations: Floats
@@ -39,13 +39,13 @@ class Motion(NamedTuple):
 class VibratingStretch:
     """A solved stretch of one system.
 
-    `seen`: the system, as the contacts that push see it. `length`: how long it lasts [s]. `start`: the state then. `contacts`: what
-    those that push do. `solved`: whether Newton's method converged. `roughness`: the last Legendre coefficients of the forces, relative to
-    the size that matters; the error at the end goes with its square.
+    `view`: the system reduced to the contacts that push. `length` [s]. `start`: state at the start. `contacts`: histories of the contacts
+    that push. `solved`: whether Newton's method converged. `roughness`: the last Legendre coefficients of the forces, relative to their
+    scale; the error at the end is of the order of its square.
     """
 
-    seen: Seen
-    spectrum: Spectrum
+    view: ContactView
+    basis: RadauEigenbasis
     length: float
     start: State
     contacts: tuple[ContactHistory, ...]
@@ -54,36 +54,36 @@ class VibratingStretch:
 
     @property
     def system(self) -> LinearSystem:
-        """What moves."""
-        return self.seen.system
+        """The linear system."""
+        return self.view.system
 
     @property
     def duration(self) -> Floats:
-        """How long it lasts [s], as an array of one."""
+        """Its length [s], as an array of one."""
         return np.array([self.length])
 
     def take(self, drops: Bools) -> VibratingStretch:
-        """Return itself: it is of one drop."""
+        """Return itself: it belongs to one drop."""
         return self
 
     @property
     def rule(self) -> Rule:
         """Nodes and time map."""
-        return self.spectrum.rule
+        return self.basis.rule
 
     @cached_property
     def force(self) -> Floats:
-        """The forces at the nodes [N] (c, N)."""
+        """Contact forces at the nodes [N] (c, N)."""
         return np.stack([contact.force for contact in self.contacts])
 
     @cached_property
-    def motion(self) -> Motion:
-        """The motion of the coordinates."""
-        systems, length = Together([self.seen], [self.start]), np.array([self.length])
-        admittance = 1.0 / systems.impedance(length[:, None] * self.spectrum.values)
-        responses = systems.drive(self.spectrum, length) * admittance
+    def motion(self) -> StretchMotion:
+        """Motion of the coordinates; recomputed from the forces if it was cleared."""
+        systems, length = StackedSystems([self.view], [self.start]), np.array([self.length])
+        admittance = 1.0 / systems.impedance(length[:, None] * self.basis.values)
+        responses = systems.drive(self.basis, length) * admittance
         static = np.array([[contact.static for contact in self.contacts]])
-        return motions_of(systems, self.spectrum, length, (admittance, responses), self.force[None], static)[0]
+        return stretch_motions(systems, self.basis, length, (admittance, responses), self.force[None], static)[0]
 
     @property
     def accelerations(self) -> Floats:
@@ -97,13 +97,13 @@ class VibratingStretch:
 
     @cached_property
     def end(self) -> State:
-        """The state at the end."""
+        """State at the end."""
         return self.motion.end
 
-    def closing(self, contact: int = 0) -> Floats:
-        """Return the rate of the approach of the surfaces, coordinates inside the contact included, at the start and the nodes (N + 1,)."""
-        rate, inner = self.contacts[contact].rate, self.system.inner[self.seen.contacts[contact]]
-        if not self.seen.of.inside:
+    def closing_rates(self, contact: int = 0) -> Floats:
+        """Return the rate of the approach at a contact, with coordinates inside the contact [m/s], at the start and the nodes (N + 1,)."""
+        rate, inner = self.contacts[contact].rate, self.system.inner_shape[self.view.contacts[contact]]
+        if not self.view.modes.inside:
             return rate
         return np.asarray(rate + np.concatenate([self.start.velocity[None], self.velocities]) @ inner)
 
@@ -111,7 +111,7 @@ class VibratingStretch:
         """Return the state at times since the start [s] (T,)."""
         start, h, across, load = self.start, self.length, np.asarray(time)[:, None], self.system.load
         integral = h * self.rule.integral_to(self._x(time))
-        driven = self.accelerations - load  # whose share is in closed form
+        driven = self.accelerations - load  # gravity is integrated in closed form
         return State(
             start.displacement + across * (start.velocity + 0.5 * across * load) + integral @ (h * (self.rule.integral @ driven)),
             start.velocity + across * load + integral @ driven,
@@ -119,52 +119,53 @@ class VibratingStretch:
         )
 
     def indentations(self, contact: int = 0) -> Floats:
-        """Return how far the centre above has come to the surface below at a contact [m], at the start and the nodes (N + 1,)."""
+        """Return the approach of the centre above to the surface below at a contact [m], at the start and the nodes (N + 1,)."""
         number = self.contacts[contact].number
-        shape = self.system.of_bodies[number]
+        shape = self.system.indentation_shape[number]
         begun = float(self.system.offset[number] + self.start.displacement @ shape)
         return np.append(begun, begun + self.length * (self.rule.integral @ (self.velocities @ shape)))
 
     @cached_property
     def powers(self) -> Floats:
-        """What is lost at the nodes [W], (N, n + 1), for histories: in each coordinate; last, in the laws and the massless elements."""
-        of = self.system
+        """Power lost at the nodes [W], (N, n + 1): in each coordinate, and last in the laws and the massless elements."""
+        system = self.system
         in_laws = sum(contact.power for contact in self.contacts)
-        lost = in_laws + (self.motion.massless**2 / of.mobility).sum(axis=1)
-        return np.concatenate([of.damping * self.velocities**2, lost[:, None]], axis=1)
+        lost = in_laws + (self.motion.massless**2 / system.mobility).sum(axis=1)
+        return np.concatenate([system.damping * self.velocities**2, lost[:, None]], axis=1)
 
     @cached_property
     def lost(self) -> Floats:
-        """What is lost over the stretch, with what is at its end [J], (n + 1,) as in `powers`."""
+        """Energy lost over the stretch, with losses at its end [J], (n + 1,) as in `powers`."""
         lost = self.motion.lost.copy()
-        lost[-1] += sum(contact.dissipated + contact.broken for contact in self.contacts)
+        lost[-1] += sum(contact.dissipated + contact.separation_loss for contact in self.contacts)
         return lost
 
     def lost_by(self, time: Floats) -> Floats:
-        """Return what is lost since the start [J] at times since then [s], (T, n + 1) as in `powers`."""
+        """Return the energy lost since the start [J] at times since then [s], (T, n + 1) as in `powers`."""
         return np.asarray(self.length * self.rule.integrate(self._x(time), self.powers))
 
     @property
     def trend(self) -> Floats:
-        """How fast the forces change at the end [N/s] (c,), where they are smooth in time there; else zero."""
+        """Rates of change of the forces at the end [N/s] (c,); zero after a "release", where they are not smooth in time."""
         if self.rule.time_map == "release":
             return np.zeros(len(self.contacts))
         return np.asarray(self.force @ self.rule.end_slope / self.length)
 
-    def forget(self) -> None:
-        """Let go of the motion of the coordinates at the nodes, which is found again when it is asked for; what is at the end is kept."""
+    def clear_cache(self) -> None:
+        """Free the memory of the motion at the nodes, which is recomputed on demand; the state and the losses at the end are kept."""
         if "motion" in self.__dict__:
             _ = self.end, self.lost
         for name in ("motion", "powers", "force"):
             self.__dict__.pop(name, None)
 
     def _x(self, time: Floats) -> Floats:
+        """Return x at times since the start [s]."""
         return self.rule.unmap_time(np.asarray(time) / self.length)
 
     def resolved(self, tolerance: float, energy: float) -> bool:
-        """Is it solved, and its error within a relative tolerance, for motions of about an energy [J]?
+        """Whether the stretch is solved with an error within a relative tolerance, for motions of about an energy [J].
 
-        Two measures that know nothing of each other: the roughness of the forces, and the balance of energy.
+        Two independent error measures: the roughness of the forces, and the balance of energy.
         """
         if not (self.solved and self.roughness**2 <= 0.1 * tolerance):
             return False
@@ -172,62 +173,65 @@ class VibratingStretch:
         return bool(abs(gain + self.lost.sum()) <= 0.06 * tolerance * energy + self.motion.rounding)
 
 
-def motions_of(
-    systems: Together, at: Spectrum, length: Floats, modes: tuple[Complex, Complex], force: Floats, static: Floats
-) -> list[Motion]:
-    """Return how the coordinates of B systems move through stretches.
+def stretch_motions(
+    systems: StackedSystems, basis: RadauEigenbasis, length: Floats, modes: tuple[Complex, Complex], force: Floats, static: Floats
+) -> list[StretchMotion]:
+    """Return the motion of the coordinates of B systems through stretches.
 
     Parameters
     ----------
-    systems : Together
+    systems : StackedSystems
         The systems.
-    at : Spectrum
-        The rule of the stretches.
+    basis : RadauEigenbasis
+        Eigenbasis of the collocation rule.
     length : array, shape (B,)
-        How long they last [s].
+        Lengths of the stretches [s].
     modes : tuple of two arrays, shape (B, m, H)
-        Admittances of the modes, and what becomes of their motion at the start without contact forces.
+        Admittances of the modes, and their accelerations without contact forces.
     force, static : array, shape (B, c, N)
-        The contact forces at the nodes, and their static part [N].
+        Contact forces at the nodes, and their static parts [N].
     """
-    rule, (admittance, responses), start, across = at.rule, modes, systems.start, length[:, None]
-    pushed = at.to_eigenvectors(force)  # (B, c, H)
-    parts = [pushed, at.to_eigenvectors(static)] if systems.inside else [pushed]
-    driven = sum(_pulled(systems.shapes[:, number], part) for number, part in enumerate(parts))
+    rule, (admittance, responses), start, across = basis.rule, modes, systems.start, length[:, None]
+    pushed = basis.to_eigenvectors(force)  # (B, c, H)
+    parts = [pushed, basis.to_eigenvectors(static)] if systems.inside else [pushed]
+    driven = sum(_modal_forces(systems.shapes[:, number], part) for number, part in enumerate(parts))
     accelerations = np.empty((*start.displacement.shape, len(rule.nodes)))
-    accelerations[:, systems.modes] = at.to_nodes(responses - driven * admittance)
-    load = np.array([seen.system.load for seen in systems.seen])
-    rigid = np.array([seen.rigid for seen in systems.seen])
-    accelerations[:, systems.rigid] = load[:, systems.rigid, None] - rigid.swapaxes(1, 2) @ force
+    accelerations[:, systems.mode_slice] = basis.to_nodes(responses - driven * admittance)
+    load = np.array([view.system.load for view in systems.views])
+    rigid = np.array([view.rigid_shapes for view in systems.views])
+    accelerations[:, systems.rigid_slice] = load[:, systems.rigid_slice, None] - rigid.swapaxes(1, 2) @ force
     velocities = accelerations @ rule.integral.T
     velocities *= across[:, :, None]
     velocities += start.velocity[:, :, None]
     displacement = start.displacement + velocities @ rule.integral[-1] * across
     local, massless = start.local, np.zeros((*start.local.shape, len(rule.nodes)))
     if systems.massless:
-        yielding = _pulled(systems.local_mobility, pushed) + (systems.rate * local)[:, :, None] * at.constant
-        massless = at.to_nodes(-yielding / (1.0 + systems.rate[:, :, None] * (across * at.values)[:, None]))
+        yielding = _modal_forces(systems.local_mobility, pushed) + (systems.rate * local)[:, :, None] * basis.constant
+        massless = basis.to_nodes(-yielding / (1.0 + systems.rate[:, :, None] * (across * basis.values)[:, None]))
         local = local + massless @ rule.integral[-1] * across
     end = State(displacement, velocities[:, :, -1].copy(), local)
     frequency, damping, springs, mobility = (
-        np.array([getattr(seen.system, name) for seen in systems.seen]) for name in ("angular_frequency", "damping", "rate", "mobility")
+        np.array([getattr(view.system, name) for view in systems.views]) for name in ("angular_frequency", "damping", "rate", "mobility")
     )
     lost = np.empty((len(force), accelerations.shape[1] + 1))
     lost[:, :-1] = damping * (velocities**2 @ rule.integral[-1]) * across
     lost[:, -1] = (massless**2 @ rule.integral[-1] / mobility).sum(axis=1) * length
-    # by differences, so that what goes on beside the contacts, however fast, does not count
+    # as differences of squares, so that motion that the contact does not change causes no rounding error
     gain = 0.5 * (end.velocity - start.velocity) * (end.velocity + start.velocity)
     gain += (end.displacement - start.displacement) * (0.5 * frequency**2 * (end.displacement + start.displacement) - load)
     in_springs = 0.5 * (end.local - start.local) * (end.local + start.local) * springs / mobility
     grown = (gain.sum(axis=1) + in_springs.sum(axis=1)).tolist()
-    begun, touched = 0.5 * (start.velocity**2 + (frequency * start.displacement) ** 2), np.array([seen.touched for seen in systems.seen])
-    rounding = (begun * np.where(frequency > 0.0, _ROUNDING, _RIGID_ROUNDING * touched)).sum(axis=1).tolist()
+    begun, active_rigid = (
+        0.5 * (start.velocity**2 + (frequency * start.displacement) ** 2),
+        np.array([view.active_rigid for view in systems.views]),
+    )
+    rounding = (begun * np.where(frequency > 0.0, _ROUNDING, _RIGID_ROUNDING * active_rigid)).sum(axis=1).tolist()
     return [
-        Motion(accelerations[one].T, velocities[one].T, massless[one].T, end.take(one), grown[one], rounding[one], lost[one])
+        StretchMotion(accelerations[one].T, velocities[one].T, massless[one].T, end.take(one), grown[one], rounding[one], lost[one])
         for one in range(len(force))
     ]
 
 
-def _pulled(shapes: Floats, forces: Complex) -> Complex:
-    """Return what forces at contacts (B, c, H) do to modes of shapes (B or 1, c, m), (B, m, H)."""
+def _modal_forces(shapes: Floats, forces: Complex) -> Complex:
+    """Return the forces on modes of shapes (B or 1, c, m) by contact forces (B, c, H): (B, m, H)."""
     return np.asarray((shapes.swapaxes(1, 2) @ forces.view(np.float64)).view(np.complex128))

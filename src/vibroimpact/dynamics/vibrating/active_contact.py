@@ -1,0 +1,148 @@
+"""A contact while its surfaces overlap, and the impact that it records."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from vibroimpact.arrays import Floats
+from vibroimpact.contact.law import CompliantLaw
+from vibroimpact.contact.quasi_static import QuasiStatic
+from vibroimpact.contact.roots import locate_maximum
+from vibroimpact.contact.static import static_indentation
+from vibroimpact.dynamics.vibrating.linear_system import LinearSystem, State
+from vibroimpact.dynamics.vibrating.local import LocalContact
+from vibroimpact.dynamics.vibrating.stretch import VibratingStretch
+
+_PEAK = 0.98  # of the largest nodal value: stretches whose nodal values stay below can't hold the peak
+_NOTHING = 2e-15  # of the energy of the motion: less is a rounding error
+
+
+@dataclass(frozen=True)
+class ContactDefinition:
+    """A contact of a system: its law, the compliance in series, and whether each impact meets undeformed surfaces (`fresh_surface`)."""
+
+    law: CompliantLaw
+    series: QuasiStatic
+    fresh_surface: bool
+
+
+class ContactPeak:
+    """Largest value of a quantity over a contact, located between the nodes only on request.
+
+    `nodal_max`: the largest value at a node so far.
+    """
+
+    def __init__(self) -> None:
+        self.nodal_max = 0.0
+        self._candidates: list[tuple[float, float, VibratingStretch, Callable[[Floats], Floats]]] = []
+
+    def add(self, nodal_max: float, start: float, stretch: VibratingStretch, values: Callable[[Floats], Floats]) -> None:
+        """Add a stretch that starts at a time [s], with its largest nodal value, and its values as a function of x in [0, 1]."""
+        if nodal_max >= _PEAK * self.nodal_max:
+            self._candidates.append((nodal_max, start, stretch, values))
+            self.nodal_max = max(self.nodal_max, nodal_max)
+
+    def locate(self) -> tuple[float, float]:
+        """Return the largest value and its time [s]; zeros if there is none."""
+        found = (0.0, 0.0)
+        for nodal_max, start, stretch, values in self._candidates:
+            if nodal_max >= _PEAK * self.nodal_max:
+                x = np.array([locate_maximum(values)])
+                if (value := float(values(x)[0])) > found[0]:
+                    found = value, start + stretch.length * float(stretch.rule.map_time(x)[0])
+        return found
+
+
+@dataclass
+class Impact:
+    """One impact of a contact, from touch to release.
+
+    `start`, `end` [s]; the latter is NaN until release. `closing_speed` [m/s]. `force` [N], `indentation` [m]: peaks. `impulse` [N s].
+    """
+
+    contact: int
+    start: float
+    closing_speed: float
+    end: float = np.nan
+    force: ContactPeak = field(default_factory=ContactPeak)
+    indentation: ContactPeak = field(default_factory=ContactPeak)
+    impulse: float = 0.0
+
+
+def locate_highest_peak(peaks: Sequence[ContactPeak]) -> tuple[float, float]:
+    """Return the largest value of several peaks, and its time [s]."""
+    nodal_max = _PEAK * max(peak.nodal_max for peak in peaks)
+    return max((peak.locate() for peak in peaks if peak.nodal_max >= nodal_max), key=lambda locate: locate[0])
+
+
+@dataclass
+class ActiveContact:
+    """A contact whose surfaces overlap.
+
+    `mass`: effective mass of its motion [kg]. `delta`: indentation of its law [m]. `speed`, `span`: speed of its motion [m/s], and its
+    approximate duration [s]. `pushes`: whether its law acts; otherwise it recoils without a force. `fresh`: no stretch has been solved yet.
+    At the end of its last stretch: `force` [N], its rate of change `trend` [N/s], and `closing`, the rate of the approach [m/s].
+    """
+
+    number: int
+    local: LocalContact
+    mass: float
+    delta: float
+    speed: float
+    span: float
+    impact: Impact
+    pushes: bool = True
+    fresh: bool = True
+    trend: float = 0.0
+    force: float = np.inf
+    closing: float = np.inf
+
+    @property
+    def energy(self) -> float:
+        """Energy scale of its motion [J]."""
+        return 0.5 * self.mass * self.speed**2
+
+    def overlap(self, system: LinearSystem, state: State) -> float:
+        """Return the approach beyond that of release [m], at least zero."""
+        return max(float(system.approach(state)[self.number]) - self.local.release_level, 0.0)
+
+    def law_indentation(self, system: LinearSystem, state: State) -> float:
+        """Return the indentation of its law in a state [m]."""
+        return float(self.local.indentation_at(self.overlap(system, state) + self.local.release_level))
+
+    def plastic_work(self, system: LinearSystem, state: State) -> float:
+        """Return the plastic work since the last update of the law's memory [J], in a state."""
+        return float(self.local.law.plastic_work(np.asarray(max(self.law_indentation(system, state), self.local.release_indentation))))
+
+    def stored_energy_at(self, delta: float) -> float:
+        """Return the energy stored at an indentation of its law [J], with rounding errors set to zero."""
+        held = float(self.local.energy_at_indentation(delta))
+        return held if abs(held) > _NOTHING * self.energy else 0.0
+
+
+def closing_speed(system: LinearSystem, state: State, number: int) -> float:
+    """Return the closing speed of the surfaces of a contact [m/s], > 0.
+
+    It is the larger of the rates with and without the coordinates inside the contact: a surface may meet the other by its own vibration
+    while the centre hardly moves.
+    """
+    return max(float(system.outer_rates(state)[number]), float(system.rates(state)[number]), 1e-300)
+
+
+def motion_speed(system: LinearSystem, number: int, law: CompliantLaw, closing: float) -> float:
+    """Return the speed scale of the motion in a contact [m/s]: the closing speed, or the speed that gravity adds at a soft touch."""
+    mass, gravity = float(system.mass[number]), max(float(system.gravity[number]), 0.0)
+    sag = float(static_indentation(law, np.array([mass * gravity]))[0]) if gravity else 0.0
+    return max(closing, float(np.sqrt(gravity * sag)))
+
+
+def record_peaks(impact: Impact, stretch: VibratingStretch, place: int, start: float) -> None:
+    """Add the peaks of force and indentation of one contact within a stretch that starts at a time [s] to its impact, and its impulse."""
+    rule, contact, indentations = stretch.rule, stretch.contacts[place], stretch.indentations(place)
+    force = float(contact.force.max()) if contact.local.law.tension == "kept" else max(float(contact.force.max()), 0.0)
+    impact.force.add(force, start, stretch, contact.force_at)
+    impact.indentation.add(float(indentations[1:].max()), start, stretch, lambda x: np.asarray(rule.weights(x).T @ indentations))
+    impact.impulse += stretch.length * float(rule.integral[-1] @ contact.force)
