@@ -13,7 +13,7 @@ from mutations import case_files
 from vibroimpact.cases.reader import load_table, prefix_errors
 from vibroimpact.cases.rigid import deforms
 from vibroimpact.report.terminal import TerminalConsole
-from vibroimpact.runs.terminal import case_explained
+from vibroimpact.runs.case_explained import case_explained
 from vibroimpact.studies.explain_sweep import explain_sweep
 
 

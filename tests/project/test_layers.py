@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 from functools import cache
 from pathlib import Path
 
@@ -124,3 +125,22 @@ def test_files_hold_one_idea() -> None:
     median = sorted(lengths.values())[len(lengths) // 2]
     assert median < 150
     assert max(lengths.values()) <= 420, max(lengths, key=lengths.__getitem__)
+
+
+def test_the_page_on_architecture_names_files_that_exist() -> None:
+    text = (Path(__file__).parents[2] / "docs" / "architecture.md").read_text(encoding="utf-8")
+    named = {
+        name for name in re.findall(r"`([\w/]+/[\w/.]*|[\w/]+\.py)`", text) if name.partition("/")[0] not in ("docs", "examples", "tests")
+    }
+    assert len(named) > 60
+    # in a walk a file may be named by its name alone, after one of the same room
+    known = {path.relative_to(PACKAGE).as_posix() for path in PACKAGE.rglob("*.py")}
+    alone = {path.rpartition("/")[2] for path in known}
+    missing = [name for name in named if not (name in known or (name in alone) or (name.endswith("/") and (PACKAGE / name).is_dir()))]
+    assert not missing
+
+
+def test_the_picture_of_the_rooms_has_all_of_them() -> None:
+    example = (Path(__file__).parents[2] / "examples" / "rooms.py").read_text(encoding="utf-8")
+    rooms = {path.name for path in PACKAGE.iterdir() if (path / "__init__.py").exists()}
+    assert {room for room in rooms if f'"{room}": ' not in example} == set()

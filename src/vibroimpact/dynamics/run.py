@@ -123,7 +123,7 @@ class Run:
         drops, law = leg.contact_drops, self.law(leg.contact_drops)
         row = self.rows.add()
         row["impact"][drops], row["time_s"][drops], row["approach_speed_m_s"][drops] = len(self.rows), touch, speed
-        row["restitution_asked"][drops] = _asked(law)
+        row["restitution_asked"][drops] = _nominal_restitution(law)
         if isinstance(law, InstantaneousLaw):
             self.time[drops], self.gap[drops], self.velocity[drops] = touch, 0.0, law.separation_speed(speed, self.mass[drops])
             row["separation_speed_m_s"][drops] = self.velocity[drops]
@@ -132,7 +132,7 @@ class Run:
         else:
             assert isinstance(law, CompliantLaw)
             closing = self.bodies.closing_speed(drops, speed, self.velocity[drops])
-            leg, lost = yield from self.deform(leg, encounter_of(law, self.mass[drops], self.gravity[drops], closing), touch, row)
+            leg, lost = yield from self.solve_contact(leg, encounter_of(law, self.mass[drops], self.gravity[drops], closing), touch, row)
             lost += row["plastic_work_J"][drops]
             law = self.law(drops)  # with its memory of this impact
         self.dissipated[drops] += lost - row["plastic_work_J"][drops]
@@ -144,10 +144,10 @@ class Run:
             rise = np.where(self.gravity[drops] > 0.0, 0.5 * separation**2 / self.gravity[drops], np.nan)
         row["rebound_height_m"][drops] = self.radius[drops] + self.gap[drops] + rise
         moving = self.moving[drops]
-        self.judge(drops[moving], law if moving.all() else law.take(np.flatnonzero(moving)), row)
+        self.stop_resting(drops[moving], law if moving.all() else law.take(np.flatnonzero(moving)), row)
         return leg
 
-    def deform(self, leg: Leg, encounter: Encounter, touch: Floats, row: dict[str, Floats]) -> Coroutine[tuple[Leg, Floats]]:
+    def solve_contact(self, leg: Leg, encounter: Encounter, touch: Floats, row: dict[str, Floats]) -> Coroutine[tuple[Leg, Floats]]:
         """Return the leg with the contact of drops, and the energy lost in it [J]."""
         drops = leg.contact_drops
         until = (np.inf if self.problem.duration is None else self.problem.duration) - touch
@@ -174,7 +174,7 @@ class Run:
         for these, outcome in (*ends, (riding & ~at_end, Outcome.RIDING), (at_end, Outcome.DURATION)):
             self.stop(drops[these], outcome, self.time[drops[these]])
         if captured.any():
-            self.lie_down(drops[captured], contact.law.take(np.flatnonzero(captured)), self.time[drops[captured]], stored[captured])
+            self.bring_to_rest(drops[captured], contact.law.take(np.flatnonzero(captured)), self.time[drops[captured]], stored[captured])
         self.stored[drops[riding]] = stored[riding]
         return replace(leg, contact=contact, encounter=encounter), contact.dissipated + np.where(captured | riding, 0.0, stored)
 
@@ -184,7 +184,7 @@ class Run:
         assert isinstance(law, CompliantLaw)
         return law
 
-    def judge(self, drops: Drops, law: ContactLaw, row: dict[str, Floats]) -> None:
+    def stop_resting(self, drops: Drops, law: ContactLaw, row: dict[str, Floats]) -> None:
         """Stop the drops that separate more slowly than the rest speed, or not at all, and cannot be lifted again."""
         resting = self.bodies.rests(drops, self.velocity[drops], self.rest_speed[drops])
         slow = drops[resting]
@@ -194,14 +194,14 @@ class Run:
             # flights are a geometric series with the ratio of the last restitution
             missing = 1.0 - row["restitution_achieved"][slow]
             limit = self.time[slow] + 2.0 * self.velocity[slow] / self.gravity[slow] / np.where(missing > 1e-6, missing, 0.0)
-        self.lie_down(slow, law.take(np.flatnonzero(resting)), limit, np.zeros(len(slow)))
+        self.bring_to_rest(slow, law.take(np.flatnonzero(resting)), limit, np.zeros(len(slow)))
         self.stop(slow, Outcome.REST_SPEED, np.where(np.isfinite(limit), limit, self.time[slow]))
 
-    def lie_down(self, drops: Drops, law: ContactLaw, time: Floats, stored: Floats) -> None:
+    def bring_to_rest(self, drops: Drops, law: ContactLaw, time: Floats, stored: Floats) -> None:
         """Put drops that have come to rest, with energy `stored` in the contact [J], into their static indentation."""
         weight, energy = self.mass[drops] * self.gravity[drops], self.mechanical_energy()[drops] + stored
         self.rest_time[drops] = time
-        for name, values in self.bodies.laid(drops, law, weight, energy).items():
+        for name, values in self.bodies.static_state(drops, law, weight, energy).items():
             getattr(self, name)[drops] = values
 
     def stop(self, drops: Drops, outcome: Outcome, time: Floats) -> None:
@@ -259,7 +259,7 @@ class Run:
         return gap, velocity
 
 
-def _asked(law: ContactLaw) -> Floats | float:
+def _nominal_restitution(law: ContactLaw) -> Floats | float:
     """Return the restitution that a law is given, or NaN."""
     asked = getattr(law, "restitution", None)
     return np.nan if asked is None else asked

@@ -9,7 +9,7 @@ from typing import Any
 
 import tomli_w
 
-from vibroimpact.files.leftovers import remove
+from vibroimpact.files.working_files import remove
 from vibroimpact.files.recover import clear, recover
 from vibroimpact.studies.chunk_file import CHUNK
 from vibroimpact.studies.chunk_file import FOLDER as CHUNKS

@@ -89,7 +89,7 @@ class RigidBodies:
         """Return which drops that separate with an upward velocity [m/s] count as at rest."""
         return np.asarray((velocity < rest_speed) | (velocity == 0.0))
 
-    def laid(self, drops: Drops, law: ContactLaw, weight: Floats, energy: Floats) -> dict[str, Floats]:
+    def static_state(self, drops: Drops, law: ContactLaw, weight: Floats, energy: Floats) -> dict[str, Floats]:
         """Return the static state of drops: `sag` [m], `stored` energy [J], and `written_off`, the rest of their `energy` [J]."""
         sag = stored = np.zeros(len(drops))
         if isinstance(law, CompliantLaw):

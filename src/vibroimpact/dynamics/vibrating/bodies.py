@@ -172,7 +172,7 @@ class VibratingBodies(RigidBodies):
         """Return which drops have come to rest."""
         return np.array([self.lying[drop] is not None for drop in drops], dtype=bool)
 
-    def laid(self, drops: Drops, law: ContactLaw, weight: Floats, energy: Floats) -> dict[str, Floats]:
+    def static_state(self, drops: Drops, law: ContactLaw, weight: Floats, energy: Floats) -> dict[str, Floats]:
         """Return `sag` [m], `stored` and `written_off` [J] of drops that have come to rest."""
         lying = [found for drop in drops if (found := self.lying[drop]) is not None]
         rows = [(found.equilibrium.sag, found.equilibrium.stored, found.written_off) for found in lying]

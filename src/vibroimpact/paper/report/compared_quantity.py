@@ -20,7 +20,7 @@ from vibroimpact.paper.report.drawing import LINE_STYLES
 from vibroimpact.paper.runs import TREATMENTS, Runs
 from vibroimpact.report.layout import heading, label_vertical, new_figure, row_of_axes
 from vibroimpact.report.style import INK
-from vibroimpact.runs.windows import thinned, window
+from vibroimpact.runs.figure_data import decimated, history_window
 from vibroimpact.units.display import digits, multiple
 
 
@@ -172,7 +172,7 @@ def _after_touch(shown: ComparedQuantity, response: Response, span: float) -> tu
     """Return times since first touch [s] and values, around the first impact."""
     time, values = shown.timeline(response)
     touch = float(response.impacts["time_s"][0])
-    part = window({"time_s": time, "value": values}, touch - _BEFORE * span, touch + span)
+    part = history_window({"time_s": time, "value": values}, touch - _BEFORE * span, touch + span)
     return part["time_s"] - touch, part["value"]
 
 
@@ -190,7 +190,7 @@ def _draw_column(
     scale = multiple(shown.unit, list(marks.values()) if nothing else everything)
     for axes, lines, row in zip(column, rows.values(), parts, strict=True):
         for line, (time, values) in zip(lines, row, strict=True):
-            axes.plot(*thinned(time / clock, values / scale.size), **LINE_STYLES[line.style])
+            axes.plot(*decimated(time / clock, values / scale.size), **LINE_STYLES[line.style])
         if not any(np.any(values) for _, values in row):
             axes.text(0.5, 0.4, "zero", transform=axes.transAxes, ha="center", fontsize=8.0)
     low, high = (float(pick(everything)) / scale.size for pick in (np.nanmin, np.nanmax))
