@@ -100,7 +100,7 @@ def test_a_damaged_entry_is_never_believed(folder: Path) -> None:
 
 
 def test_numbers_read_as_shorter_ones_are_not_believed(folder: Path) -> None:
-    """One byte makes of 8-byte numbers 4-byte ones, or fewer rows: a reader that stops early meets no check sum at the end."""
+    """One byte makes 4-byte numbers of 8-byte ones, or fewer rows: a reader that stops early does not verify the sums of zip members."""
     model = replace(modal_model_of(RECIPE), shapes=np.random.default_rng(0).standard_normal((12, 20_000)))
     save_model("key", model)
     path = folder / "key.modes"
@@ -110,7 +110,7 @@ def test_numbers_read_as_shorter_ones_are_not_believed(folder: Path) -> None:
         path.write_bytes(content[: place + 2] + b"4" + content[place + 3 :])
         found, trouble = load_model("key")
         assert (found is None and "damaged" in trouble) or same(found, model)
-    place = content.index(b"[12, 20000]")
+    place = content.index(b"(12, 20000)")
     path.write_bytes(content[: place + 1] + b" 2" + content[place + 3 :])
     assert load_model("key")[0] is None
 
