@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, cast
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.bodies.sphere import rigid_sphere
+from vibroimpact.bodies.rigid import rigid_sphere
 from vibroimpact.cases.local_section import MeasuredImpact
 from vibroimpact.cases.modes import BodyModes, compute_modes
 from vibroimpact.cases.residuals import residual_key, with_residuals

@@ -18,7 +18,7 @@ from vibroimpact.shown import shown
 
 if TYPE_CHECKING:  # they load sparse matrices, which a case of rigid bodies does without
     from vibroimpact.structures.mesh import Mesh
-    from vibroimpact.structures.recipe import BroughtMesh, Place, Reduction
+    from vibroimpact.structures.recipe import ImportedMesh, Place, Reduction
 
 MOST_MODES = 20_000
 DEFAULT_MODES = {"sphere": 20, "plate": 100}
@@ -41,7 +41,7 @@ class BroughtMeshTable(Section):
     element_size: _Size | None = None
     contact: str | None = Field(None, description="a named set: the contact point is its middle")
 
-    def brought(self) -> BroughtMesh:
+    def brought(self) -> ImportedMesh:
         """Return the mesh, to be read when it is needed.
 
         Raises
@@ -49,13 +49,13 @@ class BroughtMeshTable(Section):
         InputError
             If there is no such file.
         """
-        from vibroimpact.structures.recipe import BroughtMesh
+        from vibroimpact.structures.recipe import ImportedMesh
 
         try:
             content = file_digest(self.file, MESH)
         except InputError as error:
             raise about(self.file, error, "mesh") from None
-        return BroughtMesh(json.dumps([content, Path(self.file).suffix.lower(), self.unit, self.element_size]), self.read)
+        return ImportedMesh(json.dumps([content, Path(self.file).suffix.lower(), self.unit, self.element_size]), self.read)
 
     def read(self) -> Mesh:
         """Read the mesh [m]."""

@@ -12,7 +12,7 @@ from vibroimpact.cases.item_labels import in_list
 from vibroimpact.errors import InputError
 from vibroimpact.structures.geometry import check_mesh, mass_properties
 from vibroimpact.structures.mesh import Mesh
-from vibroimpact.structures.recipe import BroughtMesh
+from vibroimpact.structures.recipe import ImportedMesh
 from vibroimpact.structures.structure import Structure
 from vibroimpact.structures.supports.constraints import Constraints
 from vibroimpact.structures.surface import Side, Spot, place_of, surface_motion
@@ -34,7 +34,7 @@ def meshes_of(case: CaseTable) -> dict[str, Mesh]:
     for name, body in elastic_bodies(case).items():
         try:
             mesh = body.recipe.shape.mesh(body.recipe.supports)
-            if isinstance(body.recipe.shape, BroughtMesh):  # what is meshed here is sound
+            if isinstance(body.recipe.shape, ImportedMesh):  # what is meshed here is sound
                 check_mesh(mesh)
         except InputError as error:
             raise InputError(error.message, f"{name}.{error.key}".rstrip(".")) from None

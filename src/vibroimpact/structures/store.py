@@ -267,7 +267,7 @@ def _parts(model: ModalModel) -> dict[str, Any]:
         "centre": model.properties.centre,
         "inertia": model.properties.inertia,
         "numbers": np.array([model.properties.mass, model.thickness]),
-        "left": model.left,
+        "rigid_coefficients": model.rigid_coefficients,
         "frequency_errors": model.frequency_errors,
         "facts": np.frombuffer(json.dumps(dict(model.facts)).encode(), np.uint8),
     }
@@ -300,7 +300,7 @@ def _model(entry: Mapping[str, Any]) -> ModalModel:
         entry["angular_frequencies"],
         entry["shapes"],
         entry["participation"],
-        entry["left"],
+        entry["rigid_coefficients"],
         entry["frequency_errors"],
         thickness,
         json.loads(entry["facts"].tobytes()),

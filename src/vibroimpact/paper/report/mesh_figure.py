@@ -101,7 +101,7 @@ def _draw_mesh(axes: Axes, mesh: Mesh) -> None:
         lines = _picture(see, place).reshape(-1, fine + 1, 2)
         axes.add_collection(LineCollection(list(lines), colors=INK, linewidths=0.5))
         # the shape functions of the nodes that lie on a face do not vanish there
-        on_face = np.abs(group.slopes(np.array([[0.31, 0.43]]))[0][0]) > 1e-9
+        on_face = np.abs(group.shape_functions(np.array([[0.31, 0.43]]))[0][0]) > 1e-9
         nodes = at[seen.reshape(len(at), -1).all(axis=1)][:, on_face].reshape(-1, 3)
         axes.plot(*see(*nodes.T), "o", color=INK, markersize=1.3, markeredgewidth=0.0, rasterized=True)
     axes.autoscale_view()
@@ -112,7 +112,7 @@ def _draw_mesh(axes: Axes, mesh: Mesh) -> None:
 
 def _surface(group: Faces, at: Floats, local: Floats) -> tuple[Floats, Floats]:
     """Return where places on each face lie, and the normals there (faces, places, 3), from where its nodes are."""
-    values, slopes = group.slopes(local)
+    values, slopes = group.shape_functions(local)
     along = np.einsum("qak,eki->aeqi", slopes, at)
     normal = np.cross(along[0], along[1])
     return np.einsum("qk,eki->eqi", values, at), normal / np.linalg.norm(normal, axis=-1, keepdims=True)
