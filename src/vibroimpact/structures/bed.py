@@ -71,8 +71,8 @@ def patch_bed(bed: tuple[float, float], slenderness: float) -> tuple[float, floa
     -----
     The curved rim of a small patch is stiffer than a straight one. The stiffness of a bed is proportional to the square of the radius,
     that of the half space, which a plate is to a much smaller patch, to the radius; hence the correction, a multiple of thickness over
-    radius. Along the plate the multiple is that of a disc bonded to the half space, 8 G R / (2 - nu). Across it is fitted, as the
-    rotation of a rim matters more than the indentation of a disc: with 1.5, twenty frequencies each of plates on round patches of 1.25 to
+    radius. Along the plate the multiple is that of a disc bonded to the half space, 8 G R / (2 - nu). Across it is fitted, as a
+    rim rotates more than a disc sinks: with 1.5, twenty frequencies each of plates on round patches of 1.25 to
     2.5 thicknesses in radius are those of refined bricks within 0.25 % (without it, 1.3 %), except for in-plane motions, which are up to
     0.9 % too stiff at 1.5 thicknesses.
     """

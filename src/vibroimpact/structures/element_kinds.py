@@ -104,7 +104,7 @@ def _scikit_fem(name: str, reference: Floats, points: Floats) -> Shape:
 
 @cache
 def _reordered(name: str, reference: bytes, shape: tuple[int, int]) -> tuple[Any, list[int]]:
-    """Return an element of scikit-fem, and its number of each node of the reference element."""
+    """Return an element of scikit-fem, and the numbers of its shape functions in the node order used here."""
     import skfem
 
     element = getattr(skfem, name)()

@@ -95,9 +95,8 @@ class _Krylov:
     def __init__(self, respond: Callable[[Floats], Floats], mass: csr_array, known: Floats, random: np.random.Generator) -> None:
         self._respond, self._mass = respond, mass
         self._known, self._known_momenta = known, mass @ known
-        self._room = [
-            np.empty((mass.shape[0], 4 * _BLOCK), order="F") for _ in range(2)
-        ]  # storage of the vectors and of their products with M, which doubles when full
+        # storage of the vectors and of their products with M, enlarged when full
+        self._room = [np.empty((mass.shape[0], 4 * _BLOCK), order="F") for _ in range(2)]
         self.size = 0
         """Dimension of the space."""
         self._projected = np.zeros((0, 0))  # K^-1 M on the space

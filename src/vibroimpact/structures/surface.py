@@ -166,7 +166,7 @@ def surface_motion(mesh: Mesh, places: Floats, side: Side = "upper", thickness: 
     weights: list[Floats] = [np.zeros(0)] * len(places)
     positions = np.full((len(places), 3), np.nan)
     groups = _facing(_near_column(mesh, places), side)
-    for start in _STARTS:
+    for start in _STARTS:  # further starts only for places that none before has found
         waiting = np.flatnonzero(np.isneginf(best))
         for faces in groups if len(waiting) else []:
             found, face, local = _locate(mesh.nodes, faces, places[waiting], start)

@@ -122,6 +122,7 @@ def column_matrices(radius: float, length: float, material: Material, elements: 
 
 def _bending(step: float, flexible: float, rigidity: float, line_mass: float, line_inertia: float) -> tuple[Floats, Floats]:
     """Return the stiffness of one beam for deflection and slope at both ends, and its mass integrated from its shape functions."""
+    # Shape functions of deflection and slope at Gauss points; `flexible` is the ratio of shear to bending flexibility
     points, weights = np.polynomial.legendre.leggauss(4)
     s, weights = 0.5 * (points + 1.0), 0.5 * step * weights
     scale = 1.0 / (1.0 + flexible)
@@ -142,6 +143,7 @@ def _bending(step: float, flexible: float, rigidity: float, line_mass: float, li
         ]
     )
     mass = line_mass * (deflection * weights) @ deflection.T + line_inertia * (slope * weights) @ slope.T
+    # The stiffness is known in closed form
     a, b, c = 12.0 / step**3, 6.0 / step**2, 1.0 / step
     stiffness = (
         rigidity

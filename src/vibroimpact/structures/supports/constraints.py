@@ -194,11 +194,12 @@ class Constraints:
         stiffness = block_diag([structure.stiffness, *(body[0] for body in self._bodies)], format="csr") + added
         mass = block_diag([structure.mass, *(body[1] for body in self._bodies)], format="csr")
         motions = np.concatenate([structure.rigid_motions(), *(body[2] for body in self._bodies)])
+        # bodies are eliminated last, after all degrees of freedom of the structure that they couple
         order = np.concatenate([structure.order, np.arange(structure.stiffness.shape[0], self._size)])
         place = np.full(self._size, -1)
         place[free] = np.arange(len(free))
         order = place[order]
-        if not self._ties and not self._bodies:
+        if not self._ties and not self._bodies:  # no projection is needed
             reduced = [csr_array(matrix) for matrix in (stiffness, mass, bed)]
         else:
             turned = expansion.T.tocsr()
