@@ -1,6 +1,6 @@
 """Factorisation of a sparse symmetric matrix in nested-dissection order, with an estimate of the memory of the factors beforehand.
 
-Compared with it, SuperLU's minimum-degree order has less fill for plate elements (0.35 to 1), but 1.3 to 1.7 times the fill and two to
+Compared with it, SuperLU's minimum-degree order has less fill for plate elements (0.35 to 1), but 1.2 to 1.7 times the fill and two to
 three times the time for whole plates of bricks, the largest systems here; and its fill is not known before the factorisation.
 """
 
