@@ -16,9 +16,8 @@ from vibroimpact.structures.supports.constraints import HeldStructure
 _NEAR = 1e-9  # of the body's extent: tolerance of the position of mirror images
 _ALIKE = 1e-10  # relative tolerance of the symmetry of stiffness and mass, for rounding
 _REPEATS = 2  # random motions of the test of symmetry
-_PLATE_AXES = np.array(
-    [[-1, 1, 1, -1, 1], [1, -1, 1, 1, -1], [1, 1, -1, -1, -1]]
-)  # signs of u, v, w and the slopes in a reflection, by the normal of the plane
+# Signs of u, v, w and the slopes in a reflection, by the normal of the plane
+_PLATE_AXES = np.array([[-1, 1, 1, -1, 1], [1, -1, 1, 1, -1], [1, 1, -1, -1, -1]])
 
 
 @dataclass(frozen=True)

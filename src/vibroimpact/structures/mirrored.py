@@ -69,7 +69,7 @@ class MirroredSystem:
         return np.asarray(sum(basis @ self._part(basis).static(basis.T @ load) for basis in self.bases))
 
     def count_below(self, angular_frequency: float) -> int:
-        """Return the number of elastic modes below an angular frequency [rad/s], from the inertia of the factors."""
+        """Return the number of elastic modes below an angular frequency [rad/s], from the signs of the pivots."""
         return sum(self._part(basis).count_below(angular_frequency) for basis in self.bases)
 
     def modes(self, number: int, progress: Progress | None = None, tolerance: float = TOLERANCE) -> Eigenmodes:

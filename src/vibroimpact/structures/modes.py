@@ -140,7 +140,7 @@ class ElasticSystem:
         return Eigenmodes(np.sqrt(values), shapes)
 
     def count_below(self, angular_frequency: float) -> int:
-        """Return the number of elastic modes below an angular frequency [rad/s], from the inertia of the factors."""
+        """Return the number of elastic modes below an angular frequency [rad/s], from the signs of the pivots."""
         shifted = self.stiffness - angular_frequency**2 * self.mass
         return int(Factors(csr_array(shifted), self.order).negative_pivots()) - int(self.rigid.shape[1])
 
