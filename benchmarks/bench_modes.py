@@ -23,7 +23,7 @@ from vibroimpact.structures.damping import ConstantRatio
 from vibroimpact.structures.lattice import box_mesh
 from vibroimpact.structures.mesh import Mesh
 from vibroimpact.structures.modal_model import modal_basis, modal_model
-from vibroimpact.structures.modes import Elastic
+from vibroimpact.structures.modes import ElasticSystem
 from vibroimpact.structures.plate_mesh import plate_mesh
 from vibroimpact.structures.store import key_of, load_model, save_model
 from vibroimpact.structures.structure import plate_structure, solid_structure
@@ -49,7 +49,7 @@ def measure(name: str) -> None:
     structure = plate_structure(mesh, STEEL, SIZE[2]) if mesh.is_flat else solid_structure(mesh, STEEL)
     assembled = time.process_time()
     held = held_by(structure)
-    elastic = Elastic(held.stiffness, held.mass, held.rigid, held.order)
+    elastic = ElasticSystem(held.stiffness, held.mass, held.rigid, held.order)
     factorised = time.process_time()
     modes = elastic.modes(MODES)
     done = time.process_time()

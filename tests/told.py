@@ -6,7 +6,7 @@ from typing import Any
 
 import vibroimpact as vi
 from vibroimpact.bodies.body import Body
-from vibroimpact.bodies.plate import rigid_plate
+from vibroimpact.bodies.rigid import rigid_plate
 from vibroimpact.contact.law import ContactLaw
 from vibroimpact.exporting.drop import Drop
 

@@ -17,8 +17,8 @@ from vibroimpact._version import __version__
 
 if TYPE_CHECKING:
     from vibroimpact.bodies.body import Body as Body
-    from vibroimpact.bodies.plate import rigid_plate as rigid_plate
-    from vibroimpact.bodies.sphere import rigid_sphere as rigid_sphere
+    from vibroimpact.bodies.rigid import rigid_plate as rigid_plate
+    from vibroimpact.bodies.rigid import rigid_sphere as rigid_sphere
     from vibroimpact.calibration.calibrate import calibrate as calibrate
     from vibroimpact.calibration.calibrate_case import calibrate_case as calibrate_case
     from vibroimpact.calibration.calibrate_case import calibrated_case as calibrated_case
@@ -157,8 +157,8 @@ _HOME = {
     "read_sweep": "studies.sweep",
     "remake_report": "remake",
     "reproduce_paper": "paper.report.folder",
-    "rigid_plate": "bodies.plate",
-    "rigid_sphere": "bodies.sphere",
+    "rigid_plate": "bodies.rigid",
+    "rigid_sphere": "bodies.rigid",
     "run_sweep": "studies.run_sweep",
     "save_calibration": "calibration.folder",
     "save_comparison": "comparison.folder",

@@ -15,7 +15,7 @@ from scipy.stats import binom
 
 import vibroimpact as vi
 from support import plain_case
-from vibroimpact.bodies.plate import rigid_plate
+from vibroimpact.bodies.rigid import rigid_plate
 from vibroimpact.calibration.calibrate import calibrate
 from vibroimpact.calibration.calibration import Calibration
 from vibroimpact.calibration.force_record import impacts_in_force

@@ -298,7 +298,7 @@ def test_a_plate_that_would_fall_is_doubted() -> None:
     springs = [{"type": "spring", "position": [x, y], "stiffness": 1e5} for x, y in ((-0.2, -0.1), (0.2, -0.1), (0.0, 0.15))]
     found = vi.compute_modes(vi.read_case(plate_case(supports=springs, mesh=COARSE)))["plate"]
     assert found.model.is_held_vertically
-    assert len(found.model.left) == 3
+    assert len(found.model.rigid_coefficients) == 3
 
 
 # the command ------------------------------------------------------------------------------------------

@@ -16,7 +16,7 @@ from vibroimpact.structures.element_kinds import ELEMENT_KINDS
 from vibroimpact.structures.geometry import check_mesh, determinants, mass_properties
 from vibroimpact.structures.lattice import box_mesh
 from vibroimpact.structures.mesh import Mesh
-from vibroimpact.structures.modes import Elastic
+from vibroimpact.structures.modes import ElasticSystem
 from vibroimpact.structures.plate_mesh import plate_mesh, solid_plate_mesh
 from vibroimpact.structures.rectangle import Disc
 from vibroimpact.structures.sphere_mesh import sphere_mesh
@@ -144,7 +144,7 @@ def frequency_of_a_block(kind: str, count: int) -> float:
     """The lowest mode in which a block, its four upright sides as Navier's plate has them, bends [Hz]."""
     structure = solid_structure(box_mesh((1.0, 1.0, 0.5), (count, count, max(1, count // 2)), kind), STEEL)
     held = held_by(structure, [Edge(edge, "simply-supported") for edge in EDGES])
-    modes = Elastic(held.stiffness, held.mass, held.rigid, held.order).modes(6)
+    modes = ElasticSystem(held.stiffness, held.mass, held.rigid, held.order).modes(6)
     heave = held.expansion @ modes.shapes
     moved = np.abs(heave.reshape(-1, 3, 6)[:, 2].sum(axis=0))
     return float(modes.angular_frequencies[moved.argmax()] / (2 * np.pi))
@@ -188,7 +188,7 @@ def face_area(mesh: Mesh) -> float:
     for faces in outer_faces(mesh):
         triangle = len(faces.corners) == 3
         local = np.stack([a, b * (1 - a) if triangle else b], axis=1)
-        slopes = faces.slopes(local)[1]
+        slopes = faces.shape_functions(local)[1]
         tangents = np.einsum("pdn,eni->depi", slopes, mesh.nodes[faces.connectivity])
         total += (np.linalg.norm(np.cross(*tangents), axis=2) * weight * (1 - a if triangle else 1)).sum()
     return float(total)

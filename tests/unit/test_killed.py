@@ -19,7 +19,7 @@ import vibroimpact as vi
 from support import one_in, plain_case
 from traced import Ended, can_trace, traced
 from vibroimpact.cli import main
-from vibroimpact.structures.recipe import _RECENT
+from vibroimpact.structures.recipe import _MODELS
 from vibroimpact.structures.store import _clear_once
 
 pytestmark = pytest.mark.skipif(not can_trace(), reason="no process can be watched here")
@@ -195,7 +195,7 @@ class Stage:
 def command_status(*arguments: object) -> None:
     """Run the command line in this process as if it were a new one, which remembers nothing."""
     _clear_once.cache_clear()
-    _RECENT.clear()
+    _MODELS.clear()
     sys.argv = ["vibroimpact", *map(str, arguments)]
     main()
 

@@ -12,11 +12,11 @@ from vibroimpact.errors import InputError
 from vibroimpact.materials import find_material
 from vibroimpact.structures import modes as of_modes
 from vibroimpact.structures.factor import Factors
-from vibroimpact.structures.mirror import mirrors_of, symmetric_parts
-from vibroimpact.structures.mirrored import MirroredElastic, elastic_of
-from vibroimpact.structures.modes import Elastic
+from vibroimpact.structures.mirror import mirror_planes, symmetry_bases
+from vibroimpact.structures.mirrored import MirroredSystem, elastic_system
+from vibroimpact.structures.modes import ElasticSystem
 from vibroimpact.structures.plate_mesh import plate_mesh, solid_plate_mesh
-from vibroimpact.structures.recipe import Recipe, Reduction, SphereOfSolids, computed_model, to_follow
+from vibroimpact.structures.recipe import Recipe, Reduction, SphereOfSolids, computed_model, mesh_features
 from vibroimpact.structures.sphere_mesh import sphere_mesh
 from vibroimpact.structures.structure import plate_structure, solid_structure
 from vibroimpact.structures.supports.constraints import HeldStructure
@@ -32,7 +32,7 @@ SIDES = (Edge("x-min", "clamped"), Edge("x-max", "clamped"))
 
 
 def plate(*supports: Support, theory: str = "thick") -> HeldStructure:
-    mesh = plate_mesh(SIZE[:2], 0.14, *to_follow(supports))
+    mesh = plate_mesh(SIZE[:2], 0.14, *mesh_features(supports))
     return held_by(plate_structure(mesh, STEEL, SIZE[2], theory), supports)
 
 
@@ -41,7 +41,7 @@ def sphere(across: int = 6, grading: float = 1.0, kind: str = "hex20") -> HeldSt
 
 
 def bricks(*supports: Support) -> HeldStructure:
-    return held_by(solid_structure(solid_plate_mesh(SIZE, 0.08, 1, "hex20", *to_follow(supports)), STEEL), supports)
+    return held_by(solid_structure(solid_plate_mesh(SIZE, 0.08, 1, "hex20", *mesh_features(supports)), STEEL), supports)
 
 
 @pytest.mark.parametrize(
@@ -62,13 +62,13 @@ def bricks(*supports: Support) -> HeldStructure:
     ids=["patches", "free", "thin", "two", "askew", "spring", "sphere", "graded", "tetrahedra", "bricks", "held bricks"],
 )
 def test_the_mirror_planes_of_a_structure(held: Callable[[], HeldStructure], axes: list[int]) -> None:
-    assert [mirror.axis for mirror in mirrors_of(held())] == axes
+    assert [mirror.axis for mirror in mirror_planes(held())] == axes
 
 
 @pytest.mark.parametrize("held", [lambda: plate(), lambda: plate(*SIDES), lambda: sphere()])
 def test_parts_span_all_motions_and_nothing_couples_them(held: Callable[[], HeldStructure]) -> None:
     structure = held()
-    bases = symmetric_parts(structure, mirrors_of(structure))
+    bases = symmetry_bases(structure, mirror_planes(structure))
     assert sum(basis.shape[1] for basis in bases) == len(structure.free)
     for number, basis in enumerate(bases):
         unit = (basis.T @ basis).toarray() if basis.shape[1] < 600 else np.eye(basis.shape[1])
@@ -81,8 +81,8 @@ def test_parts_span_all_motions_and_nothing_couples_them(held: Callable[[], Held
 @pytest.mark.parametrize("held", [lambda: plate(*SIDES), lambda: bricks(*SIDES)])
 def test_modes_are_those_that_arpack_finds(held: Callable[[], HeldStructure]) -> None:
     structure = held()
-    found = elastic_of(structure).modes(30)
-    assert isinstance(elastic_of(structure), MirroredElastic)
+    found = elastic_system(structure).modes(30)
+    assert isinstance(elastic_system(structure), MirroredSystem)
     expected = np.sqrt(eigsh(structure.stiffness.tocsc(), 30, structure.mass.tocsc(), sigma=0.0, return_eigenvectors=False)[::-1])
     np.testing.assert_allclose(found.angular_frequencies, np.sort(expected), rtol=1e-9)
     np.testing.assert_allclose(found.shapes.T @ (structure.mass @ found.shapes), np.eye(30), atol=1e-8)
@@ -94,8 +94,8 @@ def test_modes_are_those_that_arpack_finds(held: Callable[[], HeldStructure]) ->
 def test_modes_of_a_sphere_are_those_of_the_whole(number: int) -> None:
     """Many are equal, and a number of modes may end among equal ones."""
     structure = sphere()
-    whole = Elastic(structure.stiffness, structure.mass, structure.rigid, structure.order).modes(number)
-    found = elastic_of(structure).modes(number)
+    whole = ElasticSystem(structure.stiffness, structure.mass, structure.rigid, structure.order).modes(number)
+    found = elastic_system(structure).modes(number)
     np.testing.assert_allclose(found.angular_frequencies, whole.angular_frequencies, rtol=1e-8)
     assert np.abs(structure.rigid.T @ (structure.mass @ found.shapes)).max() < 1e-9 * np.abs(structure.rigid).max()
 
@@ -104,13 +104,13 @@ def test_one_part_may_have_most_of_the_modes() -> None:
     """A long strip bends up and down in each half more often than it does anything else."""
     mesh = plate_mesh((2.0, 0.02), 0.02)
     structure = held_by(plate_structure(mesh, STEEL, 0.01))
-    whole = Elastic(structure.stiffness, structure.mass, structure.rigid, structure.order).modes(12)
-    np.testing.assert_allclose(elastic_of(structure).modes(12).angular_frequencies, whole.angular_frequencies, rtol=1e-6)
+    whole = ElasticSystem(structure.stiffness, structure.mass, structure.rigid, structure.order).modes(12)
+    np.testing.assert_allclose(elastic_system(structure).modes(12).angular_frequencies, whole.angular_frequencies, rtol=1e-6)
 
 
 def test_statics_and_counts_are_those_of_the_whole() -> None:
     structure = sphere()
-    whole, found = Elastic(structure.stiffness, structure.mass, structure.rigid, structure.order), elastic_of(structure)
+    whole, found = ElasticSystem(structure.stiffness, structure.mass, structure.rigid, structure.order), elastic_system(structure)
     loads = np.random.default_rng(0).standard_normal((len(structure.free), 2))
     expected = whole.static(loads)
     np.testing.assert_allclose(found.static(loads), expected, atol=1e-9 * np.abs(expected).max())
@@ -121,7 +121,7 @@ def test_statics_and_counts_are_those_of_the_whole() -> None:
 @pytest.mark.parametrize("number", [0, 100000])
 def test_a_number_of_modes_that_is_not_to_be_had_is_refused_as_ever(number: int) -> None:
     with pytest.raises(InputError, match="modes are not to be had from"):
-        elastic_of(sphere(4)).modes(number)
+        elastic_system(sphere(4)).modes(number)
 
 
 def test_the_factors_of_a_sphere_are_those_of_its_eighths(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -9,10 +9,10 @@ from scipy.sparse import csr_array
 from vibroimpact.errors import ComputationError, InputError
 from vibroimpact.materials import Material
 from vibroimpact.structures import factor, modes
-from vibroimpact.structures.factor import Factors, dissection, factor_entries
+from vibroimpact.structures.factor import Factors, factor_entries, nested_dissection
 from vibroimpact.structures.lattice import box_mesh
 from vibroimpact.structures.mesh import ElementBlock, Mesh
-from vibroimpact.structures.modes import Elastic
+from vibroimpact.structures.modes import ElasticSystem
 from vibroimpact.structures.plate_mesh import plate_mesh, solid_plate_mesh
 from vibroimpact.structures.sphere_mesh import sphere_mesh
 from vibroimpact.structures.structure import Structure, node_adjacency, plate_structure, solid_structure
@@ -29,9 +29,9 @@ EDGE = (Edge("x-min", "clamped"),)
 SPRINGS = tuple(Spring(x, y, 1e5) for x in (-0.2, 0.2) for y in (-0.15, 0.15))
 
 
-def elastic(structure: Structure, supports: tuple[Support, ...] = ()) -> Elastic:
+def elastic(structure: Structure, supports: tuple[Support, ...] = ()) -> ElasticSystem:
     held = held_by(structure, supports)
-    return Elastic(held.stiffness, held.mass, held.rigid, held.order)
+    return ElasticSystem(held.stiffness, held.mass, held.rigid, held.order)
 
 
 @pytest.mark.parametrize("structure", [PLATE, BRICKS])
@@ -150,7 +150,7 @@ def test_estimate_of_the_factors(mesh: Mesh) -> None:
     """
     structure = plate_structure(mesh, STEEL, 0.01) if mesh.is_flat else solid_structure(mesh, STEEL)
     adjacency = node_adjacency(mesh)
-    parts = dissection(mesh.nodes, adjacency)
+    parts = nested_dissection(mesh.nodes, adjacency)
     assert np.array_equal(np.sort(np.concatenate(parts)), np.arange(len(mesh.nodes)))
     estimate = mesh.dofs_per_node**2 * factor_entries(parts, adjacency)
     whole = Factors(structure.stiffness + 1e9 * structure.mass, structure.order).entries
@@ -173,7 +173,7 @@ def test_statics_are_the_sum_over_all_modes() -> None:
 def test_more_equal_modes_than_a_block_has(asked: int) -> None:
     """A diagonal system: 15 equal modes above two single ones."""
     values = np.concatenate([[1.0, 2.0], np.full(15, 3.0), np.geomspace(4.0, 1e6, 600)])
-    found = Elastic(csr_array(np.diag(values)), csr_array(np.eye(len(values)))).modes(asked)
+    found = ElasticSystem(csr_array(np.diag(values)), csr_array(np.eye(len(values)))).modes(asked)
     np.testing.assert_allclose(found.angular_frequencies**2, values[:asked], rtol=1e-9)
     np.testing.assert_allclose(found.shapes.T @ found.shapes, np.eye(asked), atol=1e-9)
 
@@ -185,5 +185,5 @@ def test_mass_at_a_few_degrees_of_freedom() -> None:
     mass[:heavy] = 1.0
     chain = csr_array(2.001 * np.eye(size) - np.eye(size, k=1) - np.eye(size, k=-1))
     condensed = np.linalg.inv(np.linalg.inv(chain.toarray())[:heavy, :heavy])
-    found = Elastic(chain, csr_array(np.diag(mass))).modes(10)
+    found = ElasticSystem(chain, csr_array(np.diag(mass))).modes(10)
     np.testing.assert_allclose(found.angular_frequencies**2, np.linalg.eigvalsh(condensed)[:10], rtol=1e-9)

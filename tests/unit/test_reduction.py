@@ -8,7 +8,7 @@ import pytest
 from support import one_in
 from vibroimpact.errors import InputError
 from vibroimpact.materials import Material
-from vibroimpact.structures.modes import Elastic
+from vibroimpact.structures.modes import ElasticSystem
 from vibroimpact.structures.recipe import PlateOfPlates, PlateOfSolids, Recipe, Reduction, SphereOfSolids, computed_model
 from vibroimpact.structures.reduction import attachment_modes, craig_bampton, projected
 from vibroimpact.structures.structure import Structure
@@ -39,8 +39,8 @@ def held(shape: PlateOfPlates | PlateOfSolids | SphereOfSolids, supports: tuple[
     return held_by(shape.structure(shape.mesh(supports), STEEL), supports)
 
 
-def elastic(system: HeldStructure) -> Elastic:
-    return Elastic(system.stiffness, system.mass, system.rigid, system.order)
+def elastic(system: HeldStructure) -> ElasticSystem:
+    return ElasticSystem(system.stiffness, system.mass, system.rigid, system.order)
 
 
 def vertical(structure: Structure, place: tuple[float, float], side: str) -> np.ndarray:
@@ -96,7 +96,7 @@ def test_craig_bampton_of_a_plate(shape: PlateOfPlates, supports: tuple[Support,
     for number in (4, 25):
         reduction = Reduction(modes=number, method="craig-bampton", interface=interface)
         model = computed_model(Recipe(shape, 7850.0, 210e9, 0.3, supports, reduction))
-        assert len(model.left) == (0 if supports else 6)
+        assert len(model.rigid_coefficients) == (0 if supports else 6)
         found.append(model.angular_frequencies[:5] / exact - 1)
         assert (found[-1] > -1e-7).all()
     assert found[1].max() < 2e-3

@@ -16,7 +16,7 @@ from vibroimpact.structures import recipe as recipes
 from vibroimpact.structures import store
 from vibroimpact.structures.mesh import ElementBlock, Mesh
 from vibroimpact.structures.modal_model import ModalModel
-from vibroimpact.structures.recipe import BroughtMesh, PlateOfPlates, PlateOfSolids, Recipe, Reduction, SphereOfSolids, modal_model_of
+from vibroimpact.structures.recipe import ImportedMesh, PlateOfPlates, PlateOfSolids, Recipe, Reduction, SphereOfSolids, modal_model_of
 from vibroimpact.structures.store import clear_store, entries, key_of, load_model, save_model, store_folder, store_size
 from vibroimpact.structures.supports.bar import Bar
 from vibroimpact.structures.supports.edge import Edge
@@ -100,7 +100,7 @@ def test_a_damaged_entry_is_never_believed(folder: Path) -> None:
 
 
 def test_numbers_read_as_shorter_ones_are_not_believed(folder: Path) -> None:
-    """One byte makes of 8-byte numbers 4-byte ones, or fewer rows: a reader that stops early meets no check sum at the end."""
+    """One byte makes 4-byte numbers of 8-byte ones, or fewer rows: a reader that stops early does not verify the sums of zip members."""
     model = replace(modal_model_of(RECIPE), shapes=np.random.default_rng(0).standard_normal((12, 20_000)))
     save_model("key", model)
     path = folder / "key.modes"
@@ -110,7 +110,7 @@ def test_numbers_read_as_shorter_ones_are_not_believed(folder: Path) -> None:
         path.write_bytes(content[: place + 2] + b"4" + content[place + 3 :])
         found, trouble = load_model("key")
         assert (found is None and "damaged" in trouble) or same(found, model)
-    place = content.index(b"[12, 20000]")
+    place = content.index(b"(12, 20000)")
     path.write_bytes(content[: place + 1] + b" 2" + content[place + 3 :])
     assert load_model("key")[0] is None
 
@@ -134,8 +134,8 @@ def different_recipes() -> list[Recipe]:
         replace(RECIPE, youngs_modulus=210.1e9),
         replace(RECIPE, poissons_ratio=0.31),
         replace(RECIPE, supports=()),
-        replace(RECIPE, shape=BroughtMesh("abc", lambda: Mesh(np.zeros((0, 3)), ()))),
-        replace(RECIPE, shape=BroughtMesh("abd", lambda: Mesh(np.zeros((0, 3)), ()))),
+        replace(RECIPE, shape=ImportedMesh("abc", lambda: Mesh(np.zeros((0, 3)), ()))),
+        replace(RECIPE, shape=ImportedMesh("abd", lambda: Mesh(np.zeros((0, 3)), ()))),
     ]
     shapes = [
         (PlateOfPlates((0.5, 0.4, 0.01), 0.2), {"size": (0.4, 0.5, 0.01), "element_size": 0.1, "theory": "thin"}),
@@ -183,7 +183,7 @@ def test_keys_depend_on_the_version(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_a_brought_mesh_is_known_by_its_digest() -> None:
-    one, other = (BroughtMesh("abc", lambda: Mesh(np.zeros((0, 3)), ())) for _ in range(2))
+    one, other = (ImportedMesh("abc", lambda: Mesh(np.zeros((0, 3)), ())) for _ in range(2))
     assert key_of(one) == key_of(other)
 
 

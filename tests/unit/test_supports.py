@@ -10,9 +10,10 @@ from scipy.linalg import eigh
 
 from vibroimpact.errors import InputError
 from vibroimpact.materials import Material
-from vibroimpact.structures.bed import bed_stiffness, bed_under
+from vibroimpact.structures.bed import bed_stiffness, patch_bed
+from vibroimpact.structures.disc_quadrature import disc_rule
 from vibroimpact.structures.lattice import box_mesh
-from vibroimpact.structures.modes import Elastic
+from vibroimpact.structures.modes import ElasticSystem
 from vibroimpact.structures.recipe import PlateOfPlates, PlateOfSolids
 from vibroimpact.structures.sphere_mesh import sphere_mesh
 from vibroimpact.structures.structure import Structure, solid_structure
@@ -21,7 +22,7 @@ from vibroimpact.structures.supports.edge import EDGES, Edge
 from vibroimpact.structures.supports.node_set import NodeSet
 from vibroimpact.structures.supports.patch import Patch, RectangularPatch
 from vibroimpact.structures.supports.point import Point
-from vibroimpact.structures.supports.spring import Spring, disc_rule
+from vibroimpact.structures.supports.spring import Spring
 from vibroimpact.structures.supports.support import Support, held_by
 from vibroimpact.structures.surface import lower_nodes, surface_motion
 
@@ -38,7 +39,7 @@ def made(shape: PlateOfPlates | PlateOfSolids, supports: tuple[Support, ...], ma
 
 def frequencies(shape: PlateOfPlates | PlateOfSolids, supports: tuple[Support, ...], number: int, material: Material = STEEL) -> np.ndarray:
     held = held_by(made(shape, supports, material), supports)
-    return Elastic(held.stiffness, held.mass, held.rigid, held.order).modes(number).angular_frequencies / (2 * np.pi)
+    return ElasticSystem(held.stiffness, held.mass, held.rigid, held.order).modes(number).angular_frequencies / (2 * np.pi)
 
 
 def rigid_plate_on(blocks: list[tuple[tuple[float, float], np.ndarray]]) -> np.ndarray:
@@ -203,7 +204,7 @@ def test_a_thick_plate_rests_on_a_bed() -> None:
     radius = 0.02
     supports = (Patch(0.1, 0.1, radius),)
     held = held_by(made(PLATE, supports), supports)
-    along, across = bed_under(bed_stiffness(STEEL, SIZE[2]), SIZE[2] / radius)
+    along, across = patch_bed(bed_stiffness(STEEL, SIZE[2]), SIZE[2] / radius)
     x, y, _ = held.structure.mesh.nodes.T - np.array([[0.1], [0.1], [0.0]])
     zero, one, area = np.zeros_like(x), np.ones_like(x), np.pi * radius**2
     motions = {
@@ -226,7 +227,7 @@ def test_overlapping_patches_rest_on_one_bed() -> None:
     beds = [held_by(made(PLATE, supports), supports).bed for supports in (one, other)]
     found = [float(motion @ (bed @ motion)) for motion, bed in zip(up, beds, strict=True)]
     area = [
-        size[0] * size[1] * bed_under(bed_stiffness(STEEL, SIZE[2]), SIZE[2] / radius)[1] for radius in (0.08 / 1.8, 0.06 * 0.08 / 0.14)
+        size[0] * size[1] * patch_bed(bed_stiffness(STEEL, SIZE[2]), SIZE[2] / radius)[1] for radius in (0.08 / 1.8, 0.06 * 0.08 / 0.14)
     ]
     np.testing.assert_allclose(found, area, rtol=1e-9)
 
@@ -314,7 +315,7 @@ def test_points_that_share_an_element_are_both_held() -> None:
     points = tuple(Point(x0 + a * side, y0 + b * side, "xyz") for a, b in ((1.0, 1.0), (2.0, 1.5), (1.5, 2.5)))
     held = held_by(structure, points)
     assert held.rigid.shape[1] == 0
-    modes = Elastic(held.stiffness, held.mass, held.rigid, held.order).modes(3)
+    modes = ElasticSystem(held.stiffness, held.mass, held.rigid, held.order).modes(3)
     motion, _ = surface_motion(structure.mesh, np.array([[point.x, point.y] for point in points]), "lower")
     moved = motion @ (held.expansion @ modes.shapes)
     assert np.abs(moved).max() < 1e-9 * np.abs(modes.shapes).max()

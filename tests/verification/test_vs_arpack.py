@@ -9,7 +9,7 @@ from scipy.sparse.linalg import eigsh
 
 from vibroimpact.materials import find_material
 from vibroimpact.structures.lattice import box_mesh
-from vibroimpact.structures.modes import Elastic
+from vibroimpact.structures.modes import ElasticSystem
 from vibroimpact.structures.plate_mesh import plate_mesh
 from vibroimpact.structures.sphere_mesh import sphere_mesh
 from vibroimpact.structures.structure import plate_structure, solid_structure
@@ -39,7 +39,7 @@ SLOW = {"sphere, multiplets of 5 to 13", "patches"}
 def test_modes_of_arpack(body: str) -> None:
     structure, supports, number, tolerance = BODIES[body]()
     held = held_by(structure, supports)
-    elastic = Elastic(held.stiffness, held.mass, held.rigid, held.order)
+    elastic = ElasticSystem(held.stiffness, held.mass, held.rigid, held.order)
     modes = elastic.modes(number)
     ours, skip = modes.angular_frequencies**2, held.rigid.shape[1]
     theirs = eigsh(csc_array(held.stiffness), number + skip + 2, csc_array(held.mass), sigma=-0.3 * ours[0], return_eigenvectors=False)

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from vibroimpact.materials import Material
-from vibroimpact.structures.modes import Elastic
+from vibroimpact.structures.modes import ElasticSystem
 from vibroimpact.structures.plate_mesh import plate_mesh, solid_plate_mesh
 from vibroimpact.structures.structure import Structure, plate_structure, solid_structure
 from vibroimpact.structures.supports.edge import EDGES, Edge
@@ -24,7 +24,7 @@ PAIRS = ((1, 1), (1, 2), (2, 2), (1, 3))
 def frequencies(structure: Structure, supports: tuple[Support, ...], number: int) -> np.ndarray:
     held = held_by(structure, supports)
     assert held.rigid.shape[1] == (0 if supports else 6)
-    return Elastic(held.stiffness, held.mass, held.rigid, held.order).modes(number).angular_frequencies / (2 * np.pi)
+    return ElasticSystem(held.stiffness, held.mass, held.rigid, held.order).modes(number).angular_frequencies / (2 * np.pi)
 
 
 def plates(thickness: float, element_size: float, theory: str = "thick", factor: float | None = None) -> Structure:

@@ -17,7 +17,7 @@ from scipy.linalg import eigh
 from support import one_in
 from vibroimpact.bodies.elastic import plate_recipe
 from vibroimpact.materials import Material, find_material
-from vibroimpact.structures.modes import Elastic
+from vibroimpact.structures.modes import ElasticSystem
 from vibroimpact.structures.plate_mesh import plate_mesh, solid_plate_mesh
 from vibroimpact.structures.recipe import Reduction, computed_model
 from vibroimpact.structures.rectangle import Disc
@@ -91,7 +91,7 @@ def three_dimensional(size: tuple[float, float, float], material: Material, m: i
 
 def frequencies(structure: Structure, supports: tuple[Support, ...], number: int) -> np.ndarray:
     held = held_by(structure, supports)
-    return Elastic(held.stiffness, held.mass, held.rigid, held.order).modes(number).angular_frequencies / (2 * np.pi)
+    return ElasticSystem(held.stiffness, held.mass, held.rigid, held.order).modes(number).angular_frequencies / (2 * np.pi)
 
 
 @pytest.mark.parametrize("size", one_in(4, [(SIZE,), ((0.5, 0.5, 0.02),), ((2.0, 0.2, 0.004),), ((0.3, 0.4, 0.0005),)]))

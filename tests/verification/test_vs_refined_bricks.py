@@ -14,7 +14,7 @@ import pytest
 
 from vibroimpact.bodies.elastic import plate_recipe
 from vibroimpact.materials import Material
-from vibroimpact.structures.modes import Elastic
+from vibroimpact.structures.modes import ElasticSystem
 from vibroimpact.structures.recipe import PlateOfSolids, Reduction, computed_model
 from vibroimpact.structures.structure import solid_structure
 from vibroimpact.structures.supports.bar import Bar
@@ -41,7 +41,7 @@ def bricks(material: Material, supports: tuple[Support, ...], splits: int, along
     on_discs = any(any(support.rims) for support in supports) or bool(supports and supports[0].discs)
     shape = PlateOfSolids(SIZE, SIZE[0] / along, layers=2, splits=splits, lower_splits=splits if on_discs else 0)
     held = held_by(solid_structure(shape.mesh(supports), material), supports)
-    found = Elastic(held.stiffness, held.mass, held.rigid, held.order).modes(MODES).angular_frequencies / (2 * np.pi)
+    found = ElasticSystem(held.stiffness, held.mass, held.rigid, held.order).modes(MODES).angular_frequencies / (2 * np.pi)
     return np.asarray(found)
 
 

@@ -10,7 +10,7 @@ import pytest
 from vibroimpact.materials import Material
 from vibroimpact.structures.lattice import box_mesh
 from vibroimpact.structures.mesh import Mesh
-from vibroimpact.structures.modes import Elastic
+from vibroimpact.structures.modes import ElasticSystem
 from vibroimpact.structures.plate_mesh import plate_mesh
 from vibroimpact.structures.rectangle import Disc
 from vibroimpact.structures.sphere_mesh import sphere_mesh
@@ -43,7 +43,7 @@ BEAM_END = (BeamEnd(),)
 
 def response(held: HeldStructure, load: np.ndarray) -> np.ndarray:
     """Static displacements of all degrees of freedom of the structure."""
-    elastic = Elastic(held.stiffness, held.mass, held.rigid, held.order)
+    elastic = ElasticSystem(held.stiffness, held.mass, held.rigid, held.order)
     return np.asarray(held.expansion @ elastic.static(held.expansion.T @ load))
 
 

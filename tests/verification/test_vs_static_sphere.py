@@ -7,7 +7,7 @@ import pytest
 
 from oracles.axisymmetric_contact import static_approach
 from vibroimpact.materials import Material
-from vibroimpact.structures.modes import Elastic
+from vibroimpact.structures.modes import ElasticSystem
 from vibroimpact.structures.sphere_compliance import finite_sphere_factor, sphere_term
 from vibroimpact.structures.sphere_mesh import sphere_mesh
 from vibroimpact.structures.structure import solid_structure
@@ -21,7 +21,7 @@ def test_under_the_pressure_of_hertz(poissons_ratio: float) -> None:
     """Unit radius, modulus and force; the mesh is carried by its inertia. What remains is that elements are too stiff."""
     structure = solid_structure(sphere_mesh(1.0, 8, "hex27", 3.0), Material(1.0, 1.0, poissons_ratio))
     held = held_by(structure)
-    elastic = Elastic(held.stiffness, held.mass, held.rigid, held.order)
+    elastic = ElasticSystem(held.stiffness, held.mass, held.rigid, held.order)
     nodes, weights = np.polynomial.legendre.leggauss(20)
     root, angle = 0.5 * (nodes + 1.0), 2 * np.pi * (np.arange(48) + 0.5) / 48
     disc = np.sqrt(1 - root[:, None] ** 2)[..., None] * np.stack([np.cos(angle), np.sin(angle)], axis=-1)

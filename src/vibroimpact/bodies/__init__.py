@@ -1,1 +1,1 @@
-"""Bodies: a mass or a fixity, made from geometry and material."""
+"""Bodies of an impact: rigid or elastic spheres and plates, from geometry and material."""

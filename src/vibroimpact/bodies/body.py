@@ -1,4 +1,4 @@
-"""What the dynamics know of a body."""
+"""Body of an impact as the dynamics use it: mass, contact offset and modes."""
 
 from __future__ import annotations
 
@@ -16,18 +16,18 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Body:
-    """A body that falls, or one that is held.
+    """Body of an impact, falling or fixed.
 
     Parameters
     ----------
     mass : float or array
-        Mass [kg], > 0; infinite for a body that is held fixed.
+        Mass [kg], > 0; infinite for a fixed body.
     contact_offset : float or array
-        Distance of the point of contact from the centre of mass [m], >= 0.
+        Distance of the contact point from the centre of mass [m], >= 0.
     modes : ModalBasis, optional
-        How it vibrates; a body without modes is rigid.
+        Elastic modes; without them the body is rigid.
     rigid : ModalBasis, optional
-        Of a plate that nothing holds, or a sphere in its place: its motions as a rigid body, modes of frequency zero.
+        Rigid motions, as modes of frequency zero, of a plate that supports leave free, or of a sphere in its place.
     """
 
     mass: Array

@@ -1,4 +1,4 @@
-"""Elastic bodies: from geometry and material to the recipe of their modes, with meshes that resolve them."""
+"""Elastic bodies: recipes of their modes from geometry and material, with the choice of a mesh that resolves them."""
 
 from __future__ import annotations
 
@@ -19,34 +19,34 @@ from vibroimpact.structures.supports.edge import Edge
 from vibroimpact.structures.supports.support import Support
 from vibroimpact.structures.surface import Side, Spot
 
-_PER_WAVE = 3.0  # second-order bricks along the shortest shear wave
-_ACROSS = 8  # elements from pole to pole: the lowest modes to 0.03 %
-_SOLID_STEP, _PLATE_STEP = 0.1, 0.6  # of the shortest bending wave: sides of second-order bricks, and of the plate element
-_CLAMPED = 1.763  # of the count of modes of a clamped plate
-_MARGIN = 1.5  # thicknesses: the plate elements along edges, where shear changes within half a thickness
-_LAYERS = (0.32, 0.9, 3.0)  # wave number times thickness from which on a plate has two, three and four layers of bricks
-_MOST_BRICKS = 6000  # that are chosen here; more, for higher modes, are to be asked for
-_RIM_SPLITS, _LOWER_SPLITS = 2, 1  # of bricks at rims; beyond, 0.1 to 0.3 % of frequency is left
-_SIDE = 7  # plate elements along the longer side, at least
-_SOLID_SIDE = 30  # bricks along the longer side, at least
+_PER_WAVE = 3.0  # second-order bricks per shortest shear wavelength
+_ACROSS = 8  # least number of elements from pole to pole, for errors of 0.03 % of the lowest modes
+_SOLID_STEP, _PLATE_STEP = 0.1, 0.6  # sides of second-order bricks and of plate elements, over the shortest bending wavelength
+_CLAMPED = 1.763  # coefficient of the perimeter in the mode count of a clamped plate
+_MARGIN = 1.5  # thicknesses: width of plate elements along edges, where the shear varies within half a thickness
+_LAYERS = (0.32, 0.9, 3.0)  # wave number times thickness above which a plate has two, three and four layers of bricks
+_MOST_BRICKS = 6000  # of a mesh that is chosen here; finer meshes, for higher modes, have to be specified
+_RIM_SPLITS, _LOWER_SPLITS = 2, 1  # of bricks at rims; the remaining error of frequencies is 0.1 to 0.3 %
+_SIDE = 7  # least number of plate elements along the longer side
+_SOLID_SIDE = 30  # least number of bricks along the longer side
 
 
 @dataclass(frozen=True)
 class ElasticBody:
-    """A body that deforms, before its modes are known.
+    """Elastic body before its modes are computed.
 
     Parameters
     ----------
     recipe : Recipe
-        What determines the modes.
+        Recipe of its modes.
     side : str
-        Where the other body is met: "upper" or "lower".
+        Side of the contact: "upper" or "lower".
     contact : tuple of two floats, str or None
-        The contact point: x and y [m], the name of a set of nodes, or the point of that side that reaches farthest.
+        Contact point: x and y [m], the name of a set of nodes, or None for the highest or lowest point of the side.
     damping : Damping, optional
-        Of its modes; none by default.
+        Damping of its modes; none by default.
     watched : mapping of str to (spot, side), optional
-        Points whose motion is asked for.
+        Sensors by name.
     """
 
     recipe: Recipe
@@ -56,7 +56,7 @@ class ElasticBody:
     watched: Mapping[str, tuple[Spot, Side]] = field(default_factory=dict)
 
     def basis(self, model: ModalModel) -> ModalBasis:
-        """Return modes of the recipe, seen at the contact point and at the points watched.
+        """Return the modes of the recipe at the contact point and at the sensors.
 
         Raises
         ------
@@ -66,7 +66,7 @@ class ElasticBody:
         return modal_basis(model, self.damping, self.contact, self.side, self.watched)
 
     def rigid_motions(self, model: ModalModel) -> ModalBasis | None:
-        """Return the rigid motions that the supports leave it, seen at the same points, as modes of frequency zero; None if none."""
+        """Return the rigid motions that the supports permit, at the same points, as modes of frequency zero; None if there are none."""
         return rigid_basis(model, (self.contact, self.side), self.watched)
 
 
@@ -78,11 +78,11 @@ def sphere_recipe(radius: float, material: Material, reduction: Reduction, **mes
     radius : float
         Radius [m], > 0.
     material : Material
-        Of the sphere.
+        Material of the sphere.
     reduction : Reduction
         Which modes are kept.
     **mesh : optional
-        What `SphereOfSolids` takes; `elements_across` is chosen to resolve the modes, and the grading, unless given.
+        Fields of `SphereOfSolids`; `elements_across` is chosen to resolve the modes and the grading unless given.
 
     Examples
     --------
@@ -112,16 +112,16 @@ def plate_recipe(
     size : tuple of three floats
         Length, width and thickness [m], > 0.
     material : Material
-        Of the plate.
+        Material of the plate.
     reduction : Reduction
         Which modes are kept.
     supports : tuple of supports
-        What holds it; nothing by default.
+        Supports; none by default.
     element : str, default "plate"
-        "plate" elements, or "solid" ones.
+        Elements: "plate" or "solid".
     **mesh : optional
-        What `PlateOfPlates` or `PlateOfSolids` takes; what is not given is chosen so that the modes, and what changes quickly at edges
-        and rims, are resolved.
+        Fields of `PlateOfPlates` or `PlateOfSolids`; those not given are chosen to resolve the modes and the boundary layers at edges
+        and rims.
 
     Examples
     --------
@@ -145,7 +145,7 @@ def plate_recipe(
 
 
 def _choose_bricks(mesh: dict[str, Any], size: tuple[float, float, float], wave_number: float, supports: tuple[Support, ...]) -> None:
-    """Choose layers, and how often bricks at edges and rims are split, unless given."""
+    """Set the number of layers and of splits at edges and rims of a mesh of bricks, unless given."""
     held_below = any(support.discs or any(support.rims) for support in supports)
     mesh.setdefault("lower_splits", mesh.get("splits", _LOWER_SPLITS) if held_below else 0)
     mesh.setdefault("splits", _RIM_SPLITS)
@@ -167,21 +167,21 @@ def recipe_of(shape: Shape, material: Material, reduction: Reduction, supports: 
 
 
 def _shear_wave_number(radius: float, material: Material, reduction: Reduction) -> float:
-    """Return the wave number [1/m] of shear waves at the highest frequency asked for."""
+    """Return the wave number of shear waves at the highest frequency of a reduction [1/m]."""
     speed = math.sqrt(material.youngs_modulus / (2.0 * (1.0 + material.poissons_ratio) * material.density))
     if reduction.modes is None:
         return 2.0 * math.pi * (reduction.max_frequency or 0.0) / speed
-    # Weyl's count of modes in a ball, V k^3 / (6 pi^2) for each of three waves
+    # Weyl's mode count of a ball, V k^3 / (6 pi^2) for each of three polarisations
     return float(1.9 * (reduction.modes + 1) ** (1.0 / 3.0) / radius)
 
 
 def _bending_wave_number(
     size: tuple[float, float, float], material: Material, reduction: Reduction, supports: tuple[Support, ...]
 ) -> float:
-    """Return the wave number [1/m] of bending waves at the highest frequency asked for.
+    """Return the wave number of bending waves at the highest frequency of a reduction [1/m].
 
-    Edges that are held leave fewer modes below it: Weyl's count has beside A k^2 / (4 pi) a term -c P k / (4 pi) of the perimeter P,
-    c = 1 where it is simply supported and 1.763 where it is clamped (E. Bogomolny and E. Hugues, Phys. Rev. E 57:5404, 1998).
+    Held edges reduce the number of modes below it: Weyl's count A k^2 / (4 pi) has a further term -c P k / (4 pi) of the perimeter P,
+    with c = 1 where it is simply supported and 1.763 where it is clamped (E. Bogomolny and E. Hugues, Phys. Rev. E 57:5404, 1998).
     """
     length, width, thickness = size
     if reduction.modes is None:

@@ -13,8 +13,8 @@ from vibroimpact.contact.static import static_indentation
 from vibroimpact.dynamics.history_grid import MOST_POINTS
 from vibroimpact.dynamics.problem import MOST_IMPACTS
 from vibroimpact.dynamics.restitution import achieved_restitution
-from vibroimpact.structures.factor import check_room
-from vibroimpact.structures.recipe import BroughtMesh, model_key
+from vibroimpact.structures.factor import check_memory
+from vibroimpact.structures.recipe import ImportedMesh, model_key
 from vibroimpact.structures.store import has_model
 
 if TYPE_CHECKING:
@@ -67,7 +67,7 @@ def describe_costs(case: Case, *, modes_alone: bool = False) -> list[str]:
     """
     told = []
     for cost in costs_of(case, modes_alone=modes_alone):
-        check_room(_PROGRAM + cost.memory, f"{cost.why} need", cost.remedy)
+        check_memory(_PROGRAM + cost.memory, f"{cost.why} need", cost.remedy)
         if cost.seconds > _LONG or cost.memory > _LARGE or cost.disk > _MUCH:
             told.append(f"{cost.why} take about {_listed(cost)}; {cost.remedy}")
     return told
@@ -128,7 +128,7 @@ def _mode_costs(case: Case) -> Iterator[Cost]:
         mesh, number = recipe.shape.mesh(recipe.supports), recipe.reduction.modes or 100
         dofs = mesh.dofs_per_node * len(mesh.nodes)
         share = 0.3 + 0.7 * number / _MODES_NUMBER
-        seconds = _MODES_SECONDS * (dofs / _MODES_DOFS) ** (4.0 / 3.0) * share * (_WHOLE if isinstance(recipe.shape, BroughtMesh) else 1.0)
+        seconds = _MODES_SECONDS * (dofs / _MODES_DOFS) ** (4.0 / 3.0) * share * (_WHOLE if isinstance(recipe.shape, ImportedMesh) else 1.0)
         remedy = f"give fewer {name}.modes or larger elements; they are computed once and kept"
         yield Cost(seconds, _DOF_BYTES * dofs, 8.0 * dofs * number, f"the modes of the {name}", remedy)
 

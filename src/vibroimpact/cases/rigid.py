@@ -8,8 +8,7 @@ import numpy as np
 
 from vibroimpact.arrays import Array
 from vibroimpact.bodies.body import Body
-from vibroimpact.bodies.plate import rigid_plate
-from vibroimpact.bodies.sphere import rigid_sphere
+from vibroimpact.bodies.rigid import rigid_plate, rigid_sphere
 from vibroimpact.cases.fields.section import derived
 from vibroimpact.contact.law import ContactLaw, find_contact_law
 from vibroimpact.contact.pair import ContactPair, effective_modulus

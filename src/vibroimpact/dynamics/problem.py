@@ -81,7 +81,7 @@ class Problem:
 
     Examples
     --------
-    >>> from vibroimpact.bodies.plate import rigid_plate
+    >>> from vibroimpact.bodies.rigid import rigid_plate
     >>> from vibroimpact.contact.laws.newton import Newton
     >>> ball = Body(mass=1.0, contact_offset=0.1)
     >>> Problem(sphere=ball, plate=rigid_plate(), laws=(Newton(restitution=0.5),), height=[1.0, 2.0]).shape

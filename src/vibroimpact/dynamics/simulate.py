@@ -49,7 +49,7 @@ def simulate(problem: StatesProblem, progress: Callable[[float], None] | None = 
     Examples
     --------
     >>> from vibroimpact.bodies.body import Body
-    >>> from vibroimpact.bodies.plate import rigid_plate
+    >>> from vibroimpact.bodies.rigid import rigid_plate
     >>> from vibroimpact.contact.laws.newton import Newton
     >>> from vibroimpact.dynamics.problem import Problem
     >>> problem = Problem(sphere=Body(mass=1.0, contact_offset=0.1), plate=rigid_plate(),

@@ -10,7 +10,7 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.bodies.body import Body
-from vibroimpact.bodies.plate import rigid_plate
+from vibroimpact.bodies.rigid import rigid_plate
 from vibroimpact.calibration.speed_function import SpeedFunction
 from vibroimpact.contact.kelvin_voigt import KelvinVoigtLaw
 from vibroimpact.contact.law import ContactLaw

@@ -12,7 +12,7 @@ from matplotlib.ticker import FuncFormatter
 
 from vibroimpact.arrays import Floats
 from vibroimpact.bodies.body import Body
-from vibroimpact.bodies.plate import rigid_plate
+from vibroimpact.bodies.rigid import rigid_plate
 from vibroimpact.cases.reader import read_case
 from vibroimpact.cases.rigid import contact_pair
 from vibroimpact.contact.law import CompliantLaw, ContactLaw, find_contact_law, unit_of

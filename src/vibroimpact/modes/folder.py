@@ -117,7 +117,7 @@ def _body_summary(body: BodyModes) -> dict[str, Any]:
         "mass_kg": properties.mass,
         "centre_of_mass_m": properties.centre.tolist(),
         "inertia_kg_m2": properties.inertia.tolist(),
-        "rigid_motions": len(body.model.left),
+        "rigid_motions": len(body.model.rigid_coefficients),
         "damping": body.body.damping.words,
         "supports": [support.words for support in body.body.recipe.supports],
         "mesh": dict(body.model.facts),

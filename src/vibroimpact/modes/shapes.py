@@ -77,7 +77,7 @@ def _surface(model: ModalModel, flat: bool) -> tuple[Floats, Callable[[int], Flo
     points, faces, triangles, start = [], [], [], 0
     for group in outer_faces(model.mesh):
         local, pattern = _lattice(len(group.corners))
-        weights = group.slopes(local)[0]
+        weights = group.shape_functions(local)[0]
         at = np.einsum("qk,eki->eqi", weights, model.mesh.nodes[group.connectivity])
         if flat and not model.mesh.is_flat:  # only the faces of the upper side
             upper = at[..., 2].min(axis=1) > model.mesh.nodes[:, 2].max() - 1e-6 * model.mesh.extent.max()

@@ -33,7 +33,7 @@ def modes_summary(case: Case, modes: Mapping[str, BodyModes]) -> RenderableType:
                 f"{properties.mass:.6g} kg, {found.model.facts['elements']}, {found.model.facts['degrees of freedom']} degrees of freedom",
             ),
             ("held by", _supports_text(found.body)),
-            ("rigid motions", str(len(found.model.left))),
+            ("rigid motions", str(len(found.model.rigid_coefficients))),
             ("damping", found.body.damping.words),
         ]
         if "left out of the file" in found.model.facts:

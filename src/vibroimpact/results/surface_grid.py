@@ -120,7 +120,7 @@ def _triangles(mesh: Mesh, step: Floats) -> tuple[Floats, csr_array, Integers]:
         for fine in np.unique(cuts := np.maximum(1, np.ceil(_FINE * size.max(axis=1))).astype(int)):
             nodes = group.connectivity[cuts == fine]
             local, pattern = _lattice(len(group.corners), int(fine))
-            weights = group.slopes(local)[0]
+            weights = group.shape_functions(local)[0]
             at = np.einsum("qk,eki->eqi", weights, mesh.nodes[nodes]).reshape(-1, 3)
             rows = np.repeat(np.arange(len(at)), weights.shape[1])
             columns = np.repeat(nodes, len(local), axis=0).ravel()

@@ -1,1 +1,1 @@
-"""Structures: meshes, elasticity, supports, modes, reduction and damping; they know nothing of contact."""
+"""Structures: meshes, elasticity, supports, modes, reduction and damping; independent of contact."""

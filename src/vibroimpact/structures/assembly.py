@@ -1,4 +1,4 @@
-"""What every assembly needs: shape functions of all elements at once, and the sum of what falls on one pair of nodes."""
+"""Vectorised assembly: shape functions at the quadrature points of all elements, and sums of element matrices over pairs of nodes."""
 
 from __future__ import annotations
 
@@ -11,18 +11,18 @@ from vibroimpact.arrays import Floats
 from vibroimpact.structures.geometry import jacobians
 from vibroimpact.structures.mesh import ElementBlock, Mesh
 
-_CHUNK = 4_000_000  # numbers in the largest array of one step
+_CHUNK = 4_000_000  # numbers in the largest array of a chunk of elements, to limit the memory
 
 
 def scaled_shapes(mesh: Mesh, block: ElementBlock) -> Iterator[tuple[Floats, Floats]]:
-    """Yield shape functions of chunks of elements at the quadrature points, times sqrt(dV).
+    """Yield the shape functions and their gradients at the quadrature points times sqrt(dV), chunk by chunk of elements.
 
     Yields
     ------
     values : array, shape (elements, points, nodes)
-        So that `values.T @ values` of an element is the integral of N_a N_b.
+        N sqrt(dV), so that `values.T @ values` of an element is the integral of N_a N_b.
     gradients : array, shape (dimension, elements, points, nodes)
-        Their derivatives along each axis.
+        Derivatives of N along each axis, times sqrt(dV).
     """
     points, weights = block.element.quadrature()
     values, slopes = block.element.basis(points)
@@ -35,15 +35,19 @@ def scaled_shapes(mesh: Mesh, block: ElementBlock) -> Iterator[tuple[Floats, Flo
         yield values * root[:, :, None], np.ascontiguousarray(gradients.transpose(2, 0, 1, 3))
 
 
-def summation(mesh: Mesh) -> tuple[Callable[[Sequence[Floats]], Floats], Callable[[Floats], csr_array]]:
-    """Return how to sum element matrices over the pairs of nodes, and how to make a sparse matrix of the sums.
+def pair_assembly(mesh: Mesh) -> tuple[Callable[[Sequence[Floats]], Floats], Callable[[Floats], csr_array]]:
+    """Return functions that sum element matrices over pairs of nodes, and that make a sparse matrix of such sums.
 
     Returns
     -------
     summed : callable
-        From element matrices (elements, nodes, nodes), in chunks in the order of the mesh, to one number a pair.
+        From element matrices (elements, nodes, nodes), in chunks in the order of the mesh, to one number per pair of nodes.
     matrix : callable
-        From blocks, shape (pairs, n, n), to a sparse matrix of n degrees of freedom a node.
+        From blocks, shape (pairs, n, n), to a sparse matrix with n degrees of freedom per node.
+
+    Notes
+    -----
+    Pairs are sorted once, so that each sum is one `np.add.reduceat` and all matrices of a mesh have the same pattern.
     """
     number = len(mesh.nodes)
     wide = [block.connectivity.astype(np.int64) for block in mesh.blocks]  # the square of the number of nodes must fit
@@ -65,21 +69,21 @@ def summation(mesh: Mesh) -> tuple[Callable[[Sequence[Floats]], Floats], Callabl
 
 
 def node_adjacency(mesh: Mesh) -> csr_array:
-    """Return which nodes share an element, as the pattern of a sparse matrix (nodes, nodes)."""
-    summed, matrix = summation(mesh)
+    """Return the adjacency of nodes that share an element, as the pattern of a sparse matrix (nodes, nodes)."""
+    summed, matrix = pair_assembly(mesh)
     ones = [np.ones((*block.connectivity.shape, block.connectivity.shape[1])) for block in mesh.blocks]
     return matrix(summed(ones)[:, None, None])
 
 
 def isotropic(product: Floats, lame: float, mu: float) -> Floats:
-    """Return the stiffness blocks of an isotropic material from the integrals of dN_a/dx_i dN_b/dx_j.
+    """Return the stiffness blocks of pairs of nodes of an isotropic material, from the integrals of dN_a/dx_i dN_b/dx_j.
 
     Parameters
     ----------
     product : array, shape (d, d, pairs)
-        The integrals, i and j first.
+        The integrals, with the axes i and j first.
     lame, mu : float
-        Lame's first parameter (in a plane, that of plane stress) and the shear modulus [Pa].
+        Lame's first parameter (in two dimensions that of plane stress) and the shear modulus [Pa].
 
     Returns
     -------

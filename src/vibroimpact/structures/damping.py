@@ -1,4 +1,4 @@
-"""Damping of modes: models that give each mode its damping ratio, and say what they are."""
+"""Modal damping: models of the damping ratio as a function of frequency or of the number of a mode."""
 
 from __future__ import annotations
 
@@ -12,19 +12,19 @@ from vibroimpact.errors import InputError
 
 
 class Damping(Protocol):
-    """Anything that gives modes their damping ratios."""
+    """Interface of a model of modal damping."""
 
     @property
     def words(self) -> str:
-        """What it is, in a few words for people."""
+        """Short description for users."""
 
     def ratios(self, frequencies: Floats) -> Floats:
-        """Return the damping ratio [-] of each mode, given its frequency [Hz]."""
+        """Return the damping ratio of each mode [-] from its frequency [Hz]."""
 
 
 @dataclass(frozen=True)
 class ConstantRatio:
-    """One damping ratio [-] for all modes.
+    """The same damping ratio [-] for all modes.
 
     Examples
     --------
@@ -36,24 +36,24 @@ class ConstantRatio:
 
     @property
     def words(self) -> str:
-        """What it is."""
+        """Short description for users."""
         return f"damping ratio {self.ratio:g} of every mode" if self.ratio else "none"
 
     def ratios(self, frequencies: Floats) -> Floats:
-        """Return the ratio for each."""
+        """Return the damping ratio of each mode."""
         return np.full(len(frequencies), self.ratio)
 
 
 @dataclass(frozen=True)
 class RatioTable:
-    """Damping ratios at some frequencies, straight lines between them, and constant beyond.
+    """Damping ratios tabulated over frequency, interpolated linearly, and constant beyond the ends of the table.
 
     Parameters
     ----------
     frequencies : tuple of float
         [Hz], ascending.
     damping_ratios : tuple of float
-        [-], one a frequency.
+        [-], one per frequency.
     """
 
     frequencies: tuple[float, ...]
@@ -69,34 +69,34 @@ class RatioTable:
 
     @property
     def words(self) -> str:
-        """What it is."""
+        """Short description for users."""
         return f"a table of {len(self.frequencies)} ratios from {self.frequencies[0]:g} to {self.frequencies[-1]:g} Hz"
 
     def ratios(self, frequencies: Floats) -> Floats:
-        """Interpolate."""
+        """Return the interpolated damping ratio of each mode."""
         return np.interp(frequencies, self.frequencies, self.damping_ratios)
 
 
 @dataclass(frozen=True)
 class RatioOfEach:
-    """A damping ratio [-] for each mode, from the lowest; the last one goes on."""
+    """A damping ratio [-] for each mode, from the lowest; the last one holds for all further modes."""
 
     damping_ratios: tuple[float, ...]
 
     @property
     def words(self) -> str:
-        """What it is."""
+        """Short description for users."""
         shown = ", ".join(f"{ratio:g}" for ratio in self.damping_ratios[:4]) + (", ..." if len(self.damping_ratios) > 4 else "")
         return f"damping ratios of the modes one by one: {shown}; the last goes on"
 
     def ratios(self, frequencies: Floats) -> Floats:
-        """Return them in their order."""
+        """Return the damping ratio of each mode, in their order."""
         return np.array(self.damping_ratios)[np.minimum(np.arange(len(frequencies)), len(self.damping_ratios) - 1)]
 
 
 @dataclass(frozen=True)
 class Rayleigh:
-    r"""Damping :math:`C = a M + b K`: ratio :math:`\zeta = a / (2 \omega) + b \omega / 2` (Lord Rayleigh, Theory of Sound, 1877).
+    r"""Rayleigh damping :math:`C = a M + b K`: ratio :math:`\zeta = a / (2 \omega) + b \omega / 2` (Lord Rayleigh, Theory of Sound, 1877).
 
     Parameters
     ----------
@@ -109,34 +109,34 @@ class Rayleigh:
 
     @property
     def words(self) -> str:
-        """What it is."""
+        """Short description for users."""
         return f"Rayleigh's, {self.mass_coefficient:g} 1/s times mass and {self.stiffness_coefficient:g} s times stiffness"
 
     def ratios(self, frequencies: Floats) -> Floats:
-        """Return the ratio at each frequency."""
+        """Return the damping ratio of each mode."""
         angular = 2.0 * np.pi * np.asarray(frequencies)
         return np.asarray(0.5 * (self.mass_coefficient / angular + self.stiffness_coefficient * angular))
 
 
 @dataclass(frozen=True)
 class LossFactor:
-    """A loss factor of the material [-]: twice the damping ratio, for light damping."""
+    """Loss factor of the material [-]: for light damping twice the damping ratio."""
 
     loss_factor: float
 
     @property
     def words(self) -> str:
-        """What it is."""
+        """Short description for users."""
         return f"loss factor {self.loss_factor:g} of the material, damping ratio {0.5 * self.loss_factor:g}"
 
     def ratios(self, frequencies: Floats) -> Floats:
-        """Return half of it for each."""
+        """Return half the loss factor for each mode."""
         return np.full(len(frequencies), 0.5 * self.loss_factor)
 
 
 @dataclass(frozen=True)
 class AdamsDefault:
-    """What Adams/Flex gives a flexible body unless told otherwise: 1 % below 100 Hz, 10 % to 1 kHz, critical above.
+    """The default of Adams/Flex for flexible bodies: 1 % below 100 Hz, 10 % to 1 kHz, critical above.
 
     Examples
     --------
@@ -146,9 +146,9 @@ class AdamsDefault:
 
     @property
     def words(self) -> str:
-        """What it is."""
+        """Short description for users."""
         return "Adams' default for flexible bodies: 1 % below 100 Hz, 10 % to 1 kHz, critical above"
 
     def ratios(self, frequencies: Floats) -> Floats:
-        """Return the ratio at each frequency."""
+        """Return the damping ratio of each mode."""
         return np.where(frequencies < 100.0, 0.01, np.where(frequencies <= 1000.0, 0.1, 1.0))

@@ -1,4 +1,4 @@
-"""Linear elasticity: stiffness and consistent mass of a mesh of solid elements."""
+"""Linear elasticity: stiffness and consistent mass matrices of solid elements."""
 
 from __future__ import annotations
 
@@ -6,17 +6,17 @@ import numpy as np
 from scipy.sparse import csr_array
 
 from vibroimpact.materials import Material
-from vibroimpact.structures.assembly import isotropic, scaled_shapes, summation
+from vibroimpact.structures.assembly import isotropic, pair_assembly, scaled_shapes
 from vibroimpact.structures.mesh import Mesh
 
 
 def assemble_solid(mesh: Mesh, material: Material) -> tuple[csr_array, csr_array]:
-    r"""Return stiffness and consistent mass of a mesh of solid elements.
+    r"""Return the stiffness and the consistent mass matrix of a mesh of solid elements.
 
     Parameters
     ----------
     mesh : Mesh
-        Tetrahedra and bricks.
+        Mesh of tetrahedra and bricks.
     material : Material
         Density, Young's modulus and Poisson's ratio.
 
@@ -48,7 +48,7 @@ def assemble_solid(mesh: Mesh, material: Material) -> tuple[csr_array, csr_array
         for values, gradients in scaled_shapes(mesh, block):
             masses.append(values.transpose(0, 2, 1) @ values)
             products.append(gradients.transpose(0, 1, 3, 2)[:, None] @ gradients[None])
-    summed, matrix = summation(mesh)
+    summed, matrix = pair_assembly(mesh)
     product = np.array([[summed([chunk[i, j] for chunk in products]) for j in range(3)] for i in range(3)])
     scalar = material.density * summed(masses)
     return matrix(isotropic(product, lame, mu)), matrix(scalar[:, None, None] * np.eye(3))

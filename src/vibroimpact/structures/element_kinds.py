@@ -1,8 +1,8 @@
-"""The kinds of finite elements: node order, shape functions, quadrature and faces.
+"""Kinds of finite elements: node order, shape functions, quadrature and faces.
 
-The order of the nodes is the one of Abaqus and of VTK. Bricks live on the unit cube, tetrahedra on the unit simplex.
-The shape functions are scikit-fem's but of two kinds, which are products of Lagrange's polynomials: the quadrilateral of order four
-for plates, and the brick of 27 nodes, of which spheres are made, as it is evaluated for every drop of one.
+Nodes are numbered as in Abaqus and VTK. The reference element of bricks is the unit cube, that of tetrahedra the unit simplex. Shape
+functions are those of scikit-fem, except for two kinds with products of Lagrange polynomials: the quadrilateral of order four for
+plates, and, for speed, the brick of 27 nodes, which is evaluated for every drop of an elastic sphere.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ _TET_EDGES = [(0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3)]
 _TET_FACES = ((0, 2, 1), (0, 1, 3), (1, 2, 3), (0, 3, 2))
 
 PLATE_ORDER = 4
-"""The polynomial degree of the plate element; from four on, quadrilaterals of thin plates do not lock."""
+"""Polynomial degree of the plate element; from degree four on, quadrilaterals do not lock in thin plates."""
 
 
 _QUAD_CORNERS = (0, PLATE_ORDER, (PLATE_ORDER + 1) ** 2 - 1, PLATE_ORDER * (PLATE_ORDER + 1))
@@ -34,22 +34,22 @@ _QUAD_CORNERS = (0, PLATE_ORDER, (PLATE_ORDER + 1) ** 2 - 1, PLATE_ORDER * (PLAT
 
 @dataclass(frozen=True)
 class ElementKind:
-    """One kind of element.
+    """Kind of finite element.
 
     Parameters
     ----------
     name : str
-        Such as "hex20".
+        Name, such as "hex20".
     reference : array, shape (nodes, dimension)
-        Where the nodes lie on the reference element.
+        Nodes of the reference element.
     corners : int
-        How many of them, the first ones, are corners.
+        Number of corners, which are the first nodes.
     faces : tuple of tuple of int
-        The corners of each face, seen counter-clockwise from outside; of a plate element its own.
+        Corners of each face, counter-clockwise as seen from outside; of a plate element its own corners.
     basis : callable
-        From points (points, dimension) to the values (points, nodes) and the gradients (points, dimension, nodes).
+        Shape functions: from points (points, dimension) to values (points, nodes) and gradients (points, dimension, nodes).
     degree : int
-        Degree of the quadrature that integrates stiffness and mass.
+        Degree of the quadrature of stiffness and mass.
     """
 
     name: str
@@ -61,21 +61,21 @@ class ElementKind:
 
     @property
     def dimension(self) -> int:
-        """Three for a solid, two for a plate."""
+        """Dimension of the reference element: 3 for solids, 2 for plates."""
         return int(self.reference.shape[1])
 
     @property
     def order(self) -> int:
-        """The degree of its shape functions along an edge."""
+        """Polynomial degree of the shape functions along an edge."""
         return PLATE_ORDER if self.dimension == 2 else 1 if len(self.reference) == self.corners else 2
 
     @property
     def is_brick(self) -> bool:
-        """Is it a product of intervals?"""
+        """Whether the reference element is a square or a cube."""
         return self.corners == int(2**self.dimension)
 
     def quadrature(self, degree: int | None = None) -> tuple[Floats, Floats]:
-        """Return points (points, dimension) and weights of a rule exact to a degree; by default that of stiffness and mass.
+        """Return the points (points, dimension) and weights of a quadrature exact to a degree; by default that of stiffness and mass.
 
         Examples
         --------
@@ -96,14 +96,15 @@ def _quadrature(brick: bool, dimension: int, degree: int) -> tuple[Floats, Float
 
 
 def _scikit_fem(name: str, reference: Floats, points: Floats) -> Shape:
-    """Evaluate scikit-fem's shape functions in our order of the nodes."""
-    element, order = _in_our_order(name, reference.tobytes(), reference.shape)
+    """Return scikit-fem's shape functions and gradients, reordered to the node order used here."""
+    element, order = _reordered(name, reference.tobytes(), reference.shape)
     found = [element.lbasis(points.T, index) for index in order]
     return np.stack([value for value, _ in found], axis=1), np.stack([slope.T for _, slope in found], axis=2)
 
 
 @cache
-def _in_our_order(name: str, reference: bytes, shape: tuple[int, int]) -> tuple[Any, list[int]]:
+def _reordered(name: str, reference: bytes, shape: tuple[int, int]) -> tuple[Any, list[int]]:
+    """Return an element of scikit-fem, and the numbers of its shape functions in the node order used here."""
     import skfem
 
     element = getattr(skfem, name)()
@@ -113,7 +114,7 @@ def _in_our_order(name: str, reference: bytes, shape: tuple[int, int]) -> tuple[
 
 
 def _tensor_lagrange(order: int, places: Integers, points: Floats) -> Shape:
-    """Evaluate products of Lagrange's polynomials; places (nodes, dimension) say which one belongs to a node along each axis."""
+    """Return products of Lagrange polynomials and their gradients; `places` (nodes, dimension) are the factors of each node."""
     axes = range(points.shape[1])
     along = [[part.take(places[:, axis], axis=1) for part in _lagrange(order, points[:, axis])] for axis in axes]
     slopes = [reduce(np.multiply, [along[axis][axis == sloping] for axis in axes]) for sloping in axes]
@@ -121,6 +122,7 @@ def _tensor_lagrange(order: int, places: Integers, points: Floats) -> Shape:
 
 
 def _lagrange(order: int, x: Floats) -> tuple[Floats, Floats]:
+    """Return the Lagrange polynomials on equidistant nodes of [0, 1], and their derivatives, (points, order + 1)."""
     powers, coefficients = np.arange(order + 1), _lagrange_coefficients(order)
     values = x[:, None] ** powers
     slopes = powers * x[:, None] ** np.maximum(powers - 1, 0)
@@ -160,4 +162,4 @@ def _kinds() -> Mapping[str, ElementKind]:
 
 
 ELEMENT_KINDS: Mapping[str, ElementKind] = _kinds()
-"""The kinds by name: tetrahedra and bricks of first and second order, and the plate element."""
+"""Element kinds by name: tetrahedra and bricks of first and second order, and the plate element."""

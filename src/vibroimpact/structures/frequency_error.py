@@ -1,4 +1,4 @@
-"""Errors of computed frequencies due to the mesh, the theory of plates, the model of supports and a reduction."""
+"""Estimated errors of natural frequencies due to the mesh, plate theory, the model of supports and a reduction."""
 
 from __future__ import annotations
 
@@ -13,48 +13,49 @@ from vibroimpact.structures.plate_waves import bending_error, stiff_shear_error,
 from vibroimpact.structures.supports.constraints import HeldStructure
 
 MESH, THEORY, SUPPORTS, REDUCTION = "the mesh", "the theory of plates", "the supports", "the reduction"
-"""Causes of errors of frequencies."""
+"""Causes of errors of natural frequencies."""
 
-_BED = 0.1  # of the stiffness of a bed: how far it is off, by plates on round patches of 1.25 to 2.5 thicknesses in radius
-_BED_IN_PLANE = 0.85  # the same for motions in the plane, which were 0.9 to 2.0 % (steel) and 3.0 to 3.2 % (acrylic) too stiff
-_EDGES = 2e-4  # beside what Lamb's waves say: plates with edges differ from refined bricks by so much
+_BED = 0.1  # relative error of the stiffness of a bed, from plates on round patches of 1.25 to 2.5 thicknesses in radius
+_BED_IN_PLANE = 0.85  # the same for in-plane motions, which were 0.9 to 2.0 % (steel) and 3.0 to 3.2 % (acrylic) too stiff
+_EDGES = 2e-4  # in addition to the error of Lamb waves: difference between plates with edges and refined bricks
 
 
-def from_coarser(fine: Floats, coarse: Floats, gain: float) -> Floats:
-    """Return the relative errors of frequencies due to the mesh, estimated from those of a coarser one.
+def mesh_errors(fine: Floats, coarse: Floats, gain: float) -> Floats:
+    """Return the relative errors of frequencies due to the mesh, estimated from a coarser mesh.
 
     Parameters
     ----------
     fine, coarse : array, shape (modes,)
-        Frequencies on both meshes, each ascending.
+        Frequencies of both meshes, ascending.
     gain : float
-        How many times less the fine mesh is off than the coarse one, > 1.
+        Ratio of the errors of the coarse and the fine mesh, > 1.
 
     Notes
     -----
-    Richardson's extrapolation: what is left is the difference over gain - 1.
+    Richardson's extrapolation: the error is the difference over gain - 1.
 
     Examples
     --------
-    >>> from_coarser(np.array([100.0]), np.array([103.0]), 4.0).round(12).tolist()
+    >>> mesh_errors(np.array([100.0]), np.array([103.0]), 4.0).round(12).tolist()
     [0.01]
     """
     return np.asarray(np.abs(coarse / fine - 1.0) / (gain - 1.0))
 
 
-def of_supports(held: HeldStructure, modes: Eigenmodes) -> Floats:
-    """Return the relative errors of frequencies due to how the supports of plate elements are modelled.
+def support_errors(held: HeldStructure, modes: Eigenmodes) -> Floats:
+    """Return the relative errors of frequencies due to the model of the supports of plate elements.
 
     Notes
     -----
-    To first order the square of a frequency changes by the part of the strain energy that is in a bed, times the change of the
-    bed's stiffness; and by the squares of the reactions over the modal mass, times a compliance in series with them that is left out.
+    To first order the relative change of the squared frequency is the fraction of the strain energy in the bed times the relative
+    change of the bed's stiffness; for a neglected compliance in series with a support, the squared reaction over the modal mass and
+    the squared frequency, times that compliance.
     """
     squared, shapes = modes.angular_frequencies**2, modes.shapes
     if not held.structure.thickness:
         return np.zeros(len(squared))
-    off = _BED + (_BED_IN_PLANE - _BED) * _in_plane(held, modes)
-    in_beds = off * np.einsum("ij,ij->j", shapes, held.bed @ shapes) / squared
+    relative = _BED + (_BED_IN_PLANE - _BED) * _in_plane(held, modes)
+    in_beds = relative * np.einsum("ij,ij->j", shapes, held.bed @ shapes) / squared
     dofs, compliances = held.neglected
     if not len(dofs):
         return np.asarray(0.5 * in_beds)
@@ -64,25 +65,24 @@ def of_supports(held: HeldStructure, modes: Eigenmodes) -> Floats:
     return np.asarray(0.5 * (in_beds + np.abs(compliances @ reactions**2) / squared))
 
 
-def of_plate_theory(held: HeldStructure, modes: Eigenmodes, material: Material, thin: bool = False) -> Floats:
-    """Return the relative errors of frequencies of a plate due to its theory.
+def plate_theory_errors(held: HeldStructure, modes: Eigenmodes, material: Material, thin: bool = False) -> Floats:
+    """Return the relative errors of frequencies due to plate theory.
 
     Parameters
     ----------
     held : HeldStructure
-        Of plate elements.
+        Plate of plate elements.
     modes : Eigenmodes
-        Its modes.
+        Modes of the plate.
     material : Material
-        Of the plate.
+        Material of the plate.
     thin : bool, default False
-        Kirchhoff's theory instead of Mindlin's.
+        Whether by Kirchhoff's theory instead of Mindlin's.
 
     Notes
     -----
-    What `bending_error` says of waves of bending as long as plate theory makes them at the frequency of a mode, and `stretching_error`
-    of waves in the plane. Modes have the mean of both, weighted by kinetic energy, and 0.02 % more for what the edges of a plate do
-    that waves in the middle of it do not.
+    The mean of `bending_error` at the wave number that plate theory has at the frequency of the mode, and of `stretching_error`,
+    weighted by the kinetic energies of bending and of in-plane motion; plus 0.02 % for the effect of edges, which plane waves do not have.
     """
     thickness, ratio, omega, in_plane = held.structure.thickness, material.poissons_ratio, modes.angular_frequencies, _in_plane(held, modes)
     bending = np.abs(bending_error(thickness * wave_numbers(omega, thickness, material, thin), ratio, thin))
@@ -90,7 +90,7 @@ def of_plate_theory(held: HeldStructure, modes: Eigenmodes, material: Material, 
 
 
 def _in_plane(held: HeldStructure, modes: Eigenmodes) -> Floats:
-    """Return the part of the kinetic energy of modes of plate elements that is of motion in the plane."""
+    """Return the fraction of the kinetic energy of in-plane motion, for modes of plate elements."""
     structure = held.structure
     moved = (held.expansion @ modes.shapes).reshape(len(structure.mesh.nodes), 5, -1)
     momenta = (structure.mass @ moved.reshape(-1, moved.shape[2])).reshape(moved.shape)
@@ -98,12 +98,12 @@ def _in_plane(held: HeldStructure, modes: Eigenmodes) -> Floats:
     return np.asarray(energy[:2].sum(axis=0) / np.maximum(energy.sum(axis=0), 1e-300))
 
 
-def of_one_layer(angular_frequencies: Floats, material: Material, thickness: float) -> Floats:
-    """Return the relative errors of bending frequencies of one layer of bricks of second order, which are too high.
+def one_layer_errors(angular_frequencies: Floats, material: Material, thickness: float) -> Floats:
+    """Return the relative errors of bending frequencies of one layer of second-order bricks, which are too high.
 
     Notes
     -----
-    Their shear strain does not vary over the height as that of a plate does, so that shear is as stiff as without the
+    The shear strain of such elements does not vary over the height as that of a plate, so that their shear stiffness lacks the
     factor 5 / (6 - nu) of Mindlin's theory.
     """
     waves = thickness * wave_numbers(angular_frequencies, thickness, material)
@@ -111,6 +111,6 @@ def of_one_layer(angular_frequencies: Floats, material: Material, thickness: flo
 
 
 def main_cause(parts: Mapping[str, Floats]) -> str:
-    """Return the name of the largest error of the mode whose sum of errors is largest."""
+    """Return the cause of the largest contribution to the error of the mode with the largest total error; "" without causes."""
     worst = int(np.nanargmax(sum(parts.values()))) if parts else 0
     return max(parts, key=lambda name: float(parts[name][worst]), default="")

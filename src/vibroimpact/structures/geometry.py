@@ -1,4 +1,4 @@
-"""The map from the reference element to the mesh: Jacobians, volume, inertia, and what is wrong with a mesh."""
+"""Geometry of a mesh: Jacobians of the isoparametric map, mass properties, and checks for inverted elements and loose parts."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _INERTIA_DEGREE = 9  # exact for the product of two coordinates and the Jacobian
 
 @dataclass(frozen=True)
 class MassProperties:
-    """Mass [kg], centre of mass [m] and inertia about it [kg m^2] of a mesh of one density.
+    """Mass properties of a body of uniform density.
 
     Parameters
     ----------
@@ -35,7 +35,7 @@ class MassProperties:
 
 
 def mass_properties(mesh: Mesh, density: float, thickness: float = 1.0) -> MassProperties:
-    """Integrate mass, centre of mass and inertia over the elements.
+    """Return the mass, centre of mass and inertia of a mesh, integrated over its elements.
 
     Parameters
     ----------
@@ -44,7 +44,7 @@ def mass_properties(mesh: Mesh, density: float, thickness: float = 1.0) -> MassP
     density : float
         Density [kg/m^3], > 0.
     thickness : float, default 1
-        Thickness of plate elements [m]; solids do not ask for it.
+        Thickness of plate elements [m]; not used for solids.
 
     Examples
     --------
@@ -70,28 +70,28 @@ def mass_properties(mesh: Mesh, density: float, thickness: float = 1.0) -> MassP
 
 
 def determinants(at: Floats, slopes: Floats) -> Floats:
-    """Return det dx/dxi, shape (elements, points), for nodes `at` (elements, nodes, 3) and reference gradients."""
+    """Return the Jacobian determinants det dx/dxi, (elements, points), from nodes `at` (elements, nodes, 3) and reference gradients."""
     dimension = slopes.shape[1]
     return np.asarray(np.linalg.det(jacobians(at[:, :, :dimension], slopes)))
 
 
 def jacobians(at: Floats, slopes: Floats) -> Floats:
-    """Return dx_i/dxi_d, shape (elements, points, dimension d, dimension i)."""
+    """Return the Jacobians dx_i/dxi_d, (elements, points, dimension d, dimension i)."""
     elements, (points, dimension, nodes) = len(at), slopes.shape
     return np.asarray((slopes.reshape(-1, nodes) @ at).reshape(elements, points, dimension, -1))
 
 
 def check_mesh(mesh: Mesh) -> None:
-    """Raise unless a mesh is one body of elements that are not inverted.
+    """Raise unless a mesh is connected and no element is inverted.
 
     Raises
     ------
     InputError
-        With the elements that are inverted, or the number of loose parts.
+        With the inverted elements, or the number of loose parts.
     """
     first = 0
     for block in mesh.blocks:
-        bad = np.flatnonzero(_worst(mesh, block) <= 0.0)
+        bad = np.flatnonzero(_smallest_determinants(mesh, block) <= 0.0)
         if len(bad):
             shown = ", ".join(str(first + index + 1) for index in bad[:5]) + (", ..." if len(bad) > 5 else "")
             raise InputError(
@@ -99,12 +99,12 @@ def check_mesh(mesh: Mesh) -> None:
                 f"number {shown}; use smaller elements, or mesh the part anew if it was brought"
             )
         first += len(block.connectivity)
-    parts = _parts(mesh)
+    parts = _count_parts(mesh)
     if parts > 1:
         raise InputError(f"the mesh consists of {parts} loose parts that share no node; a body is one part: merge coincident nodes")
 
 
-def _worst(mesh: Mesh, block: ElementBlock) -> Floats:
+def _smallest_determinants(mesh: Mesh, block: ElementBlock) -> Floats:
     """Return the smallest Jacobian determinant of each element, at the quadrature points and at the corners."""
     points = np.concatenate([block.element.quadrature()[0], block.element.reference[: block.element.corners]])
     slopes = block.element.basis(points)[1]
@@ -115,7 +115,8 @@ def _worst(mesh: Mesh, block: ElementBlock) -> Floats:
     return np.concatenate(found)
 
 
-def _parts(mesh: Mesh) -> int:
+def _count_parts(mesh: Mesh) -> int:
+    """Return the number of parts of a mesh that share no node."""
     pairs = [
         (np.repeat(block.connectivity[:, 0], block.connectivity.shape[1] - 1), block.connectivity[:, 1:].ravel()) for block in mesh.blocks
     ]

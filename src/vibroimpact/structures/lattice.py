@@ -1,8 +1,8 @@
-"""Lattices: a body is cut into blocks, each a regular lattice of points in three directions.
+"""Structured meshes of solid elements from blocks, each a lattice of points in three directions.
 
-Three by three by three points make one brick of 27 nodes; the other kinds of elements are taken out of it. Neighbouring
-blocks must have the same points where they meet, and their directions must ascend alike along a common face, so that
-the tetrahedra of both sides cut it along the same diagonal.
+Three by three by three points make one brick of 27 nodes; elements of the other kinds use some of them. Neighbouring blocks must
+have the same points on their common face, and their directions must ascend alike along it, so that the tetrahedra of both sides
+divide it along the same diagonal.
 """
 
 from __future__ import annotations
@@ -19,12 +19,12 @@ from vibroimpact.arrays import Floats, Integers
 from vibroimpact.structures.element_kinds import ELEMENT_KINDS
 from vibroimpact.structures.mesh import ElementBlock, Mesh
 
-_SAME = 1e-7  # of the largest extent: points nearer to one another than this are one
+_SAME = 1e-7  # of the largest extent: distance within which points coincide
 _BRICK = np.rint(2.0 * ELEMENT_KINDS["hex27"].reference).astype(np.int64)
 
 
 def _tetrahedra(order: int) -> Integers:
-    """Return the six tetrahedra around the diagonal of a brick, as indices into its 27 nodes."""
+    """Return the six tetrahedra of a brick that share its diagonal, as indices into its 27 nodes."""
     index = {tuple(corner): number for number, corner in enumerate(_BRICK.tolist())}
     found = []
     for path in permutations(range(3)):
@@ -47,23 +47,23 @@ _TAKEN = {
     "tet10": _tetrahedra(2),
 }
 SOLID_KINDS = tuple(_TAKEN)
-"""The kinds of solid elements that a lattice can be made of."""
+"""Kinds of solid elements that a block can be meshed with."""
 
 
 def mesh_of_blocks(blocks: Sequence[Floats], kind: str) -> Mesh:
-    """Make a mesh of solid elements from lattices.
+    """Return a mesh of solid elements from blocks.
 
     Parameters
     ----------
     blocks : sequence of arrays, shape (2 a + 1, 2 b + 1, 2 c + 1, 3)
-        Points [m] of each block, a x b x c bricks.
+        Points [m] of each block of a x b x c bricks.
     kind : str
         "hex8", "hex20", "hex27", "tet4" or "tet10".
 
     Returns
     -------
     Mesh
-        Points that coincide are one node.
+        Mesh in which coincident points are one node.
 
     Examples
     --------
@@ -86,7 +86,7 @@ def mesh_of_blocks(blocks: Sequence[Floats], kind: str) -> Mesh:
 
 
 def merged(points: Floats, connectivity: Integers) -> tuple[Floats, Integers]:
-    """Make one node of points that coincide, leave out those that no element uses, and renumber."""
+    """Return nodes and connectivity after merging coincident points and removing unused ones."""
     used, connectivity = np.unique(connectivity, return_inverse=True)
     points = points[used]
     near = cKDTree(points).query_pairs(_SAME * float(np.ptp(points, axis=0).max()), output_type="ndarray")
@@ -97,14 +97,14 @@ def merged(points: Floats, connectivity: Integers) -> tuple[Floats, Integers]:
 
 
 def box_mesh(size: Sequence[float], counts: Sequence[int], kind: str = "hex20") -> Mesh:
-    """Make a mesh of a box, centred at the origin.
+    """Return a mesh of a box, centred at the origin.
 
     Parameters
     ----------
     size : sequence of three floats
         Length, width and height [m].
     counts : sequence of three ints
-        Bricks along each.
+        Number of bricks along each direction.
     kind : str, default "hex20"
         Kind of element.
 
@@ -118,7 +118,7 @@ def box_mesh(size: Sequence[float], counts: Sequence[int], kind: str = "hex20") 
 
 
 def _right_handed(block: Floats) -> Floats:
-    """Return the block with its first two directions in the order that makes volumes positive."""
+    """Return the block, with its first two directions exchanged if needed for positive volumes."""
     middle = tuple(size // 4 * 2 for size in block.shape[:3])
     at = block[middle]
     sides = []

@@ -1,4 +1,4 @@
-"""What a process made last, kept in its memory up to a number of bytes: many drops on one plate ask for the same again and again."""
+"""Cache of recently used objects in the memory of a process, limited in size: many drops on one plate share its modes and factors."""
 
 from __future__ import annotations
 
@@ -9,47 +9,47 @@ from typing import Generic, TypeVar
 Content = TypeVar("Content")
 
 
-class Recent(Generic[Content]):
-    """Contents under their keys; those that were not used for longest go first.
+class MemoryCache(Generic[Content]):
+    """Cache that removes the least recently used objects first. It may be used by several threads.
 
-    What is found is shared: it must not be changed. Threads may ask at once.
+    Objects are shared and must not be changed.
 
     Parameters
     ----------
-    most : float
-        How many bytes it keeps, at most; what is larger than that is not kept.
+    capacity : float
+        Largest total size [bytes]; larger objects are not kept.
 
     Examples
     --------
-    >>> recent = Recent[str](most=10)
-    >>> recent.keep("first", "a", 6)
-    >>> recent.keep("second", "b", 6)
-    >>> recent.find("first"), recent.find("second")
+    >>> cache = MemoryCache[str](capacity=10)
+    >>> cache.put("first", "a", 6)
+    >>> cache.put("second", "b", 6)
+    >>> cache.get("first"), cache.get("second")
     (None, 'b')
     """
 
-    def __init__(self, most: float) -> None:
-        self._most = most
+    def __init__(self, capacity: float) -> None:
+        self._capacity = capacity
         self._kept: OrderedDict[str, tuple[Content, float]] = OrderedDict()
         self._lock = Lock()
 
-    def find(self, key: str) -> Content | None:
-        """Return what is kept under a key, or None."""
+    def get(self, key: str) -> Content | None:
+        """Return the object under a key, or None."""
         with self._lock:
             if key not in self._kept:
                 return None
             self._kept.move_to_end(key)
             return self._kept[key][0]
 
-    def keep(self, key: str, content: Content, size: float) -> None:
-        """Keep what takes so many bytes under a key."""
+    def put(self, key: str, content: Content, size: float) -> None:
+        """Keep an object of a size [bytes] under a key."""
         with self._lock:
             self._kept[key] = content, size
             self._kept.move_to_end(key)
-            while sum(size for _, size in self._kept.values()) > self._most:
+            while sum(size for _, size in self._kept.values()) > self._capacity:
                 self._kept.popitem(last=False)
 
     def clear(self) -> None:
-        """Forget everything."""
+        """Remove all objects."""
         with self._lock:
             self._kept.clear()

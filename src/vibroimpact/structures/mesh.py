@@ -1,4 +1,4 @@
-"""A mesh: nodes, elements, and named sets of them."""
+"""Finite-element mesh: nodes, elements, and named sets of them."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from vibroimpact.structures.element_kinds import ELEMENT_KINDS, ElementKind
 
 @dataclass(frozen=True)
 class ElementBlock:
-    """Elements of one kind.
+    """Elements of one kind in a mesh.
 
     Parameters
     ----------
     kind : str
         A name in `ELEMENT_KINDS`.
     connectivity : int array, shape (elements, nodes of the kind)
-        The nodes of each element, from 0, in the order of the kind.
+        Nodes of each element, numbered from 0, in the order of the kind.
     """
 
     kind: str
@@ -29,26 +29,26 @@ class ElementBlock:
 
     @property
     def element(self) -> ElementKind:
-        """What is known of the kind."""
+        """The kind of the elements."""
         return ELEMENT_KINDS[self.kind]
 
 
 @dataclass(frozen=True)
 class Mesh:
-    """A mesh of a body.
+    """Finite-element mesh of a body.
 
     Parameters
     ----------
     nodes : array, shape (nodes, 3)
         Coordinates [m]; z is up.
     blocks : tuple of ElementBlock
-        The elements, one block a kind.
+        Elements, one block per kind.
     node_sets : mapping of str to int array
         Named sets of nodes, numbered from 0.
     element_sets : mapping of str to int array
         Named sets of elements, numbered from 0 through all blocks in their order.
     skipped : mapping of str to int
-        What a reader left out of a file, and how often.
+        Items of a mesh file that its reader skipped, and how many of each.
 
     Examples
     --------
@@ -65,26 +65,26 @@ class Mesh:
 
     @property
     def number_of_elements(self) -> int:
-        """How many elements there are."""
+        """Number of elements."""
         return sum(len(block.connectivity) for block in self.blocks)
 
     @property
     def is_flat(self) -> bool:
-        """Is it of plate elements?"""
+        """Whether the elements are plate elements."""
         return any(block.element.dimension == 2 for block in self.blocks)
 
     @property
     def dofs_per_node(self) -> int:
-        """Three displacements, and of plate elements two slopes."""
+        """Degrees of freedom per node: three displacements, and two slopes in plate elements."""
         return 5 if self.is_flat else 3
 
     @property
     def extent(self) -> Floats:
-        """Length, width and height of the box around the nodes [m]."""
+        """Length, width and height of the bounding box of the nodes [m]."""
         return np.asarray(np.ptp(self.nodes, axis=0))
 
     def nodes_of(self, name: str) -> Integers:
-        """Return the nodes of a named set; of a set of elements, all their nodes.
+        """Return the nodes of a named set of nodes, or of a named set of elements.
 
         Raises
         ------

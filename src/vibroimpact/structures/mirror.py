@@ -1,4 +1,4 @@
-"""Planes in which a held structure is its own mirror image, and the parts into which they divide its motions."""
+"""Mirror planes of a held structure, and bases of its symmetric and antisymmetric motions."""
 
 from __future__ import annotations
 
@@ -13,38 +13,39 @@ from scipy.spatial import cKDTree
 from vibroimpact.arrays import Floats, Integers
 from vibroimpact.structures.supports.constraints import HeldStructure
 
-_NEAR = 1e-9  # of the body's extent: nodes no farther apart are mirror images
-_ALIKE = 1e-10  # relative: how far a mirrored stiffness or mass may differ, by rounding
-_REPEATS = 2  # random motions with which that is tried
-_PLATE_AXES = np.array([[-1, 1, 1, -1, 1], [1, -1, 1, 1, -1], [1, 1, -1, -1, -1]])  # of u, v, w and the slopes, by axis
+_NEAR = 1e-9  # of the body's extent: tolerance of the position of mirror images
+_ALIKE = 1e-10  # relative tolerance of the symmetry of stiffness and mass, for rounding
+_REPEATS = 2  # random motions of the test of symmetry
+# Signs of u, v, w and the slopes in a reflection, by the normal of the plane
+_PLATE_AXES = np.array([[-1, 1, 1, -1, 1], [1, -1, 1, 1, -1], [1, 1, -1, -1, -1]])
 
 
 @dataclass(frozen=True)
 class Mirror:
-    """A mirror image of motions: degree of freedom i of the image is `sign[i]` times degree of freedom `source[i]`.
+    """Reflection of motions: degree of freedom i of the image is `sign[i]` times degree of freedom `source[i]`.
 
     Parameters
     ----------
     axis : int
-        The normal of the plane: 0, 1 or 2.
+        Normal of the plane: 0, 1 or 2.
     source, sign : array, shape (free,)
-        On the degrees of freedom that are left free.
+        Of the free degrees of freedom.
     """
 
     axis: int
     source: Integers
     sign: Floats
 
-    def of(self, motion: Floats) -> Floats:
-        """Return the mirror image of a motion (free,)."""
+    def reflect(self, motion: Floats) -> Floats:
+        """Return the mirror image of a motion, (free,)."""
         return np.asarray(self.sign * motion[self.source])
 
 
-def mirrors_of(held: HeldStructure) -> list[Mirror]:
-    """Return the mirror planes of a held structure through its middle, normal to x, y or z.
+def mirror_planes(held: HeldStructure) -> list[Mirror]:
+    """Return the mirror planes of a held structure through the middle of its bounding box, normal to x, y or z.
 
-    They are found from the nodes, and tried on stiffness and mass, so that whatever holds or loads the structure is seen. The middle
-    plane of plate elements is one if nothing couples their bending to their stretching.
+    Candidates follow from the nodes; stiffness and mass are then tested for the symmetry, which includes the supports. The middle
+    plane of plate elements is a mirror plane if bending and stretching are uncoupled.
 
     Parameters
     ----------
@@ -56,10 +57,10 @@ def mirrors_of(held: HeldStructure) -> list[Mirror]:
 
 
 def _mirror(held: HeldStructure, axis: int) -> Mirror | None:
-    """Return the mirror normal to an axis if each free degree of freedom has an image that is free."""
+    """Return the reflection along an axis, or None unless each free degree of freedom has a free image."""
     mesh = held.structure.mesh
     per_node, size = mesh.dofs_per_node, held.structure.stiffness.shape[0]
-    if held.free.max(initial=-1) >= size:  # of bodies that hold it, whose images are not known
+    if held.free.max(initial=-1) >= size:  # degrees of freedom of supporting bodies, which have no known images
         return None
     nodes = mesh.nodes.copy()
     nodes[:, axis] = nodes[:, axis].min() + nodes[:, axis].max() - nodes[:, axis]
@@ -75,21 +76,21 @@ def _mirror(held: HeldStructure, axis: int) -> Mirror | None:
 
 
 def _commutes(held: HeldStructure, mirror: Mirror) -> bool:
-    """Is the mirror image of the forces that a motion takes those of its mirror image?"""
+    """Return whether stiffness and mass commute with a reflection, tested on random motions."""
     scale = 1.0 / np.sqrt(held.stiffness.diagonal())
     random = np.random.default_rng(0)
     for _ in range(_REPEATS):
         motion = scale * random.standard_normal(len(scale))
         for matrix in (held.stiffness, held.mass):
             forces = matrix @ motion
-            off = np.linalg.norm(scale * (mirror.of(forces) - matrix @ mirror.of(motion)))
+            off = np.linalg.norm(scale * (mirror.reflect(forces) - matrix @ mirror.reflect(motion)))
             if not off <= _ALIKE * np.linalg.norm(scale * forces):
                 return False
     return True
 
 
-def symmetric_parts(held: HeldStructure, mirrors: Sequence[Mirror]) -> list[csr_array]:
-    """Return bases of the motions that are their own mirror images, or the opposite, in each of the planes.
+def symmetry_bases(held: HeldStructure, mirrors: Sequence[Mirror]) -> list[csr_array]:
+    """Return bases of the motions that are even or odd in each mirror plane.
 
     Parameters
     ----------
@@ -101,12 +102,12 @@ def symmetric_parts(held: HeldStructure, mirrors: Sequence[Mirror]) -> list[csr_
     Returns
     -------
     list of sparse array, shape (free, part)
-        A basis for each combination of signs, of orthonormal columns, with the elimination order of the structure; all together span
-        the free motions, and neither stiffness nor mass couples two of them. Combinations without motions are left out.
+        A basis of orthonormal columns for each combination of parities that has motions, in the elimination order of the structure.
+        Together they span all free motions, and neither stiffness nor mass couples two of them.
     """
     size = len(held.free)
     sources, signs = [np.arange(size)], [np.ones(size)]
-    counts = [np.zeros(0, dtype=int)]  # which mirrors each product of mirrors has
+    counts = [np.zeros(0, dtype=int)]  # the mirrors that each product of mirrors consists of
     for number, mirror in enumerate(mirrors):
         for source, sign, count in list(zip(sources, signs, counts, strict=True)):
             sources.append(source[mirror.source])
@@ -121,14 +122,14 @@ def symmetric_parts(held: HeldStructure, mirrors: Sequence[Mirror]) -> list[csr_
         values = np.concatenate([np.prod([parities[one] for one in count]) * sign[kept] for sign, count in zip(signs, counts, strict=True)])
         basis = csr_array(coo_array((values, (rows, np.tile(columns, len(sources)))), shape=(size, len(kept))))
         norms = np.sqrt(np.asarray((basis.multiply(basis)).sum(axis=0)).ravel())
-        there = np.flatnonzero(norms > 0.5)  # on a plane some motions have no such part
+        there = np.flatnonzero(norms > 0.5)  # motions of nodes on a plane have one parity only
         if len(there):
             parts.append(csr_array(basis[:, there].multiply(1.0 / norms[there])))
     return parts
 
 
 def _in_first_part(held: HeldStructure, mirrors: Sequence[Mirror]) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
-    """Return which free degrees of freedom lie on the upper side of all mirror planes, or on them."""
+    """Return a mask of the free degrees of freedom on or above all mirror planes."""
     nodes = held.structure.mesh.nodes
     inside = np.ones(len(nodes), dtype=bool)
     for mirror in mirrors:

@@ -1,4 +1,4 @@
-"""The modes of a structure that is its own mirror image, from each of its symmetric parts by itself."""
+"""Modes of a structure with mirror planes, from its motions of each parity separately."""
 
 from __future__ import annotations
 
@@ -10,28 +10,28 @@ from scipy.sparse import csr_array
 
 from vibroimpact.arrays import Floats
 from vibroimpact.structures.lanczos import TOLERANCE
-from vibroimpact.structures.mirror import Mirror, mirrors_of, symmetric_parts
-from vibroimpact.structures.modes import Eigenmodes, Elastic, Progress, most_modes
+from vibroimpact.structures.mirror import Mirror, mirror_planes, symmetry_bases
+from vibroimpact.structures.modes import Eigenmodes, ElasticSystem, Progress, max_modes
 from vibroimpact.structures.supports.constraints import HeldStructure
 
-_FEW = 600  # degrees of freedom up to which nothing is gained
-_PART_OF_MOST = 0.5  # of the modes that a mesh has: up to so many, each part has enough of its own
-_SPARE = 1.1  # times its share of the modes that each part is asked for at first
+_FEW = 600  # degrees of freedom up to which symmetry saves no time
+_PART_OF_MOST = 0.5  # of the modes of a mesh: up to this number, each part has enough modes
+_SPARE = 1.1  # first number of modes of each part, over its share
 _ABOVE = 1.0 + 1e-9  # equal frequencies of two parts differ by rounding
-_NONE = 1e-8  # of a rigid motion: less is rounding
+_NONE = 1e-8  # of the norm of a rigid motion: below, its component in a part is rounding
 
 
-def elastic_of(held: HeldStructure) -> Elastic | MirroredElastic:
-    """Return what a held structure does at low frequencies, taken apart where it has mirror planes."""
-    mirrors = mirrors_of(held) if len(held.free) > _FEW else []
-    return MirroredElastic(held, mirrors) if mirrors else Elastic(held.stiffness, held.mass, held.rigid, held.order)
+def elastic_system(held: HeldStructure) -> ElasticSystem | MirroredSystem:
+    """Return the elastic system of a held structure, divided by parity if it has mirror planes."""
+    mirrors = mirror_planes(held) if len(held.free) > _FEW else []
+    return MirroredSystem(held, mirrors) if mirrors else ElasticSystem(held.stiffness, held.mass, held.rigid, held.order)
 
 
-class MirroredElastic:
-    """What a structure with mirror planes does at low frequencies: as `Elastic`, of parts that know nothing of each other.
+class MirroredSystem:
+    """Statics and modes of a structure with mirror planes, as of `ElasticSystem`, from uncoupled parts of given parities.
 
-    With three planes each part has an eighth of the degrees of freedom, and its factors a sixteenth of the entries; they are made
-    for one part at a time, and not kept. Modes that are equal for symmetry lie in different parts.
+    With three planes each part has an eighth of the degrees of freedom, and its factors a sixteenth of the entries; only the factors of
+    one part at a time are in memory. Multiple modes due to the symmetry lie in different parts.
 
     Parameters
     ----------
@@ -43,45 +43,46 @@ class MirroredElastic:
 
     def __init__(self, held: HeldStructure, mirrors: list[Mirror]) -> None:
         self.stiffness, self.mass, self._held = held.stiffness, held.mass, held
-        self.bases = symmetric_parts(held, mirrors)
-        """Of the parts (free, part), each in an elimination order."""
+        self.bases = symmetry_bases(held, mirrors)
+        """Bases of the parts, (free, part), each in an elimination order."""
         motions = held.rigid
         if motions.shape[1]:
             lower = np.linalg.cholesky(motions.T @ (held.mass @ motions))
             motions = np.asarray(np.linalg.solve(lower, motions.T).T, dtype=np.float64)
         self.rigid = motions
-        """The rigid motions, of unit modal mass."""
+        """Rigid motions of unit modal mass."""
 
-    def _part(self, basis: csr_array) -> Elastic:
+    def _part(self, basis: csr_array) -> ElasticSystem:
+        """Return the system of one part, factorised."""
         turned = basis.T.tocsr()
-        return Elastic(csr_array(turned @ self.stiffness @ basis), csr_array(turned @ self.mass @ basis), self._rigid_in(basis))
+        return ElasticSystem(csr_array(turned @ self.stiffness @ basis), csr_array(turned @ self.mass @ basis), self._rigid_in(basis))
 
     def _rigid_in(self, basis: csr_array) -> Floats:
-        """Return the rigid motions of a part."""
+        """Return the rigid motions of a part, (part, r)."""
         moved = basis.T @ self.rigid
         directions, sizes, _ = np.linalg.svd(moved, full_matrices=False)
         whole = float(np.linalg.norm(self.rigid, axis=0).max(initial=0.0))
         return np.asarray(directions[:, sizes > _NONE * whole])
 
     def static(self, load: Floats) -> Floats:
-        """Return the static response to loads, shape (n,) or (n, loads), as `Elastic.static` does."""
+        """Return the static response to loads, shape (n,) or (n, loads), as `ElasticSystem.static` does."""
         return np.asarray(sum(basis @ self._part(basis).static(basis.T @ load) for basis in self.bases))
 
     def count_below(self, angular_frequency: float) -> int:
-        """Return how many modes lie below an angular frequency [rad/s], rigid motions left out, without computing them."""
+        """Return the number of elastic modes below an angular frequency [rad/s], from the signs of the pivots."""
         return sum(self._part(basis).count_below(angular_frequency) for basis in self.bases)
 
     def modes(self, number: int, progress: Progress | None = None, tolerance: float = TOLERANCE) -> Eigenmodes:
-        """Return the lowest modes, rigid motions left out; takes and raises what `Elastic.modes` does."""
-        size, most = self.stiffness.shape[0], most_modes(self.mass, self.rigid.shape[1])
-        if not 1 <= number <= _PART_OF_MOST * most:  # of so few a mesh nothing need be saved
-            return Elastic(self.stiffness, self.mass, self._held.rigid, self._held.order).modes(number, progress, tolerance)
+        """Return the lowest elastic modes; parameters and errors are those of `ElasticSystem.modes`."""
+        size, most = self.stiffness.shape[0], max_modes(self.mass, self.rigid.shape[1])
+        if not 1 <= number <= _PART_OF_MOST * most:  # few modes in all, so that a part might not have its share
+            return ElasticSystem(self.stiffness, self.mass, self._held.rigid, self._held.order).modes(number, progress, tolerance)
         share = math.ceil(_SPARE * number / len(self.bases)) + 2
-        found = [self._lowest(basis, share, told, tolerance) for basis, told in self._told(progress)]
+        found = [self._lowest(basis, share, report, tolerance) for basis, report in self._with_progress(progress)]
         values = np.sort(np.concatenate([part.angular_frequencies for part in found]))
         last = _ABOVE * float(values[min(number, len(values)) - 1])
         for place, (basis, part) in enumerate(zip(self.bases, found, strict=True)):
-            if part.angular_frequencies[-1] <= last:  # it may have more of them
+            if part.angular_frequencies[-1] <= last:  # it may have further modes up to the last one
                 found[place] = self._lowest(basis, max(self._part(basis).count_below(last), share), lambda done: None, tolerance)
         values = np.concatenate([part.angular_frequencies for part in found])
         order = np.argsort(values, kind="stable")[:number]
@@ -94,15 +95,16 @@ class MirroredElastic:
         return Eigenmodes(values[order], shapes)
 
     def _lowest(self, basis: csr_array, number: int, progress: Progress, tolerance: float) -> Eigenmodes:
+        """Return the lowest modes of a part, or all that it has."""
         elastic = self._part(basis)
-        return elastic.modes(min(number, most_modes(elastic.mass, elastic.rigid.shape[1])), progress, tolerance)
+        return elastic.modes(min(number, max_modes(elastic.mass, elastic.rigid.shape[1])), progress, tolerance)
 
-    def _told(self, progress: Progress | None) -> Iterator[tuple[csr_array, Progress]]:
-        """Yield each part, and what is told how much of it is done."""
+    def _with_progress(self, progress: Progress | None) -> Iterator[tuple[csr_array, Progress]]:
+        """Yield the basis of each part, and a callback of the progress in that part."""
         for number, basis in enumerate(self.bases):
 
-            def told(part: float, number: int = number) -> None:
+            def report(part: float, number: int = number) -> None:
                 if progress is not None:
                     progress((number + part) / len(self.bases))
 
-            yield basis, told
+            yield basis, report

@@ -1,4 +1,4 @@
-"""Undamped modes of a held or free structure, by shift-invert Lanczos, its rigid motions kept apart; and static response."""
+"""Undamped elastic modes and static response of a held or free structure, by Lanczos iteration on its factorised stiffness."""
 
 from __future__ import annotations
 
@@ -11,62 +11,62 @@ from scipy.sparse import csr_array
 
 from vibroimpact.arrays import Floats, Integers
 from vibroimpact.errors import ComputationError, InputError
-from vibroimpact.structures.factor import BYTES, Factors, check_room
+from vibroimpact.structures.factor import BYTES_PER_ENTRY, Factors, check_memory
 from vibroimpact.structures.lanczos import TOLERANCE, lowest_modes
 
-_DENSE = 400  # degrees of freedom up to which a dense solver is quicker
-_SPACE = 3.0  # vectors that the iteration keeps, and as many of their momenta, for each mode
-_MOST = 0.4  # of the degrees of freedom: more modes than this of a mesh mean nothing, and Lanczos' method gains nothing
-_CARRIED = 1e-3  # of a load: how much of it may be left when the stiffness is far from singular
+_DENSE = 400  # degrees of freedom up to which a dense eigenvalue solver is faster
+_SPACE = 3.0  # vectors of the iteration per mode, each stored with its product with the mass
+_MOST = 0.4  # of the degrees of freedom: higher modes of a mesh are meaningless, and Lanczos iteration has no advantage
+_CARRIED = 1e-3  # relative residual of a static solution below which the stiffness is far from singular
 _INVERSE_STEPS = 4
-_ROUNDING = 2e-15  # of the highest frequency squared: a lowest one below this is none
+_ROUNDING = 2e-15  # of the highest squared frequency: a lowest one below this is zero
 
 Progress = Callable[[float], None]
 
 
 @dataclass(frozen=True)
 class Eigenmodes:
-    """Angular frequencies and shapes.
+    """Angular frequencies and mode shapes.
 
     Parameters
     ----------
     angular_frequencies : array, shape (modes,)
         [rad/s], ascending.
     shapes : array, shape (dofs, modes)
-        One column a mode, of unit modal mass [kg^-1/2].
+        One column per mode, of unit modal mass [kg^-1/2].
     """
 
     angular_frequencies: Floats
     shapes: Floats
 
 
-class Elastic:
-    """What an elastic system does at low frequencies: its statics, once factorised, and from them its modes.
+class ElasticSystem:
+    """Statics and modes of an undamped elastic system, from one factorisation of its stiffness.
 
     Parameters
     ----------
     stiffness, mass : sparse arrays, shape (n, n)
-        Symmetric.
+        Symmetric matrices.
     rigid : array, shape (n, r), optional
-        The rigid motions, which the stiffness does not resist.
+        Rigid motions, a basis of the null space of the stiffness.
     order : int array, shape (n,), optional
-        An elimination order.
+        Elimination order of the factorisation.
 
     Raises
     ------
     ComputationError
-        If the system can move without resistance otherwise than by its rigid motions.
+        If the stiffness is singular beyond the rigid motions: the system has a mechanism.
 
     Notes
     -----
-    A system that is free has no inverse. Held still at as many degrees of freedom as it has rigid motions, it has one, and
-    loads that the inertia of a rigid acceleration balances are carried without reactions there, wherever they are. So the
-    modes of a free body come out exactly orthogonal to its rigid motions, and no shift has to be guessed.
+    The stiffness of a free system is singular. Constrained at as many degrees of freedom as it has rigid motions, it is not, and
+    loads balanced by the inertia of the rigid acceleration cause no reactions there. Modes of a free body are therefore exactly
+    orthogonal to its rigid motions, and no shift has to be chosen.
 
     Examples
     --------
     >>> chain = csr_array(np.diag([1.0, 2.0, 1.0]) - np.eye(3, k=1) - np.eye(3, k=-1))
-    >>> modes = Elastic(chain, csr_array(np.eye(3)), np.ones((3, 1))).modes(2)
+    >>> modes = ElasticSystem(chain, csr_array(np.eye(3)), np.ones((3, 1))).modes(2)
     >>> (modes.angular_frequencies**2).round(12).tolist()
     [1.0, 3.0]
     """
@@ -80,7 +80,7 @@ class Elastic:
             lower = np.linalg.cholesky(motions.T @ (mass @ motions))
             motions = np.asarray(np.linalg.solve(lower, motions.T).T, dtype=np.float64)
         self.rigid = motions
-        """The rigid motions, of unit modal mass."""
+        """Rigid motions of unit modal mass."""
         self._momentum = mass @ motions
         held = qr(motions.T, pivoting=True, mode="r")[1][: motions.shape[1]] if motions.shape[1] else np.zeros(0, dtype=int)
         self._free = np.setdiff1d(np.arange(number), held)
@@ -89,19 +89,19 @@ class Elastic:
         inner = place[self.order]
         matrix = stiffness[self._free][:, self._free] if len(held) else stiffness
         self._factors = Factors(csr_array(matrix), inner[inner >= 0])
-        self._heavy = mass.diagonal() > 0.0  # not so the slopes of a thin plate
+        self._heavy = mass.diagonal() > 0.0  # the slopes of a thin plate have no inertia
         self._refuse_mechanisms()
 
     @property
     def size(self) -> float:
-        """About how many bytes it takes."""
-        return self._factors.size + BYTES * float(self.stiffness.nnz + self.mass.nnz)
+        """Approximate memory [bytes]."""
+        return self._factors.size + BYTES_PER_ENTRY * float(self.stiffness.nnz + self.mass.nnz)
 
     def static(self, load: Floats) -> Floats:
         """Return the static response to loads, shape (n,) or (n, loads).
 
-        Where the system is free the load is balanced by the inertia of the rigid acceleration that it causes, and the
-        response has no rigid part.
+        In a free system the load is balanced by the inertia of the rigid acceleration (inertia relief), and the response has no
+        rigid component.
         """
         balanced = load - self._momentum @ (self.rigid.T @ load)
         response = np.zeros_like(balanced)
@@ -109,25 +109,25 @@ class Elastic:
         return np.asarray(response - self.rigid @ (self._momentum.T @ response))
 
     def modes(self, number: int, progress: Progress | None = None, tolerance: float = TOLERANCE) -> Eigenmodes:
-        """Return the lowest modes, rigid motions left out.
+        """Return the lowest elastic modes, without rigid motions.
 
         Parameters
         ----------
         number : int
-            How many, >= 1.
+            Number of modes, >= 1.
         progress : callable, optional
-            Called with a number from 0 to 1 that estimates how much is done.
+            Called with the estimated progress, from 0 to 1.
         tolerance : float, optional
-            Residual that is left of the shapes; the frequencies are off by its square.
+            Relative residual of the shapes; the relative error of the frequencies is its square.
 
         Raises
         ------
         InputError
-            If the mesh has not so many.
+            If the mesh does not have as many, or the memory does not suffice.
         ComputationError
             If the iteration does not converge.
         """
-        size, most = self.stiffness.shape[0], most_modes(self.mass, self.rigid.shape[1])
+        size, most = self.stiffness.shape[0], max_modes(self.mass, self.rigid.shape[1])
         if not 1 <= number <= most:
             raise InputError(
                 f"{number} modes are not to be had from {size} degrees of freedom; it must be from 1 to {most}"
@@ -135,17 +135,17 @@ class Elastic:
             )
         if size <= _DENSE:
             return self._dense(number)
-        check_room(16.0 * size * _SPACE * number, f"{number} modes of {size} degrees of freedom need")
+        check_memory(16.0 * size * _SPACE * number, f"{number} modes of {size} degrees of freedom need")
         values, shapes = lowest_modes(self.static, self.mass, number, progress or (lambda part: None), tolerance)
         return Eigenmodes(np.sqrt(values), shapes)
 
     def count_below(self, angular_frequency: float) -> int:
-        """Return how many modes lie below an angular frequency [rad/s], rigid motions left out, without computing them."""
+        """Return the number of elastic modes below an angular frequency [rad/s], from the signs of the pivots."""
         shifted = self.stiffness - angular_frequency**2 * self.mass
         return int(Factors(csr_array(shifted), self.order).negative_pivots()) - int(self.rigid.shape[1])
 
     def _refuse_mechanisms(self) -> None:
-        """Raise if loads are not carried, and the lowest frequency, found by inverse iteration, is no more than rounding."""
+        """Raise if a static solution has a large residual, and the lowest frequency, by inverse iteration, is zero up to rounding."""
         shape = np.random.default_rng(0).standard_normal(self.stiffness.shape[0])
         load = self.mass @ shape
         left = self.stiffness @ self.static(load) - load + self._momentum @ (self.rigid.T @ load)
@@ -162,7 +162,7 @@ class Elastic:
             )
 
     def _dense(self, number: int) -> Eigenmodes:
-        """Solve in full; the mass may be singular, as that of a thin plate is, and so may the stiffness, but not both."""
+        """Return the lowest modes by a dense solver; the mass may be singular, as that of a thin plate, or the stiffness, but not both."""
         inertia, axes = np.linalg.eigh(self.mass.toarray())
         root = axes * np.sqrt(np.maximum(inertia, 0.0))
         response = self.static(root)
@@ -171,7 +171,7 @@ class Elastic:
         return Eigenmodes(1.0 / np.sqrt(responses[lowest]), response @ (turned[:, lowest] / responses[lowest]))
 
 
-def most_modes(mass: csr_array, rigid: int) -> int:
-    """Return how many modes of a system mean anything, of which so many motions are rigid."""
+def max_modes(mass: csr_array, rigid: int) -> int:
+    """Return the largest number of elastic modes that may be computed of a system with a number of rigid motions."""
     most = int(np.count_nonzero(mass.diagonal() > 0.0)) - rigid
     return most if mass.shape[0] <= _DENSE else int(_MOST * most)

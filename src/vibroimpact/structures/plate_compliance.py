@@ -1,14 +1,15 @@
-r"""What plate theory, or the other face, lacks of the compliance of a plate at the point where it is loaded.
+r"""Correction of the point compliance of a plate from that of plate theory, or from the response of the opposite face.
 
-A pressure of wave number k on the upper face of a layer moves it by A + S, and the lower face by A - S, with
+A pressure of wave number k on the upper face of an elastic layer displaces that face by A + S, and the lower face by A - S, with
 :math:`A = \frac{2(1-\nu^2)}{E k}\frac{\cosh^2 x}{\sinh 2x - 2x}`, :math:`S = \frac{2(1-\nu^2)}{E k}\frac{\sinh^2 x}{\sinh 2x + 2x}`
-and x = k h / 2 (I. N. Sneddon, Fourier Transforms, 1951, section 46), and the half space by :math:`2(1-\nu^2)/(E k)`. The structural
-compliance is that of a point under a normal force less that of the half space, of the kernel :math:`A + S - 2(1-\nu^2)/(E k)`.
+and x = k h / 2 (I. N. Sneddon, Fourier Transforms, 1951, section 46), and that of the half space by :math:`2(1-\nu^2)/(E k)`. The
+structural compliance is that of a point under a normal force less that of the half space, with the kernel
+:math:`A + S - 2(1-\nu^2)/(E k)`.
 
-Finite elements give it under an average over a disc instead, of the transform :math:`d(k) = 1 - k^2 \overline{r^2}/4 + \ldots`, on
-both the load and the response. The mean of r^2 is chosen so that the two kernels agree to :math:`k^{-4}` and :math:`k^{-2}`: then the
-integral of their difference over :math:`k\,dk/2\pi` is of the layer around the point alone, whatever the edges of the plate and what
-holds them.
+Finite elements give the compliance with load and response averaged over a disc, each with the transform
+:math:`d(k) = 1 - k^2 \overline{r^2}/4 + \ldots`. The mean of r^2 is chosen so that both kernels agree in the terms :math:`k^{-4}` and
+:math:`k^{-2}`. The integral of their difference over :math:`k\,dk/2\pi` then depends on the layer near the point only, not on the edges
+of the plate or its supports.
 """
 
 from __future__ import annotations
@@ -22,22 +23,22 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 
-_PLATES = 64  # whose terms are at hand, for other places on them
-_NODES = 16  # of Gauss's rule on each part of an integral
-_DEEPEST = 40.0  # wave number times thickness: beyond it the faces know nothing of each other
-_FINEST = 100.0  # wave number times radius: what is beyond it is 1e-6 of the term
+_PLATES = 64  # of which the terms are cached, for other places on them
+_NODES = 16  # of Gauss's rule on each part of the integral
+_DEEPEST = 40.0  # wave number times thickness beyond which the faces are uncoupled
+_FINEST = 100.0  # wave number times radius at which the integral ends: the rest is 1e-6 of the term
 
 
 @dataclass(frozen=True)
 class Average:
-    r"""An average over a disc, of the weight :math:`1 + \beta (1 - 2 r^2 / b^2)`.
+    r"""Average over a disc with the weight :math:`1 + \beta (1 - 2 r^2 / b^2)`.
 
     Parameters
     ----------
     radius : float
         Radius b [m], >= 0.
     tilt : float
-        beta [-]; at 3 the mean of r^2 is zero.
+        beta [-]; with 3 the mean of r^2 is zero.
     """
 
     radius: float
@@ -48,7 +49,7 @@ class Average:
         return np.asarray(1.0 + self.tilt * (1.0 - 2.0 * (places**2).sum(axis=1)))
 
     def transform(self, k: Floats) -> Floats:
-        """Return the average of waves of a wave number k [1/m]."""
+        """Return the transform d: the average of a wave of wave number k [1/m]."""
         from scipy.special import jv
 
         z = k * self.radius
@@ -56,13 +57,13 @@ class Average:
 
 
 def through_thickness_average(radius: float) -> Average:
-    """Return the average over a disc [m] that goes with `through_thickness_term`: the mean of r^2 is zero."""
+    """Return the average of `through_thickness_term` over a disc of a radius [m]: the mean of r^2 is zero."""
     return Average(radius, 3.0)
 
 
 @functools.lru_cache(maxsize=_PLATES)
 def through_thickness_term(thickness: float, youngs_modulus: float, poissons_ratio: float, average: Average) -> float:
-    r"""Return the structural compliance of a plate less the response of its other face under an average [m/N].
+    r"""Return the structural compliance of a plate less the averaged response of its opposite face [m/N].
 
     Parameters
     ----------
@@ -71,11 +72,11 @@ def through_thickness_term(thickness: float, youngs_modulus: float, poissons_rat
     youngs_modulus, poissons_ratio : float
         E [Pa] and nu [-].
     average : Average
-        Of the force on one face, and of the displacement of the other: `through_thickness_average`.
+        Average of the force on one face, and of the displacement of the other: `through_thickness_average`.
 
     Notes
     -----
-    The other kernel is :math:`(A - S)\,d^2`. For points, of radius 0, the bending in A drops out and the term is
+    The kernel that is subtracted is :math:`(A - S)\,d^2`. For points, of radius 0, A cancels and the term is
     :math:`\frac{2(1-\nu^2)}{\pi E h} \int_0^\infty \left(\frac{2\sinh^2 x}{\sinh 2x + 2x} - 1\right) dx
     = -1.1676\,\frac{2(1-\nu^2)}{\pi E h}`.
 
@@ -84,7 +85,7 @@ def through_thickness_term(thickness: float, youngs_modulus: float, poissons_rat
     >>> round(through_thickness_term(0.01, 210e9, 0.3, through_thickness_average(0.0)) * 210e9 * 0.01 * 3.14159265 / (2 * 0.91), 4)
     -1.1676
     """
-    modulus = youngs_modulus / (1.0 - poissons_ratio**2)  # of plane strain
+    modulus = youngs_modulus / (1.0 - poissons_ratio**2)  # in plane strain
 
     def kernel(k: Floats) -> Floats:
         bending, squeezing = layer_kernels(k * thickness)
@@ -94,15 +95,12 @@ def through_thickness_term(thickness: float, youngs_modulus: float, poissons_rat
 
 
 def plate_theory_average(radius: float, thickness: float, poissons_ratio: float, shear_factor: float) -> Average:
-    r"""Return the average over a disc [m] that goes with `plate_theory_term`.
-
-    Its mean of r^2 is `mean_square`.
-    """
+    """Return the average of `plate_theory_term` over a disc of a radius [m]: the mean of r^2 is `mean_square`."""
     return Average(radius, 3.0 - 6.0 * mean_square(thickness, poissons_ratio, shear_factor) / radius**2)
 
 
 def mean_square(thickness: float, poissons_ratio: float, shear_factor: float) -> float:
-    r"""Return the mean of r^2 of an average under which plate theory meets the face of a layer in long waves [m^2].
+    r"""Return the mean of r^2 of the average with which plate theory agrees with the face of a layer for long waves [m^2].
 
     Notes
     -----
@@ -113,7 +111,7 @@ def mean_square(thickness: float, poissons_ratio: float, shear_factor: float) ->
 
 @functools.lru_cache(maxsize=_PLATES)
 def plate_theory_term(thickness: float, youngs_modulus: float, poissons_ratio: float, shear_factor: float, average: Average) -> float:
-    r"""Return the structural compliance of a plate less what plate theory has under an average [m/N].
+    r"""Return the structural compliance of a plate less the averaged one of plate theory [m/N].
 
     Parameters
     ----------
@@ -124,11 +122,12 @@ def plate_theory_term(thickness: float, youngs_modulus: float, poissons_ratio: f
     shear_factor : float
         Factor kappa of the shear stiffness [-].
     average : Average
-        Of the force and of the displacement: `plate_theory_average`, of a radius > 0.
+        Average of the force and of the displacement: `plate_theory_average`, of a radius > 0.
 
     Notes
     -----
-    The other kernel is :math:`\left(\frac{1}{D k^4} + \frac{1}{\kappa G h k^2}\right) d^2` (R. D. Mindlin, J. Appl. Mech. 18:31, 1951).
+    The kernel that is subtracted is :math:`\left(\frac{1}{D k^4} + \frac{1}{\kappa G h k^2}\right) d^2` (R. D. Mindlin, J. Appl.
+    Mech. 18:31, 1951).
 
     Examples
     --------
@@ -148,13 +147,13 @@ def plate_theory_term(thickness: float, youngs_modulus: float, poissons_ratio: f
 
 
 def layer_kernels(y: Floats) -> tuple[Floats, Floats]:
-    """Return A and S over the kernel of the half space, at y = k h; where the layer is deep each is a half."""
+    """Return A and S over the kernel of the half space, at y = k h; for short waves each tends to 1/2."""
     y = np.minimum(y, _DEEPEST)
     return (1.0 + np.cosh(y)) / (2.0 * _sinh_less(y)), (np.cosh(y) - 1.0) / (2.0 * (np.sinh(y) + y))
 
 
 def _sinh_less(y: Floats) -> Floats:
-    """Return sinh y - y, by its series where little would be left of the difference."""
+    """Return sinh y - y, by its series where the difference would cancel."""
     series = np.ones_like(y)
     for n in range(17, 3, -2):
         series = 1.0 + y**2 / (n * (n - 1)) * series
@@ -162,7 +161,7 @@ def _sinh_less(y: Floats) -> Floats:
 
 
 def _integral(kernel: Callable[[Floats], Floats], thickness: float, average: Average) -> float:
-    """Return the integral of a kernel over k dk / 2 pi from zero, by Gauss's rule on equal parts."""
+    """Return the integral of a kernel over k dk / 2 pi from zero to the cutoff, by Gauss's rule on equal parts."""
     largest = max(thickness, average.radius)
     parts = math.ceil(largest * max(_DEEPEST / thickness, _FINEST / average.radius if average.radius else 0.0))
     nodes, weights = np.polynomial.legendre.leggauss(_NODES)

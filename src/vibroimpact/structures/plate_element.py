@@ -1,4 +1,4 @@
-"""The plate element: Reissner and Mindlin's plate with its own plane, quadrilaterals of order four."""
+"""Plate element: Reissner-Mindlin bending and plane stress in its middle plane, on quadrilaterals of order four."""
 
 from __future__ import annotations
 
@@ -7,26 +7,26 @@ from scipy.sparse import csr_array
 
 from vibroimpact.errors import InputError
 from vibroimpact.materials import Material
-from vibroimpact.structures.assembly import isotropic, scaled_shapes, summation
+from vibroimpact.structures.assembly import isotropic, pair_assembly, scaled_shapes
 from vibroimpact.structures.mesh import Mesh
 
-_THIN_SHEAR = 1e4  # how much stiffer in shear the thin plate is made
+_THIN_SHEAR = 1e4  # factor on the shear stiffness that stands for the thin plate
 
 
 def shear_factor(poissons_ratio: float) -> float:
-    """Return the factor of the shear stiffness of a plate [-]: 5 / (6 - nu), J. R. Hutchinson's (J. Appl. Mech. 51:581, 1984)."""
+    """Return the shear correction factor of a plate [-]: 5 / (6 - nu), J. R. Hutchinson's (J. Appl. Mech. 51:581, 1984)."""
     return 5.0 / (6.0 - poissons_ratio)
 
 
 def assemble_plate(
     mesh: Mesh, material: Material, thickness: float, theory: str = "thick", shear_correction: float | None = None
 ) -> tuple[csr_array, csr_array]:
-    r"""Return stiffness and consistent mass of a plate.
+    r"""Return the stiffness and the consistent mass matrix of a plate.
 
     Parameters
     ----------
     mesh : Mesh
-        One block of "quad25"; z of its nodes plays no part.
+        One block of "quad25"; z of its nodes is not used.
     material : Material
         Density, Young's modulus and Poisson's ratio.
     thickness : float
@@ -34,7 +34,7 @@ def assemble_plate(
     theory : str, default "thick"
         "thick" is Reissner and Mindlin's theory, with transverse shear and rotary inertia; "thin" is Kirchhoff's, without.
     shear_correction : float, optional
-        Factor s of the shear stiffness [-]; 5 / (6 - nu) by default.
+        Shear correction factor s [-]; 5 / (6 - nu) by default.
 
     Returns
     -------
@@ -45,15 +45,16 @@ def assemble_plate(
     Raises
     ------
     InputError
-        If there is no such theory.
+        If the theory is unknown.
 
     Notes
     -----
     Strain energy :math:`\tfrac12\int h\,\varepsilon^T C \varepsilon + \tfrac{h^3}{12} \kappa^T C \kappa
     + s G h\,|\nabla w + \beta|^2\,dA` with C of plane stress (R. D. Mindlin, J. Appl. Mech. 18:31, 1951). The factor
-    s = 5 / (6 - nu) is J. R. Hutchinson's (J. Appl. Mech. 51:581, 1984): with it frequencies agree with three-dimensional
-    elasticity twenty times better than with E. Reissner's 5/6 or Mindlin's pi^2/12. Fully integrated: quadrilaterals of
-    order four do not lock. The thin plate is the thick one made ten thousand times stiffer in shear, without rotary inertia.
+    s = 5 / (6 - nu) is J. R. Hutchinson's (J. Appl. Mech. 51:581, 1984): errors of frequencies with respect to
+    three-dimensional elasticity are twenty times smaller than with E. Reissner's 5/6 or Mindlin's pi^2/12. Integration is full, as
+    quadrilaterals of order four do not lock. The thin plate is the thick one with ten thousand times the shear stiffness and without
+    rotary inertia.
 
     Examples
     --------
@@ -68,12 +69,12 @@ def assemble_plate(
         raise InputError(f'"{theory}" is not a theory of plates; it must be "thick" or "thin"')
     modulus, ratio = material.youngs_modulus, material.poissons_ratio
     mu = modulus / (2.0 * (1.0 + ratio))
-    lame = modulus * ratio / (1.0 - ratio**2)  # of plane stress
+    lame = modulus * ratio / (1.0 - ratio**2)  # in plane stress
     factor = shear_factor(ratio) if shear_correction is None else shear_correction
     shear = factor * mu * thickness * (1.0 if theory == "thick" else _THIN_SHEAR)
     second_moment = thickness**3 / 12.0
     shapes = list(scaled_shapes(mesh, mesh.blocks[0]))
-    summed, matrix = summation(mesh)
+    summed, matrix = pair_assembly(mesh)
 
     unit = summed([values.transpose(0, 2, 1) @ values for values, _ in shapes])
     product = np.array([[summed([g[i].transpose(0, 2, 1) @ g[j] for _, g in shapes]) for j in range(2)] for i in range(2)])

@@ -1,4 +1,4 @@
-"""How far the face of a plate moves in the modes of plate theory."""
+"""Displacement of the face of a plate in the modes of plate theory."""
 
 from __future__ import annotations
 
@@ -12,33 +12,33 @@ from vibroimpact.structures.surface import slope_divergence
 
 
 def face_shapes(model: ModalModel, material: Material, place: tuple[float, float], deflection: Floats) -> Floats:
-    r"""Return how far the face of a plate moves up at a place in its modes, shape (modes,) [kg^-1/2].
+    r"""Return the upward displacement of the face of a plate at a place in its modes, (modes,) [kg^-1/2].
 
     Parameters
     ----------
     model : ModalModel
-        Of plate elements, by the thick theory.
+        Modes of plate elements by the thick theory.
     material : Material
-        Of the plate.
+        Material of the plate.
     place : tuple of two floats
         x and y [m].
     deflection : array, shape (modes,)
-        How far the plate moves up there by plate theory [kg^-1/2].
+        Upward deflection at the place by plate theory [kg^-1/2].
 
     Raises
     ------
     InputError
-        If the place lies beside the body.
+        If the place is not on the body.
 
     Notes
     -----
-    At one angular frequency the deflection is :math:`w = w_1 + w_2` with :math:`\nabla^2 w_j = -k_j^2 w_j` (Mindlin 1951): a wave of
-    bending and one of shear, which below :math:`\sqrt{12 \kappa G / (\rho h^2)}` only clings to edges and supports. As the slopes
-    :math:`\beta` have the divergence :math:`\sum_j (k_j^2 - \rho \omega^2 / \kappa G)\,w_j`, both follow from w and that divergence. Then
-    w_1 is multiplied by `bending_factor` of its wave number, and w_2 by `shear_wave_factor`.
+    At one angular frequency the deflection is :math:`w = w_1 + w_2` with :math:`\nabla^2 w_j = -k_j^2 w_j` (Mindlin 1951): a bending
+    wave and a shear wave, which below :math:`\sqrt{12 \kappa G / (\rho h^2)}` is evanescent and occurs near edges and supports only. As
+    the divergence of the slopes :math:`\beta` is :math:`\sum_j (k_j^2 - \rho \omega^2 / \kappa G)\,w_j`, both parts follow from w and
+    that divergence. Then w_1 is multiplied by `bending_factor` of its wave number, and w_2 by `shear_wave_factor`.
     """
     thickness = model.thickness
-    divergence = model.recalled(f"divergence {place}", lambda: model.in_modes(slope_divergence(model.mesh, place))[:, 0])
+    divergence = model.cached(f"divergence {place}", lambda: model.modal_values(slope_divergence(model.mesh, place))[:, 0])
     bending, shearing, lag = mindlin_squares(model.angular_frequencies, thickness, material)
     of_bending = (divergence - (shearing - lag) * deflection) / (bending - shearing)
     first = bending_factor(np.sqrt(bending) * thickness, material.poissons_ratio)

@@ -1,4 +1,4 @@
-"""Meshes of a plate: solid elements, or the plate element on its middle plane."""
+"""Meshes of a rectangular plate: of solid elements, or of plate elements in its middle plane."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def solid_plate_mesh(
     lower_splits: int | None = None,
     rims: tuple[Sequence[float], Sequence[float]] = ((), ()),
 ) -> Mesh:
-    """Make a mesh of a plate of solid elements, its middle at the origin.
+    """Return a mesh of a plate of solid elements, centred at the origin.
 
     Parameters
     ----------
@@ -35,17 +35,16 @@ def solid_plate_mesh(
     element_size : float
         Largest side of an element along x and y [m].
     layers : int, default 1
-        Elements through the thickness.
+        Number of elements through the thickness.
     kind : str, default "hex20"
         Kind of element: "hex8", "hex20", "hex27", "tet4" or "tet10".
     discs, lines, rims
-        What must fall on edges of elements: see `rectangle_blocks`.
+        Lines that edges of elements must follow: see `rectangle_blocks`.
     splits : int, default 0
-        How often the elements at rims and along the edges of the plate are split: the strain grows
-        without bound at the rim of a patch that is held still, and at the corners of a face that is; along a free edge it
-        changes within about half a thickness.
+        Number of splits of the elements at rims and along the edges of the plate: the strain is singular at the rim of a held patch
+        and at the corners of a held face; along a free edge it varies within about half a thickness.
     lower_splits : int, optional
-        How often the lowest layer is split; as often as the rims unless given.
+        Number of splits of the lowest layer; that of the rims by default.
 
     Examples
     --------
@@ -74,7 +73,7 @@ def plate_mesh(
     margins: Sequence[float] = (),
     rims: tuple[Sequence[float], Sequence[float]] = ((), ()),
 ) -> Mesh:
-    """Make a mesh of the plate element, on the plane z = 0, its middle at the origin.
+    """Return a mesh of plate elements in the plane z = 0, centred at the origin.
 
     Parameters
     ----------
@@ -83,7 +82,7 @@ def plate_mesh(
     element_size : float
         Largest side of an element [m].
     discs, lines, margins, rims
-        What must fall on edges of elements: see `rectangle_blocks`.
+        Lines that edges of elements must follow: see `rectangle_blocks`.
 
     Examples
     --------

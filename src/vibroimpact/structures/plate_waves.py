@@ -1,9 +1,9 @@
-r"""Waves of bending in a plate: by plate theory, and by the elasticity of a layer; how far the one is from the other.
+r"""Waves in a plate: plate theory compared with three-dimensional elasticity of a layer.
 
-Bending stretches and squeezes a plate across its thickness (Poisson's ratio), so that its face moves less than plate theory says, whose
-deflection is a mean over the thickness: by the ratio of two shapes of unit modal mass under a wave of one length, that of the lowest
-antisymmetric wave of a layer (H. Lamb, On waves in an elastic plate, Proc. R. Soc. A 93:114, 1917) at its face, and the deflection of
-R. D. Mindlin's plate (J. Appl. Mech. 18:31, 1951). For long waves, of wave number k, it is
+Bending strains a plate across its thickness (Poisson's ratio), so that its face moves less than plate theory states, of which the
+deflection is a mean over the thickness. The factor between them is the ratio of two shapes of unit modal mass at the same wave number:
+the lowest antisymmetric wave of a layer (H. Lamb, On waves in an elastic plate, Proc. R. Soc. A 93:114, 1917) at its face, and the
+deflection of R. D. Mindlin's plate (J. Appl. Mech. 18:31, 1951). For long waves, of wave number k, it is
 
 .. math:: d = 1 - \frac{k^2 \overline{r^2}}{4} + \ldots,\qquad \overline{r^2} = 2 h^2 \left(\frac{1}{6 (1 - \nu) \kappa} - \frac15\right)
 """
@@ -21,23 +21,23 @@ from vibroimpact.materials import Material
 from vibroimpact.structures.plate_compliance import mean_square
 from vibroimpact.structures.plate_element import shear_factor
 
-_LARGEST = 8.0  # wave number times thickness: of shorter waves the factor is that of this one
-_DEGREE = 24  # of the polynomial through the factor: 3e-8
-_RATIOS = 64  # of Poisson, whose factors are at hand
-_HALVINGS = 60
+_LARGEST = 8.0  # wave number times thickness beyond which the factor is constant
+_DEGREE = 24  # of the polynomial that interpolates the factor within 3e-8
+_RATIOS = 64  # Poisson's ratios of which the factor is cached
+_HALVINGS = 60  # of the bisection
 _NODES = 24  # of Gauss's rule across the thickness
-_INERTIA = (0.02432, -0.03887, 0.05163)  # powers of Poisson's ratio: 0.2 %, of waves longer than 20 thicknesses none
+_INERTIA = (0.02432, -0.03887, 0.05163)  # coefficients of powers of Poisson's ratio, within 0.2 %; without waves longer than 20 thicknesses
 
 
 def bending_factor(wave: Floats, poissons_ratio: float) -> Floats:
-    """Return how far the face of a plate moves in a wave of bending, over the deflection of plate theory [-].
+    """Return the displacement of the face of a plate in a bending wave over the deflection of plate theory [-].
 
     Parameters
     ----------
     wave : array
         Wave number times thickness [-].
     poissons_ratio : float
-        nu [-].
+        Poisson's ratio [-].
 
     Examples
     --------
@@ -48,16 +48,16 @@ def bending_factor(wave: Floats, poissons_ratio: float) -> Floats:
 
 
 def bending_error(wave: Floats, poissons_ratio: float, thin: bool = False) -> Floats:
-    """Return how far plate theory is off in the frequency of a wave of bending, as a part of that of the layer [-].
+    """Return the relative error of plate theory in the frequency of a bending wave, with respect to the layer [-].
 
     Parameters
     ----------
     wave : array
         Wave number times thickness [-], > 0.
     poissons_ratio : float
-        nu [-].
+        Poisson's ratio [-].
     thin : bool, default False
-        By Kirchhoff's theory instead of Mindlin's.
+        Whether by Kirchhoff's theory instead of Mindlin's.
 
     Examples
     --------
@@ -73,31 +73,31 @@ def bending_error(wave: Floats, poissons_ratio: float, thin: bool = False) -> Fl
 
 
 def stiff_shear_error(wave: Floats, poissons_ratio: float) -> Floats:
-    """Return by what part waves of bending are faster without the factor of the shear stiffness in Mindlin's theory [-].
+    """Return the relative increase of the frequency of bending waves in Mindlin's theory without shear correction [-].
 
     Parameters
     ----------
     wave : array
         Wave number times thickness [-], > 0.
     poissons_ratio : float
-        nu [-].
+        Poisson's ratio [-].
     """
     return np.asarray(_mindlin(wave, poissons_ratio, 1.0)[0] / _mindlin(wave, poissons_ratio)[0] - 1.0)
 
 
 def stretching_error(angular_frequencies: Floats, thickness: float, material: Material) -> Floats:
-    r"""Return how far plate theory is off in the frequencies of waves of stretching, as a part of them [-].
+    r"""Return the relative error of plate theory in the frequencies of in-plane longitudinal waves [-].
 
     It is :math:`(\nu k h)^2 / 24 (1-\nu)^2`, to the second order in the wave number k (Lamb 1917).
 
     Parameters
     ----------
     angular_frequencies : array
-        [rad/s].
+        Angular frequencies [rad/s].
     thickness : float
-        h [m].
+        Thickness h [m].
     material : Material
-        Of the plate.
+        Material of the plate.
     """
     ratio = material.poissons_ratio
     wave = thickness * angular_frequencies * math.sqrt(material.density * (1.0 - ratio**2) / material.youngs_modulus)
@@ -105,30 +105,30 @@ def stretching_error(angular_frequencies: Floats, thickness: float, material: Ma
 
 
 def shear_wave_factor(square: Floats, poissons_ratio: float) -> Floats:
-    r"""Return the counterpart of `bending_factor` for waves of shear, to the second order: :math:`1 / (1 + k^2 \overline{r^2} / 4)` [-].
+    r"""Return the counterpart of `bending_factor` for shear waves, to the second order: :math:`1 / (1 + k^2 \overline{r^2} / 4)` [-].
 
     Parameters
     ----------
     square : array
-        Square of wave number times thickness [-], which may be negative.
+        Square of wave number times thickness [-]; may be negative.
     poissons_ratio : float
-        nu [-].
+        Poisson's ratio [-].
     """
     return np.asarray(1.0 / (1.0 + 0.25 * mean_square(1.0, poissons_ratio, shear_factor(poissons_ratio)) * square))
 
 
 def inertia_beyond_bending(thickness: float, material: Material) -> float:
-    r"""Return what the waves of a layer other than those of bending add to :math:`\sum \varphi^2 / \omega^4` at a point [m s^2/N].
+    r"""Return the contribution of the waves of a layer other than bending to :math:`\sum \varphi^2 / \omega^4` at a point [m s^2/N].
 
-    It is how much the face yields to the second derivative of a force, beyond plate theory: :math:`c\,\rho h / G^2`, where c, of
-    :math:`\int \sum \varphi^2 \omega^{-4} k\,dk / 2\pi` over all other branches, is fitted by a parabola in Poisson's ratio.
+    It is the response of the face to the second derivative of a force in excess of plate theory, :math:`c\,\rho h / G^2`. The factor
+    c, from :math:`\int \sum \varphi^2 \omega^{-4} k\,dk / 2\pi` over all other branches, is fitted by a parabola in Poisson's ratio.
 
     Parameters
     ----------
     thickness : float
-        h [m].
+        Thickness h [m].
     material : Material
-        Of the plate.
+        Material of the plate.
 
     Examples
     --------
@@ -142,7 +142,7 @@ def inertia_beyond_bending(thickness: float, material: Material) -> float:
 
 
 def wave_numbers(angular_frequencies: Floats, thickness: float, material: Material, thin: bool = False) -> Floats:
-    """Return the wave numbers of bending [1/m] at angular frequencies [rad/s], by Mindlin's theory or by Kirchhoff's (`thin`)."""
+    """Return the wave numbers of bending waves [1/m] at angular frequencies [rad/s], by Mindlin's or Kirchhoff's (`thin`) theory."""
     if thin:
         rigidity = material.youngs_modulus * thickness**2 / (12.0 * (1.0 - material.poissons_ratio**2))
         return np.asarray((material.density * angular_frequencies**2 / rigidity) ** 0.25)
@@ -152,16 +152,17 @@ def wave_numbers(angular_frequencies: Floats, thickness: float, material: Materi
 def mindlin_squares(omega: Floats, thickness: float, material: Material) -> tuple[Floats, Floats, Floats]:
     r"""Return the squares of both wave numbers of Mindlin's plate, and :math:`\rho \omega^2 / \kappa G` [1/m^2].
 
-    That of bending is positive. That of shear is negative below :math:`\sqrt{12 \kappa G / (\rho h^2)}`, where such waves decay.
+    That of the bending wave is positive. That of the shear wave is negative below :math:`\sqrt{12 \kappa G / (\rho h^2)}`, where it is
+    evanescent.
 
     Parameters
     ----------
     omega : array
         Angular frequencies [rad/s].
     thickness : float
-        h [m].
+        Thickness h [m].
     material : Material
-        Of the plate.
+        Material of the plate.
     """
     ratio = material.poissons_ratio
     modulus = material.youngs_modulus / (1.0 - ratio**2)
@@ -173,6 +174,8 @@ def mindlin_squares(omega: Floats, thickness: float, material: Material) -> tupl
 
 @functools.lru_cache(maxsize=_RATIOS)
 def _factor(poissons_ratio: float) -> Chebyshev:
+    """Return `bending_factor` as a polynomial in wave number times thickness."""
+
     def ratio(wave: Floats) -> Floats:
         return np.asarray(_lamb(wave, poissons_ratio)[1] / _mindlin(wave, poissons_ratio)[1])
 
@@ -180,20 +183,20 @@ def _factor(poissons_ratio: float) -> Chebyshev:
 
 
 def _mindlin(y: Floats, ratio: float, factor: float | None = None) -> tuple[Floats, Floats]:
-    """Return angular frequency and deflection of unit modal mass a unit area of bending, for h = rho = G = 1 and y = k h."""
+    """Return the angular frequency of bending waves and their deflection for unit modal mass per area, for h = rho = G = 1 and y = k h."""
     shear = shear_factor(ratio) if factor is None else factor
     bend = y**2 / (6.0 * (1.0 - ratio))  # rigidity times k^2
     trace, product = shear * y**2 + 12.0 * (bend + shear), 12.0 * shear * y**2 * bend
     square = 2.0 * product / (trace + np.sqrt(trace**2 - 4.0 * product))
-    slope = y - square / (shear * y)  # over the deflection, from the balance of forces
+    slope = y - square / (shear * y)  # over the deflection, from equilibrium of the transverse forces
     return np.sqrt(square), 1.0 / np.sqrt(1.0 + slope**2 / 12.0)
 
 
 def _lamb(y: Floats, ratio: float) -> tuple[Floats, Floats]:
-    r"""Return angular frequency and motion of the face of unit modal mass of the lowest antisymmetric wave, units as in `_mindlin`.
+    r"""Return the angular frequency and the face displacement of the lowest antisymmetric Lamb wave, normalised and in units as `_mindlin`.
 
-    Its speed is below that of Rayleigh's wave, so that with :math:`\alpha^2 = y^2 - \omega^2 / c_L^2`, :math:`\beta^2 = y^2 - \omega^2`
-    the equation :math:`(y^2 + \beta^2)^2 \tanh(\alpha/2) = 4 y^2 \alpha \beta \tanh(\beta/2)` has one root, found by halving.
+    Its speed is below that of Rayleigh waves, so that with :math:`\alpha^2 = y^2 - \omega^2 / c_L^2`, :math:`\beta^2 = y^2 - \omega^2`
+    the equation :math:`(y^2 + \beta^2)^2 \tanh(\alpha/2) = 4 y^2 \alpha \beta \tanh(\beta/2)` has one root, found by bisection.
     """
     y = np.asarray(y, dtype=float)
     slowness = 0.5 * (1.0 - 2.0 * ratio) / (1.0 - ratio)  # the square of c_T / c_L

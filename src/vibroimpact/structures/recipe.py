@@ -1,4 +1,4 @@
-"""A recipe: all that determines the modes of a body; and how it is followed."""
+"""Recipe of the modes of a body: mesh, material, supports and reduction; and the computation of its modal model."""
 
 from __future__ import annotations
 
@@ -18,17 +18,17 @@ from vibroimpact.structures.frequency_error import (
     REDUCTION,
     SUPPORTS,
     THEORY,
-    from_coarser,
     main_cause,
-    of_one_layer,
-    of_plate_theory,
-    of_supports,
+    mesh_errors,
+    one_layer_errors,
+    plate_theory_errors,
+    support_errors,
 )
-from vibroimpact.structures.memory_cache import Recent
+from vibroimpact.structures.memory_cache import MemoryCache
 from vibroimpact.structures.mesh import Mesh
-from vibroimpact.structures.mirrored import elastic_of
+from vibroimpact.structures.mirrored import elastic_system
 from vibroimpact.structures.modal_model import ModalModel, modal_model
-from vibroimpact.structures.modes import Eigenmodes, Elastic, Progress
+from vibroimpact.structures.modes import Eigenmodes, ElasticSystem, Progress
 from vibroimpact.structures.plate_mesh import plate_mesh, solid_plate_mesh
 from vibroimpact.structures.rectangle import Disc
 from vibroimpact.structures.reduction import attachment_modes, craig_bampton, projected
@@ -40,43 +40,43 @@ from vibroimpact.structures.supports.support import Support, held_by
 from vibroimpact.structures.surface import Side, Spot, place_of, surface_motion
 
 Place = tuple[Spot, Side]
-"""A spot, and the side of the body that it is on."""
+"""A spot, and the side of the body where it lies."""
 
 _COARSE_ACROSS, _COARSE_SOLID, _COARSE_PLATE, _COARSE_MARGIN = 0.67, 1.5, 1.5, 4.0 / 3.0
-_SOLID_GAIN, _PLATE_GAIN = 4.0, 3.0  # measured: docs/elastic-bodies.md has how far estimates are from true errors
+_SOLID_GAIN, _PLATE_GAIN = 4.0, 3.0  # measured: docs/elastic-bodies.md compares estimated with true errors
 
 MAIN_CAUSE = "frequencies are off most for"
-"""The name of that fact."""
+"""Name of the fact with the main cause of errors of frequencies."""
 
-_RECENT = Recent[ModalModel](most=500e6)
+_MODELS = MemoryCache[ModalModel](capacity=500e6)
 _ROUGH = 1e-4
-"""Residual of the modes of a coarser mesh, of which only the frequencies are asked for: to 1e-8."""
+"""Residual of the modes of the coarser mesh, of which only the frequencies are used; their relative error is 1e-8."""
 
 
 @dataclass(frozen=True)
 class Shape:
-    """Base of what a body can be made of: a mesh, of solid elements unless it says otherwise."""
+    """Base class of the shapes of bodies: how to mesh and assemble them; of solid elements unless overridden."""
 
     def mesh(self, supports: tuple[Support, ...] = ()) -> Mesh:
-        """Make the mesh; it follows the supports where it is made here."""
+        """Return the mesh; meshes that are generated here follow the supports."""
         raise NotImplementedError
 
     def structure(self, mesh: Mesh, material: Material) -> Structure:
-        """Make the finite elements of the mesh."""
+        """Return the structure: the assembled finite elements of the mesh."""
         return solid_structure(mesh, material)
 
     def coarser(self) -> tuple[Shape, float] | None:
-        """Return a shape with a coarser mesh, and how many times more its frequencies are off; None if there is none."""
+        """Return a shape with a coarser mesh and the ratio of the errors of its frequencies to those of this one, or None."""
         return None
 
     def one_layer(self) -> float:
-        """Return the thickness [m] of a plate that is one layer of bricks, else 0."""
+        """Return the thickness [m] of a plate of one layer of second-order bricks, else 0."""
         return 0.0
 
 
 @dataclass(frozen=True)
 class SphereOfSolids(Shape):
-    """A solid sphere, meshed here: see `sphere_mesh`."""
+    """Solid sphere with a mesh of `sphere_mesh`."""
 
     radius: float
     elements_across: int = 8
@@ -84,11 +84,11 @@ class SphereOfSolids(Shape):
     grading: float = 1.0
 
     def mesh(self, supports: tuple[Support, ...] = ()) -> Mesh:
-        """Make the mesh."""
+        """Return the mesh."""
         return sphere_mesh(self.radius, self.elements_across, self.kind, self.grading)
 
     def coarser(self) -> tuple[Shape, float] | None:
-        """Return the same with two thirds or half as many elements across; the error goes with a power of their size."""
+        """Return the sphere with two thirds or half as many elements across; the error is a power of their size."""
         across = max(4, 4 * int(_COARSE_ACROSS * self.elements_across / 4))
         if across >= self.elements_across:
             return None
@@ -98,7 +98,7 @@ class SphereOfSolids(Shape):
 
 @dataclass(frozen=True)
 class PlateOfSolids(Shape):
-    """A plate of solid elements, meshed here: see `solid_plate_mesh`."""
+    """Plate of solid elements with a mesh of `solid_plate_mesh`."""
 
     size: tuple[float, float, float]
     element_size: float
@@ -108,28 +108,28 @@ class PlateOfSolids(Shape):
     lower_splits: int | None = None
 
     def mesh(self, supports: tuple[Support, ...] = ()) -> Mesh:
-        """Make the mesh."""
-        discs, lines = to_follow(supports)
+        """Return the mesh."""
+        discs, lines = mesh_features(supports)
         return solid_plate_mesh(
             self.size, self.element_size, self.layers, self.kind, discs, lines, self.splits, self.lower_splits, _rims(supports)
         )
 
     def coarser(self) -> tuple[Shape, float] | None:
-        """Return the same with larger elements, and rims split once less: both leave about four times the error."""
+        """Return the plate with larger elements, and one split of rims less: both have about four times the error."""
         below = self.splits if self.lower_splits is None else self.lower_splits
         return replace(
             self, element_size=_COARSE_SOLID * self.element_size, splits=max(0, self.splits - 1), lower_splits=max(0, below - 1)
         ), _SOLID_GAIN
 
     def one_layer(self) -> float:
-        """Return the thickness if no plane of nodes but that in the middle lies between the sides."""
+        """Return the thickness if there is one second-order layer without splits, else 0."""
         below = self.splits if self.lower_splits is None else self.lower_splits
         return self.size[2] if self.layers == 1 and not below and ELEMENT_KINDS[self.kind].order == 2 else 0.0
 
 
 @dataclass(frozen=True)
 class PlateOfPlates(Shape):
-    """A plate of plate elements, meshed here: see `plate_mesh` and `assemble_plate`."""
+    """Plate of plate elements with a mesh of `plate_mesh`; see `assemble_plate`."""
 
     size: tuple[float, float, float]
     element_size: float
@@ -137,16 +137,16 @@ class PlateOfPlates(Shape):
     margin: float = 0.0
 
     def mesh(self, supports: tuple[Support, ...] = ()) -> Mesh:
-        """Make the mesh."""
+        """Return the mesh."""
         margins = (self.margin,) if self.margin else ()
-        return plate_mesh(self.size[:2], self.element_size, *to_follow(supports), margins, _rims(supports))
+        return plate_mesh(self.size[:2], self.element_size, *mesh_features(supports), margins, _rims(supports))
 
     def structure(self, mesh: Mesh, material: Material) -> Structure:
-        """Make the finite elements."""
+        """Return the structure: the assembled plate elements."""
         return plate_structure(mesh, material, self.size[2], self.theory)
 
     def coarser(self) -> tuple[Shape, float] | None:
-        """Return the same with larger elements; of a thin plate, a thick one, so that what the theory does is seen too."""
+        """Return the plate with larger elements; of a thin plate the thick one, so that the difference includes the theory."""
         margin = _COARSE_MARGIN * self.margin
         if self.theory == "thin":
             return replace(self, theory="thick", margin=margin), 2.0
@@ -154,41 +154,41 @@ class PlateOfPlates(Shape):
 
 
 @dataclass(frozen=True)
-class BroughtMesh(Shape):
-    """A mesh that was brought.
+class ImportedMesh(Shape):
+    """Body with an imported mesh.
 
     Parameters
     ----------
     digest : str
-        A digest of the file and of how it is read: what the modes depend on.
+        Hash of the file and of the options of its reader.
     read : callable
-        Reads it [m].
+        Reads the mesh [m].
     """
 
     digest: str
     read: Callable[[], Mesh] = field(compare=False)
 
     def mesh(self, supports: tuple[Support, ...] = ()) -> Mesh:
-        """Read the mesh."""
+        """Return the mesh of the file."""
         return self.read()
 
 
 @dataclass(frozen=True)
 class Reduction:
-    """Which modes are kept.
+    """Reduction: which modes are kept.
 
     Parameters
     ----------
     modes : int, optional
-        How many; with Craig and Bampton's method, those with the interface fixed.
+        Number of modes; in Craig-Bampton reduction, of fixed-interface modes.
     max_frequency : float, optional
-        All modes up to this frequency [Hz], instead of a number.
+        Keep all modes up to this frequency [Hz], instead of a number.
     method : str, default "modal"
         "modal" truncation, or "craig-bampton".
     interface : tuple of places
-        Where Craig and Bampton's interface is: at the nearest nodes, in all directions.
+        Interface of Craig-Bampton reduction: all degrees of freedom of the nearest nodes.
     attachment : tuple of places
-        Where a residual attachment mode for a vertical force is added.
+        Places of vertical forces for which a residual attachment mode is added.
     """
 
     modes: int | None = None
@@ -200,7 +200,7 @@ class Reduction:
 
 @dataclass(frozen=True)
 class Recipe:
-    """All that determines the modes of a body."""
+    """Everything that determines the modes of a body."""
 
     shape: Shape
     density: float
@@ -211,34 +211,34 @@ class Recipe:
 
 
 def is_thin(recipe: Recipe) -> bool:
-    """Is it a plate by the thin theory, Kirchhoff's?"""
+    """Return whether a recipe is that of a plate by Kirchhoff's thin theory."""
     return isinstance(recipe.shape, PlateOfPlates) and recipe.shape.theory == "thin"
 
 
 def modal_model_of(recipe: Recipe, progress: Progress | None = None, tell: Callable[[str], None] | None = None) -> ModalModel:
     """Return the modal model of a recipe, from the store if it is there.
 
-    What was read is shared by all who ask in one process, so that many problems of one plate hold it once: leave it unchanged.
-    The first so many modes of a free sphere are computed once for a Poisson's ratio, and scaled.
+    A model read from the store is shared within the process, so that it is in memory once; it must not be changed. Modes of free
+    spheres, if given by number, are computed once per Poisson's ratio, and scaled.
 
     Parameters
     ----------
     recipe : Recipe
-        What to make.
+        Recipe of the modes.
     progress : callable, optional
-        Called with a number from 0 to 1 while modes are computed.
+        Called with the estimated progress, from 0 to 1, while modes are computed.
     tell : callable, optional
-        Called with a sentence if something is wrong with the store.
+        Called with a message on a failure of the store.
 
     Raises
     ------
     InputError
-        If the mesh, a support or a number of the recipe is wrong.
+        If the mesh, a support or a number of the recipe is invalid.
     ComputationError
-        If the modes can't be computed.
+        If the modes cannot be computed.
     """
-    similar = _similar(recipe)
-    model = _kept_model(similar, progress, tell or (lambda text: None))
+    similar = _normalised(recipe)
+    model = _stored_model(similar, progress, tell or (lambda text: None))
     if similar is recipe:
         return model
     assert isinstance(recipe.shape, SphereOfSolids)
@@ -246,12 +246,12 @@ def modal_model_of(recipe: Recipe, progress: Progress | None = None, tell: Calla
 
 
 def model_key(recipe: Recipe) -> str:
-    """Return the key under which the store has the modes of a recipe."""
-    return key_of(_similar(recipe))
+    """Return the key of the modes of a recipe in the store."""
+    return key_of(_normalised(recipe))
 
 
-def _similar(recipe: Recipe) -> Recipe:
-    """Return the recipe of which the modes are kept: of spheres that differ in size, density or modulus it is one of unit values."""
+def _normalised(recipe: Recipe) -> Recipe:
+    """Return the recipe whose modes are stored: for a free sphere that of unit radius, density and modulus, else the recipe itself."""
     if not isinstance(recipe.shape, SphereOfSolids) or recipe.supports or recipe.reduction.modes is None:
         return recipe
     if any(spot is not None for spot, _ in (*recipe.reduction.interface, *recipe.reduction.attachment)):
@@ -259,11 +259,11 @@ def _similar(recipe: Recipe) -> Recipe:
     return replace(recipe, shape=replace(recipe.shape, radius=1.0), density=1.0, youngs_modulus=1.0)
 
 
-def _kept_model(recipe: Recipe, progress: Progress | None, say: Callable[[str], None]) -> ModalModel:
-    """Return a model from memory, else from the store, else computed; what the store does not take stays in memory."""
+def _stored_model(recipe: Recipe, progress: Progress | None, say: Callable[[str], None]) -> ModalModel:
+    """Return a model from memory, else from the store, else computed; a model that cannot be stored stays in memory."""
     key = key_of(recipe)
     here = f"{store_folder()}/{key}"
-    model = _RECENT.find(here)
+    model = _MODELS.get(here)
     if model is not None:
         return model
     model, trouble = load_model(key)
@@ -275,17 +275,17 @@ def _kept_model(recipe: Recipe, progress: Progress | None, say: Callable[[str], 
         if not trouble:
             return model
         say(trouble)
-    _RECENT.keep(here, model, model.size)
+    _MODELS.put(here, model, model.size)
     return model
 
 
 def computed_model(recipe: Recipe, progress: Progress | None = None) -> ModalModel:
-    """Compute the modal model of a recipe; takes and raises what `modal_model_of` does."""
+    """Return the modal model of a recipe, computed anew; errors are those of `modal_model_of`."""
     begun = time.process_time()
     material = Material(recipe.density, recipe.youngs_modulus, recipe.poissons_ratio)
     structure = recipe.shape.structure(recipe.shape.mesh(recipe.supports), material)
     held = held_by(structure, recipe.supports)
-    modes = _kept(held, recipe.reduction, progress)
+    modes = _reduced_modes(held, recipe.reduction, progress)
     parts = _errors(recipe, held, modes, material)
     facts = {
         "nodes": f"{len(structure.mesh.nodes)}",
@@ -303,7 +303,7 @@ def computed_model(recipe: Recipe, progress: Progress | None = None) -> ModalMod
 
 
 def _errors(recipe: Recipe, held: HeldStructure, modes: Eigenmodes, material: Material) -> dict[str, Floats]:
-    """Return the relative errors of frequencies by their causes; none if not known, and none of modes that stand for statics."""
+    """Return estimated relative errors of frequencies by cause, without those of added static modes; empty if unknown."""
     coarser = recipe.shape.coarser()
     if coarser is None:
         return {}
@@ -312,27 +312,28 @@ def _errors(recipe: Recipe, held: HeldStructure, modes: Eigenmodes, material: Ma
     kept = Eigenmodes(modes.angular_frequencies[:number], modes.shapes[:, :number])
     parts = {}
     if recipe.reduction.method == "craig-bampton":
-        elastic = Elastic(held.stiffness, held.mass, held.rigid, held.order)
+        elastic = ElasticSystem(held.stiffness, held.mass, held.rigid, held.order)
         closer = projected(held.stiffness, held.mass, elastic.static(held.mass @ modes.shapes), elastic.rigid)
         least = closer.angular_frequencies[:number]
         parts[REDUCTION] = np.asarray(kept.angular_frequencies / least - 1.0)
         kept = Eigenmodes(least, closer.shapes[:, :number])
     try:
         other = held_by(shape.structure(shape.mesh(recipe.supports), material), recipe.supports)
-        found = elastic_of(other).modes(number, tolerance=_ROUGH)
+        found = elastic_system(other).modes(number, tolerance=_ROUGH)
     except (InputError, ComputationError):
-        return {}  # the coarser mesh has not so many modes, or does not follow the supports
-    parts[MESH] = from_coarser(kept.angular_frequencies, found.angular_frequencies, gain)
+        return {}  # the coarser mesh has too few modes, or does not follow the supports
+    parts[MESH] = mesh_errors(kept.angular_frequencies, found.angular_frequencies, gain)
     if held.structure.thickness:
-        parts[SUPPORTS] = of_supports(held, kept)
-        parts[THEORY] = of_plate_theory(held, kept, material, is_thin(recipe))
+        parts[SUPPORTS] = support_errors(held, kept)
+        parts[THEORY] = plate_theory_errors(held, kept, material, is_thin(recipe))
     if recipe.shape.one_layer():
-        parts[MESH] = parts[MESH] + of_one_layer(kept.angular_frequencies, material, recipe.shape.one_layer())
+        parts[MESH] = parts[MESH] + one_layer_errors(kept.angular_frequencies, material, recipe.shape.one_layer())
     return parts
 
 
-def _kept(held: HeldStructure, reduction: Reduction, progress: Progress | None) -> Eigenmodes:
-    elastic = elastic_of(held)
+def _reduced_modes(held: HeldStructure, reduction: Reduction, progress: Progress | None) -> Eigenmodes:
+    """Return the modes of a held structure by truncation, with attachment modes, or by Craig-Bampton reduction."""
+    elastic = elastic_system(held)
     number = reduction.modes
     if number is None:
         number = elastic.count_below(2.0 * np.pi * (reduction.max_frequency or 0.0))
@@ -352,7 +353,7 @@ def _kept(held: HeldStructure, reduction: Reduction, progress: Progress | None) 
 
 
 def _vertical(held: HeldStructure, place: Place) -> Floats:
-    """Return the load of a unit vertical force at a place, on the free degrees of freedom."""
+    """Return the load vector of a unit vertical force at a place, on the free degrees of freedom."""
     structure = held.structure
     at = place_of(structure.mesh, *place)
     motion, _ = surface_motion(structure.mesh, np.array([at]), place[1], structure.thickness)
@@ -369,12 +370,12 @@ def _nearest(held: HeldStructure, place: Place) -> Integers:
     return np.unique(rows.indices)
 
 
-def to_follow(supports: tuple[Support, ...]) -> tuple[list[Disc], tuple[list[float], list[float]]]:
-    """Return the discs and the lines that a mesh made for supports should follow."""
+def mesh_features(supports: tuple[Support, ...]) -> tuple[list[Disc], tuple[list[float], list[float]]]:
+    """Return the discs, and the x and y of lines [m], of supports that edges of elements must follow."""
     discs = [disc for support in supports for disc in support.discs]
     return discs, ([x for support in supports for x in support.lines[0]], [y for support in supports for y in support.lines[1]])
 
 
 def _rims(supports: tuple[Support, ...]) -> tuple[list[float], list[float]]:
-    """Return the x and y [m] of straight rims of what holds the lower face."""
+    """Return the x and y [m] of straight rims of supports of the lower face."""
     return [x for support in supports for x in support.rims[0]], [y for support in supports for y in support.rims[1]]

@@ -1,4 +1,4 @@
-"""A rectangle cut into blocks of lattices, so that lines given and the rims of discs fall on the edges of elements."""
+"""Division of a rectangle into structured blocks whose element edges follow given lines and the rims of discs."""
 
 from __future__ import annotations
 
@@ -12,19 +12,19 @@ from vibroimpact.arrays import Floats
 from vibroimpact.errors import InputError
 
 MOST_NODES = 1_000_000
-"""Meshes of more are refused before they are made: the factors of their stiffness have more entries than can be numbered."""
+"""Larger meshes are refused before they are made, as the factors of their stiffness exceed the index range of the solver."""
 
 _CORE = 0.5  # half the side of the square inside a disc, in radii
-_SMALLEST = 1e-5  # radius of a disc over the longer side; lines of a mesh that are nearer to one another are one
+_SMALLEST = 1e-5  # radius of a disc over the longer side; closer lines of a mesh are merged
 _MARGIN = 1.5  # half the side of the square around a disc, in radii
-CLOSEST = 1.15  # of the radius: how near to the centre of a disc an edge of the plate, or half way to another disc, may be
+CLOSEST = 1.15  # radii: least distance of the centre of a disc from an edge of the plate, or from half way to another disc
 
-_CROWDED = 0.5  # of a margin: nearer than this to another edge of elements there is none
+_CROWDED = 0.5  # of a margin: no line is added closer than this to another one
 
 
 @dataclass(frozen=True)
 class Disc:
-    """A disc on the rectangle: its centre and radius [m]."""
+    """Disc on the rectangle: x and y of its centre and its radius [m]."""
 
     x: float
     y: float
@@ -41,7 +41,7 @@ def rectangle_blocks(
     margins: Sequence[float] = (),
     rims: tuple[Sequence[float], Sequence[float]] = ((), ()),
 ) -> list[Floats]:
-    """Cut a rectangle, centred at the origin, into lattices.
+    """Return the blocks of a rectangle centred at the origin.
 
     Parameters
     ----------
@@ -50,17 +50,17 @@ def rectangle_blocks(
     element_size : float
         Largest side of an element [m].
     order : int
-        Steps of the lattice to an element.
+        Steps of the lattice per element.
     discs : sequence of Disc
-        Their rims become edges of elements: a square, four sides around it, and four more out to a box.
+        Discs whose rims become edges of elements: a square, four blocks around it to the rim, and four more to a box.
     lines : two sequences of floats
-        x and y [m] that must fall on edges of elements.
+        x and y [m] of further edges of elements.
     splits : int, default 0
-        How often the elements on both sides of each rim of a disc are split, see `split_at`.
+        Number of splits of the elements on both sides of each rim of a disc, see `split_at`.
     margins : sequence of float, optional
-        Distances [m] from the edges of the rectangle, and from rims, at which there are edges of elements too, if elements are larger.
+        Distances [m] from the edges of the rectangle, and from rims, of further edges of elements; those below the element size apply.
     rims : two sequences of floats, optional
-        Those of the lines that have margins.
+        Those lines that have margins.
 
     Returns
     -------
@@ -101,7 +101,7 @@ def rectangle_blocks(
 
 
 def _box(disc: Disc, size: Sequence[float], discs: Sequence[Disc]) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Return the box around a disc, as x and y from and to: clear of other discs, and no sliver along the edge."""
+    """Return the box around a disc as intervals of x and y, clear of other discs and without slivers along the edges of the plate."""
     said = f"the round support at ({disc.x:g}, {disc.y:g}) m, radius {disc.radius:g} m,"
     if disc.radius < _SMALLEST * max(size[:2]):
         least = f"{_SMALLEST * max(size[:2]):g} m"
@@ -134,6 +134,7 @@ def _box(disc: Disc, size: Sequence[float], discs: Sequence[Disc]) -> tuple[tupl
 
 
 def _distinct(values: Sequence[float], length: float) -> Floats:
+    """Return the values within the rectangle, ascending, with close ones merged."""
     found = np.sort(np.asarray(values, dtype=float))
     found = found[(found >= -0.5 * length) & (found <= 0.5 * length)]
     apart = np.concatenate([[True], np.diff(found) > 1e-6 * length])
@@ -141,7 +142,7 @@ def _distinct(values: Sequence[float], length: float) -> Floats:
 
 
 def _with_margins(breaks: Floats, sides: Floats, margins: Sequence[float], covered: Sequence[tuple[float, float]]) -> Floats:
-    """Return breaks with more at some distances from sides, unless there is one about as near already, or a disc's box covers it."""
+    """Return breaks with more at the margins from sides, except near other breaks or inside the box of a disc."""
     for margin in sorted(margins, reverse=True):
         for at in np.concatenate([sides - margin, sides + margin]).tolist():
             if any(low < at < high for low, high in covered):
@@ -152,7 +153,7 @@ def _with_margins(breaks: Floats, sides: Floats, margins: Sequence[float], cover
 
 
 def _points(breaks: Floats, element_size: float, order: int) -> Floats:
-    """Return the points of the lattice along one axis: each interval in equal elements."""
+    """Return the points of the lattice along one axis, with equal elements in each interval."""
     parts = [breaks[:1]]
     for start, end in pairwise(breaks.tolist()):
         number = order * max(1, int(np.ceil((end - start) / element_size - 1e-9)))
@@ -161,7 +162,7 @@ def _points(breaks: Floats, element_size: float, order: int) -> Floats:
 
 
 def split_at(corners: Floats, splits: int) -> Floats:
-    """Split the first element of a row several times, each time at a quarter of it, where a strain grows without bound.
+    """Return a row of elements with the first one split several times at a quarter of its length, towards a singularity of the strain.
 
     Examples
     --------
@@ -173,7 +174,7 @@ def split_at(corners: Floats, splits: int) -> Floats:
 
 
 def with_midpoints(corners: Floats, order: int) -> Floats:
-    """Return the points of a lattice along a row of elements.
+    """Return the lattice points along a row of elements from its corners.
 
     Examples
     --------
@@ -185,12 +186,12 @@ def with_midpoints(corners: Floats, order: int) -> Floats:
 
 
 def _around(disc: Disc, xs: Floats, ys: Floats, element_size: float, order: int, splits: int) -> list[Floats]:
-    """Return the nine blocks of a box with a disc in it: the square, four to the rim, and four to the box."""
+    """Return the nine blocks of a box around a disc: the inner square, four to the rim, and four to the box."""
     centre = np.array([disc.x, disc.y])
     along = [2.0 * (axis - axis[0]) / (axis[-1] - axis[0]) - 1.0 for axis in (xs, ys)]  # -1 to 1 along each side
     half = _CORE * disc.radius
     rings: list[tuple[Floats, Floats, Floats]] = []
-    for axis in range(2):  # the axis along which a side runs
+    for axis in range(2):  # along which the side runs
         run = along[axis]
         for sign, end in ((-1.0, 0), (1.0, -1)):
             inner, rim, outer = np.empty((3, len(run), 2))
@@ -201,7 +202,7 @@ def _around(disc: Disc, xs: Floats, ys: Floats, element_size: float, order: int,
     blocks = [centre + half * np.stack(np.meshgrid(*along, indexing="ij"), axis=-1)]
     for start, end in ((0, 1), (1, 2)):
         longest = max(np.linalg.norm(ring[end] - ring[start], axis=1).max() for ring in rings)
-        corners = _points(np.array([0.0, longest]), element_size, 1) / longest  # all four sides alike
+        corners = _points(np.array([0.0, longest]), element_size, 1) / longest  # the same on all four sides
         graded = 1.0 - split_at(1.0 - corners[::-1], splits)[::-1] if end == 1 else split_at(corners, splits)
         step = with_midpoints(graded, order)[None, :, None]
         blocks += [centre + (1.0 - step) * ring[start][:, None] + step * ring[end][:, None] for ring in rings]
@@ -209,7 +210,7 @@ def _around(disc: Disc, xs: Floats, ys: Floats, element_size: float, order: int,
 
 
 def _rest(axes: list[Floats], taken: list[list[tuple[int, int]]], order: int) -> list[Floats]:
-    """Return what boxes leave of the rectangle, in blocks between the lines of the boxes' edges."""
+    """Return the rest of the rectangle outside the boxes, in blocks between the lines of their edges."""
     cuts = [sorted({0, len(axes[axis]) - 1, *(end for box in taken for end in box[axis])}) for axis in range(2)]
     blocks = []
     for x0, x1 in pairwise(cuts[0]):

@@ -1,4 +1,4 @@
-"""Reduction to few degrees of freedom: each way builds a basis, and one projection makes modes of it."""
+"""Model reduction: Craig-Bampton and residual attachment bases, and the modes of a system projected on a basis."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from scipy.sparse import csr_array
 
 from vibroimpact.arrays import Floats, Integers
 from vibroimpact.errors import InputError
-from vibroimpact.structures.mirrored import MirroredElastic
-from vibroimpact.structures.modes import Eigenmodes, Elastic, Progress
+from vibroimpact.structures.mirrored import MirroredSystem
+from vibroimpact.structures.modes import Eigenmodes, ElasticSystem, Progress
 
-_RIGID = 1e-6  # of the norm of a motion: what is left of one that is rigid is less
-_DEPENDENT = 1e-10  # of the largest: columns of a basis that add less than this to the others are left out
+_RIGID = 1e-6  # of the norm of a column: below, the elastic part of it is rounding
+_DEPENDENT = 1e-10  # of the largest eigenvalue of the Gram matrix: smaller ones are dependent columns
 
 
 def craig_bampton(
@@ -26,22 +26,22 @@ def craig_bampton(
     rigid: Floats | None = None,
     progress: Progress | None = None,
 ) -> Floats:
-    r"""Return Craig and Bampton's basis: constraint modes, and modes with the interface fixed.
+    r"""Return the Craig-Bampton basis: constraint modes and fixed-interface modes.
 
     Parameters
     ----------
     stiffness, mass : sparse arrays, shape (n, n)
         Of the free degrees of freedom.
     interface : sequence of int
-        The degrees of freedom that stay as they are.
+        Degrees of freedom of the interface.
     number : int
-        How many fixed-interface modes, >= 0.
+        Number of fixed-interface modes, >= 0.
     order : int array, shape (n,), optional
-        An elimination order.
+        Elimination order.
     rigid : array, shape (n, r), optional
-        Rigid motions; those that the interface does not stop are added to the basis.
+        Rigid motions; those that a fixed interface permits are the rigid motions of the interior.
     progress : callable, optional
-        As `Elastic.modes` takes it.
+        As in `ElasticSystem.modes`.
 
     Returns
     -------
@@ -52,7 +52,7 @@ def craig_bampton(
     Raises
     ------
     InputError
-        If the interface is empty, or the interior has not so many modes.
+        If the interface is empty, or the interior has fewer modes.
 
     Notes
     -----
@@ -72,8 +72,10 @@ def craig_bampton(
     place = np.full(size, -1)
     place[inside] = np.arange(len(inside))
     inner = place[np.arange(size) if order is None else order]
-    left = _left(rigid, boundary)
-    interior = Elastic(stiffness[inside][:, inside], mass[inside][:, inside], None if left is None else left[inside], inner[inner >= 0])
+    left = _rigid_with_fixed(rigid, boundary)
+    interior = ElasticSystem(
+        stiffness[inside][:, inside], mass[inside][:, inside], None if left is None else left[inside], inner[inner >= 0]
+    )
     basis = np.zeros((size, len(boundary) + number))
     basis[boundary, np.arange(len(boundary))] = 1.0
     basis[inside, : len(boundary)] = -interior.static(stiffness[inside][:, boundary].toarray())
@@ -82,37 +84,37 @@ def craig_bampton(
     return basis
 
 
-def attachment_modes(elastic: Elastic | MirroredElastic, modes: Eigenmodes, loads: Floats) -> Floats:
-    """Return what truncated modes lack of the static response to loads (residual attachment modes).
+def attachment_modes(elastic: ElasticSystem | MirroredSystem, modes: Eigenmodes, loads: Floats) -> Floats:
+    """Return the residual attachment modes: the static response to loads less that of truncated modes.
 
     Parameters
     ----------
-    elastic : Elastic or MirroredElastic
+    elastic : ElasticSystem or MirroredSystem
         The system.
     modes : Eigenmodes
-        Its lowest modes.
+        Lowest modes of the system.
     loads : array, shape (n, loads)
         Unit loads.
 
     Notes
     -----
-    R. H. MacNeal, Comput. Struct. 1:581, 1971; of a free system the response is that with inertia relief.
+    R. H. MacNeal, Comput. Struct. 1:581, 1971; for a free system the response is that with inertia relief.
     """
     kept = modes.shapes @ ((modes.shapes.T @ loads) / modes.angular_frequencies[:, None] ** 2)
     return np.asarray(elastic.static(loads) - kept)
 
 
 def projected(stiffness: csr_array, mass: csr_array, basis: Floats, rigid: Floats | None = None) -> Eigenmodes:
-    """Return the modes of a system that can move only as a basis lets it.
+    """Return the modes of a system projected on a basis.
 
     Parameters
     ----------
     stiffness, mass : sparse arrays, shape (n, n)
-        Of the system.
+        Matrices of the system.
     basis : array, shape (n, m)
-        Columns that may depend on one another.
+        Basis; its columns may be linearly dependent.
     rigid : array, shape (n, r), optional
-        Rigid motions of unit modal mass; the modes are made orthogonal to them.
+        Rigid motions of unit modal mass, to which the modes are made orthogonal.
 
     Returns
     -------
@@ -130,7 +132,7 @@ def projected(stiffness: csr_array, mass: csr_array, basis: Floats, rigid: Float
     if rigid is not None and rigid.shape[1]:
         basis = basis - rigid @ (rigid.T @ (mass @ basis))
     norms = _norms(basis, mass)
-    elastic = norms > _RIGID * whole  # of a motion that was rigid only rounding is left
+    elastic = norms > _RIGID * whole  # without columns that are rigid motions
     basis = basis[:, elastic] / norms[elastic]
     gram, turned = eigh(basis.T @ (mass @ basis))
     keep = gram > _DEPENDENT * gram[-1]
@@ -140,12 +142,12 @@ def projected(stiffness: csr_array, mass: csr_array, basis: Floats, rigid: Float
 
 
 def _norms(basis: Floats, mass: csr_array) -> Floats:
-    """Return the roots of the modal masses of the columns of a basis."""
+    """Return the norms of the columns of a basis with respect to the mass."""
     return np.asarray(np.sqrt(np.einsum("ij,ij->j", basis, mass @ basis)))
 
 
-def _left(rigid: Floats | None, boundary: Integers) -> Floats | None:
-    """Return the rigid motions that leave the interface where it is."""
+def _rigid_with_fixed(rigid: Floats | None, boundary: Integers) -> Floats | None:
+    """Return the rigid motions with a fixed interface, (n, r); None if no rigid motions are given."""
     if rigid is None or not rigid.shape[1]:
         return None
     scaled = rigid / np.abs(rigid).max(axis=0)

@@ -1,4 +1,4 @@
-"""A mesh of a solid sphere: a cube in its middle, and six blocks from the faces of the cube to the surface."""
+"""Mesh of a solid sphere: a bulged cube at the centre, and six blocks from its faces to the surface."""
 
 from __future__ import annotations
 
@@ -10,36 +10,36 @@ from vibroimpact.structures.lattice import mesh_of_blocks
 from vibroimpact.structures.mesh import Mesh
 
 MOST_ACROSS = 100
-"""More elements across than this are refused; no machine would find their modes."""
+"""Largest number of elements across; larger systems cannot be solved in practice."""
 
-_CORE = 0.45  # half the side of the cube in radii
-_BULGE = 0.5  # between a cube (0) and a ball (1)
+_CORE = 0.45  # half the side of the cube, in radii
+_BULGE = 0.5  # of the cube: 0 for a cube, 1 for a ball
 
 
 def sphere_mesh(radius: float, elements_across: int = 8, kind: str = "hex20", grading: float = 1.0) -> Mesh:
-    """Make a mesh of a solid sphere, curved and of second order, centred at the origin.
+    """Return a mesh of a solid sphere, centred at the origin, with curved second-order elements by default.
 
     Parameters
     ----------
     radius : float
         Radius R [m], > 0.
     elements_across : int, default 8
-        Bricks from pole to pole, even and >= 4: half of them in the cube, the others between it and the surface.
+        Bricks from pole to pole, even, 4 to 100: half of them in the cube, the others between it and the surface.
     kind : str, default "hex20"
         Kind of element: "hex8", "hex20", "hex27", "tet4" or "tet10".
     grading : float, default 1
-        How many times smaller the elements at the lower pole, where the plate is met, are made; >= 1. They grow as much
-        larger at the upper pole, so that a strong grading needs more of them.
+        Factor by which elements are smaller at the lower pole, where the contact is; >= 1. At the upper pole they are larger by the
+        same factor, so that a strong grading needs more elements.
 
     Raises
     ------
     InputError
-        If a number is out of its range.
+        If a number is out of range.
 
     Notes
     -----
     The grading is a conformal map of the ball onto itself (L. V. Ahlfors, Moebius Transformations in Several Dimensions,
-    1981): elements keep their shape, only their size changes.
+    1981): it changes the size of small elements, not their shape.
 
     Examples
     --------
@@ -69,7 +69,7 @@ def sphere_mesh(radius: float, elements_across: int = 8, kind: str = "hex20", gr
 
 
 def _core(at: Floats) -> Floats:
-    """Map the cube from -1 to 1 onto the core, its sides bulged."""
+    """Return the image of points of the cube from -1 to 1 in the bulged core."""
     square = at**2
     following, last = np.roll(square, -1, axis=-1), np.roll(square, -2, axis=-1)
     ball = at * np.sqrt(1.0 - 0.5 * following - 0.5 * last + following * last / 3.0)
@@ -77,6 +77,7 @@ def _core(at: Floats) -> Floats:
 
 
 def _towards_lower_pole(at: Floats, grading: float) -> Floats:
+    """Return the image of points of the unit ball under the Moebius map of a grading."""
     shift = np.array([0.0, 0.0, (grading - 1.0) / (grading + 1.0)])
     squared = shift @ shift
     apart = at - shift

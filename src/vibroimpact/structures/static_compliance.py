@@ -1,4 +1,4 @@
-"""The structural compliance of a plate where it is met, from one static solve of its finite elements."""
+"""Structural compliance of a plate at its contact point, from one static finite-element solution."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from scipy.sparse import csr_array
 from vibroimpact.arrays import Bools, Floats
 from vibroimpact.errors import InputError
 from vibroimpact.materials import Material
-from vibroimpact.structures.disc import UNIFORM, disc_points
-from vibroimpact.structures.memory_cache import Recent
+from vibroimpact.structures.disc_quadrature import UNIFORM, pressure_rule
+from vibroimpact.structures.memory_cache import MemoryCache
 from vibroimpact.structures.mesh import Mesh
-from vibroimpact.structures.modes import Elastic
+from vibroimpact.structures.modes import ElasticSystem
 from vibroimpact.structures.plate_compliance import (
     Average,
     plate_theory_average,
@@ -32,44 +32,44 @@ from vibroimpact.structures.surface import Side, surface_motion
 
 _KIND = "compliance"
 _FACES: tuple[Side, Side] = ("upper", "lower")
-_RADIUS = 0.75  # of the disc, thicknesses: elements of that size suffice
-_LAST = Recent[tuple[HeldStructure, Elastic]](most=500e6)
+_RADIUS = 0.75  # of the disc, in thicknesses; elements of that size resolve it
+_FACTORISED = MemoryCache[tuple[HeldStructure, ElasticSystem]](capacity=500e6)
 
 
 def static_compliance(recipe: Recipe, place: tuple[float, float], side: Side = "upper", tell: Callable[[str], None] | None = None) -> float:
-    """Return the structural compliance of a plate where it is met [m/N], from the store if it is there.
+    """Return the structural compliance of a plate at a place [m/N], from the store or computed.
 
-    It is the displacement of a point under a unit normal force, less that of the half space, which a contact law carries.
+    It is the displacement of a point under a unit normal force, less that of the half space, which is part of the contact law.
 
     Parameters
     ----------
     recipe : Recipe
-        The plate and its supports; which modes are kept plays no part.
+        The plate and its supports; the reduction has no effect.
     place : tuple of two floats
         x and y [m].
     side : str, default "upper"
-        The face that is met: "upper" or "lower".
+        The loaded face: "upper" or "lower".
     tell : callable, optional
-        Called with a sentence if something is wrong with the store.
+        Called with a message on a failure of the store.
 
     Raises
     ------
     InputError
-        If the place is not on the body, the body is a sphere, or the mesh or a support is wrong.
+        If the place is not on the body, the body is a sphere, or the mesh or a support is invalid.
     ComputationError
         If the stiffness is singular.
 
     Notes
     -----
-    Of a plate that its supports leave free it is without the rigid motion: under the force and the inertia that balances it.
+    For a plate with free rigid motions the rigid displacement is excluded: inertia balances the force (inertia relief).
 
-    By Kirchhoff's theory (`theory = "thin"`) a point force has a finite deflection at its own place, and that is what is returned: the
-    thin theory has neither shear nor a half space.
+    By Kirchhoff's theory (`theory = "thin"`) the deflection under a point force is finite, and is returned: the thin theory has neither
+    shear nor a half space.
 
-    Else, under a point force the displacement is infinite, and finite elements miss what is near it; so neither is asked for. The force is
-    spread over a disc of 0.75 thicknesses, or over what lies of it on the body near an edge; and the response, averaged in the same
-    way, is that of the plate elements, to which `plate_theory_term` is added, or that of the other face of solids, to which
-    `through_thickness_term` is added. These terms are exact for a plate that reaches a few thicknesses around the place.
+    Otherwise the displacement under a point force is infinite, and finite elements do not resolve the field near it. The force is
+    therefore distributed over a disc of 0.75 thicknesses, or the part of it on the body near an edge, and the response is averaged in
+    the same way: that of plate elements, to which `plate_theory_term` is added, or that of the opposite face of solid elements, to which
+    `through_thickness_term` is added. These terms are exact for a plate that extends a few thicknesses around the place.
 
     Examples
     --------
@@ -94,12 +94,12 @@ def static_compliance(recipe: Recipe, place: tuple[float, float], side: Side = "
 
 
 def compliance_key(recipe: Recipe, place: tuple[float, float], side: Side = "upper") -> str:
-    """Return the key under which the store has the compliance of a plate at a place."""
+    """Return the key of the compliance of a plate at a place in the store."""
     return key_of(["structural compliance", replace(recipe, reduction=Reduction()), place, side])
 
 
 def computed_compliance(recipe: Recipe, place: tuple[float, float], side: Side = "upper") -> float:
-    """Compute the structural compliance of a held plate; takes and raises what `static_compliance` does."""
+    """Return the structural compliance of a held plate, computed anew; parameters and errors are those of `static_compliance`."""
     if isinstance(recipe.shape, SphereOfSolids):
         raise InputError("a structural compliance is that of a plate, whose two faces are told apart; a sphere has none")
     held, elastic = _factorised(recipe)
@@ -127,7 +127,7 @@ def _thickness(structure: Structure, place: tuple[float, float]) -> float:
     Raises
     ------
     InputError
-        If it is not on the body.
+        If the place is not on the body.
     """
     top = surface_motion(structure.mesh, np.array([place]))[1]
     if structure.mesh.is_flat:
@@ -139,23 +139,23 @@ def _material(recipe: Recipe) -> Material:
     return Material(recipe.density, recipe.youngs_modulus, recipe.poissons_ratio)
 
 
-def _factorised(recipe: Recipe) -> tuple[HeldStructure, Elastic]:
-    """Return a body as its supports hold it and its statics; the last one is at hand, for drops on other places of one plate."""
+def _factorised(recipe: Recipe) -> tuple[HeldStructure, ElasticSystem]:
+    """Return a held body and its factorised system; the last one is cached, for drops on other places of one plate."""
     key = key_of(replace(recipe, reduction=Reduction()))
-    found = _LAST.find(key)
+    found = _FACTORISED.get(key)
     if found is None:
-        _LAST.clear()  # before the memory is needed
+        _FACTORISED.clear()  # before the new factors need the memory
         structure = recipe.shape.structure(recipe.shape.mesh(recipe.supports), _material(recipe))
         held = held_by(structure, recipe.supports)
-        found = held, Elastic(held.stiffness, held.mass, held.rigid, held.order)
-        _LAST.keep(key, found, found[1].size)
+        found = held, ElasticSystem(held.stiffness, held.mass, held.rigid, held.order)
+        _FACTORISED.put(key, found, found[1].size)
     return found
 
 
 def _faces(held: HeldStructure, place: tuple[float, float], average: Average) -> list[Floats]:
-    """Return how the free degrees of freedom move the upper and the lower face vertically, averaged around a place."""
+    """Return the averaged vertical displacements of the upper and lower face around a place, as rows of the free degrees of freedom."""
     mesh = held.structure.mesh
-    discs, weights = disc_points(UNIFORM)
+    discs, weights = pressure_rule(UNIFORM)
     places = np.asarray(place) + average.radius * discs
     inside, motions = _on_body(mesh, places)
     if not inside.any():
@@ -166,9 +166,9 @@ def _faces(held: HeldStructure, place: tuple[float, float], average: Average) ->
 
 
 def _on_body(mesh: Mesh, places: Floats) -> tuple[Bools, list[csr_array]]:
-    """Return which places lie on the body, and how these move vertically on either face.
+    """Return a mask of the places on the body, and the vertical displacements of these on either face.
 
-    First those in the box around the body are asked for at once, as it is quick.
+    All places within the bounding box are tried together first, which is fast; one by one only if that fails.
     """
     in_box = ((places >= mesh.nodes[:, :2].min(axis=0)) & (places <= mesh.nodes[:, :2].max(axis=0))).all(axis=1)
     if in_box.any() and (motions := _vertical_motions(mesh, places[in_box])):
@@ -178,9 +178,9 @@ def _on_body(mesh: Mesh, places: Floats) -> tuple[Bools, list[csr_array]]:
 
 
 def _vertical_motions(mesh: Mesh, places: Floats) -> list[csr_array]:
-    """Return how places move vertically with the degrees of freedom, on either face; nothing if one lies beside the body."""
+    """Return the vertical displacements of places on either face as rows of the degrees of freedom; [] if one is not on the body."""
     try:
-        if mesh.is_flat:  # a plate element has no thickness to be squeezed
+        if mesh.is_flat:  # both faces of a plate element have the same deflection
             return 2 * [surface_motion(mesh, places)[0][2::3]]
         return [surface_motion(mesh, places, face)[0][2::3] for face in _FACES]
     except InputError:
@@ -190,28 +190,28 @@ def _vertical_motions(mesh: Mesh, places: Floats) -> list[csr_array]:
 def response_to_spread_force(
     recipe: Recipe, place: tuple[float, float], side: Side, average: Callable[[float], Average]
 ) -> tuple[Structure, float, Floats]:
-    """Return structure and thickness of a held plate, and its displacements under a unit upward force that is spread around a place.
+    """Return structure, local thickness and displacements of a held plate under a unit upward force distributed around a place.
 
     Parameters
     ----------
-    recipe, place, side : as `static_compliance` takes them
-        The plate, and where the force acts.
+    recipe, place, side : as in `static_compliance`
+        The plate, and the place of the force.
     average : callable
-        From the thickness [m] to how the force is spread.
+        From the thickness [m] to the distribution of the force.
 
     Returns
     -------
     structure : Structure
         The finite elements.
     thickness : float
-        At the place [m].
+        Thickness at the place [m].
     displacements : array, shape (dofs,)
-        Of the degrees of freedom of the mesh [m/N].
+        Displacements of all degrees of freedom of the mesh [m/N].
 
     Raises
     ------
     InputError, ComputationError
-        As `static_compliance`.
+        As in `static_compliance`.
     """
     held, elastic = _factorised(recipe)
     thickness = _thickness(held.structure, place)

@@ -1,4 +1,8 @@
-"""A store of modal models and static compliances on disk, under the key of all that determines them: nothing is computed twice."""
+"""Store of modal models and static compliances on disk, each under a hash of its inputs.
+
+An entry is a CRC-32 followed by an npz archive. The checksum covers all of the archive, as NumPy does not verify those of zip
+members that it reads in part.
+"""
 
 from __future__ import annotations
 
@@ -10,6 +14,7 @@ import os
 import zlib
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cache
+from io import BytesIO
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -23,23 +28,24 @@ from vibroimpact.structures.geometry import MassProperties
 from vibroimpact.structures.mesh import ElementBlock, Mesh
 from vibroimpact.structures.modal_model import ModalModel
 
-FORMAT = 3
-"""Counts up when what is stored, or how it is computed, changes."""
+FORMAT = 4
+"""Part of every key: to be increased when the stored data, or their computation, change; earlier entries are then not found."""
 
 PLACE = "VIBROIMPACT_STORE"
-"""The environment variable that moves the store."""
+"""Environment variable with the folder of the store."""
 
-_LARGEST = 4_000_000_000  # bytes; the entries that were not used for longest go first
-_SLACK = 0.01  # of that: so much is written before the folder is looked through again, as it may have thousands of entries
+_LARGEST = 4_000_000_000  # bytes; the least recently used entries are removed first
+_SLACK = 0.01  # of _LARGEST: bytes written between two scans of the folder, which may hold thousands of entries
+_CHECKSUM = 4  # bytes
 _MODES = "modes"
 KINDS = (_MODES, "compliance")
-"""What entries hold, and how their names end."""
+"""Kinds of entries, which are the suffixes of their files."""
 
 Content = TypeVar("Content")
 
 
 def store_folder() -> Path:
-    """Return where the store is: in the user's cache, or where the environment variable VIBROIMPACT_STORE says."""
+    """Return the folder of the store: that of the environment variable VIBROIMPACT_STORE, else one in the user's cache."""
     from platformdirs import user_cache_path
 
     given = os.environ.get(PLACE)
@@ -47,7 +53,7 @@ def store_folder() -> Path:
 
 
 def key_of(recipe: Any) -> str:
-    """Return the key of a recipe: a digest of its content and of the version of the package.
+    """Return the key of a recipe: a hash of its content, of the format of the store and of the version of the package.
 
     Examples
     --------
@@ -60,7 +66,7 @@ def key_of(recipe: Any) -> str:
 
 
 def _content(value: Any) -> Any:
-    """Return what determines a value, as JSON holds it: of a dataclass its name and its fields that are compared."""
+    """Return a value in terms of JSON: a dataclass as its name and its compared fields, an array as a hash."""
     if dataclasses.is_dataclass(value):
         return [
             type(value).__name__,
@@ -73,44 +79,44 @@ def _content(value: Any) -> Any:
     if isinstance(value, np.ndarray):
         return [str(value.dtype), value.shape, hashlib.sha256(np.ascontiguousarray(value).tobytes()).hexdigest()]
     if isinstance(value, (np.generic, float, int)) and not isinstance(value, bool):
-        return (float(value) + 0.0).hex()  # one and 1.0 are the same, and so are zero and minus zero
+        return (float(value) + 0.0).hex()  # 1 and 1.0 are equal, and so are 0.0 and -0.0
     return value
 
 
 def has_model(key: str) -> bool:
-    """Is there a model under a key?"""
+    """Return whether the store has a model under a key."""
     return _path(key, _MODES).is_file()
 
 
 def load_model(key: str) -> tuple[ModalModel | None, str]:
-    """Return the model under a key, or None; and what was wrong with its entry, or ""."""
+    """Return the model under a key, or None; and a message on a failure to read it, or ""."""
     return load_entry(key, _MODES, _model)
 
 
 def save_model(key: str, model: ModalModel) -> str:
-    """Keep a model under a key; return what prevented it, or ""."""
+    """Store a model under a key; return a message on failure, or ""."""
     return save_entry(key, _MODES, _parts(model))
 
 
 def load_entry(key: str, kind: str, read: Callable[[Mapping[str, Any]], Content]) -> tuple[Content | None, str]:
-    """Return what an entry holds, or None; and what was wrong with it, or "".
+    """Return the content of an entry, or None; and a message on a failure to read it, or "".
 
-    An entry carries a check sum of all of it, so that a damaged one is known and taken as absent.
+    A damaged entry, recognised by its checksum, counts as absent.
 
     Parameters
     ----------
     key : str
-        Its key.
+        Key of the entry.
     kind : str
-        What it is: one of `KINDS`.
+        Kind of the entry, one of `KINDS`.
     read : callable
-        Makes the content of its arrays.
+        Makes the content from the arrays by their names.
     """
     path = _path(key, kind)
     _clear_once(store_folder())
     try:
         content = read(_unpacked(path.read_bytes()))
-        os.utime(path)  # it was used just now
+        os.utime(path)  # its time of use, by which entries are removed
     except FileNotFoundError:
         return None, ""
     except OSError as error:
@@ -121,12 +127,12 @@ def load_entry(key: str, kind: str, read: Callable[[Mapping[str, Any]], Content]
 
 
 def save_entry(key: str, kind: str, parts: Mapping[str, Any]) -> str:
-    """Keep arrays under a key; return what prevented it, or ""."""
+    """Store arrays by name under a key; return a message on failure, or ""."""
     return _put(key, kind, _packed(parts))
 
 
 def _put(key: str, kind: str, pieces: Sequence[bytes]) -> str:
-    """Write an entry; it appears whole or not at all, so that several processes may save and load at once."""
+    """Write an entry atomically, so that several processes may save and load at once; return a message on failure, or ""."""
     folder = store_folder()
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -138,9 +144,9 @@ def _put(key: str, kind: str, pieces: Sequence[bytes]) -> str:
 
 
 def carry(keys: Iterable[str]) -> dict[str, bytes]:
-    """Return the entries under some keys as bytes, by the names of their files: for a process that does not see this disk.
+    """Return the entries under some keys as bytes, by file name, for a process without access to this disk.
 
-    What is not in the store is left out; who receives the others computes it.
+    Keys that are not in the store are left out; the receiving process computes their content.
 
     Examples
     --------
@@ -152,17 +158,17 @@ def carry(keys: Iterable[str]) -> dict[str, bytes]:
 
 
 def receive(entries: Mapping[str, bytes]) -> str:
-    """Take what `carry` gave into this store; return what prevented it, or "".
+    """Add entries that `carry` returned to this store; return a message on failure, or "".
 
     Parameters
     ----------
     entries : mapping of str to bytes
-        Those that are here already stay as they are.
+        Bytes by file name; entries that the store has already are not replaced.
 
     Raises
     ------
     InputError
-        If one is no entry, or was damaged on its way.
+        If a name is not that of an entry, or a checksum does not agree.
     """
     for name, data in entries.items():
         key, _, kind = name.partition(".")
@@ -182,49 +188,45 @@ def _path(key: str, kind: str) -> Path:
 
 
 def _packed(parts: Mapping[str, Any]) -> list[bytes]:
-    """Return arrays as bytes: a check sum of what follows, the length of the heading, the heading, and the numbers."""
-    arrays = {name: np.ascontiguousarray(part) for name, part in parts.items()}
-    heading = json.dumps([[name, array.dtype.str, array.shape] for name, array in arrays.items()]).encode()
-    body = [len(heading).to_bytes(8, "little"), heading, *(array.tobytes() for array in arrays.values())]
-    total = 0
-    for piece in body:
-        total = zlib.crc32(piece, total)
-    return [total.to_bytes(4, "little"), *body]
+    """Return arrays as an npz archive, preceded by its CRC-32."""
+    stream = BytesIO()
+    np.savez(stream, **parts)
+    archive = stream.getvalue()
+    return [zlib.crc32(archive).to_bytes(_CHECKSUM, "little"), archive]
 
 
 def _unpacked(data: bytes) -> dict[str, Any]:
-    """Return the arrays of an entry.
+    """Return the arrays of an entry, read-only as processes share them.
 
     Raises
     ------
     ValueError
-        If the check sum is not that of the data.
+        If the checksum does not agree, or the content is not an archive of arrays.
     """
-    view = memoryview(data)
-    if len(view) < 12 or zlib.crc32(view[4:]) != int.from_bytes(view[:4], "little"):
+    if len(data) <= _CHECKSUM or zlib.crc32(memoryview(data)[_CHECKSUM:]) != int.from_bytes(data[:_CHECKSUM], "little"):
         raise ValueError("its check sum does not agree")
-    end = 12 + int.from_bytes(view[4:12], "little")
-    found = {}
-    for name, kind, shape in json.loads(bytes(view[12:end])):
-        count = math.prod(shape)
-        found[name] = np.frombuffer(view, np.dtype(kind), count, end).reshape(shape)
-        end += count * np.dtype(kind).itemsize
+    stream = BytesIO(data)
+    stream.seek(_CHECKSUM)
+    with np.load(stream, allow_pickle=False) as archive:
+        found = dict(archive)
+    for array in found.values():
+        array.flags.writeable = False
     return found
 
 
 def entries() -> list[Path]:
-    """Return the files of the store, the one that was used last at the end."""
+    """Return the files of the store, the least recently used first."""
     found = [(path.stat().st_mtime, path) for kind in KINDS for path in store_folder().glob(f"*.{kind}")]
     return [path for _, path in sorted(found)]
 
 
 def store_size() -> int:
-    """Return how many bytes the store holds."""
+    """Return the size of the store [bytes]."""
     return sum(path.stat().st_size for path in entries())
 
 
 def clear_store() -> int:
-    """Empty the store; return how many entries it had."""
+    """Remove all entries; return how many there were."""
     found = entries()
     for path in found:
         path.unlink(missing_ok=True)
@@ -233,15 +235,15 @@ def clear_store() -> int:
 
 @cache
 def _clear_once(folder: Path) -> None:
-    """Clear what processes that died have left in the store, once in the life of this one."""
+    """Remove the working files of killed processes, once per process."""
     clear(folder)
 
 
-_written = [math.inf]  # bytes, since this process looked
+_written = [math.inf]  # bytes since the last scan of the folder by this process
 
 
 def _make_room(size: int) -> None:
-    """Count what was written, and now and then remove what was not used for longest."""
+    """Count the bytes written; from time to time remove the least recently used entries beyond the limit."""
     _written[0] += size
     if _written[0] < _SLACK * _LARGEST:
         return
@@ -256,6 +258,7 @@ def _make_room(size: int) -> None:
 
 
 def _parts(model: ModalModel) -> dict[str, Any]:
+    """Return the arrays of a model by name; `_model` is the inverse."""
     parts: dict[str, Any] = {
         "nodes": model.mesh.nodes,
         "angular_frequencies": model.angular_frequencies,
@@ -264,7 +267,7 @@ def _parts(model: ModalModel) -> dict[str, Any]:
         "centre": model.properties.centre,
         "inertia": model.properties.inertia,
         "numbers": np.array([model.properties.mass, model.thickness]),
-        "left": model.left,
+        "rigid_coefficients": model.rigid_coefficients,
         "frequency_errors": model.frequency_errors,
         "facts": np.frombuffer(json.dumps(dict(model.facts)).encode(), np.uint8),
     }
@@ -278,6 +281,8 @@ def _parts(model: ModalModel) -> dict[str, Any]:
 
 
 def _model(entry: Mapping[str, Any]) -> ModalModel:
+    """Return the model of the arrays of an entry."""
+
     def named(prefix: str) -> dict[str, Any]:
         return {bytes.fromhex(key[len(prefix) :]).decode(): entry[key] for key in entry if key.startswith(prefix)}
 
@@ -295,7 +300,7 @@ def _model(entry: Mapping[str, Any]) -> ModalModel:
         entry["angular_frequencies"],
         entry["shapes"],
         entry["participation"],
-        entry["left"],
+        entry["rigid_coefficients"],
         entry["frequency_errors"],
         thickness,
         json.loads(entry["facts"].tobytes()),

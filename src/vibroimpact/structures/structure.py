@@ -1,4 +1,4 @@
-"""A structure: a mesh with its stiffness and mass, of solid or of plate elements, not yet held by anything."""
+"""Structure: a mesh of solid or plate elements with its stiffness and mass, without supports."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from vibroimpact.materials import Material
 from vibroimpact.structures.assembly import node_adjacency
 from vibroimpact.structures.bed import bed_stiffness, end_compliance
 from vibroimpact.structures.elasticity import assemble_solid
-from vibroimpact.structures.factor import check_memory, dissection, factor_entries
+from vibroimpact.structures.factor import check_factor_memory, factor_entries, nested_dissection
 from vibroimpact.structures.geometry import MassProperties, check_mesh, mass_properties
 from vibroimpact.structures.mesh import Mesh
 from vibroimpact.structures.plate_element import assemble_plate
@@ -21,23 +21,24 @@ from vibroimpact.structures.plate_element import assemble_plate
 
 @dataclass(frozen=True)
 class Structure:
-    """A body as finite elements.
+    """Finite-element model of a body without supports.
 
     Parameters
     ----------
     mesh : Mesh
-        The elements.
+        Mesh of the body.
     stiffness, mass : sparse arrays, shape (dofs, dofs)
-        Degrees of freedom run through the nodes: three displacements each, and of a plate two slopes after them.
+        Stiffness and mass; degrees of freedom are ordered by nodes: three displacements, followed in plates by two slopes.
     properties : MassProperties
         Mass, centre of mass and inertia.
     thickness : float, default 0
         Thickness of plate elements [m].
     end_compliance : float, default 0
-        Rotation [rad] under a moment per width [N] that an end of plate elements lacks whose side is held; negative: it is stiffer.
+        Rotation [rad] per moment per width [N] at a held end in excess of plate theory; negative, as the end is stiffer: see
+        `vibroimpact.structures.bed.end_compliance`.
     bed : tuple of two floats, optional
-        Stiffness per area [N/m^3], along and across the plate, between plate elements and what holds their lower face; without it
-        the whole height of a plate is held.
+        Stiffness per area [N/m^3], along and across the plate, between plate elements and a support of their lower face; without it
+        supports hold the full height of the plate.
     """
 
     mesh: Mesh
@@ -50,20 +51,20 @@ class Structure:
 
     @cached_property
     def order(self) -> Integers:
-        """An elimination order of the degrees of freedom that keeps factors sparse.
+        """Fill-reducing elimination order of the degrees of freedom.
 
         Raises
         ------
         InputError
-            If the factors would not fit into the memory that is free.
+            If the factors would not fit into the free memory.
         """
         adjacency = node_adjacency(self.mesh)
-        parts = dissection(self.mesh.nodes, adjacency)
-        check_memory(self.stiffness.shape[0], self.mesh.dofs_per_node**2 * factor_entries(parts, adjacency))
+        parts = nested_dissection(self.mesh.nodes, adjacency)
+        check_factor_memory(self.stiffness.shape[0], self.mesh.dofs_per_node**2 * factor_entries(parts, adjacency))
         return (self.mesh.dofs_per_node * np.concatenate(parts)[:, None] + np.arange(self.mesh.dofs_per_node)).ravel()
 
     def rigid_motions(self) -> Floats:
-        """Return the six rigid motions, shape (dofs, 6): translations [m], then rotations [rad] about the centre of mass.
+        """Return the six rigid motions, (dofs, 6): unit translations, then unit rotations about the centre of mass.
 
         Examples
         --------
@@ -85,18 +86,18 @@ class Structure:
 
 
 def rotation_columns(x: Floats, y: Floats, z: Floats) -> Floats:
-    """Return the displacements (points, 3, 3) of points by unit rotations about x, y and z."""
+    """Return the displacements of points under unit rotations about x, y and z, (points, 3, 3)."""
     zero = np.zeros_like(x)
     return np.stack([np.stack([zero, z, -y], -1), np.stack([-z, zero, x], -1), np.stack([y, -x, zero], -1)], axis=1)
 
 
 def solid_structure(mesh: Mesh, material: Material) -> Structure:
-    """Make a structure of solid elements.
+    """Return the structure of a mesh of solid elements.
 
     Raises
     ------
     InputError
-        If elements are inverted or the mesh is in loose parts.
+        If elements are inverted or the mesh has loose parts.
     """
     check_mesh(mesh)
     return Structure(mesh, *assemble_solid(mesh, material), mass_properties(mesh, material.density))
@@ -105,14 +106,14 @@ def solid_structure(mesh: Mesh, material: Material) -> Structure:
 def plate_structure(
     mesh: Mesh, material: Material, thickness: float, theory: str = "thick", shear_correction: float | None = None
 ) -> Structure:
-    """Make a structure of plate elements; takes what `assemble_plate` does.
+    """Return the structure of a mesh of plate elements; parameters are those of `assemble_plate`.
 
-    What holds the lower face of a thick plate does so by a bed (`bed_stiffness`); Kirchhoff's thin plate is held over its height.
+    Supports of the lower face of a thick plate act through a bed (`bed_stiffness`); those of Kirchhoff's thin plate on its full height.
 
     Raises
     ------
     InputError
-        If elements are inverted or the mesh is in loose parts, or there is no such theory.
+        If elements are inverted, the mesh has loose parts, or the theory is unknown.
     """
     check_mesh(mesh)
     properties = mass_properties(mesh, material.density, thickness)

@@ -1,4 +1,4 @@
-"""The surface of a mesh: its outer faces, the nodes of its lower side, and what moves at a place (x, y) of either side."""
+"""Surface of a mesh: its outer faces, the nodes of its lower side, and displacements at a place (x, y) of either side."""
 
 from __future__ import annotations
 
@@ -15,23 +15,29 @@ from vibroimpact.structures.mesh import ElementBlock, Mesh
 
 Side = Literal["upper", "lower"]
 Spot = tuple[float, float] | str | None
-"""x and y [m]; or the name of a set of nodes, whose middle is meant; or None, the point of a side that reaches farthest."""
+"""x and y [m]; or the name of a set of nodes, for its centre; or None, for the highest or lowest node."""
 
-_OUTSIDE = 1e-6  # how far beyond the edge of a face, in its length, a point may lie
+_OUTSIDE = 1e-6  # tolerance of a point beyond the edge of a face, relative to the length of the face
 _NEWTON_STEPS = 20
-_STARTS = ((1.0 / 3.0, 1.0 / 3.0), (0.9, 0.05), (0.05, 0.9), (0.05, 0.05), (0.9, 0.9))  # steep, curved faces need a near one
+_STARTS = (
+    (1.0 / 3.0, 1.0 / 3.0),
+    (0.9, 0.05),
+    (0.05, 0.9),
+    (0.05, 0.05),
+    (0.9, 0.9),
+)  # of Newton's method; on steep, curved faces it converges from near the solution only
 
 
 @dataclass(frozen=True)
 class Faces:
-    """Outer faces that have the same number among the faces of their elements; of plate elements, the elements."""
+    """Outer faces with the same local number in elements of one kind; for plate elements, the elements themselves."""
 
     kind: ElementKind
     corners: tuple[int, ...]
     connectivity: Integers
 
-    def places(self, local: Floats) -> Floats:
-        """Return places on the reference element (points, dimension) of places on the face (points, 2)."""
+    def reference_points(self, local: Floats) -> Floats:
+        """Return the points of the reference element (points, dimension) at local coordinates of the face (points, 2)."""
         a, b = local[:, :1], local[:, 1:]
         corner = self.kind.reference[list(self.corners)]
         if len(corner) == 3:
@@ -39,22 +45,24 @@ class Faces:
         weights = np.concatenate([(1 - a) * (1 - b), a * (1 - b), a * b, (1 - a) * b], axis=1)
         return np.asarray(weights @ corner)
 
-    def slopes(self, local: Floats) -> tuple[Floats, Floats]:
-        """Return shape functions (points, nodes) and their derivatives along the face (points, 2, nodes)."""
-        values, gradients = self.kind.basis(self.places(local))
-        step = 0.5 * np.stack([np.eye(2), -np.eye(2)])[:, :, None]  # there and back along either axis
-        there, back = self.places((local + step).reshape(-1, 2)).reshape(2, 2, len(local), self.kind.dimension)
+    def shape_functions(self, local: Floats) -> tuple[Floats, Floats]:
+        """Return shape functions (points, nodes) and their derivatives in the coordinates of the face (points, 2, nodes)."""
+        values, gradients = self.kind.basis(self.reference_points(local))
+        step = (
+            0.5 * np.stack([np.eye(2), -np.eye(2)])[:, :, None]
+        )  # a difference over one unit is exact, as the map is linear along either axis
+        there, back = self.reference_points((local + step).reshape(-1, 2)).reshape(2, 2, len(local), self.kind.dimension)
         along = np.ascontiguousarray((there - back).transpose(1, 0, 2))
         return values, np.asarray(along @ gradients)
 
-    def beyond(self, local: Floats) -> Floats:
-        """Return how far places lie outside the face, in its length; not positive inside."""
+    def distance_outside(self, local: Floats) -> Floats:
+        """Return the distance of points outside the face, in its local coordinates; not positive inside."""
         outside = np.maximum(-local.min(axis=1), (local.sum(axis=1) if len(self.corners) == 3 else local.max(axis=1)) - 1.0)
         return np.asarray(outside)
 
 
 def outer_faces(mesh: Mesh) -> list[Faces]:
-    """Return the faces that belong to one element alone, in groups; of plate elements, the elements."""
+    """Return the faces that belong to one element only, in groups; for plate elements, the elements."""
     owners, keys = [], []
     for block in mesh.blocks:
         if block.element.dimension == 2:
@@ -70,8 +78,8 @@ def outer_faces(mesh: Mesh) -> list[Faces]:
     return [Faces(kind, face, nodes[mine]) for (kind, face, nodes), mine in zip(owners, alone, strict=True) if mine.any()]
 
 
-def _looking(mesh: Mesh, side: Side) -> list[Faces]:
-    """Return the outer faces that look up or down; of plate elements, which have no sides, all."""
+def _facing(mesh: Mesh, side: Side) -> list[Faces]:
+    """Return the outer faces with a normal upwards or downwards; for plate elements all."""
     groups = outer_faces(mesh)
     if mesh.is_flat:
         return groups
@@ -80,17 +88,17 @@ def _looking(mesh: Mesh, side: Side) -> list[Faces]:
         corner = mesh.nodes[faces.connectivity[:, list(faces.corners)]]
         normal = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
         upwards, area = normal[:, 2] if side == "upper" else -normal[:, 2], np.linalg.norm(normal, axis=1)
-        looks = upwards > 1e-3 * area  # which a face without area does not
-        found.append(Faces(faces.kind, faces.corners, faces.connectivity[looks]))
+        facing = upwards > 1e-3 * area  # False for a degenerate face without area
+        found.append(Faces(faces.kind, faces.corners, faces.connectivity[facing]))
     return [faces for faces in found if len(faces.connectivity)]
 
 
 def lower_nodes(mesh: Mesh) -> Integers:
-    """Return the nodes of the faces that look down; of plate elements, all nodes."""
+    """Return the nodes of the faces with a normal downwards; for plate elements all nodes."""
     if mesh.is_flat:
         return np.arange(len(mesh.nodes))
     found = []
-    for faces in _looking(mesh, "lower"):
+    for faces in _facing(mesh, "lower"):
         corner = faces.kind.reference[list(faces.corners)]
         normal = np.cross(corner[1] - corner[0], corner[2] - corner[0])
         on_face = np.abs((faces.kind.reference - corner[0]) @ normal) < 1e-9
@@ -117,32 +125,32 @@ def place_of(mesh: Mesh, spot: Spot, side: Side) -> tuple[float, float]:
 
 
 def surface_motion(mesh: Mesh, places: Floats, side: Side = "upper", thickness: float = 0.0, what: str = "") -> tuple[csr_array, Floats]:
-    """Return how places on one side of a body move with its degrees of freedom.
+    """Return the displacements of places on one side of a body as linear functions of its degrees of freedom.
 
     Parameters
     ----------
     mesh : Mesh
-        Its elements.
+        Mesh of the body.
     places : array, shape (points, 2)
         x and y [m].
     side : str, default "upper"
-        "upper" or "lower"; where several faces lie above one another, the outermost counts.
+        "upper" or "lower"; of several faces above one another the outermost is taken.
     thickness : float, default 0
-        Thickness of plate elements [m], whose sides lie half of it above and below the nodes.
+        Thickness of plate elements [m]; their faces are half of it above and below the nodes.
     what : str, optional
-        What is there, for the message if it lies beside the body.
+        Name of the places in the message if one is not on the body.
 
     Returns
     -------
     motion : sparse array, shape (3 points, dofs)
-        Three rows a point: its displacements along x, y and z.
+        Three rows per point: its displacements along x, y and z.
     positions : array, shape (points, 3)
-        Where the points lie [m].
+        Positions of the points [m].
 
     Raises
     ------
     InputError
-        If a place lies beside the body.
+        If a place is not on the body.
 
     Examples
     --------
@@ -157,14 +165,14 @@ def surface_motion(mesh: Mesh, places: Floats, side: Side = "upper", thickness: 
     nodes: list[Integers] = [np.zeros(0, dtype=np.int64)] * len(places)
     weights: list[Floats] = [np.zeros(0)] * len(places)
     positions = np.full((len(places), 3), np.nan)
-    groups = _looking(_above_or_below(mesh, places), side)
-    for start in _STARTS:
+    groups = _facing(_near_column(mesh, places), side)
+    for start in _STARTS:  # further starts only for places that none before has found
         waiting = np.flatnonzero(np.isneginf(best))
         for faces in groups if len(waiting) else []:
-            found, face, local = _found(mesh.nodes, faces, places[waiting], start)
+            found, face, local = _locate(mesh.nodes, faces, places[waiting], start)
             if not len(found):
                 continue
-            values = faces.slopes(local)[0]
+            values = faces.shape_functions(local)[0]
             at = np.einsum("pk,pki->pi", values, mesh.nodes[faces.connectivity[face]])
             for index, which in enumerate(waiting[found].tolist()):
                 if sign * at[index, 2] > best[which]:
@@ -185,21 +193,21 @@ def surface_motion(mesh: Mesh, places: Floats, side: Side = "upper", thickness: 
 
 
 def slope_divergence(mesh: Mesh, place: tuple[float, float]) -> csr_array:
-    r"""Return the divergence of the slopes of a plate of plate elements at a place, a row of its degrees of freedom [1/m].
+    r"""Return the divergence of the slopes of a plate at a place [1/m], as a row of the degrees of freedom of its plate elements.
 
-    It is :math:`\partial_x \beta_x + \partial_y \beta_y`; where elements meet, the mean of what they say.
+    It is :math:`\partial_x \beta_x + \partial_y \beta_y`; on common edges of elements, the mean over these.
 
     Parameters
     ----------
     mesh : Mesh
-        Of plate elements.
+        Mesh of plate elements.
     place : tuple of two floats
         x and y [m].
 
     Raises
     ------
     InputError
-        If the place lies beside the body.
+        If the place is not on the body.
 
     Examples
     --------
@@ -211,10 +219,10 @@ def slope_divergence(mesh: Mesh, place: tuple[float, float]) -> csr_array:
     [0.11]
     """
     places = np.array([place])
-    for faces in _looking(_above_or_below(mesh, places), "upper"):
-        _, face, local = _found(mesh.nodes, faces, places, _STARTS[0])
+    for faces in _facing(_near_column(mesh, places), "upper"):
+        _, face, local = _locate(mesh.nodes, faces, places, _STARTS[0])
         if len(face):
-            along, node = faces.slopes(local)[1], faces.connectivity[face]
+            along, node = faces.shape_functions(local)[1], faces.connectivity[face]
             slopes = np.linalg.solve(along @ mesh.nodes[node][:, :, :2], along) / len(face)
             columns = mesh.dofs_per_node * node[:, None] + np.array([[3], [4]])
             shape = (1, mesh.dofs_per_node * len(mesh.nodes))
@@ -222,27 +230,28 @@ def slope_divergence(mesh: Mesh, place: tuple[float, float]) -> csr_array:
     raise InputError(f"({place[0]:g}, {place[1]:g}) m is not on the body")
 
 
-def _above_or_below(mesh: Mesh, places: Floats) -> Mesh:
-    """Return the elements that may lie above or below places: among their faces the outermost are the same."""
+def _near_column(mesh: Mesh, places: Floats) -> Mesh:
+    """Return the mesh of those elements that may lie above or below places; the outermost faces there remain outermost."""
     low, high = places.min(axis=0), places.max(axis=0)
     blocks = []
     for block in mesh.blocks:
         at = mesh.nodes[block.connectivity[:, : block.element.corners], :2] if not mesh.is_flat else mesh.nodes[block.connectivity, :2]
         first, last = at.min(axis=1), at.max(axis=1)
-        reach = 0.5 * (last - first).max(axis=1, keepdims=True)  # a curved side bulges beyond its corners
+        reach = 0.5 * (last - first).max(axis=1, keepdims=True)  # curved edges extend beyond the corners
         near = ((first - reach <= high) & (last + reach >= low)).all(axis=1)
         blocks.append(ElementBlock(block.kind, block.connectivity[near]))
     return replace(mesh, blocks=tuple(block for block in blocks if len(block.connectivity)))
 
 
 def _rows(mesh: Mesh, nodes: list[Integers], weights: list[Floats], height: float) -> csr_array:
+    """Return the rows of points that move with nodes by weights, at a height above the nodes of plate elements."""
     point = np.repeat(np.arange(len(nodes)), [len(found) for found in nodes])
     node, weight = np.concatenate(nodes), np.concatenate(weights)
     per_node = mesh.dofs_per_node
     rows = [3 * point + axis for axis in range(3)]
     columns = [per_node * node + axis for axis in range(3)]
     values = [weight] * 3
-    if mesh.is_flat:  # a point at a height moves with the slopes too
+    if mesh.is_flat:  # the slopes displace a point above the middle plane
         rows += [3 * point + axis for axis in range(2)]
         columns += [per_node * node + 3 + axis for axis in range(2)]
         values += [height * weight] * 2
@@ -250,20 +259,20 @@ def _rows(mesh: Mesh, nodes: list[Integers], weights: list[Floats], height: floa
     return csr_array(coo_array((np.concatenate(values), (np.concatenate(rows), np.concatenate(columns))), shape=shape))
 
 
-def _found(nodes: Floats, faces: Faces, places: Floats, start: tuple[float, float]) -> tuple[Integers, Integers, Floats]:
-    """Return which place lies on which face, and where on it: Newton's method from a start, for all pairs that may meet."""
+def _locate(nodes: Floats, faces: Faces, places: Floats, start: tuple[float, float]) -> tuple[Integers, Integers, Floats]:
+    """Return pairs of places and faces that contain them, and the local coordinates, by Newton's method for all candidates."""
     at = nodes[faces.connectivity][:, :, :2]
     corner = at[:, list(faces.corners)]
     middle, reach = 0.5 * (corner.max(axis=1) + corner.min(axis=1)), 0.75 * np.ptp(corner, axis=1)
-    reach = np.maximum(reach, 0.5 * reach.max(axis=1, keepdims=True))  # a curved side bulges beyond its corners
+    reach = np.maximum(reach, 0.5 * reach.max(axis=1, keepdims=True))  # curved edges extend beyond the corners
     near = (np.abs(places[:, None] - middle[None]) <= reach[None]).all(axis=2)
     point, face = np.nonzero(near)
     local = np.tile(start, (len(point), 1))
     apart, flat = np.zeros((len(point), 2)), np.zeros(len(point), dtype=bool)
     for _ in range(_NEWTON_STEPS if len(point) else 0):
-        values, slopes = faces.slopes(local)
+        values, slopes = faces.shape_functions(local)
         apart = np.einsum("pk,pki->pi", values, at[face]) - places[point]
-        jacobian = (slopes @ at[face]).transpose(0, 2, 1)  # of x and y by the two places on the face
+        jacobian = (slopes @ at[face]).transpose(0, 2, 1)  # of x and y in the local coordinates
         flat = np.abs(np.linalg.det(jacobian)) < 1e-14 * np.abs(jacobian).max(axis=(1, 2), initial=1e-300) ** 2
         jacobian[flat] = np.eye(2)
         step = np.linalg.solve(jacobian, apart[:, :, None])[:, :, 0]
@@ -271,5 +280,5 @@ def _found(nodes: Floats, faces: Faces, places: Floats, start: tuple[float, floa
         if np.abs(step).max() < 1e-14:
             break
     missed = np.linalg.norm(apart, axis=1) > _OUTSIDE * reach[face].max(axis=1)
-    inside = (faces.beyond(local) <= _OUTSIDE) & ~missed & ~flat
+    inside = (faces.distance_outside(local) <= _OUTSIDE) & ~missed & ~flat
     return point[inside], face[inside], local[inside]

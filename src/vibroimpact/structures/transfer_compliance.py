@@ -1,15 +1,15 @@
-r"""The static compliance between the point where a plate is met and the points that are watched, from one static solve.
+r"""Static transfer compliances of a plate between its contact point and its sensors, from one static solution.
 
-The force is spread over a disc, as finite elements miss what is near a point force; beyond the disc that changes nothing. The face of a
-layer moves less than plate theory says (see `plate_compliance`), by the factor :math:`1 - k^2 \overline{r^2}/4` for long waves of a wave
-number k, once for the point of the force and once for the point that is watched, with
+The force is distributed over a disc, as finite elements do not resolve the field near a point force; outside the disc the response is
+the same. The face of a layer moves less than plate theory states (see `plate_compliance`), for long waves of wave number k by the factor
+:math:`1 - k^2 \overline{r^2}/4`, once for the point of the force and once for the sensor, with
 
 .. math:: \overline{r^2} = 2 h^2 \left(\frac{1}{6 (1 - \nu) \kappa} - \frac15\right).
 
-The modal shapes with which the compliance goes together may have that factor at neither point, at one or at both: `faces` says so, and the
-disc then has as many times that mean of r^2. What is left between a layer and plate theory fades within two thicknesses, as
-:math:`e^{-4.2\,r/h}`, and is added. By the thin theory the disc is one that elements resolve, and what a point force moves within it more
-is added in closed form (`thin_near_term`).
+The modal shapes that are used with the compliance may include that factor at neither point, at one or at both. Their number is `faces`;
+the mean of r^2 of the disc is as many times the above. The remaining difference between a layer and plate theory decays within two
+thicknesses, as :math:`e^{-4.2\,r/h}`, and is added. By the thin theory the disc has the size of an element, and the additional
+displacement under a point force within it is added in closed form (`thin_near_term`).
 """
 
 from __future__ import annotations
@@ -29,14 +29,14 @@ from vibroimpact.structures.store import key_of, load_entry, save_entry
 from vibroimpact.structures.surface import Side, surface_motion
 
 _KIND = "compliance"
-_RADIUS = 0.75  # of the disc, thicknesses
-_NEAR = 4.0  # thicknesses: beyond them a plate and plate theory are the same
-_LEAST = 0.05  # thicknesses: where the face is loaded, a point closer to the force is taken for one so far from it
-_NODES = 16  # of Gauss's rule on each part of an integral
+_RADIUS = 0.75  # of the disc, in thicknesses
+_NEAR = 4.0  # thicknesses beyond which a layer and plate theory agree
+_LEAST = 0.05  # thicknesses: least distance from the force on the loaded face; closer points are evaluated there
+_NODES = 16  # of Gauss's rule on each part of the integral
 _FINEST = 300.0  # wave number times thickness, or radius, at which the integral ends
 
 Point = tuple[tuple[float, float], Side]
-"""A point of a plate: x and y [m], and its face."""
+"""Point of a plate: x and y [m], and its face."""
 
 
 def transfer_compliances(
@@ -47,28 +47,28 @@ def transfer_compliances(
     faces: int = 0,
     tell: Callable[[str], None] | None = None,
 ) -> Floats:
-    """Return the static compliances between the point where a held plate is met and others [m/N], (points, 3), from the store if there.
+    """Return the static compliances between a place and points of a held plate [m/N], (points, 3), from the store or computed.
 
     Parameters
     ----------
     recipe : Recipe
-        The plate and its supports; which modes are kept plays no part.
+        The plate and its supports; the reduction has no effect.
     place : tuple of two floats
         x and y of the force [m].
     side : str
-        The face that it acts on: "upper" or "lower". It acts upwards.
+        Face of the force, "upper" or "lower"; the force acts upwards.
     points : sequence of ((x, y), side)
-        The points.
+        Points of the displacements.
     faces : int, default 0
-        Of how many of the two points, of the force and of those watched, the compliance is that of the face of a plate of plate elements,
-        and not of plate theory: 0, 1 or 2.
+        For plate elements, the number of the two points (of the force and of the displacement) at which the compliance is that of the
+        face instead of plate theory: 0, 1 or 2.
     tell : callable, optional
-        Called with a sentence if something is wrong with the store.
+        Called with a message on a failure of the store.
 
     Raises
     ------
     InputError
-        If a place is not on the body, the supports let it move vertically, or the mesh or a support is wrong.
+        If a place is not on the body, the supports permit vertical rigid motion, or the mesh or a support is invalid.
     ComputationError
         If the stiffness is singular.
 
@@ -79,7 +79,7 @@ def transfer_compliances(
     >>> recipe = Recipe(PlateOfPlates((0.5, 0.5, 0.01), 0.1), 7850.0, 210e9, 0.3, edges)
     >>> there, back = ((0.1, 0.0), "upper"), ((0.0, 0.0), "upper")
     >>> one, other = (float(transfer_compliances(recipe, *a, [b], 2)[0, 2]) for a, b in ((there, back), (back, there)))
-    >>> abs(one / other - 1.0) < 1e-4  # Maxwell and Betti
+    >>> abs(one / other - 1.0) < 1e-4  # Maxwell-Betti reciprocity
     True
     """
     key, say = transfer_key(recipe, place, side, points, faces), tell or (lambda text: None)
@@ -95,12 +95,12 @@ def transfer_compliances(
 
 
 def transfer_key(recipe: Recipe, place: tuple[float, float], side: Side, points: Sequence[Point], faces: int = 0) -> str:
-    """Return the key under which the store has the compliances between a place and points."""
+    """Return the key of the compliances between a place and points in the store."""
     return key_of(["transfer compliance", replace(recipe, reduction=Reduction()), place, side, list(points), faces])
 
 
 def computed_transfer(recipe: Recipe, place: tuple[float, float], side: Side, points: Sequence[Point], faces: int = 0) -> Floats:
-    """Compute the compliances between a place and points; takes and raises what `transfer_compliances` does."""
+    """Return the compliances between a place and points, computed anew; parameters and errors are those of `transfer_compliances`."""
     shape, nu = recipe.shape, recipe.poissons_ratio
     flat = isinstance(shape, PlateOfPlates)
     thin = is_thin(recipe)
@@ -125,23 +125,23 @@ def computed_transfer(recipe: Recipe, place: tuple[float, float], side: Side, po
 
 
 def _disc_of_an_element(shape: PlateOfPlates, place: tuple[float, float]) -> float:
-    """Return the radius [m] of a disc around a place that elements resolve, or zero where it would reach beyond the plate."""
+    """Return the radius [m] of a disc of the size of an element, or zero where it would extend beyond the plate."""
     room = min(0.5 * side - abs(at) for side, at in zip(shape.size[:2], place, strict=True))
     return shape.element_size if room > shape.element_size else 0.0
 
 
 def thin_near_term(distance: float, radius: float, rigidity: float) -> float:
-    r"""Return by how much more Kirchhoff's plate moves under a unit point force than under one spread over a disc [m/N].
+    r"""Return the displacement of Kirchhoff's plate under a unit point force less that under one distributed over a disc [m/N].
 
-    It is the inverse Hankel transform of :math:`(1 - A(k)) / (D k^4)`, with A that of the weighted disc, whose mean of r^2 is zero: so
-    there is nothing beyond the disc.
+    It is the inverse Hankel transform of :math:`(1 - A(k)) / (D k^4)`, with A the transform of the weighted disc. As its mean
+    of r^2 is zero, the term is zero outside the disc.
 
     Parameters
     ----------
     distance, radius : float
-        From the centre, and of the disc [m].
+        Distance from the centre, and radius of the disc [m].
     rigidity : float
-        D [N m].
+        Bending stiffness D [N m].
 
     Examples
     --------
@@ -160,24 +160,24 @@ def thin_near_term(distance: float, radius: float, rigidity: float) -> float:
 
 
 def near_term(distance: float, same_face: bool, thickness: float, youngs_modulus: float, poissons_ratio: float, faces: int = 0) -> float:
-    r"""Return by how much more a plate moves near a unit force than plate theory gives for the force spread over the disc [m/N].
+    r"""Return the displacement of a plate near a unit force less that of plate theory under the distributed force [m/N].
 
     Parameters
     ----------
     distance : float
-        Along the plate [m].
+        Distance along the plate [m].
     same_face : bool
-        Is it on the face that the force acts on? There a point force moves it by :math:`(1 - \nu^2)/(\pi E r)` besides, without bound;
-        closer than 0.05 thicknesses that of this distance is returned.
+        Whether the point is on the loaded face. There the singular displacement :math:`(1 - \nu^2)/(\pi E r)` of the half space is
+        included; within 0.05 thicknesses the value at that distance is returned.
     thickness, youngs_modulus, poissons_ratio : float
         h [m], E [Pa] and nu [-].
     faces : int, default 0
-        As `transfer_compliances` takes it.
+        As in `transfer_compliances`.
 
     Notes
     -----
     The inverse Hankel transform of the difference between the kernels of an elastic layer (I. N. Sneddon, Fourier Transforms, 1951,
-    section 46) and of R. D. Mindlin's theory (J. Appl. Mech. 18:31, 1951) times the transform of the disc, without what is long in range.
+    section 46) and of R. D. Mindlin's theory (J. Appl. Mech. 18:31, 1951) times the transform of the disc, without the long-range terms.
 
     Examples
     --------
@@ -198,7 +198,7 @@ def near_term(distance: float, same_face: bool, thickness: float, youngs_modulus
     layer = bending + squeezing - 1.0 if same_face else bending - squeezing
     square = _square(poissons_ratio)
     average = Average(_RADIUS * thickness, 3.0 - 6.0 * faces * square / _RADIUS**2)
-    longer = 0.25 * (2 - faces) * square * thickness**2 / rigidity  # what the modes of plate theory have too much
+    longer = 0.25 * (2 - faces) * square * thickness**2 / rigidity  # excess of the modes of plate theory in long waves
     plate = (1.0 / (rigidity * k**4) + (1.0 / shear - longer) / k**2) * average.transform(k)
     kernel = (2.0 / (modulus * k) * layer - plate) * jv(0, k * apart)
     near = float(kernel @ (k * weights)) / thickness / (2.0 * math.pi)
@@ -206,12 +206,12 @@ def near_term(distance: float, same_face: bool, thickness: float, youngs_modulus
 
 
 def _square(poissons_ratio: float) -> float:
-    """Return `mean_square` in thicknesses squared."""
+    """Return `mean_square` over the square of the thickness."""
     return mean_square(1.0, poissons_ratio, shear_factor(poissons_ratio))
 
 
 def _gauss_rule(parts: int) -> tuple[Floats, Floats]:
-    """Return nodes and weights of Gauss's rule on equal parts of the integral."""
+    """Return the nodes and weights of Gauss's rule on equal parts of the integral, up to the cutoff."""
     nodes, weights = np.polynomial.legendre.leggauss(_NODES)
     places = (np.arange(parts)[:, None] + 0.5 * (nodes + 1.0)).ravel() * (_FINEST / parts)
     return places, np.tile(weights, parts) * (0.5 * _FINEST / parts)

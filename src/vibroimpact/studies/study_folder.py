@@ -9,8 +9,8 @@ from typing import Any
 
 import tomli_w
 
-from vibroimpact.files.working_files import remove
 from vibroimpact.files.recover import clear, recover
+from vibroimpact.files.working_files import remove
 from vibroimpact.studies.chunk_file import CHUNK
 from vibroimpact.studies.chunk_file import FOLDER as CHUNKS
 from vibroimpact.studies.ledger import LEDGER, is_held

@@ -12,7 +12,7 @@ from vibroimpact.cases.fields.section import derived
 from vibroimpact.cases.fields.supports import supports_of, supports_table
 from vibroimpact.cases.rigid import elastic_names
 from vibroimpact.errors import InputError
-from vibroimpact.structures.recipe import BroughtMesh, Recipe, to_follow
+from vibroimpact.structures.recipe import ImportedMesh, Recipe, mesh_features
 from vibroimpact.structures.rectangle import rectangle_blocks
 from vibroimpact.structures.supports.support import Support
 from vibroimpact.structures.surface import Spot
@@ -51,13 +51,13 @@ def elastic_table(case: CaseTable, name: Literal["sphere", "plate"]) -> dict[str
     table: dict[str, Any] = {"reduction": reduction.method, "damping": damping_table(damping)}
     if reduction.modes:
         table["modes"] = reduction.modes
-    if isinstance(shape, BroughtMesh):
+    if isinstance(shape, ImportedMesh):
         table["mesh"] = section.mesh.model_dump(exclude_none=True)
     else:
         table["mesh"] = {key: value for key, value in vars(shape).items() if key not in ("radius", "size")}
     if name == "plate":
         table["supports"] = supports_table(section.supports)
-        if not isinstance(shape, BroughtMesh):
+        if not isinstance(shape, ImportedMesh):
             table["element"] = section.element or "plate"
     return table
 
@@ -103,7 +103,7 @@ def _mesh_options(size: tuple[float, float, float], elements: int, layers: int |
     side = math.sqrt(size[0] * size[1] * layers / elements)
     tried: dict[float, float] = {}
     for _ in range(8):  # the count scales as 1 / side^2, except for elements around patches and rounding
-        blocks = rectangle_blocks(size[:2], side, 1, *to_follow(supports))
+        blocks = rectangle_blocks(size[:2], side, 1, *mesh_features(supports))
         count = layers * sum((block.shape[0] - 1) * (block.shape[1] - 1) for block in blocks)
         tried[side] = abs(count - elements)
         side *= math.sqrt(count / elements)

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, cast
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.bodies.sphere import rigid_sphere
+from vibroimpact.bodies.rigid import rigid_sphere
 from vibroimpact.cases.elastic.modes import BodyModes, compute_modes, contact_place
 from vibroimpact.cases.elastic.residuals import residual_key, with_residuals
 from vibroimpact.cases.fields.local import MeasuredImpact

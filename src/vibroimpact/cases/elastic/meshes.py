@@ -12,7 +12,7 @@ from vibroimpact.cases.fields.item_labels import item_label
 from vibroimpact.errors import InputError
 from vibroimpact.structures.geometry import check_mesh, mass_properties
 from vibroimpact.structures.mesh import Mesh
-from vibroimpact.structures.recipe import BroughtMesh
+from vibroimpact.structures.recipe import ImportedMesh
 from vibroimpact.structures.structure import Structure
 from vibroimpact.structures.supports.constraints import Constraints
 from vibroimpact.structures.surface import Side, Spot, place_of, surface_motion
@@ -34,7 +34,7 @@ def meshes_of(case: CaseTable) -> dict[str, Mesh]:
     for name, body in elastic_bodies(case).items():
         try:
             mesh = body.recipe.shape.mesh(body.recipe.supports)
-            if isinstance(body.recipe.shape, BroughtMesh):  # generated meshes are valid
+            if isinstance(body.recipe.shape, ImportedMesh):  # generated meshes are valid
                 check_mesh(mesh)
         except InputError as error:
             raise InputError(error.message, f"{name}.{error.key}".rstrip(".")) from None

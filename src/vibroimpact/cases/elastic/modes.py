@@ -16,7 +16,7 @@ from vibroimpact.errors import InputError
 from vibroimpact.structures.damping import ConstantRatio, RatioOfEach, RatioTable
 from vibroimpact.structures.frequency_error import MESH, REDUCTION, SUPPORTS, THEORY
 from vibroimpact.structures.modal_model import ModalBasis, ModalModel
-from vibroimpact.structures.recipe import MAIN_CAUSE, BroughtMesh, PlateOfSolids, Recipe, SphereOfSolids, is_thin, modal_model_of
+from vibroimpact.structures.recipe import MAIN_CAUSE, ImportedMesh, PlateOfSolids, Recipe, SphereOfSolids, is_thin, modal_model_of
 from vibroimpact.structures.surface import Side, place_of
 
 if TYPE_CHECKING:
@@ -150,7 +150,7 @@ def _remedy(recipe: Recipe, cause: str) -> str:
 
 def _doubts_of_mass(case: CaseTable, name: str, body: ElasticBody, model: ModalModel) -> Iterator[str]:
     """Yield a doubt if the mass of a mesh differs from that of the case, or its size suggests millimetres."""
-    brought, extent = isinstance(body.recipe.shape, BroughtMesh), model.mesh.extent
+    brought, extent = isinstance(body.recipe.shape, ImportedMesh), model.mesh.extent
     size = " x ".join(f"{side:.3g}" for side in (*extent[:2], model.thickness or extent[2]))
     said = f"the mesh of the {name} is {size} m large and weighs {model.properties.mass:.4g} kg"
     remedy = 'give mesh = { file = "...", unit = "mm" }' if brought else 'write "520 mm", as a bare number is in metres'

@@ -18,7 +18,7 @@ from vibroimpact.shown import shown
 
 if TYPE_CHECKING:  # not imported at run time, as a case with rigid bodies does not need scipy.sparse
     from vibroimpact.structures.mesh import Mesh
-    from vibroimpact.structures.recipe import BroughtMesh, Place, Reduction
+    from vibroimpact.structures.recipe import ImportedMesh, Place, Reduction
 
 MOST_MODES = 20_000
 DEFAULT_MODES = {"sphere": 20, "plate": 100}
@@ -41,7 +41,7 @@ class BroughtMeshTable(Section):
     element_size: _Size | None = None
     contact: str | None = Field(None, description="a named set: the contact point is its middle")
 
-    def brought(self) -> BroughtMesh:
+    def brought(self) -> ImportedMesh:
         """Return the mesh, which is identified by the checksum of its file and read when it is first used.
 
         Raises
@@ -49,13 +49,13 @@ class BroughtMeshTable(Section):
         InputError
             If the file can't be read.
         """
-        from vibroimpact.structures.recipe import BroughtMesh
+        from vibroimpact.structures.recipe import ImportedMesh
 
         try:
             content = input_file_digest(self.file, MESH)
         except InputError as error:
             raise with_path(self.file, error, "mesh") from None
-        return BroughtMesh(json.dumps([content, Path(self.file).suffix.lower(), self.unit, self.element_size]), self.read)
+        return ImportedMesh(json.dumps([content, Path(self.file).suffix.lower(), self.unit, self.element_size]), self.read)
 
     def read(self) -> Mesh:
         """Read the mesh, with coordinates in metres."""

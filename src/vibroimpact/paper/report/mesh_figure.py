@@ -103,7 +103,7 @@ def _draw_mesh(axes: Axes, mesh: Mesh) -> None:
         lines = _projected(projection, place).reshape(-1, fine + 1, 2)
         axes.add_collection(LineCollection(list(lines), colors=INK, linewidths=0.5))
         # only the shape functions of nodes on the face are nonzero at a generic point of it
-        on_face = np.abs(group.slopes(np.array([[0.31, 0.43]]))[0][0]) > 1e-9
+        on_face = np.abs(group.shape_functions(np.array([[0.31, 0.43]]))[0][0]) > 1e-9
         nodes = at[visible.reshape(len(at), -1).all(axis=1)][:, on_face].reshape(-1, 3)
         axes.plot(*projection(*nodes.T), "o", color=INK, markersize=1.3, markeredgewidth=0.0, rasterized=True)
     axes.autoscale_view()
@@ -114,7 +114,7 @@ def _draw_mesh(axes: Axes, mesh: Mesh) -> None:
 
 def _surface(group: Faces, at: Floats, local: Floats) -> tuple[Floats, Floats]:
     """Return points on each face and the unit normals there, (faces, points, 3), from node and local coordinates."""
-    values, slopes = group.slopes(local)
+    values, slopes = group.shape_functions(local)
     along = np.einsum("qak,eki->aeqi", slopes, at)
     normal = np.cross(along[0], along[1])
     return np.einsum("qk,eki->eqi", values, at), normal / np.linalg.norm(normal, axis=-1, keepdims=True)

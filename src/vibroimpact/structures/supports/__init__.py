@@ -1,1 +1,1 @@
-"""Supports: how a plate is held, one kind a file."""
+"""Supports of a plate, one kind per file."""

@@ -1,4 +1,4 @@
-"""A bar under the plate: an elastic column, fixed to the ground."""
+"""Bar under the plate: an elastic column, fixed to the ground."""
 
 from __future__ import annotations
 
@@ -14,21 +14,21 @@ from vibroimpact.structures.structure import rotation_columns
 from vibroimpact.structures.supports.constraints import Constraints
 from vibroimpact.structures.supports.support import Support, nodes_within
 
-_ELEMENTS = 8  # of the column; its first bending frequency is then right to 1e-5
+_ELEMENTS = 8  # of the column, for an error of 1e-5 of its first bending frequency
 
 
 @dataclass(frozen=True)
 class Bar(Support):
-    """A round elastic column, fixed to the ground; its top moves as a rigid disc with the lower side of the plate.
+    """Round elastic column, fixed to the ground; its top is a rigid disc attached to the lower side of the plate.
 
     Parameters
     ----------
     x, y : float
-        Its axis [m].
+        Position of its axis [m].
     radius, length : float
-        Of the column [m], > 0.
+        Radius and length of the column [m], > 0.
     material : Material
-        Of the column.
+        Material of the column.
     """
 
     x: float
@@ -39,7 +39,7 @@ class Bar(Support):
 
     @property
     def words(self) -> str:
-        """What it is, for people."""
+        """Short description for users."""
         return f"bar of radius {self.radius:g} m and length {self.length:g} m at ({self.x:g}, {self.y:g}) m"
 
     @property
@@ -48,7 +48,7 @@ class Bar(Support):
         return (Disc(self.x, self.y, self.radius),)
 
     def hold(self, constraints: Constraints) -> None:
-        """Add the column, and attach the nodes of the patch to its top."""
+        """Add the column, and attach the nodes above it to its top."""
         structure = constraints.structure
         nodes = nodes_within(structure, self.x, self.y, self.radius, "the bar")
         height = structure.mesh.nodes[nodes, 2].mean() - 0.5 * structure.thickness
@@ -58,6 +58,7 @@ class Bar(Support):
         constraints.attach(nodes, self.radius, (dofs[-6:], top))
 
     def _rigid(self, top: Floats, centre: Floats) -> Floats:
+        """Return the rigid motions of the column about the centre of mass of the plate, (dofs, 6)."""
         motions = np.zeros((_ELEMENTS, 6, 6))
         motions[:, :3, :3] = motions[:, 3:, 3:] = np.eye(3)
         at = top - centre - np.outer(self.length * (1.0 - np.arange(1, _ELEMENTS + 1) / _ELEMENTS), [0.0, 0.0, 1.0])
@@ -66,25 +67,25 @@ class Bar(Support):
 
 
 def column_matrices(radius: float, length: float, material: Material, elements: int) -> tuple[Floats, Floats]:
-    r"""Return stiffness and mass of a round column, fixed at its lower end, of Timoshenko beams.
+    r"""Return stiffness and mass of a round column of Timoshenko beam elements, fixed at its lower end.
 
     Parameters
     ----------
     radius, length : float
-        [m], > 0.
+        Radius and length of the column [m], > 0.
     material : Material
-        Of the column.
+        Material of the column.
     elements : int
-        How many beams it is made of.
+        Number of beam elements.
 
     Returns
     -------
     stiffness, mass : array, shape (6 elements, 6 elements)
-        Three displacements and three rotations a node, the last six of the top.
+        Three displacements and three rotations per node; the last six are those of the top.
 
     Notes
     -----
-    Two-node beam with the exact static shape functions, consistent mass with rotary inertia (J. S. Przemieniecki, Theory of
+    Two-node beams with the exact static shape functions, consistent mass with rotary inertia (J. S. Przemieniecki, Theory of
     Matrix Structural Analysis, 1968); shear coefficient 6 (1 + nu) / (7 + 6 nu) of a round section (G. R. Cowper, J. Appl.
     Mech. 33:335, 1966).
 
@@ -120,7 +121,8 @@ def column_matrices(radius: float, length: float, material: Material, elements: 
 
 
 def _bending(step: float, flexible: float, rigidity: float, line_mass: float, line_inertia: float) -> tuple[Floats, Floats]:
-    """Return stiffness and mass of one beam for deflection and slope at both ends, integrated from its shape functions."""
+    """Return the stiffness of one beam for deflection and slope at both ends, and its mass integrated from its shape functions."""
+    # Shape functions of deflection and slope at Gauss points; `flexible` is the ratio of shear to bending flexibility
     points, weights = np.polynomial.legendre.leggauss(4)
     s, weights = 0.5 * (points + 1.0), 0.5 * step * weights
     scale = 1.0 / (1.0 + flexible)
@@ -141,6 +143,7 @@ def _bending(step: float, flexible: float, rigidity: float, line_mass: float, li
         ]
     )
     mass = line_mass * (deflection * weights) @ deflection.T + line_inertia * (slope * weights) @ slope.T
+    # The stiffness is known in closed form
     a, b, c = 12.0 / step**3, 6.0 / step**2, 1.0 / step
     stiffness = (
         rigidity

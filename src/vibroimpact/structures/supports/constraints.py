@@ -1,4 +1,4 @@
-"""How supports act on a structure: degrees of freedom held or tied, stiffness and bodies added; then what is left free."""
+"""Constraints of supports on a structure: held and tied degrees of freedom, added stiffness and bodies; and the reduced system."""
 
 from __future__ import annotations
 
@@ -9,36 +9,36 @@ from scipy.sparse import block_diag, coo_array, csr_array, diags_array, kron
 
 from vibroimpact.arrays import Floats, Integers
 from vibroimpact.errors import InputError
-from vibroimpact.structures.bed import area_products, bed_under, elements_within
+from vibroimpact.structures.bed import area_products, elements_within, patch_bed
 from vibroimpact.structures.structure import Structure, rotation_columns
 
-_STILL = 1e-12  # the part of a rigid motion's energy or displacement that rounding may leave
+_STILL = 1e-12  # relative energy or displacement of a rigid motion that counts as rounding
 
 
 @dataclass(frozen=True)
 class HeldStructure:
-    """A structure as its supports hold it.
+    """Structure with its supports, reduced to the free degrees of freedom.
 
     Parameters
     ----------
     structure : Structure
-        The structure.
+        The structure without supports.
     stiffness, mass : sparse arrays, shape (free, free)
-        Of the degrees of freedom that are left free.
+        Of the free degrees of freedom.
     expansion : sparse array, shape (dofs, free)
-        From the free degrees of freedom to those of the structure.
+        Map from the free degrees of freedom to those of the structure.
     free : int array, shape (free,)
-        Their numbers among all: those of the structure, then those of the bodies that hold it.
+        Numbers of the free degrees of freedom: those of the structure come first, then those of supporting bodies.
     order : int array, shape (free,)
-        An elimination order.
+        Elimination order.
     rigid : array, shape (free, r)
-        The rigid motions that the supports leave, r from none to six.
-    left : array, shape (r, 6)
-        What these are: how much of each translation along x, y and z, and of each rotation about the centre of mass.
+        Rigid motions that the supports permit, r from 0 to 6.
+    rigid_coefficients : array, shape (r, 6)
+        Coefficients of these motions: translations along x, y and z, and rotations about the centre of mass.
     bed : sparse array, shape (free, free)
-        The part of the stiffness that beds under plate elements have (see `bed_stiffness`).
+        Contribution of beds under plate elements to the stiffness (see `bed_stiffness`).
     neglected : tuple of int array and array, shape (n,)
-        Degrees of freedom of the structure that are held, and compliances in series with what holds them that are left out.
+        Held degrees of freedom of the structure, and the compliances in series with their supports that the model neglects.
     """
 
     structure: Structure
@@ -48,38 +48,38 @@ class HeldStructure:
     free: Integers
     order: Integers
     rigid: Floats
-    left: Floats
+    rigid_coefficients: Floats
     bed: csr_array
     neglected: tuple[Integers, Floats]
 
 
 class Constraints:
-    """What the supports of a structure do to it, gathered one after the other.
+    """Constraints, stiffness and bodies that supports add to a structure.
 
     Parameters
     ----------
     structure : Structure
-        The structure to be held.
+        The structure.
     """
 
     def __init__(self, structure: Structure) -> None:
         self.structure = structure
-        self._ties: dict[int, dict[int, float]] = {}  # a degree of freedom as a sum of others; of none: it is held
-        self._carried: set[int] = set()  # those that move with bodies
-        self._added: list[tuple[Integers, Floats]] = []  # degrees of freedom and their stiffness
-        self._beds: list[csr_array] = []  # their stiffness, on the degrees of freedom that there were
-        self._bedded = np.zeros(0, dtype=np.int64)  # elements that have a bed
+        self._ties: dict[int, dict[int, float]] = {}  # each tied degree of freedom as a linear combination of others; empty if held
+        self._carried: set[int] = set()  # degrees of freedom attached to bodies
+        self._added: list[tuple[Integers, Floats]] = []  # degrees of freedom and stiffness matrices
+        self._beds: list[csr_array] = []  # stiffness matrices, on the degrees of freedom present at the time
+        self._bedded = np.zeros(0, dtype=np.int64)  # elements with a bed
         self._neglected: list[tuple[Integers, Floats]] = []
         self._bodies: list[tuple[Floats, Floats, Floats]] = []  # stiffness, mass and rigid motions of each
         self._size = structure.stiffness.shape[0]
 
     def hold(self, dofs: Integers) -> None:
-        """Hold degrees of freedom still.
+        """Hold degrees of freedom at zero.
 
         Raises
         ------
         InputError
-            If one moves with a body already.
+            If one is attached to a body.
         """
         for dof in dofs.ravel().tolist():
             if dof in self._carried:
@@ -87,11 +87,11 @@ class Constraints:
             self._ties[dof] = {}
 
     def hold_motion(self, motion: csr_array) -> None:
-        """Hold sums of degrees of freedom, one a row, at zero."""
+        """Hold linear functions of degrees of freedom, the rows of `motion`, at zero."""
         for row in range(motion.shape[0]):
             part = motion[[row]].tocoo()
             waiting, weights = list(zip(part.col.tolist(), part.data.tolist(), strict=True)), dict[int, float]()
-            while waiting:  # in terms of those that are free
+            while waiting:  # express the row in terms of free degrees of freedom
                 dof, value = waiting.pop()
                 if dof in self._ties:
                     waiting += [(other, value * share) for other, share in self._ties[dof].items()]
@@ -102,16 +102,16 @@ class Constraints:
                 self._ties[largest] = {dof: -value / weights[largest] for dof, value in weights.items() if dof != largest}
 
     def attach(self, nodes: Integers, radius: float, body: tuple[Integers, Floats] | None = None) -> None:
-        """Hold the lower face at nodes, or let it move with a rigid body; plate elements that have a bed rest on it.
+        """Hold the lower face at nodes, or attach it to a rigid body; through a bed if the structure has one.
 
         Parameters
         ----------
         nodes : int array
             Nodes of the lower face; of plate elements, those above it.
         radius : float
-            Twice the area over the perimeter of what is held [m]: of a disc its radius.
+            Twice the area over the perimeter of the held part [m]: the radius of a disc.
         body : tuple, optional
-            Six degrees of freedom of a rigid body, and the point [m], shape (3,), that its first three move.
+            Six degrees of freedom of a rigid body, and the point [m], (3,), whose displacements are the first three.
 
         Raises
         ------
@@ -126,20 +126,20 @@ class Constraints:
         if body is not None:
             self._carried.update(dofs)
         if self.structure.bed is not None:
-            self._rest(nodes, bed_under(self.structure.bed, self.structure.thickness / radius), body)
+            self._add_bed(nodes, patch_bed(self.structure.bed, self.structure.thickness / radius), body)
             return
         for dof, (node, axis) in dofs.items():
             self._ties[dof] = {other: -share for other, share in self._lower(node, axis).items() if other != dof}
             if body is not None:
                 self._ties[dof] |= self._row(node, axis, *body)
 
-    def _rest(self, nodes: Integers, bed: tuple[float, float], body: tuple[Integers, Floats] | None) -> None:
-        """Put springs between the lower face of plate elements and what holds it."""
+    def _add_bed(self, nodes: Integers, bed: tuple[float, float], body: tuple[Integers, Floats] | None) -> None:
+        """Add distributed springs between the lower face of plate elements and the ground, or a body."""
         mesh = self.structure.mesh
         elements = elements_within(mesh, nodes)
         if body is not None and np.isin(elements, self._bedded).any():
             self._refuse(int(nodes[0]))
-        elements = np.setdiff1d(elements, self._bedded)  # where two patches overlap there is one bed
+        elements = np.setdiff1d(elements, self._bedded)  # one bed where patches overlap
         self._bedded = np.concatenate([self._bedded, elements])
         stiffness = kron(area_products(mesh, elements), diags_array([bed[0], bed[0], bed[1]]), format="csr")
         entries = []
@@ -154,16 +154,18 @@ class Constraints:
         self._beds.append(csr_array(motion.T @ stiffness @ motion))
 
     def _lower(self, node: int, axis: int) -> dict[int, float]:
-        """Return by which degrees of freedom the lower face at a node moves along an axis."""
+        """Return the displacement of the lower face at a node along an axis as coefficients of degrees of freedom."""
         mesh = self.structure.mesh
         dof = mesh.dofs_per_node * node + axis
         return {dof: 1.0, dof + 3: -0.5 * self.structure.thickness} if mesh.is_flat and axis < 2 else {dof: 1.0}
 
     def _refuse(self, node: int) -> None:
+        """Raise, as two supports hold a node."""
         x, y, _ = self.structure.mesh.nodes[node]
         raise InputError(f"two supports hold the same point, ({x:g}, {y:g}) m; supports must lie apart")
 
     def _row(self, node: int, axis: int, dofs: Integers, point: Floats) -> dict[int, float]:
+        """Return the displacement of a rigid body at a node along an axis as coefficients of its degrees of freedom."""
         at = self.structure.mesh.nodes[node] + [0.0, 0.0, -0.5 * self.structure.thickness] - point
         turned = rotation_columns(*at[:, None])[0, axis]
         return {int(dofs[axis]): 1.0} | {int(dof): float(value) for dof, value in zip(dofs[3:], turned, strict=True) if value != 0.0}
@@ -173,17 +175,17 @@ class Constraints:
         self._added.append((dofs, stiffness))
 
     def neglect(self, dofs: Integers, compliances: Floats) -> None:
-        """Note compliances in series with what holds degrees of freedom still, which are left out; a negative one stiffens."""
+        """Record neglected compliances in series with supports of degrees of freedom; a negative one stiffens the support."""
         self._neglected.append((dofs, compliances))
 
     def add_body(self, stiffness: Floats, mass: Floats, rigid: Floats) -> Integers:
-        """Add a body with degrees of freedom of its own, given its matrices and its rigid motions; return their numbers."""
+        """Add a body with its own degrees of freedom, given its matrices and rigid motions; return the numbers of these."""
         self._bodies.append((stiffness, mass, rigid))
         self._size += len(stiffness)
         return np.arange(self._size - len(stiffness), self._size)
 
     def held(self) -> HeldStructure:
-        """Return the structure as it is held."""
+        """Return the structure with its supports, reduced to the free degrees of freedom."""
         structure = self.structure
         expansion, free = self._expansion()
         added = self._added_stiffness()
@@ -192,16 +194,17 @@ class Constraints:
         stiffness = block_diag([structure.stiffness, *(body[0] for body in self._bodies)], format="csr") + added
         mass = block_diag([structure.mass, *(body[1] for body in self._bodies)], format="csr")
         motions = np.concatenate([structure.rigid_motions(), *(body[2] for body in self._bodies)])
+        # bodies are eliminated last, after all degrees of freedom of the structure that they couple
         order = np.concatenate([structure.order, np.arange(structure.stiffness.shape[0], self._size)])
         place = np.full(self._size, -1)
         place[free] = np.arange(len(free))
         order = place[order]
-        if not self._ties and not self._bodies:
+        if not self._ties and not self._bodies:  # no projection is needed
             reduced = [csr_array(matrix) for matrix in (stiffness, mass, bed)]
         else:
             turned = expansion.T.tocsr()
             reduced = [csr_array(turned @ matrix @ expansion) for matrix in (stiffness, mass, bed)]
-        left = self._left(motions, expansion, free, added)
+        coefficients = self._rigid_coefficients(motions, expansion, free, added)
         neglected = [np.concatenate([np.zeros(0), *(part[side] for part in self._neglected)]) for side in range(2)]
         return HeldStructure(
             structure,
@@ -210,18 +213,19 @@ class Constraints:
             csr_array(expansion[: structure.stiffness.shape[0]]),
             free,
             order[order >= 0],
-            motions[free] @ left.T,
-            left,
+            motions[free] @ coefficients.T,
+            coefficients,
             reduced[2],
             (neglected[0].astype(np.int64), neglected[1]),
         )
 
     def _whole(self, part: csr_array) -> csr_array:
-        """Return a matrix of the degrees of freedom that there were, on those that there are."""
+        """Return a matrix of earlier degrees of freedom enlarged to all present ones."""
         found = part.tocoo()
         return csr_array(coo_array((found.data, (found.row, found.col)), shape=(self._size, self._size)))
 
     def _expansion(self) -> tuple[csr_array, Integers]:
+        """Return the map from free to all degrees of freedom, and the free ones."""
         tied = np.array(sorted(self._ties), dtype=np.int64)
         free = np.setdiff1d(np.arange(self._size), tied)
         entries = [(dof, other, value) for dof, tie in self._ties.items() for other, value in tie.items()]
@@ -229,7 +233,7 @@ class Constraints:
         rows, columns = np.concatenate([free, rows]), np.concatenate([free, columns])
         values = np.concatenate([np.ones(len(free)), values])
         whole = csr_array(coo_array((values, (rows, columns)), shape=(self._size, self._size)))
-        for _ in range(4):  # a tie may lead to a degree of freedom that is tied itself
+        for _ in range(4):  # substitute ties to degrees of freedom that are tied themselves
             if whole[:, tied].nnz == 0:
                 break
             whole = csr_array(whole @ whole)
@@ -237,15 +241,16 @@ class Constraints:
         return csr_array(whole[:, free]), free
 
     def _added_stiffness(self) -> csr_array:
+        """Return the stiffness of springs on all degrees of freedom."""
         total = csr_array((self._size, self._size))
         for dofs, stiffness in self._added:
             rows, columns = np.meshgrid(dofs, dofs, indexing="ij")
             total = total + csr_array(coo_array((stiffness.ravel(), (rows.ravel(), columns.ravel())), shape=total.shape))
         return csr_array(total)
 
-    def _left(self, motions: Floats, expansion: csr_array, free: Integers, added: csr_array) -> Floats:
-        """Return the combinations of rigid motions that break no tie and strain no spring, a row each."""
-        scale = np.repeat([1.0, 1.0 / np.ptp(self.structure.mesh.nodes, axis=0).max()], 3)  # so that rotations count as translations
+    def _rigid_coefficients(self, motions: Floats, expansion: csr_array, free: Integers, added: csr_array) -> Floats:
+        """Return the coefficients of rigid motions that violate no tie and strain no spring, one motion per row."""
+        scale = np.repeat([1.0, 1.0 / np.ptp(self.structure.mesh.nodes, axis=0).max()], 3)  # rotations in units of displacement
         motions = motions * scale
         broken = motions - expansion @ motions[free]
         measure = broken.T @ broken / (motions.T @ motions).trace()

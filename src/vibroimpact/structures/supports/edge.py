@@ -1,4 +1,4 @@
-"""An edge of the plate, clamped or simply supported."""
+"""Clamped or simply supported edge of the plate."""
 
 from __future__ import annotations
 
@@ -15,20 +15,20 @@ from vibroimpact.structures.supports.support import Support
 
 EdgeName = Literal["x-min", "x-max", "y-min", "y-max"]
 EDGES: tuple[EdgeName, ...] = ("x-min", "x-max", "y-min", "y-max")
-_FLAT = 1e-6  # of the plate's length: how far from the extreme a node of the edge may lie
+_FLAT = 1e-6  # of the plate's length: tolerance of the position of nodes of the edge
 
 
 @dataclass(frozen=True)
 class Edge(Support):
-    """A straight edge of the plate.
+    """Support along a straight edge of the plate.
 
     Parameters
     ----------
     edge : str
         "x-min", "x-max", "y-min" or "y-max".
     condition : str
-        "clamped": nothing moves. "simply-supported": the edge keeps its height and its place along itself, and turns
-        about itself freely (the hard condition, the one of Navier's solution); over the whole height of a solid plate.
+        "clamped": all degrees of freedom are held. "simply-supported": displacements vertically and along the edge are held, and
+        rotation about the edge is free (the hard condition, that of Navier's solution); over the full height of a solid plate.
     """
 
     edge: EdgeName
@@ -36,7 +36,7 @@ class Edge(Support):
 
     @property
     def words(self) -> str:
-        """What it is, for people."""
+        """Short description for users."""
         return f"edge {self.edge} {self.condition}"
 
     def hold(self, constraints: Constraints) -> None:
@@ -51,6 +51,7 @@ class Edge(Support):
         turning = [4 - across] if mesh.is_flat else []
         axes = list(range(mesh.dofs_per_node)) if self.condition == "clamped" else [1 - across, 2, *turning]
         constraints.hold(mesh.dofs_per_node * nodes[:, None] + np.array(axes))
+        # the end compliance of plate theory is only noted, for the estimate of errors of frequencies
         if mesh.is_flat and self.condition == "clamped" and constraints.structure.end_compliance:
             order = nodes[np.argsort(mesh.nodes[nodes, 1 - across])]
             compliance = constraints.structure.end_compliance / _lengths(mesh.nodes[order, 1 - across])
@@ -58,7 +59,7 @@ class Edge(Support):
 
 
 def _lengths(at: Floats) -> Floats:
-    """Return the length of an edge that belongs to each of its nodes: the weights of Boole's rule."""
+    """Return the length of the edge per node: the weights of Boole's rule on the elements."""
     found = np.zeros(len(at))
     for start in range(0, len(at) - PLATE_ORDER, PLATE_ORDER):
         part = slice(start, start + PLATE_ORDER + 1)

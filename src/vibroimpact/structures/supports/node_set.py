@@ -1,4 +1,4 @@
-"""A named set of nodes of a mesh that was brought, held still."""
+"""Held set of nodes of an imported mesh."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from vibroimpact.structures.supports.support import Support
 
 @dataclass(frozen=True)
 class NodeSet(Support):
-    """A named set of nodes, or the nodes of a set of elements, held along some axes.
+    """Named set of nodes, or nodes of a named set of elements, held along some axes.
 
     Parameters
     ----------
     name : str
         Name of the set in the mesh file.
     directions : str, default "xyz"
-        The axes along which it is held.
+        Axes along which displacements are held.
     """
 
     name: str
@@ -27,7 +27,7 @@ class NodeSet(Support):
 
     @property
     def words(self) -> str:
-        """What it is, for people."""
+        """Short description for users."""
         return f"set {self.name} held along {self.directions}"
 
     def hold(self, constraints: Constraints) -> None:

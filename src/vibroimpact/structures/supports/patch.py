@@ -1,4 +1,4 @@
-"""A rigid patch: part of the lower side held still."""
+"""Rigid patches: circular or rectangular parts of the lower side that are held."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ from vibroimpact.structures.supports.support import Support, nodes_within
 
 @dataclass(frozen=True)
 class Patch(Support):
-    """A rigid circular patch of the lower side, held still.
+    """Rigid circular patch of the lower side, held in all directions.
 
     Parameters
     ----------
     x, y : float
-        Its centre [m].
+        Centre [m].
     radius : float
-        Its radius [m], > 0.
+        Radius [m], > 0.
     """
 
     x: float
@@ -31,29 +31,29 @@ class Patch(Support):
 
     @property
     def words(self) -> str:
-        """What it is, for people."""
+        """Short description for users."""
         return f"rigid patch of radius {self.radius:g} m at ({self.x:g}, {self.y:g}) m"
 
     @property
     def discs(self) -> Sequence[Disc]:
-        """The patch itself."""
+        """The disc of the patch."""
         return (Disc(self.x, self.y, self.radius),)
 
     def hold(self, constraints: Constraints) -> None:
-        """Hold the nodes of the patch."""
+        """Hold the nodes within the patch."""
         constraints.attach(nodes_within(constraints.structure, self.x, self.y, self.radius, "the patch"), self.radius)
 
 
 @dataclass(frozen=True)
 class RectangularPatch(Support):
-    """A rigid rectangular patch of the lower side, held still.
+    """Rigid rectangular patch of the lower side, held in all directions.
 
     Parameters
     ----------
     x, y : float
-        Its centre [m].
+        Centre [m].
     length, width : float
-        Its sides along x and y [m], > 0.
+        Sides along x and y [m], > 0.
     """
 
     x: float
@@ -63,21 +63,21 @@ class RectangularPatch(Support):
 
     @property
     def words(self) -> str:
-        """What it is, for people."""
+        """Short description for users."""
         return f"rigid patch, {self.length:g} x {self.width:g} m, at ({self.x:g}, {self.y:g}) m"
 
     @property
     def lines(self) -> tuple[Sequence[float], Sequence[float]]:
-        """Its sides."""
+        """The x and y [m] of its sides."""
         return tuple((at - 0.5 * side, at + 0.5 * side) for at, side in ((self.x, self.length), (self.y, self.width)))  # type: ignore[return-value]
 
     @property
     def rims(self) -> tuple[Sequence[float], Sequence[float]]:
-        """Its sides."""
+        """The x and y [m] of its sides."""
         return self.lines
 
     def hold(self, constraints: Constraints) -> None:
-        """Hold the nodes of the patch."""
+        """Hold the nodes within the patch."""
         middle, half = np.array([self.x, self.y]), 0.5 * np.array([self.length, self.width])
         nodes = constraints.structure.mesh.nodes[:, :2]
         low, high = nodes.min(axis=0), nodes.max(axis=0)

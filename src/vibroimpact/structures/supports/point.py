@@ -1,4 +1,4 @@
-"""A point of the lower side that is held."""
+"""Held point of the lower side."""
 
 from __future__ import annotations
 
@@ -14,17 +14,17 @@ from vibroimpact.structures.surface import surface_motion
 
 @dataclass(frozen=True)
 class Point(Support):
-    """A point of the lower side that does not move along some axes; the plate turns about it.
+    """Point of the lower side held along some axes; the plate rotates freely about it.
 
-    A point on a solid has no stiffness in the limit of a fine mesh, so this suits plate elements.
+    It is for plate elements: with solid elements the stiffness at a point tends to zero in the limit of a fine mesh.
 
     Parameters
     ----------
     x, y : float
-        Where it is [m].
+        Position [m].
     directions : str, default "z"
-        The axes along which it is held. Held along x and y too, several points also stretch the plate as it bends, as they
-        lie below its middle.
+        Axes along which the displacement is held. Several points that are also held along x and y stretch the plate in bending, as
+        they lie below its middle plane.
     """
 
     x: float
@@ -33,16 +33,16 @@ class Point(Support):
 
     @property
     def words(self) -> str:
-        """What it is, for people."""
+        """Short description for users."""
         return f"point ({self.x:g}, {self.y:g}) m held along {self.directions}"
 
     @property
     def lines(self) -> tuple[Sequence[float], Sequence[float]]:
-        """Through the point, so that it is a node."""
+        """The x and y [m] of the point, so that it is a node."""
         return (self.x,), (self.y,)
 
     def hold(self, constraints: Constraints) -> None:
-        """Hold the point, by the shape functions of the element that it is on."""
+        """Hold the point, by the shape functions of its element."""
         structure = constraints.structure
         motion, _ = surface_motion(structure.mesh, np.array([[self.x, self.y]]), "lower", structure.thickness, self.words)
         constraints.hold_motion(motion[["xyz".index(letter) for letter in self.directions]])

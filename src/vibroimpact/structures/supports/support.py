@@ -1,4 +1,4 @@
-"""What a support is, and how a structure is held by several."""
+"""Base class of supports, and a structure with several of them."""
 
 from __future__ import annotations
 
@@ -17,46 +17,46 @@ from vibroimpact.structures.surface import lower_nodes
 
 @dataclass(frozen=True)
 class Support:
-    """Base of what holds a structure: frozen, as its numbers are part of the key under which modes are kept."""
+    """Base class of supports: frozen dataclasses, as their fields are part of the key of stored modes."""
 
     @property
     def words(self) -> str:
-        """What it is, for people."""
+        """Short description for users."""
         raise NotImplementedError
 
     @property
     def discs(self) -> Sequence[Disc]:
-        """The discs whose rims should be edges of elements in a mesh made for it: none unless it says so."""
+        """Discs whose rims are to be edges of elements of a generated mesh; none by default."""
         return ()
 
     @property
     def lines(self) -> tuple[Sequence[float], Sequence[float]]:
-        """The x and y [m] that should be edges of elements in a mesh made for it: none unless it says so."""
+        """The x and y [m] of lines that are to be edges of elements of a generated mesh; none by default."""
         return (), ()
 
     @property
     def rims(self) -> tuple[Sequence[float], Sequence[float]]:
-        """Those of the lines that are rims of a held part of the lower face, where strain grows without bound: none unless it says so."""
+        """Those lines that are rims of a held part of the lower face, where the strain is singular; none by default."""
         return (), ()
 
     def hold(self, constraints: Constraints) -> None:
-        """Hold the structure of the constraints.
+        """Add this support to the constraints of a structure.
 
         Raises
         ------
         InputError
-            If there is nothing to hold, or another support holds it.
+            If no nodes are held, or another support holds them.
         """
         raise NotImplementedError
 
 
 def held_by(structure: Structure, supports: Sequence[Support] = ()) -> HeldStructure:
-    """Return a structure as supports hold it; without any it is free.
+    """Return a structure with its supports; free without any.
 
     Raises
     ------
     InputError
-        If a support finds nothing to hold, or two hold the same point.
+        If a support holds no nodes, or two supports hold the same point.
 
     Examples
     --------
@@ -78,7 +78,7 @@ def nodes_within(structure: Structure, x: float, y: float, reach: Floats | float
     Raises
     ------
     InputError
-        If there are fewer than three, which can hold nothing.
+        If there are fewer than three, which cannot hold a plate.
     """
     lower = lower_nodes(structure.mesh)
     apart = structure.mesh.nodes[lower, :2] - [x, y]

@@ -1,4 +1,4 @@
-"""The sphere."""
+"""Rigid bodies: a solid sphere, and a fixed plate."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from vibroimpact.materials import Material
 
 
 def rigid_sphere(radius: Array, material: Material) -> Body:
-    r"""Make a solid sphere whose only compliance is that of its contact.
+    r"""Return a solid sphere whose only compliance is that of its contact.
 
     Parameters
     ----------
@@ -31,3 +31,19 @@ def rigid_sphere(radius: Array, material: Material) -> Body:
     if isinstance(radius, (list, tuple)):
         radius = np.asarray(radius, dtype=float)
     return Body(mass=4.0 / 3.0 * np.pi * radius**3 * material.density, contact_offset=radius)
+
+
+def rigid_plate(thickness: Array = 0.0) -> Body:
+    """Return a fixed plate that does not deform.
+
+    Parameters
+    ----------
+    thickness : float or array, default 0
+        Thickness [m]; the contact lies half of it above the centre.
+
+    Examples
+    --------
+    >>> rigid_plate(0.008).mass
+    inf
+    """
+    return Body(mass=np.inf, contact_offset=0.5 * thickness)

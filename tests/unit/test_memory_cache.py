@@ -11,7 +11,7 @@ import pytest
 from vibroimpact.materials import Material
 from vibroimpact.structures import recipe as recipes
 from vibroimpact.structures import static_compliance as statics
-from vibroimpact.structures.memory_cache import Recent
+from vibroimpact.structures.memory_cache import MemoryCache
 from vibroimpact.structures.recipe import (
     PlateOfPlates,
     Recipe,
@@ -42,18 +42,18 @@ def stored(recipe: Recipe) -> bool:
 
 
 def test_what_was_used_last_stays() -> None:
-    recent = Recent[int](most=10)
+    cache = MemoryCache[int](capacity=10)
     for key, size in (("a", 4), ("b", 4), ("c", 2)):
-        recent.keep(key, ord(key), size)
-    assert recent.find("a") == ord("a")  # so that "b" is the oldest
-    recent.keep("d", ord("d"), 3)
-    assert [recent.find(key) for key in "abcd"] == [ord("a"), None, ord("c"), ord("d")]
-    recent.keep("a", 1, 9)  # again, and larger
-    assert [recent.find(key) for key in "acd"] == [1, None, None]
-    recent.keep("large", 2, 11)
-    assert recent.find("large") is None
-    recent.clear()
-    assert recent.find("a") is None
+        cache.put(key, ord(key), size)
+    assert cache.get("a") == ord("a")  # so that "b" is the oldest
+    cache.put("d", ord("d"), 3)
+    assert [cache.get(key) for key in "abcd"] == [ord("a"), None, ord("c"), ord("d")]
+    cache.put("a", 1, 9)  # again, and larger
+    assert [cache.get(key) for key in "acd"] == [1, None, None]
+    cache.put("large", 2, 11)
+    assert cache.get("large") is None
+    cache.clear()
+    assert cache.get("a") is None
 
 
 def test_a_model_is_read_once(monkeypatch: pytest.MonkeyPatch, folder: Path, tmp_path: Path) -> None:
@@ -78,7 +78,7 @@ def test_a_plate_is_factorised_once_for_all_places(monkeypatch: pytest.MonkeyPat
     places = [(0.0, 0.0), (0.03, 0.05), (0.24, -0.19)]
     fresh = []
     for place in places:
-        statics._LAST.clear()
+        statics._FACTORISED.clear()
         fresh.append(computed_compliance(PLATE, place))
     monkeypatch.setattr(statics, "held_by", lambda *_: pytest.fail("factorised again"))
     assert [computed_compliance(PLATE, place) for place in places] == fresh
@@ -113,7 +113,7 @@ def test_spheres_that_are_similar_share_their_modes(folder: Path, more: dict[str
         np.testing.assert_allclose(*flexibility, rtol=1e-6, atol=1e-8 * np.abs(flexibility[1]).max())
         momenta = [np.abs(model.participation).max(axis=0) for model in (found, direct)]
         np.testing.assert_allclose(*momenta, atol=1e-8 * found.properties.mass**0.5)
-        assert np.linalg.matrix_rank(found.left / np.abs(found.left).max(axis=0)) == 6
+        assert np.linalg.matrix_rank(found.rigid_coefficients / np.abs(found.rigid_coefficients).max(axis=0)) == 6
     assert len(entries()) == 1
 
 
