@@ -23,9 +23,10 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 import vibroimpact as vi
-from vibroimpact.contact.law import CompliantLaw, contact_laws
+from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.laws.lankarani_nikravesh import LankaraniNikravesh
 from vibroimpact.contact.pair import ContactPair
+from vibroimpact.contact.registry import contact_laws
 
 
 def cpu_ms(work: Callable[[], object], runs: int = 15) -> float:

@@ -19,7 +19,7 @@ import numpy as np
 import vibroimpact as vi
 from support import plain_case
 from vibrating import STIFFNESS, drop_on, modes_of, random_modes
-from vibroimpact.contact.law import CompliantLaw, ContactLaw, contact_laws
+from vibroimpact.contact.law import CompliantLaw, ContactLaw
 from vibroimpact.contact.laws.adams_impact import AdamsImpact
 from vibroimpact.contact.laws.hertz import Hertz
 from vibroimpact.contact.laws.hunt_crossley import HuntCrossley
@@ -29,6 +29,7 @@ from vibroimpact.contact.laws.thornton import Thornton
 from vibroimpact.contact.laws.walton_braun import WaltonBraun
 from vibroimpact.contact.pair import ContactPair
 from vibroimpact.contact.quasi_static import QuasiStatic
+from vibroimpact.contact.registry import contact_laws
 
 Floats = np.ndarray
 KEPT = Path(__file__).with_name("golden.npz")

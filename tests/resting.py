@@ -11,8 +11,9 @@ import vibroimpact as vi
 from oracles.riding_integration import Ball
 from oracles.simply_supported import simply_supported
 from vibrating import modes_of, random_modes
-from vibroimpact.contact.law import CompliantLaw, contact_laws
+from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.pair import ContactPair
+from vibroimpact.contact.registry import contact_laws
 from vibroimpact.dynamics.vibrating.free_motion import FreePhase
 from vibroimpact.dynamics.vibrating.stretch import VibratingStretch
 

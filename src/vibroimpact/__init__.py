@@ -43,9 +43,9 @@ if TYPE_CHECKING:
     from vibroimpact.comparison.comparison import compare_laws as compare_laws
     from vibroimpact.comparison.folder import save_comparison as save_comparison
     from vibroimpact.contact.law import ContactLaw as ContactLaw
-    from vibroimpact.contact.law import contact_laws as contact_laws
-    from vibroimpact.contact.law import find_contact_law as find_contact_law
     from vibroimpact.contact.quasi_static import QuasiStatic as QuasiStatic
+    from vibroimpact.contact.registry import contact_laws as contact_laws
+    from vibroimpact.contact.registry import find_contact_law as find_contact_law
     from vibroimpact.dynamics.local_element import identify_local_element as identify_local_element
     from vibroimpact.dynamics.local_element import local_element_deviations as local_element_deviations
     from vibroimpact.dynamics.outcome import Outcome as Outcome
@@ -131,11 +131,11 @@ _HOME = {
     "case_schema": "cases.case",
     "compare_laws": "comparison.comparison",
     "compute_modes": "cases.elastic.modes",
-    "contact_laws": "contact.law",
+    "contact_laws": "contact.registry",
     "convert_units": "units.reading",
     "export_formats": "exporting.export_format",
     "export_result": "exporting.export_result",
-    "find_contact_law": "contact.law",
+    "find_contact_law": "contact.registry",
     "find_material": "materials",
     "identify_local_element": "dynamics.local_element",
     "impacts_in_force": "calibration.force_record",

@@ -11,9 +11,10 @@ import pytest
 import vibroimpact as vi
 from support import one_in
 from told import MASS, RADIUS, STIFFNESS, told
-from vibroimpact.contact.law import CompliantLaw, contact_laws
+from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.laws.lankarani_nikravesh import LankaraniNikravesh
 from vibroimpact.contact.pair import ContactPair
+from vibroimpact.contact.registry import contact_laws
 from vibroimpact.exporting.drop import Drop
 from vibroimpact.exporting.export_format import ExportFormat, export_formats, find_export_format
 from vibroimpact.exporting.load_drop import drop_of_result

@@ -11,7 +11,8 @@ import pytest
 import vibroimpact as vi
 from support import plain_case
 from vibroimpact.cases.build import resolved_case
-from vibroimpact.contact.law import CompliantLaw, ContactLaw, contact_laws
+from vibroimpact.contact.law import CompliantLaw, ContactLaw
+from vibroimpact.contact.registry import contact_laws
 from vibroimpact.contact.static import static_indentation
 from vibroimpact.dynamics.columns import LEDGER
 from vibroimpact.dynamics.restitution import integrated_restitution

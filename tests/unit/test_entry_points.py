@@ -8,7 +8,7 @@ from importlib.metadata import EntryPoint
 import pytest
 
 import vibroimpact as vi
-from vibroimpact.contact import law as module
+from vibroimpact.contact import registry as module
 from vibroimpact.contact.hysteretic import HystereticLaw
 from vibroimpact.laws.pages import law_page
 from vibroimpact.laws.text import law_text

@@ -15,7 +15,6 @@ import pytest
 from told import MASS, RADIUS, STIFFNESS, told, told_case
 from vibroimpact.calibration.speed_function import SpeedFunction
 from vibroimpact.contact.hysteretic import HystereticLaw
-from vibroimpact.contact.law import contact_laws
 from vibroimpact.contact.laws.adams_impact import AdamsImpact
 from vibroimpact.contact.laws.hertz import Hertz
 from vibroimpact.contact.laws.kuwabara_kono import KuwabaraKono
@@ -23,6 +22,7 @@ from vibroimpact.contact.laws.linear_spring_dashpot import LinearSpringDashpot
 from vibroimpact.contact.laws.newton import Newton
 from vibroimpact.contact.laws.tsuji import Tsuji
 from vibroimpact.contact.pair import ContactPair
+from vibroimpact.contact.registry import contact_laws
 from vibroimpact.dynamics.restitution import achieved_restitution
 from vibroimpact.errors import InputError
 from vibroimpact.exporting.contact_parameters import clipped_dashpot

@@ -11,10 +11,11 @@ from scipy.optimize import minimize_scalar
 
 import vibroimpact as vi
 from support import one_in
-from vibroimpact.contact.law import CompliantLaw, contact_laws
+from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.laws.jankowski import Jankowski
 from vibroimpact.contact.laws.tsuji import Tsuji
 from vibroimpact.contact.pair import ContactPair
+from vibroimpact.contact.registry import contact_laws
 
 COMPLIANT = [law for law in contact_laws().values() if issubclass(law, CompliantLaw)]
 

@@ -12,12 +12,13 @@ import vibroimpact as vi
 from resting import random_drop
 from support import one_in
 from vibrating import STIFFNESS, drop_on, modes_of
-from vibroimpact.contact.law import CompliantLaw, contact_laws
+from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.laws.hertz import Hertz
 from vibroimpact.contact.laws.jkr import JKR
 from vibroimpact.contact.laws.lankarani_nikravesh import LankaraniNikravesh
 from vibroimpact.contact.pair import ContactPair
 from vibroimpact.contact.quasi_static import QuasiStatic
+from vibroimpact.contact.registry import contact_laws
 from vibroimpact.dynamics.columns import LEDGER, VIBRATION_LEDGER
 from vibroimpact.dynamics.vibrating import visit
 from vibroimpact.dynamics.vibrating.bodies import centre_of, system_of

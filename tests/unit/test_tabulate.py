@@ -9,10 +9,11 @@ import pytest
 
 import vibroimpact as vi
 from vibrating import STIFFNESS, drop_on, modes_of
-from vibroimpact.contact.law import CompliantLaw, ContactLaw, contact_laws
+from vibroimpact.contact.law import CompliantLaw, ContactLaw
 from vibroimpact.contact.laws.hertz import Hertz
 from vibroimpact.contact.laws.lankarani_nikravesh import LankaraniNikravesh
 from vibroimpact.contact.pair import ContactPair
+from vibroimpact.contact.registry import contact_laws
 from vibroimpact.dynamics import tabulate as module
 from vibroimpact.dynamics.contact import Contact
 from vibroimpact.dynamics.encounter import Encounter

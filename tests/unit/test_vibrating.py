@@ -8,11 +8,12 @@ import pytest
 import vibroimpact as vi
 from support import one_in
 from vibrating import STIFFNESS, drop_on, modes_of, random_modes
-from vibroimpact.contact.law import CompliantLaw, contact_laws
+from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.laws.adams_impact import AdamsImpact
 from vibroimpact.contact.laws.hertz import Hertz
 from vibroimpact.contact.laws.lankarani_nikravesh import LankaraniNikravesh
 from vibroimpact.contact.pair import ContactPair
+from vibroimpact.contact.registry import contact_laws
 from vibroimpact.dynamics.columns import LEDGER, VIBRATION_LEDGER
 
 HERTZ = Hertz(stiffness=STIFFNESS)

@@ -19,9 +19,9 @@ from vibroimpact.calibration.calibrate_case import calibrate_case, calibrated_ca
 from vibroimpact.calibration.matchable import MATCHABLE
 from vibroimpact.calibration.observations import from_table
 from vibroimpact.calibration.tunables import modal_damping
-from vibroimpact.contact.law import contact_laws
 from vibroimpact.contact.laws.hertz import Hertz
 from vibroimpact.contact.pair import ContactPair
+from vibroimpact.contact.registry import contact_laws
 
 ANY_PAIR = ContactPair(1e9, 0.01, 0.01, 1e8, 0.3)
 FREE = {name: free for name, law in contact_laws().items() if (free := law.example(ANY_PAIR).free_parameter)}

@@ -13,11 +13,12 @@ from moving import HERTZ, free_beam, modes_at, row_of_balls
 from oracles.moving_bodies import integrate
 from support import one_in
 from vibrating import drop_on
-from vibroimpact.contact.law import CompliantLaw, contact_laws
+from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.laws.kuwabara_kono import KuwabaraKono
 from vibroimpact.contact.laws.linear_spring_dashpot import LinearSpringDashpot
 from vibroimpact.contact.laws.tsuji import Tsuji
 from vibroimpact.contact.pair import ContactPair
+from vibroimpact.contact.registry import contact_laws
 
 PAIR = ContactPair(2.4264724e9, 0.025, 0.09032078879, 8e7, 0.28)
 COMPLIANT = [law for law in contact_laws().values() if issubclass(law, CompliantLaw)]

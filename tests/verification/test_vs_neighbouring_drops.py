@@ -15,13 +15,14 @@ import vibroimpact as vi
 from oracles.modal_integration import Drop, Touch
 from support import one_in
 from vibrating import STIFFNESS, drop_on, modes_of, random_modes
-from vibroimpact.contact.law import CompliantLaw, contact_laws
+from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.laws.adams_impact import AdamsImpact
 from vibroimpact.contact.laws.hertz import Hertz
 from vibroimpact.contact.laws.jankowski import Jankowski
 from vibroimpact.contact.laws.lankarani_nikravesh import LankaraniNikravesh
 from vibroimpact.contact.laws.thornton import Thornton
 from vibroimpact.contact.pair import ContactPair
+from vibroimpact.contact.registry import contact_laws
 
 PAIR = ContactPair(2.4264724e9, 0.025, 0.09032078879, 8e7, 0.28)
 COMPLIANT = [law for law in contact_laws().values() if issubclass(law, CompliantLaw)]

@@ -15,8 +15,9 @@ import pytest
 
 import vibroimpact as vi
 from told import MASS, STIFFNESS, told, told_case
-from vibroimpact.contact.law import ContactLaw, contact_laws
+from vibroimpact.contact.law import ContactLaw
 from vibroimpact.contact.pair import ContactPair
+from vibroimpact.contact.registry import contact_laws
 from vibroimpact.dynamics.restitution import achieved_restitution
 from vibroimpact.exporting.drop import Drop
 from vibroimpact.exporting.export_format import find_export_format

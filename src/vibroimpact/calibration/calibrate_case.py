@@ -22,8 +22,8 @@ from vibroimpact.cases.fields.contact import read_contact
 from vibroimpact.cases.fields.local import LocalSection
 from vibroimpact.cases.reader import load_table, prefix_errors, read_case
 from vibroimpact.cases.slips.find import slips
-from vibroimpact.contact.law import find_contact_law
 from vibroimpact.contact.pair import ContactPair
+from vibroimpact.contact.registry import find_contact_law
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.errors import InputError
 

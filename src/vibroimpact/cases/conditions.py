@@ -12,8 +12,9 @@ import numpy as np
 
 from vibroimpact.arrays import Array
 from vibroimpact.contact.elastic_plastic import ElasticPlasticLaw
-from vibroimpact.contact.law import ContactLaw, InstantaneousLaw, find_contact_law
+from vibroimpact.contact.law import ContactLaw, InstantaneousLaw
 from vibroimpact.contact.pair import effective_modulus, hertz_stiffness
+from vibroimpact.contact.registry import find_contact_law
 from vibroimpact.materials import RIGID, Material
 
 _LIKE_HERTZ = 0.01  # relative: a stiffness that differs by more was measured or fitted, and includes effects beyond Hertz's theory

@@ -10,8 +10,9 @@ from vibroimpact.arrays import Array
 from vibroimpact.bodies.body import Body
 from vibroimpact.bodies.rigid import rigid_plate, rigid_sphere
 from vibroimpact.cases.fields.section import derived
-from vibroimpact.contact.law import ContactLaw, find_contact_law
+from vibroimpact.contact.law import ContactLaw
 from vibroimpact.contact.pair import ContactPair, effective_modulus
+from vibroimpact.contact.registry import find_contact_law
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.errors import InputError
 

@@ -10,7 +10,8 @@ from vibroimpact.cases.build import resolved_case
 from vibroimpact.cases.case import Case
 from vibroimpact.cases.reader import read_case
 from vibroimpact.cases.rigid import contact_laws_of, contact_pair, touch_speed
-from vibroimpact.contact.law import ContactLaw, find_contact_law, unit_of
+from vibroimpact.contact.law import ContactLaw, unit_of
+from vibroimpact.contact.registry import find_contact_law
 from vibroimpact.dynamics.restitution import law_achieving
 from vibroimpact.errors import InputError, did_you_mean
 from vibroimpact.ranges import Range

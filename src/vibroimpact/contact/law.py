@@ -1,4 +1,4 @@
-"""The interface of a contact law, and the registry of all laws.
+"""The interface of a contact law.
 
 A law is a frozen dataclass in a file of its own under `vibroimpact.contact.laws`, where the registry finds it. It declares
 
@@ -13,9 +13,7 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
-from functools import cache
-from importlib.metadata import EntryPoint, entry_points
-from typing import Any, ClassVar, Literal, Self, cast
+from typing import Any, ClassVar, Literal, Self
 
 import numpy as np
 
@@ -24,7 +22,6 @@ from vibroimpact.contact.docstring import with_parameters
 from vibroimpact.contact.pair import ContactPair
 from vibroimpact.errors import InputError, did_you_mean
 from vibroimpact.ranges import Range
-from vibroimpact.registry import find_named, modules_in
 
 
 def parameter(
@@ -304,6 +301,7 @@ def unit_of(item: dataclasses.Field[Any], exponent: Any) -> str:
 
     Examples
     --------
+    >>> from vibroimpact.contact.registry import find_contact_law
     >>> stiffness = find_contact_law("hertz").__dataclass_fields__["stiffness"]
     >>> unit_of(stiffness, 1.5), unit_of(stiffness, 1.0)
     ('N/m^1.5', 'N/m')
@@ -319,6 +317,7 @@ def is_conservative(law: ContactLaw) -> bool:
 
     Examples
     --------
+    >>> from vibroimpact.contact.registry import find_contact_law
     >>> is_conservative(find_contact_law("newton")(restitution=1.0))
     True
     """
@@ -330,65 +329,6 @@ def is_conservative(law: ContactLaw) -> bool:
     return not (np.any(dissipative) or np.any(law.plastic_work(deltas)) or np.any(law.elastic_energy(law.release_level)))
 
 
-@cache
-def contact_laws() -> Mapping[str, type[ContactLaw]]:
-    """Return all contact laws by name: those of this package and those of the entry points "vibroimpact.contact_laws".
-
-    Raises
-    ------
-    InputError
-        If two laws have the same name, or an entry point can't be loaded or is not a contact law.
-
-    Examples
-    --------
-    >>> "hertz" in contact_laws()
-    True
-    """
-    modules = modules_in("vibroimpact.contact.laws")
-    laws = [law for module in modules for law in vars(module).values() if _is_law(law) and law.__module__ == module.__name__]
-    found: dict[str, type[ContactLaw]] = {}
-    for law in laws + [_loaded(point) for point in entry_points(group="vibroimpact.contact_laws")]:
-        if law.name in found:
-            raise InputError(
-                f'two contact laws are called "{law.name}": {found[law.name].__module__} and {law.__module__}; '
-                "rename one, or uninstall its package"
-            )
-        found[law.name] = law
-    return found
-
-
-def _is_law(candidate: object) -> bool:
-    return isinstance(candidate, type) and issubclass(candidate, ContactLaw)
-
-
-def _loaded(point: EntryPoint) -> type[ContactLaw]:
-    """Return the contact law of an entry point."""
-    try:
-        law = point.load()
-    except Exception as error:  # any error of another package is reported with the entry point's name
-        raise InputError(
-            f'the contact law "{point.name}" of the entry point {point.value} can\'t be loaded: {error}; mend or uninstall its package'
-        ) from error
-    missing = [key for key in ("name", "equation", "source") if not isinstance(getattr(law, key, None), str)]
-    if not _is_law(law) or missing:
-        lacks = f"; it has no {', '.join(missing)}" if _is_law(law) else ""
-        raise InputError(f'the entry point "{point.name}", {point.value}, is not a contact law with name, equation and source{lacks}')
-    return cast("type[ContactLaw]", law)
-
-
 def _with_unit(item: dataclasses.Field[Any]) -> str:
     """Return the meaning of a parameter with its unit, for messages."""
     return f"{item.metadata['meaning']} [{item.metadata['unit']}]" if item.metadata["unit"] else str(item.metadata["meaning"])
-
-
-def find_contact_law(name: str) -> type[ContactLaw]:
-    """Return the contact law with a name.
-
-    Raises
-    ------
-    InputError
-        If there is none; the message names the closest.
-    """
-    if not isinstance(name, str):
-        raise InputError(f"a contact law is found by its name, a text, not {name!r}")
-    return find_named("contact law", name, contact_laws())

@@ -15,8 +15,9 @@ from vibroimpact.bodies.body import Body
 from vibroimpact.bodies.rigid import rigid_plate
 from vibroimpact.cases.reader import read_case
 from vibroimpact.cases.rigid import contact_pair
-from vibroimpact.contact.law import CompliantLaw, ContactLaw, find_contact_law, unit_of
+from vibroimpact.contact.law import CompliantLaw, ContactLaw, unit_of
 from vibroimpact.contact.pair import ContactPair
+from vibroimpact.contact.registry import find_contact_law
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.restitution import achieved_restitution
 from vibroimpact.dynamics.simulate import simulate

@@ -8,7 +8,8 @@ from collections.abc import Iterable
 from os import PathLike
 from pathlib import Path
 
-from vibroimpact.contact.law import CompliantLaw, ContactLaw, contact_laws
+from vibroimpact.contact.law import CompliantLaw, ContactLaw
+from vibroimpact.contact.registry import contact_laws
 from vibroimpact.errors import InputError
 from vibroimpact.laws.text import SPEED, ParameterText, asked_and_achieved, law_text
 from vibroimpact.report.markdown_table import markdown_table

@@ -9,7 +9,8 @@ from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
-from vibroimpact.contact.law import CompliantLaw, ContactLaw, contact_laws, find_contact_law
+from vibroimpact.contact.law import CompliantLaw, ContactLaw
+from vibroimpact.contact.registry import contact_laws, find_contact_law
 from vibroimpact.laws.text import SPEED, LawText, ParameterText, asked_and_achieved, law_text, plain_paragraph, short_source
 from vibroimpact.report.terminal_table import TerminalColumn, TerminalTable
 

@@ -92,7 +92,7 @@ def law_text(law: type[ContactLaw]) -> LawText:
 
     Examples
     --------
-    >>> from vibroimpact.contact.law import find_contact_law
+    >>> from vibroimpact.contact.registry import find_contact_law
     >>> text = law_text(find_contact_law("flores"))
     >>> text.source, text.loss_parameters, text.parameters[0].default
     ('Flores et al. 2011, Multibody Syst. Dyn. 25:357', 'restitution', 'from the materials')
@@ -146,7 +146,7 @@ def asked_and_achieved(law: type[ContactLaw]) -> list[tuple[float, float]]:
 
     Examples
     --------
-    >>> from vibroimpact.contact.law import find_contact_law
+    >>> from vibroimpact.contact.registry import find_contact_law
     >>> [(asked, round(achieved, 3)) for asked, achieved in asked_and_achieved(find_contact_law("flores"))]
     [(0.9, 0.894), (0.7, 0.683), (0.5, 0.47), (0.3, 0.256)]
     """
@@ -162,7 +162,7 @@ def short_source(law: type[ContactLaw]) -> str:
 
     Examples
     --------
-    >>> from vibroimpact.contact.law import find_contact_law
+    >>> from vibroimpact.contact.registry import find_contact_law
     >>> short_source(find_contact_law("jkr")), short_source(find_contact_law("adams-poisson"))
     ('Johnson, Kendall & Roberts 1971', 'MSC Adams/Solver guide')
     """

@@ -17,7 +17,8 @@ from vibroimpact.cases.fields.quantities import Quantity
 from vibroimpact.cases.fields.section import Section
 from vibroimpact.cases.reader import read_case
 from vibroimpact.cases.schema import DropSection, PlateSection, RunSection, SphereSection
-from vibroimpact.contact.law import find_contact_law, unit_of
+from vibroimpact.contact.law import unit_of
+from vibroimpact.contact.registry import find_contact_law
 from vibroimpact.errors import InputError, did_you_mean
 from vibroimpact.materials import find_material
 from vibroimpact.ranges import Range

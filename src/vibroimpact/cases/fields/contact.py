@@ -10,7 +10,8 @@ from vibroimpact.cases.fields.bounds import MOST_OF_A_LIST, check_count
 from vibroimpact.cases.fields.local import LocalSection
 from vibroimpact.cases.fields.quantities import quantity_schema, read_quantity
 from vibroimpact.cases.fields.section import read_table
-from vibroimpact.contact.law import ContactLaw, contact_laws, find_contact_law, unit_of
+from vibroimpact.contact.law import ContactLaw, unit_of
+from vibroimpact.contact.registry import contact_laws, find_contact_law
 from vibroimpact.errors import InputError, did_you_mean
 from vibroimpact.shown import shown
 

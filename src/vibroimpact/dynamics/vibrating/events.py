@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
 from vibroimpact.arrays import Bools, Floats
+from vibroimpact.dynamics.vibrating.linear_system import State
 from vibroimpact.dynamics.vibrating.solve_stretches import EndCondition
 from vibroimpact.dynamics.vibrating.stretch import VibratingStretch
 
@@ -23,6 +25,15 @@ class Event:
 
     condition: EndCondition
     x: float
+
+
+@dataclass(frozen=True)
+class OtherEvent:
+    """Event of a contact that is not part of a stretch: its function of the state, positive after the event, and the action it causes."""
+
+    value: Callable[[State], Floats]
+    act: Callable[[], object]
+    x: float = np.inf
 
 
 def first_event(stretch: VibratingStretch, speed: float, span: float) -> Event | None:
@@ -62,3 +73,9 @@ def _crossing(values: Floats, reached: Bools) -> float:
     before, after = values[last - 1], values[last]
     part = before / (before - after) if before > 0.0 > after else 1.0
     return float(max(GRID[last - 1] + part * GRID[1], 0.5 * GRID[1]))
+
+
+def first_crossing(values: Floats) -> float | None:
+    """Return the x of the first grid point at which values have become positive, or None."""
+    crossed = (values[1:] > 0.0) & (values[:-1] <= 0.0)
+    return float(GRID[1:][crossed][0]) if crossed.any() else None

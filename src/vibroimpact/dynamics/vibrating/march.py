@@ -15,7 +15,6 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.contact.law import CompliantLaw
-from vibroimpact.contact.roots import find_root
 from vibroimpact.contact.static import undamped_depth
 from vibroimpact.dynamics.collocation import Map
 from vibroimpact.dynamics.lockstep import Coroutine, solve
@@ -27,22 +26,27 @@ from vibroimpact.dynamics.vibrating.active_contact import (
     motion_speed,
     record_peaks,
 )
-from vibroimpact.dynamics.vibrating.events import GRID, ZERO_RATE, Event, first_event
+from vibroimpact.dynamics.vibrating.events import GRID, ZERO_RATE, Event, OtherEvent, first_crossing, first_event
 from vibroimpact.dynamics.vibrating.free_motion import FreePhase, recoil_loss
 from vibroimpact.dynamics.vibrating.linear_system import FreeMotion, LinearSystem, State
 from vibroimpact.dynamics.vibrating.local import LocalContact
 from vibroimpact.dynamics.vibrating.next_touch import next_touch, time_to_separation
 from vibroimpact.dynamics.vibrating.receptance import contact_view
-from vibroimpact.dynamics.vibrating.recoil import along_motion, end_of_recoil, recoil_end_value
+from vibroimpact.dynamics.vibrating.recoil import end_of_recoil, recoil_end_value
 from vibroimpact.dynamics.vibrating.solve_stretches import StretchProblem
 from vibroimpact.dynamics.vibrating.stretch import VibratingStretch
-from vibroimpact.dynamics.vibrating.stretch_end import length_before_event, length_growth, solve_to_event, with_separation_loss
+from vibroimpact.dynamics.vibrating.stretch_end import (
+    length_before_event,
+    length_growth,
+    solve_to_event,
+    solve_to_zero,
+    with_separation_loss,
+)
 from vibroimpact.errors import ComputationError
 
 _FIRST_LENGTH = 0.125  # of the duration of a contact: length of the first stretch
 _TOUCH_SLACK = 1e-12  # of the deepest indentation: a smaller overlap is no touch while other contacts push
 _MOST_STRETCHES = 200_000
-_MOST_CORRECTIONS = 8
 _ROUNDING = 1e-14  # of the deepest indentation
 _NO_FORCE = 1e-10  # of the largest force
 
@@ -252,7 +256,7 @@ class March:
             self.accept(pushing, stretch)
             self.next_length = stretch.length * length_growth(stretch, self.tolerance)
             return True
-        ended = yield from self.solve_to_other_event(pushing, stretch, other)
+        ended = yield from solve_to_zero(stretch, other.value, other.x, partial(self.stretch_problem, pushing, stretch.rule.time_map))
         if ended is None or first_event(ended, speed, span) is not None:
             self.next_length = 0.5 * stretch.length
             return False
@@ -353,7 +357,7 @@ class March:
                 found.append(
                     OtherEvent(partial(recoil_end_value, self.system, contact, kind), partial(self.end_recoil, contact, parts=kind == 0))
                 )
-        seen = [replace(other, x=x) for other in found if (x := _first_crossing(other.value(states))) is not None]
+        seen = [replace(other, x=x) for other in found if (x := first_crossing(other.value(states))) is not None]
         return min(seen, key=lambda other: other.x, default=None)
 
     def overlap_beyond(self, number: int, slack: float, states: State, law: CompliantLaw | None = None) -> Floats:
@@ -368,40 +372,3 @@ class March:
             apart = other not in self.active and float(self.overlap_beyond(other, slack, before)) <= 0.0
             if apart and float(self.overlap_beyond(other, 0.5 * slack, self.state)) > 0.0:
                 self.begin_contact(other)
-
-    def solve_to_other_event(
-        self, pushing: list[ActiveContact], stretch: VibratingStretch, other: OtherEvent
-    ) -> Coroutine[VibratingStretch | None]:
-        """Solve a stretch again so that it ends where another contact touches or its recoil ends; return None if that fails."""
-        rule, full_length = stretch.rule, stretch.length
-        low, high = (full_length * float(rule.map_time(np.array([x]))[0]) for x in (max(other.x - GRID[1], 0.0), other.x))
-        length = float(find_root(along_motion(stretch, other.value), np.array([low]), np.array([high]))[0])
-        # Newton's method for the length, with the rate of the event function by a finite difference
-        for _ in range(_MOST_CORRECTIONS):
-            ended: VibratingStretch = yield from solve(self.stretch_problem(pushing, rule.time_map, length))
-            if not ended.solved:
-                return None
-            step = 1e-6 * length
-            now, before = other.value(ended.end), other.value(ended.state(np.array([length - step])))[0]
-            missing = float(now / (now - before)) * step
-            if abs(missing) <= 1e-13 * full_length:
-                return ended
-            length -= missing
-            if not 0.0 < length <= 1.01 * full_length:
-                return None
-        return ended
-
-
-@dataclass(frozen=True)
-class OtherEvent:
-    """Event of a contact that is not part of a stretch: its function of the state, positive after the event, and the action it causes."""
-
-    value: Callable[[State], Floats]
-    act: Callable[[], object]
-    x: float = np.inf
-
-
-def _first_crossing(values: Floats) -> float | None:
-    """Return the x of the first grid point at which values have become positive, or None."""
-    crossed = (values[1:] > 0.0) & (values[:-1] <= 0.0)
-    return float(GRID[1:][crossed][0]) if crossed.any() else None

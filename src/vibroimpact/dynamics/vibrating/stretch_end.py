@@ -2,18 +2,24 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
 
+from vibroimpact.arrays import Floats
+from vibroimpact.contact.roots import find_root
 from vibroimpact.dynamics.collocation import Map
 from vibroimpact.dynamics.lockstep import Coroutine, solve
 from vibroimpact.dynamics.vibrating.events import GRID, Event, first_event
+from vibroimpact.dynamics.vibrating.linear_system import State
 from vibroimpact.dynamics.vibrating.receptance import NODES, radau_eigenbasis
+from vibroimpact.dynamics.vibrating.recoil import along_motion
 from vibroimpact.dynamics.vibrating.solve_stretches import StretchProblem
 from vibroimpact.dynamics.vibrating.stretch import VibratingStretch
 
 _EASY = 0.01  # target roughness of the next stretch, relative to the root of the tolerance
+_MOST_CORRECTIONS = 8  # of the length of a stretch that ends at a zero of a function
 _MOST_ATTEMPTS = 4  # solutions per stretch, until no earlier event is found
 _BEFORE_END = 0.98  # in x: an event beyond is the one at the end
 _AT_END = 1e-12  # relative: an event may lie so far beyond the end of the first solution
@@ -46,6 +52,41 @@ def solve_to_event(
             return (event, ended) if ended.resolved(tolerance, energy) else None
         stretch, event = ended, before
     return None
+
+
+def solve_to_zero(
+    stretch: VibratingStretch, value: Callable[[State], Floats], near: float, problem: Callable[[float], StretchProblem]
+) -> Coroutine[VibratingStretch | None]:
+    """Return a stretch solved again up to a zero of a function of the state, as at an event of another contact; None if that fails.
+
+    Parameters
+    ----------
+    stretch : VibratingStretch
+        The stretch in which the function becomes positive.
+    value : callable
+        The function.
+    near : float
+        First x of `GRID` at which it is positive.
+    problem : callable
+        The problem of a stretch of a length [s] from the same state.
+    """
+    rule, full_length = stretch.rule, stretch.length
+    low, high = (full_length * float(rule.map_time(np.array([x]))[0]) for x in (max(near - GRID[1], 0.0), near))
+    length = float(find_root(along_motion(stretch, value), np.array([low]), np.array([high]))[0])
+    # Newton's method for the length, with the rate of the function by a finite difference
+    for _ in range(_MOST_CORRECTIONS):
+        ended: VibratingStretch = yield from solve(problem(length))
+        if not ended.solved:
+            return None
+        step = 1e-6 * length
+        now, before = value(ended.end), value(ended.state(np.array([length - step])))[0]
+        missing = float(now / (now - before)) * step
+        if abs(missing) <= 1e-13 * full_length:
+            return ended
+        length -= missing
+        if not 0.0 < length <= 1.01 * full_length:
+            return None
+    return ended
 
 
 def length_before_event(stretch: VibratingStretch, event: Event, tolerance: float, energy: float) -> float:
