@@ -149,7 +149,7 @@ def calibrated_case(case: Case, found: Calibration) -> Case:
     found : Calibration
         Result of its calibration.
     """
-    table = {key: value for key, value in resolved_case(case).items() if key != "calibrate"}
+    table: dict[str, Any] = {key: value for key, value in resolved_case(case).items() if key != "calibrate"}
     values = found.impacts[1].tolist()
     if found.parameter in _DAMPINGS:
         body = found.parameter.partition(".")[0]

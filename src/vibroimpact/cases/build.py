@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import fields, replace
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, cast
 
 from vibroimpact.calibration.section import calibrate_table
 from vibroimpact.cases.fields.material import material_table
@@ -12,6 +12,7 @@ from vibroimpact.cases.rigid import PLATE_FALLS, contact_laws_of, deforms, elast
 from vibroimpact.contact.law import CompliantLaw, is_conservative
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.errors import InputError
+from vibroimpact.resolved_case import ResolvedCase
 
 if TYPE_CHECKING:
     from vibroimpact.cases.schema import CaseTable, PlateSection, SphereSection
@@ -97,7 +98,7 @@ def problem_of(case: CaseTable, progress: Callable[[float], None] | None = None,
     return couple_bodies(case, problem, progress, tell)
 
 
-def resolved_case(case: CaseTable) -> dict[str, Any]:
+def resolved_case(case: CaseTable) -> ResolvedCase:
     """Return a case as a table in SI with all defaults resolved, as written to `case.toml`; reading it gives the same case."""
     laws = contact_laws_of(case)
     contact: dict[str, Any] = {"law": case.contact.law}
@@ -107,7 +108,7 @@ def resolved_case(case: CaseTable) -> dict[str, Any]:
         if item.name in case.contact.parameters or values[0] is not None:
             contact[item.name] = values if len(values) > 1 and len(set(values)) > 1 else values[0]
     number = impact_limit(case)
-    return {
+    table = {
         "schema_version": case.schema_version,
         "name": case.name,
         "sphere": _body(case, "sphere"),
@@ -119,6 +120,7 @@ def resolved_case(case: CaseTable) -> dict[str, Any]:
         **({"calibrate": calibrate_table(case.calibrate)} if case.calibrate else {}),
         **({"sweep": case.sweep.model_dump(exclude_none=True, mode="json")} if case.sweep else {}),
     }
+    return cast("ResolvedCase", table)
 
 
 def _body(case: CaseTable, name: Literal["sphere", "plate"]) -> dict[str, Any]:

@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
@@ -16,6 +16,7 @@ from vibroimpact.contact.law import ContactLaw, InstantaneousLaw
 from vibroimpact.contact.pair import effective_modulus, hertz_stiffness
 from vibroimpact.contact.registry import find_contact_law
 from vibroimpact.materials import RIGID, Material
+from vibroimpact.resolved_case import ResolvedCase
 
 _LIKE_HERTZ = 0.01  # relative: a stiffness that differs by more was measured or fitted, and includes effects beyond Hertz's theory
 
@@ -59,19 +60,19 @@ class Conditions:
 
     Parameters
     ----------
-    case : mapping
+    case : ResolvedCase
         A resolved case; any number in it may be an array with one value per drop. Empty for a problem made in Python.
     summary : DropSummary
         Its peak values.
     """
 
-    case: Mapping[str, Any]
+    case: ResolvedCase
     summary: DropSummary
 
     @cached_property
     def materials(self) -> dict[str, Material]:
         """The materials of "sphere" and "plate"."""
-        return {body: _material(self.case[body]["material"]) for body in ("sphere", "plate")}
+        return {"sphere": _material(self.case["sphere"]["material"]), "plate": _material(self.case["plate"]["material"])}
 
     @property
     def radius(self) -> Array:
@@ -143,7 +144,7 @@ class Conditions:
         ratio = self.law_parameter("stiffness") / hertz_stiffness(self.modulus, self.effective_radius)
         return (abs(ratio - 1.0) < _LIKE_HERTZ) & (self.law_parameter("exponent", 1.5) == 1.5)
 
-    def model(self, body: str) -> str:
+    def model(self, body: Literal["sphere", "plate"]) -> str:
         """Return whether "sphere" or "plate" is "rigid" or "elastic"."""
         return str(self.case[body].get("model", "rigid"))
 

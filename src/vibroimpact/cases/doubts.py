@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Container, Mapping
-from typing import Any
+from collections.abc import Container
 
 from vibroimpact.cases.conditions import Conditions, DropSummary
 from vibroimpact.cases.limit import limits, numbers_of
 from vibroimpact.cases.slips.find import slips
+from vibroimpact.resolved_case import ResolvedCase
 
 
-def doubts(case: Mapping[str, Any], summary: DropSummary, aside: Container[str] = ()) -> list[str]:
+def doubts(case: ResolvedCase, summary: DropSummary, aside: Container[str] = ()) -> list[str]:
     """Return a sentence for each doubt about a drop: slips of units and limits exceeded, each with its cause and a remedy.
 
     Parameters
     ----------
-    case : mapping
+    case : ResolvedCase
         A resolved case; empty for a problem made in Python, for which only limits that do not need the case are checked.
     summary : DropSummary
         Computed or expected peak values of the drop.

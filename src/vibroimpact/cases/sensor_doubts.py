@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from vibroimpact.dynamics.sensors.recording import Signal
+from vibroimpact.resolved_case import ResolvedCase
 from vibroimpact.units.display import text
 
 _PROMISED = 0.01  # relative to the rms value: error of a signal by truncated modes above which it is doubted
@@ -15,7 +16,7 @@ _CUTS = 1.5  # over the contact duration: approximate cut-off frequency of the f
 _ENOUGH = 1.2  # recommended range over the peak magnitude
 
 
-def sensor_doubts(case: Mapping[str, Any], signals: Mapping[str, Signal], highest: float, duration: float) -> list[str]:
+def sensor_doubts(case: ResolvedCase, signals: Mapping[str, Signal], highest: float, duration: float) -> list[str]:
     """Return a sentence for each doubt about the signals of sensors.
 
     Parameters
@@ -82,7 +83,7 @@ def _remedy(signal: Signal, highest: float) -> str:
     return f'ask for plate.max_frequency = "{wanted / 1e3:.3g} kHz" or so, or for a lower rate'
 
 
-def _distance_in_thicknesses(case: Mapping[str, Any], place: Any) -> float:
+def _distance_in_thicknesses(case: ResolvedCase, place: Any) -> float:
     """Return the in-plane distance of a sensor from the contact over the plate thickness; infinite if not known."""
     size = case.get("plate", {}).get("size")
     mesh = case.get("plate", {}).get("mesh", {})
@@ -91,7 +92,7 @@ def _distance_in_thicknesses(case: Mapping[str, Any], place: Any) -> float:
     return math.dist(place, case["drop"]["position"]) / float(size[2])
 
 
-def _thickness_error(case: Mapping[str, Any], signal: Signal, duration: float) -> float:
+def _thickness_error(case: ResolvedCase, signal: Signal, duration: float) -> float:
     """Return the estimated relative error by thickness motion: square of the signal bandwidth over the first thickness-shear resonance."""
     material, thickness = case["plate"]["material"], case["plate"]["size"][2]
     shear = math.sqrt(material["youngs_modulus"] / (2.0 * (1.0 + material["poissons_ratio"]) * material["density"]))

@@ -16,6 +16,7 @@ from vibroimpact.contact.law import ContactLaw, InstantaneousLaw
 from vibroimpact.contact.quasi_static import QuasiStatic
 from vibroimpact.dynamics.sensors.sensor import Sensor
 from vibroimpact.errors import InputError
+from vibroimpact.resolved_case import ResolvedCase
 
 if TYPE_CHECKING:
     from vibroimpact.structures.modal_model import ModalModel  # which loads sparse matrices
@@ -67,7 +68,7 @@ class Problem:
         What watches the plate.
     tolerance : float, default 1e-9
         Relative error allowed in the state at the end of a contact; 1e-13 to 1e-6.
-    source : mapping, optional
+    source : ResolvedCase, optional
         The case that the problem was made from, for provenance.
     facts : mapping, optional
         What is told of how the deformation is modelled; names end in their units.
@@ -103,7 +104,7 @@ class Problem:
     local_element: tuple[float, float] | None = None
     sensors: tuple[Sensor, ...] = ()
     tolerance: float = 1e-9
-    source: Mapping[str, Any] | None = field(default=None, compare=False)
+    source: ResolvedCase | None = field(default=None, compare=False)
     facts: Mapping[str, float | str] = field(default_factory=dict, compare=False)
     models: Mapping[str, ModalModel] = field(default_factory=dict, compare=False)
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from vibroimpact.cases.build import resolved_case
 from vibroimpact.cases.reader import load_case
 from vibroimpact.cases.rigid import contact_pair
@@ -16,7 +18,8 @@ def table1(runs: Runs) -> ReportSection:
     """Return the section that compares Table 1 with the shipped case of Type 3, which has all of its inputs."""
     case = resolved_case(load_case("paper:type3"))
     sphere, plate, drop = case["sphere"], case["plate"], case["drop"]
-    values = {f"{body}.{name}": case[body]["material"][name] for body in ("sphere", "plate") for name in _MATERIAL}
+    bodies = (("sphere", sphere["material"]), ("plate", plate["material"]))
+    values: dict[str, Any] = {f"{body}.{name}": material[name] for body, material in bodies for name in _MATERIAL}
     values["sphere.radius"] = 1e3 * sphere["radius"]
     values |= {f"plate.size.{number}": 1e3 * length for number, length in enumerate(plate["size"], start=1)}
     values |= {f"plate.spacing.{number}": 1e3 * length for number, length in enumerate(plate["supports"][0]["spacing"], start=1)}

@@ -11,7 +11,7 @@ from contextlib import ExitStack, contextmanager
 from functools import partial
 from os import PathLike
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import tomli_w
@@ -23,6 +23,7 @@ from vibroimpact.files.check_sums import CHECK_SUMS, DamageError, check_file, fi
 from vibroimpact.files.damaged_part import check_hdf5
 from vibroimpact.files.hdf5 import short_reason
 from vibroimpact.files.recover import recover
+from vibroimpact.resolved_case import ResolvedCase
 from vibroimpact.results.csv_files import write_impacts, write_signal_files
 from vibroimpact.results.netcdf import read_groups, write_groups
 from vibroimpact.results.result import Result
@@ -152,10 +153,10 @@ def read_result(directory: str | PathLike[str]) -> Result:
         check_types(summary)
         expected = summary.get(CHECK_SUMS, {})
         name = CASE
-        case = {}
+        case: ResolvedCase = {}
         if "problem" not in summary["provenance"]:
             check_file(folder / name, expected.get(name))
-            case = tomllib.loads((folder / name).read_text(encoding="utf-8"))
+            case = cast("ResolvedCase", tomllib.loads((folder / name).read_text(encoding="utf-8")))
         name = DATA
         check_hdf5(folder / name, expected.get(name))
         return _result_from(case, summary, read_groups(folder / name))
@@ -167,7 +168,7 @@ def read_result(directory: str | PathLike[str]) -> Result:
         raise InputError(f"{folder / name}: the file is missing or damaged: {_cause(error)}; {_remedy(folder, name)}") from None
 
 
-def _result_from(case: Mapping[str, Any], summary: Mapping[str, Any], groups: Mapping[str, Mapping[str, Any]]) -> Result:
+def _result_from(case: ResolvedCase, summary: Mapping[str, Any], groups: Mapping[str, Mapping[str, Any]]) -> Result:
     """Return a result from the case, the summary and the groups of the NetCDF file, after checking its columns."""
     missing = set(IMPACT_COLUMNS) - set(groups["impacts"])
     if missing:

@@ -7,7 +7,6 @@ import platform
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
-from typing import Any
 
 import numpy as np
 
@@ -21,6 +20,7 @@ from vibroimpact.dynamics.response import Response
 from vibroimpact.dynamics.sensors.recording import Signal
 from vibroimpact.dynamics.truncation import time_of_contact
 from vibroimpact.dynamics.vibrating.sensitivity import RELATIVE_CHANGE, change_by_impact
+from vibroimpact.resolved_case import ResolvedCase
 from vibroimpact.results.deflection import Deflection, deflection_of
 from vibroimpact.results.fine_history import fine_history
 from vibroimpact.results.peaks import Peaks, peaks_of
@@ -32,7 +32,7 @@ class Result:
 
     Parameters
     ----------
-    case : mapping
+    case : ResolvedCase
         Resolved case in SI units, as in `case.toml`; empty for a problem defined in Python.
     impacts : dict of str to array
         Impact table: columns of shape (impacts,).
@@ -58,7 +58,7 @@ class Result:
     The last five are empty where nothing but the contact deforms.
     """
 
-    case: Mapping[str, Any]
+    case: ResolvedCase
     impacts: dict[str, Floats]
     history: dict[str, Floats]
     energy: dict[str, float]

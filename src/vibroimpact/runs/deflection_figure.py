@@ -109,4 +109,5 @@ def _draw(axes: Axes, result: Result, deflection: Deflection, frame: int, scale:
 def sensor_places(result: Result) -> list[tuple[str, float, float]]:
     """Return name, x and y [m] of the sensors whose positions the case gives as coordinates."""
     sensors = result.case.get("sensors", [])
-    return [(one["name"], *map(float, one["position"])) for one in sensors if not isinstance(one["position"], str)]
+    placed = [(one["name"], one["position"]) for one in sensors]
+    return [(name, float(place[0]), float(place[1])) for name, place in placed if not isinstance(place, str)]

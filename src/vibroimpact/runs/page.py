@@ -5,13 +5,13 @@ from __future__ import annotations
 from base64 import b64encode
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
 
 import tomli_w
 
 from vibroimpact.dynamics.energy import CLOSURE_LIMIT
 from vibroimpact.report.figure_files import save_figures
 from vibroimpact.report.page import Picture, picture, template
+from vibroimpact.resolved_case import ResolvedCase
 from vibroimpact.results.result import Result
 from vibroimpact.runs.animation import animate
 from vibroimpact.runs.captions import animation_caption, caption, left_out, sensors_left_out
@@ -106,5 +106,5 @@ def _animation(result: Result, gif: bytes) -> Picture | None:
     return Picture("animation", "Plate and ball in slow motion", animation_caption(result), source)
 
 
-def _case_text(case: Mapping[str, Any]) -> str:
+def _case_text(case: ResolvedCase) -> str:
     return tomli_w.dumps(case) if case else ""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import fields, replace
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +19,7 @@ from vibroimpact.dynamics.bending import largest_bending
 from vibroimpact.dynamics.response import Response
 from vibroimpact.dynamics.truncation import time_of_contact
 from vibroimpact.dynamics.vibrating.sensitivity import change_by_impact
+from vibroimpact.resolved_case import ResolvedCase
 from vibroimpact.studies.axes import Values
 from vibroimpact.studies.drop_variables import DOUBTS, LIMIT
 from vibroimpact.studies.swept_keys import with_values
@@ -64,7 +65,8 @@ def batch_conditions(case: Case, arrays: Mapping[str, Values], law: ContactLaw, 
     peaks : mapping of str to array
         Their peaks.
     """
-    table = with_values(resolved_case(case), {key: values for key, values in arrays.items() if not key.startswith("contact.")})
+    given_elsewhere = {key: values for key, values in arrays.items() if not key.startswith("contact.")}
+    table = cast("ResolvedCase", with_values(resolved_case(case), given_elsewhere))
     given = {item.name: getattr(law, item.name) for item in fields(law)}
     table["contact"] |= {name: value for name, value in given.items() if value is not None}
     return Conditions(table, _seen(peaks))

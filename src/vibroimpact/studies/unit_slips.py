@@ -11,6 +11,7 @@ from vibroimpact.cases.build import resolved_case
 from vibroimpact.cases.case import Case
 from vibroimpact.cases.slips.find import slips, swept_slips
 from vibroimpact.errors import InputError
+from vibroimpact.resolved_case import ResolvedCase
 from vibroimpact.studies.sweep import Sweep
 from vibroimpact.studies.swept_keys import case_at
 
@@ -42,5 +43,5 @@ def study_slips(table: Mapping[str, Any], values: Mapping[str, NDArray[Any]]) ->
     return _once(resolved_case(case), values)
 
 
-def _once(case: Mapping[str, Any], values: Mapping[str, NDArray[Any]]) -> list[str]:
+def _once(case: ResolvedCase, values: Mapping[str, NDArray[Any]]) -> list[str]:
     return [*slips(case, values), *swept_slips(case, values)]

@@ -17,6 +17,7 @@ from vibroimpact.cases.slips.plausible import CheckedKey, PlausibleRange, Words,
 from vibroimpact.cases.slips.rules import stiffness_unit
 from vibroimpact.cases.slips.table import CHECKED_KEYS
 from vibroimpact.errors import InputError
+from vibroimpact.resolved_case import ResolvedCase
 from vibroimpact.units.reading import to_si
 
 _SHORT = 1e6  # numbers below it are written without an exponent
@@ -38,7 +39,7 @@ class _Correction(NamedTuple):
     text: str
 
 
-def slips(case: Mapping[str, Any], aside: Container[str] = ()) -> list[str]:
+def slips(case: ResolvedCase, aside: Container[str] = ()) -> list[str]:
     """Return a sentence for each implausible value of a case, with the unit that was likely meant.
 
     Parameters
@@ -68,7 +69,7 @@ def slips(case: Mapping[str, Any], aside: Container[str] = ()) -> list[str]:
     return found
 
 
-def swept_slips(case: Mapping[str, Any], swept: Mapping[str, Any]) -> list[str]:
+def swept_slips(case: ResolvedCase, swept: Mapping[str, Any]) -> list[str]:
     """Return a sentence for each swept key with implausible values: how many, an example, and the unit that was likely meant.
 
     Parameters
@@ -96,13 +97,13 @@ def swept_slips(case: Mapping[str, Any], swept: Mapping[str, Any]) -> list[str]:
     return found
 
 
-def _checked_numbers(case: Mapping[str, Any], swept: Container[str] = ()) -> Iterator[tuple[CheckedKey, _Number, HertzEstimate]]:
+def _checked_numbers(case: ResolvedCase, swept: Container[str] = ()) -> Iterator[tuple[CheckedKey, _Number, HertzEstimate]]:
     """Yield the checked numbers that a case contains, each with an estimate of the case.
 
     The caller may correct a number in its table; the following estimates then use the corrected value. Parameters of the law that are
     derived from the bodies are left out, unless they are swept.
     """
-    table = copy.deepcopy(dict(case))
+    table = copy.deepcopy(case)
     with np.errstate(all="ignore"):
         derived = HertzEstimate(case).derived_parameters
     table["contact"] = {key: value for key, value in table["contact"].items() if f"contact.{key}" in swept or key not in derived}

@@ -14,6 +14,7 @@ from vibroimpact.cases.conditions import Conditions, DropSummary
 from vibroimpact.contact.pair import hertz_stiffness
 from vibroimpact.contact.power_law import HERTZ_TIME
 from vibroimpact.materials import Material
+from vibroimpact.resolved_case import ResolvedCase
 
 
 @dataclass(frozen=True)
@@ -26,7 +27,7 @@ class HertzEstimate:
         A resolved case.
     """
 
-    case: Mapping[str, Any]
+    case: ResolvedCase
 
     @cached_property
     def _conditions(self) -> Conditions:

@@ -1,0 +1,85 @@
+"""Types of the resolved case: the tables of `case.toml`, in SI, with all defaults resolved.
+
+A problem carries the resolved case that it was made from, and a result the one that its folder holds. Numbers may be arrays, with one
+value per drop of a batch. Keys that do not apply to a case are absent.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any, TypedDict
+
+from vibroimpact.arrays import Array
+
+
+class ResolvedBody(TypedDict, total=False):
+    """The keys that sphere and plate share: material, and mesh, reduction and damping of an elastic body."""
+
+    material: Any  # a table of numbers, or "rigid"
+    model: str
+    radius: Array
+    modes: int
+    max_frequency: float
+    damping: Any
+    mesh: Mapping[str, Any]
+    reduction: str
+    attachment_mode: bool
+
+
+class ResolvedPlate(ResolvedBody, total=False):
+    """The plate, or the sphere that takes its place."""
+
+    size: Sequence[Array]
+    element: str
+    supports: Any
+
+
+class ResolvedDrop(TypedDict, total=False):
+    """The drop: height or speed [m], [m/s], position [m], gravity [m/s^2]."""
+
+    height: Array
+    speed: Array
+    position: Sequence[Array]
+    gravity: Array
+    same_spot: bool
+
+
+class ResolvedRun(TypedDict, total=False):
+    """The stop rules and the tolerance."""
+
+    impacts: int | str
+    duration: float
+    rest_speed: Array
+    tolerance: float
+
+
+class ResolvedSensor(TypedDict, total=False):
+    """A sensor."""
+
+    name: str
+    position: Sequence[float] | str
+    face: str
+    quantity: str
+    direction: Any
+    rate: float
+    filter: str
+    corner: float
+    accelerometer: Mapping[str, Any]
+
+
+class ResolvedCase(TypedDict, total=False):
+    """A resolved case; empty for a problem that was made in Python.
+
+    `contact`: the name of the law, its parameters, and the treatment of local compliance.
+    """
+
+    schema_version: int
+    name: str
+    sphere: ResolvedBody
+    plate: ResolvedPlate
+    drop: ResolvedDrop
+    contact: dict[str, Any]
+    run: ResolvedRun
+    sensors: Sequence[ResolvedSensor]
+    calibrate: Mapping[str, Any]
+    sweep: Mapping[str, Any]
