@@ -12,7 +12,7 @@ from attack import failures, number, seed
 from mutations import case_files
 from vibroimpact.cases.reader import load_table, prefix_errors
 from vibroimpact.cases.rigid import deforms
-from vibroimpact.report.terminal import TerminalConsole
+from vibroimpact.report.console import TerminalConsole
 from vibroimpact.runs.case_explained import case_explained
 from vibroimpact.studies.explain_sweep import explain_sweep
 

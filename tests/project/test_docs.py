@@ -78,7 +78,7 @@ def test_readme_shows_what_the_demo_prints(variable: vi.Response) -> None:
     from rich.console import Console
 
     from vibroimpact.results.result import result_of
-    from vibroimpact.runs.terminal import result_summary
+    from vibroimpact.runs.text import result_summary
 
     written = StringIO()
     Console(width=80, file=written).print(result_summary(result_of(variable), 80))

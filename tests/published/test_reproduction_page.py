@@ -11,8 +11,8 @@ from vibroimpact.paper.printed import printed_values
 from vibroimpact.paper.report.docs_page import docs_page_text
 from vibroimpact.paper.report.outline import CHAPTERS, PARTS, RenderedPart, render_part
 from vibroimpact.paper.report.page import report_text
+from vibroimpact.paper.report_section import Verdict
 from vibroimpact.paper.runs import Runs
-from vibroimpact.paper.section import Verdict
 from vibroimpact.report.figure_files import render_svg
 
 PAGE = Path(__file__).parents[2] / "docs" / "reproduction.md"

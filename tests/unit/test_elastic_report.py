@@ -41,7 +41,7 @@ from vibroimpact.runs.page import render_page
 from vibroimpact.runs.paraview import write_paraview
 from vibroimpact.runs.spectrum import amplitude_spectrum
 from vibroimpact.runs.tables import impact_table
-from vibroimpact.runs.terminal import result_summary
+from vibroimpact.runs.text import result_summary
 from vibroimpact.structures.lattice import box_mesh
 
 SPHERE = {"radius": "25 mm", "material": "rock-paper", "model": "elastic", "modes": 6, "damping": 0.02, "mesh": {"elements_across": 4}}

@@ -14,7 +14,7 @@ import vibroimpact as vi
 from attack import LONGEST, attack
 from studies import study_table
 from support import plain_case
-from vibroimpact.cases.fields.bounds import DEEPEST, check_text
+from vibroimpact.cases.fields.size_limits import DEEPEST, check_text
 from vibroimpact.cli import main
 from vibroimpact.errors import MOST_LINES, ComputationError, InputError
 from vibroimpact.report.figure_files import render_png

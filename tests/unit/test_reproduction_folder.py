@@ -22,8 +22,8 @@ from vibroimpact.paper.report.docs_page import write_docs_page
 from vibroimpact.paper.report.folder import is_reproduction, missing_parts, read_parts, reproduce_paper
 from vibroimpact.paper.report.outline import PARTS, ReportPart, find_parts, render_part
 from vibroimpact.paper.report.page import report_html, report_text, verdict_counts
+from vibroimpact.paper.report_section import ComparedValue, ReportSection, Verdict
 from vibroimpact.paper.runs import Runs
-from vibroimpact.paper.section import ComparedValue, ReportSection, Verdict
 
 QUICK = ["table1", "section3.1", "fig4"]
 COLUMNS = "part,name,what,place,read,unit,relation,printed,by,computed,difference,allowed,verdict,why"

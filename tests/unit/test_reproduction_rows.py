@@ -25,7 +25,7 @@ from vibroimpact.paper.report.markdown import (
     table,
     verdict_text,
 )
-from vibroimpact.paper.section import ComparedValue, Explanation, ReportSection, TextTable, Verdict
+from vibroimpact.paper.report_section import ComparedValue, Explanation, ReportSection, TextTable, Verdict
 
 
 def value(text: str, relation: Relation = "=", digits: int | None = None, unit: str = "m") -> PrintedValue:

@@ -12,8 +12,8 @@ from vibroimpact.contact.laws.newton import Newton
 from vibroimpact.errors import ComputationError, InputError
 from vibroimpact.paper import implicit_euler
 from vibroimpact.paper.implicit_euler import ENERGY_SHARES, PEAKS, unresolved_impact
+from vibroimpact.paper.report_section import Verdict
 from vibroimpact.paper.runs import Runs
-from vibroimpact.paper.section import Verdict
 from vibroimpact.paper.step_sweep import COMPARED, closest, paper_impact, resolved_impact, superposed, sweep_steps
 from vibroimpact.paper.unresolved import unresolved_range, unresolved_section
 

@@ -21,7 +21,7 @@ from vibroimpact.results.result import Result, result_of
 from vibroimpact.results.summary import summary_of
 from vibroimpact.runs.history_figures import ACCELERATION, FORCE, POSITION, VELOCITY
 from vibroimpact.runs.tables import impact_table
-from vibroimpact.runs.terminal import result_summary
+from vibroimpact.runs.text import result_summary
 
 CHANGES = np.array([1e-9, 2e-3, 0.1, 10.0])
 

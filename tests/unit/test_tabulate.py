@@ -17,7 +17,7 @@ from vibroimpact.contact.registry import contact_laws
 from vibroimpact.dynamics import tabulate as module
 from vibroimpact.dynamics.contact import Contact
 from vibroimpact.dynamics.encounter import Encounter
-from vibroimpact.dynamics.phase_plane import contact as plane_contact
+from vibroimpact.dynamics.phase_plane import contact_solver as plane_contact
 from vibroimpact.dynamics.rigid.solve_contact import SolvesContact, collocated
 
 LAWS = list(contact_laws().values())

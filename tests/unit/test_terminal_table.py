@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 from rich.text import Text
 
+from vibroimpact.report.console import TerminalConsole
 from vibroimpact.report.encodable import encodable
-from vibroimpact.report.terminal import TerminalConsole
 from vibroimpact.report.terminal_table import TerminalColumn, TerminalTable, facts, numbers
 from vibroimpact.units.display import column_texts
 

@@ -31,11 +31,11 @@ from vibroimpact.exporting.text import export_summary, format_table
 from vibroimpact.laws.sheet import law_sheet, law_table
 from vibroimpact.modes.text import modes_summary
 from vibroimpact.paper.report.page import verdict_table
-from vibroimpact.paper.section import Verdict
-from vibroimpact.report.terminal import TerminalConsole
+from vibroimpact.paper.report_section import Verdict
+from vibroimpact.report.console import TerminalConsole
 from vibroimpact.results.result import result_of
 from vibroimpact.runs.case_explained import case_explained
-from vibroimpact.runs.terminal import result_summary, versions_table
+from vibroimpact.runs.text import result_summary, versions_table
 from vibroimpact.studies.compute_study import compute_study
 from vibroimpact.studies.explain_sweep import explain_sweep
 from vibroimpact.studies.report.text import study_summary

@@ -8,10 +8,10 @@ import numpy as np
 from pydantic import BeforeValidator, Field, StrictBool, WithJsonSchema, model_validator
 
 from vibroimpact.calibration.matchable import MATCHABLE, check_weights
-from vibroimpact.cases.fields.bounds import Name, at_most
 from vibroimpact.cases.fields.contact import ContactSection, law_schema, read_contact
 from vibroimpact.cases.fields.quantities import Quantity
 from vibroimpact.cases.fields.section import Section, read_table
+from vibroimpact.cases.fields.size_limits import Name, at_most
 from vibroimpact.errors import InputError, did_you_mean
 from vibroimpact.files.reading import FileKind, beginning, with_path
 from vibroimpact.ranges import Range

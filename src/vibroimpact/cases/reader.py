@@ -16,10 +16,10 @@ from pydantic import BaseModel, ValidationError
 from vibroimpact.calibration.section import CalibrateSection, SpeedsTable
 from vibroimpact.cases.build import check_case
 from vibroimpact.cases.case import Case
-from vibroimpact.cases.fields.bounds import MOST_BYTES, check_bounds, check_text
-from vibroimpact.cases.fields.explain import fault_messages
+from vibroimpact.cases.fields.fault_messages import fault_messages
 from vibroimpact.cases.fields.item_labels import path_in_words
 from vibroimpact.cases.fields.material import InlineMaterial
+from vibroimpact.cases.fields.size_limits import MOST_BYTES, check_bounds, check_text
 from vibroimpact.cases.schema import AccelerometerTable, DropSection, PlateSection, RunSection, SensorSection, SphereSection
 from vibroimpact.errors import InputError, did_you_mean
 from vibroimpact.files.reading import FileKind, read_text

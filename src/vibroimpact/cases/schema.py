@@ -9,7 +9,6 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import BeforeValidator, Field, StrictBool, model_validator
 
 from vibroimpact.calibration.section import CalibrateSection
-from vibroimpact.cases.fields.bounds import MOST_ITEMS, Name, at_most
 from vibroimpact.cases.fields.contact import ContactSection, read_contact
 from vibroimpact.cases.fields.damping import DampingField
 from vibroimpact.cases.fields.elastic_body import (
@@ -26,6 +25,7 @@ from vibroimpact.cases.fields.elastic_body import (
 from vibroimpact.cases.fields.material import MaterialField
 from vibroimpact.cases.fields.quantities import Quantity
 from vibroimpact.cases.fields.section import Section, check_alternatives
+from vibroimpact.cases.fields.size_limits import MOST_ITEMS, Name, at_most
 from vibroimpact.cases.fields.supports import SupportsField
 from vibroimpact.cases.slips.lengths import likely_lengths
 from vibroimpact.dynamics.problem import MOST_IMPACTS, STANDARD_GRAVITY

@@ -67,7 +67,7 @@ def _run(name: str, output: Path | None, *, force: bool) -> None:
     from vibroimpact.results.folder import check_free, new_folder
     from vibroimpact.runs.page import write_report
     from vibroimpact.runs.save import write_data
-    from vibroimpact.runs.terminal import result_summary
+    from vibroimpact.runs.text import result_summary
 
     case = load_case(name)
     target = Path(stem(name)) if output is None else output

@@ -87,7 +87,7 @@ def doctor(
 ) -> None:
     """Show versions and the store of modes, and test this installation."""
     from vibroimpact.cli.doctor import diagnose, first_rebound_error
-    from vibroimpact.runs.terminal import versions_table
+    from vibroimpact.runs.text import versions_table
 
     if clear_store:
         from vibroimpact.structures.store import clear_store as clear

@@ -59,7 +59,7 @@ def stem(case: str) -> str:
 
 def console() -> Console:
     """Return the console, with a fixed width of 160 off a terminal."""
-    from vibroimpact.report.terminal import TerminalConsole
+    from vibroimpact.report.console import TerminalConsole
 
     screen = TerminalConsole()
     if not screen.is_terminal:

@@ -14,7 +14,7 @@ from vibroimpact.comparison.comparison import (
     free_parameter_words,
 )
 from vibroimpact.report.terminal_table import TerminalColumn, TerminalTable, facts, numbers
-from vibroimpact.runs.terminal import doubt_lines
+from vibroimpact.runs.text import doubt_lines
 
 
 def comparison_summary(comparison: Comparison) -> RenderableType:

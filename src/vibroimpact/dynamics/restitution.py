@@ -15,7 +15,7 @@ from vibroimpact.contact.law import CompliantLaw, ContactLaw, InstantaneousLaw
 from vibroimpact.contact.roots import solve_monotonic
 from vibroimpact.dynamics.contact import CAPTURED, FAILED
 from vibroimpact.dynamics.encounter import Encounter, encounter_of
-from vibroimpact.dynamics.phase_plane.contact import contact_solver
+from vibroimpact.dynamics.phase_plane.contact_solver import contact_solver
 from vibroimpact.errors import ComputationError, InputError
 from vibroimpact.ranges import Range
 

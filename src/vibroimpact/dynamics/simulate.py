@@ -11,7 +11,7 @@ from vibroimpact.dynamics.lockstep import Coroutine, run_coroutine, run_in_locks
 from vibroimpact.dynamics.outcome import Outcome
 from vibroimpact.dynamics.packed_list import PackedList
 from vibroimpact.dynamics.phase_plane.collocation import PlaneRule
-from vibroimpact.dynamics.phase_plane.contact import contact_solver
+from vibroimpact.dynamics.phase_plane.contact_solver import contact_solver
 from vibroimpact.dynamics.problem import StatesProblem
 from vibroimpact.dynamics.response import Response
 from vibroimpact.dynamics.run import Run

@@ -9,7 +9,7 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.dynamics.lockstep import run_coroutine
-from vibroimpact.dynamics.phase_plane.contact import contact_solver
+from vibroimpact.dynamics.phase_plane.contact_solver import contact_solver
 from vibroimpact.dynamics.problem import Problem, StatesProblem
 from vibroimpact.dynamics.response import Response
 from vibroimpact.dynamics.rest import Rest

@@ -6,9 +6,9 @@ import numpy as np
 
 from vibroimpact.paper.measures import energy_released, plate_energy_part
 from vibroimpact.paper.printed import printed
+from vibroimpact.paper.report_section import ReportSection, TextTable, holds_text
 from vibroimpact.paper.runs import DAMPINGS, TREATMENTS, Runs, history_of
 from vibroimpact.paper.sampling import QUANTITIES
-from vibroimpact.paper.section import ReportSection, TextTable, holds_text
 
 
 def conclusions(runs: Runs) -> ReportSection:

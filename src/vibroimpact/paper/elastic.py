@@ -23,9 +23,9 @@ from vibroimpact.paper.measures import (
     values_by_treatment,
 )
 from vibroimpact.paper.printed import printed
+from vibroimpact.paper.report_section import ComparedValue, Explanation, ReportSection, TextTable, holds_text
 from vibroimpact.paper.runs import IMPACTS, TREATMENTS, Runs
 from vibroimpact.paper.sampling import contact_pulses, spacing_bound
-from vibroimpact.paper.section import ComparedValue, Explanation, ReportSection, TextTable, holds_text
 from vibroimpact.paper.unresolved import unresolved_range
 
 _IMPACT_COLUMNS = {"max_force": "max_force_N", "max_acceleration": "max_acceleration_m_s2", "rebound_height": "rebound_height_m"}

@@ -10,8 +10,8 @@ from vibroimpact.cases.rigid import contact_pair
 from vibroimpact.contact.laws.adams_impact import AdamsImpact
 from vibroimpact.dynamics.simulate import simulate
 from vibroimpact.paper.printed import corrections, printed
+from vibroimpact.paper.report_section import ComparedValue, ReportSection, TextTable
 from vibroimpact.paper.runs import Runs, with_law
-from vibroimpact.paper.section import ComparedValue, ReportSection, TextTable
 
 
 def table1(runs: Runs) -> ReportSection:

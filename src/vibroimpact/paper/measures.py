@@ -10,8 +10,8 @@ import numpy as np
 from vibroimpact.arrays import Floats
 from vibroimpact.dynamics.response import Response
 from vibroimpact.paper.printed import PrintedValue
+from vibroimpact.paper.report_section import ComparedValue, Explanation
 from vibroimpact.paper.runs import TREATMENTS, Runs, history_of
-from vibroimpact.paper.section import ComparedValue, Explanation
 
 Timeline = Callable[[Response], tuple[Floats, Floats]]
 """Function of a response that returns times [s] and values [SI]; NaN breaks the line."""

@@ -15,8 +15,8 @@ from vibroimpact.arrays import Floats
 from vibroimpact.paper.derived import parabola
 from vibroimpact.paper.evidence import PENETRATIONS, RESTITUTIONS, Evidence, ImpactSplines, evidence_of, impact_splines
 from vibroimpact.paper.printed import printed
+from vibroimpact.paper.report_section import ReportSection, TextTable
 from vibroimpact.paper.runs import Runs
-from vibroimpact.paper.section import ReportSection, TextTable
 from vibroimpact.units.display import MISSING, fixed
 
 _ROUNDS = 20

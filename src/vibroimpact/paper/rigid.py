@@ -10,9 +10,9 @@ from vibroimpact.arrays import Floats
 from vibroimpact.dynamics.simulate import simulate
 from vibroimpact.paper.derived import parabola, printed_function
 from vibroimpact.paper.printed import printed
+from vibroimpact.paper.report_section import ComparedValue, Explanation, ReportSection, TextTable
 from vibroimpact.paper.runs import DAMPINGS, IMPACTS, Runs, with_law
 from vibroimpact.paper.sampling import QUANTITIES, error_range, spacing_bound, table2_error
-from vibroimpact.paper.section import ComparedValue, Explanation, ReportSection, TextTable
 from vibroimpact.units.display import fixed
 
 _SEEN = 1e-3

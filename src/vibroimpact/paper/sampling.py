@@ -12,8 +12,8 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.paper.printed import PrintedValue, printed
+from vibroimpact.paper.report_section import Explanation, ReportSection, TextTable
 from vibroimpact.paper.runs import DAMPINGS, IMPACTS, Runs
-from vibroimpact.paper.section import Explanation, ReportSection, TextTable
 from vibroimpact.units.display import MISSING, digits, fixed
 
 QUANTITIES = {

@@ -9,9 +9,9 @@ from vibroimpact.paper.derived import fall_beyond_touch, mesh_mass
 from vibroimpact.paper.implicit_euler import ENERGY_SHARES, unresolved_impact
 from vibroimpact.paper.measures import MESH_DIGITS
 from vibroimpact.paper.printed import printed
+from vibroimpact.paper.report_section import ComparedValue, Explanation, ReportSection, TextTable, Verdict
 from vibroimpact.paper.runs import Runs
 from vibroimpact.paper.sampling import output_step
-from vibroimpact.paper.section import ComparedValue, Explanation, ReportSection, TextTable, Verdict
 from vibroimpact.paper.step_sweep import (
     COMPARED,
     MESHES,

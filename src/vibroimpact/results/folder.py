@@ -29,7 +29,7 @@ from vibroimpact.results.netcdf import read_groups, write_groups
 from vibroimpact.results.result import Result
 from vibroimpact.results.summary import check_types, summary_of
 
-SUMMARY, CASE, DATA = "summary.json", "case.toml", "result.nc"
+SUMMARY, CASE, NETCDF = "summary.json", "case.toml", "result.nc"
 
 LONGEST_FOLDER_NAME = 200
 """In bytes. Most file systems allow 255; the temporary folder of an atomic write has a longer name than the final one."""
@@ -112,8 +112,8 @@ def write_result(result: Result, directory: Path) -> None:
     if result.case:  # a problem defined in Python has no case; its provenance holds its representation
         (directory / CASE).write_text(tomli_w.dumps(result.case), encoding="utf-8")
     write_impacts(result.impacts, directory / "impacts.csv")
-    write_groups(result, directory / DATA)
-    check_sums = {name: file_digest(directory / name) for name in (CASE, DATA) if (directory / name).is_file()}
+    write_groups(result, directory / NETCDF)
+    check_sums = {name: file_digest(directory / name) for name in (CASE, NETCDF) if (directory / name).is_file()}
     (directory / SUMMARY).write_text(sealed({**summary_of(result), CHECK_SUMS: check_sums}), encoding="utf-8")
     write_signal_files(result.signals, directory / "sensors")
 
@@ -157,7 +157,7 @@ def read_result(directory: str | PathLike[str]) -> Result:
         if "problem" not in summary["provenance"]:
             check_file(folder / name, expected.get(name))
             case = cast("ResolvedCase", tomllib.loads((folder / name).read_text(encoding="utf-8")))
-        name = DATA
+        name = NETCDF
         check_hdf5(folder / name, expected.get(name))
         return _result_from(case, summary, read_groups(folder / name))
     except InputError:

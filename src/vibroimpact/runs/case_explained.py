@@ -31,7 +31,7 @@ from vibroimpact.dynamics.restitution import achieved_restitution, law_achieving
 from vibroimpact.errors import InputError
 from vibroimpact.materials import RIGID, Material
 from vibroimpact.report.terminal_table import facts
-from vibroimpact.runs.terminal import doubt_lines
+from vibroimpact.runs.text import doubt_lines
 
 
 def _plate_text(case: Case) -> str:

@@ -16,7 +16,7 @@ from vibroimpact.units.display import ALL_FIGURES, certain, certain_figures, col
 _MOST_ROWS, _FIRST, _LAST = 50, 45, 3
 """A table of more rows shows only its first 45 and last three."""
 
-_SHOWN = 6  # significant figures in a table
+_FIGURES_SHOWN = 6  # significant figures in a table
 _DIGITS = 5
 
 _EXACT = ("impact", "contacts", "restitution_asked", "sensitivity")
@@ -175,7 +175,7 @@ def impact_text(result: Result, impact: int, name: str, unit: str) -> str:
 
 def loses_digits(change: Floats) -> bool:
     """Return whether some impact has fewer certain significant figures than tables show."""
-    return bool(certain_figures(change).min(initial=_SHOWN) < _SHOWN)
+    return bool(certain_figures(change).min(initial=_FIGURES_SHOWN) < _FIGURES_SHOWN)
 
 
 def formatted_column(name: str, values: Floats, change: Floats | None = None) -> tuple[str, list[str]]:

@@ -15,9 +15,9 @@ from typing import Any
 import numpy as np
 
 from vibroimpact.cases.case import Case
-from vibroimpact.cases.fields.bounds import MOST_ITEMS, check_bounds, check_count
 from vibroimpact.cases.fields.quantities import Quantity
 from vibroimpact.cases.fields.section import read_table
+from vibroimpact.cases.fields.size_limits import MOST_ITEMS, check_bounds, check_count
 from vibroimpact.cases.reader import load_table, prefix_errors
 from vibroimpact.cases.rigid import deforms, impact_limit
 from vibroimpact.dynamics.columns import ALL_IMPACT_COLUMNS, IMPACT_COLUMNS, meanings

@@ -6,10 +6,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from typing import Any
 
-from vibroimpact.cases.fields.bounds import MOST_OF_A_LIST, check_count
 from vibroimpact.cases.fields.local import LocalSection
 from vibroimpact.cases.fields.quantities import quantity_schema, read_quantity
 from vibroimpact.cases.fields.section import read_table
+from vibroimpact.cases.fields.size_limits import MOST_OF_A_LIST, check_count
 from vibroimpact.contact.law import ContactLaw, unit_of
 from vibroimpact.contact.registry import contact_laws, find_contact_law
 from vibroimpact.errors import InputError, did_you_mean

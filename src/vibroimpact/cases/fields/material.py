@@ -7,9 +7,9 @@ from typing import Annotated, Any
 
 from pydantic import BeforeValidator, WithJsonSchema
 
-from vibroimpact.cases.fields.bounds import Name
 from vibroimpact.cases.fields.quantities import Quantity
 from vibroimpact.cases.fields.section import Section
+from vibroimpact.cases.fields.size_limits import Name
 from vibroimpact.errors import InputError
 from vibroimpact.materials import RIGID, Material, find_material
 from vibroimpact.ranges import Range

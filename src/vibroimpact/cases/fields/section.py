@@ -8,7 +8,7 @@ from typing import Any, Self, TypeVar
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 
-from vibroimpact.cases.fields.explain import fault_messages
+from vibroimpact.cases.fields.fault_messages import fault_messages
 from vibroimpact.errors import InputError, did_you_mean
 from vibroimpact.shown import shown
 

@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, get_args
 
 from pydantic import AfterValidator, BeforeValidator, Field, WithJsonSchema, model_validator
 
-from vibroimpact.cases.fields.bounds import MOST_ITEMS, Name, check_count
 from vibroimpact.cases.fields.material import MaterialField, material_table
 from vibroimpact.cases.fields.quantities import Quantity
 from vibroimpact.cases.fields.section import Section, check_alternatives, read_table
+from vibroimpact.cases.fields.size_limits import MOST_ITEMS, Name, check_count
 from vibroimpact.errors import InputError, did_you_mean
 from vibroimpact.materials import RIGID, Material
 from vibroimpact.ranges import Range

@@ -45,7 +45,7 @@ def integrate_contact(encounter: Encounter, tolerance: float, warm_starts: WarmS
         return _ContactState(encounter, tolerance, warm_starts, ids).run()
 
 
-def nodes_for(tolerance: float) -> int:
+def nodes_per_stretch(tolerance: float) -> int:
     """Return the number of collocation nodes for a tolerance: 20 at the default of 1e-9."""
     return int(8 + 4 * np.ceil(-np.log10(tolerance) / 3.0))
 
@@ -57,7 +57,7 @@ class _ContactState:
         size = len(encounter.mass)
         self.warm_starts, self.ids = warm_starts, ids
         self.encounter = encounter
-        self.number, self.tolerance = nodes_for(tolerance), tolerance
+        self.number, self.tolerance = nodes_per_stretch(tolerance), tolerance
         self.least_energy = 0.5 * encounter.mass * (tolerance * encounter.speed_scale) ** 2
         self.pieces: list[Piece] = []
         self.time, self.delta, self.velocity = np.zeros(size), encounter.law.touch_level + np.zeros(size), encounter.approach_speed.copy()

@@ -28,7 +28,7 @@ from vibroimpact.dynamics.collocation import Map, Rule, collocation_rule
 from vibroimpact.dynamics.linear_equations import stacked_matvec
 from vibroimpact.dynamics.vibrating.linear_system import LinearSystem, State
 
-NODES = 12
+NODES_PER_STRETCH = 12
 """Nodes of a stretch: with more the eigenvectors of the integration matrix are too ill-conditioned, with fewer the stretches are too short.
 """
 
@@ -60,20 +60,20 @@ class RadauEigenbasis:
 
     def matrices(self, values: Complex) -> Floats:
         """Return the matrices (..., N, N) on nodal values of operators that are diagonal in the eigenbasis (..., H)."""
-        return _rows_matmul(values.view(np.float64), self.filters).reshape(*values.shape[:-1], NODES, NODES)
+        return _rows_matmul(values.view(np.float64), self.filters).reshape(*values.shape[:-1], NODES_PER_STRETCH, NODES_PER_STRETCH)
 
 
 @cache
 def radau_eigenbasis(time_map: Map, root: int) -> RadauEigenbasis:
     """Return the eigenbasis of the Radau rule under a time map."""
-    rule = collocation_rule(NODES, time_map, root)
+    rule = collocation_rule(NODES_PER_STRETCH, time_map, root)
     values, vectors = np.linalg.eig(rule.integral)
     half = np.flatnonzero(values.imag >= 0.0)
     values, paired = values[half].astype(np.complex128), values[half].imag > 0.0
     vectors = np.where(paired, 2.0, 1.0) * vectors[:, half]  # the sum of a conjugate pair is twice the real part of one
     parts = np.stack([vectors.real, -vectors.imag], axis=2)  # (N, H, 2)
     kept = np.stack([np.ones_like(paired), paired], axis=1)
-    back = np.zeros((len(half), 2, NODES))
+    back = np.zeros((len(half), 2, NODES_PER_STRETCH))
     back[kept] = np.linalg.inv(parts[:, kept])  # inverse of the real matrix, so that a round trip is exact to rounding
     inverse = back[:, 0] + 1j * back[:, 1]
     filters = (vectors.T[:, :, None] * inverse[:, None, :]).reshape(len(half), -1)
@@ -82,8 +82,8 @@ def radau_eigenbasis(time_map: Map, root: int) -> RadauEigenbasis:
         values,
         np.asarray(inverse.sum(axis=1), dtype=np.complex128),
         np.asarray(inverse @ rule.time, dtype=np.complex128),
-        back.reshape(-1, NODES).T.copy(),
-        parts.reshape(NODES, -1).T.copy(),
+        back.reshape(-1, NODES_PER_STRETCH).T.copy(),
+        parts.reshape(NODES_PER_STRETCH, -1).T.copy(),
         np.stack([filters.real, -filters.imag], axis=1).reshape(2 * len(half), -1),
     )
 
@@ -224,7 +224,7 @@ class Receptance:
             closing = rate + (systems.inner_rate[:, :, None] + by_modes[:, 1])
         mean_rate = (systems.outer_rate + systems.inner_rate)[:, :, None] + 0.5 * gravity
         approach = systems.approach[:, :, None] + time * mean_rate + by_modes[:, -1]
-        size = systems.gravity.shape[1] * NODES
+        size = systems.gravity.shape[1] * NODES_PER_STRETCH
         self.rate, self.closing, self.approach = rate.reshape(-1, size), closing.reshape(-1, size), approach.reshape(-1, size)
         # accelerance, mobility (times sigma) and receptance (times sigma squared) between contacts in the eigenbasis, then on the nodes
         self.accelerance = sum_modes(systems.pairs, self.admittance)  # (B, 1 or 2, c, c, H)
@@ -246,7 +246,7 @@ class Receptance:
     def by_length(self, force: Floats, static: Floats) -> tuple[Floats, Floats, Floats]:
         """Return the derivatives of approach, rate and closing rate at the nodes by the length, under nodal forces [N]: (B, M) each."""
         systems, basis, rule, values = self.systems, self.basis, self.basis.rule, self.basis.values
-        shape, per_contact, sigma = force.shape, (len(force), -1, NODES), self.sigma[:, None, None]
+        shape, per_contact, sigma = force.shape, (len(force), -1, NODES_PER_STRETCH), self.sigma[:, None, None]
         force_there = basis.to_eigenvectors(force.reshape(per_contact))  # (B, c, H)
         impedance_slope = 2.0 * systems.frequency_squared[:, :, None] * self.sigma[:, None] + systems.damping[:, :, None]
         admittance_slope = impedance_slope * self.admittance

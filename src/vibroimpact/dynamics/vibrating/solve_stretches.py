@@ -19,7 +19,7 @@ from vibroimpact.dynamics.linear_equations import stacked_inverse, stacked_matve
 from vibroimpact.dynamics.vibrating.contact_history import ContactHistory
 from vibroimpact.dynamics.vibrating.linear_system import State
 from vibroimpact.dynamics.vibrating.local import Linearised, LocalContact, linearise_contacts, stack_contacts
-from vibroimpact.dynamics.vibrating.receptance import NODES, ContactView, Receptance, StackedSystems, radau_eigenbasis
+from vibroimpact.dynamics.vibrating.receptance import NODES_PER_STRETCH, ContactView, Receptance, StackedSystems, radau_eigenbasis
 from vibroimpact.dynamics.vibrating.stretch import VibratingStretch, stretch_motions
 
 _MOST_ITERATIONS = 25
@@ -114,7 +114,7 @@ def solve_stretches(problems: Sequence[StretchProblem]) -> list[VibratingStretch
     receptance = Receptance(systems, basis, length)
     delta, force = _first_guess(problems, stacked, receptance, start_delta) if first.guess is None else _guesses(problems)
     # a scale of the forces, for motions that change their rate within the stretch
-    largest = np.abs(receptance.rate).reshape(number, -1, NODES).max(axis=2) / length[:, None]
+    largest = np.abs(receptance.rate).reshape(number, -1, NODES_PER_STRETCH).max(axis=2) / length[:, None]
     scale = (np.array([problem.view.mass for problem in problems]) * (largest + np.abs(systems.gravity))).max(axis=1)
     static, size = np.zeros_like(force), np.full(number, np.inf)
     solved, iterating = np.zeros(number, dtype=bool), np.ones(number, dtype=bool)
@@ -184,7 +184,7 @@ def _stretches(
     )
     if receptance.approach_by_static is not None:
         approach -= stacked_matvec(receptance.approach_by_static, static)
-    begun_rate, shape = systems.begun_rate, (*start_approach.shape, NODES)
+    begun_rate, shape = systems.begun_rate, (*start_approach.shape, NODES_PER_STRETCH)
     if systems.massless:  # the rate of a massless element jumps with the force
         at_start = (rate.reshape(shape) @ basis.rule.weights_at_start)[..., 0]
         begun_rate = np.where(systems.local_incidence.any(axis=2), at_start, begun_rate)
@@ -232,7 +232,7 @@ def _first_guess(
     problems: Sequence[StretchProblem], stacked: Sequence[LocalContact], receptance: Receptance, begun: Floats
 ) -> tuple[Floats, Floats]:
     """Return initial guesses of indentations and forces at the nodes (B, M), by extrapolating the forces at the start linearly."""
-    rates, shape = receptance.systems.begun_rate, (*begun.shape, NODES)
+    rates, shape = receptance.systems.begun_rate, (*begun.shape, NODES_PER_STRETCH)
     parts = np.array([local.forces_at_indentation(begun[:, place], rates[:, place]) for place, local in enumerate(stacked)])
     trend = np.array([problem.trend for problem in problems])
     later = trend[:, :, None] * (receptance.length[:, None] * receptance.basis.rule.time)[:, None]
@@ -267,7 +267,7 @@ def _end_conditions(problems: Sequence[StretchProblem]) -> _EndConditions | None
     return _EndConditions(
         conditions[0].name,
         np.array([end_condition.level for end_condition in conditions]),
-        np.array([(end_condition.contact + 1) * NODES - 1 for end_condition in conditions]),
+        np.array([(end_condition.contact + 1) * NODES_PER_STRETCH - 1 for end_condition in conditions]),
     )
 
 

@@ -13,7 +13,7 @@ from vibroimpact.dynamics.collocation import Map
 from vibroimpact.dynamics.lockstep import Coroutine, solve
 from vibroimpact.dynamics.vibrating.events import GRID, Event, first_event
 from vibroimpact.dynamics.vibrating.linear_system import State
-from vibroimpact.dynamics.vibrating.receptance import NODES, radau_eigenbasis
+from vibroimpact.dynamics.vibrating.receptance import NODES_PER_STRETCH, radau_eigenbasis
 from vibroimpact.dynamics.vibrating.recoil import along_motion
 from vibroimpact.dynamics.vibrating.solve_stretches import StretchProblem
 from vibroimpact.dynamics.vibrating.stretch import VibratingStretch
@@ -100,7 +100,7 @@ def length_before_event(stretch: VibratingStretch, event: Event, tolerance: floa
 
 def length_growth(stretch: VibratingStretch, tolerance: float) -> float:
     """Return the ratio of the lengths of the next stretch and this one, 0.7 to 4, from the convergence of its Legendre coefficients."""
-    return float(min(max((_EASY * tolerance**0.5 / max(stretch.roughness, 1e-300)) ** (1.0 / NODES), 0.7), 4.0))
+    return float(min(max((_EASY * tolerance**0.5 / max(stretch.roughness, 1e-300)) ** (1.0 / NODES_PER_STRETCH), 0.7), 4.0))
 
 
 def with_separation_loss(stretch: VibratingStretch, place: int, held: float) -> VibratingStretch:

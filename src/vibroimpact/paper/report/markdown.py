@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 
 from vibroimpact.paper.printed import PrintedValue
 from vibroimpact.paper.report.drawing import Drawing
-from vibroimpact.paper.section import ComparedValue, ReportSection
+from vibroimpact.paper.report_section import ComparedValue, ReportSection
 from vibroimpact.report.markdown_table import markdown_table
 from vibroimpact.units.display import MISSING, digits
 

@@ -26,10 +26,10 @@ from vibroimpact.paper.report.recovery_figure import draw_recovery
 from vibroimpact.paper.report.rigid_figures import RIGID_FIGURES, draw_rigid
 from vibroimpact.paper.report.sampling_figure import draw_sampling
 from vibroimpact.paper.report.unresolved_figure import draw_unresolved
+from vibroimpact.paper.report_section import ComparedValue, ReportSection
 from vibroimpact.paper.rigid import damping_section, section_3_2, table2
 from vibroimpact.paper.runs import Runs
 from vibroimpact.paper.sampling import sampling_section
-from vibroimpact.paper.section import ComparedValue, ReportSection
 from vibroimpact.paper.unresolved import unresolved_section
 from vibroimpact.registry import find_named
 from vibroimpact.report.style import style

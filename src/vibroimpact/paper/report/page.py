@@ -14,7 +14,7 @@ from vibroimpact._version import __version__
 from vibroimpact.paper.printed import PAPER
 from vibroimpact.paper.report.markdown import FIGURES, table
 from vibroimpact.paper.report.outline import CHAPTERS, PARTS
-from vibroimpact.paper.section import Verdict
+from vibroimpact.paper.report_section import Verdict
 from vibroimpact.report.page import template
 from vibroimpact.report.terminal_table import TerminalColumn, TerminalTable
 

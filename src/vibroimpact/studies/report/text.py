@@ -6,7 +6,7 @@ from rich.console import Group, RenderableType
 from rich.text import Text
 
 from vibroimpact.report.terminal_table import TerminalColumn, TerminalTable
-from vibroimpact.runs.terminal import doubt_lines
+from vibroimpact.runs.text import doubt_lines
 from vibroimpact.studies.percentiles import PERCENTILES
 from vibroimpact.studies.report.axes import study_axes
 from vibroimpact.studies.report.labels import percent, with_unit

@@ -46,7 +46,7 @@ def contact_solver(law: ContactLaw, tolerance: float, size: int, *, finer: float
     if tolerance < _TIGHTEST or not (isinstance(law, CompliantLaw) and law.contact_end != "pull-off"):
         return in_time
     tolerance = max(tolerance / finer, _TIGHTEST)
-    number, always_in_time = _nodes_for(law, tolerance), False
+    number, always_in_time = _nodes_per_segment(law, tolerance), False
     starts = _StartingValues(size, number, tolerance)
 
     def solve(encounter: Encounter, drops: Drops) -> tuple[Contact, Floats, Floats]:
@@ -75,7 +75,7 @@ def contact_solver(law: ContactLaw, tolerance: float, size: int, *, finer: float
     return solve
 
 
-def _nodes_for(law: CompliantLaw, tolerance: float) -> int:
+def _nodes_per_segment(law: CompliantLaw, tolerance: float) -> int:
     """Return the number of nodes of a segment: 14 at a tolerance of 1e-8, for a law that is smooth in the square root of the indentation.
 
     Eight more for a law whose tension is cut, since its restitution phase may end within a segment.
