@@ -14,7 +14,7 @@ _RIGID = 0.95  # part of rigid motion in a mode's kinetic energy above which it 
 
 
 def largest_bending(response: Response) -> float:
-    """Return the largest bending deflection of an elastic plate at the contact [m], to about 1 %; NaN for a rigid plate.
+    """Return the largest bending deflection of an elastic plate at the contact [m], about 1 % too small; NaN for a rigid plate.
 
     Modes in which the plate moves on its springs as a whole are left out.
 

@@ -24,7 +24,7 @@ class Column(NamedTuple):
 
 
 def _held(meaning: str, label: str, short: str = "") -> Column:
-    """Return a column of the ledger for stored energy."""
+    """Return a column of the ledger for energy that is not lost: kinetic, potential, stored, or written off."""
     return Column("J", meaning, label, short, in_ledger=True)
 
 

@@ -158,7 +158,7 @@ class Problem:
 
     @property
     def vibrates(self) -> bool:
-        """Whether a body deforms beyond its contact, or one other than the sphere moves."""
+        """Whether anything but the contact of the law deforms, or anything but the sphere moves."""
         modes = (self.sphere.modes, self.plate.modes, self.plate.rigid, self.local_element)
         return any(part is not None for part in modes) or bool(self.quasi_static)
 

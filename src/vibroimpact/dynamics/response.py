@@ -138,7 +138,7 @@ class Response:
         Raises
         ------
         InputError
-            If a time lies outside the run, or the response is of several drops.
+            If a time lies outside the run, or the response is of several drops or without histories.
 
         Examples
         --------
@@ -191,7 +191,7 @@ class Response:
         Raises
         ------
         InputError
-            If the response is of several drops.
+            If the response is of several drops or without histories.
         """
         points = np.array([len(segment.grid()) for segment in self._segments])
         kept = points if most is None else points_kept(points, most)
@@ -239,7 +239,8 @@ class Response:
         Raises
         ------
         InputError
-            If the plate is rigid or has no such point, there would be too many samples, or the response is of several drops.
+            If the plate is rigid or has no such point, there would be too many samples, or the response is of several drops or
+            without histories.
         """
         segments = [segment for segment in self._segments if isinstance(segment, VibratingSegment)]
         return record(self.problem, segments, sensors or self.problem.sensors, float(self.end_time[0]))
@@ -262,7 +263,7 @@ class Response:
         Raises
         ------
         InputError
-            If the folder exists or can't be made, or the response is of several drops.
+            If the folder exists or can't be made, or the response is of several drops or without histories.
         """
         if self.problem.shape != ():
             raise InputError("save writes one drop: response.drop(0).save(...)")

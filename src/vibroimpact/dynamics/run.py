@@ -161,7 +161,7 @@ class Run:
         row["max_force_N"][drops], row["time_of_max_force_s"][drops] = force, touch + when
         row["max_acceleration_m_s2"][drops] = np.maximum(force / encounter.mass - encounter.gravity, encounter.gravity)
         for name, values in contact.law.memories().items():
-            self.memories[name] = self.memories[name].copy()  # laws of earlier contacts refer to the array before
+            self.memories[name] = self.memories[name].copy()  # laws of earlier contacts refer to the previous array
             self.memories[name][drops] = values
         leaving = self.bodies.rigid_speed(drops, -contact.final_rate)
         failed, captured, riding = (contact.outcome == outcome for outcome in (FAILED, CAPTURED, RIDING))

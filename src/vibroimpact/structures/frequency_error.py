@@ -17,7 +17,7 @@ MESH, THEORY, SUPPORTS, REDUCTION = "the mesh", "the theory of plates", "the sup
 
 _BED = 0.1  # relative error of the stiffness of a bed, from plates on round patches of 1.25 to 2.5 thicknesses in radius
 _BED_IN_PLANE = 0.85  # the same for in-plane motions, which were 0.9 to 2.0 % (steel) and 3.0 to 3.2 % (acrylic) too stiff
-_EDGES = 2e-4  # in addition to the error of Lamb waves: difference between plates with edges and refined bricks
+_EDGES = 2e-4  # in addition to the error with respect to Lamb waves: difference between plates with edges and refined bricks
 
 
 def mesh_errors(fine: Floats, coarse: Floats, gain: float) -> Floats:
@@ -77,7 +77,7 @@ def plate_theory_errors(held: HeldStructure, modes: Eigenmodes, material: Materi
     material : Material
         Material of the plate.
     thin : bool, default False
-        Whether by Kirchhoff's theory instead of Mindlin's.
+        Whether the plate is one of Kirchhoff's theory instead of Mindlin's.
 
     Notes
     -----

@@ -57,7 +57,7 @@ def bending_error(wave: Floats, poissons_ratio: float, thin: bool = False) -> Fl
     poissons_ratio : float
         Poisson's ratio [-].
     thin : bool, default False
-        Whether by Kirchhoff's theory instead of Mindlin's.
+        Whether the frequency is that of Kirchhoff's theory instead of Mindlin's.
 
     Examples
     --------

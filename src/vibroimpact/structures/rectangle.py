@@ -15,7 +15,7 @@ MOST_NODES = 1_000_000
 """Larger meshes are refused before they are made, as the factors of their stiffness exceed the index range of the solver."""
 
 _CORE = 0.5  # half the side of the square inside a disc, in radii
-_SMALLEST = 1e-5  # radius of a disc over the longer side; closer lines of a mesh are merged
+_SMALLEST = 1e-5  # least radius of a disc over the longer side; lines of a mesh closer than 1e-6 of a side are merged
 _MARGIN = 1.5  # half the side of the square around a disc, in radii
 CLOSEST = 1.15  # radii: least distance of the centre of a disc from an edge of the plate, or from half way to another disc
 

@@ -196,7 +196,7 @@ def _packed(parts: Mapping[str, Any]) -> list[bytes]:
 
 
 def _unpacked(data: bytes) -> dict[str, Any]:
-    """Return the arrays of an entry, read-only as processes share them.
+    """Return the arrays of an entry, read-only, as what is made of them is shared within the process.
 
     Raises
     ------

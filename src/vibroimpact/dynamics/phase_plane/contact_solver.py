@@ -143,7 +143,7 @@ class _Solutions:
         return cls(np.zeros(size, dtype=bool), *np.full((10, size), np.nan))
 
     def contact(self, law: CompliantLaw) -> Contact:
-        """Return the contacts; those of drops that are not good are NaN."""
+        """Return the contacts, of which only those of drops that are good are valid."""
         after = law.after_compression(self.max_delta)
         return Contact(
             [Piece(drops, start, motion, after if unloading else law) for drops, start, motion, unloading in self.pieces],
@@ -180,7 +180,7 @@ def _solve(encounter: Encounter, found: _Solutions, places: Drops, ids: Drops, s
 
 
 def _passed_breakpoints(law: CompliantLaw, low: Floats, high: Floats, margin: float) -> Indices:
-    """Return the breakpoints between two indentations (B,) as the bits of a number; `margin` is a part of their distance."""
+    """Return the breakpoints between two indentations (B,) as bits of a number, the higher less `margin` times their distance."""
     found = np.zeros(len(low), dtype=np.intp)
     if law.breakpoints:
         high = high - margin * (high - low)

@@ -73,7 +73,7 @@ class Stretch:
     def at(self, time: Floats, encounter: Encounter) -> tuple[Floats, Floats, Floats]:
         """Return indentation [m], its rate [m/s] and the energy dissipated since the start [J] of one drop at times since then [s]."""
         x = self.rule.unmap_time(time / self.duration[0])
-        # the power is a product of two polynomials of degree N: it needs 2 N nodes
+        # the power is a product of two functions that N nodes resolve: it needs 2 N
         finer = collocation_rule(2 * len(self.rule.nodes), self.rule.time_map, self.rule.root)
         delta, velocity = self._motion(finer.nodes, encounter)
         _, dissipative = encounter.law.forces(delta, velocity, encounter.approach_speed)
@@ -295,5 +295,5 @@ class _Newton:
 
 
 def _rounding(encounter: Encounter) -> Floats:
-    """Return the rounding error of indentations in a dent [m], which is large where the dent is deep and the contact soft."""
+    """Return the rounding error of indentations in a dent [m], which matters where the dent is deep and the touch slow."""
     return np.asarray(16.0 * np.finfo(float).eps * np.abs(encounter.floor))

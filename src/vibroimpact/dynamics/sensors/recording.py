@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from vibroimpact.structures.modal_model import ModalBasis
 
 MOST_SAMPLES = 100_000_000
-"""Largest number of samples of one sensor, for lack of memory beyond."""
+"""Largest number of samples of one sensor; more do not fit into memory."""
 _NONE = np.zeros(3)
 _WIDER = 8
 """Multiple of the rate: samples without a filter are taken to contain frequencies up to half of it."""

@@ -98,7 +98,7 @@ class VibratingBodies(RigidBodies):
 
     def state(self, drop: int, gap: float, velocity: float) -> State:
         """Return the state of a drop whose sphere has a gap [m] and a velocity upwards [m/s]."""
-        state = State(*(part[drop].copy() for part in (self.displacement, self.velocity, self.local)))  # copies
+        state = State(*(part[drop].copy() for part in (self.displacement, self.velocity, self.local)))  # as these go on changing
         root = self.mass[drop] ** 0.5
         state.displacement[0], state.velocity[0] = -root * gap, -root * velocity
         return state

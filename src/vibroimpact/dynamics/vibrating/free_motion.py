@@ -1,4 +1,4 @@
-"""Force-free phase of a visit: between two contacts, or inside an indentation once the law has stopped pushing."""
+"""Force-free phase of a march: between two contacts, or inside an indentation once the law has stopped pushing."""
 
 from __future__ import annotations
 

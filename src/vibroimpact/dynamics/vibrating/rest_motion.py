@@ -81,8 +81,8 @@ def bring_to_rest(equilibrium: ContactEquilibrium, state: State, stored: float) 
 
     If the bound of the force excludes separation, the motion goes on with a linear spring: the sphere is placed where that spring stores
     the energy of the contact and the massless elements. Otherwise the sphere is placed into its static indentation at the current position
-    of the surface, with the speed of the surface, as in a perfectly plastic impact. Neither adds energy: that indentation is the one of
-    least energy, and an impulse after which both move together loses the most.
+    of the surface, and moves together with it as after a perfectly plastic impact. Neither adds energy: that indentation is the one of
+    least energy, and the impulse after which both move together loses the most.
 
     Parameters
     ----------

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 RELATIVE_CHANGE = 1e-9
 """A relative change of the drop that cannot be excluded in practice: 4 nm of 4 m."""
 
-_STEP = 1e-6  # relative step of a law's parameters, for finite differences
+_STEP = 1e-6  # relative step of a law's closing speed, memory and largest indentation, for finite differences
 _JUMP = 1e-6  # of the force: a smaller change is no jump
 _SLOW = 0.1  # of the closing speed: lower bound of the separation speed in a relative change
 
@@ -243,7 +243,7 @@ def _shifted(difference: State, rates: State, time: float) -> State:
 
 
 def _law_variations(local: LocalContact, law_differences: dict[str, float]) -> list[tuple[LocalContact, float]]:
-    """Return contacts with one parameter of the law varied by a finite difference, each with the factor of that variation."""
+    """Return contacts with the law's closing speed or a memory varied by a small step, each with the factor of that variation."""
     found = []
     for name, change in law_differences.items():
         if change == 0.0:

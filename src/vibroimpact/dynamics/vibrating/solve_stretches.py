@@ -1,8 +1,8 @@
 """Newton's method for stretches of contact on the nodes of Radau collocation, each up to an event where one ends it.
 
 The unknowns are the contact forces and the indentations of the laws at the nodes and, where an event ends the stretch, its length. All
-other quantities are linear in the forces (`receptance`). Stretches of several systems are solved together if their numbers of modes,
-contacts, laws and end conditions are of the same kind.
+other quantities are linear in the forces (`receptance`). Stretches of several systems are solved together if they have as many modes and
+contacts, the same time map, and laws and end conditions of the same kind.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from vibroimpact.dynamics.vibrating.receptance import NODES_PER_STRETCH, Contact
 from vibroimpact.dynamics.vibrating.stretch import VibratingStretch, stretch_motions
 
 _MOST_ITERATIONS = 25
-_LENGTH_FACTOR = 3.0  # largest factor by which one iteration changes an unknown length
+_LENGTH_FACTOR = 3.0  # one iteration lengthens by no more than this times the length, to four times it, or shortens to a quarter
 _CONVERGED, _STALLED = 1e-13, 1e-11
 _INEXACT = 1e-6  # of a Newton step: least size of the next one, as the derivatives are finite differences
 
@@ -32,8 +32,8 @@ _INEXACT = 1e-6  # of a Newton step: least size of the next one, as the derivati
 class EndCondition:
     """Condition at the end of a stretch whose length is unknown.
 
-    "parted": the surfaces separate, and "breakpoint": both at a `level` of the law's indentation [m]; "no push": zero force; "turn": zero
-    rate of the approach. `contact`: index among the contacts that push.
+    "parted", where the surfaces separate, and "breakpoint": the law's indentation comes to a `level` [m]; "no push": zero force; "turn":
+    zero rate of the approach. `contact`: index among the contacts that push.
     """
 
     name: Literal["parted", "no push", "breakpoint", "turn"]

@@ -32,7 +32,7 @@ class TangentProblem:
     difference : State
         Difference of the state at its start, to first order.
     variations : sequence of (LocalContact, float)
-        Contacts with one parameter of the law varied, each with the factor by which the change of its force counts.
+        Contacts with the law's closing speed or a memory varied, each with the factor by which the change of its force counts.
     """
 
     stretch: VibratingStretch
@@ -66,7 +66,7 @@ def propagate_differences(problems: Sequence[TangentProblem]) -> list[tuple[Stat
     law = linearise_contacts([stack_contacts([contact.local for contact in contacts])], delta, rates)
     reduced = eliminate_indentations(law, receptance)
     missing, changed, known = receptance.approach.copy(), law.dissipative_by_rate * receptance.rate, np.zeros_like(receptance.rate)
-    # varied parameters of the law change its forces and its approach at fixed indentations and rates
+    # a varied closing speed or memory changes the forces of the law and its approach at fixed indentations and rates
     for of_all in zip(*(problem.variations for problem in problems), strict=True):
         other = linearise_contacts([stack_contacts([varied for varied, _ in of_all])], delta, rates)
         weight = np.array([weight for _, weight in of_all])[:, None]

@@ -89,7 +89,7 @@ def follow_visit(
     fresh_surface : bool, default False
         Whether the next impact meets undeformed surfaces, even where the law leaves a dent.
     rest_speed : float, default 0
-        A sphere that separates more slowly, and can no more separate faster, is at rest [m/s].
+        A sphere that separates more slowly, and can no longer separate faster, is at rest [m/s].
     until : float, default infinite
         End of a ride [s since first touch]; a contact of usual duration is completed.
     """

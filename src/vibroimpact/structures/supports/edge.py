@@ -51,7 +51,7 @@ class Edge(Support):
         turning = [4 - across] if mesh.is_flat else []
         axes = list(range(mesh.dofs_per_node)) if self.condition == "clamped" else [1 - across, 2, *turning]
         constraints.hold(mesh.dofs_per_node * nodes[:, None] + np.array(axes))
-        # the end compliance of plate theory is only noted, for the estimate of errors of frequencies
+        # the end compliance in excess of plate theory is only noted, for the estimate of errors of frequencies
         if mesh.is_flat and self.condition == "clamped" and constraints.structure.end_compliance:
             order = nodes[np.argsort(mesh.nodes[nodes, 1 - across])]
             compliance = constraints.structure.end_compliance / _lengths(mesh.nodes[order, 1 - across])
