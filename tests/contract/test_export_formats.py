@@ -1,4 +1,4 @@
-"""What every export format keeps, whatever it is: a new file in exchange/formats is covered without a new test."""
+"""What every export format keeps, whatever it is: a new file in exporting/formats is covered without a new test."""
 
 from __future__ import annotations
 

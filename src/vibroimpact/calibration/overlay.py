@@ -40,7 +40,7 @@ class Overlay:
 
 
 def overlays(tunable: Tunable, seen: Observations, values: Floats, outcomes: Mapping[str, Floats]) -> tuple[Overlay, ...]:
-    """Return the measured record with its simulation: one overlay per contact for a force, one in all for a position.
+    """Return the measured record with its simulation: one overlay for each of the first contacts of a force, one in all for a position.
 
     Parameters
     ----------

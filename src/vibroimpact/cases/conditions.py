@@ -41,7 +41,7 @@ class DropSummary:
         Sensitivity of a single drop on elastic bodies: relative change of each impact for a perturbation of the drop of
         `RELATIVE_CHANGE`, or of the tolerance if that is larger.
     plate_theory : float
-        For a single drop on plate elements: estimated relative error of the first largest force due to plate theory.
+        For a single drop on plate elements: estimated part by which its first largest force is too large due to plate theory.
     """
 
     force: Array = math.nan

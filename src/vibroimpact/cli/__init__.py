@@ -1,4 +1,4 @@
-"""The command line: each command calls public functions of the package and prints the result."""
+"""The command line: each command calls functions of the package and prints the result."""
 
 from __future__ import annotations
 

@@ -48,7 +48,7 @@ def common(
     """What happens when a particle hits a plate: contact, energy and vibration, in a second."""
 
 
-_LONGEST_STEM = 60  # leaves room, within the 255 bytes of a file name, for suffixes added here and while writing
+_LONGEST_STEM = 60  # leaves room, within the 255 bytes of a file name, for the suffixes of the commands and of exports
 
 
 def stem(case: str) -> str:

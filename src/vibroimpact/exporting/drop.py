@@ -15,7 +15,7 @@ from vibroimpact.materials import Material
 
 @dataclass(frozen=True, kw_only=True)
 class Drop:
-    """A sphere that falls on a fixed plate, and the computed response, as they are exported.
+    """A sphere that falls on a plate which is held, and the computed response, as they are exported.
 
     Parameters
     ----------

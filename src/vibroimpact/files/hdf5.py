@@ -23,7 +23,7 @@ CHECKED: dict[str, Any] = {"fletcher32": True}
 """Dataset options of arrays: HDF5's Fletcher-32 checksum."""
 
 PACKED: dict[str, Any] = {"compression": "gzip", "compression_opts": 1, "shuffle": True, **CHECKED}
-"""Dataset options of smooth data: fast compression. A block of zeros, whose Fletcher sum is zero too, fails to decompress."""
+"""Dataset options of smooth data: fast compression. It also reveals a block overwritten by zeros, whose Fletcher sum is zero too."""
 
 _CHUNK = 2**18  # bytes
 

@@ -39,7 +39,7 @@ def recover(target: Path) -> None:
 
 
 def _complete(path: Path, kind: str, folder: Path) -> None:
-    """Move the files of a complete working folder to their destinations if all can be; remove an incomplete one."""
+    """Move the files of a complete working folder to their destinations; remove one that is incomplete, or whose files may not go there."""
     if kind == COMPLETE:
         try:
             check_destinations(path, folder)

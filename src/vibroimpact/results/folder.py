@@ -32,7 +32,7 @@ from vibroimpact.results.summary import check_types, summary_of
 SUMMARY, CASE, NETCDF = "summary.json", "case.toml", "result.nc"
 
 LONGEST_FOLDER_NAME = 200
-"""In bytes. Most file systems allow 255; the temporary folder of an atomic write has a longer name than the final one."""
+"""In bytes; most file systems allow 255. This leaves room for what is appended, such as the format in the name of an export."""
 
 _OTHER_FOLDERS = {
     "laws": "this is a comparison of contact laws, not the result of a run; make it anew with compare",

@@ -44,7 +44,7 @@ def _plate_text(case: Case) -> str:
 
 
 def case_explained(case: Case, aside: Container[str] = ()) -> RenderableType:
-    """Return the explanation of a case: resolved_case values, expected contact, cost, and doubts.
+    """Return the explanation of a case: resolved values, expected contact, cost, and doubts.
 
     Parameters
     ----------

@@ -40,7 +40,7 @@ MOST_POINT_VALUES = 40_000_000
 """Maximum number of values (points times keys) of a study that is not a grid; they are held in memory."""
 
 LONG = 100
-"""Assumed number of impacts of a drop that continues to rest."""
+"""Assumed number of impacts of a drop that goes on until it is at rest."""
 
 
 @dataclass(frozen=True, eq=False)

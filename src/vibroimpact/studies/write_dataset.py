@@ -176,7 +176,7 @@ def _new_variable(
 
 
 def _time_scale(file: h5py.File, rates: Mapping[str, float], sensor: str, samples: int) -> h5py.Dataset:
-    """Return the time scale of a signal; sensors of equal rate share one."""
+    """Return the time scale of a signal: one for all sensors if their rates are equal, else one for each."""
     name = _TIME if len(set(rates.values())) == 1 else f"{_TIME}_{sensor}"
     if name in file:
         return file[name]

@@ -1,6 +1,7 @@
 """Parsing of quantities and conversion of units: a bare number is in SI, a string has a unit.
 
-Inside the package every quantity is a float in SI; only the readers of input convert units. pint is imported with the first unit.
+Inside the package every quantity is a float in SI; units are converted where input is read, and by the command `units`. pint is imported
+with the first unit.
 """
 
 from __future__ import annotations

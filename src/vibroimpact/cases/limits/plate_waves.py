@@ -12,7 +12,7 @@ from vibroimpact.dynamics.truncation import time_of_contact
 
 
 def plate_theory_error(facts: Mapping[str, Any], impacts: Mapping[str, Any]) -> float:
-    r"""Return the estimated relative error of the first largest force due to the lack of thickness waves in plate elements.
+    r"""Return the estimated part by which the first largest force is too large, as plate elements have no thickness waves.
 
     A short force also excites waves through the thickness of a plate. To first order these reduce the displacement of the face by
     :math:`c \ddot F`, of which the inertia c is among the facts; the error of the largest force is that displacement over the tangent

@@ -69,7 +69,7 @@ class HertzEstimate:
 
     @property
     def touch(self) -> float:
-        """Time of first contact [s]."""
+        """Time of the first touch [s]."""
         return 0.0 if self.case["drop"].get("speed") is not None else self.speed / self.case["drop"]["gravity"]
 
     @cached_property

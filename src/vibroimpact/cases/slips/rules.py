@@ -197,7 +197,7 @@ def modal_frequency(estimate: HertzEstimate, table: Mapping[str, Any]) -> Plausi
 
 
 def sampling_rate(estimate: HertzEstimate, table: Mapping[str, Any]) -> PlausibleRange:
-    """Return the range of a sampling rate: it resolves the contact for accelerations, and is at least that of a camera otherwise."""
+    """Return the range of a sampling rate: for accelerations from one sample in ten contacts on, or 1 kHz if that is less; else 10 Hz."""
     lasts = estimate.contact_time
     return PlausibleRange(
         low=float(np.fmin(1000.0, 0.1 / lasts)) if table["quantity"] == "acceleration" else 10.0,
