@@ -22,6 +22,7 @@ from vibroimpact.cli import main
 from vibroimpact.dynamics.columns import HISTORY_COLUMNS, IMPACT_COLUMNS, LEDGER, meanings
 from vibroimpact.files.hdf5 import new_array, new_hdf5, read_array
 from vibroimpact.results.folder import new_folder
+from vibroimpact.results.netcdf import read_groups
 
 HEADER = (
     "impact,time_s,duration_s,approach_speed_m_s,separation_speed_m_s,restitution_achieved,max_indentation_m,max_force_N,"
@@ -135,6 +136,23 @@ def test_result_reads_back(folder: Path, theory: vi.Response) -> None:
 
 
 @pytest.mark.usefixtures("few_pictures")
+def test_a_folder_from_before_there_was_a_column_is_read(folder: Path, theory: vi.Response, monkeypatch: pytest.MonkeyPatch) -> None:
+    def without(name: str) -> None:
+        def read(path: Path) -> dict:
+            groups = read_groups(path)
+            return {**groups, "impacts": {key: values for key, values in groups["impacts"].items() if key != name}}
+
+        monkeypatch.setattr("vibroimpact.results.folder.read_groups", read)
+
+    without("time_of_max_force_s")
+    found = vi.read_result(folder).impacts
+    assert np.isnan(found["time_of_max_force_s"]).all()
+    np.testing.assert_array_equal(found["max_force_N"], theory.impacts["max_force_N"])
+    without("max_force_N")
+    with pytest.raises(vi.InputError, match=r"result.nc: the file is missing or damaged: no max_force_N"):
+        vi.read_result(folder)
+
+
 def test_report_is_remade_and_other_files_stay(tmp_path: Path, theory: vi.Response) -> None:
     theory.save(tmp_path / "out")
     page = (tmp_path / "out" / "report.html").read_bytes()

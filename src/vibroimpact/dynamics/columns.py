@@ -54,6 +54,9 @@ IMPACT_COLUMNS: dict[str, Column] = {
 }
 """Columns of the impact table, one row an impact."""
 
+FIRST_IMPACT_COLUMNS = tuple(IMPACT_COLUMNS)[:11]
+"""Those that every version has written: the fixed header of `impacts.csv`, from `impact` to `energy_lost_J`."""
+
 VIBRATION_IMPACT_COLUMNS: dict[str, Column] = {
     "closing_speed_m_s": Column("m/s", "speed at which the surfaces meet at first touch"),
     "contacts": Column("1", "number of contacts between first touch and last release", "Contacts in the visit", "contacts", "count"),

@@ -16,7 +16,7 @@ from typing import Any, cast
 import numpy as np
 import tomli_w
 
-from vibroimpact.dynamics.columns import IMPACT_COLUMNS, history_columns, impact_columns
+from vibroimpact.dynamics.columns import FIRST_IMPACT_COLUMNS, IMPACT_COLUMNS, history_columns, impact_columns
 from vibroimpact.errors import InputError
 from vibroimpact.files.atomic_write import atomic_folder
 from vibroimpact.files.check_sums import CHECK_SUMS, DamageError, check_file, file_digest, read_sealed, sealed
@@ -170,10 +170,13 @@ def read_result(directory: str | PathLike[str]) -> Result:
 
 def _result_from(case: ResolvedCase, summary: Mapping[str, Any], groups: Mapping[str, Mapping[str, Any]]) -> Result:
     """Return a result from the case, the summary and the groups of the NetCDF file, after checking its columns."""
-    missing = set(IMPACT_COLUMNS) - set(groups["impacts"])
+    found = groups["impacts"]
+    missing = set(FIRST_IMPACT_COLUMNS) - set(found)
     if missing:
         raise KeyError(f"no {', '.join(sorted(missing))}")
-    impacts = {key: np.atleast_1d(groups["impacts"][key]) for key in impact_columns(groups["impacts"])}
+    impacts = {key: np.atleast_1d(found[key]) for key in impact_columns(found)}
+    for key in IMPACT_COLUMNS.keys() - found.keys():  # of a folder that was written before there was this column
+        impacts[key] = np.full(impacts["impact"].shape, np.nan)
     history = {key: groups["history"][key] for key in history_columns(groups["history"])}
     for group, columns in (("impacts", impacts), ("history", history)):
         if len({column.shape for column in columns.values()}) != 1:

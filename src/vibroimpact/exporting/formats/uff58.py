@@ -165,8 +165,8 @@ def _notes(drop: Drop) -> list[str]:
     if rate is None:
         notes.append(f"The history is left out: {_why_no_history(drop)}.")
     else:
-        notes.append(f"The history is sampled at {rate:g} Hz: at least {_IN_CONTACT} times in the shortest contact.")
-    notes.append("Nothing is filtered against aliasing.")
+        words = f"The history is sampled at {rate:g} Hz, without a filter against aliasing"
+        notes.append(f"{words}: at least {_IN_CONTACT} times in the shortest contact.")
     slanting = [one_line(name) for name, signal in drop.signals.items() if not _direction(signal.sensor.direction)]
     if slanting:
         notes.append(f"The direction of {', '.join(slanting)} lies along no axis; it is written as a scalar.")
