@@ -39,6 +39,7 @@ if TYPE_CHECKING:
     from vibroimpact.cases.reader import load_case as load_case
     from vibroimpact.cases.reader import read_case as read_case
     from vibroimpact.cases.reader import shipped_cases as shipped_cases
+    from vibroimpact.cases.template import case_template as case_template
     from vibroimpact.comparison.comparison import Comparison as Comparison
     from vibroimpact.comparison.comparison import compare_laws as compare_laws
     from vibroimpact.comparison.folder import save_comparison as save_comparison
@@ -129,6 +130,7 @@ _HOME = {
     "calibrate_case": "calibration.calibrate_case",
     "calibrated_case": "calibration.calibrate_case",
     "case_schema": "cases.case",
+    "case_template": "cases.template",
     "compare_laws": "comparison.comparison",
     "compute_modes": "cases.elastic.modes",
     "contact_laws": "contact.registry",

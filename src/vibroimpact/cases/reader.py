@@ -20,6 +20,7 @@ from vibroimpact.cases.fields.fault_messages import fault_messages
 from vibroimpact.cases.fields.item_labels import path_in_words
 from vibroimpact.cases.fields.material import InlineMaterial
 from vibroimpact.cases.fields.size_limits import MOST_BYTES, check_bounds, check_text
+from vibroimpact.cases.keys import with_values
 from vibroimpact.cases.schema import AccelerometerTable, DropSection, PlateSection, RunSection, SensorSection, SphereSection
 from vibroimpact.errors import InputError, did_you_mean
 from vibroimpact.files.reading import FileKind, read_text
@@ -49,13 +50,15 @@ def _section(where: tuple[str, ...]) -> type[BaseModel] | None:
     return _SECTIONS.get(tuple(part for part in where if not part.isdigit()), InlineMaterial if where[-1:] == ("material",) else None)
 
 
-def load_case(source: str | PathLike[str]) -> Case:
+def load_case(source: str | PathLike[str], changes: Mapping[str, Any] | None = None) -> Case:
     """Return the case of a TOML file, or a shipped case such as "paper:type1-theory".
 
     Parameters
     ----------
     source : path or str
         A TOML file, or "paper:NAME".
+    changes : mapping, optional
+        Other values by dotted key, such as ``{"plate.size.thickness": "10 mm"}``.
 
     Raises
     ------
@@ -66,8 +69,10 @@ def load_case(source: str | PathLike[str]) -> Case:
     --------
     >>> load_case("paper:type1-theory").sphere.radius
     0.025
+    >>> load_case("paper:type1-theory", {"sphere.radius": "30 mm"}).sphere.radius
+    0.03
     """
-    return prefix_errors(source, lambda: _read_to_run(load_table(source)))
+    return prefix_errors(source, lambda: _read_to_run(load_table(source, changes)))
 
 
 def _read_to_run(table: dict[str, Any]) -> Case:
@@ -86,16 +91,22 @@ def _with_hint(error: InputError, hint: str) -> InputError:
     return InputError.of_several([*error.lines[:-1], f"{error.lines[-1]}; {hint}"])
 
 
-def load_table(source: str | PathLike[str]) -> dict[str, Any]:
+def load_table(source: str | PathLike[str], changes: Mapping[str, Any] | None = None) -> dict[str, Any]:
     """Return the parsed, not yet validated table of a case file or a shipped case; paths are made absolute, relative to the file.
+
+    Parameters
+    ----------
+    source : path or str
+        A TOML file, or "paper:NAME".
+    changes : mapping, optional
+        Other values by dotted key.
 
     Raises
     ------
     InputError
         If it can't be read or is not TOML; the message does not name the source.
     """
-    text = _shipped(str(source)) if str(source).startswith("paper:") else read_text(Path(source), _CASE)
-    check_text(text)
+    text = case_text(source)
     try:
         table = tomllib.loads(text)
     except ValueError as error:  # a TOML syntax error, or an integer of too many digits
@@ -103,7 +114,25 @@ def load_table(source: str | PathLike[str]) -> dict[str, Any]:
     except RecursionError:
         raise InputError("this is not a case: its tables are nested too deeply") from None
     check_bounds(table)
-    return _resolve_paths(table, Path(source).parent)
+    table = _resolve_paths(table, Path(source).parent)
+    if not changes:
+        return table
+    table = with_values(table, changes, "set")
+    check_bounds(table)
+    return _resolve_paths(table, Path())  # files in the changes are relative to the working directory
+
+
+def case_text(source: str | PathLike[str]) -> str:
+    """Return the text of a case file or a shipped case.
+
+    Raises
+    ------
+    InputError
+        If it can't be read, or is too large for a case; the message does not name the source.
+    """
+    text = _shipped(str(source)) if str(source).startswith("paper:") else read_text(Path(source), _CASE)
+    check_text(text)
+    return text
 
 
 def _toml_hint(text: str, fault: str) -> str:

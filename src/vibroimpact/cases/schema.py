@@ -43,11 +43,11 @@ class SphereSection(Section):
     radius: Annotated[float, Quantity("m", "radius", Range(above=0))]
     material: MaterialField
     model: Literal["rigid", "elastic"] = Field("rigid", description="whether the sphere deforms beyond its contact")
-    modes: ModesField | None = None
+    modes: ModesField | None = Field(None, description="how many modes, the lowest")
     max_frequency: FrequencyField | None = None
     damping: DampingField = None
     mesh: SphereMeshField = None
-    reduction: MethodField | None = None
+    reduction: MethodField | None = Field(None, description="how the finite elements are reduced to modes; modal by default")
     attachment_mode: StrictBool = Field(False, description="add a residual attachment mode at the contact point")
 
     @model_validator(mode="after")
@@ -73,12 +73,12 @@ class PlateSection(Section):
     ) = Field(None, description="length (x), width (y) and thickness (z) [m]")
     model: Literal["rigid", "elastic"] = Field("rigid", description="whether the plate deforms beyond its contact")
     element: Literal["plate", "solid"] | None = Field(None, description="what an elastic plate is made of; plate elements by default")
-    modes: ModesField | None = None
+    modes: ModesField | None = Field(None, description="how many modes, the lowest")
     max_frequency: FrequencyField | None = None
     damping: DampingField = None
     supports: SupportsField = None
     mesh: PlateMeshField = None
-    reduction: MethodField | None = None
+    reduction: MethodField | None = Field(None, description="how the finite elements are reduced to modes; modal by default")
     attachment_mode: StrictBool = Field(False, description="add a residual attachment mode at the contact point")
 
     @model_validator(mode="after")

@@ -7,8 +7,7 @@ from typing import Annotated
 
 import typer
 
-from vibroimpact.cli.shared import CaseArgument, Force, app, console, exit_on_interrupt, names_in, say, stem
-from vibroimpact.errors import InputError
+from vibroimpact.cli.shared import CaseArgument, Force, app, console, exit_on_interrupt, names_in, say, settings_of, stem
 
 
 @app.command()
@@ -50,26 +49,10 @@ def compare(
             comparison = compare_laws(
                 found,
                 names_in(laws),
-                _settings(given or []),
+                settings_of(given, "restitution=0.7 or adams-impact.damping_max=180"),
                 achieving=achieving,
                 progress=progress,
             )
         folder = save_comparison(comparison, target, force=force)
     screen.print(comparison_summary(comparison))
     say(f"wrote {folder / 'report.html'}")
-
-
-def _settings(given: list[str]) -> dict[str, object]:
-    """Return the settings in texts KEY=VALUE, read as in a case file: numbers, lists, or texts with units."""
-    import tomllib
-
-    settings: dict[str, object] = {}
-    for item in given:
-        key, equals, value = item.partition("=")
-        if not (equals and key.strip() and value.strip()):
-            raise InputError(f'--set "{item}": give KEY=VALUE, such as restitution=0.7 or adams-impact.damping_max=180')
-        try:
-            settings[key.strip()] = tomllib.loads(f"value = {value}")["value"]
-        except ValueError:
-            settings[key.strip()] = value.strip()  # a quantity such as 5 mm needs no quotes here
-    return settings

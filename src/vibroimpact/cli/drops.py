@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
-from vibroimpact.cli.shared import CaseArgument, Force, app, console, exit_on_interrupt, note, say, stem
+from vibroimpact.cli.shared import CaseArgument, Changes, Force, app, console, exit_on_interrupt, note, say, settings_of, stem
 
 
 @app.command()
@@ -19,7 +19,7 @@ def demo(
 
     A rock sphere falls 4 m on a steel plate and bounces five times.
     """
-    _run("paper:type1-variable", output, force=force)
+    _run("paper:type1-variable", output, {}, force=force)
 
 
 @app.command()
@@ -28,17 +28,18 @@ def run(
     output: Annotated[
         Path | None, typer.Option("-o", "--output", metavar="DIR", help="The result folder to make; by default named after the case.")
     ] = None,
+    changes: Changes = None,
     force: Force = False,
 ) -> None:
     """Run a case and write its result folder.
 
     The folder holds the case in full, the impact table, the data as NetCDF, figures, and a report.
     """
-    _run(case, output, force=force)
+    _run(case, output, settings_of(changes), force=force)
 
 
 @app.command()
-def check(case: CaseArgument) -> None:
+def check(case: CaseArgument, changes: Changes = None) -> None:
     """Validate a case or a study and explain it; run nothing."""
     from vibroimpact.calibration.section import check_target
     from vibroimpact.cases.build import check_drop
@@ -47,9 +48,10 @@ def check(case: CaseArgument) -> None:
     from vibroimpact.studies.explain_sweep import explain_sweep
     from vibroimpact.studies.sweep import read_sweep
 
-    table = prefix_errors(case, lambda: load_table(case))
+    others = settings_of(changes)
+    table = prefix_errors(case, lambda: load_table(case, others))
     if "sweep" not in table:
-        found = load_case(case)
+        found = load_case(case, others)
         prefix_errors(case, lambda: check_drop(found))
         prefix_errors(case, lambda: check_target(found.calibrate))
         console().print(prefix_errors(case, lambda: case_explained(found)))
@@ -59,7 +61,7 @@ def check(case: CaseArgument) -> None:
     console().print(prefix_errors(case, lambda: case_explained(study.case, study.axes)))
 
 
-def _run(name: str, output: Path | None, *, force: bool) -> None:
+def _run(name: str, output: Path | None, changes: dict[str, Any], *, force: bool) -> None:
     from vibroimpact.cases.costs import describe_costs
     from vibroimpact.cases.reader import load_case, prefix_errors
     from vibroimpact.dynamics.simulate import simulate
@@ -69,7 +71,7 @@ def _run(name: str, output: Path | None, *, force: bool) -> None:
     from vibroimpact.runs.save import write_data
     from vibroimpact.runs.text import result_summary
 
-    case = load_case(name)
+    case = load_case(name, changes)
     target = Path(stem(name)) if output is None else output
     check_free(target, force=force)  # fail before the computation
     for sentence in describe_costs(case):
@@ -92,6 +94,7 @@ def _run(name: str, output: Path | None, *, force: bool) -> None:
 def modes(
     case: CaseArgument,
     output: Annotated[Path | None, typer.Option("-o", "--output", metavar="DIR", help="The folder to make; by default CASE-modes.")] = None,
+    changes: Changes = None,
     force: Force = False,
 ) -> None:
     """Compute the modes of the elastic bodies of a case.
@@ -106,7 +109,7 @@ def modes(
     from vibroimpact.report.progress import patient_progress
     from vibroimpact.results.folder import check_free
 
-    found = load_case(case)
+    found = load_case(case, settings_of(changes))
     target = Path(f"{stem(case)}-modes") if output is None else output
     check_free(target, force=force)
     for sentence in describe_costs(found, modes_alone=True):

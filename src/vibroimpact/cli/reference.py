@@ -1,4 +1,4 @@
-"""The commands for reference: `units`, `laws`, `materials`, `schema` and `doctor`."""
+"""The commands for reference: `cases`, `new`, `units`, `laws`, `materials`, `schema` and `doctor`."""
 
 from __future__ import annotations
 
@@ -9,6 +9,40 @@ import typer
 
 from vibroimpact.cli.shared import app, console, say
 from vibroimpact.errors import ComputationError, InputError
+
+
+@app.command()
+def cases() -> None:
+    """List the shipped cases."""
+    from vibroimpact.cli.case_text import shipped_cases_table
+
+    console().print(shipped_cases_table())
+
+
+@app.command()
+def new(
+    name: Annotated[str, typer.Argument(metavar="NAME", help="What the case is called; it becomes NAME.toml here.")],
+    source: Annotated[
+        str, typer.Option("--from", metavar="CASE", help='The case to start from: a TOML file, or a shipped one such as "paper:type3".')
+    ] = "paper:type1-theory",
+    force: Annotated[bool, typer.Option("--force", help="Replace an existing file.")] = False,
+) -> None:
+    """Write a case to start from: that of another case, with the keys that it does not use as comments."""
+    from vibroimpact.cases.template import case_template
+    from vibroimpact.files.atomic_write import write_file
+
+    title = name.removesuffix(".toml")
+    path = Path(f"{title}.toml")
+    if not title.strip() or title != path.stem:
+        raise InputError(f'"{name}" is no name of a file; give one without folders, such as my-plate')
+    if path.exists() and not force:
+        raise InputError(f"{path} exists; take another name, or --force to replace it")
+    text = case_template(source, title)
+    try:
+        write_file(path, text.encode())
+    except OSError as error:
+        raise InputError(f"{path}: it can't be written: {error.strerror or error}") from None
+    say(f"wrote {path}; explain it: vibroimpact check {path}; run it: vibroimpact run {path}")
 
 
 @app.command(context_settings={"ignore_unknown_options": True})  # a number may be negative

@@ -6,14 +6,15 @@ import io
 import os
 import signal
 import sys
+import tomllib
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, NoReturn
+from typing import TYPE_CHECKING, Annotated, Any, NoReturn
 
 import typer
 
-from vibroimpact.errors import lines_of
+from vibroimpact.errors import InputError, lines_of
 from vibroimpact.shown import visible
 
 if TYPE_CHECKING:
@@ -30,6 +31,10 @@ app = typer.Typer(
 )
 
 CaseArgument = Annotated[str, typer.Argument(metavar="CASE", help='A TOML file, or a shipped case such as "paper:type1-theory".')]
+Changes = Annotated[
+    list[str] | None,
+    typer.Option("--set", metavar="KEY=VALUE", help='Another value at a key, such as plate.size.thickness="10 mm"; may be repeated.'),
+]
 Force = Annotated[bool, typer.Option("--force", help="Replace an existing result folder.")]
 
 
@@ -55,6 +60,26 @@ def stem(case: str) -> str:
     """Return the base name of folders for a case: its file name, shortened, without unprintable characters."""
     name = Path(case.removeprefix("paper:")).stem[:_LONGEST_STEM]
     return "".join(character if character.isprintable() else "_" for character in name)
+
+
+def settings_of(texts: list[str] | None, example: str = 'plate.size.thickness="10 mm"') -> dict[str, Any]:
+    """Return the values that `--set` gives by key, read as in a case file; a text, also with a unit, needs no quotes.
+
+    Examples
+    --------
+    >>> settings_of(["run.impacts=3", "plate.size.thickness=10 mm", "contact.law=flores", "drop.position=[0.1, 0]"])
+    {'run.impacts': 3, 'plate.size.thickness': '10 mm', 'contact.law': 'flores', 'drop.position': [0.1, 0]}
+    """
+    settings: dict[str, Any] = {}
+    for text in texts or ():
+        key, sign, value = (part.strip() for part in text.partition("="))
+        if not (sign and value and all(key.split("."))):
+            raise InputError(f'--set "{text}": give KEY=VALUE, such as {example}')
+        try:
+            settings[key] = tomllib.loads(f"value = {value}")["value"]
+        except (ValueError, RecursionError):
+            settings[key] = value
+    return settings
 
 
 def console() -> Console:

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from vibroimpact.cases.build import resolved_case
 from vibroimpact.cases.case import Case
 from vibroimpact.cases.conditions import Conditions, DropSummary
+from vibroimpact.cases.keys import with_values
 from vibroimpact.cases.limit import limits, numbers_of
 from vibroimpact.cases.limits.plate_waves import plate_theory_error
 from vibroimpact.contact.law import ContactLaw
@@ -22,7 +23,6 @@ from vibroimpact.dynamics.vibrating.sensitivity import change_by_impact
 from vibroimpact.resolved_case import ResolvedCase
 from vibroimpact.studies.axes import Values
 from vibroimpact.studies.drop_variables import DOUBTS, LIMIT
-from vibroimpact.studies.swept_keys import with_values
 
 
 def limit_meanings() -> dict[str, tuple[str, str]]:

@@ -18,6 +18,7 @@ from vibroimpact.cases.case import Case
 from vibroimpact.cases.fields.quantities import Quantity
 from vibroimpact.cases.fields.section import read_table
 from vibroimpact.cases.fields.size_limits import MOST_ITEMS, check_bounds, check_count
+from vibroimpact.cases.keys import find_quantity, holds_keys
 from vibroimpact.cases.reader import load_table, prefix_errors
 from vibroimpact.cases.rigid import deforms, impact_limit
 from vibroimpact.dynamics.columns import ALL_IMPACT_COLUMNS, IMPACT_COLUMNS, meanings
@@ -31,7 +32,7 @@ from vibroimpact.studies.drop_variables import OUTCOME, PEAKS, SENSOR_PEAK, SIGN
 from vibroimpact.studies.limit_columns import limit_meanings
 from vibroimpact.studies.plan import Plan
 from vibroimpact.studies.section import MOST_DROPS, SweepSection, read_axis
-from vibroimpact.studies.swept_keys import case_at, find_quantity, holds_keys
+from vibroimpact.studies.swept_keys import case_at
 
 MOST_KEYS = 100
 """Maximum number of swept keys."""

@@ -1,130 +1,21 @@
-"""Dotted keys of a case: their quantities, and setting their values, singly or as arrays over many drops."""
+"""The cases of the drops of a study: values at dotted keys, one by one, or as arrays over many drops."""
 
 from __future__ import annotations
 
-import copy
 from collections import defaultdict
-from collections.abc import Iterator, Mapping
-from dataclasses import fields, replace
-from typing import Any, get_args, get_origin
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
 from vibroimpact.cases.case import Case
-from vibroimpact.cases.fields.local import LocalSection
-from vibroimpact.cases.fields.material import InlineMaterial, material_table
-from vibroimpact.cases.fields.quantities import Quantity
-from vibroimpact.cases.fields.section import Section
+from vibroimpact.cases.keys import with_values
 from vibroimpact.cases.reader import read_case
-from vibroimpact.cases.schema import DropSection, PlateSection, RunSection, SphereSection
-from vibroimpact.contact.law import unit_of
-from vibroimpact.contact.registry import find_contact_law
-from vibroimpact.errors import InputError, did_you_mean
-from vibroimpact.materials import find_material
-from vibroimpact.ranges import Range
-from vibroimpact.shown import shown
 from vibroimpact.studies.axes import Values
-
-_SECTIONS: dict[str, type[Section]] = {"sphere": SphereSection, "plate": PlateSection, "drop": DropSection, "run": RunSection}
-_PLACES = {"position": ("x", "y"), "size": ("length", "width", "thickness")}
-"""Names of the numbers of a list, such as x in "drop.position.x"."""
-
-_DAMPING = Quantity("", "damping ratio", Range(at_least=0))
-
-_OPEN = ("supports", "mesh", "damping", "reduction")
-"""Tables of a body whose inner keys are validated by the reader of the case."""
 
 _OF_THE_RUN = ("run.duration", "run.tolerance")  # the same for all drops of a batch
 _WITHOUT_EFFECT = ("drop.position.", "plate.size.")  # on rigid bodies
-
-
-def swept_keys(table: Mapping[str, Any]) -> dict[str, Quantity | None]:
-    """Return the keys of a case that can be swept with their quantities; None for a key that is not a quantity.
-
-    Parameters
-    ----------
-    table : mapping
-        The case, with the structure of a TOML case file; its contact law determines the keys of [contact].
-
-    Examples
-    --------
-    >>> keys = swept_keys({"contact": {"law": "hertz"}})
-    >>> keys["sphere.radius"].unit, keys["contact.stiffness"].unit, keys["drop.position.x"].unit, keys["plate.model"]
-    ('m', 'N/m^1.5', 'm', None)
-    """
-    return dict(_keys(table))
-
-
-def find_quantity(table: Mapping[str, Any], key: str) -> Quantity | None:
-    """Return the quantity of a key of a case; None if it is not a quantity.
-
-    Raises
-    ------
-    InputError
-        If there is no such key, or it can't be swept.
-    """
-    known = swept_keys(table)
-    if key in known:
-        return known[key]
-    body, _, rest = key.partition(".")
-    if body in ("sphere", "plate") and rest.partition(".")[0] in _OPEN:
-        return None
-    words = f'unknown key; it must be a key of [sphere], [plate], [drop], [contact] or [run], such as "{_like(key, known)}"'
-    raise InputError(f"{words}.{did_you_mean(key, known)}")
-
-
-def _like(key: str, known: Mapping[str, object]) -> str:
-    return next((name for name in known if name.startswith(key.partition(".")[0] + ".")), "sphere.radius")
-
-
-def holds_keys(key: str) -> bool:
-    """Return whether a dotted key is that of a section or a table that contains keys that can be swept.
-
-    Examples
-    --------
-    >>> holds_keys("sphere.material"), holds_keys("sphere.radius")
-    (True, False)
-    """
-    section, _, field = key.partition(".")
-    return section in (*_SECTIONS, "contact") and field in ("", "material", *_PLACES)
-
-
-def with_values(table: Mapping[str, Any], values: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the case with values at dotted keys; a named material is written out where one of its properties changes.
-
-    Examples
-    --------
-    >>> with_values({"drop": {"position": [0.0, 0.0]}}, {"drop.position.y": 0.1, "sphere.radius": "5 mm"})
-    {'drop': {'position': [0.0, 0.1]}, 'sphere': {'radius': '5 mm'}}
-    """
-    found = copy.deepcopy(dict(table))
-    for key, value in sorted(values.items(), key=lambda item: item[0].count(".")):  # a material before its properties
-        *way, last = key.split(".")
-        inside: Any = found
-        for number, part in enumerate(way):
-            holder = inside
-            if not isinstance(inside, dict):
-                raise InputError(f"{shown(inside)} is not a table, so that it has no {part}", ".".join(way[:number]))
-            inside = inside.setdefault(part, [0.0, 0.0] if way[number:] == ["position"] else {})
-            if isinstance(inside, str) and part == "material":
-                named = material_table(find_material(inside))
-                if isinstance(named, str):
-                    raise InputError(f"{shown(inside)} has no numbers that could be swept", ".".join(way))
-                inside = holder[part] = {
-                    name: number for name, number in named.items() if name != "name"
-                }  # a different material now, without the name
-        if not inside and last in _PLACES.get(way[-1], ()):
-            raise InputError(f"it is missing, so that it has no {last} that could be swept; give all of it", ".".join(way))
-        names = _PLACES.get(way[-1], ()) if way else ()
-        if isinstance(inside, list) and last in names:
-            if len(inside) != len(names):
-                raise InputError(f"{shown(inside)} does not have the right number of values; it takes {', '.join(names)}", ".".join(way))
-            inside[names.index(last)] = value
-        elif isinstance(inside, dict):
-            inside[last] = value
-        else:
-            raise InputError(f"{shown(inside)} is not a table, so that it has no {last}", ".".join(way))
-    return found
 
 
 def case_at(table: Mapping[str, Any], values: Mapping[str, Any]) -> Case:
@@ -170,42 +61,3 @@ def with_arrays(case: Case, arrays: Mapping[str, Values]) -> Case:
     if "contact" in fields:
         changed["contact"] = replace(case.contact, parameters={**case.contact.parameters, **fields["contact"]})
     return case.model_copy(update=changed)
-
-
-def _keys(table: Mapping[str, Any]) -> Iterator[tuple[str, Quantity | None]]:
-    for name, section in _SECTIONS.items():
-        yield name, None
-        for field, info in section.model_fields.items():
-            key = f"{name}.{field}"
-            parts = _parts(info.annotation) if field in _PLACES else ()
-            yield key, None if parts else _DAMPING if field == "damping" else _quantity((info.annotation, *info.metadata))
-            yield from ((f"{key}.{place}", _quantity((part,))) for place, part in zip(_PLACES.get(field, ()), parts, strict=True))
-            if field == "material":
-                for number, inner in InlineMaterial.model_fields.items():
-                    if number != "name":
-                        yield f"{key}.{number}", _quantity((inner.annotation, *inner.metadata))
-    yield "contact", None
-    yield "contact.law", None
-    contact = table.get("contact")
-    if isinstance(contact, dict) and isinstance(contact.get("law"), str):
-        exponent = contact.get("exponent", 1.5)
-        for item in fields(find_contact_law(contact["law"])):
-            yield f"contact.{item.name}", Quantity(unit_of(item, exponent), item.metadata["meaning"], item.metadata["range"])
-    for field, info in LocalSection.model_fields.items():
-        yield f"contact.{field}", _quantity((info.annotation, *info.metadata))
-
-
-def _quantity(annotations: tuple[Any, ...]) -> Quantity | None:
-    """Return the first quantity among annotations or nested in them."""
-    for annotation in annotations:
-        found = (
-            annotation if isinstance(annotation, Quantity) else _quantity((*get_args(annotation), *getattr(annotation, "__metadata__", ())))
-        )
-        if found is not None:
-            return found
-    return None
-
-
-def _parts(annotation: Any) -> tuple[Any, ...]:
-    """Return the annotations of the elements of a tuple type, which may be optional."""
-    return next(get_args(option) for option in (annotation, *get_args(annotation)) if get_origin(option) is tuple)

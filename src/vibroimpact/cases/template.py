@@ -1,0 +1,130 @@
+"""A case to start from: the text of another one, with the keys that it does not use as comments."""
+
+from __future__ import annotations
+
+import json
+import re
+import tomllib
+from collections.abc import Iterator
+from dataclasses import MISSING, fields
+from os import PathLike
+from typing import Any, Literal, get_args, get_origin
+
+from pydantic import WithJsonSchema
+from pydantic.fields import FieldInfo
+
+from vibroimpact.cases.fields.local import LocalSection
+from vibroimpact.cases.fields.section import Section
+from vibroimpact.cases.keys import quantity_of
+from vibroimpact.cases.reader import case_text, load_case, prefix_errors
+from vibroimpact.cases.schema import DropSection, PlateSection, RunSection, SensorSection, SphereSection
+from vibroimpact.contact.law import unit_of
+from vibroimpact.contact.registry import find_contact_law
+
+_SECTIONS: dict[str, type[Section]] = {
+    "sphere": SphereSection,
+    "plate": PlateSection,
+    "drop": DropSection,
+    "contact": LocalSection,
+    "run": RunSection,
+    "sensors": SensorSection,
+}
+_HEADER = re.compile(r"^\s*\[\[?\s*([\w-]+)\s*[].]")  # of a section or of a table in it
+_NAME = re.compile(r"^name\s*=.*$", re.MULTILINE)
+_WIDTH = 40  # columns of a key with its value, before its meaning
+
+
+def case_template(source: str | PathLike[str] = "paper:type1-theory", name: str = "") -> str:
+    """Return the text of a case file to start from: that of another case, with its unused keys as comments.
+
+    Parameters
+    ----------
+    source : path or str, default "paper:type1-theory"
+        A TOML file, or "paper:NAME".
+    name : str, optional
+        Name of the new case; by default that of the source.
+
+    Raises
+    ------
+    InputError
+        If the source can't be read or is not a valid case.
+
+    Examples
+    --------
+    >>> text = case_template("paper:type1-theory", "my rock")
+    >>> 'name = "my rock"' in text, "# speed = " in text
+    (True, True)
+    """
+    text = prefix_errors(source, lambda: case_text(source))
+    load_case(source)  # which must be valid
+    if name:
+        line = f"name = {json.dumps(name, ensure_ascii=False)}"
+        text = _NAME.sub(lambda _: line, text, count=1) if _NAME.search(text) else f"{line}\n{text}"
+    used: dict[str, Any] = tomllib.loads(text)
+    blocks = _blocks(text.rstrip().split("\n"))
+    for place in range(len(blocks) - 1, -1, -1):
+        section = blocks[place][0]
+        if section in _SECTIONS and section not in [later for later, _ in blocks[place + 1 :]]:  # the last block of a section
+            blocks[place][1].extend(_comments(section, used[section]))
+    for section in _SECTIONS:
+        if section not in used:
+            header = "[[sensors]]" if section == "sensors" else f"[{section}]"
+            blocks.append((section, ["", f"# {header}", *_comments(section, {})]))
+    return "\n".join(line for _, lines in blocks for line in lines).rstrip() + "\n"
+
+
+def _blocks(lines: list[str]) -> list[tuple[str, list[str]]]:
+    """Return the lines of a case in blocks, each with the section that its first line opens; blank lines belong to the block below."""
+    blocks: list[tuple[str, list[str]]] = [("", [])]
+    for line in lines:
+        if found := _HEADER.match(line):
+            blank = []
+            while blocks[-1][1] and not blocks[-1][1][-1].strip():
+                blank.append(blocks[-1][1].pop())
+            blocks.append((found[1], blank))
+        blocks[-1][1].append(line)
+    return blocks
+
+
+def _comments(section: str, used: Any) -> Iterator[str]:
+    """Yield a comment for each key of a section that is not used; of [contact] those of its law first."""
+    taken = set().union(*used) if isinstance(used, list) else set(used)
+    if section == "contact" and isinstance(used.get("law"), str):
+        for item in fields(find_contact_law(used["law"])):
+            if item.name not in taken and not item.metadata["memory"]:
+                origin = "from the bodies" if item.metadata["from_pair"] else ""
+                value = "..." if origin or item.default in (MISSING, None) else f"{item.default:g}"
+                unit = unit_of(item, used.get("exponent", 1.5))
+                yield _comment(item.name, value, _with_unit(item.metadata["meaning"], unit) + (f"; by default {origin}" if origin else ""))
+    for name, info in _SECTIONS[section].model_fields.items():
+        if name not in taken:
+            yield _comment(name, _value(info), _meaning(info))
+
+
+def _comment(name: str, value: str, meaning: str) -> str:
+    return f"# {name} = {value}".ljust(_WIDTH) + f"   # {meaning}" if meaning else f"# {name} = {value}"
+
+
+def _meaning(info: FieldInfo) -> str:
+    """Return the meaning of a key, with the unit of a quantity."""
+    if info.description:
+        return info.description
+    if (quantity := quantity_of(info)) is not None:
+        return _with_unit(quantity.meaning, quantity.unit)
+    schemas = (one.json_schema for one in info.metadata if isinstance(one, WithJsonSchema) and one.json_schema)
+    return str(next(schemas, {}).get("description", ""))
+
+
+def _with_unit(meaning: str, unit: str) -> str:
+    return f"{meaning} [{unit}]" if unit else meaning
+
+
+def _value(info: FieldInfo) -> str:
+    """Return the default of a key as TOML; without one the first word that is allowed, or a gap to be filled."""
+    if info.default is not None and isinstance(info.default, (bool, int, float, str, tuple)) and info.default != ():
+        return json.dumps(info.default)
+    for option in (info.annotation, *get_args(info.annotation)):
+        if get_origin(option) is Literal:
+            return json.dumps(get_args(option)[0])
+    quantity = quantity_of(info)
+    return "..." if quantity is None or not quantity.unit else f'"... {quantity.unit}"'

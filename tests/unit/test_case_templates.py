@@ -1,0 +1,126 @@
+"""Cases to start from, and other values given on the command line."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from pathlib import Path
+
+import pytest
+
+import vibroimpact as vi
+from vibroimpact.cases.template import _SECTIONS, case_template
+from vibroimpact.cli import main
+
+
+def command(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], *arguments: str) -> tuple[int, str]:
+    monkeypatch.setattr("sys.argv", ["vibroimpact", *arguments])
+    with pytest.raises(SystemExit) as left:
+        main()
+    written = capsys.readouterr()
+    return int(left.value.code or 0), " ".join((written.out + written.err).split())
+
+
+@pytest.mark.parametrize("name", ["paper:type1-theory", "paper:type2-identified", "paper:type3"])
+def test_a_template_is_its_source_with_comments(name: str) -> None:
+    text = case_template(name, "mine")
+    assert vi.read_case(tomllib.loads(text)) == vi.load_case(name, {"name": "mine"})
+
+
+def test_each_key_stands_there_once_used_or_as_a_comment() -> None:
+    text = case_template("paper:type3")
+    for section, kind in _SECTIONS.items():
+        block = re.split(r"^#? ?\[+", text, flags=re.MULTILINE)
+        (own, *more) = [part for part in block if part.startswith(f"{section}]")]
+        lines = [line for part in (own, *more) for line in part.splitlines()]
+        for key in kind.model_fields:
+            assert any(re.match(rf"#? ?{key} = ", line) for line in lines), (section, key)
+
+
+def test_defaults_in_comments_are_those_of_the_case() -> None:
+    """Each comment with a value that TOML can read, made part of the case, changes nothing."""
+    text = case_template("paper:type1-theory")
+    for line in re.findall(r"^# (\w+ = [^.\n]*?)  ", text, flags=re.MULTILINE):
+        key = line.split(" = ")[0]
+        if key in ("exponent", "position", "gravity", "same_spot", "tolerance", "finite_sphere", "attachment_mode"):
+            changed = text.replace(f"# {line}", line, 1)
+            assert vi.read_case(tomllib.loads(changed)).to_problem().source == vi.load_case("paper:type1-theory").to_problem().source, line
+
+
+def test_new_writes_a_case_that_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert command(monkeypatch, capsys, "new", "my rock", "--from", "paper:type1-variable")[0] == 0
+    assert vi.load_case("my rock.toml").name == "my rock"
+    assert command(monkeypatch, capsys, "check", "my rock.toml")[0] == 0
+    status, words = command(monkeypatch, capsys, "new", "my rock")
+    assert status == 2
+    assert "my rock.toml exists; take another name, or --force to replace it" in words
+    assert command(monkeypatch, capsys, "new", "my rock.toml", "--force")[0] == 0
+    assert vi.load_case("my rock.toml").contact.law == "lankarani-nikravesh"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["a/b"], '"a/b" is no name of a file; give one without folders, such as my-plate'),
+        ([".toml"], '".toml" is no name of a file'),
+        (["mine", "--from", "paper:type4"], "there is no shipped case"),
+        (["mine", "--from", "nothing.toml"], "there is no such file"),
+    ],
+)
+def test_wrong_names(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], arguments: list[str], words: str
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    status, said = command(monkeypatch, capsys, "new", *arguments)
+    assert status == 2
+    assert words in said
+    assert not list(tmp_path.iterdir())
+
+
+def test_cases_lists_all(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    status, words = command(monkeypatch, capsys, "cases")
+    assert status == 0
+    assert all(name in words for name in vi.shipped_cases())
+
+
+# --set ------------------------------------------------------------------------------------------------
+
+
+def test_changes_are_those_of_the_file(tmp_path: Path) -> None:
+    text = case_template("paper:type1-theory").replace('"25 mm"', '"30 mm"').replace("impacts = 5", "impacts = 2")
+    (tmp_path / "case.toml").write_text(text)
+    assert vi.load_case(tmp_path / "case.toml") == vi.load_case("paper:type1-theory", {"sphere.radius": "30 mm", "run.impacts": 2})
+
+
+def test_files_in_changes_are_found_from_where_the_command_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "ball.bdf").write_text("")
+    section = vi.load_case("paper:type2", {"sphere.mesh": "ball.bdf"}).sphere
+    assert section.mesh.file == str(tmp_path / "ball.bdf")
+
+
+def test_a_run_takes_them(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    monkeypatch.chdir(tmp_path)
+    arguments = ["run", "paper:type1-theory", "-o", "out", "--set", "run.impacts=1", "--set", "drop.height=1 m"]
+    assert command(monkeypatch, capsys, *arguments)[0] == 0
+    result = vi.read_result("out")
+    assert len(result.impacts["impact"]) == 1
+    assert result.case["drop"]["height"] == 1.0
+
+
+@pytest.mark.parametrize(
+    ("setting", "words"),
+    [
+        ("plate.size.thicknes=10 mm", 'plate.size: there is no thicknes; it takes length, width, thickness. Did you mean "thickness"?'),
+        ("plat.size=3", 'plat: unknown key "plat"'),
+        ("sphere.radius=-1", "sphere.radius: -1 is not allowed; it must be greater than 0 m"),
+        ("sphere.radius", '--set "sphere.radius": give KEY=VALUE, such as plate.size.thickness="10 mm"'),
+        ("sphere.radius.x=1", "sphere.radius: "),
+        ("drop.speed=3", "drop: give either height or speed; both are given"),
+    ],
+)
+def test_wrong_settings(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], setting: str, words: str) -> None:
+    status, said = command(monkeypatch, capsys, "check", "paper:type1-theory", "--set", setting)
+    assert status == 2
+    assert words in said
