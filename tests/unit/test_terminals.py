@@ -21,6 +21,7 @@ from vibroimpact.calibration.calibrate import calibrate
 from vibroimpact.calibration.text import calibration_summary
 from vibroimpact.cases.elastic.modes import compute_modes
 from vibroimpact.cli import main
+from vibroimpact.cli.case_text import shipped_cases_table
 from vibroimpact.cli.doctor import diagnose
 from vibroimpact.cli.material_text import material_library_table, material_sheet
 from vibroimpact.cli.unit_table import converted, unit_table
@@ -88,6 +89,7 @@ def commands(tmp_path_factory: pytest.TempPathFactory, variable: vi.Response) ->
         "sweep": lambda width: study_summary(study, width),
         "export": lambda _: format_table(),
         "export, done": lambda _: export_summary(drop, find_export_format("lammps"), [folder / "drop.in"]),
+        "cases": lambda _: shipped_cases_table(),
         "laws": law_table,
         "laws NAME": lambda _: law_sheet("jackson-green-marghitu"),
         "materials": lambda _: material_library_table(),
@@ -109,6 +111,7 @@ NAMES = (
     "sweep",
     "export",
     "export, done",
+    "cases",
     "laws",
     "laws NAME",
     "materials",
@@ -130,7 +133,7 @@ def shown(what: RenderableType, width: int, encoding: str = "utf-8") -> list[str
 def test_every_command_is_here(commands: Printed) -> None:
     from vibroimpact.cli.shared import app
 
-    silent = {"demo", "report", "schema", "reproduce"}  # as run; one line; JSON; below
+    silent = {"demo", "report", "new", "schema", "reproduce"}  # as run; one line; one line; JSON; below
     there = {re.split("[, ]", name)[0] for name in NAMES} | silent
     assert {one.callback.__name__ for one in app.registered_commands if one.callback} <= there
     assert set(NAMES) == commands.keys()
