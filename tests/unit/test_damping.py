@@ -13,8 +13,8 @@ FREQUENCIES = np.array([10.0, 100.0, 400.0, 1000.0, 5000.0])
 
 def test_constant() -> None:
     np.testing.assert_array_equal(ConstantRatio(0.02).ratios(FREQUENCIES), 0.02)
-    assert ConstantRatio(0.0).words == "none"
-    assert "0.02" in ConstantRatio(0.02).words
+    assert ConstantRatio(0.0).description == "none"
+    assert "0.02" in ConstantRatio(0.02).description
 
 
 def test_adams_limits() -> None:
@@ -46,7 +46,7 @@ def test_table() -> None:
     table = RatioTable((100.0, 200.0, 1000.0), (0.01, 0.03, 0.02))
     at = np.array([1.0, 100.0, 150.0, 200.0, 600.0, 1000.0, 1e5])
     np.testing.assert_allclose(table.ratios(at), [0.01, 0.01, 0.02, 0.03, 0.025, 0.02, 0.02], rtol=1e-12)
-    assert table.words == "a table of 3 ratios from 100 to 1000 Hz"
+    assert table.description == "a table of 3 ratios from 100 to 1000 Hz"
     np.testing.assert_array_equal(RatioTable((100.0,), (0.05,)).ratios(at), 0.05)
 
 
@@ -68,17 +68,17 @@ def test_one_ratio_a_mode() -> None:
     np.testing.assert_array_equal(RatioOfEach((0.01, 0.02)).ratios(FREQUENCIES), [0.01, 0.02, 0.02, 0.02, 0.02])
     np.testing.assert_array_equal(RatioOfEach((0.01, 0.02, 0.03)).ratios(FREQUENCIES[:1]), [0.01])
     assert (
-        RatioOfEach(tuple(np.arange(1, 7) / 100)).words
+        RatioOfEach(tuple(np.arange(1, 7) / 100)).description
         == "damping ratios of the modes one by one: 0.01, 0.02, 0.03, 0.04, ...; the last goes on"
     )
 
 
 def test_loss_factor() -> None:
     np.testing.assert_array_equal(LossFactor(0.02).ratios(FREQUENCIES), 0.01)
-    assert "damping ratio 0.01" in LossFactor(0.02).words
+    assert "damping ratio 0.01" in LossFactor(0.02).description
 
 
 def test_no_modes() -> None:
     for damping in (ConstantRatio(0.1), RatioTable((1.0,), (0.1,)), RatioOfEach((0.1,)), Rayleigh(1, 1), LossFactor(0.1), AdamsDefault()):
         assert damping.ratios(np.zeros(0)).shape == (0,)
-        assert damping.words
+        assert damping.description

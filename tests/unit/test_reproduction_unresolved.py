@@ -152,7 +152,7 @@ def test_the_section_says_what_is_missed(runs: Runs) -> None:
         "plate.kinetic_energy",
         "plate.strain_energy",
     }
-    text = " ".join((*section.words, *section.conclusion))
+    text = " ".join((*section.paragraphs, *section.conclusion))
     assert "Established" in text
     assert "A reading" in text
     assert "not a proof" in text

@@ -16,7 +16,7 @@ from vibroimpact.report.terminal_table import TerminalColumn, TerminalTable, fac
 from vibroimpact.units.display import column_texts
 
 WIDE = [
-    TerminalColumn("Law", ["hunt-crossley", "flores"], words=True),
+    TerminalColumn("Law", ["hunt-crossley", "flores"], text=True),
     *(numbers(f"Largest quantity {place}", "m/s²", ["12345.6789", "0.5"]) for place in range(9)),
 ]
 
@@ -40,7 +40,7 @@ def test_numbers_that_do_not_fit_go_on_in_a_second_block(width: int) -> None:
 
 def test_numbers_are_aligned_at_their_points() -> None:
     _, *lines = printed(
-        TerminalTable([TerminalColumn("row", list("abcd"), words=True), TerminalColumn("x", ["2.26", "210", "\u221270.5", "\u2013"])]), 60
+        TerminalTable([TerminalColumn("row", list("abcd"), text=True), TerminalColumn("x", ["2.26", "210", "\u221270.5", "\u2013"])]), 60
     )
     assert [line.find(".") for line in lines if "." in line] == [lines[0].index(".")] * 2
     assert lines[1].rstrip().endswith("210")
@@ -50,9 +50,9 @@ def test_numbers_are_aligned_at_their_points() -> None:
 def test_long_words_go_below_their_row() -> None:
     said = "a sentence that is far too long to stand beside the numbers of its row"
     columns = [
-        TerminalColumn("name", ["steel"], words=True),
+        TerminalColumn("name", ["steel"], text=True),
         numbers("density", "kg/m3", ["7850"]),
-        TerminalColumn("what", [said], words=True),
+        TerminalColumn("what", [said], text=True),
     ]
     wide, narrow = printed(TerminalTable(columns), 120), printed(TerminalTable(columns), 40)
     assert said in wide[-1]
@@ -124,7 +124,7 @@ def test_stand_ins_read_as_they_should() -> None:
 
 @pytest.mark.parametrize("encoding", ["ascii", "cp1252"])
 def test_lines_fit_after_letters_have_their_stand_ins(encoding: str) -> None:
-    table = TerminalTable([TerminalColumn("row", ["a"], words=True), *(numbers("x", "m/s²", ["1.2·10⁻⁷"]) for _ in range(6))])
+    table = TerminalTable([TerminalColumn("row", ["a"], text=True), *(numbers("x", "m/s²", ["1.2·10⁻⁷"]) for _ in range(6))])
     for width in (30, 40, 60):
         lines = printed(table, width, encoding) + printed(Text("2.0·10⁻⁷ m/s² ≤ 3 " * 8), width, encoding)
         assert max(map(len, lines)) <= width

@@ -95,7 +95,7 @@ def test_it_reads_what_pyuff_reads(exported: Path) -> None:
         warnings.simplefilter("ignore", ResourceWarning)
         theirs = [one for one in pyuff.UFF(str(exported)).read_sets() if one["type"] == 58]
     ours = read_universal_file(exported).functions
-    assert [one.words for one in ours] == [one["id1"] for one in theirs]
+    assert [one.identification for one in ours] == [one["id1"] for one in theirs]
     for one, other in zip(ours, theirs, strict=True):
         np.testing.assert_array_equal(one.values, other["data"])
         np.testing.assert_allclose(one.time, other["x"], rtol=1e-12)

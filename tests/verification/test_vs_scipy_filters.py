@@ -14,7 +14,7 @@ from support import one_in
 from vibrating import STIFFNESS, drop_on, modes_of, random_modes
 from vibroimpact.contact.laws.hertz import Hertz
 from vibroimpact.contact.laws.lankarani_nikravesh import LankaraniNikravesh
-from vibroimpact.dynamics.sensors.antialias import REACH, kernel
+from vibroimpact.dynamics.sensors.antialias import HALF_LENGTH, kernel
 from vibroimpact.dynamics.sensors.sensor import Accelerometer, Sensor
 
 RATE, FINER = 20e3, 64
@@ -32,8 +32,8 @@ def decimated(value: np.ndarray, kind: str) -> np.ndarray:
     if kind == "butterworth":
         value = signal.sosfilt(signal.butter(8, 0.4 * RATE, fs=FINER * RATE, output="sos"), value)
     else:
-        taps = signal.firwin(2 * REACH * FINER + 1, 0.5 * RATE, window=("kaiser", 10.4), fs=FINER * RATE)
-        value = signal.fftconvolve(np.pad(value, REACH * FINER), taps, "valid")
+        taps = signal.firwin(2 * HALF_LENGTH * FINER + 1, 0.5 * RATE, window=("kaiser", 10.4), fs=FINER * RATE)
+        value = signal.fftconvolve(np.pad(value, HALF_LENGTH * FINER), taps, "valid")
     return np.asarray(value[::FINER])
 
 
@@ -47,7 +47,7 @@ def test_signals_of_several_impacts(response: vi.Response, kind: str, quantity: 
         full = np.gradient(full) * FINER * RATE
     found = response.signals(Sensor("a", quantity, rate=RATE, filter=kind))["a"].value  # type: ignore[arg-type]
     exact = decimated(full, kind)[: len(found)]
-    heard = slice(None) if kind == "butterworth" else slice(0, -REACH)  # a converter hears what comes after the run
+    heard = slice(None) if kind == "butterworth" else slice(0, -HALF_LENGTH)  # a converter hears what comes after the run
     np.testing.assert_allclose(found[heard], exact[heard], rtol=0.0, atol=2e-3 * np.abs(exact).max())
 
 
@@ -85,7 +85,7 @@ def test_a_plate_that_carries_the_sphere(
         sos = signal.butter(8, 0.4 * RATE, fs=fine, output="sos")
         value = signal.sosfilt(sos, value, zi=signal.sosfilt_zi(sos) * value[0])[0]
     if kind == "sigma-delta":
-        taps = signal.firwin(64 * REACH + 1, 0.5 * RATE, window=("kaiser", 10.4), fs=fine)
+        taps = signal.firwin(64 * HALF_LENGTH + 1, 0.5 * RATE, window=("kaiser", 10.4), fs=fine)
         value = signal.fftconvolve(value, taps, "same")
     quantity = ("displacement", "velocity", "acceleration")[order]
     sensor = Sensor("a", quantity, rate=RATE, filter=kind, accelerometer=meter)  # type: ignore[arg-type]
@@ -108,7 +108,7 @@ def test_an_overdriven_accelerometer(response: vi.Response, kind: str) -> None:
     clipped = np.clip(full, -end, end)
     exact = clipped[::FINER] if kind == "none" else decimated(clipped, kind)
     found = response.signals(Sensor("a", rate=RATE, filter=kind, accelerometer=Accelerometer(**meter, range=end)))["a"]
-    heard = slice(0, -REACH) if kind == "sigma-delta" else slice(None)
+    heard = slice(0, -HALF_LENGTH) if kind == "sigma-delta" else slice(None)
     np.testing.assert_allclose(found.value[heard], exact[: len(found.value)][heard], rtol=0.0, atol=0.01 * end)
     assert found.peak == pytest.approx(np.abs(full).max(), rel=0.02)
     assert found.overload_time == pytest.approx((np.abs(full) > end).sum() / (FINER * RATE), rel=0.03)
@@ -116,7 +116,7 @@ def test_an_overdriven_accelerometer(response: vi.Response, kind: str) -> None:
 
 def test_the_filter_of_a_converter_is_what_is_said() -> None:
     """Flat to 0.45 of the rate within 0.001 dB, and 100 dB down from 0.55 on."""
-    x = np.arange(-REACH * 16, REACH * 16 + 1) / 16.0
+    x = np.arange(-HALF_LENGTH * 16, HALF_LENGTH * 16 + 1) / 16.0
     frequency, gain = signal.freqz(kernel(x) / 16.0, worN=2**16, fs=16.0)
     decibels = 20.0 * np.log10(np.abs(gain))
     assert np.abs(decibels[frequency <= 0.45]).max() < 1e-3
@@ -128,7 +128,7 @@ def test_a_tone_passes_or_is_stopped(frequency: float, seen: float) -> None:
     """One mode that rings on: in band it passes as it is, above it nothing is left, and none is folded into the band."""
     response = vi.simulate(drop_on(HERTZ, modes_of([frequency], [0.3]), gravity=0.0, duration=0.02))
     found, bare = (response.signals(Sensor("a", rate=RATE, filter=kind))["a"] for kind in ("sigma-delta", "none"))
-    later = found.time > 2.0 * REACH / RATE
+    later = found.time > 2.0 * HALF_LENGTH / RATE
     np.testing.assert_allclose(found.value[later], seen * bare.value[later], rtol=0.0, atol=2e-4 * np.abs(bare.value).max())
 
 

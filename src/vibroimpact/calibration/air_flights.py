@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.calibration.flights import EndSpeeds, Flight
+from vibroimpact.calibration.flights import EndSpeeds, ReturnFlight
 from vibroimpact.dynamics.air import drag
 from vibroimpact.errors import InputError
 
@@ -79,13 +79,15 @@ class AirFlights:
         speeds, slopes = zip(*((np.asarray(end(root)), np.asarray(end(root, 1) * by_time)) for end in ends), strict=True)
         return EndSpeeds(*speeds, *slopes)
 
-    def flight(self, speed: Floats) -> Flight:
+    def flight(self, speed: Floats) -> ReturnFlight:
         """Return the flights with given initial speeds [m/s]."""
         tables = self._tables
         if np.any(speed > tables.risen.x[-1]):
             raise self._too_far(f"a flight that begins with {np.max(speed):.4g} m/s")
         root = tables.risen(speed)
-        return Flight(np.asarray(root**2), np.asarray(tables.rise(root)), np.asarray(tables.time(root)), np.asarray(tables.down(root)))
+        return ReturnFlight(
+            np.asarray(root**2), np.asarray(tables.rise(root)), np.asarray(tables.time(root)), np.asarray(tables.down(root))
+        )
 
     def _within(self, table: Any, height: Floats) -> Floats:
         if np.any(height > table.x[-1] ** 2):

@@ -11,7 +11,7 @@ from vibroimpact.calibration.calibration import Calibration
 from vibroimpact.calibration.matchable import MATCHABLE
 
 COMPARED = {
-    MATCHABLE[name].column: MATCHABLE[name].words.capitalize()
+    MATCHABLE[name].column: MATCHABLE[name].phrase.capitalize()
     for name in ("max_indentation", "max_force", "duration", "rebound_height", "separation_speed")
 }
 """Compared columns of the impact table, with their headings."""

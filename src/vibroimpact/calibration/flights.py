@@ -10,7 +10,7 @@ import numpy as np
 from vibroimpact.arrays import Floats
 
 
-class Flight(NamedTuple):
+class ReturnFlight(NamedTuple):
     """A flight from the plate back to the plate: height [m], time of ascent and duration [s], and the speed on return [m/s]."""
 
     height: Floats
@@ -50,7 +50,7 @@ class Flights(Protocol):
     def end_speeds(self, time: Floats) -> EndSpeeds:
         """Return the initial and final speeds of flights of given durations [s]."""
 
-    def flight(self, speed: Floats) -> Flight:
+    def flight(self, speed: Floats) -> ReturnFlight:
         """Return the flights with given initial speeds [m/s]."""
 
 
@@ -87,9 +87,9 @@ class VacuumFlights:
         speed, slope = 0.5 * self.gravity * time, np.full_like(time, 0.5 * self.gravity)
         return EndSpeeds(speed, speed, slope, slope)
 
-    def flight(self, speed: Floats) -> Flight:
+    def flight(self, speed: Floats) -> ReturnFlight:
         """Return the flights with given initial speeds [m/s]."""
-        return Flight(0.5 * speed**2 / self.gravity, speed / self.gravity, 2.0 * speed / self.gravity, speed)
+        return ReturnFlight(0.5 * speed**2 / self.gravity, speed / self.gravity, 2.0 * speed / self.gravity, speed)
 
 
 def vacuum_height(flights: Flights, height: Floats) -> tuple[Floats, Floats]:

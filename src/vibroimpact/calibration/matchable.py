@@ -14,7 +14,7 @@ class MatchableQuantity(NamedTuple):
 
     column: str
     unit: str
-    words: str
+    phrase: str
 
 
 MATCHABLE = {

@@ -69,8 +69,8 @@ def file_measurement(case: Case, target: FileTarget, by_rebound: bool) -> Measur
     """
     if is_universal(target.file):
         found = read_universal_record(target.file, target.function, by_rebound)
-        if found.quantity == "acceleration" and found.words != SPHERE_ACCELERATION:
-            raise InputError(f'{target.file}: "{found.words}": in a table, {_WHOSE}', "target")
+        if found.quantity == "acceleration" and found.identification != SPHERE_ACCELERATION:
+            raise InputError(f'{target.file}: "{found.identification}": in a table, {_WHOSE}', "target")
         column = "sphere_acceleration" if found.quantity == "acceleration" else found.quantity
         return _naming_file(target.file, _record_measurement(case, Recorded(found.time, {column: found.values}, None), by_rebound))
     if target.function is not None:

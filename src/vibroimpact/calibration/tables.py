@@ -37,7 +37,7 @@ def values_table(found: Calibration) -> Cells:
         headers.append(("As the case gives it", found.unit))
         columns.append(column_texts(found.given, 6))
     for name in found.weights:
-        header = MATCHABLE[name].words.capitalize()
+        header = MATCHABLE[name].phrase.capitalize()
         unit, cells = formatted_column(MATCHABLE[name].column, np.concatenate([seen.wanted[name], found.outcomes[name]]))
         headers += [(f"{header} wanted", unit), ("found", unit)]
         columns += [cells[: len(seen.speeds)], cells[len(seen.speeds) :]]
@@ -117,7 +117,9 @@ def given_sentences(found: Calibration) -> list[str]:
             continue
         worst = int(np.nanargmax(np.abs(off)))
         given, meets = (f"{digits(value, 6)} {found.unit}".rstrip() for value in (found.given[worst], found.values[worst]))
-        words = f"With {found.parameter} = {given}, as the case gives it, the {MATCHABLE[name].words} of {found.observations.labels[worst]}"
+        words = (
+            f"With {found.parameter} = {given}, as the case gives it, the {MATCHABLE[name].phrase} of {found.observations.labels[worst]}"
+        )
         instead, asked = (text(float(value), MATCHABLE[name].unit, 5) for value in (comes[worst], wanted[worst]))
         misses = abs(off[worst]) > _MET
         within = found.intervals is not None and bool(np.prod(found.intervals[worst] - found.given[worst]) <= 0.0)
@@ -133,8 +135,8 @@ def given_sentences(found: Calibration) -> list[str]:
 def match_words(found: Calibration) -> str:
     """Return in words what was matched."""
     if len(found.weights) == 1:
-        return f"the {MATCHABLE[next(iter(found.weights))].words} of each impact comes out as wanted"
-    every = " and ".join(f"the {MATCHABLE[name].words} (weight {weight:g})" for name, weight in found.weights.items())
+        return f"the {MATCHABLE[next(iter(found.weights))].phrase} of each impact comes out as wanted"
+    every = " and ".join(f"the {MATCHABLE[name].phrase} (weight {weight:g})" for name, weight in found.weights.items())
     return f"{every} of each impact come as near to what is wanted as one number can make them"
 
 

@@ -45,5 +45,5 @@ def calibration_summary(case: Case, found: Calibration) -> RenderableType:
 def _table(cells: Cells) -> TerminalTable:
     (first, *headers), rows = cells
     names, *columns = zip(*rows, strict=True)
-    key = TerminalColumn(first[0], names, words=True)
+    key = TerminalColumn(first[0], names, text=True)
     return TerminalTable([key, *(numbers(heading, unit, one) for (heading, unit), one in zip(headers, columns, strict=True))])

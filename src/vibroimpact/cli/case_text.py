@@ -15,9 +15,9 @@ def shipped_cases_table() -> RenderableType:
     """Return the table of the shipped cases: name, title, and the command that they are for."""
     titles = shipped_cases()
     columns = (
-        TerminalColumn("case", list(titles), words=True),
-        TerminalColumn("what it is", list(titles.values()), words=True),
-        TerminalColumn("command", [_command(name) for name in titles], words=True),
+        TerminalColumn("case", list(titles), text=True),
+        TerminalColumn("what it is", list(titles.values()), text=True),
+        TerminalColumn("command", [_command(name) for name in titles], text=True),
     )
     notes = 'Start a case of your own from one of them: "vibroimpact new NAME --from paper:type3".'
     return Group(TerminalTable(columns), Text(), Text(notes))

@@ -13,11 +13,11 @@ def material_library_table() -> RenderableType:
     """Return the table of shipped materials."""
     library = material_library()
     columns = (
-        TerminalColumn("name", list(library), words=True),
+        TerminalColumn("name", list(library), text=True),
         numbers("density", "kg/m3", [f"{one.density:g}" for one in library.values()]),
         numbers("Young's", "GPa", [f"{one.youngs_modulus / 1e9:g}" for one in library.values()]),
         numbers("Poisson's", "-", [f"{one.poissons_ratio:g}" for one in library.values()]),
-        TerminalColumn("what", [one.description for one in library.values()], words=True),
+        TerminalColumn("what", [one.description for one in library.values()], text=True),
     )
     notes = 'Also "rigid" for a plate. "vibroimpact materials NAME" gives the source of each number. Rock and coal vary widely.'
     return Group(TerminalTable(columns), Text(), Text(notes))

@@ -71,7 +71,7 @@ def unit_table(value: float, unit: str) -> RenderableType:
     names, values, there = zip(*in_unit_systems(value, unit), strict=True)
     shown = [number_text(one) for one in values]
     table = TerminalTable(
-        [TerminalColumn("unit system", names, words=True), TerminalColumn("number", shown), TerminalColumn("unit", there, words=True)]
+        [TerminalColumn("unit system", names, text=True), TerminalColumn("number", shown), TerminalColumn("unit", there, text=True)]
     )
     return Group(Text(f"{number_text(value)} {unit}", style="bold"), table, *_power_note(unit))
 

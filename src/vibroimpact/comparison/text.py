@@ -21,7 +21,7 @@ def comparison_summary(comparison: Comparison) -> RenderableType:
     """Return the console report of a comparison: a row for each law, the free parameter of each law, and the doubts."""
     headers, rows = comparison_table(comparison)
     names, *cells = zip(*rows, strict=True)
-    key = TerminalColumn(headers[0][0], names, words=True)
+    key = TerminalColumn(headers[0][0], names, text=True)
     table = TerminalTable([key, *(numbers(heading, unit, one) for (heading, unit), one in zip(headers[1:], cells, strict=True))])
     free = facts([(name, free_parameter_words(law), comparison.results[name].status) for name, law in comparison.laws.items()], indent=1)
     note = Text(" Indentation, force, duration, height and energy are those of the first impact.", style="dim")

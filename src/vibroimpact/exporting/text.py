@@ -23,7 +23,7 @@ def format_table() -> RenderableType:
     said = {"read by": [one.program for one in formats.values()], "files": [one.files for one in formats.values()]}
     said["tested"] = [one.tested for one in formats.values()]
     table = TerminalTable(
-        [TerminalColumn("format", list(formats), words=True), *(TerminalColumn(name, cells, words=True) for name, cells in said.items())]
+        [TerminalColumn("format", list(formats), text=True), *(TerminalColumn(name, cells, text=True) for name, cells in said.items())]
     )
     return Group(table, Text(), Text("vibroimpact export DIR --to FORMAT writes a result folder, or a calibration folder, in one of them."))
 

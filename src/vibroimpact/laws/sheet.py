@@ -28,7 +28,7 @@ def law_table(width: int) -> RenderableType:
         rows.append((name, law_text(law).loss_parameters.replace("nothing is lost", "-"), end, tension, source))
     headings = ("law", "loses by", "ends at", "pulls", "source")
     table = TerminalTable(
-        [TerminalColumn(words, cells, words=True) for words, cells in zip(headings, zip(*rows, strict=True), strict=True)], indent=0
+        [TerminalColumn(words, cells, text=True) for words, cells in zip(headings, zip(*rows, strict=True), strict=True)], indent=0
     )
     hint = '"vibroimpact laws NAME" prints one with its equation, parameters and sources; with -o PNG it draws its curves.'
     return Group(table, Text(), Text(hint))

@@ -34,7 +34,7 @@ _MOST_NAMED = 8
 class UniversalRecord(NamedTuple):
     """A record: identification, quantity, times [s], and values in SI units."""
 
-    words: str
+    identification: str
     quantity: Quantity
     time: Floats
     values: Floats
@@ -68,7 +68,7 @@ def read_universal_record(path: str | Path, which: str | None, by_rebound: bool)
         group = next((group for group in groups if group), [])
         if not group:
             raise InputError(f"{path}: there is no force, displacement or acceleration over time in it; {_there(file.functions)}", "target")
-        own = [one for one in group if one.words in _OWN]
+        own = [one for one in group if one.identification in _OWN]
         group = own if len(own) == 1 else group
         if len(group) > 1:
             raise InputError(f"{path}: say which function is meant: {_there(group)}", "target.function")
@@ -76,15 +76,15 @@ def read_universal_record(path: str | Path, which: str | None, by_rebound: bool)
     quantity, unit = _KINDS[one.kind]
     steps = np.diff(one.time)
     if np.any(steps <= 0.0):
-        raise InputError(f'{path}: "{one.words}": time does not rise at sample {int(np.argmin(steps > 0.0)) + 2}', "target")
-    return UniversalRecord(one.words, quantity, one.time, one.values * _in_si(path, one, unit, file))
+        raise InputError(f'{path}: "{one.identification}": time does not rise at sample {int(np.argmin(steps > 0.0)) + 2}', "target")
+    return UniversalRecord(one.identification, quantity, one.time, one.values * _in_si(path, one, unit, file))
 
 
 def _requested(path: str | Path, functions: list[Function], which: str) -> Function:
-    found = [one for one in functions if which in (one.words, str(one.number))]
+    found = [one for one in functions if which in (one.identification, str(one.number))]
     if len(found) != 1:
         several = "there are several functions" if found else "there is no function"
-        hint = "" if found else did_you_mean(which, [one.words for one in functions])
+        hint = "" if found else did_you_mean(which, [one.identification for one in functions])
         raise InputError(f'{path}: {several} "{which}"; {_there(functions)}.{hint}', "target.function")
     if found[0].kind not in _KINDS:
         raise InputError(f'{path}: "{which}" is no force, displacement or acceleration; {_there(functions)}', "target.function")
@@ -92,7 +92,7 @@ def _requested(path: str | Path, functions: list[Function], which: str) -> Funct
 
 
 def _there(functions: list[Function]) -> str:
-    named = [f'{one.number} "{one.words[:40]}"' for one in functions[:_MOST_NAMED]]
+    named = [f'{one.number} "{one.identification[:40]}"' for one in functions[:_MOST_NAMED]]
     more = f" and {len(functions) - _MOST_NAMED} more" if len(functions) > _MOST_NAMED else ""
     return f"there are {', '.join(named)}{more}" if functions else "there is no real function of time"
 
@@ -102,10 +102,10 @@ def _in_si(path: str | Path, one: Function, unit: str, file: UniversalFile) -> f
     by_label, by_file = _by_label(one.unit, unit), None if file.factors is None else 1.0 / file.factors[_DIMENSIONS[unit]]
     if by_label is None and by_file is None:
         label = f'the label "{one.unit}" of its unit is not known' if one.unit else "it has no unit"
-        raise InputError(f'{path}: "{one.words}": {label}, and there is no dataset 164 that says the units of the file', "target")
+        raise InputError(f'{path}: "{one.identification}": {label}, and there is no dataset 164 that says the units of the file', "target")
     if by_label is not None and by_file is not None and abs(by_label / by_file - 1.0) > _SAME:
         words = f'its unit is "{one.unit}", and by dataset 164 the values are in units of {by_file:g} {unit}'
-        raise InputError(f'{path}: "{one.words}": {words}; correct one of them', "target")
+        raise InputError(f'{path}: "{one.identification}": {words}; correct one of them', "target")
     return by_label if by_label is not None else float(by_file or 1.0)
 
 

@@ -47,7 +47,7 @@ class Function:
     ----------
     number : int
         Number of the function in the file, from 1.
-    words : str
+    identification : str
         First identification line.
     kind : int
         Data type of the ordinate in dataset 58: 8 displacement, 9 and 13 force, 11 velocity, 12 acceleration.
@@ -58,7 +58,7 @@ class Function:
     """
 
     number: int
-    words: str
+    identification: str
     kind: int
     unit: str
     time: Floats

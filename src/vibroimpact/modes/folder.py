@@ -118,8 +118,8 @@ def _body_summary(body: BodyModes) -> dict[str, Any]:
         "centre_of_mass_m": properties.centre.tolist(),
         "inertia_kg_m2": properties.inertia.tolist(),
         "rigid_motions": len(body.model.rigid_coefficients),
-        "damping": body.body.damping.words,
-        "supports": [support.words for support in body.body.recipe.supports],
+        "damping": body.body.damping.description,
+        "supports": [support.description for support in body.body.recipe.supports],
         "mesh": dict(body.model.facts),
         "doubts": list(body.doubts),
     }

@@ -34,7 +34,7 @@ def modes_summary(case: Case, modes: Mapping[str, BodyModes]) -> RenderableType:
             ),
             ("held by", _supports_text(found.body)),
             ("rigid motions", str(len(found.model.rigid_coefficients))),
-            ("damping", found.body.damping.words),
+            ("damping", found.body.damping.description),
         ]
         if "left out of the file" in found.model.facts:
             rows.append(("left out of the file", found.model.facts["left out of the file"]))
@@ -90,11 +90,11 @@ def elastic_rows(case: Case) -> list[tuple[str, str]]:
                 f"{elements}, {len(mesh.nodes)} nodes, {mesh.dofs_per_node * len(mesh.nodes)} degrees of freedom before supports",
             ),
             ("  modes", f"{kept}, {reduction.method}{', with an attachment mode' if reduction.attachment else ''}; {stored}"),
-            ("  damping", body.damping.words),
+            ("  damping", body.damping.description),
             ("  held by", _supports_text(body)),
         ]
     return rows
 
 
 def _supports_text(body: ElasticBody) -> str:
-    return "; ".join(support.words for support in body.recipe.supports) or "nothing: it is free"
+    return "; ".join(support.description for support in body.recipe.supports) or "nothing: it is free"

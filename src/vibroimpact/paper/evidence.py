@@ -59,7 +59,7 @@ class Evidence:
     sampled: bool = False
 
     @property
-    def reach(self) -> float:
+    def half_width(self) -> float:
         """Half-width of the band [standard deviations]: the limit of rounding, or one where the scatter is estimated."""
         return _UNIFORM if self.freedom is None else 1.0
 

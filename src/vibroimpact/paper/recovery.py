@@ -112,13 +112,13 @@ def recover_parameters(runs: Runs) -> RecoveredParameters:
 def off_joint(found: RecoveredParameters, evidence: Evidence) -> float:
     """Return the distance of the joint estimate from a piece of evidence, in half-widths of its band: at most 1 inside the band."""
     pairs = zip(found.alone[evidence.name], (found.restitution, found.penetration), strict=True)
-    return max(alone.apart(joint.value) for alone, joint in pairs if alone is not None) / evidence.reach
+    return max(alone.apart(joint.value) for alone, joint in pairs if alone is not None) / evidence.half_width
 
 
 def penetration_bands(found: RecoveredParameters, penetration: float) -> tuple[bool, ...]:
     """Return whether a penetration [m] lies in the band of each piece of evidence that depends on the penetration alone."""
     return tuple(
-        penetration_alone.apart(penetration) <= one.reach
+        penetration_alone.apart(penetration) <= one.half_width
         for one, (restitution_alone, penetration_alone) in zip(found.evidence, found.alone.values(), strict=True)
         if restitution_alone is None and penetration_alone is not None
     )
@@ -217,7 +217,7 @@ def recovery_section(runs: Runs) -> ReportSection:
     found = recover_parameters(runs)
     return ReportSection(
         title="The restitution and the full-damping penetration, from the paper's own numbers",
-        words=(
+        paragraphs=(
             "The restitution e_h that the theory needs is nowhere printed, and the full-damping penetration d_max is printed as "
             f"{printed('full_damping_penetration').text} m. Both follow from the other printed numbers. The table gives what each piece of "
             "evidence implies with the other value held at the joint estimate: as far as rounding allows, or with the standard deviation "
@@ -247,8 +247,8 @@ def _implied_table(found: RecoveredParameters) -> TextTable:
         cells.append(
             (
                 one.name,
-                _estimate_text(restitution_alone, 1.0, one.reach),
-                _estimate_text(penetration_alone, 1e3, one.reach),
+                _estimate_text(restitution_alone, 1.0, one.half_width),
+                _estimate_text(penetration_alone, 1e3, one.half_width),
                 known,
                 "yes" if one.joint else "no",
             )

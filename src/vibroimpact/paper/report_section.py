@@ -157,7 +157,7 @@ class ReportSection:
     ----------
     title : str
         Heading.
-    words : tuple of str
+    paragraphs : tuple of str
         Paragraphs before the tables.
     rows : tuple of ComparedValue
         Rows of the table of printed and computed values.
@@ -168,7 +168,7 @@ class ReportSection:
     """
 
     title: str
-    words: tuple[str, ...] = ()
+    paragraphs: tuple[str, ...] = ()
     rows: tuple[ComparedValue, ...] = ()
     tables: tuple[TextTable, ...] = ()
     conclusion: tuple[str, ...] = ()

@@ -180,7 +180,7 @@ def sampling_section(runs: Runs) -> ReportSection:
     instants = _instants(runs)
     return ReportSection(
         title="Where the scatter of Table 2 comes from",
-        words=_introduction(runs),
+        paragraphs=_introduction(runs),
         tables=(
             _errors_table(runs),
             TextTable(

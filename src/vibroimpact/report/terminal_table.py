@@ -34,13 +34,13 @@ class TerminalColumn:
         Heading, wrapped between words except at no-break spaces.
     cells : sequence of str
         One cell per row.
-    words : bool
+    text : bool
         Text, left-aligned and wrapped; otherwise numbers, aligned at the decimal point and never wrapped.
     """
 
     heading: str
     cells: Sequence[str]
-    words: bool = False
+    text: bool = False
 
 
 def numbers(heading: str, unit: str, cells: Sequence[str]) -> TerminalColumn:
@@ -75,7 +75,7 @@ class TerminalTable:
         def shown(words: str) -> str:  # no-break spaces are kept until the lines are wrapped
             return _NO_BREAK.join(encodable(part, options.encoding) for part in words.split(_NO_BREAK))
 
-        columns = [TerminalColumn(shown(one.heading), [shown(cell) for cell in one.cells], one.words) for one in self.columns]
+        columns = [TerminalColumn(shown(one.heading), [shown(cell) for cell in one.cells], one.text) for one in self.columns]
         for line, style in self._lines(columns, options.max_width):
             yield Text(line.replace(_NO_BREAK, " "), style=style)
 
@@ -101,14 +101,14 @@ class TerminalTable:
 def with_gap(columns: Sequence[TerminalColumn], row: int) -> list[TerminalColumn]:
     """Return columns with an ellipsis row inserted before a row, to mark omitted rows."""
     return [
-        TerminalColumn(one.heading, [*one.cells[:row], "" if place else "...", *one.cells[row:]], one.words)
+        TerminalColumn(one.heading, [*one.cells[:row], "" if place else "...", *one.cells[row:]], one.text)
         for place, one in enumerate(columns)
     ]
 
 
 def facts(rows: Iterable[tuple[str, ...]], indent: int = 0) -> TerminalTable:
     """Return a table of facts, such as names and values, without headings."""
-    return TerminalTable([TerminalColumn("", cells, words=True) for cells in zip(*rows, strict=True)], indent=indent)
+    return TerminalTable([TerminalColumn("", cells, text=True) for cells in zip(*rows, strict=True)], indent=indent)
 
 
 def _arrange(columns: list[TerminalColumn], width: int) -> tuple[list[list[tuple[TerminalColumn, int]]], list[TerminalColumn]]:
@@ -119,7 +119,7 @@ def _arrange(columns: list[TerminalColumn], width: int) -> tuple[list[list[tuple
         chosen = _fitting_widths([key, *rest], width)
         if chosen is not None:
             return [list(zip([key, *rest], chosen, strict=True))], below
-        last = next((one for one in reversed(rest) if one.words), None)
+        last = next((one for one in reversed(rest) if one.text), None)
         if last is None:
             break
         rest.remove(last)
@@ -138,9 +138,9 @@ def _fitting_widths(columns: list[TerminalColumn], width: int) -> list[int] | No
     """Return column widths that fit side by side with the least wrapping; None if there are none."""
     widths, least = [_natural_width(one) for one in columns], [_least_width(one) for one in columns]
     for number, one in enumerate(columns):
-        if one.words:
+        if one.text:
             least[number] = min(least[number], width // 2)  # longer words are broken
-        if number and one.words:
+        if number and one.text:
             least[number] = least[number] if widths[number] <= _WIDEST_PHRASE else max(least[number], _LEAST_LINE)
     room = width - _BETWEEN * (len(columns) - 1)
     while sum(widths) > room:
@@ -154,13 +154,13 @@ def _fitting_widths(columns: list[TerminalColumn], width: int) -> list[int] | No
 def _natural_width(column: TerminalColumn) -> int:
     """Return the natural width of a column: unwrapped cells, and a heading that is wrapped above numbers but not above text."""
     cells = max((cell_len(cell) for cell in _aligned(column)), default=0)
-    heading = max(map(cell_len, column.heading.split("\n"))) if column.words else _longest_word(column.heading)
+    heading = max(map(cell_len, column.heading.split("\n"))) if column.text else _longest_word(column.heading)
     return max(cells, heading)
 
 
 def _least_width(column: TerminalColumn) -> int:
     """Return the least width of a column: its longest word, or the natural width for numbers."""
-    return max(map(_longest_word, [column.heading, *column.cells]), default=0) if column.words else _natural_width(column)
+    return max(map(_longest_word, [column.heading, *column.cells]), default=0) if column.text else _natural_width(column)
 
 
 def _longest_word(words: str) -> int:
@@ -169,7 +169,7 @@ def _longest_word(words: str) -> int:
 
 def _aligned(column: TerminalColumn) -> list[str]:
     """Return the cells of numbers padded on the right, so that right alignment aligns their decimal points."""
-    if column.words:
+    if column.text:
         return list(column.cells)
     found = [_NUMBER.match(cell) for cell in column.cells]
     behind = [len(cell) - (len(match[0].split(".")[0]) if match else len(cell)) for cell, match in zip(column.cells, found, strict=True)]
@@ -188,7 +188,7 @@ def _block(block: list[tuple[TerminalColumn, int]], below: list[TerminalColumn],
     aligned = [_aligned(one) for one, _ in block]
     for number in range(len(block[0][0].cells)):
         cells_of = [
-            _wrapped(cells[number], taken) if one.words else [cells[number]] for cells, (one, taken) in zip(aligned, block, strict=True)
+            _wrapped(cells[number], taken) if one.text else [cells[number]] for cells, (one, taken) in zip(aligned, block, strict=True)
         ]
         style = "bold" if number in bold else ""
         for line in range(max(map(len, cells_of))):
@@ -204,7 +204,7 @@ def _row(block: list[tuple[TerminalColumn, int]], cells: list[str]) -> str:
     filled = []
     for (one, taken), cell in zip(block, cells, strict=True):
         blanks = " " * (taken - cell_len(cell))
-        filled.append(cell + blanks if one.words else blanks + cell)
+        filled.append(cell + blanks if one.text else blanks + cell)
     return (" " * _BETWEEN).join(filled)
 
 

@@ -61,7 +61,7 @@ def energy_table_for_terminal(result: Result) -> RenderableType:
     shown = [row for row in ledger if row.name != SUM and abs(result.energy.get(row.name, whole)) > 1e-12 * abs(whole)]
     names = [row.name.removesuffix("_J").replace("_", " ") if row.name != PUT_IN else "put in" for row in shown]
     columns = (
-        TerminalColumn("energy at the end", names, words=True),
+        TerminalColumn("energy at the end", names, text=True),
         numbers("", unit, [row.energy for row in shown]),
         TerminalColumn("%", [row.part for row in shown]),
     )

@@ -15,7 +15,7 @@ class Damping(Protocol):
     """Interface of a model of modal damping."""
 
     @property
-    def words(self) -> str:
+    def description(self) -> str:
         """Short description for users."""
 
     def ratios(self, frequencies: Floats) -> Floats:
@@ -35,7 +35,7 @@ class ConstantRatio:
     ratio: float
 
     @property
-    def words(self) -> str:
+    def description(self) -> str:
         """Short description for users."""
         return f"damping ratio {self.ratio:g} of every mode" if self.ratio else "none"
 
@@ -68,7 +68,7 @@ class RatioTable:
             raise InputError("the frequencies of the table must ascend", "frequencies")
 
     @property
-    def words(self) -> str:
+    def description(self) -> str:
         """Short description for users."""
         return f"a table of {len(self.frequencies)} ratios from {self.frequencies[0]:g} to {self.frequencies[-1]:g} Hz"
 
@@ -84,7 +84,7 @@ class RatioOfEach:
     damping_ratios: tuple[float, ...]
 
     @property
-    def words(self) -> str:
+    def description(self) -> str:
         """Short description for users."""
         shown = ", ".join(f"{ratio:g}" for ratio in self.damping_ratios[:4]) + (", ..." if len(self.damping_ratios) > 4 else "")
         return f"damping ratios of the modes one by one: {shown}; the last goes on"
@@ -108,7 +108,7 @@ class Rayleigh:
     stiffness_coefficient: float
 
     @property
-    def words(self) -> str:
+    def description(self) -> str:
         """Short description for users."""
         return f"Rayleigh's, {self.mass_coefficient:g} 1/s times mass and {self.stiffness_coefficient:g} s times stiffness"
 
@@ -125,7 +125,7 @@ class LossFactor:
     loss_factor: float
 
     @property
-    def words(self) -> str:
+    def description(self) -> str:
         """Short description for users."""
         return f"loss factor {self.loss_factor:g} of the material, damping ratio {0.5 * self.loss_factor:g}"
 
@@ -145,7 +145,7 @@ class AdamsDefault:
     """
 
     @property
-    def words(self) -> str:
+    def description(self) -> str:
         """Short description for users."""
         return "Adams' default for flexible bodies: 1 % below 100 Hz, 10 % to 1 kHz, critical above"
 

@@ -18,7 +18,7 @@ def explain_sweep(sweep: Sweep) -> RenderableType:
     kept = " and ".join(dict.fromkeys(["peaks", *section.keep])) + f", about {sweep.bytes / 1e6:.3g} MB"
     units = {key: quantity.unit if quantity else "" for key, quantity in sweep.quantities.items()}
     over = [_words(axis, units[key], is_drawn=section.samples is not None) for key, axis in sweep.axes.items()]
-    table = TerminalTable([TerminalColumn("swept key", list(sweep.axes), words=True), TerminalColumn("over", over, words=True)])
+    table = TerminalTable([TerminalColumn("swept key", list(sweep.axes), text=True), TerminalColumn("over", over, text=True)])
     return Group(
         Text(f"A study of {sweep.size:,} drops: {section.design}{drawn}; keeps {kept}.", style="bold"),
         table,

@@ -87,12 +87,12 @@ def compute_modes(
     found = {}
     for number, (name, body) in enumerate(bodies.items()):
 
-        def told(part: float, number: int = number) -> None:
+        def report_part(part: float, number: int = number) -> None:
             if progress is not None:
                 progress((number + part) / len(bodies))
 
         try:
-            model = modal_model_of(body.recipe, told, tell)
+            model = modal_model_of(body.recipe, report_part, tell)
             basis = body.basis(model)
             found[name] = BodyModes(body, model, basis, tuple(_doubts(case, name, body, model, basis)))
         except InputError as error:

@@ -19,11 +19,11 @@ from vibroimpact.arrays import Floats
 from vibroimpact.dynamics.sensors.pole_pairs import PolePairs
 from vibroimpact.dynamics.sensors.sensor import CORNER, Sensor
 
-REACH = 33
+HALF_LENGTH = 33
 """Half width of the converter's kernel in sampling periods."""
 FINENESS = 8
 """Points per sampling period of tables of the kernel and of its responses."""
-_KAISER = 10.4  # Kaiser's parameter: 102 dB, and with the reach a transition band of a tenth of the rate
+_KAISER = 10.4  # Kaiser's parameter: 102 dB, and with this length a transition band of a tenth of the rate
 _ORDER = 8
 
 Section = tuple[float, float]
@@ -34,7 +34,7 @@ Section = tuple[float, float]
 class AntiAlias:
     """An anti-alias filter: half width of its linear-phase kernel in samples, zero if it has none, and its pairs of poles."""
 
-    reach: int = 0
+    half_length: int = 0
     sections: tuple[Section, ...] = ()
 
 
@@ -43,11 +43,11 @@ def antialias_of(sensor: Sensor) -> AntiAlias:
 
     Examples
     --------
-    >>> antialias_of(Sensor("a")).reach, len(antialias_of(Sensor("a", filter="butterworth")).sections)
+    >>> antialias_of(Sensor("a")).half_length, len(antialias_of(Sensor("a", filter="butterworth")).sections)
     (33, 4)
     """
     if sensor.filter == "sigma-delta":
-        return AntiAlias(reach=REACH)
+        return AntiAlias(half_length=HALF_LENGTH)
     if sensor.filter == "butterworth":
         return AntiAlias(sections=butterworth(sensor.corner or CORNER * sensor.rate))
     return AntiAlias()
@@ -65,18 +65,18 @@ def kernel(x: Floats) -> Floats:
 
     Examples
     --------
-    >>> x = np.arange(-REACH * 8, REACH * 8 + 1) / 8
+    >>> x = np.arange(-HALF_LENGTH * 8, HALF_LENGTH * 8 + 1) / 8
     >>> round(float(kernel(x).sum() / 8), 5)  # unit gain at frequency zero
     1.0
     """
-    window = np.i0(_KAISER * np.sqrt(np.maximum(1.0 - (x / REACH) ** 2, 0.0))) / np.i0(_KAISER)
-    return np.asarray(np.where(np.abs(x) <= REACH, np.sinc(x) * window, 0.0))
+    window = np.i0(_KAISER * np.sqrt(np.maximum(1.0 - (x / HALF_LENGTH) ** 2, 0.0))) / np.i0(_KAISER)
+    return np.asarray(np.where(np.abs(x) <= HALF_LENGTH, np.sinc(x) * window, 0.0))
 
 
 def kernel_derivatives() -> Floats:
     """Return the kernel and its first two derivatives per sampling period, (3, points), at `FINENESS` points per period."""
-    points = 2 * REACH * FINENESS
-    values = kernel(np.arange(-REACH * FINENESS, REACH * FINENESS + 1) / FINENESS)
+    points = 2 * HALF_LENGTH * FINENESS
+    values = kernel(np.arange(-HALF_LENGTH * FINENESS, HALF_LENGTH * FINENESS + 1) / FINENESS)
     size = 2 * points  # zero padding against circular wrap-around
     spectrum, slope = np.fft.rfft(values, size), 2j * np.pi * np.fft.rfftfreq(size, 1.0 / FINENESS)
     slope[-1] = 0.0

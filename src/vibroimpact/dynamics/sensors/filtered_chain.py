@@ -19,7 +19,7 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
 from vibroimpact.arrays import Floats
-from vibroimpact.dynamics.sensors.antialias import FINENESS, REACH, kernel, kernel_derivatives
+from vibroimpact.dynamics.sensors.antialias import FINENESS, HALF_LENGTH, kernel, kernel_derivatives
 from vibroimpact.dynamics.sensors.measuring_chain import MeasuringChain
 from vibroimpact.dynamics.sensors.pulses import gauss_rule
 from vibroimpact.dynamics.vibrating.oscillators import Oscillators
@@ -49,9 +49,9 @@ class FilteredChain:
     rate : float
         Samples per second [Hz].
     outputs : array, shape (2, S, n)
-        Weights of displacements and velocities of the oscillators in the outputs `REACH` samples later.
+        Weights of displacements and velocities of the oscillators in the outputs `HALF_LENGTH` samples later.
     answers : array, shape (S, points)
-        Response to an impulse of minus the force, `FINENESS` points per sample, from `REACH` samples before it on.
+        Response to an impulse of minus the force, `FINENESS` points per sample, from `HALF_LENGTH` samples before it on.
     """
 
     chain: MeasuringChain
@@ -63,11 +63,11 @@ class FilteredChain:
         """Add the response to impulses [N s] at times [s] to `values` (S, samples), which begin at time zero, for samples before `last`."""
         first, spread = _spread_on_grid(times * (self.rate * FINENESS), impulses)
         width = len(spread)
-        begin = max(0, -((REACH * FINENESS - first) // FINENESS))  # the first sample whose kernel reaches the impulses
+        begin = max(0, -((HALF_LENGTH * FINENESS - first) // FINENESS))  # the first sample whose kernel reaches the impulses
         end = min(last, values.shape[1])
         if end <= begin:
             return
-        at = begin * FINENESS - (first + width - 1) + REACH * FINENESS  # index of the last impulse point in the responses
+        at = begin * FINENESS - (first + width - 1) + HALF_LENGTH * FINENESS  # index of the last impulse point in the responses
         before, after = max(0, -at), (end - 1 - begin) * FINENESS + at + width - self.answers.shape[1]
         answers = np.pad(self.answers, ((0, 0), (before, max(0, after))))
         answers = answers[:, at + before : at + before + (end - 1 - begin) * FINENESS + width]
@@ -108,7 +108,7 @@ def _states(frequencies: bytes, ratios: bytes, rate: float, count: int) -> Itera
     They are given at `FINENESS` points per sample from the beginning of the kernel on, in blocks with the index of the first point.
     """
     oscillators = Oscillators(np.frombuffer(frequencies), np.frombuffer(ratios), np.ones(len(frequencies) // 8))
-    step, kernel_cells = 1.0 / (FINENESS * rate), 2 * REACH * FINENESS
+    step, kernel_cells = 1.0 / (FINENESS * rate), 2 * HALF_LENGTH * FINENESS
     later, drives = oscillators.transition(np.array(step)), _drives(oscillators, rate, step, kernel_cells)
     state = np.zeros((2, len(oscillators.shape)))
     for begin in range(0, count, _ROWS):
@@ -135,14 +135,14 @@ def _rounded(number: int) -> int:
 
 
 def filter_gains(oscillators: Oscillators, rate: float) -> Floats:
-    """Return the gains of a converter's filter for the free motion of oscillators `REACH` samples later, (2, n) as in `pole_pairs`."""
+    """Return the gains of a converter's filter for the free motion of oscillators, `HALF_LENGTH` samples later, (2, n)."""
     return _gains(oscillators.angular_frequency.tobytes(), oscillators.damping_ratio.tobytes(), rate)
 
 
 @lru_cache(maxsize=64)
 def _gains(frequencies: bytes, ratios: bytes, rate: float) -> Floats:
     """Return `filter_gains`, cached."""
-    *_, (_, states) = _states(frequencies, ratios, rate, 2 * REACH * FINENESS + 1)
+    *_, (_, states) = _states(frequencies, ratios, rate, 2 * HALF_LENGTH * FINENESS + 1)
     displacement, velocity = np.split(states[-1], 2)
     return np.stack([velocity + 2.0 * np.frombuffer(ratios) * np.frombuffer(frequencies) * displacement, displacement])
 
@@ -162,7 +162,7 @@ def _drives(oscillators: Oscillators, rate: float, step: float, cells: int) -> F
     fastest = float((oscillators.angular_frequency * np.maximum(1.0, 2.0 * oscillators.damping_ratio)).max())
     x, weights = gauss_rule(min(fastest * step, _MOST_RADIANS))
     cosine, sine = oscillators.propagators(step * (1.0 - x))
-    places = (np.arange(cells)[:, None] + x) / FINENESS - REACH
+    places = (np.arange(cells)[:, None] + x) / FINENESS - HALF_LENGTH
     pushes = kernel(places) * (weights * step * rate)
     return np.stack([pushes @ sine, pushes @ (cosine - oscillators.damping * sine)], axis=1)
 

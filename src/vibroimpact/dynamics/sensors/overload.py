@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.dynamics.sensors.antialias import REACH, AntiAlias, kernel, parallel
+from vibroimpact.dynamics.sensors.antialias import HALF_LENGTH, AntiAlias, kernel, parallel
 from vibroimpact.dynamics.sensors.measuring_chain import MeasuringChain
 from vibroimpact.dynamics.sensors.sampled import sample_filtered_chain
 from vibroimpact.dynamics.sensors.sensor import sample_count
@@ -65,14 +65,14 @@ def clipped_part(found: Overload, antialias: AntiAlias, rate: float, count: int)
     if not len(cut):
         return taken
     finer = round(found.rate / rate)
-    if not antialias.reach:
+    if not antialias.half_length:
         return _through_poles(found, antialias, finer, count)
     from scipy.signal import upfirdn
 
-    taps = kernel(np.arange(-REACH * finer, REACH * finer + 1) / finer) / finer
+    taps = kernel(np.arange(-HALF_LENGTH * finer, HALF_LENGTH * finer + 1) / finer) / finer
     begin = cut[0] // finer  # the sample at or before the first excess
-    given = upfirdn(taps, found.excess[begin * finer : cut[-1] + 1], 1, finer)  # it begins `REACH` samples before `begin`
-    first = begin - REACH
+    given = upfirdn(taps, found.excess[begin * finer : cut[-1] + 1], 1, finer)  # it begins `HALF_LENGTH` samples before `begin`
+    first = begin - HALF_LENGTH
     here = slice(max(first, 0), min(first + len(given), count))
     taken[here] = given[here.start - first : here.stop - first]
     return taken

@@ -152,7 +152,7 @@ def _recorded(
     orders = [one.order for one in group]
     # a converter's filter is applied in closed form; an analogue one is a part of the chain, sampled at instants
     bare = measuring_chain(plate, shapes, compliance, orders, resonance)
-    if antialias.reach:
+    if antialias.half_length:
         known = filtered_chain(bare, sensor.rate, longest_span(segments, sensor.rate))
         values = sample_filtered(known, segments, count)
     else:
@@ -169,7 +169,7 @@ def _recorded(
         value, meter, facts = values[number], one.accelerometer, {"uncertainty": float(uncertainties[number])}
         if meter is not None and meter.range is not None:
             alone = measuring_chain(plate, shapes[[number]], compliance[[number]], [2], resonance)
-            found = overload(alone, finer_rate(one.rate, meter.resonance), segments, end, antialias.reach / one.rate, meter.range)
+            found = overload(alone, finer_rate(one.rate, meter.resonance), segments, end, antialias.half_length / one.rate, meter.range)
             clipped = one.filter == "none"
             value = np.clip(value, -meter.range, meter.range) if clipped else value - clipped_part(found, antialias, one.rate, count)
             facts |= {"peak": found.peak, "overload_time": found.time}

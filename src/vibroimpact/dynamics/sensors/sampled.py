@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from vibroimpact.arrays import Bools, Floats
-from vibroimpact.dynamics.sensors.antialias import FINENESS, REACH, kernel
+from vibroimpact.dynamics.sensors.antialias import FINENESS, HALF_LENGTH, kernel
 from vibroimpact.dynamics.sensors.filtered_chain import FilteredChain, filter_gains, filtered_chain
 from vibroimpact.dynamics.sensors.measuring_chain import MeasuringChain
 from vibroimpact.dynamics.sensors.pole_pairs import PolePairs
@@ -74,11 +74,11 @@ def sample_filtered(filtered: FilteredChain, segments: Sequence[VibratingSegment
         first, last = _first_sample(span.start, rate), _first_sample(span.end, rate)
         if span.end >= segments[-1].end:
             last = max(last, count)
-        to = min(last, count - REACH)
+        to = min(last, count - HALF_LENGTH)
         if to > first:
-            blocks.sample(values[:, first + REACH : to + REACH], span.initial, first / rate - span.start, levels)
+            blocks.sample(values[:, first + HALF_LENGTH : to + HALF_LENGTH], span.initial, first / rate - span.start, levels)
         if span.times:
-            filtered.add(values, np.concatenate(span.times), np.concatenate(span.impulses), last + REACH)
+            filtered.add(values, np.concatenate(span.times), np.concatenate(span.impulses), last + HALF_LENGTH)
     return values
 
 
@@ -88,8 +88,8 @@ def outputs_around_first_contact(filtered: FilteredChain, segments: Sequence[Vib
     span = next((span for span in _spans(filtered.chain, segments, rate) if span.times), None)
     if span is None:
         return np.zeros((len(filtered.answers), 0))
-    first = _first_sample(span.start, rate) - REACH
-    values = np.zeros((len(filtered.answers), _first_sample(span.end, rate) + REACH - first))
+    first = _first_sample(span.start, rate) - HALF_LENGTH
+    values = np.zeros((len(filtered.answers), _first_sample(span.end, rate) + HALF_LENGTH - first))
     filtered.add(values, np.concatenate(span.times) - first / rate, np.concatenate(span.impulses), values.shape[1])
     return values
 
@@ -127,7 +127,7 @@ def sample_at_instants(chain: MeasuringChain, rate: float, segments: Sequence[Vi
 def longest_span(segments: Sequence[VibratingSegment], rate: float) -> float:
     """Return the largest length of a part of the history with contact that is computed at once [s]."""
     stretches = (segment.end - segment.start for segment in segments if isinstance(segment.trajectory, VibratingStretch))
-    return max(REACH / rate, *stretches, 0.0)
+    return max(HALF_LENGTH / rate, *stretches, 0.0)
 
 
 def _add_rest(filtered: FilteredChain, rest: RestMotion, span: _Span, values: Floats, levels: Floats | None) -> None:
@@ -138,16 +138,16 @@ def _add_rest(filtered: FilteredChain, rest: RestMotion, span: _Span, values: Fl
     """
     rate, chain = filtered.rate, filtered.chain
     first = _first_sample(span.start, rate)
-    times, impulses = rest_pulses(rest, 2.0 * np.pi * _PASS_BAND * rate, (first + 2 * REACH) / rate - span.start)
-    filtered.add(values, span.start + times, impulses, first + REACH)
-    later = values[:, first + REACH :]
+    times, impulses = rest_pulses(rest, 2.0 * np.pi * _PASS_BAND * rate, (first + 2 * HALF_LENGTH) / rate - span.start)
+    filtered.add(values, span.start + times, impulses, first + HALF_LENGTH)
+    later = values[:, first + HALF_LENGTH :]
     if not later.shape[1]:
         return
     chained = rest_chain(chain, rest, span.initial[:, chain.modes :])
     pairs = PolePairs(chained.oscillators.angular_frequency**2, chained.oscillators.damping)
     outputs = pairs.product(chained.outputs, filter_gains(chained.oscillators, rate))
     _blocks(chained.oscillators, outputs, rate).sample(later, chained.initial, first / rate - span.start, levels)
-    passed = float(kernel(np.arange(-REACH * FINENESS, REACH * FINENESS + 1) / FINENESS).sum()) / FINENESS
+    passed = float(kernel(np.arange(-HALF_LENGTH * FINENESS, HALF_LENGTH * FINENESS + 1) / FINENESS).sum()) / FINENESS
     later += passed * chained.constant[:, None]
 
 
@@ -182,7 +182,7 @@ def _initial_plate_state(segment: VibratingSegment) -> Floats:
 
 def _spans(chain: MeasuringChain, segments: Sequence[VibratingSegment], rate: float) -> Iterator[_Span]:
     """Yield the history in parts; neighbouring contacts are combined up to the filter's reach."""
-    instrument_state, reach = np.zeros((2, len(chain.oscillators.shape) - chain.modes)), REACH / rate
+    instrument_state, reach = np.zeros((2, len(chain.oscillators.shape) - chain.modes)), HALF_LENGTH / rate
     fastest = max(2.0 * np.pi * _PASS_BAND * rate, float(chain.oscillators.angular_frequency[chain.modes :].max(initial=0.0)))
     span: _Span | None = None
     for segment in segments:

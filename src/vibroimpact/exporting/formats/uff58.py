@@ -36,7 +36,7 @@ _QUANTITIES = {"displacement": 8, "velocity": 11, "acceleration": 12}
 
 @dataclass(frozen=True)
 class _Function:
-    words: str
+    identification: str
     node: int
     direction: int
     kind: int  # data type of the ordinate in dataset 58
@@ -129,7 +129,7 @@ def _dataset(one: _Function, drop: Drop) -> dict[str, Any]:
     return {
         "type": 58,
         "binary": 1,
-        "id1": one.words[:_LINE],
+        "id1": one.identification[:_LINE],
         "id2": plain_words(drop.name),
         "func_type": 1,
         "rsp_ent_name": "NONE",

@@ -21,7 +21,7 @@ _UNITS = {"1": "", "m^2": "m²", "m/s^2": "m/s²", "kg/m^3": "kg/m³", "N/m^1.5"
 
 def section_text(section: ReportSection) -> str:
     """Return a section as Markdown."""
-    parts = [f"### {escape_markdown(section.title)}", *map(escape_markdown, section.words)]
+    parts = [f"### {escape_markdown(section.title)}", *map(escape_markdown, section.paragraphs)]
     parts += [rows_table(section.rows)] if section.rows else []
     for further in section.tables:
         parts += [f"**{escape_markdown(further.title)}**"] if further.title else []

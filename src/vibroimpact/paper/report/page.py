@@ -115,4 +115,4 @@ def verdict_table(parts: Mapping[str, Mapping[str, Any]]) -> TerminalTable:
     verdicts = [
         TerminalColumn(verdict.value.replace(" ", "\u00a0"), [str(by[verdict.value]) for by in by_part.values()]) for verdict in Verdict
     ]
-    return TerminalTable([TerminalColumn("part", list(by_part), words=True), *verdicts], bold=[len(by_part) - 1])
+    return TerminalTable([TerminalColumn("part", list(by_part), text=True), *verdicts], bold=[len(by_part) - 1])

@@ -95,13 +95,13 @@ def _draw_lines(axes: Axes, found: RecoveredParameters, window: _Window) -> None
         restitution_alone, penetration_alone = found.alone[one.name]
         style: dict[str, Any] = {"color": colour, "linestyle": dashes, "linewidth": 1.4}
         if restitution_alone is None and penetration_alone is not None:
-            half = 1e6 * one.reach * penetration_alone.deviation
+            half = 1e6 * one.half_width * penetration_alone.deviation
             axes.axhspan(
                 1e6 * penetration_alone.value - half, 1e6 * penetration_alone.value + half, color=colour, alpha=0.13, linewidth=0.0
             )
             axes.axhline(1e6 * penetration_alone.value, label=one.name, **style)
         elif restitution_alone is not None:
-            half = one.reach * restitution_alone.deviation
+            half = one.half_width * restitution_alone.deviation
             searched = (across[0] - _SEARCH_MARGIN * half, across[1] + _SEARCH_MARGIN * half)
             restitutions = np.linspace(max(RESTITUTIONS[0], searched[0]), min(RESTITUTIONS[1], searched[1]), _POINTS)
             line = implied_restitution(one, restitutions, up)

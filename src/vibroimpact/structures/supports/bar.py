@@ -38,7 +38,7 @@ class Bar(Support):
     material: Material
 
     @property
-    def words(self) -> str:
+    def description(self) -> str:
         """Short description for users."""
         return f"bar of radius {self.radius:g} m and length {self.length:g} m at ({self.x:g}, {self.y:g}) m"
 

@@ -35,7 +35,7 @@ class Edge(Support):
     condition: Literal["clamped", "simply-supported"]
 
     @property
-    def words(self) -> str:
+    def description(self) -> str:
         """Short description for users."""
         return f"edge {self.edge} {self.condition}"
 

@@ -26,7 +26,7 @@ class NodeSet(Support):
     directions: str = "xyz"
 
     @property
-    def words(self) -> str:
+    def description(self) -> str:
         """Short description for users."""
         return f"set {self.name} held along {self.directions}"
 

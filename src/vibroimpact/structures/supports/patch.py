@@ -30,7 +30,7 @@ class Patch(Support):
     radius: float
 
     @property
-    def words(self) -> str:
+    def description(self) -> str:
         """Short description for users."""
         return f"rigid patch of radius {self.radius:g} m at ({self.x:g}, {self.y:g}) m"
 
@@ -62,7 +62,7 @@ class RectangularPatch(Support):
     width: float
 
     @property
-    def words(self) -> str:
+    def description(self) -> str:
         """Short description for users."""
         return f"rigid patch, {self.length:g} x {self.width:g} m, at ({self.x:g}, {self.y:g}) m"
 
@@ -84,7 +84,7 @@ class RectangularPatch(Support):
         room = 1e-6 * (high - low)
         if np.any(middle - half < low - room) or np.any(middle + half > high + room):
             raise InputError(
-                f"the {self.words} does not lie wholly on the plate, which reaches from {low[0]:g} to {high[0]:g} m along x and "
+                f"the {self.description} does not lie wholly on the plate, which reaches from {low[0]:g} to {high[0]:g} m along x and "
                 f"from {low[1]:g} to {high[1]:g} m along y"
             )
         constraints.attach(

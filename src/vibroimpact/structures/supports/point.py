@@ -32,7 +32,7 @@ class Point(Support):
     directions: str = "z"
 
     @property
-    def words(self) -> str:
+    def description(self) -> str:
         """Short description for users."""
         return f"point ({self.x:g}, {self.y:g}) m held along {self.directions}"
 
@@ -44,5 +44,5 @@ class Point(Support):
     def hold(self, constraints: Constraints) -> None:
         """Hold the point, by the shape functions of its element."""
         structure = constraints.structure
-        motion, _ = surface_motion(structure.mesh, np.array([[self.x, self.y]]), "lower", structure.thickness, self.words)
+        motion, _ = surface_motion(structure.mesh, np.array([[self.x, self.y]]), "lower", structure.thickness, self.description)
         constraints.hold_motion(motion[["xyz".index(letter) for letter in self.directions]])

@@ -35,7 +35,7 @@ class Spring(Support):
     radius: float = 0.0
 
     @property
-    def words(self) -> str:
+    def description(self) -> str:
         """Short description for users."""
         return f"spring of {self.stiffness:g} N/m at ({self.x:g}, {self.y:g}) m" + (
             f", spread over a radius of {self.radius:g} m" if self.radius else ""
@@ -45,7 +45,7 @@ class Spring(Support):
         """Add the stiffness of the spring, by the shape functions at the points of the disc."""
         places, weights = disc_rule(self.radius)
         structure = constraints.structure
-        motion, _ = surface_motion(structure.mesh, places + np.array([self.x, self.y]), "lower", structure.thickness, self.words)
+        motion, _ = surface_motion(structure.mesh, places + np.array([self.x, self.y]), "lower", structure.thickness, self.description)
         stiffness = np.outer(weights, [self.horizontal_stiffness, self.horizontal_stiffness, self.stiffness]).ravel()
         dofs = np.unique(motion.indices)
         local = motion[:, dofs].toarray()

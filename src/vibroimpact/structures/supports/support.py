@@ -20,7 +20,7 @@ class Support:
     """Base class of supports: frozen dataclasses, as their fields are part of the key of stored modes."""
 
     @property
-    def words(self) -> str:
+    def description(self) -> str:
         """Short description for users."""
         raise NotImplementedError
 

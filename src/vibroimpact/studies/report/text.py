@@ -28,14 +28,14 @@ def study_summary(study: Study, width: int) -> RenderableType:
     outputs = ([one for one in there if one.spread.varies] or there)[:_RESULTS]
     found = sensitivity_of(study, outputs)
     told = found if width >= _NARROW else None
-    columns = [TerminalColumn("result", [with_unit(one.title, one.scale.unit) for one in outputs], words=True)]
+    columns = [TerminalColumn("result", [with_unit(one.title, one.scale.unit) for one in outputs], text=True)]
     for part in _TOLD:
         cells = [digits(one.spread.percentiles[PERCENTILES.index(part)] / one.scale.size) for one in outputs]
         columns.append(TerminalColumn(f"{part}\u00a0%", cells))
     if told is not None:
         named = told.way == RANKS and any(not axis.numeric for axis in study_axes(study))
         heading = "moved most, of keys that are numbers, by" if named else "moved most by"
-        columns.append(TerminalColumn(heading, [_strongest(told, one.name) for one in outputs], words=True))
+        columns.append(TerminalColumn(heading, [_strongest(told, one.name) for one in outputs], text=True))
     why = [Text(f" {number}: {words}", style="yellow") for number, words in reasons(study)[:_REASONS]]
     restitution, doubts = restitution_sentence(summarize_restitution(study)), doubt_sentences(study)
     return Group(
