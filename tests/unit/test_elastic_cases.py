@@ -45,6 +45,18 @@ FAULTS: list[tuple[dict, str]] = [
     (plate_case(model="rigid"), 'plate.modes: a rigid body does not take it; add model = "elastic"'),
     (plate_case(supports="clampd"), 'plate.supports: "clampd" is not allowed'),
     (plate_case(supports="clampd"), 'Did you mean "clamped"?'),
+    (
+        plate_case(
+            supports={
+                "type": "bar",
+                "position": [0, 0],
+                "radius": 0.01,
+                "length": 0.1,
+                "material": {"density": 7850, "youngs_modulus": 2e11, "poissons_ratio": 0.3, "foo": 1},
+            }
+        ),
+        'plate.supports.material.foo: unknown key "foo"; [material] takes density, youngs_modulus, poissons_ratio,',
+    ),
     (plate_case(supports={"type": "patchs"}), 'plate.supports: there is no support of type "patchs"; there are patches, patch,'),
     (plate_case(supports=[{"type": "patch", "position": [0, 0]}]), "plate.supports: give either radius or size; neither is given"),
     (

@@ -63,8 +63,17 @@ def derived(function: Callable[[Of], Value]) -> Callable[[Of], Value]:
 Table = TypeVar("Table", bound=Section)
 
 
-def read_table(kind: type[Table], value: Mapping[str, Any]) -> Table:
+def read_table(kind: type[Table], value: Mapping[str, Any], **inner: type[Section]) -> Table:
     """Return a validated table of the given kind, for fields that accept several kinds of tables.
+
+    Parameters
+    ----------
+    kind : type of Section
+        The kind of table.
+    value : mapping
+        The table.
+    **inner : type of Section
+        Kinds of the tables in it by their keys, whose keys messages list.
 
     Raises
     ------
@@ -78,7 +87,7 @@ def read_table(kind: type[Table], value: Mapping[str, Any]) -> Table:
     try:
         return kind.model_validate(dict(value))
     except ValidationError as error:
-        path, message = next(fault_messages(error, lambda where: kind if not where else None))
+        path, message = next(fault_messages(error, lambda where: inner.get(where[-1]) if where else kind))
         raise InputError(message.replace("this section is missing", "this key is missing"), path) from None
 
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, get_args
 
 from pydantic import AfterValidator, BeforeValidator, Field, WithJsonSchema, model_validator
 
-from vibroimpact.cases.fields.material import MaterialField, material_table
+from vibroimpact.cases.fields.material import InlineMaterial, MaterialField, material_table
 from vibroimpact.cases.fields.quantities import Quantity
 from vibroimpact.cases.fields.section import Section, check_alternatives, read_table
 from vibroimpact.cases.fields.size_limits import MOST_ITEMS, Name, check_count
@@ -232,7 +232,7 @@ def _read_support(value: Any) -> SupportTable:
             raise InputError(f"{shown(value)} stands alone, without a list: supports = {shown(value)}")
         fault = f"there is no support of type {shown(name)}" if name is not None else "a support is a table with a type"
         raise InputError(f"{fault}; there are {', '.join(_TABLES)}.{did_you_mean(str(name), _TABLES)}")
-    return read_table(_TABLES[name], value)
+    return read_table(_TABLES[name], value, material=InlineMaterial)
 
 
 _TABLE_SCHEMAS = [{**kind.model_json_schema(), "description": kind.what} for kind in _TABLES.values()]
