@@ -10,6 +10,7 @@ import numpy as np
 from vibroimpact.arrays import Drops, Floats
 from vibroimpact.contact.law import CompliantLaw, ContactLaw, InstantaneousLaw
 from vibroimpact.contact.static import static_indentation
+from vibroimpact.dynamics.bodies import Bodies
 from vibroimpact.dynamics.contact import CAPTURED, FAILED, RIDING
 from vibroimpact.dynamics.encounter import Encounter, encounter_of
 from vibroimpact.dynamics.energy import CLOSURE_LIMIT, WRITE_OFF_LIMIT, close_ledger
@@ -46,7 +47,9 @@ class Run:
         self.end_time, self.rest_time = np.full(self.size, np.nan), np.full(self.size, np.nan)
         self.sag, self.stored, self.written_off = np.zeros(self.size), np.zeros(self.size), np.zeros(self.size)
         self.rest_speed = self.default_rest_speed() if problem.rest_speed is None else self.spread(problem.rest_speed)
-        self.bodies = VibratingBodies(problem, self.mass, self.gravity) if problem.vibrates else RigidBodies(self.size, solve_contact)
+        self.bodies: Bodies = RigidBodies(self.size, solve_contact)
+        if problem.vibrates:
+            self.bodies = VibratingBodies(problem, self.mass, self.gravity)
         self.memories = {name: self.spread(value) for name, value in problem.laws[0].memories().items()}
         self.rows = ImpactRows(self.bodies.columns, self.size)
 

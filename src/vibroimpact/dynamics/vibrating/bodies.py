@@ -9,6 +9,7 @@ import numpy as np
 from vibroimpact.arrays import Bools, Drops, Floats
 from vibroimpact.bodies.body import Body
 from vibroimpact.contact.law import CompliantLaw, ContactLaw
+from vibroimpact.dynamics.bodies import Motions
 from vibroimpact.dynamics.columns import ALL_IMPACT_COLUMNS
 from vibroimpact.dynamics.contact import CAPTURED, RIDING, SETTLED, Contact, Piece
 from vibroimpact.dynamics.encounter import Encounter
@@ -16,7 +17,6 @@ from vibroimpact.dynamics.flight import Flight
 from vibroimpact.dynamics.leg import Leg
 from vibroimpact.dynamics.lockstep import Coroutine, run_in_lockstep
 from vibroimpact.dynamics.problem import Problem
-from vibroimpact.dynamics.rigid.bodies import Motions, RigidBodies
 from vibroimpact.dynamics.vibrating.contact_equilibrium import ContactEquilibrium
 from vibroimpact.dynamics.vibrating.linear_system import FreeMotion, LinearSystem, State
 from vibroimpact.dynamics.vibrating.next_touch import next_touch
@@ -79,8 +79,8 @@ def modes_of(body: Body) -> int:
     return 0 if body.modes is None else len(body.modes.frequencies)
 
 
-class VibratingBodies(RigidBodies):
-    """The bodies of B drops of which some vibrate: one linear system per drop, with the modes in common."""
+class VibratingBodies:
+    """The bodies of B drops of which some vibrate: one linear system per drop, with the modes in common. `Bodies` describes the methods."""
 
     def __init__(self, problem: Problem, mass: Floats, gravity: Floats) -> None:
         self.problem, self.mass, size = problem, mass, len(mass)
