@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import pickle
+from typing import get_type_hints
 
 import pytest
 
 import vibroimpact as vi
 from vibroimpact.cases.elastic.bodies import elastic_bodies
 from vibroimpact.cases.rigid import contact_laws_of, contact_pair
+from vibroimpact.cases.schema import SECTIONS, SensorSection
 from vibroimpact.contact.law import ContactLaw
+from vibroimpact.resolved_case import ResolvedBody, ResolvedCase, ResolvedDrop, ResolvedPlate, ResolvedRun, ResolvedSensor
 
 
 def test_a_run_makes_the_laws_of_a_case_once(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -41,3 +44,12 @@ def test_they_are_no_part_of_the_case() -> None:
     assert case == fresh
     assert case.model_dump() == fresh.model_dump()
     assert pickle.loads(pickle.dumps(case)) == fresh
+
+
+def test_the_types_of_a_resolved_case_have_the_keys_of_its_sections() -> None:
+    tables = {"sphere": ResolvedBody, "plate": ResolvedPlate, "drop": ResolvedDrop, "run": ResolvedRun}
+    assert tables.keys() == SECTIONS.keys()
+    for name, table in tables.items():
+        assert get_type_hints(table).keys() == SECTIONS[name].model_fields.keys(), name
+    assert get_type_hints(ResolvedSensor).keys() == SensorSection.model_fields.keys()
+    assert get_type_hints(ResolvedCase).keys() == vi.Case.model_fields.keys()

@@ -12,8 +12,7 @@ from pydantic.fields import FieldInfo
 from vibroimpact.cases.fields.local import LocalSection
 from vibroimpact.cases.fields.material import InlineMaterial, material_table
 from vibroimpact.cases.fields.quantities import Quantity
-from vibroimpact.cases.fields.section import Section
-from vibroimpact.cases.schema import DropSection, PlateSection, RunSection, SphereSection
+from vibroimpact.cases.schema import SECTIONS
 from vibroimpact.contact.law import unit_of
 from vibroimpact.contact.registry import find_contact_law
 from vibroimpact.errors import InputError, did_you_mean
@@ -21,7 +20,6 @@ from vibroimpact.materials import find_material
 from vibroimpact.ranges import Range
 from vibroimpact.shown import shown
 
-_SECTIONS: dict[str, type[Section]] = {"sphere": SphereSection, "plate": PlateSection, "drop": DropSection, "run": RunSection}
 _PLACES = {"position": ("x", "y"), "size": ("length", "width", "thickness")}
 """Names of the numbers of a list, such as x in "drop.position.x"."""
 
@@ -79,7 +77,7 @@ def holds_keys(key: str) -> bool:
     (True, False)
     """
     section, _, field = key.partition(".")
-    return section in (*_SECTIONS, "contact") and field in ("", "material", *_PLACES)
+    return section in (*SECTIONS, "contact") and field in ("", "material", *_PLACES)
 
 
 def with_values(table: Mapping[str, Any], values: Mapping[str, Any], done: str = "swept") -> dict[str, Any]:
@@ -137,7 +135,7 @@ def with_values(table: Mapping[str, Any], values: Mapping[str, Any], done: str =
 
 
 def _keys(table: Mapping[str, Any]) -> Iterator[tuple[str, Quantity | None]]:
-    for name, section in _SECTIONS.items():
+    for name, section in SECTIONS.items():
         yield name, None
         for field, info in section.model_fields.items():
             key = f"{name}.{field}"

@@ -21,7 +21,7 @@ from vibroimpact.cases.fields.item_labels import path_in_words
 from vibroimpact.cases.fields.material import InlineMaterial
 from vibroimpact.cases.fields.size_limits import MOST_BYTES, check_bounds, check_text
 from vibroimpact.cases.keys import with_values
-from vibroimpact.cases.schema import AccelerometerTable, DropSection, PlateSection, RunSection, SensorSection, SphereSection
+from vibroimpact.cases.schema import SECTIONS, AccelerometerTable, SensorSection
 from vibroimpact.errors import InputError, did_you_mean
 from vibroimpact.files.reading import FileKind, read_text
 from vibroimpact.shown import shortened, shown
@@ -33,10 +33,7 @@ _CASE = FileKind('a case is a TOML file, or a shipped one such as "paper:type1-t
 
 _SECTIONS: dict[tuple[str, ...], type[BaseModel]] = {
     (): Case,
-    ("sphere",): SphereSection,
-    ("plate",): PlateSection,
-    ("drop",): DropSection,
-    ("run",): RunSection,
+    **{(name,): section for name, section in SECTIONS.items()},
     ("calibrate",): CalibrateSection,
     ("calibrate", "speeds"): SpeedsTable,
     ("sensors",): SensorSection,

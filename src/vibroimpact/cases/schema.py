@@ -185,6 +185,10 @@ class RunSection(Section):
     ] = 1e-9
 
 
+SECTIONS: dict[str, type[Section]] = {"sphere": SphereSection, "plate": PlateSection, "drop": DropSection, "run": RunSection}
+"""The sections of a case that are there once and have fixed keys."""
+
+
 class CaseTable(Section):
     """A case as a file has it: its sections, validated, in SI."""
 

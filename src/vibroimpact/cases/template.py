@@ -10,6 +10,7 @@ from dataclasses import MISSING, fields
 from os import PathLike
 from typing import Any, Literal, get_args, get_origin
 
+import tomli_w
 from pydantic import WithJsonSchema
 from pydantic.fields import FieldInfo
 
@@ -17,18 +18,11 @@ from vibroimpact.cases.fields.local import LocalSection
 from vibroimpact.cases.fields.section import Section
 from vibroimpact.cases.keys import quantity_of
 from vibroimpact.cases.reader import case_text, load_case, prefix_errors
-from vibroimpact.cases.schema import DropSection, PlateSection, RunSection, SensorSection, SphereSection
-from vibroimpact.contact.law import unit_of
+from vibroimpact.cases.schema import SECTIONS, SensorSection
+from vibroimpact.contact.law import default_origin, unit_of
 from vibroimpact.contact.registry import find_contact_law
 
-_SECTIONS: dict[str, type[Section]] = {
-    "sphere": SphereSection,
-    "plate": PlateSection,
-    "drop": DropSection,
-    "contact": LocalSection,
-    "run": RunSection,
-    "sensors": SensorSection,
-}
+_SECTIONS: dict[str, type[Section]] = {**SECTIONS, "contact": LocalSection, "sensors": SensorSection}
 _HEADER = re.compile(r"^\s*\[\[?\s*([\w-]+)\s*[].]")  # of a section or of a table in it
 _NAME = re.compile(r"^name\s*=.*$", re.MULTILINE)
 _WIDTH = 40  # columns of a key with its value, before its meaning
@@ -56,9 +50,9 @@ def case_template(source: str | PathLike[str] = "paper:type1-theory", name: str 
     (True, True)
     """
     text = prefix_errors(source, lambda: case_text(source))
-    load_case(source)  # which must be valid
+    load_case(source, {"name": name} if name else None)  # which must be valid
     if name:
-        line = f"name = {json.dumps(name, ensure_ascii=False)}"
+        line = tomli_w.dumps({"name": name}).rstrip()
         text = _NAME.sub(lambda _: line, text, count=1) if _NAME.search(text) else f"{line}\n{text}"
     used: dict[str, Any] = tomllib.loads(text)
     blocks = _blocks(text.rstrip().split("\n"))
@@ -92,7 +86,7 @@ def _comments(section: str, used: Any) -> Iterator[str]:
     if section == "contact" and isinstance(used.get("law"), str):
         for item in fields(find_contact_law(used["law"])):
             if item.name not in taken and not item.metadata["memory"]:
-                origin = "from the bodies" if item.metadata["from_pair"] else ""
+                origin = default_origin(item)
                 value = "..." if origin or item.default in (MISSING, None) else f"{item.default:g}"
                 unit = unit_of(item, used.get("exponent", 1.5))
                 yield _comment(item.name, value, _with_unit(item.metadata["meaning"], unit) + (f"; by default {origin}" if origin else ""))

@@ -2,28 +2,27 @@
 
 from __future__ import annotations
 
-import tomllib
+from typing import Any
 
 from rich.console import Group, RenderableType
 from rich.text import Text
 
-from vibroimpact.cases.reader import case_text, shipped_cases
+from vibroimpact.cases.reader import load_table, shipped_cases
 from vibroimpact.report.terminal_table import TerminalColumn, TerminalTable
 
 
 def shipped_cases_table() -> RenderableType:
     """Return the table of the shipped cases: name, title, and the command that they are for."""
-    titles = shipped_cases()
+    cases = {name: load_table(name) for name in shipped_cases()}
     columns = (
-        TerminalColumn("case", list(titles), text=True),
-        TerminalColumn("what it is", list(titles.values()), text=True),
-        TerminalColumn("command", [_command(name) for name in titles], text=True),
+        TerminalColumn("case", list(cases), text=True),
+        TerminalColumn("what it is", [case["name"] for case in cases.values()], text=True),
+        TerminalColumn("command", [_command(case) for case in cases.values()], text=True),
     )
     notes = 'Start a case of your own from one of them: "vibroimpact new NAME --from paper:type3".'
     return Group(TerminalTable(columns), Text(), Text(notes))
 
 
-def _command(name: str) -> str:
+def _command(case: dict[str, Any]) -> str:
     """Return the command that a case is meant for: it has a section of its own in the case."""
-    table = tomllib.loads(case_text(name))
-    return "sweep" if "sweep" in table else "calibrate" if "calibrate" in table else "run"
+    return "sweep" if "sweep" in case else "calibrate" if "calibrate" in case else "run"

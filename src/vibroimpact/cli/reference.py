@@ -29,7 +29,8 @@ def new(
 ) -> None:
     """Write a case to start from: that of another case, with the keys that it does not use as comments."""
     from vibroimpact.cases.template import case_template
-    from vibroimpact.files.atomic_write import write_file
+    from vibroimpact.files.atomic_write import write_text_file
+    from vibroimpact.files.recover import recover
 
     title = name.removesuffix(".toml")
     path = Path(f"{title}.toml")
@@ -38,10 +39,8 @@ def new(
     if path.exists() and not force:
         raise InputError(f"{path} exists; take another name, or --force to replace it")
     text = case_template(source, title)
-    try:
-        write_file(path, text.encode())
-    except OSError as error:
-        raise InputError(f"{path}: it can't be written: {error.strerror or error}") from None
+    recover(path)
+    write_text_file(path, text)
     say(f"wrote {path}; explain it: vibroimpact check {path}; run it: vibroimpact run {path}")
 
 

@@ -312,6 +312,12 @@ def unit_of(item: dataclasses.Field[Any], exponent: Any) -> str:
     return unit
 
 
+def default_origin(item: dataclasses.Field[Any]) -> str:
+    """Return what a parameter is computed from where a case leaves it out, in words; "" if it is not."""
+    source = item.metadata["from_pair"]
+    return "" if not source else "from the bodies" if source in ("effective_radius", "effective_mass") else "from the materials"
+
+
 def is_conservative(law: ContactLaw) -> bool:
     """Is the law conservative, so that a ball bounces for ever?
 

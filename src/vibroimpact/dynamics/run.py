@@ -47,9 +47,9 @@ class Run:
         self.end_time, self.rest_time = np.full(self.size, np.nan), np.full(self.size, np.nan)
         self.sag, self.stored, self.written_off = np.zeros(self.size), np.zeros(self.size), np.zeros(self.size)
         self.rest_speed = self.default_rest_speed() if problem.rest_speed is None else self.spread(problem.rest_speed)
-        self.bodies: Bodies = RigidBodies(self.size, solve_contact)
-        if problem.vibrates:
-            self.bodies = VibratingBodies(problem, self.mass, self.gravity)
+        self.bodies: Bodies = (
+            VibratingBodies(problem, self.mass, self.gravity) if problem.vibrates else RigidBodies(self.size, solve_contact)
+        )
         self.memories = {name: self.spread(value) for name, value in problem.laws[0].memories().items()}
         self.rows = ImpactRows(self.bodies.columns, self.size)
 

@@ -13,9 +13,11 @@ from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from errno import EACCES, EISDIR, ELOOP
 from functools import cache, partial
+from os import PathLike
 from pathlib import Path
 from typing import Any
 
+from vibroimpact.errors import InputError
 from vibroimpact.files.working_files import COMPLETE, NEW, OLD, inner_path, locked, new_working_path, remove, working_path
 
 _PUT, _GONE = "put", "gone"
@@ -85,6 +87,20 @@ def write_file(target: Path, content: bytes | Iterable[bytes], *, durable: bool 
         file.flush()
         if durable:
             os.fsync(file.fileno())
+
+
+def write_text_file(path: str | PathLike[str], text: str) -> None:
+    """Write a text file atomically.
+
+    Raises
+    ------
+    InputError
+        If it can't be written.
+    """
+    try:
+        write_file(Path(path), text.encode())
+    except OSError as error:
+        raise InputError(f"{path}: the file can't be written: {error.strerror}") from None
 
 
 def _make_empty_file(path: Path) -> None:

@@ -9,7 +9,7 @@ from typing import Any
 from vibroimpact.cases.reader import load_case
 from vibroimpact.cases.rigid import contact_pair
 from vibroimpact.contact.docstring import docstring_sections
-from vibroimpact.contact.law import CompliantLaw, ContactLaw
+from vibroimpact.contact.law import CompliantLaw, ContactLaw, default_origin
 from vibroimpact.contact.pair import ContactPair
 from vibroimpact.dynamics.restitution import achieved_restitution
 from vibroimpact.laws.plain_math import plain_math, plain_text
@@ -20,7 +20,6 @@ ASKED = (0.9, 0.7, 0.5, 0.3)
 SPEED = 8.8
 """The approach speed at which the achieved restitution is shown [m/s], that of the paper."""
 
-_OF_BODIES = ("effective_radius", "effective_mass")
 _ENDS = {
     "zero-indentation": "The contact is over when the bodies no longer overlap.",
     "zero-force": "The contact is over when the bodies no longer push each other apart.",
@@ -191,9 +190,8 @@ def _parameter_text(item: Field[Any]) -> ParameterText:
 
 def _default(item: Field[Any]) -> str:
     """Return the origin or value of a parameter that a case leaves out, or whether it is required."""
-    source = item.metadata["from_pair"]
-    if source:
-        return "from the bodies" if source in _OF_BODIES else "from the materials"
+    if origin := default_origin(item):
+        return origin
     if item.default is MISSING:
         typical = item.metadata["example"]
         return "required" if typical is None else f"required, such as {typical:g}"

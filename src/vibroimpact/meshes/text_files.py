@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from os import PathLike
 from pathlib import Path
 from typing import NamedTuple
 
 from vibroimpact.errors import InputError
-from vibroimpact.files.atomic_write import write_file
 from vibroimpact.files.reading import FileKind, read_text_bytes, with_path
 from vibroimpact.shown import shortened, shown
 
@@ -93,20 +91,6 @@ def _included_lines(line: TextLine, name: str, root: Path, seen: set[Path]) -> l
         raise line.wrong(f"{shown(name)} is included a second time; a file may be included once")
     seen.add(place)
     return lines
-
-
-def write_text_file(path: str | PathLike[str], text: str) -> None:
-    """Write a text file atomically.
-
-    Raises
-    ------
-    InputError
-        If it can't be written.
-    """
-    try:
-        write_file(Path(path), text.encode())
-    except OSError as error:
-        raise InputError(f"{path}: the file can't be written: {error.strerror}") from None
 
 
 def parse_integer(text: str, line: TextLine, what: str) -> int:

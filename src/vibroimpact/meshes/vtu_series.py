@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from vibroimpact.errors import InputError
-from vibroimpact.meshes.text_files import write_text_file
+from vibroimpact.files.atomic_write import write_text_file
 from vibroimpact.meshes.write_vtu import cells_of, checked_values, vtu_text
 from vibroimpact.structures.mesh import Mesh
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from os import PathLike
 
+from vibroimpact.files.atomic_write import write_text_file
 from vibroimpact.files.plain_names import one_line
 from vibroimpact.materials import Material
 from vibroimpact.meshes.deck_mesh import check_deck_material, check_shell_thickness, deck_mesh
-from vibroimpact.meshes.text_files import write_text_file
 from vibroimpact.structures.mesh import Mesh
 
 _TYPES = {"tet4": "C3D4", "tet10": "C3D10", "hex8": "C3D8", "hex20": "C3D20", "quad8": "S8R"}

@@ -8,11 +8,11 @@ from os import PathLike
 import numpy as np
 
 from vibroimpact.arrays import Integers
+from vibroimpact.files.atomic_write import write_text_file
 from vibroimpact.files.plain_names import one_line
 from vibroimpact.materials import Material
 from vibroimpact.meshes.deck_mesh import check_deck_material, check_shell_thickness, deck_mesh
 from vibroimpact.meshes.node_order import NASTRAN, from_ours
-from vibroimpact.meshes.text_files import write_text_file
 from vibroimpact.structures.mesh import Mesh
 
 _CARDS = {"tet4": "CTETRA", "tet10": "CTETRA", "hex8": "CHEXA", "hex20": "CHEXA", "quad8": "CQUAD8"}

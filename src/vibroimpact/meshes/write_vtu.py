@@ -12,8 +12,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from vibroimpact.arrays import Floats, Integers
 from vibroimpact.errors import InputError
+from vibroimpact.files.atomic_write import write_text_file
 from vibroimpact.meshes.deck_mesh import nine_node_shells
-from vibroimpact.meshes.text_files import write_text_file
 from vibroimpact.structures.mesh import Mesh
 
 _CELLS = {"tet4": 10, "tet10": 24, "hex8": 12, "hex20": 25, "hex27": 29, "quad25": 28}
