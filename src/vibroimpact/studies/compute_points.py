@@ -20,7 +20,7 @@ from vibroimpact.dynamics.tabulate import tabulate
 from vibroimpact.errors import ComputationError, InputError, lines_of
 from vibroimpact.studies.axes import Values
 from vibroimpact.studies.chunk_file import ChunkResult
-from vibroimpact.studies.drop_variables import FIRST, LARGEST, OUTCOME, SENSOR_PEAK, SIGNAL
+from vibroimpact.studies.drop_variables import FIRST, LARGEST, OUTCOME, SENSOR_PEAK, SIGNAL, TOTAL
 from vibroimpact.studies.limit_columns import batch_conditions, drop_conditions, limit_columns
 from vibroimpact.studies.swept_keys import case_at, is_array_key, with_arrays
 
@@ -195,7 +195,7 @@ def _columns(response: Response, keep: tuple[str, ...]) -> dict[str, NDArray[Any
     peaks = {
         "number_of_impacts": np.isfinite(impacts["impact"]).sum(axis=1).astype(float),
         "end_time_s": response.end_time,
-        "total_energy_lost_J": np.nansum(impacts["energy_lost_J"], axis=1),
+        **{peak: np.nansum(impacts[name], axis=1) for peak, name in TOTAL.items()},
         "closure_relative": np.atleast_1d(response.energy["closure_relative"]),
         OUTCOME: np.array([outcome.code for outcome in response.outcomes], dtype=np.int8),
         **first,

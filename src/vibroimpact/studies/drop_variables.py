@@ -95,6 +95,9 @@ FIRST = {name: peak.column for name, peak in PEAK_TABLE.items() if peak.taken ==
 LARGEST = {name: peak.column for name, peak in PEAK_TABLE.items() if peak.taken == "largest"}
 """The column of each peak that is the maximum over all impacts."""
 
+TOTAL = {name: peak.column for name, peak in PEAK_TABLE.items() if peak.taken == "total"}
+"""The column of each peak that is the sum over all impacts."""
+
 OUTCOME = "outcome"
 """Why the run of a drop ended, as the index of its `Outcome` in `OUTCOMES`."""
 
