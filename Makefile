@@ -1,10 +1,11 @@
 # make demo      install into .venv and run the paper's Type 1
 # make test      install what the tests need and run them
 # make test-slow run the slow tests, as CI does too
+# make test-page run the tests of pages in Chromium, which is installed by apt-get if it is missing
 # make test-peers   compare with LAMMPS, EXUDYN, MuJoCo (installed for it) and YADE (if it is there)
 # make check     lint, formatting and types, as CI does
 # make bench     the benchmarks
-# make docs      write the pages of the contact laws again
+# make docs      write the pages of the contact laws, and what a shell completes, again
 # make reproduce reproduce the paper, and write the page of the documentation that shows it
 # make help      this list
 
@@ -12,17 +13,30 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 OUTPUT := vibroimpact-demo
+VIBROIMPACT_CHROMIUM ?= /usr/bin/chromium
+CHROMIUM := $(VIBROIMPACT_CHROMIUM)
 
-.PHONY: help demo test test-slow test-peers check bench docs reproduce clean
+.PHONY: help demo test test-slow test-page chromium test-peers check bench docs reproduce clean
 
 demo: $(VENV)/installed
 	$(BIN)/vibroimpact demo --output $(OUTPUT) --force
 
 test: $(VENV)/installed-test
-	OPENBLAS_NUM_THREADS=1 $(BIN)/pytest -m "not slow and not peers" -n auto --dist loadfile
+	OPENBLAS_NUM_THREADS=1 $(BIN)/pytest -m "not slow and not peers and not page" -n auto --dist loadfile
 
 test-slow: $(VENV)/installed-test
-	OPENBLAS_NUM_THREADS=1 $(BIN)/pytest -m "slow and not peers" -n auto --dist worksteal
+	OPENBLAS_NUM_THREADS=1 $(BIN)/pytest -m "slow and not peers and not page" -n auto --dist worksteal
+
+test-page: $(VENV)/installed-page chromium
+	OPENBLAS_NUM_THREADS=1 VIBROIMPACT_CHROMIUM="$(CHROMIUM)" $(BIN)/pytest -m page tests/page
+
+chromium:
+	@test -x "$(CHROMIUM)" || { \
+	  echo "installing Chromium by apt-get"; \
+	  as_root=$$(test "$$(id -u)" = 0 || echo sudo); \
+	  { $$as_root apt-get update -qq && $$as_root apt-get install -y -qq chromium; } && test -x "$(CHROMIUM)"; } || { \
+	  echo "There is no $(CHROMIUM), and apt-get can't install it. Install Chromium and name it:" >&2; \
+	  echo "make test-page VIBROIMPACT_CHROMIUM=/path/of/chromium" >&2; exit 1; }
 
 test-peers: $(VENV)/installed-peers
 	$(BIN)/pytest -m peers
@@ -37,6 +51,7 @@ bench: $(VENV)/installed
 
 docs: $(VENV)/installed
 	$(BIN)/python -m vibroimpact.laws.pages docs
+	$(BIN)/python -m vibroimpact.cli.completion_words
 
 reproduce: $(VENV)/installed
 	$(BIN)/vibroimpact reproduce -o vibroimpact-paper --force

@@ -15,7 +15,7 @@ import vibroimpact
 
 PACKAGE = Path(vibroimpact.__file__).parent
 FLOORS = {  # top to bottom: what a floor is, its colour, its rooms and what they hold
-    "the command line": ("#e4e4e4", {"cli": "commands, help,\nexit status"}),
+    "the command line": ("#e4e4e4", {"app": "the live page", "cli": "commands, help,\nexit status"}),
     "what people do": (
         "#a9c4dc",
         {
@@ -34,7 +34,8 @@ FLOORS = {  # top to bottom: what a floor is, its colour, its rooms and what the
         {
             "cases": "the case file: sections,\nlimits, slips of units",
             "results": "the result of a run\nand its folder",
-            "report": "style of figures, page,\ntables, progress",
+            "charts": "described once, drawn\nby plotly and matplotlib",
+            "report": "pages, tables,\nprogress",
             "meshes": "mesh files in and out",
             "measurements": "records and tables in",
         },

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from vibroimpact.calibration.calibrate_case import load_calibration as load_calibration
     from vibroimpact.calibration.calibrate_case import read_calibration as read_calibration
     from vibroimpact.calibration.calibration import Calibration as Calibration
+    from vibroimpact.calibration.charts import calibration_charts as calibration_charts
     from vibroimpact.calibration.folder import save_calibration as save_calibration
     from vibroimpact.calibration.force_record import impacts_in_force as impacts_in_force
     from vibroimpact.calibration.observations import Observations as Observations
@@ -40,6 +41,9 @@ if TYPE_CHECKING:
     from vibroimpact.cases.reader import read_case as read_case
     from vibroimpact.cases.reader import shipped_cases as shipped_cases
     from vibroimpact.cases.template import case_template as case_template
+    from vibroimpact.charts.files import save_charts as save_charts
+    from vibroimpact.charts.notebook import plotly_figure as plotly_figure
+    from vibroimpact.comparison.charts import comparison_charts as comparison_charts
     from vibroimpact.comparison.comparison import Comparison as Comparison
     from vibroimpact.comparison.comparison import compare_laws as compare_laws
     from vibroimpact.comparison.folder import save_comparison as save_comparison
@@ -71,6 +75,8 @@ if TYPE_CHECKING:
     from vibroimpact.errors import VibroimpactError as VibroimpactError
     from vibroimpact.exporting.export_format import export_formats as export_formats
     from vibroimpact.exporting.export_result import export_result as export_result
+    from vibroimpact.figures import save_figures as save_figures
+    from vibroimpact.laws.curves import law_chart as law_chart
     from vibroimpact.materials import Material as Material
     from vibroimpact.materials import find_material as find_material
     from vibroimpact.materials import material_library as material_library
@@ -78,14 +84,20 @@ if TYPE_CHECKING:
     from vibroimpact.meshes.write_abaqus import write_abaqus as write_abaqus
     from vibroimpact.meshes.write_nastran import write_nastran as write_nastran
     from vibroimpact.meshes.write_vtu import write_vtu as write_vtu
+    from vibroimpact.modes.charts import mode_charts as mode_charts
     from vibroimpact.modes.folder import save_modes as save_modes
     from vibroimpact.paper.report.folder import reproduce_paper as reproduce_paper
     from vibroimpact.remake import remake_report as remake_report
     from vibroimpact.results.folder import read_result as read_result
     from vibroimpact.results.result import Result as Result
+    from vibroimpact.results.result import result_of as result_of
+    from vibroimpact.runs.notebook import plot_result as plot_result
+    from vibroimpact.runs.notebook import result_html as result_html
     from vibroimpact.runs.save import save_result as save_result
     from vibroimpact.structures.mesh import Mesh as Mesh
     from vibroimpact.structures.modal_model import ModalBasis as ModalBasis
+    from vibroimpact.studies.report.notebook import plot_study as plot_study
+    from vibroimpact.studies.report.notebook import study_html as study_html
     from vibroimpact.studies.run_sweep import run_sweep as run_sweep
     from vibroimpact.studies.study import Study as Study
     from vibroimpact.studies.study import read_study as read_study
@@ -129,9 +141,11 @@ _HOME = {
     "calibrate": "calibration.calibrate",
     "calibrate_case": "calibration.calibrate_case",
     "calibrated_case": "calibration.calibrate_case",
+    "calibration_charts": "calibration.charts",
     "case_schema": "cases.case",
     "case_template": "cases.template",
     "compare_laws": "comparison.comparison",
+    "comparison_charts": "comparison.charts",
     "compute_modes": "cases.elastic.modes",
     "contact_laws": "contact.registry",
     "convert_units": "units.reading",
@@ -144,6 +158,7 @@ _HOME = {
     "impacts_in_position": "calibration.position_record",
     "integrated_restitution": "dynamics.restitution",
     "law_achieving": "dynamics.restitution",
+    "law_chart": "laws.curves",
     "law_parameter": "calibration.tunables",
     "load_calibration": "calibration.calibrate_case",
     "load_case": "cases.reader",
@@ -151,7 +166,11 @@ _HOME = {
     "local_element_deviations": "dynamics.local_element",
     "material_library": "materials",
     "modal_damping": "calibration.tunables",
+    "mode_charts": "modes.charts",
+    "plotly_figure": "charts.notebook",
+    "plot_study": "studies.report.notebook",
     "read_calibration": "calibration.calibrate_case",
+    "plot_result": "runs.notebook",
     "read_case": "cases.reader",
     "read_mesh": "meshes.mesh_file",
     "read_result": "results.folder",
@@ -159,16 +178,21 @@ _HOME = {
     "read_sweep": "studies.sweep",
     "remake_report": "remake",
     "reproduce_paper": "paper.report.folder",
+    "result_html": "runs.notebook",
+    "result_of": "results.result",
     "rigid_plate": "bodies.rigid",
     "rigid_sphere": "bodies.rigid",
     "run_sweep": "studies.run_sweep",
     "save_calibration": "calibration.folder",
+    "save_charts": "charts.files",
     "save_comparison": "comparison.folder",
+    "save_figures": "figures",
     "save_modes": "modes.folder",
     "save_result": "runs.save",
     "shipped_cases": "cases.reader",
     "simulate": "dynamics.simulate",
     "simulate_system": "dynamics.simulate_system",
+    "study_html": "studies.report.notebook",
     "tabulate": "dynamics.tabulate",
     "to_si": "units.reading",
     "write_abaqus": "meshes.write_abaqus",

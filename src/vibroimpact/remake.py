@@ -13,7 +13,7 @@ from vibroimpact.runs.page import write_report
 
 
 def remake_report(directory: str | PathLike[str]) -> Path:
-    """Regenerate figures and report of a result folder from its data; other files are left unchanged.
+    """Regenerate the report of a result folder from its data; other files are left unchanged.
 
     The report of a reproduction of the paper is regenerated from its existing parts, that of a study from its dataset.
 
@@ -23,7 +23,6 @@ def remake_report(directory: str | PathLike[str]) -> Path:
         If it is not a result folder, its data are damaged, or it can't be written to.
     """
     # imported here, since a run does not need them
-    from vibroimpact.paper.report.folder import is_reproduction, write_reproduction_report
     from vibroimpact.studies.report.page import write_study_report
     from vibroimpact.studies.study import read_study
     from vibroimpact.studies.study_folder import is_study
@@ -33,6 +32,8 @@ def remake_report(directory: str | PathLike[str]) -> Path:
     if is_study(folder):
         write_study_report(read_study(folder), folder)
         return folder
+    from vibroimpact.paper.report.folder import is_reproduction, write_reproduction_report
+
     if is_reproduction(folder):
         write_reproduction_report(folder)
         return folder

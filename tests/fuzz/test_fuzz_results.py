@@ -169,7 +169,6 @@ def read_all_of_a_study(folder: Path) -> Any:
     return [replace(study, path=Path()), values, study.doubts, study.times("a1") if "signal_a1" in study.shapes else None]
 
 
-@pytest.mark.usefixtures("few_pictures")
 def test_studies(tmp_path: Path) -> None:
     over = {"drop.height": ["1 m", "2 m", "3 m"], "contact.restitution": [0.3, 0.5, 0.9], "plate.material": ["steel", "aluminium"]}
     sweep = vi.read_sweep({**plain_case(), "sweep": {"over": over}})

@@ -28,20 +28,22 @@ LAYERS = [
     {"meshes", "measurements"},
     {"cases"},
     {"results"},
+    {"charts"},
     {"report"},
     # what people do, each whole
     {"modes"},
     {"runs"},
     {"comparison", "calibration", "studies", "laws"},
     {"exporting", "paper"},
-    {"remake"},
+    {"remake", "figures"},
+    {"app"},
     {"cli"},
     {"__main__", "__init__"},
 ]
 LEVEL = {name: level for level, names in enumerate(LAYERS) for name in names}
 
-# response.save(...) asks the package's front, which knows the writers: the one door upwards
-DOORS = {("dynamics/response.py", "vibroimpact")}
+# response.save(...), .plot(...) and what a notebook shows ask the package's front, which knows the writers and charts: the doors upwards
+DOORS = {(file, "vibroimpact") for file in ("dynamics/response.py", "results/result.py", "studies/study.py")}
 
 # a room that people work in may have a section of the case, which is part of the case file and lies beside the work that it asks for
 SECTIONS = {"vibroimpact.calibration.section", "vibroimpact.studies.section"}

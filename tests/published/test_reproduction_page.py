@@ -4,16 +4,23 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from same_numbers import other_numbers
-from vibroimpact.paper.printed import printed_values
+from shown_lines import assert_shows, lines_of
+from vibroimpact.charts.marks import Facets, Level, Points
+from vibroimpact.charts.pack import pack
+from vibroimpact.charts.plotly import plotly_chart
+from vibroimpact.paper.printed import printed, printed_values
+from vibroimpact.paper.report.compared_quantity import ComparedQuantity
 from vibroimpact.paper.report.docs_page import docs_page_text
+from vibroimpact.paper.report.elastic_charts import PLATE_QUANTITIES, SPHERE_ENERGY, SPHERE_MOTION
 from vibroimpact.paper.report.outline import CHAPTERS, PARTS, RenderedPart, render_part
-from vibroimpact.paper.report.page import report_text
+from vibroimpact.paper.report.page import report_html, report_text
 from vibroimpact.paper.report_section import Verdict
-from vibroimpact.paper.runs import Runs
-from vibroimpact.report.figure_files import render_svg
+from vibroimpact.paper.runs import TREATMENTS, Runs
+from vibroimpact.paper.step_sweep import COMPARED, paper_impact, superposed, sweep_steps
 
 PAGE = Path(__file__).parents[2] / "docs" / "reproduction.md"
 
@@ -93,11 +100,13 @@ def test_every_printed_value_is_in_the_report(rows: list[dict]) -> None:
 
 
 def check_figures(parts: dict[str, RenderedPart], figures: dict[str, str]) -> None:
-    assert {name for name, made in parts.items() if made.drawing is not None} == figures.keys()
+    assert {name for name, made in parts.items() if made.chart is not None} == figures.keys()
     for name, begins in figures.items():
         assert f"](figures/{name}.png)" in parts[name].text, name
-        assert parts[name].drawing.title.startswith(begins), name
-        assert parts[name].drawing.sentence.endswith("."), name
+        assert parts[name].chart.name == name
+        assert parts[name].chart.title.startswith(begins), name
+        assert parts[name].chart.caption.endswith("."), name
+        assert all(panel.picture or (panel.x.label and panel.y.label) for panel in parts[name].chart.panels), name
         assert (PAGE.parent / "images" / "reproduction" / f"{name}.png").is_file(), name
 
 
@@ -112,10 +121,63 @@ def test_every_figure_is_there(parts: dict[str, RenderedPart]) -> None:
 
 
 @pytest.mark.slow
-def test_every_figure_is_small(parts: dict[str, RenderedPart]) -> None:
-    for name, made in parts.items():
-        if made.drawing is not None:
-            assert 5_000 < len(render_svg(made.drawing.figure)) < 500_000, name
+def test_the_page_is_small(parts: dict[str, RenderedPart]) -> None:
+    charts = [plotly_chart(made.chart) for made in parts.values() if made.chart is not None]
+    for chart in charts:
+        assert 5_000 < len(pack(chart)) < 300_000, chart["name"]
+    page = report_html(report_text({name: made._asdict() for name, made in parts.items()}), charts)
+    assert len(page) < 5_000_000
+    assert "<img" not in page
+    assert all(f'<figure id="{chart["name"]}">' in page for chart in charts)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("shown", [*SPHERE_MOTION, *SPHERE_ENERGY], ids=lambda shown: f"fig{shown.number}")
+def test_lines_of_the_sphere_are_those_simulated(runs: Runs, parts: dict[str, RenderedPart], shown: ComparedQuantity) -> None:
+    types = (1, 2, 3) if shown in SPHERE_MOTION else (2, 3)
+    for panel, treatment in zip(parts[f"fig{shown.number}"].chart.panels, TREATMENTS, strict=True):
+        for line, kind in zip(lines_of(panel), types, strict=True):
+            response = runs.response("type1-variable") if kind == 1 else runs.treated(kind, treatment)
+            assert_shows(line, shown.timeline, response, panel)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("shown", PLATE_QUANTITIES, ids=lambda shown: f"fig{shown.number}")
+def test_lines_of_the_plate_are_those_simulated(runs: Runs, parts: dict[str, RenderedPart], shown: ComparedQuantity) -> None:
+    (panel,) = parts[f"fig{shown.number}"].chart.panels
+    for line, treatment in zip(lines_of(panel), TREATMENTS, strict=True):
+        assert_shows(line, shown.timeline, runs.treated(3, treatment), panel)
+    marked = {mark.value for mark in panel.marks if isinstance(mark, Level)}
+    assert marked == {sign * printed(shown.printed).value for sign in shown.signs}
+
+
+@pytest.mark.slow
+def test_meshes_are_drawn_with_all_their_nodes(runs: Runs, parts: dict[str, RenderedPart]) -> None:
+    models = runs.problem("type3").models
+    sphere, plate = parts["fig9"].chart.panels
+    (dots,) = [mark for mark in plate.marks if isinstance(mark, Points)]
+    assert len(dots.x) == len(models["plate"].mesh.nodes)
+    for values, axis in ((dots.x, 0), (dots.y, 1)):
+        assert np.ptp(values) == pytest.approx(np.ptp(models["plate"].mesh.nodes[:, axis]))
+    (facets,) = [mark for mark in sphere.marks if isinstance(mark, Facets)]
+    # a sphere is seen as a circle, of which the visible half is drawn
+    radius = np.hypot(*(facets.corners.reshape(-1, 2) - facets.corners.reshape(-1, 2).mean(axis=0)).T).max()
+    assert radius == pytest.approx(0.025, rel=0.05)
+    edges = np.roll(facets.corners, -1, axis=1)
+    area = 0.5 * np.abs((facets.corners[..., 0] * edges[..., 1] - facets.corners[..., 1] * edges[..., 0]).sum(axis=1)).sum()
+    assert area == pytest.approx(np.pi * 0.025**2, rel=0.02)
+
+
+@pytest.mark.slow
+def test_unresolved_runs_are_drawn_with_their_ranges(runs: Runs, parts: dict[str, RenderedPart]) -> None:
+    for name, row in zip(COMPARED, parts["unresolved"].chart.rows, strict=True):
+        for kind, panel in zip((2, 3), row, strict=True):
+            for line, mesh in zip(lines_of(panel), ("coarse", "fine"), strict=True):
+                swept = sweep_steps(superposed(runs, kind, mesh))
+                assert line.x.tolist() == swept.steps.tolist()
+                assert line.y.tolist() == np.median(swept.found[name], axis=1).tolist()
+            level = next(mark for mark in panel.marks if isinstance(mark, Level) and not mark.upright)
+            assert (level.name, level.value) == ("printed", paper_impact(runs, kind)[name])
 
 
 @pytest.mark.parametrize("name", EXACT)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -11,7 +12,13 @@ import pytest
 
 import vibroimpact as vi
 from support import plain_case
+from vibroimpact.charts.chart import Chart
+from vibroimpact.charts.marks import Level, Line, Points
+from vibroimpact.charts.matplotlib import matplotlib_figure
+from vibroimpact.charts.plotly import plotly_chart
 from vibroimpact.cli import main
+from vibroimpact.comparison.charts import comparison_charts, spread_labels
+from vibroimpact.comparison.comparison import compare_laws
 from vibroimpact.comparison.laws import cases_under
 
 CASE = vi.read_case(plain_case())
@@ -73,6 +80,73 @@ def test_all_laws_tuned_to_one_restitution() -> None:
         assert one.impacts["restitution_achieved"][0] == pytest.approx(0.8, abs=3e-3)  # gravity acts in the contact too
 
 
+def lines(chart: Chart) -> dict[str, Line]:
+    return {mark.name: mark for mark in chart.panels[0].marks if isinstance(mark, Line)}
+
+
+def test_the_charts_hold_the_results() -> None:
+    """Each law's whole run, its first contact from touch to release, and the restitution of every impact beside the curve."""
+    names = ["flores", "newton", "adams-impact", "tsuji", "hunt-crossley", "gonthier", "jankowski", "lee-wang", "hu-guo"]
+    comparison = vi.compare_laws(vi.load_case("paper:type1-theory"), names, {"restitution": 0.65, "adams-impact.damping_max": 180})
+    position, force, loops, restitution = comparison_charts(comparison)
+    assert [chart.name for chart in (position, force, loops, restitution)] == ["position", "force", "force_indentation", "restitution"]
+    assert list(lines(position)) == names
+    assert list(lines(force)) == list(lines(loops)) == [name for name in names if name != "newton"]
+    assert len({mark.role for mark in lines(position).values()}) == len(names)  # the ninth is told from the first
+    points = {mark.role: mark for mark in restitution.panels[0].marks if isinstance(mark, Points)}
+    for name, one in comparison.results.items():
+        drawn = lines(position)[name]
+        np.testing.assert_array_equal(drawn.y, one.history["position_m"])
+        np.testing.assert_array_equal(lines(restitution)[name].y, comparison.restitutions[name])
+        reached = points[drawn.role]
+        np.testing.assert_array_equal(reached.x, one.impacts["approach_speed_m_s"])
+        np.testing.assert_array_equal(reached.y, one.impacts["restitution_achieved"])
+        if name == "newton":
+            continue
+        pulse, loop = lines(force)[name], lines(loops)[name]
+        assert pulse.x[-1] == pytest.approx(one.impacts["duration_s"][0], rel=1e-6)
+        assert pulse.y.max() == pytest.approx(one.impacts["max_force_N"][0], rel=1e-3)
+        assert np.trapezoid(loop.y, loop.x) == pytest.approx(one.impacts["energy_lost_J"][0], rel=1e-2)
+    (view,) = position.views
+    assert view.origin == comparison.results["newton"].impacts["time_s"][0]
+    for chart in (position, force, loops, restitution):
+        matplotlib_figure(chart)
+        assert plotly_chart(chart)["frames"]
+
+
+def test_a_sphere_that_rests_stays_there_until_the_longest_run_ends() -> None:
+    case = vi.read_case(plain_case(run={"impacts": 40, "duration": 3.0}))
+    found = vi.compare_laws(case, ["newton", "hertz"], {"restitution": 0.1})
+    resting, bouncing = lines(comparison_charts(found)[0]).values()
+    assert found.results["newton"].status.startswith("At rest")
+    assert resting.x[-1] == bouncing.x[-1]
+    assert resting.y[-1] == resting.y[-2]
+
+
+def test_labels_of_a_comparison_at_one_restitution_do_not_overlap() -> None:
+    laws = ["hunt-crossley", "flores", "lankarani-nikravesh", "newton", "gonthier", "zhiying-qishao", "hu-guo"]
+    found = compare_laws(vi.load_case("paper:type1-theory"), laws, achieving=0.7)
+    chart = comparison_charts(found)[-1]
+    figure = matplotlib_figure(chart)
+    figure.canvas.draw()
+    labels = [label.get_window_extent() for label in figure.axes[0].texts if label.get_text().startswith("asked")]
+    levels = [mark.value for mark in chart.panels[0].marks if isinstance(mark, Level)]
+    assert levels == sorted({round(float(one.impacts["restitution_asked"][0]), 4) for one in found.results.values()})
+    assert len(labels) > 3
+    assert all(below.y1 <= above.y0 for below, above in pairwise(sorted(labels, key=lambda box: box.y0)))
+    assert len({round(label.x1) for label in labels}) == 1
+
+
+@pytest.mark.parametrize("places", [[], [0.5], [0.1, 0.1001, 0.1002, 0.9], list(np.linspace(0.6, 0.62, 7))])
+def test_places_are_brought_apart_and_no_further(places: list[float]) -> None:
+    found = spread_labels(places, 0.05)
+    assert all(above - below >= 0.05 - 1e-12 for below, above in pairwise(found))
+    assert all(there >= here for here, there in zip(places, found, strict=True))
+    assert found[:1] == places[:1]
+    if len(places) == 4:
+        assert found[-1] == 0.9  # which has room
+
+
 def run(monkeypatch: pytest.MonkeyPatch, *arguments: str) -> int:
     monkeypatch.setattr("sys.argv", ["vibroimpact", "compare", "paper:type1-theory", *arguments])
     with pytest.raises(SystemExit) as left:
@@ -93,13 +167,14 @@ def test_the_command_writes_a_whole_folder(tmp_path: Path, monkeypatch: pytest.M
     again = vi.simulate(vi.load_case(folder / "cases" / "adams-impact.toml"))
     np.testing.assert_allclose(again.impacts["max_force_N"], [float(row["max_force_N"]) for row in rows[-5:]], rtol=1e-12)
     page = (folder / "report.html").read_text()
-    assert page.count("<img") == 4
-    assert "http" not in page.replace("http-equiv", "")
     figures = {"position", "force", "force_indentation", "restitution"}
-    assert {file.stem for file in (folder / "figures").glob("*.png")} == figures
+    assert all(f'data-chart="{name}"' in page for name in figures)
+    assert "<img" not in page
+    assert not (folder / "figures").exists()
     assert run(monkeypatch, *arguments) == 2
     assert "is there already" in capsys.readouterr().err
-    assert run(monkeypatch, *arguments, "--force") == 0
+    assert run(monkeypatch, *arguments, "--force", "--figures") == 0
+    assert {file.name for file in (folder / "figures").iterdir()} == {f"{name}.png" for name in figures}
 
 
 def test_settings_that_are_none_are_refused(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:

@@ -11,7 +11,6 @@ from typer.testing import CliRunner
 
 import vibroimpact as vi
 from support import plain_case
-from vibroimpact.cases import costs
 from vibroimpact.cases.costs import costs_of, describe_costs, impacts_expected
 from vibroimpact.cli import app
 from vibroimpact.errors import InputError
@@ -59,7 +58,7 @@ def test_samples_of_a_long_run_are_told_and_refused_where_they_do_not_fit(monkey
     (told,) = (one for one in describe_costs(case) if "samples" in one)
     assert told.startswith("the samples of 6 sensors, 1.8e+08, take about")
     assert "GB of memory and 1.6 GB on disk" in told
-    monkeypatch.setattr("vibroimpact.structures.factor.free_memory", lambda: 1e9)
+    monkeypatch.setattr("vibroimpact.structures.free_memory.free_memory", lambda: 1e9)
     with pytest.raises(InputError, match=r"about 1\.7 GB of memory, and 1 GB are free; give a shorter run\.duration or a lower rate"):
         describe_costs(case)
 
@@ -69,7 +68,7 @@ def test_modes_that_take_long_are_told_until_they_are_stored(monkeypatch: pytest
     case = vi.read_case(plain_case(sphere=ELASTIC_SPHERE))
     (told,) = describe_costs(case, modes_alone=True)
     assert told.startswith("the modes of the sphere take about 40 s, 1 GB of memory")
-    monkeypatch.setattr(costs, "has_model", lambda key: True)
+    monkeypatch.setattr("vibroimpact.structures.store.has_model", lambda key: True)
     assert costs_of(case, modes_alone=True) == []
 
 

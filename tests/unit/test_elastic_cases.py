@@ -13,6 +13,7 @@ from typing import Any, get_args
 
 import numpy as np
 import pytest
+import tomli_w
 
 import vibroimpact as vi
 from support import plain_case
@@ -137,7 +138,7 @@ def test_body_that_cannot_be_made(changes: dict, message: str) -> None:
 
 
 def test_too_large_for_the_memory(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("vibroimpact.structures.factor.free_memory", lambda: 1e6)
+    monkeypatch.setattr("vibroimpact.structures.free_memory.free_memory", lambda: 1e6)
     with pytest.raises(vi.InputError, match=r"the factors of .* degrees of freedom need about .* GB of memory, and 0.001 GB are free"):
         vi.compute_modes(vi.read_case(plate_case(modes=5)))
 
@@ -179,9 +180,49 @@ def test_a_graded_sphere_has_more_elements_or_is_doubted() -> None:
     assert "its elements are too large" in doubts[0]
 
 
-def test_a_rigid_case_loads_no_finite_elements() -> None:
-    code = "import sys, vibroimpact as vi; vi.load_case('paper:type1-theory').to_problem(); assert 'scipy.sparse' not in sys.modules"
-    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+_DROP = """
+import sys
+from pathlib import Path
+import vibroimpact as vi
+from vibroimpact.cases.costs import describe_costs
+from vibroimpact.results.folder import write_result
+from vibroimpact.results.result import result_of
+from vibroimpact.runs.paraview import write_paraview
+
+case, folder = vi.load_case(sys.argv[1]), Path(sys.argv[2])
+describe_costs(case)
+response = vi.simulate(case)
+write_result(result_of(response), folder)
+write_paraview(response, folder)
+print(*sys.modules)
+"""
+
+
+def modules_of_a_drop(case: str, folder: Path) -> set[str]:
+    """The modules that a new process has loaded when it has computed a drop and written its data."""
+    folder.mkdir()
+    command = [sys.executable, "-c", _DROP, case, str(folder)]
+    return set(subprocess.run(command, check=True, capture_output=True, text=True, timeout=120).stdout.split())
+
+
+def test_a_rigid_case_loads_nothing_that_vibrates(tmp_path: Path) -> None:
+    loaded = modules_of_a_drop("paper:type1-theory", tmp_path / "drop")
+    assert "vibroimpact.runs.paraview" in loaded
+    assert not {"scipy", "pint"} & loaded
+    assert not [name for name in loaded if name.startswith("vibroimpact.dynamics.vibrating")]
+
+
+def test_modes_that_are_stored_load_no_solvers(tmp_path: Path) -> None:
+    sphere = {"radius": 0.01, "material": "steel", "model": "elastic", "modes": 5}
+    sensor = {"name": "a1", "position": [0.1, 0.05]}
+    plate = {**PLATE, "mesh": COARSE}
+    case = plain_case(sphere=sphere, plate=plate, sensors=[sensor], drop={"speed": 1.0}, run={"impacts": 1})
+    (file := tmp_path / "case.toml").write_text(tomli_w.dumps(case), encoding="utf-8")
+    solvers = {"scipy.linalg", "scipy.sparse.linalg", "scipy.sparse.csgraph", "scipy.spatial"}
+    assert solvers <= modules_of_a_drop(str(file), tmp_path / "computed")
+    loaded = modules_of_a_drop(str(file), tmp_path / "stored")
+    assert "scipy.sparse" in loaded
+    assert not {*solvers, "skfem", "pint"} & loaded
 
 
 def test_the_words_of_a_case_are_those_of_the_structures() -> None:
@@ -352,13 +393,15 @@ def test_modes_command(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: 
     assert summary["mass_kg"] == pytest.approx(0.52 * 0.42 * 0.008 * 7850)
     assert summary["frequencies_Hz"] == [float(row["frequency_Hz"]) for row in rows[6:]]
     assert {file.name for file in out.iterdir()} == {
-        *("case.toml", "modes.csv", "points.csv", "summary.json", "figures"),
+        *("case.toml", "modes.csv", "points.csv", "summary.json", "report.html"),
         *(f"{body}.{suffix}" for body in ("sphere", "plate") for suffix in ("bdf", "inp", "vtu")),
     }
-    assert (out / "figures" / "plate_modes.png").stat().st_size > 20_000
+    page = (out / "report.html").read_text()
+    assert all(f'data-chart="{body}_modes"' in page for body in ("sphere", "plate"))
     # the case written is the case: nothing is computed again
     monkeypatch.setattr("vibroimpact.structures.recipe.computed_model", lambda *given: pytest.fail("computed again"))
-    assert command(monkeypatch, "modes", "out/case.toml", "-o", "again") == 0
+    assert command(monkeypatch, "modes", "out/case.toml", "-o", "again", "--figures") == 0
+    assert {file.name for file in (tmp_path / "again" / "figures").iterdir()} == {"sphere_modes.png", "plate_modes.png"}
     assert (tmp_path / "again" / "modes.csv").read_bytes() == (out / "modes.csv").read_bytes()
     assert tomllib.loads((out / "case.toml").read_text())["plate"]["damping"] == "adams-default"
     capsys.readouterr()

@@ -1,4 +1,4 @@
-"""What is kept and shown of a drop whose bodies vibrate: the folder, the figures, the files for ParaView."""
+"""What is kept and shown of a drop whose bodies vibrate: the folder, the charts, the files for ParaView."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import math
 import shutil
 from collections.abc import Iterator
 from dataclasses import replace
-from io import StringIO
+from io import BytesIO, StringIO
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +20,7 @@ from PIL import Image
 from rich.console import Console
 
 import vibroimpact as vi
+from pages import Page
 from vibroimpact.dynamics.columns import (
     IMPACT_COLUMNS,
     LEDGER,
@@ -33,12 +34,13 @@ from vibroimpact.results.folder import write_result
 from vibroimpact.results.result import Result, result_of
 from vibroimpact.results.surface_grid import surface_grid
 from vibroimpact.runs import paraview
-from vibroimpact.runs.animation import animate, exaggeration
+from vibroimpact.runs.animation import animate
+from vibroimpact.runs.charts import run_charts
 from vibroimpact.runs.deformation import counted_twice, deformation_rows, treatment_sentence
-from vibroimpact.runs.energy_figure import bands_of
-from vibroimpact.runs.figures import draw_figures
-from vibroimpact.runs.page import render_page
+from vibroimpact.runs.energy_chart import bands_of
+from vibroimpact.runs.page import run_page
 from vibroimpact.runs.paraview import write_paraview
+from vibroimpact.runs.scene import exaggeration, scene_of
 from vibroimpact.runs.spectrum import amplitude_spectrum
 from vibroimpact.runs.tables import impact_table
 from vibroimpact.runs.text import result_summary
@@ -77,7 +79,6 @@ def elastic_case(**changes: Any) -> vi.Case:
 def store(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("VIBROIMPACT_STORE", str(tmp_path_factory.mktemp("store")))
-        patch.setattr("vibroimpact.report.figure_files._DPI", 40)  # nobody looks at these
         patch.setattr("vibroimpact.results.deflection._FRAMES", 48)
         yield
 
@@ -105,12 +106,18 @@ def printed(result: Result, width: int = 120) -> str:
     return " ".join(written.getvalue().split())
 
 
+def names_of(result: Result) -> set[str]:
+    return {chart.name for chart in run_charts(result)}
+
+
+def test_charts_are_those_of_what_vibrates(result: Result) -> None:
+    expected = {"position", "force", "velocity", "acceleration", "force_indentation", "energy", "sphere_energy", "plate_motion"}
+    assert names_of(result) == expected | {"plate_energy", "deflection", "sensor_fast_one", "sensor_slow_one"}
+
+
 def test_folder_holds_what_it_should(folder: Path) -> None:
     names = {str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file()}
-    figures = {"position", "force", "velocity", "acceleration", "force_indentation", "energy", "sphere_energy", "plate_motion"}
-    figures |= {"plate_energy", "deflection", "sensor_fast_one", "sensor_slow_one"}
-    expected = {"case.toml", "impacts.csv", "summary.json", "result.nc", "report.html", "figures/plate.gif"}
-    expected |= {f"figures/{figure}.{kind}" for figure in figures for kind in ("png", "svg")}
+    expected = {"case.toml", "impacts.csv", "summary.json", "result.nc", "report.html"}
     expected |= {"sensors/fast_one.csv", "sensors/slow_one.csv", "paraview/plate.pvd", "paraview/sphere.pvd"}
     assert {name for name in names if not name.endswith(".vtu")} == expected
     assert len([name for name in names if name.endswith(".vtu")]) == 80
@@ -223,7 +230,6 @@ def test_a_sensor_faster_than_the_modes_is_doubted_with_numbers(result: Result, 
 @pytest.mark.slow
 def test_report_is_remade_from_the_folder_alone(folder: Path, tmp_path: Path) -> None:
     copy = Path(shutil.copytree(folder, tmp_path / "copy"))
-    shutil.rmtree(copy / "figures")
     (copy / "report.html").unlink()
     vi.remake_report(copy)
     for path in folder.rglob("*"):
@@ -263,16 +269,30 @@ def test_paraview_takes_fewer_frames_of_a_fine_mesh(response: vi.Response, tmp_p
 def test_the_animation_is_small_and_tells_its_scale(result: Result, folder: Path) -> None:
     deflection = result.deflection
     assert deflection is not None
-    with Image.open(folder / "figures" / "plate.gif") as picture:
+    animation = animate(result)
+    with Image.open(BytesIO(animation)) as picture:
         assert 40 <= getattr(picture, "n_frames", 1) <= len(deflection.time)
-    size = (folder / "figures" / "plate.gif").stat().st_size
-    assert size < 3e6
-    page = (folder / "report.html").read_text()
-    assert f"{exaggeration(deflection):g} times too large" in page
-    assert ("data:image/gif" in page) == (size <= 1_500_000)
+    assert len(animation) < 3e6
+    assert f"{exaggeration(deflection):g} times too large" in (folder / "report.html").read_text()
     still = replace(deflection, height=np.zeros_like(deflection.height))
     assert exaggeration(still) == 1.0
     assert animate(replace(result, deflection=replace(still, time=still.time[:2])))
+
+
+def test_the_page_has_the_plate_in_motion(result: Result, folder: Path) -> None:
+    deflection = result.deflection
+    assert deflection is not None
+    scene = Page((folder / "report.html").read_text()).data()["scene"]
+    assert scene.keys() == scene_of(result).keys()
+    frames, rows, columns = deflection.height.shape
+    np.testing.assert_array_equal(scene["height"].reshape(frames, rows, columns), deflection.height)
+    np.testing.assert_allclose(scene["time"], deflection.time - result.impacts["time_s"][0], rtol=1e-6)
+    np.testing.assert_allclose(scene["sphere"], deflection.sphere_position, rtol=1e-6)
+    assert scene["radius"] == pytest.approx(0.025)
+    assert scene["contact"] == [0.02, 0.01]
+    assert [one["name"] for one in scene["sensors"]] == ["fast one", "slow/one"]
+    assert len(scene["supports"]) == 4
+    assert all(outline.shape == (4, 2) for outline in scene["supports"])
 
 
 def test_bands_of_the_ledger_add_up(result: Result) -> None:
@@ -318,8 +338,8 @@ def test_a_sphere_alone_has_no_pictures_of_a_plate() -> None:
     result = result_of(vi.simulate(elastic_case(plate={"material": "rigid"}, drop={"speed": 3.0}, sensors=[], run={"impacts": 1})))
     assert result.deflection is None
     assert list(result.peaks) == ["sphere"]
-    assert not {"plate_motion", "deflection"} & set(draw_figures(result))
-    assert "sphere_energy" in draw_figures(result)
+    assert not {"plate_motion", "deflection"} & names_of(result)
+    assert "sphere_energy" in names_of(result)
 
 
 def test_a_problem_made_in_python_has_no_deflection(response: vi.Response, tmp_path: Path) -> None:
@@ -328,9 +348,8 @@ def test_a_problem_made_in_python_has_no_deflection(response: vi.Response, tmp_p
     result = vi.read_result(tmp_path)
     assert result.deflection is None
     assert treatment_sentence(result) == ""
-    figures = draw_figures(result)
-    assert "plate_motion" in figures
-    assert "deflection" not in figures
+    assert "plate_motion" in names_of(result)
+    assert "deflection" not in names_of(result)
 
 
 def test_a_run_without_impact_is_saved(response: vi.Response, tmp_path: Path) -> None:
@@ -343,9 +362,9 @@ def test_a_run_without_impact_is_saved(response: vi.Response, tmp_path: Path) ->
     result = vi.read_result(tmp_path)
     assert math.isnan(result.truncation["plate"])
     assert not (tmp_path / "paraview").exists()
-    assert set(draw_figures(result)) == {"position", "velocity", "energy"}
+    assert names_of(result) == {"position", "velocity", "energy"}
     assert "No impact" in printed(result)
-    assert render_page(result, {})
+    assert "No impact within the run." in Page(run_page(result)).text
 
 
 def test_contacts_are_shown_where_a_visit_has_several(result: Result) -> None:

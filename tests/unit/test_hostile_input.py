@@ -15,12 +15,13 @@ from attack import LONGEST, attack
 from studies import study_table
 from support import plain_case
 from vibroimpact.cases.fields.size_limits import DEEPEST, check_text
+from vibroimpact.charts.files import render_png
+from vibroimpact.charts.matplotlib import matplotlib_figure
 from vibroimpact.cli import main
 from vibroimpact.errors import MOST_LINES, ComputationError, InputError
-from vibroimpact.report.figure_files import render_png
 from vibroimpact.results.folder import check_free
 from vibroimpact.results.result import result_of
-from vibroimpact.runs.figures import draw_figures
+from vibroimpact.runs.charts import run_charts
 from vibroimpact.studies.compute_points import compute_points
 
 ESCAPE = "\x1b[31m"
@@ -192,7 +193,6 @@ def test_arguments(arguments: tuple[str, ...], monkeypatch: pytest.MonkeyPatch, 
     assert not list(tmp_path.iterdir())
 
 
-@pytest.mark.usefixtures("few_pictures")
 def test_a_case_of_a_long_name_gets_a_folder(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     monkeypatch.chdir(tmp_path)
     file = tmp_path / f"{'x' * 200}{ESCAPE}.toml"
@@ -208,7 +208,7 @@ def test_a_case_of_a_long_name_gets_a_folder(monkeypatch: pytest.MonkeyPatch, ca
 
 def test_figures_take_no_notice_of_settings_of_others(theory: vi.Response) -> None:
     def picture() -> bytes:
-        return render_png(draw_figures(result_of(theory))["position"])
+        return render_png(matplotlib_figure(run_charts(result_of(theory))[0]))
 
     plain = picture()
     with mpl.rc_context({"text.usetex": True, "font.family": "No Such Font", "figure.autolayout": True, "axes.xmargin": 0.4}):

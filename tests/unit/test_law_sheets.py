@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
+from dataclasses import fields
 from io import StringIO
 from pathlib import Path
 
+import numpy as np
 import pytest
 from PIL import Image
 from rich.console import Console
 
 import vibroimpact as vi
 from support import one_in
+from vibroimpact.charts.marks import Line, Points
+from vibroimpact.charts.notebook import plotly_figure
 from vibroimpact.cli import main
+from vibroimpact.laws.curves import law_chart
 from vibroimpact.laws.sheet import law_sheet, law_table
 from vibroimpact.laws.text import law_text, short_source
 
@@ -65,8 +70,34 @@ def test_every_law_is_drawn(name: str, tmp_path: Path, monkeypatch: pytest.Monke
     monkeypatch.chdir(tmp_path)
     assert run(monkeypatch, name, "-o", f"{name}.png") == 0
     with Image.open(f"{name}.png") as picture:
-        assert picture.size == (1200, 735)
+        assert picture.width == 1600
+        assert 800 < picture.height < 1000
         assert len(picture.getcolors(1 << 20) or ()) > 20
+
+
+@pytest.mark.parametrize("name", ["flores", "thornton", "jkr", "newton"])
+def test_a_loop_encloses_the_energy_that_is_lost(name: str) -> None:
+    """As the restitution beside it says, at the speeds of the loops; and all parameters are below the title."""
+    law = LAWS[name]
+    chart = law_chart(law)
+    *left, right = chart.panels
+    marked = [mark for mark in right.marks if isinstance(mark, Points)]
+    curve = next(mark for mark in right.marks if isinstance(mark, Line))
+    assert len(left) == (name != "newton")
+    assert len(marked) == 3 * len(left)
+    loops = {mark.role: mark for panel in left for mark in panel.marks if isinstance(mark, Line)}
+    for point in marked:
+        speed, restitution = float(point.x[0]), float(point.y[0])
+        assert restitution == pytest.approx(np.interp(np.log(speed), np.log(curve.x), curve.y), abs=0.12 if name == "jkr" else 5e-3)
+        loop = loops[point.role]
+        lost = np.trapezoid(loop.y, loop.x)
+        density = vi.find_material("steel" if name == "thornton" else "rock-paper").density
+        radius = 1e-4 if name == "jkr" else 0.025
+        energy = 0.5 * density * 4.0 / 3.0 * np.pi * radius**3 * speed**2
+        assert lost == pytest.approx(energy * (1.0 - restitution**2), abs=1e-3 * energy)
+    known = [item.name for item in fields(law) if not item.metadata["memory"]]
+    assert all(f"{one} " in chart.subtitle for one in known if one != "dissipation_time")
+    assert plotly_figure(chart).layout.title.text == name
 
 
 def test_a_sheet_alone_writes_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:

@@ -216,7 +216,6 @@ def sentence(result: Any, name: str) -> str:
     return limits()[name].sentence(conditions, float(number)) if number > limits()[name].threshold else ""
 
 
-@pytest.mark.usefixtures("few_pictures")
 def test_a_study_says_how_many_drops_which_and_the_worst(tmp_path: Path) -> None:
     over = {"sphere.radius": ["2 mm", "25 mm", "50 mm"]}
     study = vi.read_study(vi.run_sweep(vi.read_sweep(study_table({"over": over}, drop__height=4.0)), tmp_path / "study"))

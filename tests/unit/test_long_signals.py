@@ -1,4 +1,4 @@
-"""Signals of many samples: their times are not kept, and figures look at them in parts."""
+"""Signals of many samples: their times are not kept, and charts look at them in parts."""
 
 from __future__ import annotations
 
@@ -9,8 +9,7 @@ import pytest
 
 from vibroimpact.dynamics.sensors.recording import Signal
 from vibroimpact.dynamics.sensors.sensor import Sensor
-from vibroimpact.runs import figure_data
-from vibroimpact.runs.figure_data import decimated, decimated_samples
+from vibroimpact.runs.chart_data import MOST_POINTS, drawn_signal
 
 COUNT = 3_000_000
 RANDOM = np.random.default_rng(0).standard_normal(COUNT)
@@ -34,21 +33,32 @@ def test_the_largest_magnitude() -> None:
     assert Signal(Sensor("a"), np.zeros(0)).largest == 0.0
 
 
-def test_a_line_looked_at_in_parts_is_that_of_the_whole(monkeypatch: pytest.MonkeyPatch) -> None:
-    y = np.round(RANDOM[:100_000], 1)  # with many equal extremes
-    x = np.sort(np.abs(RANDOM[:100_000]))
-    whole = decimated(x, y)
-    monkeypatch.setattr(figure_data, "_AT_ONCE", 1777)
-    for ours, theirs in zip(decimated(x, y), whole, strict=True):
-        np.testing.assert_array_equal(ours, theirs)
-    assert len(whole[0]) <= 4 * 1500
-
-
-def test_what_a_figure_takes_does_not_grow_with_the_signal() -> None:
+def test_what_a_chart_takes_does_not_grow_with_the_signal() -> None:
     """Columns, differences and orders of all samples at once took eight times the signal."""
     tracemalloc.start()
     before = tracemalloc.get_traced_memory()[0]
-    decimated_samples(SIGNAL)
+    drawn_signal(SIGNAL, 0, 1000)
     peak = tracemalloc.get_traced_memory()[1] - before
     tracemalloc.stop()
     assert peak < 4.0 * RANDOM.nbytes
+
+
+def test_a_long_signal_is_drawn_whole_and_its_first_response_in_full() -> None:
+    time, value = drawn_signal(SIGNAL, 2_000_000, 2_000_500)
+    assert len(time) < 10_000
+    assert (value.max(), value.min()) == (RANDOM.max(), RANDOM.min())
+    inside = (time >= 2_000_000 / 50e3) & (time < 2_000_500 / 50e3)
+    np.testing.assert_array_equal(value[inside], RANDOM[2_000_000:2_000_500])
+    np.testing.assert_array_equal(time[inside], SIGNAL.time[2_000_000:2_000_500])
+
+
+def test_a_first_response_without_end_is_cut() -> None:
+    time, _ = drawn_signal(SIGNAL, 0, COUNT)
+    assert MOST_POINTS <= len(time) < 1.2 * MOST_POINTS
+
+
+def test_a_signal_that_is_not_long_is_drawn_with_all_samples() -> None:
+    short = Signal(Sensor("a", rate=50e3), RANDOM[: 2 * MOST_POINTS])
+    time, value = drawn_signal(short, 0, 10)
+    assert value is short.value
+    np.testing.assert_array_equal(time, short.time)

@@ -8,7 +8,7 @@ from scipy.sparse import csr_array
 
 from vibroimpact.errors import ComputationError, InputError
 from vibroimpact.materials import Material
-from vibroimpact.structures import factor, modes
+from vibroimpact.structures import free_memory, modes
 from vibroimpact.structures.factor import Factors, factor_entries, nested_dissection
 from vibroimpact.structures.lattice import box_mesh
 from vibroimpact.structures.mesh import ElementBlock, Mesh
@@ -121,7 +121,7 @@ def test_as_many_modes_as_a_small_mesh_has() -> None:
 
 
 def test_too_little_memory(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(factor, "free_memory", lambda: 1e6)
+    monkeypatch.setattr(free_memory, "free_memory", lambda: 1e6)
     structure = plate_structure(plate_mesh((0.5, 0.4), 0.05), STEEL, 0.01)
     with pytest.raises(
         InputError,

@@ -11,12 +11,15 @@ from matplotlib.text import Text
 
 import vibroimpact as vi
 from support import plain_case
+from vibroimpact.charts.chart import Chart
+from vibroimpact.charts.files import render_png, render_svg
+from vibroimpact.charts.matplotlib import matplotlib_figure
+from vibroimpact.charts.print_style import lettering
 from vibroimpact.files.plain_names import plain_names
-from vibroimpact.report.figure_files import render_png, render_svg
-from vibroimpact.report.style import lettering, style
 from vibroimpact.results.result import Result, result_of
-from vibroimpact.runs.deflection_figure import draw_deflection
-from vibroimpact.runs.sensor_figures import draw_sensor
+from vibroimpact.runs.charts import run_charts
+from vibroimpact.runs.sensor_charts import drawn_sensors
+from vibroimpact.runs.setup import setup_chart
 
 NAMES = [
     r"a$\frac{$b",
@@ -46,10 +49,11 @@ def response() -> vi.Response:
 @pytest.fixture(scope="module")
 def folder(response: vi.Response, tmp_path_factory: pytest.TempPathFactory) -> Path:
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("vibroimpact.report.figure_files._DPI", 40)
+        patch.setattr("vibroimpact.charts.files._DPI", 40)
         patch.setattr("vibroimpact.results.deflection._FRAMES", 24)
         place = tmp_path_factory.mktemp("results") / "named"
         response.save(place)
+        vi.save_figures(place, ["png", "svg"])
         return place
 
 
@@ -73,15 +77,25 @@ def test_the_folder_holds_a_picture_and_a_table_of_each(folder: Path) -> None:
 
 
 def test_figures_show_every_name_in_one_line(result: Result) -> None:
-    with style():
-        figures = [draw_sensor(result, name) for name in result.signals] + [draw_deflection(result)]
-    for figure, name in zip(figures, [*result.signals, ""], strict=True):
-        title = next((text.get_text() for text in figure.findobj(Text) if "whole run" in text.get_text()), "")
-        assert lettering(name) in title
-        render_png(figure)
-        render_svg(figure)
-        extent = [text.get_window_extent() for text in figure.findobj(Text) if "whole run" in text.get_text()]
-        assert all(box.x1 <= figure.bbox.x1 and box.height < 40 for box in extent)
+    charts = {chart.name: chart for chart in (setup_chart(result), *run_charts(result))}
+    names = drawn_sensors(result)
+    assert len(names) == len(IN_A_CASE)
+    for chart, name in [*((charts[one], name) for one, name in names.items()), (charts["deflection"], ""), (charts["setup"], "")]:
+        check_figure(chart, name)
+
+
+def check_figure(chart: Chart, name: str) -> None:
+    """Look at the titles of a figure: one line each, inside the figure."""
+    figure = matplotlib_figure(chart)
+    render_png(figure)
+    render_svg(figure)
+    titles = [text for text in figure.findobj(Text) if text.get_text().startswith("Sensor ")]
+    assert bool(titles) == bool(name)
+    for title in titles:
+        assert lettering(name) in title.get_text()
+        box = title.get_window_extent()
+        assert box.x1 <= figure.bbox.x1
+        assert box.height < 40
 
 
 @pytest.mark.parametrize("name", NAMES)

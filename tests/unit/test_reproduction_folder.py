@@ -7,23 +7,35 @@ import json
 import re
 import shlex
 import shutil
+import zlib
 from base64 import b64decode
 from collections.abc import Callable
+from html import unescape
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 import vibroimpact as vi
+from vibroimpact.charts.pack import unpack
 from vibroimpact.cli import main
+from vibroimpact.files.check_sums import read_sealed, sealed
 from vibroimpact.paper.printed import printed
 from vibroimpact.paper.report import folder as module
 from vibroimpact.paper.report.docs_page import write_docs_page
-from vibroimpact.paper.report.folder import is_reproduction, missing_parts, read_parts, reproduce_paper
+from vibroimpact.paper.report.folder import (
+    is_reproduction,
+    missing_parts,
+    read_charts,
+    read_parts,
+    reproduce_paper,
+    write_reproduction_report,
+)
 from vibroimpact.paper.report.outline import PARTS, ReportPart, find_parts, render_part
 from vibroimpact.paper.report.page import report_html, report_text, verdict_counts
 from vibroimpact.paper.report_section import ComparedValue, ReportSection, Verdict
 from vibroimpact.paper.runs import Runs
+from vibroimpact.report.page import plotly_script
 
 QUICK = ["table1", "section3.1", "fig4"]
 COLUMNS = "part,name,what,place,read,unit,relation,printed,by,computed,difference,allowed,verdict,why"
@@ -71,7 +83,7 @@ def command(monkeypatch: pytest.MonkeyPatch, *words: str | Path) -> int:
 
 
 def test_holds_what_it_should(made: Path) -> None:
-    figures = {"figures/fig4.png", "figures/fig4.svg"}
+    figures = {"figures/fig4.png", "parts/fig4.chart"}
     assert names(made) == {"summary.json", "report.md", "report.html", "values.csv", *(f"parts/{name}.json" for name in QUICK), *figures}
     assert [path.name for path in made.parent.iterdir()] == ["paper"]
     assert is_reproduction(made)
@@ -109,24 +121,61 @@ def test_the_report_holds_its_parts_and_names_the_others(made: Path) -> None:
     assert "| All | 16 | 0 | 0 | 1 |" in text
 
 
+def data_of(page: str) -> dict[str, Any]:
+    """The charts that lie in a page."""
+    found = re.search(r'id="data">([^<]*)<', page)
+    assert found
+    return dict(unpack(zlib.decompress(b64decode(found[1]))))
+
+
 def test_the_page_needs_nothing_else(made: Path) -> None:
     page = (made / "report.html").read_text(encoding="utf-8")
-    pictures = re.findall(r'<img src="([^"]*)"', page)
-    assert len(pictures) == 1
-    kind, _, data = pictures[0].partition(",")
-    assert kind == "data:image/svg+xml;base64"
-    assert b64decode(data) == (made / "figures" / "fig4.svg").read_bytes()
+    policy = re.search(r'http-equiv="Content-Security-Policy" content="([^"]*)"', page)
+    assert policy
+    assert unescape(policy[1]).startswith("default-src 'none'; script-src 'sha256-")
+    assert "<img" not in page
     links = re.findall(r'href="#([^"]*)"', page)
     assert links == re.findall(r'<h2 id="([^"]*)"', page) == ["the-inputs", "type-1-repeated-impacts-of-rigid-bodies"]
-    assert not re.search(r"""(?:src|href)=["'](?!data:|#)|url\(|https?://|<script|<link|@import""", page)
+    assert not re.search(r"""(?:src|href)=["'](?!data:|#)|url\(|https?://|<link|@import""", page.partition("<script")[0])
     assert page.count('<td class="reproduced">reproduced</td>') == 16
     assert re.search(r'<td class="not_reproduced">not reproduced: with it the first rebound would be [^<]*</td>', page)
+    assert len(page) < len(plotly_script())
 
 
-def test_verdicts_have_classes_and_words_have_none(tmp_path: Path) -> None:
+def test_the_page_has_the_chart_in_the_place_of_its_image(made: Path) -> None:
+    page = (made / "report.html").read_text(encoding="utf-8")
+    (chart,) = data_of(page)["charts"]
+    kept = unpack((made / "parts" / "fig4.chart").read_bytes())
+    assert (chart["name"], chart["title"], chart["caption"]) == (kept["name"], kept["title"], kept["caption"])
+    for drawn, there in zip(chart["data"], kept["data"], strict=True):
+        assert drawn["y"].tolist() == there["y"].tolist()
+        assert drawn["origins"] == there["origins"]
+    assert re.findall(r'<div class="chart" data-chart="([^"]*)"', page) == ["fig4"]
+    # its title and caption are there once, besides what is read to those who do not see it
+    title, caption = chart["title"].replace("'", "&#39;"), chart["caption"]
+    assert page.count(f"<h3>{title}</h3>") == page.count(f"<figcaption>{caption}</figcaption>") == 1
+    assert chart["title"] not in page
+    assert page.count(f"<p>{caption}</p>") == 0
+    assert re.findall(r"<option value=\"(-?\d)\">([^<]*)<", page)[:2] == [("-1", "whole run"), ("0", "Impact 1")]
+
+
+def test_a_page_keeps_its_text_around_charts() -> None:
+    image = '![Title: a "b"](figures/fig4.png)\n\nThe caption.\n'
+    text = f'# Top\n\n## Chapter\n\n### Title: a "b"\n\n{image}\nBetween.\n\n### Other\n\n{image}\nAfter.\n'
+    words = {"name": "fig4", "title": 'Title: a "b"', "subtitle": "", "caption": "The caption."}
+    chart = {**words, "data": [], "layout": {"height": 1}, "views": [], "rows": [[["", 1]]]}
+    page = report_html(text, [chart])
+    body = page[page.index("<h1>") : page.index("</main>")]
+    # a heading that is the title of the chart is not repeated, another one stays
+    assert re.findall(r"<h3>([^<]*)</h3>", body) == ["Title: a &#34;b&#34;", "Other", "Title: a &#34;b&#34;"]
+    assert re.findall(r"<p>([^<]*)</p>", body) == ["Between.", "After."]
+    assert body.count("<figcaption>The caption.</figcaption>") == 2
+
+
+def test_verdicts_have_classes_and_words_have_none() -> None:
     cells = ["reproduced", "explained: by |samples|", "fitted", "not reproduced", "not reproduced: x < 1", "explained here", "not fitted"]
     text = "| Verdict |\n| --- |\n" + "".join(f"| {cell.replace('|', chr(92) + '|')} |\n" for cell in cells)
-    page = report_html(text, tmp_path)
+    page = report_html(text, [])
     assert all(f".{verdict.name.lower()} {{ color" in page for verdict in Verdict)
     classes = re.findall(r"<td(?: class=\"(\w+)\")?>", page)
     assert classes == ["reproduced", "explained", "fitted", "not_reproduced", "not_reproduced", "", ""]
@@ -151,17 +200,18 @@ def test_counts_tell_each_verdict_apart() -> None:
 def test_a_part_is_text_values_and_figure(made: Path) -> None:
     runs = Runs()
     table1, fig3 = PARTS["table1"], PARTS["fig3"]
-    both = render_part(ReportPart("both", table1.section, fig3.draw), runs)
+    both = render_part(ReportPart("fig3", table1.section, fig3.chart), runs)
     assert both.title == "Table 1: the inputs"
     assert re.findall(r"^#.*", both.text, flags=re.M) == ["### Table 1: the inputs"]
-    assert "](figures/both.png)" in both.text
-    assert both.drawing is not None
-    assert {row["part"] for row in both.rows} == {"both"}
+    assert "](figures/fig3.png)" in both.text
+    assert both.chart is not None
+    assert both.chart.name == "fig3"
+    assert {row["part"] for row in both.rows} == {"fig3"}
     drawn = render_part(fig3, runs)
     assert drawn.text.startswith(f"### {drawn.title}\n")
     assert drawn.title.startswith("Figure 3: ")
     assert drawn.rows == []
-    assert render_part(table1, runs).drawing is None
+    assert render_part(table1, runs).chart is None
 
 
 def test_a_bound_has_neither_difference_nor_allowance() -> None:
@@ -180,7 +230,7 @@ def test_parts_are_added_and_the_others_stay(copy: Path) -> None:
     before = contents(copy)
     assert reproduce_paper(copy, ["fig3", "table1"]) == copy
     after = contents(copy)
-    new = {"parts/fig3.json", "figures/fig3.png", "figures/fig3.svg"}
+    new = {"parts/fig3.json", "parts/fig3.chart", "figures/fig3.png"}
     assert after.keys() - before.keys() == new
     assert {name for name in before if before[name] != after[name]} == {"report.md", "report.html"}
     text = (copy / "report.md").read_text(encoding="utf-8")
@@ -262,7 +312,7 @@ def test_unknown_parts_are_told_before_anything_is_made(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("error", [vi.ComputationError("the ledger is open"), KeyboardInterrupt(), ValueError("a bug")])
 def test_earlier_parts_stay_when_a_part_fails(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, error: BaseException) -> None:
-    monkeypatch.setitem(PARTS, "fig3", ReportPart("fig3", draw=raises(error)))
+    monkeypatch.setitem(PARTS, "fig3", ReportPart("fig3", chart=raises(error)))
     with pytest.raises(type(error)):
         reproduce_paper(tmp_path / "paper", ["table1", "section3.1", "fig3", "corrections"])
     kept = {"summary.json", "report.md", "report.html", "values.csv", "parts/table1.json", "parts/section3.1.json"}
@@ -277,12 +327,12 @@ def test_earlier_parts_stay_when_a_part_fails(tmp_path: Path, monkeypatch: pytes
 
 
 @pytest.mark.parametrize("error", [OSError(28, "No space left on device"), KeyboardInterrupt()])
-@pytest.mark.parametrize("step", ["folder.save_figures", "folder.json.dumps"])
+@pytest.mark.parametrize("step", ["charts.files.save_charts", "paper.report.folder.pack", "paper.report.folder.json.dumps"])
 def test_a_part_is_there_with_its_figure_or_not_at_all(
     copy: Path, monkeypatch: pytest.MonkeyPatch, step: str, error: BaseException
 ) -> None:
     before = contents(copy)
-    monkeypatch.setattr(f"vibroimpact.paper.report.{step}", raises(error))
+    monkeypatch.setattr(f"vibroimpact.{step}", raises(error))
     with pytest.raises((vi.InputError, KeyboardInterrupt)) as failed:
         reproduce_paper(copy, ["fig3"])
     if isinstance(error, OSError):
@@ -293,7 +343,7 @@ def test_a_part_is_there_with_its_figure_or_not_at_all(
 
 def test_what_stopped_the_run_is_told_and_not_what_else_is_damaged(copy: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (copy / "parts" / "table1.json").write_text("")
-    monkeypatch.setitem(PARTS, "fig3", ReportPart("fig3", draw=raises(vi.ComputationError("the ledger is open"))))
+    monkeypatch.setitem(PARTS, "fig3", ReportPart("fig3", chart=raises(vi.ComputationError("the ledger is open"))))
     with pytest.raises(vi.ComputationError, match="the ledger is open"):
         reproduce_paper(copy, ["fig3"])
 
@@ -311,13 +361,49 @@ def test_a_damaged_part_is_told_and_mended_by_the_command_it_names(copy: Path, m
     assert list(read_parts(copy)) == ["table1", "section3.1", "fig4"]
 
 
-def test_a_missing_figure_is_told_and_mended_by_the_command_it_names(copy: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    (copy / "figures" / "fig4.svg").unlink()
-    with pytest.raises(vi.InputError, match="the figure is missing; make it anew: vibroimpact reproduce") as told:
-        vi.remake_report(copy)
-    assert str(told.value).startswith(f"{copy / 'figures' / 'fig4.svg'}: ")
+def without_chart(folder: Path) -> None:
+    (folder / "parts" / "fig4.chart").unlink()
+
+
+def with_another_chart(folder: Path) -> None:
+    chart = folder / "parts" / "fig4.chart"
+    chart.write_bytes(chart.read_bytes()[:-8] + b"\x00" * 8)
+
+
+def with_half_a_chart(folder: Path) -> None:
+    chart = folder / "parts" / "fig4.chart"
+    chart.write_bytes(chart.read_bytes()[:1000])
+
+
+def as_of_an_earlier_version(folder: Path) -> None:
+    """The charts were files alone."""
+    part = folder / "parts" / "fig4.json"
+    part.write_text(sealed({key: value for key, value in read_sealed(part).items() if key != "check_sums"}), encoding="utf-8")
+
+
+@pytest.mark.parametrize("damage", [without_chart, with_another_chart, with_half_a_chart, as_of_an_earlier_version])
+def test_a_missing_chart_is_told_and_mended_by_the_command_it_names(
+    copy: Path, monkeypatch: pytest.MonkeyPatch, damage: Callable[[Path], None]
+) -> None:
+    assert "fig4" not in missing_parts(copy)
+    damage(copy)
+    with pytest.raises(vi.InputError, match="the chart is missing or damaged; make it anew: vibroimpact reproduce") as told:
+        write_reproduction_report(copy)
+    assert str(told.value).startswith(f"{copy / 'parts' / 'fig4.chart'}: ")
+    assert "fig4" in missing_parts(copy)
     assert command(monkeypatch, *shlex.split(str(told.value).partition("anew: vibroimpact ")[2])) == 0
-    assert (copy / "figures" / "fig4.svg").is_file()
+    assert "fig4" not in missing_parts(copy)
+    assert [chart["name"] for chart in read_charts(copy, read_parts(copy))] == ["fig4"]
+
+
+def test_all_missing_charts_are_told_at_once(copy: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    reproduce_paper(copy, ["fig3", "fig6"])
+    without_chart(copy)
+    (copy / "parts" / "fig6.chart").write_text("")
+    with pytest.raises(vi.InputError, match=r"damaged, and those of fig6; make them anew: .* --only fig4,fig6$") as told:
+        write_reproduction_report(copy)
+    assert command(monkeypatch, *shlex.split(str(told.value).partition("anew: vibroimpact ")[2])) == 0
+    assert (copy / "report.html").read_text(encoding="utf-8").count("<figcaption>") == 3
 
 
 # the commands ---------------------------------------------------------------------------------------------------------
@@ -345,7 +431,7 @@ def test_bad_names_end_with_status_2(
 
 
 def test_an_interrupt_tells_how_to_go_on(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
-    monkeypatch.setitem(PARTS, "fig3", ReportPart("fig3", draw=raises(KeyboardInterrupt())))
+    monkeypatch.setitem(PARTS, "fig3", ReportPart("fig3", chart=raises(KeyboardInterrupt())))
     assert command(monkeypatch, "reproduce", "--only", "table1,fig3", "-o", tmp_path / "paper") == 130
     assert f"go on with: vibroimpact reproduce -o {tmp_path / 'paper'} --only fig3\n" in capsys.readouterr().err
 

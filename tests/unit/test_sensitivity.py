@@ -19,7 +19,7 @@ from vibroimpact.cases.doubts import doubts
 from vibroimpact.contact.laws.hertz import Hertz
 from vibroimpact.results.result import Result, result_of
 from vibroimpact.results.summary import summary_of
-from vibroimpact.runs.history_figures import ACCELERATION, FORCE, POSITION, VELOCITY
+from vibroimpact.runs.history_charts import ACCELERATION, FORCE, POSITION, VELOCITY
 from vibroimpact.runs.tables import impact_table
 from vibroimpact.runs.text import result_summary
 

@@ -193,7 +193,6 @@ def test_swept_values_are_said_once_with_how_many(tmp_path: Path) -> None:
     assert [one.partition(":")[0] for one in found[:2]] == ["contact.stiffness", "sphere.radius"]
 
 
-@pytest.mark.usefixtures("few_pictures")
 def test_a_slip_at_the_first_point_is_not_said_twice(tmp_path: Path) -> None:
     file = tmp_path / "study.toml"
     file.write_text(

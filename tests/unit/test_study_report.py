@@ -1,9 +1,10 @@
-"""The report of a study: its files, words and figures for every design, and for studies of which little is left."""
+"""The report of a study: its files, words and charts for every design, and for studies of which little is left."""
 
 from __future__ import annotations
 
 import csv
 import os
+import re
 import shutil
 from collections.abc import Mapping
 from pathlib import Path
@@ -12,7 +13,6 @@ from typing import Any
 import numpy as np
 import pytest
 from markupsafe import escape
-from matplotlib.figure import Figure
 from rich.console import Console
 
 from support import plain_case
@@ -23,11 +23,11 @@ from vibroimpact.studies import compute_study as computing
 from vibroimpact.studies.chunk_file import ChunkResult
 from vibroimpact.studies.drop_variables import OUTCOME
 from vibroimpact.studies.report.axes import study_axes
-from vibroimpact.studies.report.curves import draw_curves
 from vibroimpact.studies.report.outputs import drawn_outputs, output_names, sampled_output, study_outputs
+from vibroimpact.studies.report.scales import key_axis, places
 from vibroimpact.studies.report.sensitivity import sensitivity_of, strongest
+from vibroimpact.studies.report.tables import percentiles_table, sensitivity_table, without_effect
 from vibroimpact.studies.report.text import study_summary
-from vibroimpact.studies.report.ticks import Ticks
 from vibroimpact.studies.run_sweep import run_sweep
 from vibroimpact.studies.study import Study, read_study
 from vibroimpact.studies.sweep import read_sweep
@@ -38,6 +38,15 @@ GRID = {
     "over": {"sphere.radius": {**RADII, "number": 3}, "contact.restitution": [0.6, 0.7, 0.8, 0.9]},
     "keep": ["impacts"],
 }
+RESULTS = [
+    "largest_force_N",
+    "largest_indentation_m",
+    "first_restitution_achieved",
+    "first_duration_s",
+    "total_energy_lost_J",
+    "first_rebound_height_m",
+]
+PLATE = {"material": "steel-paper", "size": ["300 mm", "200 mm", "8 mm"]}
 DRAWN = {"over": {"sphere.radius": RADII, "contact.restitution": {"distribution": "uniform", "from": 0.5, "to": 0.9}}}
 
 
@@ -46,17 +55,10 @@ def study_of(folder: Path, sweep: Mapping[str, Any], **sections: Any) -> Study:
     return read_study(run_sweep(read_sweep(table), folder / "study"))
 
 
-def draw_two_results(patch: pytest.MonkeyPatch) -> None:
-    """Have two results of the bodies drawn in place of six."""
-    patch.setattr("vibroimpact.studies.report.outputs._BODIES", 2)
-
-
 @pytest.fixture(scope="module")
 def grid(tmp_path_factory: pytest.TempPathFactory) -> Study:
     """A grid of two axes with its whole report; a test that writes takes a copy."""
-    with pytest.MonkeyPatch.context() as patch:
-        draw_two_results(patch)
-        return study_of(tmp_path_factory.mktemp("grid"), GRID)
+    return study_of(tmp_path_factory.mktemp("grid"), GRID)
 
 
 @pytest.fixture
@@ -64,33 +66,14 @@ def copy_of_grid(grid: Study, tmp_path: Path) -> Path:
     return Path(shutil.copytree(grid.path.parent, tmp_path / "copy"))
 
 
-@pytest.fixture
-def two_drawn(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Draw the figures whole, of no more than two results; but make no pictures, which takes longest: `grid` has them."""
-
-    def draw(figures: Mapping[str, Figure], directory: Path) -> dict[str, bytes]:
-        for name, figure in figures.items():
-            figure.draw_without_rendering()
-            (directory / f"{name}.svg").write_bytes(b"<svg/>")
-        return dict.fromkeys(figures, b"<svg/>")
-
-    draw_two_results(monkeypatch)
-    monkeypatch.setattr("vibroimpact.studies.report.page.save_figures", draw)
-
-
-@pytest.fixture
-def words_alone(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Write reports without figures."""
-    monkeypatch.setattr("vibroimpact.studies.report.page.study_figures", lambda *_: {})
-
-
 def rows_of(path: Path) -> list[dict[str, str]]:
     with path.open(encoding="utf-8", newline="") as file:
         return list(csv.DictReader(file))
 
 
-def figures_of(study: Study) -> set[str]:
-    return {file.stem for file in (study.path.parent / "figures").glob("*.svg")}
+def charts_of(study: Study) -> set[str]:
+    """Return the names of the charts that the page has."""
+    return set(re.findall(r'<div class="chart" data-chart="([^"]*)"', page_of(study)))
 
 
 def page_of(study: Study) -> str:
@@ -118,7 +101,7 @@ def test_axes_are_in_the_order_of_the_points(grid: Study) -> None:
 
 
 def test_grid_of_two_axes(grid: Study) -> None:
-    assert figures_of(grid) == {"maps", "restitution", "sensitivity"}
+    assert charts_of(grid) == {"curves", "restitution", "sensitivity"}
     folder = grid.path.parent
     force = grid.values("largest_force_N")
     row = next(row for row in rows_of(folder / "percentiles.csv") if row["output"] == "largest_force_N")
@@ -132,52 +115,38 @@ def test_grid_of_two_axes(grid: Study) -> None:
     assert "nothing of how likely" in page
     assert "contact.restitution" in page
     assert str(escape((folder / "study.toml").read_text(encoding="utf-8"))).rstrip() in page
-    assert "http://" not in page.replace("http://www.w3.org", "")
+    assert re.findall(r'(?:src|href)="(?!#)[^"]*"', page) == []
 
 
-@pytest.mark.usefixtures("two_drawn")
 @pytest.mark.parametrize(
-    ("over", "figures"),
+    ("over", "charts"),
     [
         ({"contact.restitution": [0.6, 0.7, 0.8]}, {"curves", "restitution"}),
         ({"sphere.radius": ["10 mm"], "contact.law": ["hunt-crossley", "flores"]}, {"curves", "restitution"}),
         ({"sphere.radius": ["10 mm"]}, {"restitution"}),
         (
             {"sphere.radius": ["10 mm", "20 mm"], "contact.restitution": [0.6, 0.7], "drop.height": ["1 m", "3 m"]},
-            {"maps", "restitution", "sensitivity", "largest_force_N", "largest_indentation_m"},
+            {"curves", "restitution", "sensitivity", *RESULTS},
         ),
     ],
 )
-def test_figures_suit_the_number_of_axes(tmp_path: Path, over: dict[str, Any], figures: set[str]) -> None:
-    assert figures_of(study_of(tmp_path, {"over": over})) == figures
-
-
-@pytest.mark.usefixtures("words_alone")
-def test_many_levels_are_drawn_without_marks(tmp_path: Path) -> None:
-    study = study_of(tmp_path, {"over": {"sphere.radius": {**RADII, "number": 41}}})
-    (axis,) = study_axes(study)
-    (panel,) = draw_curves(study, axis, drawn_outputs(study_outputs(study))[:1]).axes
-    assert [line.get_marker() for line in panel.lines] == ["", "", ""]
-    assert panel.lines[0].get_linestyle() == "-"
+def test_charts_suit_the_number_of_axes(tmp_path: Path, over: dict[str, Any], charts: set[str]) -> None:
+    assert charts_of(study_of(tmp_path, {"over": over})) == charts
 
 
 def test_six_results_of_the_bodies_are_drawn(grid: Study) -> None:
-    drawn = [one.name for one in drawn_outputs(study_outputs(grid))]
-    assert drawn[:3] == ["largest_force_N", "largest_indentation_m", "first_restitution_achieved"]
-    assert drawn[3:] == ["first_duration_s", "total_energy_lost_J", "first_rebound_height_m"]
+    assert [one.name for one in drawn_outputs(study_outputs(grid))] == RESULTS
 
 
-@pytest.mark.usefixtures("two_drawn")
 def test_samples_tell_how_they_spread_and_what_moves_them(tmp_path: Path) -> None:
     study = study_of(tmp_path, {**DRAWN, "design": "latin-hypercube", "samples": 64})
-    assert {"inputs", "outputs", "largest_force_N", "sensitivity", "restitution"} <= figures_of(study)
+    assert {"inputs", "outputs", "largest_force_N", "sensitivity", "restitution"} <= charts_of(study)
     ranks = {(row["output"], row["key"]): float(row["rank_correlation"]) for row in rows_of(study.path.parent / "sensitivity.csv")}
     assert ranks["first_restitution_achieved", "contact.restitution"] > 0.99
     assert ranks["largest_force_N", "sphere.radius"] > 0.95
     assert "sphere.radius (rank correlation" in told(study)
 
 
-@pytest.mark.usefixtures("two_drawn")
 def test_saltelli_counts_its_independent_blocks_alone(tmp_path: Path) -> None:
     study = study_of(tmp_path, {**DRAWN, "design": "saltelli", "samples": 64})
     assert study.size == 256
@@ -189,7 +158,6 @@ def test_saltelli_counts_its_independent_blocks_alone(tmp_path: Path) -> None:
     assert total["first_restitution_achieved", "sphere.radius"] == pytest.approx(0.0, abs=1e-3)
 
 
-@pytest.mark.usefixtures("two_drawn")
 def test_keys_of_a_zip_are_not_told_apart(tmp_path: Path) -> None:
     over = {"sphere.radius": ["10 mm", "20 mm", "30 mm"], "drop.height": ["1 m", "2 m", "3 m"]}
     study = study_of(tmp_path, {"over": over, "design": "zip"})
@@ -197,7 +165,6 @@ def test_keys_of_a_zip_are_not_told_apart(tmp_path: Path) -> None:
     assert not (study.path.parent / "sensitivity.csv").exists()
 
 
-@pytest.mark.usefixtures("two_drawn")
 def test_names_have_no_ranks_and_the_page_says_so(tmp_path: Path) -> None:
     over = {"contact.law": ["hunt-crossley", "flores"], "sphere.radius": RADII}
     study = study_of(tmp_path, {"over": over, "design": "latin-hypercube", "samples": 30})
@@ -205,7 +172,6 @@ def test_names_have_no_ranks_and_the_page_says_so(tmp_path: Path) -> None:
     assert {row["key"] for row in rows_of(study.path.parent / "sensitivity.csv")} == {"sphere.radius"}
 
 
-@pytest.mark.usefixtures("two_drawn")
 def test_failures_are_told_with_their_points_and_left_out_of_the_numbers(tmp_path: Path) -> None:
     study = study_of(tmp_path, {"over": {"drop.height": ["1 m", "30 mm"], "sphere.radius": ["10 mm", "20 mm", "40 mm"]}})
     assert len(study.failures) == 1
@@ -217,7 +183,6 @@ def test_failures_are_told_with_their_points_and_left_out_of_the_numbers(tmp_pat
     assert "1: drop.height: 0.03 m is not above the surface" in told(study, 200)
 
 
-@pytest.mark.usefixtures("two_drawn")
 def test_a_study_of_which_every_drop_failed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def failing(table: Any, keep: Any, first: int, points: Mapping[str, Any]) -> ChunkResult:
         count = len(next(iter(points.values())))
@@ -227,24 +192,22 @@ def test_a_study_of_which_every_drop_failed(tmp_path: Path, monkeypatch: pytest.
     monkeypatch.setattr(computing, "compute_points", failing)
     study = study_of(tmp_path, GRID)
     assert "12 drops; all of them failed." in page_of(study)
-    assert not figures_of(study)
+    assert not charts_of(study)
     assert rows_of(study.path.parent / "percentiles.csv") == []
     assert "12: no luck" in told(study)
 
 
-@pytest.mark.usefixtures("two_drawn")
 def test_laws_without_restitution_and_without_force(tmp_path: Path) -> None:
     over = {"sphere.radius": ["10 mm", "20 mm", "30 mm"]}
     hertz = study_of(tmp_path, {"over": over}, contact={"law": "hertz"})
-    assert figures_of(hertz) == {"curves"}
+    assert charts_of(hertz) == {"curves"}
     assert "No restitution is asked of the law" in page_of(hertz)
     over = {"contact.restitution": [0.3, 0.5], "drop.height": ["1 m", "2 m"]}
     newton = study_of(tmp_path / "newton", {"over": over}, contact={"law": "newton", "restitution": 0.5})
-    assert figures_of(newton) == {"maps", "restitution", "sensitivity"}
+    assert charts_of(newton) == {"curves", "restitution", "sensitivity"}
     assert "No drop has: largest force" in page_of(newton)
 
 
-@pytest.mark.usefixtures("two_drawn")
 def test_signals_of_sensors_whatever_they_are_called(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     name = "left.a[1] $x$"
 
@@ -263,7 +226,7 @@ def test_signals_of_sensors_whatever_they_are_called(tmp_path: Path, monkeypatch
         sensors=[{"name": name, "position": [0.1, 0.05]}],
         run={"duration": 0.01},
     )
-    assert figures_of(study) == {"curves", "signal_left_a_1_x"}
+    assert charts_of(study) == {"curves", "signal_left_a_1_x"}
     assert f"Sensor {name}" in page_of(study)
     assert "3 levels, 1.000 to 3.000\u00a0m" in page_of(study)
     assert study.times(name) == pytest.approx(np.arange(501) / 50e3, rel=1e-15)
@@ -274,16 +237,14 @@ def test_signals_of_sensors_whatever_they_are_called(tmp_path: Path, monkeypatch
     assert float(row["relative_range"]) == pytest.approx(1.0)  # from 1 m to 3 m, of what 2 m gives
 
 
-@pytest.mark.usefixtures("two_drawn")
 def test_levels_that_are_whole_numbers_or_one_alone(tmp_path: Path) -> None:
     study = study_of(tmp_path, {"over": {"run.impacts": [3, 1, 2], "sphere.radius": ["10 mm"]}})
     axes = study_axes(study)
     assert axes[0].numeric
     assert axes[0].values.tolist() == [3.0, 1.0, 2.0]
-    assert "curves" in figures_of(study)
+    assert "curves" in charts_of(study)
 
 
-@pytest.mark.usefixtures("two_drawn")
 def test_names_with_signs_that_mean_something_elsewhere(tmp_path: Path) -> None:
     study = study_of(tmp_path, {"over": {"sphere.radius": ["10 mm", "20 mm"]}}, name="a [b]$x^$ <i>study</i>.{{ 1 }}")
     assert study.name == "a [b]$x^$ <i>study</i>.{{ 1 }}"
@@ -291,14 +252,13 @@ def test_names_with_signs_that_mean_something_elsewhere(tmp_path: Path) -> None:
     assert "A [b]$x^$ &lt;i&gt;study&lt;/i&gt;.{{ 1 }}" in page_of(study)
 
 
-def test_the_report_is_remade_as_it_was_and_old_figures_go(copy_of_grid: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    draw_two_results(monkeypatch)
-
+def test_the_report_is_remade_as_it_was_and_figures_are_left(copy_of_grid: Path) -> None:
     def files() -> dict[Path, bytes]:
-        return {file: file.read_bytes() for file in copy_of_grid.rglob("*.*") if file.suffix in (".png", ".svg", ".csv", ".html", ".json")}
+        return {file: file.read_bytes() for file in copy_of_grid.rglob("*.*") if file.suffix in (".png", ".csv", ".html", ".json")}
 
+    (copy_of_grid / "figures").mkdir()
+    (copy_of_grid / "figures" / "maps.png").write_bytes(b"drawn before")
     before = files()
-    (copy_of_grid / "figures" / "of_yesterday.png").write_bytes(b"")
     assert remake_report(copy_of_grid) == copy_of_grid
     assert files() == before
     assert not list(copy_of_grid.glob(".report*"))
@@ -311,13 +271,12 @@ def test_a_report_that_cannot_be_written_leaves_the_old_one(copy_of_grid: Path, 
     def full(*_: Any, **__: Any) -> None:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr("vibroimpact.studies.report.page.save_figures", full)
+    monkeypatch.setattr("vibroimpact.studies.report.page.render_page", full)
     with pytest.raises(InputError, match="No space left"):
         remake_report(copy_of_grid)
     assert (copy_of_grid / "report.html").read_bytes() == before
 
 
-@pytest.mark.usefixtures("words_alone")
 def test_what_is_thinned_stands_for_all(tmp_path: Path, grid: Study) -> None:
     assert len(sampled_output(grid, "largest_force_N", 7)) <= 7
     assert set(sampled_output(grid, "largest_force_N", 7)) <= set(grid.values("largest_force_N").ravel())
@@ -326,9 +285,28 @@ def test_what_is_thinned_stands_for_all(tmp_path: Path, grid: Study) -> None:
     assert output_names(drawn)[0] == "largest_force_N"
 
 
-@pytest.mark.usefixtures("words_alone")
 def test_names_on_an_axis_lie_side_by_side(tmp_path: Path) -> None:
     axes = study_axes(study_of(tmp_path, {"over": {"contact.law": ["hunt-crossley", "flores"], "sphere.radius": ["10 mm", "20 mm"]}}))
-    assert Ticks(axes[0]).places(axes[0].values).tolist() == [0.0, 1.0]
-    assert Ticks(axes[1]).label == "sphere.radius [mm]"
-    assert Ticks(axes[1]).places(axes[1].values) == pytest.approx([10.0, 20.0])
+    assert places(axes[0], axes[0].values).tolist() == [0.0, 1.0]
+    assert key_axis(axes[0]).names == ("hunt-crossley", "flores")
+    assert (key_axis(axes[1]).label, key_axis(axes[1]).unit) == ("Radius of the sphere", "m")
+    assert places(axes[1], axes[1].values).tolist() == [0.01, 0.02]
+
+
+def test_tables_have_no_rows_of_zeros_and_no_columns_of_dashes(tmp_path: Path) -> None:
+    study = study_of(tmp_path, {"over": {"plate.size.thickness": ["5 mm", "8 mm"], "sphere.radius": ["10 mm"]}}, plate=PLATE)
+    headers, rows = percentiles_table(study_outputs(study))
+    assert "Standard deviation" not in headers  # no result differs: the plate is rigid
+    assert all(any(set(cell) - set("0.\u2013") for cell in row[3:]) for row in rows)
+    assert "Zero in all drops" not in page_of(study)
+
+
+def test_keys_without_effect_are_named_and_not_a_row(tmp_path: Path) -> None:
+    over = {"plate.size.thickness": ["5 mm", "8 mm"], "sphere.radius": ["10 mm", "20 mm"]}
+    study = study_of(tmp_path, {"over": over}, plate=PLATE)
+    found = sensitivity_of(study, study_outputs(study))
+    assert found is not None
+    outputs = drawn_outputs(study_outputs(study))
+    assert [row[0] for row in sensitivity_table(found, outputs)[1]] == ["sphere.radius"]
+    assert without_effect(found, outputs) == ["plate.size.thickness"]
+    assert "Without effect on these results: plate.size.thickness." in page_of(study)

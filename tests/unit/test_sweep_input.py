@@ -174,7 +174,6 @@ def test_the_command_says_it_in_one_line_and_leaves_nothing(
     assert not (tmp_path / "out").exists()
 
 
-@pytest.mark.usefixtures("few_pictures")
 def test_the_command_runs_a_study_and_says_what_came_of_it(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

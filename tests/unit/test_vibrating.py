@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -51,6 +53,19 @@ def test_the_ledger_closes_with_damping(law: LankaraniNikravesh | AdamsImpact, l
     assert unbalanced(response) < 1e-7
     for name in ("plate_damping_J", "sphere_damping_J", "contact_dissipated_J"):
         assert np.diff(response.history()[name]).min() > -1e-8 * response.energy["input_J"]
+
+
+def test_a_history_of_many_times_is_that_of_each_time() -> None:
+    """The times of a long flight are evaluated in blocks; the modes are of all kinds: light, critical and heavy damping."""
+    plate = random_modes(3, 30, 100.0, 2e4, 1.2, 0.02)
+    plate = replace(plate, damping_ratios=np.where(np.arange(30) < 10, 0.02, np.where(np.arange(30) < 20, 1.0, 1.7)))
+    response = vi.simulate(drop_on(LOSSY, plate, height=0.3, impacts=2))
+    touch, duration = response.impacts["time_s"][0], response.impacts["duration_s"][0]
+    times = np.linspace(touch, touch + 50.0 * duration, 1000)
+    together = response.at(times)
+    for index in (0, 3, 127, 128, 129, 255, 256, 700, 999):
+        for name, value in response.at(times[index]).items():
+            assert value == pytest.approx(together[name][index], rel=1e-12, abs=1e-14 * np.abs(together[name]).max()), name
 
 
 @pytest.mark.parametrize("seed", range(3))

@@ -1,8 +1,9 @@
-"""Write the folder of a calibration: data, the calibrated case, figures and the report page."""
+"""Write the folder of a calibration: data, the calibrated case and the report page, and figures where they are asked for."""
 
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from os import PathLike
 from pathlib import Path
 
@@ -11,7 +12,7 @@ import tomli_w
 from vibroimpact._version import __version__
 from vibroimpact.calibration.calibrate_case import calibrated_case
 from vibroimpact.calibration.calibration import Calibration
-from vibroimpact.calibration.figures import draw_calibration
+from vibroimpact.calibration.charts import calibration_charts
 from vibroimpact.calibration.file_contents import CALIBRATION, calibration_table, columns_of, comparison_rows, matched_rows
 from vibroimpact.calibration.tables import (
     differences_tables,
@@ -24,27 +25,20 @@ from vibroimpact.calibration.tables import (
 )
 from vibroimpact.cases.build import resolved_case
 from vibroimpact.cases.case import Case
+from vibroimpact.charts.figures_folder import write_figures
 from vibroimpact.files.check_sums import CHECK_SUMS, file_digest, sealed
-from vibroimpact.report.figure_files import save_figures
-from vibroimpact.report.page import picture, template
+from vibroimpact.report.page import render_page
 from vibroimpact.results.csv_files import write_csv
 from vibroimpact.results.folder import SUMMARY, new_folder
 
-_TITLES = {
-    "parameter": ("The value over the approach speed", "Each impact by itself, and the polynomial through them."),
-    "record": (
-        "Measured and simulated",
-        "The record, and what is simulated with the values found: each impact at the speed with which it came.",
-    ),
-    "differences": ("What is still wrong", "Each impact of the drop beside what was wanted, with the value given in three ways."),
-}
 
-
-def save_calibration(case: Case, found: Calibration, directory: str | PathLike[str], *, force: bool = False) -> Path:
+def save_calibration(
+    case: Case, found: Calibration, directory: str | PathLike[str], *, force: bool = False, figures: Sequence[str] = ()
+) -> Path:
     """Write a calibration folder, atomically.
 
-    It contains `calibration.json`, `case.toml` (the case with the calibrated values, ready to run), `matched.csv`, `comparison.csv`,
-    the figures and `report.html`.
+    It contains `calibration.json`, `case.toml` (the case with the calibrated values, ready to run), `matched.csv`, `comparison.csv`
+    and `report.html`.
 
     Parameters
     ----------
@@ -56,6 +50,8 @@ def save_calibration(case: Case, found: Calibration, directory: str | PathLike[s
         The folder to create.
     force : bool, default False
         Replace an existing folder.
+    figures : sequence of str
+        Formats in which the charts are also written as files, into a folder `figures`: of "png", "svg" and "pdf".
 
     Returns
     -------
@@ -75,10 +71,12 @@ def save_calibration(case: Case, found: Calibration, directory: str | PathLike[s
         (folder / SUMMARY).write_text(json.dumps(summary, indent=2) + "\n", encoding="utf-8")
         for name, rows in (("matched", matched_rows(found)), ("comparison", comparison_rows(found))):
             write_csv(rows, columns_of(rows), folder / f"{name}.csv")
-        (folder / "figures").mkdir()
-        pictures = save_figures(draw_calibration(found), folder / "figures")
+        charts = calibration_charts(found)
+        write_figures(charts, folder, figures)
         name = case.name or "a drop"
-        page = template(__package__).render(
+        page = render_page(
+            __package__,
+            charts,
             name=name[:1].upper() + name[1:],
             law=case.contact.law,
             function=function_words(found),
@@ -89,7 +87,6 @@ def save_calibration(case: Case, found: Calibration, directory: str | PathLike[s
             differences=differences_tables(found),
             ways=ways_words(found),
             doubts=found.doubts,
-            pictures=[picture(name, *_TITLES[name], svg) for name, svg in pictures.items()],
             case=tomli_w.dumps(resolved_case(case)),
             version=__version__,
         )

@@ -15,8 +15,8 @@ from vibroimpact.calibration.observations import Observations
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.simulate import simulate
 
-_MOST = 5  # contacts that are shown
-_POINTS = 201
+_MOST = 20  # contacts that are shown
+_POINTS = 801
 
 
 @dataclass(frozen=True)
@@ -31,12 +31,18 @@ class Overlay:
         The contact force [N], or the height of the sphere's centre above the plate [m].
     measured, simulated : tuple of two arrays
         Times [s], relative to the simulated first touch for a force and those of the record for a position, and values.
+    touch : float
+        Time of the simulated first touch in the record of a force [s].
+    flights : tuple of (float, float)
+        Begin and end of each simulated flight in the record of a position [s].
     """
 
     label: str
     quantity: Literal["force", "position"]
     measured: tuple[Floats, Floats]
     simulated: tuple[Floats, Floats]
+    touch: float = 0.0
+    flights: tuple[tuple[float, float], ...] = ()
 
 
 def overlays(tunable: Tunable, seen: Observations, values: Floats, outcomes: Mapping[str, Floats]) -> tuple[Overlay, ...]:
@@ -63,7 +69,7 @@ def overlays(tunable: Tunable, seen: Observations, values: Floats, outcomes: Map
     for number, (time, force) in enumerate(seen.record.pieces[:_MOST]):
         at, simulated = _contact(drop, number, float(seen.speeds[number]))
         shift = _middle(time, force) - _middle(at, simulated)  # the centroid of a pulse is better determined than its ends
-        found.append(Overlay(seen.labels[number], "force", (time - shift, force), (at, simulated)))
+        found.append(Overlay(seen.labels[number], "force", (time - shift, force), (at, simulated), shift))
     return tuple(found)
 
 
@@ -87,10 +93,11 @@ def _position(drop: Problem, seen: Observations, outcomes: Mapping[str, Floats])
     radius, gravity = float(drop.sphere.contact_offset), float(drop.gravity)
     flying = seen.flights or VacuumFlights(gravity)
     time, position = seen.record.pieces[0]
-    simulated, begin = np.full_like(time, np.nan), seen.record.begin
+    simulated, begin, flights = np.full_like(time, np.nan), seen.record.begin, []
     for rebound, lasting in zip(outcomes["rebound_height"], np.append(outcomes["duration"][1:], 0.0), strict=True):
         flown = flying.flight(np.asarray(np.sqrt(2.0 * gravity * max(float(rebound) - radius, 0.0))))
         inside = (time >= begin) & (time <= begin + flown.duration)
         simulated[inside] = radius + flown.height - flying.depth_at(time[inside] - begin - flown.rise_time)[0]
-        begin += float(flown.duration) + float(lasting)
-    return Overlay("", "position", (time, position), (time, simulated))
+        flights.append((begin, begin + float(flown.duration)))
+        begin = flights[-1][1] + float(lasting)
+    return Overlay("", "position", (time, position), (time, simulated), flights=tuple(flights))

@@ -5,10 +5,11 @@ from __future__ import annotations
 from typing import Annotated, Any, Literal
 
 import numpy as np
-from pydantic import BeforeValidator, Field, StrictBool, WithJsonSchema, model_validator
+from pydantic import BeforeValidator, Field, StrictBool, model_validator
 
 from vibroimpact.calibration.matchable import MATCHABLE, check_weights
 from vibroimpact.cases.fields.contact import ContactSection, law_schema, read_contact
+from vibroimpact.cases.fields.json_schema import JsonSchema
 from vibroimpact.cases.fields.quantities import Quantity
 from vibroimpact.cases.fields.section import Section, read_table
 from vibroimpact.cases.fields.size_limits import Name, at_most
@@ -149,30 +150,27 @@ class SpeedsTable(Section):
         return (np.linspace if self.scale == "linear" else np.geomspace)(self.start, self.end, self.number)
 
 
-_TARGET_SCHEMA = {
-    "description": "what impacts are to be like",
-    "anyOf": [
-        {"type": "string", "description": "a CSV or universal file"},
-        law_schema(),
-        *(kind.model_json_schema() for kind in dict.fromkeys(_KEYS.values())),
-    ],
-}
-_MATCH_SCHEMA = {
-    "description": "what of an impact is matched: one, or a table of several with weights",
-    "anyOf": [
-        {"enum": list(MATCHABLE)},
-        {"type": "object", "properties": {name: {"type": "number"} for name in MATCHABLE}, "additionalProperties": False},
-    ],
-}
+_LAW = "a contact law and its parameters"
+
+
+def _target_schema() -> dict[str, Any]:
+    file = {"type": "string", "description": "a CSV or universal file"}
+    tables = [kind.model_json_schema() for kind in dict.fromkeys(_KEYS.values())]
+    return {"anyOf": [file, {"description": _LAW, **law_schema()}, *tables]}
+
+
+def _match_schema() -> dict[str, Any]:
+    weights = {"type": "object", "properties": {name: {"type": "number"} for name in MATCHABLE}, "additionalProperties": False}
+    return {"anyOf": [{"enum": list(MATCHABLE)}, weights]}
 
 
 class CalibrateSection(Section):
     """What `vibroimpact calibrate` does with the case; a run takes no notice of it."""
 
-    target: Annotated[Any, BeforeValidator(_read_target), WithJsonSchema(_TARGET_SCHEMA)] = Field(
+    target: Annotated[Any, BeforeValidator(_read_target), JsonSchema("what impacts are to be like", _target_schema)] = Field(
         None, description="what impacts are to be like; by default what they are under the law of the case, and the model is Adams' IMPACT"
     )
-    model: Annotated[Any, BeforeValidator(_read_model), WithJsonSchema(law_schema())] = Field(
+    model: Annotated[Any, BeforeValidator(_read_model), JsonSchema(_LAW, law_schema)] = Field(
         None, description="the contact law that is tuned; by default that of the case"
     )
     parameter: Name | None = Field(
@@ -183,7 +181,7 @@ class CalibrateSection(Section):
         description="whether the sphere was measured in air, whose drag its flights then have; without this key they are those of a "
         "vacuum, and a doubt says where drag matters",
     )
-    match: Annotated[Any, BeforeValidator(_read_match), WithJsonSchema(_MATCH_SCHEMA)] = Field(
+    match: Annotated[Any, BeforeValidator(_read_match), JsonSchema("what of an impact is matched", _match_schema)] = Field(
         None, description="what of an impact is matched: one, or a table of several with weights; by default the rebound, if it is there"
     )
     degree: Annotated[int, Field(ge=0, le=12, strict=True)] | None = Field(

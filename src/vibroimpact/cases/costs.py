@@ -6,16 +6,13 @@ import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, NamedTuple
 
-from vibroimpact.cases.elastic.bodies import elastic_bodies
-from vibroimpact.cases.rigid import contact_laws_of, contact_pair, deforms, impact_limit, touch_speed
+from vibroimpact.cases.rigid import contact_laws_of, contact_pair, deforms, elastic_names, impact_limit, touch_speed
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.static import static_indentation
 from vibroimpact.dynamics.history_grid import MOST_POINTS
 from vibroimpact.dynamics.problem import MOST_IMPACTS
 from vibroimpact.dynamics.restitution import achieved_restitution
-from vibroimpact.structures.factor import check_memory
-from vibroimpact.structures.recipe import ImportedMesh, model_key
-from vibroimpact.structures.store import has_model
+from vibroimpact.structures.free_memory import check_memory
 
 if TYPE_CHECKING:
     from vibroimpact.cases.case import Case
@@ -121,7 +118,13 @@ def _signal_costs(case: Case) -> Iterator[Cost]:
 
 
 def _mode_costs(case: Case) -> Iterator[Cost]:
-    for name, body in elastic_bodies(case).items() if deforms(case) else ():
+    if not elastic_names(case):
+        return
+    from vibroimpact.cases.elastic.bodies import elastic_bodies  # imports scipy.sparse
+    from vibroimpact.structures.recipe import ImportedMesh, model_key
+    from vibroimpact.structures.store import has_model
+
+    for name, body in elastic_bodies(case).items():
         recipe = body.recipe
         if has_model(model_key(recipe)):
             continue

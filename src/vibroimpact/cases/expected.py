@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from vibroimpact.cases.conditions import DropSummary
 from vibroimpact.cases.rigid import contact_laws_of, contact_pair, touch_speed
-from vibroimpact.contact.law import CompliantLaw
+from vibroimpact.contact.law import CompliantLaw, ContactLaw
 from vibroimpact.contact.power_law import HERTZ_TIME
 from vibroimpact.dynamics.encounter import encounter_of
+from vibroimpact.dynamics.restitution import achieved_restitution, law_achieving
+from vibroimpact.errors import InputError
 
 if TYPE_CHECKING:
     from vibroimpact.cases.case import Case
@@ -30,6 +32,45 @@ def expected_of(case: Case) -> DropSummary:
     depth = float(encounter.depth[0])
     force = float(np.asarray(law.forces(encounter.depth, 0.0 * one, encounter.approach_speed)[0])[0])
     return DropSummary(force, depth, HERTZ_TIME * depth / speed, speed, _deflection(case, speed))
+
+
+class ExpectedRestitution(NamedTuple):
+    """The restitution of the first touch, of rigid bodies without gravity.
+
+    Attributes
+    ----------
+    asked, achieved : float
+        What is asked of the law, NaN where it takes no restitution, and what it achieves.
+    to_ask : float
+        The parameter with which it would achieve what is asked; NaN where it does so already, or none does.
+    refusal : str
+        Why none does.
+    """
+
+    asked: float
+    achieved: float
+    to_ask: float = math.nan
+    refusal: str = ""
+
+
+def expected_restitution(law: ContactLaw, mass: float, speed: float) -> ExpectedRestitution:
+    """Return the restitution that a law achieves at the first touch, and the parameter that achieves the one asked.
+
+    Parameters
+    ----------
+    law : ContactLaw
+        The law.
+    mass, speed : float
+        Effective mass [kg] and approach speed [m/s].
+    """
+    achieved = float(achieved_restitution(law, mass, speed))
+    asked = float(getattr(law, "restitution", math.nan)) if law.free_parameter == "restitution" else math.nan
+    if not abs(achieved - asked) >= 5e-4:
+        return ExpectedRestitution(asked, achieved)
+    try:
+        return ExpectedRestitution(asked, achieved, float(getattr(law_achieving(law, asked, mass, speed), "restitution", asked)))
+    except InputError as error:
+        return ExpectedRestitution(asked, achieved, refusal=error.message)
 
 
 def _deflection(case: Case, speed: float) -> float:

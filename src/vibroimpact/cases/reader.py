@@ -103,15 +103,7 @@ def load_table(source: str | PathLike[str], changes: Mapping[str, Any] | None = 
     InputError
         If it can't be read or is not TOML; the message does not name the source.
     """
-    text = case_text(source)
-    try:
-        table = tomllib.loads(text)
-    except ValueError as error:  # a TOML syntax error, or an integer of too many digits
-        raise InputError(f"this is not valid TOML: {error}{_toml_hint(text, str(error))}") from None
-    except RecursionError:
-        raise InputError("this is not a case: its tables are nested too deeply") from None
-    check_bounds(table)
-    table = _resolve_paths(table, Path(source).parent)
+    table = _resolve_paths(parse_case(case_text(source)), Path(source).parent)
     if not changes:
         return table
     table = with_values(table, changes, "set")
@@ -127,9 +119,31 @@ def case_text(source: str | PathLike[str]) -> str:
     InputError
         If it can't be read, or is too large for a case; the message does not name the source.
     """
-    text = _shipped(str(source)) if str(source).startswith("paper:") else read_text(Path(source), _CASE)
+    return _shipped(str(source)) if str(source).startswith("paper:") else read_text(Path(source), _CASE)
+
+
+def parse_case(text: str) -> dict[str, Any]:
+    """Return the parsed, not yet validated table of the text of a case.
+
+    Raises
+    ------
+    InputError
+        If it is not TOML, or too large for a case.
+
+    Examples
+    --------
+    >>> parse_case('sphere = { radius = "25 mm" }')
+    {'sphere': {'radius': '25 mm'}}
+    """
     check_text(text)
-    return text
+    try:
+        table = tomllib.loads(text)
+    except ValueError as error:  # a TOML syntax error, or an integer of too many digits
+        raise InputError(f"this is not valid TOML: {error}{_toml_hint(text, str(error))}") from None
+    except RecursionError:
+        raise InputError("this is not a case: its tables are nested too deeply") from None
+    check_bounds(table)
+    return table
 
 
 def _toml_hint(text: str, fault: str) -> str:

@@ -11,9 +11,9 @@ from os import PathLike
 from typing import Any, Literal, get_args, get_origin
 
 import tomli_w
-from pydantic import WithJsonSchema
 from pydantic.fields import FieldInfo
 
+from vibroimpact.cases.fields.json_schema import JsonSchema
 from vibroimpact.cases.fields.local import LocalSection
 from vibroimpact.cases.fields.section import Section
 from vibroimpact.cases.keys import quantity_of
@@ -105,8 +105,7 @@ def _meaning(info: FieldInfo) -> str:
         return info.description
     if (quantity := quantity_of(info)) is not None:
         return _with_unit(quantity.meaning, quantity.unit)
-    schemas = (one.json_schema for one in info.metadata if isinstance(one, WithJsonSchema) and one.json_schema)
-    return str(next(schemas, {}).get("description", ""))
+    return next((one.description for one in info.metadata if isinstance(one, JsonSchema)), "")
 
 
 def _with_unit(meaning: str, unit: str) -> str:

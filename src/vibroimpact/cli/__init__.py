@@ -18,6 +18,8 @@ from vibroimpact.cli import studies as studies  # isort: skip
 from vibroimpact.cli import export as export  # isort: skip
 from vibroimpact.cli import reproduction as reproduction  # isort: skip
 from vibroimpact.cli import reference as reference  # isort: skip
+from vibroimpact.cli import serve as serve  # isort: skip
+from vibroimpact.cli.completion import PROGRAM, concerns_completion, whole_words
 from vibroimpact.cli.shared import app, fail, never_fail_to_print
 from vibroimpact.errors import LONGEST_LINE, ComputationError, InputError
 from vibroimpact.shown import shortened, visible
@@ -60,7 +62,8 @@ def _isolate_matplotlib() -> None:
 def _run() -> int:
     """Run the command and return its exit status; typer's own errors are shown without control characters, and shortened."""
     try:
-        return app(standalone_mode=False) or 0
+        with whole_words():
+            return app(standalone_mode=False, prog_name=PROGRAM if concerns_completion() else None) or 0
     except typer.Abort:
         fail("aborted", 1)
     except Exception as error:

@@ -7,7 +7,19 @@ from typing import Annotated
 
 import typer
 
-from vibroimpact.cli.shared import CaseArgument, Force, app, console, exit_on_interrupt, note, say, stem
+from vibroimpact.cli.shared import (
+    CaseArgument,
+    Figures,
+    Force,
+    Json,
+    app,
+    console,
+    exit_on_interrupt,
+    note,
+    say,
+    show,
+    stem,
+)
 
 
 @app.command()
@@ -16,7 +28,9 @@ def calibrate(
     output: Annotated[
         Path | None, typer.Option("-o", "--output", metavar="DIR", help="The folder to make; by default CASE-calibrated.")
     ] = None,
+    figures: Figures = False,
     force: Force = False,
+    as_json: Json = False,
 ) -> None:
     """Find the damping with which a sphere bounces as it is wanted to, or was measured to.
 
@@ -24,6 +38,7 @@ def calibrate(
     damping of Adams' IMPACT is found with which the sphere bounces as under the law of the case.
     """
     from vibroimpact.calibration.calibrate_case import calibrate_case, load_calibration
+    from vibroimpact.calibration.file_contents import calibration_document
     from vibroimpact.calibration.folder import save_calibration
     from vibroimpact.calibration.text import calibration_summary
     from vibroimpact.cases.reader import prefix_errors
@@ -33,10 +48,14 @@ def calibrate(
     what = load_calibration(case)
     target = Path(f"{stem(case)}-calibrated") if output is None else output
     check_free(target, force=force)
-    screen = console()
+    screen = console(err=as_json)
     with exit_on_interrupt():
         with patient_progress("calibrating", screen) as progress:
             found = prefix_errors(case, lambda: calibrate_case(what, progress, note))
-        folder = save_calibration(what.case, found, target, force=force)
-    screen.print(calibration_summary(what.case, found))
-    say(f"wrote {folder / 'report.html'}")
+        folder = save_calibration(what.case, found, target, force=force, figures=("png",) if figures else ())
+    show(
+        lambda: {"folder": str(folder), **calibration_document(what.case, found)},
+        lambda: calibration_summary(what.case, found),
+        as_json=as_json,
+    )
+    say(f"wrote {folder / 'report.html'}", err=as_json)

@@ -1,4 +1,4 @@
-"""Terminal output of `cases`: the shipped cases."""
+"""What `cases` prints: the shipped cases."""
 
 from __future__ import annotations
 
@@ -13,14 +13,20 @@ from vibroimpact.report.terminal_table import TerminalColumn, TerminalTable
 
 def shipped_cases_table() -> RenderableType:
     """Return the table of the shipped cases: name, title, and the command that they are for."""
-    cases = {name: load_table(name) for name in shipped_cases()}
+    cases = shipped_cases_document()["cases"]
     columns = (
         TerminalColumn("case", list(cases), text=True),
         TerminalColumn("what it is", [case["name"] for case in cases.values()], text=True),
-        TerminalColumn("command", [_command(case) for case in cases.values()], text=True),
+        TerminalColumn("command", [case["command"] for case in cases.values()], text=True),
     )
     notes = 'Start a case of your own from one of them: "vibroimpact new NAME --from paper:type3".'
     return Group(TerminalTable(columns), Text(), Text(notes))
+
+
+def shipped_cases_document() -> dict[str, Any]:
+    """Return the shipped cases by name, each with its title and the command that it is for."""
+    tables = {name: load_table(name) for name in shipped_cases()}
+    return {"cases": {name: {"name": case["name"], "command": _command(case)} for name, case in tables.items()}}
 
 
 def _command(case: dict[str, Any]) -> str:

@@ -7,17 +7,36 @@ from typing import Annotated
 
 import typer
 
-from vibroimpact.cli.shared import CaseArgument, Force, app, console, exit_on_interrupt, names_in, say, settings_of, stem
+from vibroimpact.cli.completion import complete_laws, complete_parameter
+from vibroimpact.cli.shared import (
+    CaseArgument,
+    Figures,
+    Force,
+    Json,
+    app,
+    console,
+    exit_on_interrupt,
+    names_in,
+    say,
+    settings_of,
+    show,
+    stem,
+)
 
 
 @app.command()
 def compare(
     case: CaseArgument,
-    laws: Annotated[str, typer.Option("--laws", metavar="A,B,C", help="The contact laws, separated by commas.")],
+    laws: Annotated[
+        str, typer.Option("--laws", metavar="A,B,C", autocompletion=complete_laws, help="The contact laws, separated by commas.")
+    ],
     given: Annotated[
         list[str] | None,
         typer.Option(
-            "--set", metavar="KEY=VALUE", help="A parameter for every law that has it, or LAW.KEY=VALUE for one; may be repeated."
+            "--set",
+            metavar="KEY=VALUE",
+            autocompletion=complete_parameter,
+            help="A parameter for every law that has it, or LAW.KEY=VALUE for one; may be repeated.",
         ),
     ] = None,
     achieving: Annotated[
@@ -27,7 +46,9 @@ def compare(
     output: Annotated[
         Path | None, typer.Option("-o", "--output", metavar="DIR", help="The folder to make; by default CASE-compared.")
     ] = None,
+    figures: Figures = False,
     force: Force = False,
+    as_json: Json = False,
 ) -> None:
     """Run one case under several contact laws.
 
@@ -35,6 +56,7 @@ def compare(
     """
     from vibroimpact.cases.reader import load_case
     from vibroimpact.comparison.comparison import compare_laws
+    from vibroimpact.comparison.document import comparison_document
     from vibroimpact.comparison.folder import save_comparison
     from vibroimpact.comparison.text import comparison_summary
     from vibroimpact.report.progress import patient_progress
@@ -43,7 +65,7 @@ def compare(
     found = load_case(case)
     target = Path(f"{stem(case)}-compared") if output is None else output
     check_free(target, force=force)
-    screen = console()
+    screen = console(err=as_json)
     with exit_on_interrupt():
         with patient_progress("comparing", screen) as progress:
             comparison = compare_laws(
@@ -53,6 +75,10 @@ def compare(
                 achieving=achieving,
                 progress=progress,
             )
-        folder = save_comparison(comparison, target, force=force)
-    screen.print(comparison_summary(comparison))
-    say(f"wrote {folder / 'report.html'}")
+        folder = save_comparison(comparison, target, force=force, figures=("png",) if figures else ())
+    show(
+        lambda: {"folder": str(folder), **comparison_document(comparison)},
+        lambda: comparison_summary(comparison),
+        as_json=as_json,
+    )
+    say(f"wrote {folder / 'report.html'}", err=as_json)

@@ -4,49 +4,91 @@ from __future__ import annotations
 
 import os
 import platform
+from collections.abc import Mapping
+from functools import cache
 from importlib.metadata import PackageNotFoundError, requires, version
+from typing import Any
 
 from vibroimpact._version import __version__
-from vibroimpact.structures.factor import free_memory
+from vibroimpact.structures.free_memory import free_memory
 from vibroimpact.structures.store import entries, store_folder, store_size
 
 _FIRST_REBOUND = 6.8386265  # m/s: PAPER, section 4, theory, integrated independently at 1e-12
 
 
-def diagnose() -> list[tuple[str, str]]:
-    """Return the state of the installation as rows (name, version or how to install it).
+def diagnose() -> dict[str, Any]:
+    """Return the state of the installation as data; the version of a package that is not installed is None.
 
     Examples
     --------
-    >>> diagnose()[0][0]
+    >>> sorted(diagnose())
+    ['packages', 'platform', 'python', 'resources', 'store', 'version']
+    """
+    folder = store_folder()
+    usable = not os.path.lexists(folder) or (folder.is_dir() and os.access(folder, os.W_OK))
+    return {
+        "version": __version__,
+        "python": platform.python_version(),
+        "platform": platform.platform(),
+        "resources": {"processors": os.cpu_count(), "free_memory_byte": free_memory()},
+        "store": {
+            "folder": str(folder),
+            "usable": usable,
+            "entries": len(entries()) if usable else 0,
+            "size_byte": store_size() if usable else 0,
+        },
+        "packages": {name: _installed(name) for name in _requirements()},
+    }
+
+
+def diagnosis_rows(found: Mapping[str, Any]) -> list[tuple[str, str]]:
+    """Return a diagnosis as rows (name, version or how to install it).
+
+    Examples
+    --------
+    >>> diagnosis_rows(diagnose())[0][0]
     'vibroimpact'
     """
-    rows = [
-        ("vibroimpact", __version__),
-        ("python", platform.python_version()),
-        ("platform", platform.platform()),
-        ("processors", str(os.cpu_count())),
-        ("memory free", f"{free_memory() / 1e9:.3g} GB"),
-        ("store of modes", _store()),
+    extras, memory = _requirements(), found["resources"]["free_memory_byte"]
+    return [
+        ("vibroimpact", found["version"]),
+        ("python", found["python"]),
+        ("platform", found["platform"]),
+        ("processors", str(found["resources"]["processors"])),
+        ("memory free", f"{memory / 1e9:.3g} GB"),
+        ("store of modes", _store_words(found["store"])),
+        *((name, version or _missing(extras[name])) for name, version in found["packages"].items()),
     ]
+
+
+def _requirements() -> dict[str, str]:
+    """Return the packages that this one requires, each with the extra that it belongs to, or ""."""
+    found = {}
     for requirement in requires("vibroimpact") or []:
         name, _, marker = requirement.partition(";")
         name = name.split("[")[0].split(">")[0].split("=")[0].split("<")[0].split("~")[0].strip()
-        extra = marker.partition("extra ==")[2].strip(" '\"")
-        try:
-            rows.append((name, version(name)))
-        except PackageNotFoundError:
-            rows.append((name, f'not installed; pip install "vibroimpact[{extra}]"' if extra else "missing"))
-    return rows
+        found[name] = marker.partition("extra ==")[2].strip(" '\"")
+    return found
 
 
-def _store() -> str:
-    folder = store_folder()
-    if os.path.lexists(folder) and not (folder.is_dir() and os.access(folder, os.W_OK)):
-        return f"{folder} is not a folder that can be written to: modes are not kept"
-    return f"{len(entries())} entries, {store_size() / 1e6:.3g} MB, in {folder}"
+def _installed(name: str) -> str | None:
+    try:
+        return version(name)
+    except PackageNotFoundError:
+        return None
 
 
+def _missing(extra: str) -> str:
+    return f'not installed; pip install "vibroimpact[{extra}]"' if extra else "missing"
+
+
+def _store_words(store: Mapping[str, Any]) -> str:
+    if not store["usable"]:
+        return f"{store['folder']} is not a folder that can be written to: modes are not kept"
+    return f"{store['entries']} entries, {store['size_byte'] / 1e6:.3g} MB, in {store['folder']}"
+
+
+@cache
 def first_rebound_error() -> float:
     """Return the relative error of the first rebound speed of the paper's theory."""
     from vibroimpact.cases.reader import load_case

@@ -1,25 +1,46 @@
-"""The commands for one case: `demo`, `run`, `check`, `modes` and `report`."""
+"""The commands for one case: `demo`, `run`, `check`, `modes`, `report` and `figures`."""
 
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from vibroimpact.cli.shared import CaseArgument, Changes, Force, app, console, exit_on_interrupt, note, say, settings_of, stem
+from vibroimpact.cli.shared import (
+    CaseArgument,
+    Changes,
+    Figures,
+    Force,
+    Json,
+    app,
+    console,
+    exit_on_interrupt,
+    names_in,
+    note,
+    say,
+    settings_of,
+    show,
+    stem,
+)
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+    from vibroimpact.results.result import Result
 
 
 @app.command()
 def demo(
     output: Annotated[Path, typer.Option("-o", "--output", metavar="DIR", help="The result folder to make.")] = Path("vibroimpact-demo"),
     force: Force = False,
+    as_json: Json = False,
 ) -> None:
     """Run the paper's Type 1 as a first example.
 
     A rock sphere falls 4 m on a steel plate and bounces five times.
     """
-    _run("paper:type1-variable", output, {}, force=force)
+    _run("paper:type1-variable", output, {}, None, figures=False, force=force, as_json=as_json)
 
 
 @app.command()
@@ -29,23 +50,30 @@ def run(
         Path | None, typer.Option("-o", "--output", metavar="DIR", help="The result folder to make; by default named after the case.")
     ] = None,
     changes: Changes = None,
+    figures: Annotated[bool, typer.Option("--figures", help="Write the charts of the report as files too, as PNG.")] = False,
+    drop: Annotated[
+        int | None,
+        typer.Option("--drop", metavar="N", min=0, help="Of a case with a [sweep] section the drop of this number, as in drops.csv."),
+    ] = None,
     force: Force = False,
+    as_json: Json = False,
 ) -> None:
     """Run a case and write its result folder.
 
-    The folder holds the case in full, the impact table, the data as NetCDF, figures, and a report.
+    The folder holds the case in full, the impact table, the data as NetCDF, and a report whose charts can be explored.
     """
-    _run(case, output, settings_of(changes), force=force)
+    _run(case, output, settings_of(changes), drop, figures=figures, force=force, as_json=as_json)
 
 
 @app.command()
-def check(case: CaseArgument, changes: Changes = None) -> None:
+def check(case: CaseArgument, changes: Changes = None, as_json: Json = False) -> None:
     """Validate a case or a study and explain it; run nothing."""
     from vibroimpact.calibration.section import check_target
     from vibroimpact.cases.build import check_drop
     from vibroimpact.cases.reader import load_case, load_table, prefix_errors
+    from vibroimpact.runs.case_document import case_document
     from vibroimpact.runs.case_explained import case_explained
-    from vibroimpact.studies.explain_sweep import explain_sweep
+    from vibroimpact.studies.explain_sweep import explain_sweep, sweep_document
     from vibroimpact.studies.sweep import read_sweep
 
     others = settings_of(changes)
@@ -54,29 +82,39 @@ def check(case: CaseArgument, changes: Changes = None) -> None:
         found = load_case(case, others)
         prefix_errors(case, lambda: check_drop(found))
         prefix_errors(case, lambda: check_target(found.calibrate))
-        console().print(prefix_errors(case, lambda: case_explained(found)))
+        show(
+            lambda: prefix_errors(case, lambda: case_document(found)),
+            lambda: prefix_errors(case, lambda: case_explained(found)),
+            as_json=as_json,
+        )
         return
     study = prefix_errors(case, lambda: read_sweep(table))
-    console().print(explain_sweep(study))
-    console().print(prefix_errors(case, lambda: case_explained(study.case, study.axes)))
+    show(
+        lambda: {"study": sweep_document(study), **prefix_errors(case, lambda: case_document(study.case, study.axes))},
+        lambda: explain_sweep(study),
+        lambda: prefix_errors(case, lambda: case_explained(study.case, study.axes)),
+        as_json=as_json,
+    )
 
 
-def _run(name: str, output: Path | None, changes: dict[str, Any], *, force: bool) -> None:
+def _run(name: str, output: Path | None, changes: dict[str, Any], drop: int | None, *, figures: bool, force: bool, as_json: bool) -> None:
     from vibroimpact.cases.costs import describe_costs
     from vibroimpact.cases.reader import load_case, prefix_errors
     from vibroimpact.dynamics.simulate import simulate
     from vibroimpact.report.progress import patient_progress
     from vibroimpact.results.folder import check_free, new_folder
+    from vibroimpact.results.summary import summary_of
     from vibroimpact.runs.page import write_report
     from vibroimpact.runs.save import write_data
     from vibroimpact.runs.text import result_summary
+    from vibroimpact.studies.sweep import load_drop
 
-    case = load_case(name, changes)
-    target = Path(stem(name)) if output is None else output
+    case = load_case(name, changes) if drop is None else load_drop(name, drop, changes)
+    target = Path(stem(name) if drop is None else f"{stem(name)}-drop-{drop}") if output is None else output
     check_free(target, force=force)  # fail before the computation
     for sentence in describe_costs(case):
         note(sentence)
-    screen = console()
+    screen = console(err=as_json)
     with exit_on_interrupt():
         with patient_progress("computing modes", screen) as progress:
             problem = prefix_errors(name, lambda: case.to_problem(progress, note))
@@ -84,10 +122,21 @@ def _run(name: str, output: Path | None, changes: dict[str, Any], *, force: bool
             response = simulate(problem, progress)
         with new_folder(target, force=force) as folder:
             result = write_data(response, folder)
-            del response  # of a long run it may take as much memory as the result: release it before figures are drawn
+            del response  # of a long run it may take as much memory as the result: release it before charts are made
             write_report(result, folder)
-    screen.print(result_summary(result, screen.width))
-    say(f"wrote {target / 'report.html'}")
+            if figures:
+                _draw(result, folder, screen)
+    show(lambda: {"folder": str(target), **summary_of(result)}, lambda: result_summary(result, screen.width), as_json=as_json)
+    say(f"wrote {target / 'report.html'}" + (", and figures beside it" if figures else ""), err=as_json)
+
+
+def _draw(result: Result, folder: Path, screen: Console) -> None:
+    from vibroimpact.report.progress import patient_progress
+    from vibroimpact.runs.figures import FIGURES, write_figures
+
+    (folder / FIGURES).mkdir()
+    with patient_progress("drawing figures", screen) as progress:
+        write_figures(result, folder / FIGURES, progress=progress)
 
 
 @app.command()
@@ -95,15 +144,18 @@ def modes(
     case: CaseArgument,
     output: Annotated[Path | None, typer.Option("-o", "--output", metavar="DIR", help="The folder to make; by default CASE-modes.")] = None,
     changes: Changes = None,
+    figures: Figures = False,
     force: Force = False,
+    as_json: Json = False,
 ) -> None:
     """Compute the modes of the elastic bodies of a case.
 
-    The folder holds a table of frequencies, pictures of the first modes, and the meshes for ParaView, Nastran and Abaqus.
+    The folder holds a table of frequencies, a report that shows the first modes, and the meshes for ParaView, Nastran and Abaqus.
     """
     from vibroimpact.cases.costs import describe_costs
     from vibroimpact.cases.elastic.modes import compute_modes
     from vibroimpact.cases.reader import load_case, prefix_errors
+    from vibroimpact.modes.document import modes_document
     from vibroimpact.modes.folder import save_modes
     from vibroimpact.modes.text import modes_summary
     from vibroimpact.report.progress import patient_progress
@@ -114,13 +166,13 @@ def modes(
     check_free(target, force=force)
     for sentence in describe_costs(found, modes_alone=True):
         note(sentence)
-    screen = console()
+    screen = console(err=as_json)
     with exit_on_interrupt():
         with patient_progress("computing modes", screen) as progress:
             bodies = prefix_errors(case, lambda: compute_modes(found, progress, note))
-        folder = save_modes(found, bodies, target, force=force)
-    screen.print(modes_summary(found, bodies))
-    say(f"wrote {folder / 'modes.csv'}, and pictures and meshes beside it")
+        folder = save_modes(found, bodies, target, force=force, figures=("png",) if figures else ())
+    show(lambda: {"folder": str(folder), **modes_document(found, bodies)}, lambda: modes_summary(found, bodies), as_json=as_json)
+    say(f"wrote {folder / 'report.html'}, and modes.csv and meshes beside it", err=as_json)
 
 
 @app.command()
@@ -129,3 +181,23 @@ def report(directory: Annotated[Path, typer.Argument(metavar="DIR", help="A resu
     from vibroimpact.remake import remake_report
 
     say(f"wrote {remake_report(directory) / 'report.html'}")
+
+
+@app.command()
+def figures(
+    directory: Annotated[Path, typer.Argument(metavar="DIR", help="A result folder, or the folder of a study.")],
+    formats: Annotated[str, typer.Option("--format", metavar="NAMES", help="Any of png, svg and pdf, with commas.")] = "png",
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", metavar="FOLDER", help="Where they are written; by default DIR/figures.")
+    ] = None,
+) -> None:
+    """Write the charts of a run or a study as files.
+
+    They are of print quality. Of a run whose plate deforms there is an animation too, plate.gif.
+    """
+    from vibroimpact.figures import save_figures
+    from vibroimpact.report.progress import patient_progress
+
+    with exit_on_interrupt(), patient_progress("drawing figures", console()) as progress:
+        written = save_figures(directory, names_in(formats), output, progress)
+    say(f"wrote {written}")

@@ -7,25 +7,31 @@ from typing import Annotated
 
 import typer
 
-from vibroimpact.cli.shared import app, console
+from vibroimpact.cli.completion import complete_format
+from vibroimpact.cli.shared import Json, app, show
 from vibroimpact.errors import InputError
 
 
 @app.command()
 def export(
     directory: Annotated[Path | None, typer.Argument(metavar="[DIR]", help="A result folder, or a calibration folder.")] = None,
-    to: Annotated[str | None, typer.Option("--to", metavar="FORMAT", help="The format; without it the formats are listed.")] = None,
+    to: Annotated[
+        str | None,
+        typer.Option("--to", metavar="FORMAT", autocompletion=complete_format, help="The format; without it the formats are listed."),
+    ] = None,
     output: Annotated[
         Path | None,
         typer.Option("-o", "--output", metavar="PATH", help="The folder, or the file if there is one; by default the folder DIR-FORMAT."),
     ] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace files of the same names.")] = False,
     formats: Annotated[bool, typer.Option("--formats", help="List the formats.")] = False,
+    as_json: Json = False,
 ) -> None:
     """Write a result in a format of another program, or list the formats.
 
     What the format can't hold is said, and what the writer was tested against.
     """
+    from vibroimpact.exporting.document import export_document, formats_document
     from vibroimpact.exporting.export_format import find_export_format
     from vibroimpact.exporting.export_result import default_output, save_export
     from vibroimpact.exporting.load_drop import load_drop
@@ -36,11 +42,11 @@ def export(
     if formats or to is None:
         if output is not None or force:
             raise InputError("name the format: vibroimpact export DIR --to FORMAT")
-        console().print(format_table())
+        show(formats_document, format_table, as_json=as_json)
         return
     found = find_export_format(to)
     if directory is None:
         raise InputError(f"name the folder that is to be exported: vibroimpact export DIR --to {to}")
     drop = found.prepare(load_drop(directory))
     written = save_export(drop, found, default_output(directory, to) if output is None else output, force=force)
-    console().print(export_summary(drop, found, written))
+    show(lambda: export_document(drop, found, written), lambda: export_summary(drop, found, written), as_json=as_json)

@@ -1,6 +1,9 @@
-"""Console output on materials: the table of all, and the sheet of one with its sources."""
+"""What `materials` prints: the table of all, and the sheet of one with its sources."""
 
 from __future__ import annotations
+
+from dataclasses import asdict
+from typing import Any
 
 from rich.console import Group, RenderableType
 from rich.text import Text
@@ -46,3 +49,19 @@ def material_sheet(name: str) -> RenderableType:
             rows.append((key, f"{value:g}\u00a0{unit}".strip("\u00a0"), material.sources.get(key, "")))
     note = [Text(material.note)] if material.note else []
     return Group(Text(f"{material.name}: {material.description}", style="bold"), facts(rows), *note)
+
+
+def materials_document() -> dict[str, Any]:
+    """Return the shipped materials by name."""
+    return {"materials": {name: material_document(name) for name in material_library()}}
+
+
+def material_document(name: str) -> dict[str, Any]:
+    """Return one material with the keys of a case file, in SI, and the source of each number.
+
+    Raises
+    ------
+    InputError
+        If the material is unknown.
+    """
+    return asdict(find_material(name))

@@ -7,23 +7,30 @@ from typing import Annotated
 
 import typer
 
-from vibroimpact.cli.shared import app, console, say
+from vibroimpact.cli.completion import complete_case, complete_law, complete_material
+from vibroimpact.cli.shared import Json, app, console, say, show
 from vibroimpact.errors import ComputationError, InputError
 
 
 @app.command()
-def cases() -> None:
+def cases(as_json: Json = False) -> None:
     """List the shipped cases."""
-    from vibroimpact.cli.case_text import shipped_cases_table
+    from vibroimpact.cli.case_text import shipped_cases_document, shipped_cases_table
 
-    console().print(shipped_cases_table())
+    show(shipped_cases_document, shipped_cases_table, as_json=as_json)
 
 
 @app.command()
 def new(
     name: Annotated[str, typer.Argument(metavar="NAME", help="What the case is called; it becomes NAME.toml here.")],
     source: Annotated[
-        str, typer.Option("--from", metavar="CASE", help='The case to start from: a TOML file, or a shipped one such as "paper:type3".')
+        str,
+        typer.Option(
+            "--from",
+            metavar="CASE",
+            autocompletion=complete_case,
+            help='The case to start from: a TOML file, or a shipped one such as "paper:type3".',
+        ),
     ] = "paper:type1-theory",
     force: Annotated[bool, typer.Option("--force", help="Replace an existing file.")] = False,
 ) -> None:
@@ -50,12 +57,13 @@ def units(
     to: Annotated[
         str | None, typer.Option("--to", metavar="UNIT", help="In quotes if it has blanks; without it the common unit systems are shown.")
     ] = None,
+    as_json: Json = False,
 ) -> None:
     """Convert a parameter of a contact to another unit.
 
     A stiffness in N/m^n is 1000^n times one in N/mm^n, not 1000 times.
     """
-    from vibroimpact.cli.unit_table import converted, unit_table
+    from vibroimpact.cli.unit_table import converted, unit_document, unit_table
     from vibroimpact.units.reading import parse_quantity
 
     try:
@@ -64,44 +72,53 @@ def units(
     except InputError as error:
         hint = '; a unit with blanks needs quotes, as in --to "N s/mm"' if to and " " not in to and len(quantity) > 2 else ""
         raise InputError(f"{error}{hint}") from None
-    console().print(shown)
+    show(lambda: unit_document(value, unit, to), lambda: shown, as_json=as_json)
 
 
 @app.command()
 def laws(
-    name: Annotated[str | None, typer.Argument(metavar="[NAME]", help="Show one law.")] = None,
+    name: Annotated[str | None, typer.Argument(metavar="[NAME]", autocompletion=complete_law, help="Show one law.")] = None,
     output: Annotated[Path | None, typer.Option("-o", "--output", metavar="PNG", help="Draw its curves into this picture.")] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace an existing picture.")] = False,
+    as_json: Json = False,
 ) -> None:
     """List the contact laws, or show one: equation, parameters, sources; with -o PNG also a picture of its curves."""
+    from vibroimpact.contact.registry import find_contact_law
+    from vibroimpact.laws.document import law_document, laws_document
     from vibroimpact.laws.sheet import law_sheet, law_table
 
-    screen = console()
     if name is None:
         if output is not None:
             raise InputError("name the law that is to be drawn: vibroimpact laws NAME -o PNG")
-        screen.print(law_table(screen.width))
+        show(laws_document, lambda: law_table(console().width), as_json=as_json)
         return
-    sheet = law_sheet(name)
+    law = find_contact_law(name)
     if output is not None:
         from vibroimpact.laws.curves import check_picture
 
         check_picture(output, force=force)  # fail before anything is printed or drawn
-    screen.print(sheet)
+    show(lambda: law_document(law), lambda: law_sheet(name), as_json=as_json)
     if output is not None:
         from vibroimpact.laws.curves import save_law_picture
 
-        say(f"\nwrote {save_law_picture(name, output)}")
+        say(f"\nwrote {save_law_picture(name, output)}", err=as_json)
 
 
 @app.command()
 def materials(
-    name: Annotated[str | None, typer.Argument(metavar="[NAME]", help="Show one material, with the source of each number.")] = None,
+    name: Annotated[
+        str | None,
+        typer.Argument(metavar="[NAME]", autocompletion=complete_material, help="Show one material, with the source of each number."),
+    ] = None,
+    as_json: Json = False,
 ) -> None:
     """List the shipped materials, or one with its sources."""
-    from vibroimpact.cli.material_text import material_library_table, material_sheet
+    from vibroimpact.cli.material_text import material_document, material_library_table, material_sheet, materials_document
 
-    console().print(material_sheet(name) if name else material_library_table())
+    if name:
+        show(lambda: material_document(name), lambda: material_sheet(name), as_json=as_json)
+    else:
+        show(materials_document, material_library_table, as_json=as_json)
 
 
 @app.command()
@@ -117,18 +134,26 @@ def schema() -> None:
 @app.command()
 def doctor(
     clear_store: Annotated[bool, typer.Option("--clear-store", help="Empty the store of computed modes.")] = False,
+    as_json: Json = False,
 ) -> None:
     """Show versions and the store of modes, and test this installation."""
-    from vibroimpact.cli.doctor import diagnose, first_rebound_error
+    from vibroimpact.cli.doctor import diagnose, diagnosis_rows, first_rebound_error
     from vibroimpact.runs.text import versions_table
 
     if clear_store:
         from vibroimpact.structures.store import clear_store as clear
 
-        say(f"removed {clear()} entries from the store of modes")
+        removed = clear()
+        show(lambda: {"removed": removed}, as_json=as_json)
+        say(f"removed {removed} entries from the store of modes", err=as_json)
         return
-    console().print(versions_table(diagnose()))
+    found = diagnose()
+    show(
+        lambda: {**found, "first_rebound_error": first_rebound_error()},
+        lambda: versions_table(diagnosis_rows(found)),
+        as_json=as_json,
+    )
     error = first_rebound_error()
     if not error < 2e-6:
         raise ComputationError(f"the self-test is off by {error:.1e}; reinstall the package")
-    say(f"self-test passed: the paper's first rebound, off by {error:.1e}")
+    say(f"self-test passed: the paper's first rebound, off by {error:.1e}", err=as_json)

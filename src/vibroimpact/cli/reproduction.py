@@ -8,7 +8,8 @@ from typing import Annotated
 
 import typer
 
-from vibroimpact.cli.shared import app, console, fail, names_in, note, say
+from vibroimpact.cli.completion import complete_parts
+from vibroimpact.cli.shared import Json, app, console, fail, names_in, note, say, show
 
 
 @app.command()
@@ -16,8 +17,12 @@ def reproduce(
     output: Annotated[Path, typer.Option("-o", "--output", metavar="DIR", help="The folder to make, or to go on with.")] = Path(
         "vibroimpact-paper"
     ),
-    only: Annotated[str | None, typer.Option("--only", metavar="A,B,C", help="Only these parts; made anew if they are there.")] = None,
+    only: Annotated[
+        str | None,
+        typer.Option("--only", metavar="A,B,C", autocompletion=complete_parts, help="Only these parts; made anew if they are there."),
+    ] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace an existing folder, with all parts that are in it.")] = False,
+    as_json: Json = False,
 ) -> None:
     """Reproduce the paper: each printed number beside the computed one, and its figures.
 
@@ -27,12 +32,13 @@ def reproduce(
     The parts: table1, section3.1, fig3, section3.2, fig4 to fig8, damping, table2, section4, fig9, section5.1, fig10 to fig13,
     section5.2, fig14 to fig17, section5.3, fig18 to fig23, conclusions, recovery, sampling, unresolved, corrections.
     """
-    from vibroimpact.paper.report.folder import missing_parts, read_parts, reproduce_paper
-    from vibroimpact.paper.report.page import verdict_table
+    from vibroimpact._version import __version__
+    from vibroimpact.paper.report.folder import missing_parts, read_parts, reproduce_paper, reproduced_values
+    from vibroimpact.paper.report.page import verdict_counts, verdict_table
     from vibroimpact.report.progress import patient_progress
 
     names = None if only is None else names_in(only)
-    screen = console()
+    screen = console(err=as_json)
     try:
         with patient_progress("reproducing", screen) as progress:
             folder = reproduce_paper(output, names, force=force, progress=progress, tell=note)
@@ -40,5 +46,10 @@ def reproduce(
         left = [name for name in missing_parts(output) if names is not None and name in names]
         some = f" --only {','.join(left)}" if left else ""
         fail(f"interrupted; the parts that are done stay; go on with: vibroimpact reproduce -o {shlex.quote(str(output))}{some}", 130)
-    screen.print(verdict_table(read_parts(folder)))
-    say(f"wrote {folder / 'report.html'}")
+    parts = read_parts(folder)
+    show(
+        lambda: {"folder": str(folder), "version": __version__, "verdicts": verdict_counts(parts), "values": reproduced_values(parts)},
+        lambda: verdict_table(parts),
+        as_json=as_json,
+    )
+    say(f"wrote {folder / 'report.html'}", err=as_json)

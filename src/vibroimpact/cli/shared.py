@@ -7,35 +7,45 @@ import os
 import signal
 import sys
 import tomllib
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, NoReturn
 
 import typer
 
+from vibroimpact.cli.completion import complete_case, complete_change
 from vibroimpact.errors import InputError, lines_of
 from vibroimpact.shown import visible
 
 if TYPE_CHECKING:
-    from rich.console import Console
+    from rich.console import Console, RenderableType
 
 # heavy imports are inside the commands, so that --help is fast
 
 app = typer.Typer(
     name="vibroimpact",
     no_args_is_help=True,
-    add_completion=False,
+    add_completion=True,
     rich_markup_mode=None,
     pretty_exceptions_enable=False,
 )
 
-CaseArgument = Annotated[str, typer.Argument(metavar="CASE", help='A TOML file, or a shipped case such as "paper:type1-theory".')]
+CaseArgument = Annotated[
+    str, typer.Argument(metavar="CASE", autocompletion=complete_case, help='A TOML file, or a shipped case such as "paper:type1-theory".')
+]
 Changes = Annotated[
     list[str] | None,
-    typer.Option("--set", metavar="KEY=VALUE", help='Another value at a key, such as plate.size.thickness="10 mm"; may be repeated.'),
+    typer.Option(
+        "--set",
+        metavar="KEY=VALUE",
+        autocompletion=complete_change,
+        help='Another value at a key, such as plate.size.thickness="10 mm"; may be repeated.',
+    ),
 ]
 Force = Annotated[bool, typer.Option("--force", help="Replace an existing result folder.")]
+Json = Annotated[bool, typer.Option("--json", help="Print one JSON document in place of tables, in SI units and full precision.")]
+Figures = Annotated[bool, typer.Option("--figures", help="Write the charts of the report as files too, as PNG.")]
 
 
 def _show_version(wanted: bool) -> None:
@@ -82,14 +92,36 @@ def settings_of(texts: list[str] | None, example: str = 'plate.size.thickness="1
     return settings
 
 
-def console() -> Console:
-    """Return the console, with a fixed width of 160 off a terminal."""
+def console(*, err: bool = False) -> Console:
+    """Return the console of standard output, or of standard error, with a fixed width of 160 off a terminal."""
     from vibroimpact.report.console import TerminalConsole
 
-    screen = TerminalConsole()
+    screen = TerminalConsole(stderr=err)
     if not screen.is_terminal:
-        screen = TerminalConsole(width=160)  # a pipe or a file has no width of its own
+        screen = TerminalConsole(width=160, stderr=err)  # a pipe or a file has no width of its own
     return screen
+
+
+def show(document: Callable[[], Mapping[str, Any]], *tables: Callable[[], RenderableType], as_json: bool) -> None:
+    """Print tables, each as soon as it is made; or in their place the document with their data, as JSON.
+
+    Parameters
+    ----------
+    document : callable
+        Returns the data, with the names and units of the data files.
+    *tables : callable
+        Each returns what is printed in a terminal.
+    as_json : bool
+        Whether the document is printed, and nothing else on standard output.
+    """
+    if as_json:
+        from vibroimpact.files.json_text import json_text
+
+        print(json_text(document()), flush=True)
+    else:
+        screen = console()
+        for table in tables:
+            screen.print(table())
 
 
 def say(text: str, *, err: bool = False) -> None:

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from vibroimpact.cli.shared import app, console, fail, interrupt_flag, note, say, stem
+from vibroimpact.cli.completion import complete_case
+from vibroimpact.cli.shared import Json, app, console, fail, interrupt_flag, note, say, show, stem
 from vibroimpact.errors import InputError
 
 if TYPE_CHECKING:
@@ -25,7 +26,7 @@ MOST_BYTES_UNCONFIRMED = 10e9
 
 @app.command()
 def sweep(
-    study: Annotated[str, typer.Argument(metavar="STUDY", help="A case with a [sweep] section.")],
+    study: Annotated[str, typer.Argument(metavar="STUDY", autocompletion=complete_case, help="A case with a [sweep] section.")],
     output: Annotated[
         Path | None, typer.Option("-o", "--output", metavar="DIR", help="The folder to make; by default STUDY-sweep.")
     ] = None,
@@ -42,6 +43,7 @@ def sweep(
     memory: Annotated[
         str, typer.Option("--memory", metavar="SIZE", help="What each process may use for the drops that it computes at once.")
     ] = "500 MB",
+    as_json: Json = False,
 ) -> None:
     """Run many drops: all points of a study, on all cores or on the workers of a Dask scheduler.
 
@@ -53,7 +55,18 @@ def sweep(
     message = f"interrupted; the drops that are done stay; go on with: {command}"
     try:
         with interrupt_flag(message) as stopped:  # entered first, so that no Ctrl-C is lost during imports
-            _run_sweep(study, target, memory, stopped, resume=resume, force=force, yes=yes, processes=processes, scheduler=scheduler)
+            _run_sweep(
+                study,
+                target,
+                memory,
+                stopped,
+                resume=resume,
+                force=force,
+                yes=yes,
+                processes=processes,
+                scheduler=scheduler,
+                as_json=as_json,
+            )
     except KeyboardInterrupt:
         fail(message, 130)
 
@@ -69,6 +82,7 @@ def _run_sweep(
     yes: bool,
     processes: int | None,
     scheduler: str | None,
+    as_json: bool,
 ) -> None:
     """Run a study with the options of `sweep`.
 
@@ -78,6 +92,7 @@ def _run_sweep(
         At the next safe point, once `stopped` returns True.
     """
     from vibroimpact.report.progress import counting_progress, patient_progress
+    from vibroimpact.studies.report.document import study_document
     from vibroimpact.studies.report.text import study_summary
     from vibroimpact.studies.run_sweep import run_sweep
     from vibroimpact.studies.study import read_study
@@ -92,7 +107,7 @@ def _run_sweep(
         raise InputError(error.message, "--memory") from None
     if size < 1e6:
         raise InputError(f"{memory} is too little; it must be 1 MB or more", "--memory")
-    found, screen = load_sweep(study), console()
+    found, screen = load_sweep(study), console(err=as_json)
     _check_confirmed(study, found, yes=yes or (resume and has_study(target)))
     for doubt in sweep_slips(found):
         note(f"doubt: {doubt}")  # before the computation, not only in the report
@@ -123,8 +138,9 @@ def _run_sweep(
             modes_progress=modes_progress,
             tell=note,
         )
-    screen.print(study_summary(read_study(folder), screen.width))
-    say(f"wrote {folder / 'study.nc'} and {folder / 'report.html'}")
+    done = read_study(folder)
+    show(lambda: {"folder": str(folder), **study_document(done)}, lambda: study_summary(done, screen.width), as_json=as_json)
+    say(f"wrote {folder / 'study.nc'} and {folder / 'report.html'}", err=as_json)
 
 
 def _check_confirmed(study: str, found: Sweep, *, yes: bool) -> None:

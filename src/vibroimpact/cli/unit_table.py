@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from rich.console import Group, RenderableType
 from rich.text import Text
 
@@ -74,6 +76,26 @@ def unit_table(value: float, unit: str) -> RenderableType:
         [TerminalColumn("unit system", names, text=True), TerminalColumn("number", shown), TerminalColumn("unit", there, text=True)]
     )
     return Group(Text(f"{number_text(value)} {unit}", style="bold"), table, *_power_note(unit))
+
+
+def unit_document(value: float, unit: str, to: str | None = None) -> dict[str, Any]:
+    """Return a quantity, and what it is in another unit or in each unit system.
+
+    Raises
+    ------
+    InputError
+        As `convert_units` or `in_unit_systems`.
+
+    Examples
+    --------
+    >>> unit_document(5.0, "N/mm", "N/m")["converted"]
+    [{'number': 5000.0, 'unit': 'N/m'}]
+    """
+    if to is not None:
+        found = [{"number": convert_units(value, unit, to), "unit": to}]
+    else:
+        found = [{"unit_system": name, "number": number, "unit": there} for name, number, there in in_unit_systems(value, unit)]
+    return {"number": value, "unit": unit, "converted": found}
 
 
 def number_text(number: float) -> str:

@@ -113,8 +113,11 @@ def comparison_subtitle(comparison: Comparison) -> str:
 
 
 def comparison_table(comparison: Comparison) -> tuple[list[tuple[str, str]], list[list[str]]]:
-    """Return headings with units, and a row for each law: required and achieved restitution, and the first impact."""
-    headers = [("Law", ""), ("Impacts", ""), ("Restitution asked", ""), ("achieved, first", ""), ("achieved, last", "")]
+    """Return headings with units, and a row for each law: required and achieved restitution, and the first impact.
+
+    Columns in which no law has a value are left out.
+    """
+    headers = [("Law", ""), ("Impacts", ""), ("Restitution asked", ""), ("Restitution achieved, first", ""), ("achieved, last", "")]
     rows = []
     for name, one in comparison.results.items():
         some = [_restitution(one, "restitution_asked", 0), *(_restitution(one, "restitution_achieved", at) for at in (0, -1))]
@@ -126,7 +129,8 @@ def comparison_table(comparison: Comparison) -> tuple[list[tuple[str, str]], lis
         headers.append((ALL_IMPACT_COLUMNS[name].label, unit))
         for row, cell in zip(rows, cells, strict=True):
             row.append(cell)
-    return headers, rows
+    known = [column for column in range(len(headers)) if any(row[column] != MISSING for row in rows)]
+    return [headers[column] for column in known], [[row[column] for column in known] for row in rows]
 
 
 def _restitution(result: Result, name: str, at: int) -> str:

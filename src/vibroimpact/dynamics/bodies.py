@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol, TypeAlias
 
 from vibroimpact.arrays import Bools, Drops, Floats
 from vibroimpact.contact.law import CompliantLaw, ContactLaw
@@ -11,10 +11,12 @@ from vibroimpact.dynamics.encounter import Encounter
 from vibroimpact.dynamics.flight import Flight
 from vibroimpact.dynamics.leg import Leg
 from vibroimpact.dynamics.lockstep import Coroutine
-from vibroimpact.dynamics.vibrating.linear_system import FreeMotion
-from vibroimpact.dynamics.vibrating.rest_motion import RestMotion
 
-Motions = tuple[FreeMotion, ...]
+if TYPE_CHECKING:  # a drop of rigid bodies does not load what vibrates
+    from vibroimpact.dynamics.vibrating.linear_system import FreeMotion
+    from vibroimpact.dynamics.vibrating.rest_motion import RestMotion
+
+Motions: TypeAlias = "tuple[FreeMotion, ...]"
 """Free motions of the bodies of each drop in a flight; empty for bodies that do not vibrate."""
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -10,7 +11,9 @@ from vibroimpact.arrays import Floats, Indices
 from vibroimpact.dynamics.contact import Contact
 from vibroimpact.dynamics.encounter import Encounter
 from vibroimpact.dynamics.flight import Flight
-from vibroimpact.dynamics.vibrating.linear_system import FreeMotion
+
+if TYPE_CHECKING:  # a drop of rigid bodies does not load what vibrates
+    from vibroimpact.dynamics.vibrating.linear_system import FreeMotion
 
 
 @dataclass(frozen=True)

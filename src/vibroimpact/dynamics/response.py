@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from numbers import Integral
 from os import PathLike
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -21,14 +21,19 @@ from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.rest import Rest
 from vibroimpact.dynamics.rigid.segments import FlightSegment, RestSegment
 from vibroimpact.dynamics.rigid.timeline import Timeline, end_of, timeline_of
-from vibroimpact.dynamics.sensors.recording import Signal, record
+from vibroimpact.dynamics.sensors.recording import Signal
 from vibroimpact.dynamics.sensors.sensor import Sensor, sample_count
 from vibroimpact.dynamics.status import Ended, status_of
 from vibroimpact.dynamics.truncation import truncation_estimates
-from vibroimpact.dynamics.vibrating.bodies import slices_of
-from vibroimpact.dynamics.vibrating.history import vibrating_history
-from vibroimpact.dynamics.vibrating.segments import VibratingSegment, vibrating_timeline
 from vibroimpact.errors import InputError
+
+if TYPE_CHECKING:
+    import plotly.graph_objects as go
+
+    from vibroimpact import Result
+    from vibroimpact.dynamics.vibrating.segments import VibratingSegment
+
+# what vibrates is imported in the methods: a drop of rigid bodies does not load it
 
 
 @dataclass(frozen=True, eq=False)
@@ -217,15 +222,16 @@ class Response:
         dict of str to array
             "sphere" and "plate", (T, modes) [kg^1/2 m]; times a mode's shape they are displacements.
         """
+        from vibroimpact.dynamics.vibrating.bodies import slices_of
+
         flat = np.atleast_1d(np.asarray(times, dtype=float))
-        starts = self._starts
+        starts, segments = self._starts, self._segments
         index = np.maximum(np.searchsorted(starts, flat, side="right") - 1, 0)
         _, sphere, plate = slices_of(self.problem)
         found = np.zeros((len(flat), plate.stop))
-        for number in np.unique(index):
-            segment, here = self._segments[int(number)], index == number
-            if isinstance(segment, VibratingSegment):
-                found[here] = segment.state(np.minimum(flat[here], segment.end) - segment.start).displacement
+        for number in () if isinstance(segments, Timeline) else np.unique(index).tolist():
+            segment, here = segments[number], index == number
+            found[here] = segment.state(np.minimum(flat[here], segment.end) - segment.start).displacement
         return {"sphere": found[:, sphere], "plate": found[:, plate]}
 
     def signals(self, *sensors: Sensor) -> dict[str, Signal]:
@@ -242,7 +248,9 @@ class Response:
             If the plate is rigid or has no such point, there would be too many samples, or the response is of several drops or
             without histories.
         """
-        segments = [segment for segment in self._segments if isinstance(segment, VibratingSegment)]
+        from vibroimpact.dynamics.sensors.record import record
+
+        segments = () if isinstance(self._segments, Timeline) else self._segments
         return record(self.problem, segments, sensors or self.problem.sensors, float(self.end_time[0]))
 
     @cached_property
@@ -251,7 +259,7 @@ class Response:
         return truncation_estimates(self.problem, self.impacts) if self.problem.vibrates else {}
 
     def save(self, directory: str | PathLike[str], *, force: bool = False) -> None:
-        """Write the result folder: case, table, summary, NetCDF file, figures and report.
+        """Write the result folder: case, table, summary, NetCDF file and report.
 
         Parameters
         ----------
@@ -271,17 +279,43 @@ class Response:
 
         vibroimpact.save_result(self, directory, force=force)
 
+    def plot(self, name: str = "position") -> go.Figure:
+        """Return a chart of one drop as a figure of plotly, by its name; see `vibroimpact.plot_result`.
+
+        Parameters
+        ----------
+        name : str, default "position"
+            Name of the chart, such as "force", "energy" or "sensor a1".
+
+        Raises
+        ------
+        InputError
+            If there is no such chart, or the response is of several drops or without histories.
+        """
+        return self._result.plot(name)
+
+    def _repr_html_(self) -> str | None:
+        one = self.problem.shape == () and self.legs is not None
+        return self._result._repr_html_() if one else None
+
+    @cached_property
+    def _result(self) -> Result:
+        import vibroimpact  # as in `save`
+
+        return vibroimpact.result_of(self)
+
     # the history of one drop, segment by segment ---------------------------------------------------
 
     def _history(self, number: int, times: Floats) -> dict[str, Floats]:
         """Return all columns at times since the start of one segment."""
-        segment, problem = self._segments[number], self.problem
-        if isinstance(segment, VibratingSegment):
-            return vibrating_history(self.problem, segment, times)
-        mass, gravity = float(problem.sphere.mass), float(problem.gravity)
+        segments, problem = self._segments, self.problem
+        if not isinstance(segments, Timeline):
+            from vibroimpact.dynamics.vibrating.history import vibrating_history
+
+            return vibrating_history(problem, segments[number], times)
+        segment, mass, gravity = segments[number], float(problem.sphere.mass), float(problem.gravity)
         gap, velocity, force, stored, lost, plastic = segment.at(times)
-        assert isinstance(self._segments, Timeline)
-        lost_before, plastic_before = self._segments.spent[number]
+        lost_before, plastic_before = segments.spent[number]
         resting, flying = isinstance(segment, RestSegment), isinstance(segment, FlightSegment)
         return {
             "time_s": segment.start + times,
@@ -307,6 +341,8 @@ class Response:
             raise InputError("tabulate keeps no histories; ask simulate")
         end = float(self.end_time[0])
         if self.problem.vibrates:
+            from vibroimpact.dynamics.vibrating.segments import vibrating_timeline
+
             return vibrating_timeline(self.legs, self.rest.lying[0], end)
         plastic, rest = self.impacts["plastic_work_J"], None
         if self.outcomes[0].at_rest:

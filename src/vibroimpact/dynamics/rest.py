@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.dynamics.vibrating.rest_motion import RestMotion
+
+if TYPE_CHECKING:  # a drop of rigid bodies does not load what vibrates
+    from vibroimpact.dynamics.vibrating.rest_motion import RestMotion
 
 
 @dataclass(frozen=True)

@@ -24,7 +24,6 @@ from vibroimpact.dynamics.response import Response
 from vibroimpact.dynamics.rest import Rest
 from vibroimpact.dynamics.rigid.bodies import RigidBodies
 from vibroimpact.dynamics.rigid.solve_contact import SolvesContact
-from vibroimpact.dynamics.vibrating.bodies import VibratingBodies
 
 
 class Run:
@@ -47,11 +46,15 @@ class Run:
         self.end_time, self.rest_time = np.full(self.size, np.nan), np.full(self.size, np.nan)
         self.sag, self.stored, self.written_off = np.zeros(self.size), np.zeros(self.size), np.zeros(self.size)
         self.rest_speed = self.default_rest_speed() if problem.rest_speed is None else self.spread(problem.rest_speed)
-        self.bodies: Bodies = (
-            VibratingBodies(problem, self.mass, self.gravity) if problem.vibrates else RigidBodies(self.size, solve_contact)
-        )
+        self.bodies = self.vibrating_bodies() if problem.vibrates else RigidBodies(self.size, solve_contact)
         self.memories = {name: self.spread(value) for name, value in problem.laws[0].memories().items()}
         self.rows = ImpactRows(self.bodies.columns, self.size)
+
+    def vibrating_bodies(self) -> Bodies:
+        """Return the bodies of the problem, of which one vibrates."""
+        from vibroimpact.dynamics.vibrating.bodies import VibratingBodies  # a drop of rigid bodies does not load what vibrates
+
+        return VibratingBodies(self.problem, self.mass, self.gravity)
 
     def spread(self, value: object) -> Floats:
         """Return a value of the problem as an array with one entry per drop."""

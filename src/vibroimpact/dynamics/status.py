@@ -8,12 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from vibroimpact.arrays import Floats
+from vibroimpact.dynamics.change_by_impact import change_by_impact
 from vibroimpact.dynamics.energy import why_failed
 from vibroimpact.dynamics.outcome import Outcome
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.rest import Rest
-from vibroimpact.dynamics.vibrating.sensitivity import change_by_impact
-from vibroimpact.dynamics.vibrating.visit import MOST_STEPS, MOST_STEPS_TO_A_TIME
 from vibroimpact.units.display import certain, certain_figures
 
 
@@ -38,6 +37,8 @@ def status_of(run: Ended) -> str:
     if outcome is Outcome.IMPACTS:
         return f"Stopped {after}, at the top of the last rebound, at {_time(run, end, 6)} s."
     if outcome is Outcome.RIDING:
+        from vibroimpact.dynamics.vibrating.visit import MOST_STEPS, MOST_STEPS_TO_A_TIME  # where bodies vibrate
+
         steps = f"{MOST_STEPS} steps of the integration; give a duration to follow it for longer"
         if run.problem.duration is not None:
             steps = f"{MOST_STEPS_TO_A_TIME} steps of the integration"

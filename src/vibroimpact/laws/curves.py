@@ -1,4 +1,4 @@
-"""The figure of a contact law: force over indentation, and restitution over approach speed."""
+"""The chart of a contact law: force over indentation, and restitution over approach speed; and its picture."""
 
 from __future__ import annotations
 
@@ -6,15 +6,16 @@ from dataclasses import dataclass, fields
 from pathlib import Path
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
-from matplotlib.ticker import FuncFormatter
 
 from vibroimpact.arrays import Floats
 from vibroimpact.bodies.body import Body
 from vibroimpact.bodies.rigid import rigid_plate
 from vibroimpact.cases.reader import read_case
 from vibroimpact.cases.rigid import contact_pair
+from vibroimpact.charts.axis import Axis
+from vibroimpact.charts.chart import Chart, Panel
+from vibroimpact.charts.marks import Level, Line, Mark, Points
+from vibroimpact.charts.palette import series
 from vibroimpact.contact.law import CompliantLaw, ContactLaw, unit_of
 from vibroimpact.contact.pair import ContactPair
 from vibroimpact.contact.registry import find_contact_law
@@ -25,29 +26,29 @@ from vibroimpact.errors import InputError
 from vibroimpact.files.atomic_write import write_file
 from vibroimpact.files.recover import recover
 from vibroimpact.laws.text import paper_pair
-from vibroimpact.report.figure_files import render_png
-from vibroimpact.report.layout import label_vertical, new_figure, row_of_axes
-from vibroimpact.report.style import ACCENT, INK, LOOPS, style
-from vibroimpact.units.display import multiple, text
+from vibroimpact.units.display import brief, text
 
 _SPEEDS = np.geomspace(1e-3, 30.0, 60)
 _POINTS = 600
-_BOTTOM, _HEIGHT = 0.55, 3.3
+_HEIGHT = 3.6
 _ELASTIC = 1.0 - 1e-9
 """Restitutions above this value count as one."""
+
+_PER_LINE = 4
+"""Parameters in a line below the title."""
 
 
 @dataclass(frozen=True)
 class _Example:
-    """The example that a figure shows: the bodies in words, their pair, and the law."""
+    """The example that a chart shows: the bodies in words, their pair, and the law."""
 
     words: str
     pair: ContactPair
     law: ContactLaw
 
 
-def draw_law(law: type[ContactLaw]) -> Figure:
-    """Draw the curves of a contact law with typical parameters, for a sphere on a plate without gravity.
+def law_chart(law: type[ContactLaw]) -> Chart:
+    """Return the curves of a contact law with typical parameters, for a sphere on a plate without gravity.
 
     Left the force over the indentation at three approach speeds (not for an instantaneous law), right the restitution over the
     approach speed. Elastic-plastic laws are shown with a steel sphere, from about the yield speed on; adhesive laws with a small
@@ -57,22 +58,22 @@ def draw_law(law: type[ContactLaw]) -> Figure:
     ----------
     law : type of ContactLaw
         The law's class.
+
+    Examples
+    --------
+    >>> chart = law_chart(find_contact_law("hertz"))
+    >>> [panel.title for panel in chart.panels]
+    ['Force over indentation', 'Restitution over approach speed']
     """
     example = _example(law)
     restitution = achieved_restitution(example.law, example.pair.effective_mass, _SPEEDS)
     speeds = _typical_speeds(law, restitution)
-    with style():
-        figure = new_figure(4.9)
-        *left, right = row_of_axes(figure, 2 if isinstance(example.law, CompliantLaw) else 1, _BOTTOM, _HEIGHT)
-        for axes in left:
-            _draw_forces(axes, example, speeds)
-        _draw_restitution(right, example, restitution, speeds)
-        if not left:
-            label_vertical(right, "Restitution [-]")
-        top = figure.get_figheight()
-        figure.text(0.1, (top - 0.2) / top, law.name, fontsize=11.0, fontweight="bold", va="top")
-        figure.text(0.1, (top - 0.43) / top, _caption(example), fontsize=8.0, va="top", linespacing=1.35)
-    return figure
+    compliant = isinstance(example.law, CompliantLaw)
+    panels = (*([_force_panel(example, speeds)] if compliant else []), _restitution_panel(example, restitution, speeds))
+    caption = "Right: the restitution achieved at any approach speed."
+    if compliant:
+        caption = f"Left: one impact at each of three approach speeds; the area that a loop encloses is the energy lost. {caption}"
+    return Chart(law.name, law.name, (panels,), caption, _HEIGHT, _subtitle(example))
 
 
 def check_picture(target: Path, *, force: bool) -> None:
@@ -108,7 +109,10 @@ def save_law_picture(name: str, target: Path) -> Path:
     InputError
         If the law is unknown, or the file can't be written.
     """
-    picture = render_png(draw_law(find_contact_law(name)))
+    from vibroimpact.charts.files import render_png  # here, as it imports matplotlib
+    from vibroimpact.charts.matplotlib import matplotlib_figure
+
+    picture = render_png(matplotlib_figure(law_chart(find_contact_law(name))))
     try:
         recover(target)
         write_file(target, picture)
@@ -118,7 +122,7 @@ def save_law_picture(name: str, target: Path) -> Path:
 
 
 def _example(law: type[ContactLaw]) -> _Example:
-    """Return the bodies and the law of the figure, by the kind of the law."""
+    """Return the bodies and the law of the chart, by the kind of the law."""
     if {item.metadata["from_pair"] for item in fields(law)} & {"yield_pressure", "yield_strength"}:
         pair = _pair_of(0.025, "steel", "steel")
         return _Example("Steel sphere, radius 25 mm, on a steel plate", pair, law.example(pair))
@@ -147,21 +151,17 @@ def _typical_speeds(law: type[ContactLaw], restitution: Floats) -> tuple[float, 
     return tuple(float(f"{factor * first:.2g}") for factor in factors)
 
 
-def _draw_forces(axes: Axes, example: _Example, speeds: tuple[float, ...]) -> None:
+def _force_panel(example: _Example, speeds: tuple[float, ...]) -> Panel:
     loops = [_loop(example, speed) for speed in speeds]
-    depth, force = multiple("m", loops[-1][0]), multiple("N", loops[-1][1])
-    for number, ((x, y), speed, (colour, dashes)) in enumerate(zip(loops, speeds, LOOPS, strict=False)):
-        line = axes.plot(x / depth.size, y / force.size, color=colour, linestyle=dashes, linewidth=1.5, label=text(speed, "m/s", 2))[0]
-        line.set_zorder(2.5 - 0.1 * number)  # small loops on top, or larger ones would cover them
+    marks: list[Mark] = []
     if min(np.min(part) for loop in loops for part in loop) < 0.0:
-        axes.axhline(0.0, color="#555555", linewidth=0.7, zorder=1.5)
-        axes.axvline(0.0, color="#555555", linewidth=0.7, zorder=1.5)
-    axes.set_title("Force over indentation")
-    axes.set_xlabel(f"Indentation [{depth.unit}]")
-    label_vertical(axes, f"Contact force [{force.unit}]")
-    axes.margins(x=0.03, y=0.05)
-    legend = axes.legend(loc="upper left", title="Approach speed", alignment="left", handlelength=4.0, frameon=True)
-    legend.get_frame().set(facecolor="white", edgecolor="none", alpha=1.0)  # or the zero lines would cross it
+        marks += [Level(0.0, role="dotted"), Level(0.0, role="dotted", upright=True)]
+    lines = [
+        Line(*loop, f"approach at {text(speed, 'm/s', 2)}", series(number))
+        for number, (loop, speed) in enumerate(zip(loops, speeds, strict=True))
+    ]
+    marks += reversed(lines)  # small loops on top, or larger ones would cover them
+    return Panel(Axis("Indentation", "m"), Axis("Contact force", "N"), tuple(marks), "Force over indentation")
 
 
 def _loop(example: _Example, speed: float) -> tuple[Floats, Floats]:
@@ -175,28 +175,22 @@ def _loop(example: _Example, speed: float) -> tuple[Floats, Floats]:
     return np.concatenate([indentation[:1], indentation, indentation[-1:]]), np.concatenate([[0.0], force, [0.0]])
 
 
-def _draw_restitution(axes: Axes, example: _Example, restitution: Floats, speeds: tuple[float, ...]) -> None:
-    axes.plot(_SPEEDS, restitution, color=ACCENT, linewidth=1.5, label="achieved")
+def _restitution_panel(example: _Example, restitution: Floats, speeds: tuple[float, ...]) -> Panel:
+    marks: list[Mark] = [Line(_SPEEDS, restitution, "restitution achieved", "detail")]
     asked = getattr(example.law, "restitution", None)
     if asked is not None:
-        axes.axhline(asked, color=INK, linewidth=0.8, linestyle=(0, (4, 3)), label="asked")
-        axes.legend(loc="lower left")
+        marks.append(Level(float(asked), "restitution asked"))
     if isinstance(example.law, CompliantLaw):
         at = achieved_restitution(example.law, example.pair.effective_mass, np.array(speeds))
-        for speed, value, (colour, _) in zip(speeds, at, LOOPS, strict=False):
-            axes.plot(speed, value, "o", color=colour, markersize=5.0, zorder=3)
-    axes.set_xscale("log")
-    axes.set_xlim(_SPEEDS[0] / 1.1, _SPEEDS[-1] * 1.1)
-    axes.set_ylim(0.0, 1.05)
-    axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-    axes.set_title("Restitution over approach speed")
-    axes.set_xlabel("Approach speed [m/s]")
+        marks += [Points(np.array([speed]), at[number : number + 1], role=series(number)) for number, speed in enumerate(speeds)]
+    speed = Axis("Approach speed", "m/s", log=True, range=(_SPEEDS[0] / 1.1, _SPEEDS[-1] * 1.1))
+    return Panel(speed, Axis("Restitution", range=(0.0, 1.05)), tuple(marks), "Restitution over approach speed")
 
 
-def _caption(example: _Example) -> str:
-    """Return the caption: the bodies, and the parameters, four per line."""
+def _subtitle(example: _Example) -> str:
+    """Return the bodies, and the parameters, four per line."""
     values = [(item, getattr(example.law, item.name)) for item in fields(example.law) if not item.metadata["memory"]]
     exponent = getattr(example.law, "exponent", 1.5)
-    parts = [f"{item.name} {value:.4g} {unit_of(item, exponent)}".rstrip() for item, value in values if value is not None]
-    lines = [", ".join(parts[start : start + 4]) for start in range(0, len(parts), 4)]
+    parts = [f"{item.name} {brief(float(value), unit_of(item, exponent))}" for item, value in values if value is not None]
+    lines = [", ".join(parts[start : start + _PER_LINE]) for start in range(0, len(parts), _PER_LINE)]
     return "\n".join([f"{example.words}, without gravity", *lines])

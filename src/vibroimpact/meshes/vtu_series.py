@@ -11,13 +11,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from vibroimpact.errors import InputError
-from vibroimpact.files.atomic_write import write_text_file
-from vibroimpact.meshes.write_vtu import cells_of, checked_values, vtu_text
+from vibroimpact.meshes.write_vtu import cells_of, checked_values, grid_text, vtu_text
 from vibroimpact.structures.mesh import Mesh
 
 
 def write_vtu_series(mesh: Mesh, path: str | PathLike[str], times: ArrayLike, point_data: Iterable[Mapping[str, ArrayLike]]) -> list[Path]:
-    """Write nodal values of a mesh over time, in single precision.
+    """Write nodal values of a mesh over time, in single precision, into a folder that is being made: the files appear one by one.
 
     Parameters
     ----------
@@ -51,21 +50,20 @@ def write_vtu_series(mesh: Mesh, path: str | PathLike[str], times: ArrayLike, po
     ['tet_000.vtu', 'tet_001.vtu']
     """
     target, instants, data = Path(path), np.asarray(times, dtype=float), iter(point_data)
-    points = np.asarray(mesh.nodes, dtype=np.float32)
     nodes, ends, types = cells_of(mesh)
-    cells = nodes.astype(np.int32), ends.astype(np.int32), types
-    files: list[Path] = []
+    grid = grid_text(mesh.nodes.astype(np.float32), nodes.astype(np.int32), ends.astype(np.int32), types)  # the same at all times
+    folder, files = target.parent / target.stem, []
     try:
-        (target.parent / target.stem).mkdir(exist_ok=True)
+        folder.mkdir(exist_ok=True)
+        for number, values in zip(range(len(instants)), data, strict=False):
+            single = {name: checked_values(name, given, len(mesh.nodes)).astype(np.float32) for name, given in values.items()}
+            files.append(folder / f"{target.stem}_{number:03d}.vtu")
+            files[-1].write_bytes(vtu_text(grid, single).encode())
+        if len(files) < len(instants) or next(data, None) is not None:
+            raise InputError(f"there must be values for each of the {len(instants)} times, and no more", "point_data")
+        target.write_bytes(collection_text(instants.tolist(), [f"{target.stem}/{file.name}" for file in files]).encode())
     except OSError as error:
-        raise InputError(f"{target.parent / target.stem}: the folder can't be made: {error.strerror}") from None
-    for number, values in zip(range(len(instants)), data, strict=False):
-        single = {name: checked_values(name, given, len(points)).astype(np.float32) for name, given in values.items()}
-        files.append(target.parent / target.stem / f"{target.stem}_{number:03d}.vtu")
-        write_text_file(files[-1], vtu_text(points, *cells, single))
-    if len(files) < len(instants) or next(data, None) is not None:
-        raise InputError(f"there must be values for each of the {len(instants)} times, and no more", "point_data")
-    write_text_file(target, collection_text(instants.tolist(), [f"{target.stem}/{file.name}" for file in files]))
+        raise InputError(f"{error.filename or target}: it can't be written: {error.strerror}") from None
     return files
 
 

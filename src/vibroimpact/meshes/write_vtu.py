@@ -51,7 +51,7 @@ def write_vtu(mesh: Mesh, path: str | PathLike[str], point_data: Mapping[str, Ar
     True
     """
     values = {name: checked_values(name, data, len(mesh.nodes)) for name, data in (point_data or {}).items()}
-    write_text_file(path, vtu_text(np.asarray(mesh.nodes, dtype=float), *cells_of(mesh), values))
+    write_text_file(path, vtu_text(grid_text(np.asarray(mesh.nodes, dtype=float), *cells_of(mesh)), values))
 
 
 def cells_of(mesh: Mesh) -> tuple[Integers, Integers, NDArray[np.uint8]]:
@@ -66,14 +66,8 @@ def cells_of(mesh: Mesh) -> tuple[Integers, Integers, NDArray[np.uint8]]:
     return nodes, np.cumsum(sizes), types
 
 
-def vtu_text(
-    points: NDArray[np.floating],
-    nodes: NDArray[np.integer],
-    ends: NDArray[np.integer],
-    types: NDArray[np.uint8],
-    point_data: Mapping[str, NDArray[np.floating]],
-) -> str:
-    """Return the content of a .vtu file; each array is written with its own precision."""
+def grid_text(points: NDArray[np.floating], nodes: NDArray[np.integer], ends: NDArray[np.integer], types: NDArray[np.uint8]) -> str:
+    """Return the points and cells of a .vtu file, with all that comes before them; each array is written with its own precision."""
     rows = [
         '<?xml version="1.0"?>',
         '<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian" header_type="UInt64">',
@@ -87,6 +81,14 @@ def vtu_text(
         _array("offsets", ends),
         _array("types", types),
         "</Cells>",
+    ]
+    return "\n".join(rows)
+
+
+def vtu_text(grid: str, point_data: Mapping[str, NDArray[np.floating]]) -> str:
+    """Return the content of a .vtu file from its points and cells, by `grid_text`, and the values at its points."""
+    rows = [
+        grid,
         "<PointData>",
         *(_array(name, data) for name, data in point_data.items()),
         "</PointData>",

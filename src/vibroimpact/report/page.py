@@ -1,26 +1,87 @@
-"""HTML pages of all reports: template, embedded figures, and replacement of report files on disk."""
+"""HTML pages of all reports: template, charts with their data and scripts, and replacement of report files on disk."""
 
 from __future__ import annotations
 
+import zlib
 from base64 import b64encode
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from dataclasses import asdict
+from functools import cache
+from hashlib import sha256
 from importlib.resources import files
+from importlib.util import find_spec
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any
 
 from jinja2 import Environment, FunctionLoader, StrictUndefined, Template
+from markupsafe import Markup
 
+from vibroimpact.charts.chart import Chart
+from vibroimpact.charts.pack import pack
+from vibroimpact.charts.palette import GRID, GROUND, INK, LOOKS, SOFT
+from vibroimpact.charts.plotly import plotly_chart
 from vibroimpact.errors import InputError
 from vibroimpact.files.atomic_write import write_into
 
+_CHARTS = "vibroimpact.charts"
+_QUICK = 1
+"""Level of compression of the scripts and data of a page: it takes a tenth of a second."""
 
-class Picture(NamedTuple):
-    """A figure of a page: name, title, caption and data URI."""
 
-    name: str
-    title: str
-    caption: str
-    source: str
+def render_page(package: str, charts: Sequence[Chart], scene: dict[str, Any] | None = None, **values: Any) -> str:
+    """Return a report as one self-contained page whose charts can be explored, without network.
+
+    Parameters
+    ----------
+    package, scene, **values
+        As `render_drawn_page` takes them.
+    charts : sequence of Chart
+        The charts.
+    """
+    return render_drawn_page(package, [plotly_chart(chart) for chart in charts], scene, **values)
+
+
+def render_drawn_page(package: str, charts: Sequence[dict[str, Any]], scene: dict[str, Any] | None = None, **values: Any) -> str:
+    """Return a report as one self-contained page, of charts as `plotly_chart` returns them.
+
+    The content policy of the page allows its own scripts alone, by their checksums. Charts and plotly itself lie compressed in it.
+
+    Parameters
+    ----------
+    package : str
+        Package that holds the template `page.html.j2`, which extends the `base.html.j2` of this one.
+    charts : sequence of dict
+        The charts; the template places them by `figure(charts.NAME)`.
+    scene : dict, optional
+        The plate in motion, as `runs.scene.scene_of` returns it.
+    **values
+        What else the template takes; texts are escaped.
+    """
+    data = pack({"charts": charts, "scene": scene, "palette": palette()})
+    scripts = [
+        _script(_CHARTS, "scripts/arrays.js"),
+        _script(_CHARTS, "scripts/charts.js"),
+        _script(_CHARTS, "scripts/scene.js"),
+        _script(__package__, "page.js"),
+    ]
+    return template(package).render(
+        charts={chart["name"]: chart for chart in charts},
+        heights={chart["name"]: chart["layout"]["height"] + 90 for chart in charts},
+        keys={chart["name"]: _keys_of(chart) for chart in charts},
+        scene=scene is not None,
+        views=max((chart["views"] for chart in charts), key=len, default=()),
+        theme=Markup(_script(_CHARTS, "scripts/theme.css")),
+        scripts=[Markup(script) for script in scripts],
+        hashes=" ".join(f"'sha256-{digest}'" for digest in (*map(_digest, scripts), _plotly_digest())),
+        plotly=_plotly_compressed(),
+        data=b64encode(zlib.compress(data, _QUICK)).decode(),
+        **values,
+    )
+
+
+def _keys_of(chart: dict[str, Any]) -> list[str]:
+    """Return by what the points of a chart may be coloured."""
+    return list(dict.fromkeys(key for trace in chart["data"] for key in trace.get("keys", ())))
 
 
 def template(package: str) -> Template:
@@ -28,15 +89,49 @@ def template(package: str) -> Template:
 
     Values are escaped, and an undefined variable is an error.
     """
-    of = {"page.html.j2": package, "base.html.j2": __package__}
+    of = {"page.html.j2": package, "base.html.j2": __package__, "parts.html.j2": __package__}
     loader = FunctionLoader(lambda file: files(of[file]).joinpath(file).read_text(encoding="utf-8"))
     environment = Environment(loader=loader, autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
     return environment.get_template("page.html.j2")
 
 
-def picture(name: str, title: str, words: str, svg: bytes) -> Picture:
-    """Return a figure for a page, embedded as a data URI."""
-    return Picture(name, title, words, f"data:image/svg+xml;base64,{b64encode(svg).decode()}")
+def palette() -> dict[str, dict[str, str]]:
+    """Return the colour of every role on light and on dark ground.
+
+    Examples
+    --------
+    >>> palette()["dark"]["ground"]
+    '#14181d'
+    """
+    looks = {"ground": GROUND, "ink": INK, "soft": SOFT, "grid": GRID, **LOOKS}
+    return {theme: {role: asdict(look)[theme] for role, look in looks.items()} for theme in ("light", "dark")}
+
+
+def _script(package: str, file: str) -> str:
+    return files(package).joinpath(file).read_text(encoding="utf-8")
+
+
+@cache
+def plotly_script() -> str:
+    """Return the text of plotly's script, from the installed package, which is not imported for it."""
+    found = find_spec("plotly")
+    assert found is not None  # a dependency of this package
+    assert found.submodule_search_locations is not None
+    return (Path(found.submodule_search_locations[0]) / "package_data" / "plotly.min.js").read_text(encoding="utf-8")
+
+
+@cache
+def _plotly_digest() -> str:
+    return _digest(plotly_script())
+
+
+@cache
+def _plotly_compressed() -> str:
+    return b64encode(zlib.compress(plotly_script().encode(), _QUICK)).decode()
+
+
+def _digest(script: str) -> str:
+    return b64encode(sha256(script.encode()).digest()).decode()
 
 
 def replace_report_files(folder: Path, write: Callable[[Path], None], stale: tuple[str, ...] = ()) -> None:

@@ -1,14 +1,18 @@
-"""Parallel projection of a plate and the objects on it, viewed obliquely from above."""
+"""Parallel projection of a plate and the objects on it, viewed obliquely from above, and the light on them."""
 
 from __future__ import annotations
 
 import numpy as np
-from matplotlib.axes import Axes
 
 from vibroimpact.arrays import Floats
 
 TURN, TILT = np.radians(-32.0), np.radians(24.0)
 """Viewing direction: azimuth around the vertical, and elevation above the plane [rad]."""
+
+VIEWER: Floats = np.array([-np.sin(TURN) * np.cos(TILT), -np.cos(TURN) * np.cos(TILT), np.sin(TILT)])
+"""Unit vector towards the viewer."""
+
+_LIGHT: Floats = np.array([-0.35, -0.45, 0.82])
 
 
 def project(x: Floats, y: Floats, z: Floats) -> tuple[Floats, Floats]:
@@ -18,17 +22,22 @@ def project(x: Floats, y: Floats, z: Floats) -> tuple[Floats, Floats]:
     return np.asarray(across), np.asarray(up)
 
 
+def projected(points: Floats) -> Floats:
+    """Return the image coordinates of points (..., 3), (..., 2)."""
+    return np.stack(project(*np.moveaxis(points, -1, 0)), axis=-1)
+
+
 def depth(x: Floats, y: Floats) -> Floats:
     """Return the distance of points of the plane along the horizontal viewing direction, larger farther from the viewer."""
     return np.asarray(x * np.sin(TURN) + y * np.cos(TURN))
 
 
-def show_whole(axes: Axes, across: tuple[float, float], up: tuple[float, float], ratio: float) -> None:
-    """Set the limits of axes of an aspect ratio (width over height) so that a range fits in equal scales, with margins for labels."""
-    width = (across[1] - across[0]) * 1.08
-    height = (up[1] - up[0]) * 1.22
-    width = max(width, height * ratio)
-    height = width / ratio
-    middle = 0.5 * (across[0] + across[1]), 0.5 * (up[0] + up[1])
-    axes.set_xlim(middle[0] - 0.5 * width, middle[0] + 0.5 * width)
-    axes.set_ylim(middle[1] - 0.5 * height, middle[1] + 0.5 * height)
+def light_on(normals: Floats) -> Floats:
+    """Return the light on surfaces with unit normals (..., 3), from 0 in the shade to 1.
+
+    Examples
+    --------
+    >>> light_on(np.array([[0.0, 0.0, 1.0], [0.0, 0.0, -1.0]])).round(2).tolist()
+    [0.82, 0.0]
+    """
+    return np.asarray(np.clip(normals @ _LIGHT / np.linalg.norm(_LIGHT), 0.0, 1.0))

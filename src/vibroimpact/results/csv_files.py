@@ -74,8 +74,9 @@ def signal_columns(signal: Signal) -> dict[str, TableColumn]:
 def signal_csv(signal: Signal) -> str:
     """Return a signal as the text of a CSV file: times with 12 significant digits, values in full precision."""
     (time_name, time), (name, column) = signal_columns(signal).items()
-    rows = (f"{at:.12g},{value!r}" for at, value in zip(time.values.tolist(), column.values.tolist(), strict=True))
-    return "\n".join([f"{time_name},{name}", *rows, ""])
+    rows = np.stack([time.values, column.values], axis=1)
+    # all rows in one operation: a signal has 100,000 samples and more
+    return f"{time_name},{name}\n" + "%.12g,%r\n" * len(rows) % tuple(rows.ravel().tolist())
 
 
 def write_signal_files(signals: Mapping[str, Signal], directory: Path) -> None:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from vibroimpact.arrays import Floats
-from vibroimpact.results.surface_grid import surface_grid
+from vibroimpact.results.surface_grid import POINTS, SurfaceGrid, surface_grid
 
 if TYPE_CHECKING:
     from vibroimpact.dynamics.response import Response
@@ -55,7 +55,7 @@ class Deflection:
     contact: tuple[float, float]
 
 
-def frame_times_of(response: Response) -> Floats:
+def frame_times_of(response: Response, frames: int = _FRAMES) -> Floats:
     """Return the frame times of a run [s], from just before the first touch on; empty without an impact or without modes.
 
     The period that spaces the last frames is that of the lowest mode of the plate, or of the sphere if the plate has no modes.
@@ -65,18 +65,23 @@ def frame_times_of(response: Response) -> Floats:
     if modes is None or not len(impacts["impact"]):
         return np.zeros(0)
     touch, duration = (float(impacts[name][0]) for name in ("time_s", "duration_s"))
-    return frame_times(touch, duration, 1.0 / float(modes.frequencies[0]), float(response.end_time[0]), _FRAMES)
+    return frame_times(touch, duration, 1.0 / float(modes.frequencies[0]), float(response.end_time[0]), frames)
 
 
-def deflection_of(response: Response) -> Deflection | None:
+def deflection_of(response: Response, frames: int = _FRAMES) -> Deflection | None:
     """Return the plate's deflection at the frame times of a run; None if the plate has no modal model with a mesh, or no impact occurs."""
-    model, time = response.problem.models.get("plate"), frame_times_of(response)
+    model, time = response.problem.models.get("plate"), frame_times_of(response, frames)
     if model is None or not len(time):
         return None
-    grid = surface_grid(model.mesh)
-    # interpolated once per mode: the deflection at any time is then a product with the modal coordinates
-    vertical = model.shapes.reshape(len(model.shapes), len(model.mesh.nodes), -1)[:, :, 2]
-    height = response.modal(time)["plate"] @ grid.interpolate(vertical).reshape(len(vertical), -1)
+
+    def shapes_on_grid() -> tuple[SurfaceGrid, Floats]:
+        """Interpolate once per mode: the deflection at any time is then a product with the modal coordinates."""
+        grid = surface_grid(model.mesh)
+        vertical = model.shapes.reshape(len(model.shapes), len(model.mesh.nodes), -1)[:, :, 2]
+        return grid, grid.interpolate(vertical).reshape(len(vertical), -1)
+
+    grid, shapes = model.cached("vertical displacement on a grid", shapes_on_grid, POINTS)
+    height = response.modal(time)["plate"] @ shapes
     history = response.at(time)
     return Deflection(
         time,

@@ -7,6 +7,7 @@ import platform
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -16,14 +17,17 @@ from vibroimpact.cases.conditions import DropSummary
 from vibroimpact.cases.doubts import doubts
 from vibroimpact.cases.limits.plate_waves import plate_theory_error
 from vibroimpact.cases.sensor_doubts import sensor_doubts
+from vibroimpact.dynamics.change_by_impact import RELATIVE_CHANGE, change_by_impact
 from vibroimpact.dynamics.response import Response
 from vibroimpact.dynamics.sensors.recording import Signal
 from vibroimpact.dynamics.truncation import time_of_contact
-from vibroimpact.dynamics.vibrating.sensitivity import RELATIVE_CHANGE, change_by_impact
 from vibroimpact.resolved_case import ResolvedCase
 from vibroimpact.results.deflection import Deflection, deflection_of
 from vibroimpact.results.fine_history import fine_history
 from vibroimpact.results.peaks import Peaks, peaks_of
+
+if TYPE_CHECKING:
+    import plotly.graph_objects as go
 
 
 @dataclass(frozen=True)
@@ -110,9 +114,25 @@ class Result:
         """Name of the case; "a drop" if it has none."""
         return str(self.case.get("name", "")) or "a drop"
 
+    def plot(self, name: str = "position") -> go.Figure:
+        """Return a chart as a figure of plotly, by its name; see `vibroimpact.plot_result`."""
+        import vibroimpact  # an import upwards, as in Response.save: charts lie above results
+
+        return vibroimpact.plot_result(self, name)
+
+    def _repr_html_(self) -> str:
+        import vibroimpact
+
+        return vibroimpact.result_html(self)
+
 
 def result_of(response: Response) -> Result:
     """Return the result of a response to one drop: its tables, refined history, peaks, signals and deflection.
+
+    Parameters
+    ----------
+    response : Response
+        Response to one drop, as `simulate` returns it.
 
     Raises
     ------

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from scipy.sparse import csr_array
 
 POINTS = 3000
-"""Approximate number of grid points."""
+"""Approximate number of grid points by default."""
 
 _FEWEST, _MOST = 11, 241  # points along one side
 _EDGE = 1e-6  # tolerance of barycentric coordinates and grid steps: a point on the edge of a triangle counts as inside it
@@ -42,11 +42,18 @@ class SurfaceGrid:
         return np.asarray(found.reshape(*values.shape[:-1], *self.on_body.shape))
 
 
-def surface_grid(mesh: Mesh) -> SurfaceGrid:
-    """Return a grid of about 3000 points over the upper side of a mesh, with a grid point at the middle of its bounding box.
+def surface_grid(mesh: Mesh, points: int = POINTS) -> SurfaceGrid:
+    """Return a regular grid over the upper side of a mesh, with a grid point at the middle of its bounding box.
 
     The outer faces are subdivided into triangles smaller than the grid steps, and each grid point is interpolated in the uppermost
     triangle that contains it. This avoids the inverse mapping to element coordinates, and the mesh may have any outline and holes.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        The mesh.
+    points : int
+        Approximate number of grid points.
 
     Examples
     --------
@@ -59,7 +66,7 @@ def surface_grid(mesh: Mesh) -> SurfaceGrid:
 
     low, high = mesh.nodes.min(axis=0)[:2], mesh.nodes.max(axis=0)[:2]
     span = high - low
-    sides = np.sqrt(POINTS * span / span[::-1])
+    sides = np.sqrt(points * span / span[::-1])
     columns, rows = (2 * int(np.clip(side, _FEWEST, _MOST) / 2) + 1 for side in sides)
     x, y = np.linspace(low[0], high[0], columns), np.linspace(low[1], high[1], rows)
     step = np.array([x[1] - x[0], y[1] - y[0]])
@@ -84,8 +91,8 @@ def surface_grid(mesh: Mesh) -> SurfaceGrid:
             higher = height > found[index]
             index = index[higher]
             found[index], nodes[index], weight[index] = height[higher], triangles[here[order][higher]], share[order][higher]
-    points = np.repeat(np.arange(len(found)), 3)
-    chosen = csr_array((weight.ravel(), (points, nodes.ravel())), shape=(len(found), len(at)))
+    rows_of = np.repeat(np.arange(len(found)), 3)
+    chosen = csr_array((weight.ravel(), (rows_of, nodes.ravel())), shape=(len(found), len(at)))
     return SurfaceGrid(x, y, csr_array(chosen @ motion), np.isfinite(found).reshape(rows, columns))
 
 

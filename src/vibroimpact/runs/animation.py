@@ -5,32 +5,32 @@ from __future__ import annotations
 from io import BytesIO
 
 import numpy as np
-from matplotlib import colormaps
 from matplotlib.artist import Artist
+from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.collections import PolyCollection
-from matplotlib.colors import Normalize
+from matplotlib.colors import LinearSegmentedColormap, Normalize
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle, Ellipse
 from numpy.typing import NDArray
 from PIL import Image
 
 from vibroimpact.arrays import Floats
-from vibroimpact.report.projection import TILT, depth, project, show_whole
-from vibroimpact.report.style import INK, style
+from vibroimpact.charts.palette import DIVERGING, INK
+from vibroimpact.charts.print_style import print_style
+from vibroimpact.report.projection import TILT, depth, project
 from vibroimpact.results.deflection import Deflection
 from vibroimpact.results.result import Result
-from vibroimpact.runs.figure_data import touch_height
+from vibroimpact.runs.chart_data import touch_height
+from vibroimpact.runs.scene import exaggeration
 from vibroimpact.units.display import fixed, text
 
 _SIZE, _DPI = (5.8, 3.3), 100
 _CELLS = 22
 """Number of cells along the longer side of the plate; more would not be visible."""
-_HEIGHT = 0.16
-"""Largest drawn deflection, relative to the longer side of the plate."""
 _MILLISECONDS = 70
 """Duration of a frame."""
-_MAP, _SHADES = "RdBu_r", 25
+_MAP, _SHADES = LinearSegmentedColormap.from_list("deflection", list(DIVERGING)), 25
 """Colour map of the plate, and number of its shades in the palette."""
 
 
@@ -47,7 +47,7 @@ def animate(result: Result) -> bytes:
     """
     deflection = result.deflection
     assert deflection is not None  # checked by the caller
-    with style():
+    with print_style():
         scene = _AnimationScene(result, deflection)
         frames = [Image.fromarray(scene.frame(number)) for number in range(len(deflection.time))]
     palette = _palette()
@@ -59,22 +59,12 @@ def animate(result: Result) -> bytes:
 
 def _palette() -> Image.Image:
     """Return an image with the palette of all frames: the colours of the plate, the same darkened for mesh lines, and greys."""
-    plate = 255.0 * colormaps[_MAP](np.linspace(0.0, 1.0, _SHADES))[:, :3]
+    plate = 255.0 * _MAP(np.linspace(0.0, 1.0, _SHADES))[:, :3]
     greys = np.repeat(np.linspace(0.0, 255.0, _SHADES)[:, None], 3, axis=1)
     colours = np.concatenate([plate, 0.8 * plate, greys]).round().astype(np.uint8)
     picture = Image.new("P", (1, 1))
     picture.putpalette(colours.tobytes())
     return picture
-
-
-def exaggeration(deflection: Deflection) -> float:
-    """Return the factor by which the deflection is exaggerated: 1, 2 or 5 times a power of ten; 1 if there is no deflection."""
-    largest = float(np.nanmax(np.abs(deflection.height)))
-    if largest == 0.0:
-        return 1.0
-    wanted = _HEIGHT * float(max(np.ptp(deflection.x), np.ptp(deflection.y))) / largest
-    power = 10.0 ** np.floor(np.log10(wanted))
-    return float(max((step * power for step in (1.0, 2.0, 5.0) if step * power <= wanted), default=power))
 
 
 class _AnimationScene:
@@ -104,11 +94,12 @@ class _AnimationScene:
         most = self.factor * float(np.nanmax(np.abs(self.deflection.height)))
         self.plate = PolyCollection([], cmap=_MAP, norm=Normalize(-most, most), edgecolors="#00000030", linewidths=0.3)
         self.shadow = Ellipse((0.0, 0.0), 2.0 * self.radius, 2.0 * self.radius * np.sin(TILT), facecolor="#000000", alpha=0.25)
-        self.ball = Circle((0.0, 0.0), self.radius, facecolor="#8d8d8d", edgecolor=INK, linewidth=1.0)
+        self.ball = Circle((0.0, 0.0), self.radius, facecolor="#8d8d8d", edgecolor=INK.light, linewidth=1.0)
         self.shine = Ellipse((0.0, 0.0), 0.5 * self.radius, 0.35 * self.radius, angle=35.0, facecolor="white", alpha=0.7)
-        self.clock = figure.text(0.03, 0.93, "", fontsize=12, color=INK)
-        figure.text(0.03, 0.045, f"plate's deflection drawn {self.factor:g} times too large; ball and gap to scale", fontsize=8, color=INK)
-        figure.text(0.97, 0.045, "red up, blue down", fontsize=8, color=INK, ha="right")
+        self.clock = figure.text(0.03, 0.93, "", fontsize=12, color=INK.light)
+        words = f"plate's deflection drawn {self.factor:g} times too large; ball and gap to scale"
+        figure.text(0.03, 0.045, words, fontsize=8, color=INK.light)
+        figure.text(0.97, 0.045, "red up, blue down", fontsize=8, color=INK.light, ha="right")
         for artist in (self.plate, self.shadow, self.ball, self.shine):
             artist.set_animated(True)
         self.clock.set_animated(True)
@@ -124,7 +115,7 @@ class _AnimationScene:
         swing = self.factor * float(np.nanmax(np.abs(deflection.height)))
         ball = project(*self.contact, np.array(highest))[1]
         top = max(float(up.max()) + 0.5 * swing, min(float(ball), float(up.max()) + 0.5 * swing + 4.0 * self.radius))
-        show_whole(self.axes, (float(across.min()), float(across.max())), (float(up.min()) - 0.3 * swing, top), _SIZE[0] / _SIZE[1])
+        _show_whole(self.axes, (float(across.min()), float(across.max())), (float(up.min()) - 0.3 * swing, top), _SIZE[0] / _SIZE[1])
 
     def _ball_height(self, frame: int | slice) -> Floats:
         """Return the drawn height of the sphere's centre [m]: at its true gap above the exaggerated plate."""
@@ -157,6 +148,17 @@ class _AnimationScene:
         for artist in self.movers:
             artist.draw(renderer)
         return np.array(self.canvas.buffer_rgba())[..., :3]  # type: ignore[no-untyped-call]
+
+
+def _show_whole(axes: Axes, across: tuple[float, float], up: tuple[float, float], ratio: float) -> None:
+    """Set the limits of axes of an aspect ratio (width over height) so that a range fits in equal scales, with margins for labels."""
+    width = (across[1] - across[0]) * 1.08
+    height = (up[1] - up[0]) * 1.22
+    width = max(width, height * ratio)
+    height = width / ratio
+    middle = 0.5 * (across[0] + across[1]), 0.5 * (up[0] + up[1])
+    axes.set_xlim(middle[0] - 0.5 * width, middle[0] + 0.5 * width)
+    axes.set_ylim(middle[1] - 0.5 * height, middle[1] + 0.5 * height)
 
 
 def _clock(since: float) -> str:

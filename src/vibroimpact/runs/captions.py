@@ -1,22 +1,21 @@
-"""Captions of the figures and of the animation of a run, with its numbers."""
+"""Captions of the charts of a run and of its plate in motion, with its numbers."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from vibroimpact.dynamics.problem import STANDARD_GRAVITY
-from vibroimpact.report.style import ENLARGED
 from vibroimpact.results.result import Result
-from vibroimpact.runs.animation import exaggeration
-from vibroimpact.runs.figure_data import contacts_with_duration, enlarged_contacts
-from vibroimpact.runs.sensor_figures import MOST, drawn_sensors
+from vibroimpact.runs.chart_data import contacts_with_duration
+from vibroimpact.runs.scene import exaggeration
+from vibroimpact.runs.sensor_charts import MOST, drawn_sensors
 from vibroimpact.runs.spectrum import amplitude_spectrum, first_response
 from vibroimpact.runs.tables import energy_text, impact_text, significant_figures
 from vibroimpact.units.display import certain, digits, fixed, text
 
 
 def caption(name: str, result: Result) -> str:
-    """Return the caption of a figure of the result, by the name that `draw_figures` gives it."""
+    """Return the caption of a chart of the result, by the name of the chart."""
     if name in (sensors := drawn_sensors(result)):
         return sensor_caption(result, sensors[name])
     return _WRITERS[name](result)
@@ -46,7 +45,7 @@ def _position(result: Result) -> str:
     rebound = float(result.impacts["rebound_height_m"][0])
     if np.isfinite(rebound) and result.impacts["separation_speed_m_s"][0] > 0.0:
         words += f" The first rebound takes it to {text(rebound, 'm')}."
-    return f"{words} {_enlarged(result)}".strip()
+    return words
 
 
 def _force(result: Result) -> str:
@@ -97,9 +96,7 @@ def _loops(result: Result) -> str:
 
 def _energy(result: Result) -> str:
     put_in = result.energy["input_J"]
-    words = (
-        f"Of {text(put_in, 'J')} put in, {energy_text(result, 'contact_dissipated_J', 'plastic_work_J')} are lost in contact by the end."
-    )
+    words = f"Of {text(put_in, 'J')} put in, {energy_text(result, 'contact_dissipated_J', 'plastic_work_J')} is lost in contact by the end."
     words += _vibration(result) if result.vibrates else ""
     if np.min(result.history["potential_J"]) < -0.01 * put_in:
         words += " Below the height of first touch the potential energy is negative; there the other bands begin below zero."
@@ -110,14 +107,7 @@ def _vibration(result: Result) -> str:
     """Return a sentence on the energy of vibration: the part dissipated by damping, and the part left at the end."""
     damped = energy_text(result, "sphere_damping_J", "plate_damping_J")
     left = energy_text(result, "sphere_vibration_J", "sphere_strain_J", "plate_kinetic_J", "plate_strain_J")
-    return f" The damping of the bodies took {damped}, and {left} are still in their motion."
-
-
-def _enlarged(result: Result) -> str:
-    total = len(contacts_with_duration(result))
-    if total <= ENLARGED or len(enlarged_contacts(result)) >= total:
-        return ""
-    return f"Of the {total} contacts the first {ENLARGED} are enlarged."
+    return f" The damping of the bodies took {damped}, and {left} is still in their motion."
 
 
 def _in_whole_run(result: Result) -> str:
@@ -126,7 +116,7 @@ def _in_whole_run(result: Result) -> str:
     part = float(np.sum(result.impacts["duration_s"][found])) / span
     if part > 0.02:
         return ""
-    return f"Contact takes {digits(100.0 * part, 2)} % of the run, so it shows as thin lines in the whole run and is enlarged beneath."
+    return f"Contact takes {digits(100.0 * part, 2)} % of the run, so in the whole run it shows as thin lines."
 
 
 def sphere_energy_caption(result: Result) -> str:
@@ -169,18 +159,16 @@ def deflection_caption(result: Result) -> str:
     """Return the caption of the maps of the plate's deflection."""
     assert result.deflection is not None  # as the figure exists
     largest = float(np.nanmax(np.abs(result.deflection.height)))
-    words = "All pictures are in one scale; the numbers in the corners are the least and the largest displacement upwards, in its unit."
-    watched = " Triangles: sensors." if result.signals else ""
-    return f"Displacement of the upper side, up to {text(largest, 'm')} in all frames. {words}{watched}"
+    return f"Displacement of the upper side, up to {text(largest, 'm')}, all in one scale; full lines up, dashed down, thick zero."
 
 
-def animation_caption(result: Result) -> str:
-    """Return the caption of the animation."""
-    assert result.deflection is not None  # as the animation exists
+def scene_caption(result: Result) -> str:
+    """Return the caption of the plate in motion."""
+    assert result.deflection is not None  # as the scene exists
     factor = exaggeration(result.deflection)
     return (
-        f"The first visit in slow motion, from above and aside. The plate's deflection is drawn {factor:g} times too large; the ball "
-        "and its gap to the plate are to scale. Frames follow each other the closer the faster things happen: each tells its time."
+        f"The first visit in slow motion. The plate's deflection is drawn {factor:g} times too large; the ball and its gap to the plate "
+        "are to scale. The clock runs the faster the less happens."
     )
 
 

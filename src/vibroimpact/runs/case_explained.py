@@ -13,7 +13,7 @@ from vibroimpact.cases.build import resolved_case
 from vibroimpact.cases.case import Case
 from vibroimpact.cases.costs import describe_costs
 from vibroimpact.cases.doubts import doubts
-from vibroimpact.cases.expected import expected_of
+from vibroimpact.cases.expected import expected_of, expected_restitution
 from vibroimpact.cases.rigid import (
     contact_laws_of,
     contact_pair,
@@ -27,8 +27,6 @@ from vibroimpact.cases.rigid import (
 from vibroimpact.cases.schema import SensorSection
 from vibroimpact.contact.law import CompliantLaw, ContactLaw, unit_of
 from vibroimpact.dynamics.problem import STANDARD_GRAVITY
-from vibroimpact.dynamics.restitution import achieved_restitution, law_achieving
-from vibroimpact.errors import InputError
 from vibroimpact.materials import RIGID, Material
 from vibroimpact.report.terminal_table import facts
 from vibroimpact.runs.text import doubt_lines
@@ -152,17 +150,11 @@ def _filter(sensor: SensorSection) -> str:
 
 def _restitution_lines(law: ContactLaw, mass: float, speed: float) -> list[str]:
     """Return sentences on the restitution that a law achieves, and on the parameter that would achieve the one asked."""
-    achieved = float(achieved_restitution(law, mass, speed))
-    asked = getattr(law, "restitution", achieved) if law.free_parameter == "restitution" else achieved
-    if abs(achieved - asked) < 5e-4:
+    asked, achieved, to_ask, refusal = expected_restitution(law, mass, speed)
+    if math.isnan(to_ask) and not refusal:
         return [f"{achieved:.5g} achieved at the first touch, without gravity"]
     lines = [f"{asked:.5g} asked, {achieved:.5g} achieved at the first touch, without gravity"]
-    try:
-        better = getattr(law_achieving(law, asked, mass, speed), "restitution", asked)
-        lines.append(f"restitution = {better:.6g} would achieve {asked:.5g}")
-    except InputError as error:
-        lines.append(error.message)
-    return lines
+    return [*lines, refusal or f"restitution = {to_ask:.6g} would achieve {asked:.5g}"]
 
 
 def _material_text(material: Material) -> str:

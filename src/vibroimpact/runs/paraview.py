@@ -22,6 +22,8 @@ _FRAMES = 40
 """Number of frames, at most."""
 _MOST_BYTES = 40e6
 """Limit of the size of all files together, which reduces the number of frames of fine meshes."""
+_BLOCK = 1024
+"""Number of degrees of freedom whose mode shapes are multiplied at all times together: they lie in the processor's cache."""
 
 
 def write_paraview(response: Response, directory: Path) -> None:
@@ -38,10 +40,13 @@ def write_paraview(response: Response, directory: Path) -> None:
     directory : pathlib.Path
         Existing directory.
     """
-    from vibroimpact.meshes.vtu_series import series_size, write_vtu_series  # here, as it imports scipy.sparse
+    models = response.problem.models
+    if not models:
+        return
+    from vibroimpact.meshes.vtu_series import series_size, write_vtu_series  # not needed by a case with rigid bodies
 
-    models, times = response.problem.models, frame_times_of(response)
-    if not models or not len(times):
+    times = frame_times_of(response)
+    if not len(times):
         return
     size = sum(series_size(model.mesh, 2 if name == "sphere" else 1) for name, model in models.items())
     count = min(_FRAMES, len(times), int(_MOST_BYTES / size))
@@ -69,8 +74,12 @@ def write_paraview(response: Response, directory: Path) -> None:
 
 def _moved(model: ModalModel, modal: Floats) -> Iterator[Floats]:
     """Yield the nodal displacements at each time, (nodes, 3) [m]."""
-    for one in modal:
-        yield (one @ model.shapes).reshape(len(model.mesh.nodes), -1)[:, :3]
+    moved = np.empty((len(modal), model.shapes.shape[1]))
+    for first in range(0, moved.shape[1], _BLOCK):
+        here = slice(first, first + _BLOCK)
+        for number, one in enumerate(modal):
+            moved[number, here] = one @ model.shapes[:, here]
+    yield from moved.reshape(len(modal), len(model.mesh.nodes), -1)[:, :, :3]
 
 
 def _at_first_touch(response: Response, offset: float) -> Mesh:

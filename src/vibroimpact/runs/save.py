@@ -1,4 +1,4 @@
-"""Writing of the result folder of one drop: data files, ParaView files, figures and report."""
+"""Writing of the result folder of one drop: data files, ParaView files and report."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from vibroimpact.runs.paraview import write_paraview
 
 
 def save_result(response: Response, directory: str | PathLike[str], *, force: bool = False) -> Path:
-    """Write the result folder of one drop: data, figures and report. The write is atomic: the folder appears complete or not at all.
+    """Write the result folder of one drop: data and report. The write is atomic: the folder appears complete or not at all.
 
     Parameters
     ----------
@@ -51,7 +51,7 @@ def save_result(response: Response, directory: str | PathLike[str], *, force: bo
 def write_data(response: Response, folder: Path) -> Result:
     """Write the data and ParaView files of one drop into a folder, and return the result that they hold.
 
-    Figures and report need the result only: a caller that is done with the response can release its memory before they are drawn.
+    Report and figures need the result only: a caller that is done with the response can release its memory before they are made.
     """
     result = result_of(response)
     write_result(result, folder)

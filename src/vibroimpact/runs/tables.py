@@ -39,8 +39,11 @@ _SHOWN_COLUMNS = (
     "contacts",
     "sensitivity",
 )
-"""Columns shown of the impact table. That of contacts is shown only if a visit has several, caused by vibration of the plate or the
-sphere, and that of sensitivity only if it reduces the number of certain figures."""
+"""Columns shown of the impact table. Restitution asked is shown only where a law asks for one, that of contacts only if a visit has
+several, caused by vibration of the plate or the sphere, and that of sensitivity only if it reduces the number of certain figures."""
+
+_ROUNDING = 1e-12
+"""Part of the energy put in up to which an energy is a rounding error."""
 
 _SLOW = 0.1  # relative to the approach speed: lowest separation speed used in estimating the certainty of energies
 SUM, PUT_IN = "Sum", "Put in at the start"
@@ -77,9 +80,14 @@ def impact_table(result: Result) -> ImpactTable:
 
 
 def shown_columns(result: Result) -> list[str]:
-    """Return the names of the columns of the impact table that are shown for a result."""
-    told = {"contacts": several_contacts(result.impacts), "sensitivity": loses_digits(result.change_by_impact)}
-    return [name for name in _SHOWN_COLUMNS if told.get(name, True)]
+    """Return the names of the columns of the impact table that are shown for a result: those that have a value.
+
+    An instantaneous law has neither a duration nor an indentation.
+    """
+    impacts = result.impacts
+    told = {"contacts": several_contacts(impacts), "sensitivity": loses_digits(result.change_by_impact)}
+    told |= {name: bool(np.any(impacts[name])) for name in ("duration_s", "max_indentation_m")}
+    return [name for name in _SHOWN_COLUMNS if told.get(name, True) and np.isfinite(impacts[name]).any()]
 
 
 def several_contacts(impacts: Mapping[str, Floats]) -> bool:
@@ -88,9 +96,12 @@ def several_contacts(impacts: Mapping[str, Floats]) -> bool:
 
 
 def ledger_table(result: Result) -> tuple[str, list[LedgerRow]]:
-    """Return the final ledger as text: its unit, and a row for each entry, their sum and the energy put in, in certain figures."""
+    """Return the final ledger as text: its unit, and a row for each entry, their sum and the energy put in, in certain figures.
+
+    Entries that are zero but for rounding are left out.
+    """
     put_in, scale = result.energy["input_J"], multiple("J", result.energy["input_J"])
-    values = {name: result.energy[name] for name in (*LEDGER, *VIBRATION_LEDGER) if name in result.energy}
+    values = {name: result.energy[name] for name in (*LEDGER, *VIBRATION_LEDGER) if abs(result.energy.get(name, 0.0)) > _ROUNDING * put_in}
     figures = {name: _certain_figures_of_energy(name, result) for name in values}
     values |= {SUM: sum(values.values()), PUT_IN: put_in}
 
@@ -108,6 +119,8 @@ def ledger_table(result: Result) -> tuple[str, list[LedgerRow]]:
 def energy_text(result: Result, *entries: str) -> str:
     """Return the sum of entries of the ledger as text, with unit and percentage of the energy put in, in certain figures."""
     value, put_in = sum(result.energy[entry] for entry in entries), result.energy["input_J"]
+    if abs(value) <= _ROUNDING * put_in:
+        return "nothing"
     figures = min(_certain_figures_of_energy(entry, result) for entry in entries)
     scale, part = multiple("J", value), 100.0 * value / put_in
     percent = certain(fixed(part, 1), part, figures)
@@ -138,7 +151,7 @@ def _certain_figures_of_energy(entry: str, result: Result) -> int:
 
 def _to_same_decimals(value: float, whole: float, significant: int) -> str:
     """Return a part of a sum as text with the decimals of the total; a very small part has its own significant digits."""
-    if abs(value) < 1e-12 * whole:
+    if abs(value) < _ROUNDING * whole:
         return "0"
     decimals = max(0, significant - 1 - math.floor(math.log10(whole)))
     if decimals > 12:

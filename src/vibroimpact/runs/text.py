@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-import numpy as np
 from rich.console import Group, RenderableType
 from rich.text import Text
 
@@ -39,9 +38,7 @@ def impact_table_for_terminal(result: Result, width: int) -> RenderableType:
     if not number:
         return Text("No impact within the run.")
     rows = [index for index in range(number) if not _FIRST_ROWS <= index < number - _LAST_ROWS]
-    asked = bool(np.isfinite(impacts["restitution_asked"]).any())
-    shown = [name for name in shown_columns(result) if asked or name != "restitution_asked"]
-    cells = {name: formatted_column(name, impacts[name], change) for name in shown}
+    cells = {name: formatted_column(name, impacts[name], change) for name in shown_columns(result)}
     columns = {
         name: numbers(ALL_IMPACT_COLUMNS[name].short, unit, [shown[index] for index in rows]) for name, (unit, shown) in cells.items()
     }
@@ -54,11 +51,9 @@ def impact_table_for_terminal(result: Result, width: int) -> RenderableType:
 
 
 def energy_table_for_terminal(result: Result) -> RenderableType:
-    """Return the final energy ledger for a terminal, without entries that are zero to rounding."""
+    """Return the final energy ledger for a terminal."""
     unit, ledger = ledger_table(result)
-    whole = result.energy["input_J"]
-    # entries below 1e-12 of the energy put in are rounding errors
-    shown = [row for row in ledger if row.name != SUM and abs(result.energy.get(row.name, whole)) > 1e-12 * abs(whole)]
+    shown = [row for row in ledger if row.name != SUM]
     names = [row.name.removesuffix("_J").replace("_", " ") if row.name != PUT_IN else "put in" for row in shown]
     columns = (
         TerminalColumn("energy at the end", names, text=True),

@@ -6,19 +6,14 @@ three times the time for whole plates of bricks, the largest systems here; and i
 
 from __future__ import annotations
 
-import math
-import os
-from pathlib import Path
-
 import numpy as np
 from scipy.sparse import csr_array
-from scipy.sparse.linalg import SuperLU, splu
 
 from vibroimpact.arrays import Bools, Floats, Integers
 from vibroimpact.errors import ComputationError, InputError
+from vibroimpact.structures.free_memory import check_memory
 
 _LEAF = 40  # nodes of a part that is not dissected further; smaller parts do not reduce the fill
-_PART_OF_MEMORY = 0.8  # of the free memory, as the other arrays need some too
 _ROUNDING = 1e-15  # relative to the diagonal
 _MAX_ENTRIES = 71_000_000  # of the matrix; SuperLU reserves thirty times as many, and has 32-bit indices
 BYTES_PER_ENTRY = 12.0
@@ -44,12 +39,14 @@ class Factors:
     """
 
     def __init__(self, matrix: csr_array, order: Integers) -> None:
+        from scipy.sparse.linalg import splu  # imported late: modes that are stored do not need it
+
         self._order = order
         permuted = _without_rounding(matrix)[order][:, order].tocsc()
         if permuted.nnz > _MAX_ENTRIES:
             raise InputError(f"{len(order)} degrees of freedom are more than the solver can number; use larger elements")
         try:
-            self._factors: SuperLU = splu(permuted, permc_spec="NATURAL", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+            self._factors = splu(permuted, permc_spec="NATURAL", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
         except RuntimeError:
             raise ComputationError("the stiffness matrix is singular: part of the body can move without resistance") from None
         except MemoryError:
@@ -177,29 +174,3 @@ def check_factor_memory(dofs: int, entries: float) -> None:
         With the estimate and the free memory.
     """
     check_memory(BYTES_PER_ENTRY * entries, f"the factors of {dofs} degrees of freedom need", "use larger elements")
-
-
-def check_memory(need: float, what: str, remedy: str = "ask for fewer, or use larger elements") -> None:
-    """Raise if `need` [bytes] exceeds the free memory less a reserve; `what` and `remedy` are for the message.
-
-    Raises
-    ------
-    InputError
-        With the estimate and the free memory.
-    """
-    free = free_memory()
-    if need > _PART_OF_MEMORY * free:
-        raise InputError(f"{what} about {need / 1e9:.2g} GB of memory, and {free / 1e9:.2g} GB are free; {remedy}")
-
-
-def free_memory() -> float:
-    """Return the free memory [bytes]; where the system does not tell, its total memory, or infinity."""
-    try:
-        text = Path("/proc/meminfo").read_text(encoding="ascii")
-        return 1024.0 * float(text.split("MemAvailable:")[1].split()[0])
-    except (OSError, IndexError, ValueError):
-        pass
-    try:
-        return float(os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE"))
-    except (AttributeError, OSError, ValueError):
-        return math.inf

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from vibroimpact.arrays import Floats
 from vibroimpact.errors import InputError
@@ -117,6 +116,8 @@ def _smallest_determinants(mesh: Mesh, block: ElementBlock) -> Floats:
 
 def _count_parts(mesh: Mesh) -> int:
     """Return the number of parts of a mesh that share no node."""
+    from scipy.sparse.csgraph import connected_components  # imported late: modes that are stored do not need it
+
     pairs = [
         (np.repeat(block.connectivity[:, 0], block.connectivity.shape[1] - 1), block.connectivity[:, 1:].ravel()) for block in mesh.blocks
     ]

@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from scipy.linalg import eigh
 from scipy.sparse import csr_array
 
 from vibroimpact.arrays import Floats
@@ -130,12 +129,16 @@ class _Krylov:
 
     def modes(self, number: int) -> tuple[Floats, Floats]:
         """Return the lowest Ritz values of the space, ascending, and their vectors."""
+        from scipy.linalg import eigh  # imported late: modes that are stored do not need it
+
         size = len(self._projected)
         responses, turned = eigh(self._projected, subset_by_index=[max(0, size - number), size - 1])
         return 1.0 / responses[::-1], self._vectors[:, :size] @ turned[:, ::-1]
 
     def converged(self, tolerance: float) -> int:
         """Return the number of lowest modes that have converged, without a gap."""
+        from scipy.linalg import eigh
+
         size = len(self._projected)
         if not size:
             return 0

@@ -12,8 +12,6 @@ from itertools import permutations
 
 import numpy as np
 from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
-from scipy.spatial import cKDTree
 
 from vibroimpact.arrays import Floats, Integers
 from vibroimpact.structures.element_kinds import ELEMENT_KINDS
@@ -87,6 +85,9 @@ def mesh_of_blocks(blocks: Sequence[Floats], kind: str) -> Mesh:
 
 def merged(points: Floats, connectivity: Integers) -> tuple[Floats, Integers]:
     """Return nodes and connectivity after merging coincident points and removing unused ones."""
+    from scipy.sparse.csgraph import connected_components  # imported late: modes that are stored do not need it
+    from scipy.spatial import cKDTree
+
     used, connectivity = np.unique(connectivity, return_inverse=True)
     points = points[used]
     near = cKDTree(points).query_pairs(_SAME * float(np.ptp(points, axis=0).max()), output_type="ndarray")

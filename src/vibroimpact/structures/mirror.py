@@ -8,7 +8,6 @@ from itertools import product
 
 import numpy as np
 from scipy.sparse import coo_array, csr_array
-from scipy.spatial import cKDTree
 
 from vibroimpact.arrays import Floats, Integers
 from vibroimpact.structures.supports.constraints import HeldStructure
@@ -58,6 +57,8 @@ def mirror_planes(held: HeldStructure) -> list[Mirror]:
 
 def _mirror(held: HeldStructure, axis: int) -> Mirror | None:
     """Return the reflection along an axis, or None unless each free degree of freedom has a free image."""
+    from scipy.spatial import cKDTree  # imported late: modes that are stored do not need it
+
     mesh = held.structure.mesh
     per_node, size = mesh.dofs_per_node, held.structure.stiffness.shape[0]
     if held.free.max(initial=-1) >= size:  # degrees of freedom of supporting bodies, which have no known images

@@ -21,7 +21,7 @@ from vibroimpact.structures.modes import Eigenmodes
 from vibroimpact.structures.supports.constraints import HeldStructure
 from vibroimpact.structures.surface import Side, Spot, place_of, surface_motion
 
-_CACHE_SIZE = 2e6  # bytes, of mode shapes at places
+_CACHE_SIZE = 1e7  # bytes, of mode shapes at places and on the grid of a picture
 
 Found = TypeVar("Found")
 
@@ -125,12 +125,15 @@ class ModalModel:
 
         return self.cached(f"{side} {places.tolist()}", found) if len(places) == 1 else found()
 
-    def cached(self, key: str, compute: Callable[[], Found]) -> Found:
-        """Return a quantity of the modes from the cache, or compute it: many drops on one plate have the same sensors. Do not change it."""
+    def cached(self, key: str, compute: Callable[[], Found], numbers: int = 3) -> Found:
+        """Return a quantity of the modes from the cache, or compute it: many drops on one plate have the same sensors. Do not change it.
+
+        `numbers` is how many it has for each mode.
+        """
         found = self._cache.get(key)
         if found is None:
             found = compute()
-            self._cache.put(key, found, 24.0 * len(self.shapes))
+            self._cache.put(key, found, 8.0 * numbers * len(self.shapes))
         return found
 
     @cached_property

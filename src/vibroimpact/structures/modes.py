@@ -6,12 +6,12 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import qr
 from scipy.sparse import csr_array
 
 from vibroimpact.arrays import Floats, Integers
 from vibroimpact.errors import ComputationError, InputError
-from vibroimpact.structures.factor import BYTES_PER_ENTRY, Factors, check_memory
+from vibroimpact.structures.factor import BYTES_PER_ENTRY, Factors
+from vibroimpact.structures.free_memory import check_memory
 from vibroimpact.structures.lanczos import TOLERANCE, lowest_modes
 
 _DENSE = 400  # degrees of freedom up to which a dense eigenvalue solver is faster
@@ -72,6 +72,8 @@ class ElasticSystem:
     """
 
     def __init__(self, stiffness: csr_array, mass: csr_array, rigid: Floats | None = None, order: Integers | None = None) -> None:
+        from scipy.linalg import qr  # imported late: modes that are stored do not need it
+
         number = stiffness.shape[0]
         self.stiffness, self.mass = stiffness, mass
         self.order = np.arange(number) if order is None else order

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.linalg import eigh
 from scipy.sparse import csr_array
 
 from vibroimpact.arrays import Floats, Integers
@@ -128,6 +127,8 @@ def projected(stiffness: csr_array, mass: csr_array, basis: Floats, rigid: Float
     >>> round(float(modes.angular_frequencies[0] ** 2), 6)  # Rayleigh's quotient
     0.214286
     """
+    from scipy.linalg import eigh  # imported late: modes that are stored do not need it
+
     whole = _norms(basis, mass)
     if rigid is not None and rigid.shape[1]:
         basis = basis - rigid @ (rigid.T @ (mass @ basis))

@@ -16,7 +16,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cache
 from io import BytesIO
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, BinaryIO, TypeVar
 
 import numpy as np
 
@@ -36,7 +36,7 @@ PLACE = "VIBROIMPACT_STORE"
 
 _LARGEST = 4_000_000_000  # bytes; the least recently used entries are removed first
 _SLACK = 0.01  # of _LARGEST: bytes written between two scans of the folder, which may hold thousands of entries
-_CHECKSUM = 4  # bytes
+_CHECKSUM, _PIECE = 4, 2**20  # bytes
 _MODES = "modes"
 KINDS = (_MODES, "compliance")
 """Kinds of entries, which are the suffixes of their files."""
@@ -115,7 +115,8 @@ def load_entry(key: str, kind: str, read: Callable[[Mapping[str, Any]], Content]
     path = _path(key, kind)
     _clear_once(store_folder())
     try:
-        content = read(_unpacked(path.read_bytes()))
+        with path.open("rb") as file:
+            content = read(_unpacked(file))
         os.utime(path)  # its time of use, by which entries are removed
     except FileNotFoundError:
         return None, ""
@@ -175,7 +176,7 @@ def receive(entries: Mapping[str, bytes]) -> str:
         if not (key.isalnum() and kind in KINDS):
             raise InputError(f'"{name}" is not the name of an entry of the store')
         try:
-            _unpacked(data)
+            _unpacked(BytesIO(data))
         except ValueError as error:
             raise InputError(f"the entry {name} was damaged on its way ({error}); send it again") from None
         if not _path(key, kind).is_file() and (trouble := _put(key, kind, [data])):
@@ -195,19 +196,23 @@ def _packed(parts: Mapping[str, Any]) -> list[bytes]:
     return [zlib.crc32(archive).to_bytes(_CHECKSUM, "little"), archive]
 
 
-def _unpacked(data: bytes) -> dict[str, Any]:
+def _unpacked(file: BinaryIO) -> dict[str, Any]:
     """Return the arrays of an entry, read-only, as what is made of them is shared within the process.
+
+    The file is read twice, in pieces: it may take as much memory as the arrays.
 
     Raises
     ------
     ValueError
         If the checksum does not agree, or the content is not an archive of arrays.
     """
-    if len(data) <= _CHECKSUM or zlib.crc32(memoryview(data)[_CHECKSUM:]) != int.from_bytes(data[:_CHECKSUM], "little"):
+    expected, sum_so_far = file.read(_CHECKSUM), 0
+    while piece := file.read(_PIECE):
+        sum_so_far = zlib.crc32(piece, sum_so_far)
+    if file.tell() <= _CHECKSUM or sum_so_far.to_bytes(_CHECKSUM, "little") != expected:
         raise ValueError("its check sum does not agree")
-    stream = BytesIO(data)
-    stream.seek(_CHECKSUM)
-    with np.load(stream, allow_pickle=False) as archive:
+    file.seek(_CHECKSUM)
+    with np.load(file, allow_pickle=False) as archive:
         found = dict(archive)
     for array in found.values():
         array.flags.writeable = False

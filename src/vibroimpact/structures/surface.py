@@ -78,7 +78,7 @@ def outer_faces(mesh: Mesh) -> list[Faces]:
     return [Faces(kind, face, nodes[mine]) for (kind, face, nodes), mine in zip(owners, alone, strict=True) if mine.any()]
 
 
-def _facing(mesh: Mesh, side: Side) -> list[Faces]:
+def facing(mesh: Mesh, side: Side) -> list[Faces]:
     """Return the outer faces with a normal upwards or downwards; for plate elements all."""
     groups = outer_faces(mesh)
     if mesh.is_flat:
@@ -98,7 +98,7 @@ def lower_nodes(mesh: Mesh) -> Integers:
     if mesh.is_flat:
         return np.arange(len(mesh.nodes))
     found = []
-    for faces in _facing(mesh, "lower"):
+    for faces in facing(mesh, "lower"):
         corner = faces.kind.reference[list(faces.corners)]
         normal = np.cross(corner[1] - corner[0], corner[2] - corner[0])
         on_face = np.abs((faces.kind.reference - corner[0]) @ normal) < 1e-9
@@ -165,7 +165,7 @@ def surface_motion(mesh: Mesh, places: Floats, side: Side = "upper", thickness: 
     nodes: list[Integers] = [np.zeros(0, dtype=np.int64)] * len(places)
     weights: list[Floats] = [np.zeros(0)] * len(places)
     positions = np.full((len(places), 3), np.nan)
-    groups = _facing(_near_column(mesh, places), side)
+    groups = facing(_near_column(mesh, places), side)
     for start in _STARTS:  # further starts only for places that none before has found
         waiting = np.flatnonzero(np.isneginf(best))
         for faces in groups if len(waiting) else []:
@@ -219,7 +219,7 @@ def slope_divergence(mesh: Mesh, place: tuple[float, float]) -> csr_array:
     [0.11]
     """
     places = np.array([place])
-    for faces in _facing(_near_column(mesh, places), "upper"):
+    for faces in facing(_near_column(mesh, places), "upper"):
         _, face, local = _locate(mesh.nodes, faces, places, _STARTS[0])
         if len(face):
             along, node = faces.shape_functions(local)[1], faces.connectivity[face]

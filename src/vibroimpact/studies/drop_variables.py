@@ -63,6 +63,7 @@ PEAK_TABLE: dict[str, PeakVariable] = {
         "rebound_height_m", "height of the sphere's centre at the top of the first rebound", "Height of the first rebound"
     ),
     "largest_acceleration_m_s2": _largest("max_acceleration_m_s2", "in all impacts"),
+    "first_time_s": _first("time_s", "time of the first touch", "Time of the first touch", is_drawn=False),
     "first_approach_speed_m_s": _first(
         "approach_speed_m_s", "speed at first touch of the first impact", "Speed at first touch", is_drawn=False
     ),

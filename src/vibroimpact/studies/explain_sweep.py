@@ -1,6 +1,8 @@
-"""Terminal description of a study before it is computed: drops, axes, kept results."""
+"""Description of a study before it is computed: drops, axes, kept results."""
 
 from __future__ import annotations
+
+from typing import Any
 
 from rich.console import Group, RenderableType
 from rich.text import Text
@@ -16,7 +18,7 @@ def explain_sweep(sweep: Sweep) -> RenderableType:
     section = sweep.section
     drawn = f", drawn with seed {section.seed}" if section.samples else ""
     kept = " and ".join(dict.fromkeys(["peaks", *section.keep])) + f", about {sweep.bytes / 1e6:.3g} MB"
-    units = {key: quantity.unit if quantity else "" for key, quantity in sweep.quantities.items()}
+    units = _units(sweep)
     over = [_words(axis, units[key], is_drawn=section.samples is not None) for key, axis in sweep.axes.items()]
     table = TerminalTable([TerminalColumn("swept key", list(sweep.axes), text=True), TerminalColumn("over", over, text=True)])
     return Group(
@@ -25,6 +27,45 @@ def explain_sweep(sweep: Sweep) -> RenderableType:
         *(Text(f"Doubt: {doubt}.", style="yellow") for doubt in axis_slips(sweep)),
         Text("The case at its first point:\n"),
     )
+
+
+def sweep_document(sweep: Sweep) -> dict[str, Any]:
+    """Return the description of a study as data; its axes in SI, with the keys of a case file."""
+    section = sweep.section
+    units = _units(sweep)
+    return {
+        "design": section.design,
+        "drops": sweep.size,
+        "samples": section.samples,
+        "seed": section.seed,
+        "keep": list(dict.fromkeys(["peaks", *section.keep])),
+        "size_byte": sweep.bytes,
+        "over": {key: {"unit": units[key], **_data(axis)} for key, axis in sweep.axes.items()},
+        "doubts": axis_slips(sweep),
+    }
+
+
+def _units(sweep: Sweep) -> dict[str, str]:
+    """Return the SI unit of each swept key; "" for one that is no quantity."""
+    return {key: quantity.unit if quantity else "" for key, quantity in sweep.quantities.items()}
+
+
+def _data(axis: Axis) -> dict[str, Any]:
+    """Return the values of an axis with the keys of a case file."""
+    if isinstance(axis, Listed):
+        return {"values": axis.values, "weights": axis.weights}
+    if isinstance(axis, Spaced):
+        drawn = {"distribution": "uniform"} if axis.is_random else {}
+        return {**drawn, "from": axis.start, "to": axis.end, "number": axis.number, "scale": axis.scale}
+    assert isinstance(axis, Normal)
+    return {
+        "distribution": "lognormal" if axis.lognormal else "normal",
+        "mean": axis.mean,
+        "standard_deviation": axis.standard_deviation,
+        "at_least": axis.at_least,
+        "at_most": axis.at_most,
+        "number": axis.number,
+    }
 
 
 def _words(axis: Axis, unit: str, *, is_drawn: bool) -> str:

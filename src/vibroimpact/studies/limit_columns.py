@@ -17,9 +17,9 @@ from vibroimpact.cases.limit import limits, numbers_of
 from vibroimpact.cases.limits.plate_waves import plate_theory_error
 from vibroimpact.contact.law import ContactLaw
 from vibroimpact.dynamics.bending import largest_bending
+from vibroimpact.dynamics.change_by_impact import change_by_impact
 from vibroimpact.dynamics.response import Response
 from vibroimpact.dynamics.truncation import time_of_contact
-from vibroimpact.dynamics.vibrating.sensitivity import change_by_impact
 from vibroimpact.resolved_case import ResolvedCase
 from vibroimpact.studies.axes import Values
 from vibroimpact.studies.drop_variables import DOUBTS, LIMIT

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from math import prod
 from os import PathLike
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import h5py
 import numpy as np
@@ -25,6 +25,9 @@ from vibroimpact.results.folder import SUMMARY
 from vibroimpact.studies.drop_variables import DOUBTS, LIMIT, SIGNAL
 from vibroimpact.studies.plan import SAMPLE
 from vibroimpact.studies.study_folder import DATASET, STUDY, recover_study
+
+if TYPE_CHECKING:
+    import plotly.graph_objects as go
 
 FAILED_POINT, FAILED_REASON = "failed_point", "failed_reason"
 """The variables with the numbers of failed drops, and the reasons."""
@@ -129,6 +132,17 @@ class Study:
 
     def __repr__(self) -> str:
         return f"<Study of {self.size} drops: {', '.join(f'{name} {length}' for name, length in self.dimensions.items())}>"
+
+    def _repr_html_(self) -> str:
+        import vibroimpact  # an import upwards, as in Response.save: tables and charts lie above the study
+
+        return vibroimpact.study_html(self)
+
+    def plot(self, name: str = "") -> go.Figure:
+        """Return a chart as a figure of plotly, by its name, by default the first; see `vibroimpact.plot_study`."""
+        import vibroimpact
+
+        return vibroimpact.plot_study(self, name)
 
     def times(self, sensor: str) -> Floats:
         """Return the time of each sample in the signal of a sensor [s].

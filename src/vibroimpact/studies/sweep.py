@@ -102,8 +102,15 @@ class Sweep:
         cases = (self.case_at({**first, key: level}) for key, values in names.items() for level in _different(values))
         return deforms(self.case) or any(map(deforms, cases))
 
-    def case_of(self, drop: int) -> Case:
+    def case_of(self, drop: int, changes: Mapping[str, Any] | None = None) -> Case:
         """Return the case of a drop by its number from 0, such as to run it separately.
+
+        Parameters
+        ----------
+        drop : int
+            The number.
+        changes : mapping, optional
+            Other values by dotted key, swept or not.
 
         Raises
         ------
@@ -111,8 +118,8 @@ class Sweep:
             If there is no such drop, or its case is not valid.
         """
         if not 0 <= drop < self.size:
-            raise InputError(f"there is no drop {drop}; the study has {self.size}, counted from 0")
-        return self.case_at(self.values_of(drop))
+            raise InputError(f"there is no drop {drop}; the study has {self.size:,}, counted from 0")
+        return self.case_at({**self.values_of(drop), **(changes or {})})
 
     @property
     def bytes(self) -> float:
@@ -167,6 +174,32 @@ def load_sweep(source: str | PathLike[str]) -> Sweep:
         If it can't be read or is not a valid study; the message names the key, the value and what is allowed.
     """
     return prefix_errors(source, lambda: read_sweep(load_table(source)))
+
+
+def load_drop(source: str | PathLike[str], drop: int, changes: Mapping[str, Any] | None = None) -> Case:
+    """Return the case of one drop of a study.
+
+    Parameters
+    ----------
+    source : path or str
+        A TOML file with a [sweep] section, or a shipped study such as "paper:sweep".
+    drop : int
+        Number of the drop, from 0.
+    changes : mapping, optional
+        Other values by dotted key, swept or not.
+
+    Raises
+    ------
+    InputError
+        If it is not a valid study, or has no such drop.
+
+    Examples
+    --------
+    >>> case = load_drop("paper:sweep", 13)
+    >>> case.sphere.radius, case.contact.parameters["restitution"]
+    (0.005, 0.95)
+    """
+    return prefix_errors(source, lambda: read_sweep(load_table(source)).case_of(drop, changes))
 
 
 def read_sweep(table: Mapping[str, Any]) -> Sweep:

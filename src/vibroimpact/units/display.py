@@ -28,7 +28,7 @@ _MULTIPLES: dict[str, tuple[Multiple, ...]] = {
     "m": (Multiple("m", 1.0), Multiple("mm", 1e-3), Multiple("µm", 1e-6), Multiple("nm", 1e-9)),
     "s": (Multiple("s", 1.0), Multiple("ms", 1e-3), Multiple("µs", 1e-6), Multiple("ns", 1e-9)),
     "m/s": (Multiple("m/s", 1.0), Multiple("mm/s", 1e-3), Multiple("µm/s", 1e-6)),
-    "m/s2": (Multiple("km/s²", 1e3), Multiple("m/s²", 1.0), Multiple("mm/s²", 1e-3)),
+    "m/s2": (Multiple("m/s²", 1.0), Multiple("mm/s²", 1e-3)),  # nobody reads km/s²
     "N": (Multiple("MN", 1e6), Multiple("kN", 1e3), Multiple("N", 1.0), Multiple("mN", 1e-3), Multiple("µN", 1e-6), Multiple("nN", 1e-9)),
     "J": (
         Multiple("MJ", 1e6),
@@ -74,7 +74,7 @@ def multiple(unit: str, values: ArrayLike) -> Multiple:
     >>> multiple("m", [0.0]).unit
     'm'
     >>> [multiple(unit, [7850.0]).unit for unit in ("m/s^2", "m/s2", "kg/m^3", "N/m^1.5")]
-    ['km/s²', 'km/s²', 'kg/m³', 'N/m¹·⁵']
+    ['m/s²', 'm/s²', 'kg/m³', 'N/m¹·⁵']
     """
     choices, size = _MULTIPLES.get(unit.replace("^", "")), largest(values)
     if choices is None:
@@ -202,6 +202,19 @@ def text(value: float, unit: str, significant: int = 4) -> str:
     """
     best = multiple(unit, value)
     return f"{digits(value / best.size, significant)}\u00a0{best.unit}".rstrip("\u00a0")
+
+
+def brief(value: float, unit: str) -> str:
+    """Return a value [SI] in its best multiple with up to four digits, without zeros at the end.
+
+    Examples
+    --------
+    >>> [brief(value, "m").replace("\u00a0", " ") for value in (0.52, 0.0125, 1.0)]
+    ['520 mm', '12.5 mm', '1 m']
+    """
+    best = multiple(unit, value)
+    shown = f"{value / best.size:.4g}"
+    return f"{digits(value / best.size) if 'e' in shown else shown.replace('-', _MINUS)}\u00a0{best.unit}".rstrip("\u00a0")
 
 
 def _superscript(power: str) -> str:

@@ -1,7 +1,7 @@
 """Parsing of quantities and conversion of units: a bare number is in SI, a string has a unit.
 
-Inside the package every quantity is a float in SI; units are converted where input is read, and by the command `units`. pint is imported
-with the first unit.
+Inside the package every quantity is a float in SI; units are converted where input is read, and by the command `units`. pint takes half a
+second to start, and is imported with the first unit that is not an SI unit with or without a prefix, such as "mm" or "GPa".
 """
 
 from __future__ import annotations
@@ -56,6 +56,10 @@ _EXAMPLE = {
     "1/m": "0.5 1/mm",
     "byte": "500 MB",
 }
+
+_PREFIXES = {"G": 1e9, "M": 1e6, "k": 1e3, "c": 1e-2, "m": 1e-3, "u": 1e-6, "µ": 1e-6, "μ": 1e-6, "n": 1e-9}
+_PREFIXED = ("m", "s", "m/s", "m/s^2", "Pa", "Hz", "N", "N/m")
+"""SI units whose multiples are read without pint, with the same factors."""
 
 
 @cache
@@ -248,7 +252,7 @@ def _parse(text: str, unit: str) -> float:
         return number
     if not given:
         raise InputError(f'{shown(text, 80)} has no unit: write {number:g} (it is then in {unit}) or "{number:g} {unit}"')
-    return float(number * _factor(given, unit, text))
+    return number * _factor(given, unit, text)
 
 
 def _split(text: str) -> tuple[float, str] | None:
@@ -273,9 +277,18 @@ _GRAVITIES = {"g": "g0", "mg": "mg0", "ug": "ug0", "µg": "ug0", "μg": "ug0"}
 """Symbols of standard gravity, 9.80665 m/s^2, and its multiples in accelerometers' data sheets, and pint's names of them."""
 
 
-@lru_cache(maxsize=1000)
 def _factor(given: str, unit: str, text: str) -> float:
     """Return the conversion factor from `given` to `unit`."""
+    if given == unit:
+        return 1.0
+    if unit in _PREFIXED and given[1:] == unit and given[0] in _PREFIXES:
+        return _PREFIXES[given[0]]
+    return _converted(given, unit, text)
+
+
+@lru_cache(maxsize=1000)
+def _converted(given: str, unit: str, text: str) -> float:
+    """Return the conversion factor from `given` to `unit` by pint."""
     import pint
 
     registry = _registry()

@@ -74,8 +74,8 @@ def contact_schema() -> dict[str, Any]:
 
 
 def law_schema() -> dict[str, Any]:
-    """Return the JSON schema of a law and its parameters, without the keys of `LocalSection`."""
-    return {"description": "a contact law and its parameters", "oneOf": [_law_schema(law, {}) for law in contact_laws().values()]}
+    """Return the JSON schema of a law and its parameters, without the keys of `LocalSection`: one alternative per law."""
+    return {"oneOf": [_law_schema(law, {}) for law in contact_laws().values()]}
 
 
 def _law_schema(law: type[ContactLaw], more: Mapping[str, Any]) -> dict[str, Any]:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from typing import Annotated, Any
 
-from pydantic import BeforeValidator, WithJsonSchema
+from pydantic import BeforeValidator
 
+from vibroimpact.cases.fields.json_schema import JsonSchema
 from vibroimpact.cases.fields.quantities import read_quantity
 from vibroimpact.errors import InputError, did_you_mean
 from vibroimpact.ranges import Range
@@ -65,7 +66,7 @@ def _read_table(value: dict[str, Any]) -> Damping:
 DampingField = Annotated[
     Any,
     BeforeValidator(_read_damping),
-    WithJsonSchema({"description": _ALLOWED, "anyOf": [{"type": "number"}, {"enum": [ADAMS, MATERIAL]}, {"type": "object"}]}),
+    JsonSchema(_ALLOWED, lambda: {"anyOf": [{"type": "number"}, {"enum": [ADAMS, MATERIAL]}, {"type": "object"}]}),
 ]
 
 

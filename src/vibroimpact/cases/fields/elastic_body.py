@@ -6,8 +6,9 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
-from pydantic import BeforeValidator, Field, WithJsonSchema, model_validator
+from pydantic import BeforeValidator, Field, model_validator
 
+from vibroimpact.cases.fields.json_schema import JsonSchema
 from vibroimpact.cases.fields.quantities import Quantity
 from vibroimpact.cases.fields.section import Section, check_alternatives, read_table
 from vibroimpact.errors import InputError
@@ -116,8 +117,10 @@ def _mesh_field(kind: type[Section]) -> Any:
             return read_table(BroughtMeshTable if "file" in value else kind, value)
         raise InputError(f"{shown(value)} is neither the name of a file nor a table")
 
-    schemas = [{"type": "string"}, BroughtMeshTable.model_json_schema(), kind.model_json_schema()]
-    return Annotated[Any, BeforeValidator(read), WithJsonSchema({"description": "a file, or how the mesh is made here", "anyOf": schemas})]
+    def json_schema() -> dict[str, Any]:
+        return {"anyOf": [{"type": "string"}, BroughtMeshTable.model_json_schema(), kind.model_json_schema()]}
+
+    return Annotated[Any, BeforeValidator(read), JsonSchema("a file, or how the mesh is made here", json_schema)]
 
 
 SphereMeshField = _mesh_field(SphereMeshTable)

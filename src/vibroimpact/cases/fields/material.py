@@ -5,8 +5,9 @@ from __future__ import annotations
 from dataclasses import asdict
 from typing import Annotated, Any
 
-from pydantic import BeforeValidator, WithJsonSchema
+from pydantic import BeforeValidator
 
+from vibroimpact.cases.fields.json_schema import JsonSchema
 from vibroimpact.cases.fields.quantities import Quantity
 from vibroimpact.cases.fields.section import Section
 from vibroimpact.cases.fields.size_limits import Name
@@ -39,11 +40,12 @@ def _read_material(value: Any) -> Material:
     raise InputError(f"{shown(value)} is neither the name of a material nor a table with density, youngs_modulus and poissons_ratio")
 
 
-_SCHEMA = {
-    "description": 'the name of a material ("vibroimpact materials" lists them), or its numbers; "rigid" for a plate of infinite modulus',
-    "anyOf": [{"type": "string"}, InlineMaterial.model_json_schema()],
-}
-MaterialField = Annotated[Material, BeforeValidator(_read_material), WithJsonSchema(_SCHEMA)]
+_WORDS = 'the name of a material ("vibroimpact materials" lists them), or its numbers; "rigid" for a plate of infinite modulus'
+MaterialField = Annotated[
+    Material,
+    BeforeValidator(_read_material),
+    JsonSchema(_WORDS, lambda: {"anyOf": [{"type": "string"}, InlineMaterial.model_json_schema()]}),
+]
 
 
 def material_table(material: Material) -> dict[str, Any] | str:

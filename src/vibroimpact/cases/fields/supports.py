@@ -9,8 +9,9 @@ from collections.abc import Mapping
 from itertools import product
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, get_args
 
-from pydantic import AfterValidator, BeforeValidator, Field, WithJsonSchema, model_validator
+from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
+from vibroimpact.cases.fields.json_schema import JsonSchema
 from vibroimpact.cases.fields.material import InlineMaterial, MaterialField, material_table
 from vibroimpact.cases.fields.quantities import Quantity
 from vibroimpact.cases.fields.section import Section, check_alternatives, read_table
@@ -235,16 +236,12 @@ def _read_support(value: Any) -> SupportTable:
     return read_table(_TABLES[name], value, material=InlineMaterial)
 
 
-_TABLE_SCHEMAS = [{**kind.model_json_schema(), "description": kind.what} for kind in _TABLES.values()]
-_SCHEMA = {
-    "description": "how the plate is held",
-    "anyOf": [
-        {"enum": list(WORDS)},
-        *_TABLE_SCHEMAS,
-        {"type": "array", "items": {"anyOf": _TABLE_SCHEMAS}},
-    ],
-}
-SupportsField = Annotated[Any, BeforeValidator(_read_supports), WithJsonSchema(_SCHEMA)]
+def _json_schema() -> dict[str, Any]:
+    tables = [{**kind.model_json_schema(), "description": kind.what} for kind in _TABLES.values()]
+    return {"anyOf": [{"enum": list(WORDS)}, *tables, {"type": "array", "items": {"anyOf": tables}}]}
+
+
+SupportsField = Annotated[Any, BeforeValidator(_read_supports), JsonSchema("how the plate is held", _json_schema)]
 
 
 def supports_of(value: str | tuple[SupportTable, ...]) -> tuple[Support, ...]:

@@ -9,7 +9,7 @@ import numpy as np
 from vibroimpact.arrays import Array
 from vibroimpact.cases.conditions import Conditions
 from vibroimpact.cases.limit import Limit
-from vibroimpact.dynamics.vibrating.sensitivity import RELATIVE_CHANGE
+from vibroimpact.dynamics.change_by_impact import RELATIVE_CHANGE
 
 _PREDICTED = 1e-3  # largest relative change of an impact that is not doubted
 _LOST = 0.3  # relative change above which no significant digit remains

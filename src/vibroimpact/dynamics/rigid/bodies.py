@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from vibroimpact.arrays import Bools, Drops, Floats
@@ -15,7 +17,9 @@ from vibroimpact.dynamics.flight import Flight
 from vibroimpact.dynamics.leg import Leg
 from vibroimpact.dynamics.lockstep import Coroutine
 from vibroimpact.dynamics.rigid.solve_contact import SolvesContact
-from vibroimpact.dynamics.vibrating.rest_motion import RestMotion
+
+if TYPE_CHECKING:  # a drop of rigid bodies does not load what vibrates
+    from vibroimpact.dynamics.vibrating.rest_motion import RestMotion
 
 
 class RigidBodies:

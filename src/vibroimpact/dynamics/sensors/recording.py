@@ -1,35 +1,13 @@
-"""Signals of sensors on the plate: the motion of points through the instruments, as samples."""
+"""The signal of a sensor: what its recording holds."""
 
 from __future__ import annotations
 
-import zlib
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from dataclasses import dataclass
 
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.dynamics.problem import Problem
-from vibroimpact.dynamics.sensors.antialias import Section, antialias_of
-from vibroimpact.dynamics.sensors.filtered_chain import filtered_chain
-from vibroimpact.dynamics.sensors.measuring_chain import MeasuringChain, measuring_chain
-from vibroimpact.dynamics.sensors.overload import clipped_part, finer_rate, overload
-from vibroimpact.dynamics.sensors.sampled import longest_span, outputs_around_first_contact, sample_at_instants, sample_filtered
-from vibroimpact.dynamics.sensors.sensor import Sensor, sample_count
-from vibroimpact.dynamics.vibrating.bodies import bases_of_plate
-from vibroimpact.dynamics.vibrating.oscillators import Oscillators
-from vibroimpact.errors import InputError
-
-if TYPE_CHECKING:
-    from vibroimpact.dynamics.vibrating.segments import VibratingSegment
-    from vibroimpact.structures.modal_model import ModalBasis
-
-MOST_SAMPLES = 100_000_000
-"""Largest number of samples of one sensor; more do not fit into memory."""
-_NONE = np.zeros(3)
-_WIDER = 8
-"""Multiple of the rate: samples without a filter are taken to contain frequencies up to half of it."""
+from vibroimpact.dynamics.sensors.sensor import Sensor
 
 
 @dataclass(frozen=True)
@@ -74,126 +52,3 @@ class Signal:
     def largest(self) -> float:
         """The largest magnitude."""
         return float(max(self.value.max(initial=0.0), -self.value.min(initial=0.0)))
-
-
-def record(problem: Problem, segments: Sequence[VibratingSegment], sensors: Sequence[Sensor], end: float) -> dict[str, Signal]:
-    """Return the signals of sensors over a run, by their names.
-
-    The chain is that of an instrument: the motion of the modes kept and the quasi-static response of those left out; the mounted resonance;
-    the range; the anti-alias filter; sampling with noise and resolution. All linear parts are computed in closed form, at the samples only.
-
-    Parameters
-    ----------
-    problem : Problem
-        The problem.
-    segments : sequence of VibratingSegment
-        The history of one drop.
-    sensors : sequence of Sensor
-        The sensors.
-    end : float
-        End of the run [s].
-
-    Raises
-    ------
-    InputError
-        If the plate does not vibrate, has no such point, or there would be too many samples.
-    """
-    modes = _checked(problem, sensors, end)
-    groups: dict[tuple[float, str, float | None, tuple[Section, ...]], list[Sensor]] = {}
-    for sensor in sensors:
-        groups.setdefault((sensor.rate, sensor.filter, sensor.corner, _resonance(sensor)), []).append(sensor)
-    signals: dict[str, Signal] = {}
-    for group in groups.values():
-        signals |= _recorded(problem, modes, segments, group, end)
-    return {sensor.name: signals[sensor.name] for sensor in sensors}
-
-
-def _checked(problem: Problem, sensors: Sequence[Sensor], end: float) -> ModalBasis:
-    """Return the modes of the plate; raise InputError if it is rigid, lacks a point, or there would be too many samples."""
-    modes = problem.plate.modes
-    if modes is None:
-        raise InputError("the plate is rigid, so that its points do not move; give it modes", "sensors")
-    for sensor in sensors:
-        if sensor.name not in modes.points:
-            raise InputError(f'the modes of the plate do not know a point "{sensor.name}"', "sensors")
-        meter = sensor.accelerometer
-        rate = sensor.rate if meter is None or meter.range is None else finer_rate(sensor.rate, meter.resonance)
-        count = sample_count(end, rate) * (len(sensors) if rate == sensor.rate else 1)
-        if count > MOST_SAMPLES:
-            why = "" if rate == sensor.rate else ", at which the clipping of its range is followed,"
-            raise InputError(f"{count:.3g} samples{why} are more than {MOST_SAMPLES:.0e}; ask for a lower rate", "sensors")
-    return modes
-
-
-def _plate(problem: Problem) -> Oscillators:
-    """Return the rigid motions and modes of the plate as oscillators."""
-    parts = ((basis.angular_frequencies, basis.damping_ratios, basis.contact) for basis in bases_of_plate(problem))
-    return Oscillators(*(np.concatenate(part) for part in zip(*parts, strict=True)))
-
-
-def _resonance(sensor: Sensor) -> tuple[Section, ...]:
-    """Return the poles of the mounted resonance, if the sensor has one."""
-    meter = sensor.accelerometer
-    if meter is None or meter.resonance is None:
-        return ()
-    omega = 2.0 * np.pi * meter.resonance
-    return ((omega**2, 2.0 * meter.damping_ratio * omega),)
-
-
-def _recorded(
-    problem: Problem, modes: ModalBasis, segments: Sequence[VibratingSegment], group: Sequence[Sensor], end: float
-) -> dict[str, Signal]:
-    """Return the signals of sensors with the same rate, resonance and filter."""
-    sensor, plate = group[0], _plate(problem)
-    antialias, resonance, count = antialias_of(sensor), _resonance(sensor), sample_count(end, sensor.rate)
-    bases = bases_of_plate(problem)
-    shapes = np.stack([np.concatenate([basis.points[one.name] for basis in bases]) @ np.asarray(one.direction) for one in group])
-    compliance = np.array([modes.residuals.get(one.name, _NONE) @ np.asarray(one.direction) for one in group])
-    orders = [one.order for one in group]
-    # a converter's filter is applied in closed form; an analogue one is a part of the chain, sampled at instants
-    bare = measuring_chain(plate, shapes, compliance, orders, resonance)
-    if antialias.half_length:
-        known = filtered_chain(bare, sensor.rate, longest_span(segments, sensor.rate))
-        values = sample_filtered(known, segments, count)
-    else:
-        chain = measuring_chain(plate, shapes, compliance, orders, (*resonance, *antialias.sections))
-        values = sample_at_instants(chain, sensor.rate, segments, count)
-        rate = sensor.rate * (1 if antialias.sections else _WIDER)
-        known = filtered_chain(bare, rate, longest_span(segments, rate))
-    # the error by the modes left out, from a model of the next octave
-    left_out = filtered_chain(_next_octave_chain(plate, shapes, orders, resonance), known.rate, longest_span(segments, known.rate))
-    norm, left_out_norm = (np.linalg.norm(outputs_around_first_contact(one, segments), axis=1) for one in (known, left_out))
-    uncertainties = left_out_norm / np.where(norm > 0.0, norm, np.inf)
-    signals = {}
-    for number, one in enumerate(group):
-        value, meter, facts = values[number], one.accelerometer, {"uncertainty": float(uncertainties[number])}
-        if meter is not None and meter.range is not None:
-            alone = measuring_chain(plate, shapes[[number]], compliance[[number]], [2], resonance)
-            found = overload(alone, finer_rate(one.rate, meter.resonance), segments, end, antialias.half_length / one.rate, meter.range)
-            clipped = one.filter == "none"
-            value = np.clip(value, -meter.range, meter.range) if clipped else value - clipped_part(found, antialias, one.rate, count)
-            facts |= {"peak": found.peak, "overload_time": found.time}
-        signals[one.name] = Signal(one, _digitised(one, value), **facts)
-    return signals
-
-
-def _next_octave_chain(plate: Oscillators, shapes: Floats, orders: Sequence[int], resonance: Sequence[Section]) -> MeasuringChain:
-    """Return the chain of the modes left out of the next octave, beyond their quasi-static response, as an estimate.
-
-    They are modelled on the last octave kept, at twice the frequencies; twice as many are assumed, as for the bending of a plate.
-    """
-    last = np.flatnonzero(plate.angular_frequency > 0.5 * plate.angular_frequency.max())
-    above, shapes_above = plate.pick(last), 2.0 * shapes[:, last]
-    above = replace(above, angular_frequency=2.0 * above.angular_frequency)
-    return measuring_chain(above, shapes_above, -(shapes_above * above.shape / above.angular_frequency**2).sum(axis=1), orders, resonance)
-
-
-def _digitised(sensor: Sensor, value: Floats) -> Floats:
-    """Return samples with the noise and the resolution of an accelerometer."""
-    meter = sensor.accelerometer
-    if meter is None:
-        return value
-    if meter.noise:
-        seed = [zlib.crc32(sensor.name.encode()), *np.atleast_1d(meter.seed).tolist()]
-        value = value + meter.noise * np.random.default_rng(seed).standard_normal(len(value))
-    return value if meter.resolution is None else meter.resolution * np.round(value / meter.resolution)

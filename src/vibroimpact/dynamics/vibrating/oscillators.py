@@ -52,9 +52,11 @@ class Oscillators:
         """
         omega, ratio, t = self.angular_frequency, self.damping_ratio, np.asarray(time)[..., None]
         root = omega * np.sqrt(np.abs(1.0 - ratio * ratio))
-        fade, phase = np.exp(-ratio * omega * t), root * t
-        sine = fade * np.where(root > 0.0, np.sin(phase) / np.where(root > 0.0, root, 1.0), t)
-        cosine = fade * np.cos(phase)
+        fade, phase, swings = np.exp(-ratio * omega * t), root * t, root > 0.0
+        # sine and cosine take most of the time; without a phase, of rigid motions and critical damping, they are known
+        sine = np.sin(phase, where=swings, out=np.zeros_like(phase)) / np.where(swings, root, 1.0)
+        sine = fade * np.where(swings, sine, t)
+        cosine = fade * np.cos(phase, where=swings, out=np.ones_like(phase))
         over = ratio > 1.0
         if over.any():  # overdamped: factor out the slower exponential, so that none overflows
             root, at = root[over], ratio[over] * omega[over]

@@ -9,7 +9,7 @@ Chaos, Solitons & Fractals 5:1671, 1995).
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -27,9 +27,6 @@ from vibroimpact.dynamics.vibrating.stretch_tangent import TangentProblem
 
 if TYPE_CHECKING:
     from vibroimpact.dynamics.leg import Leg
-
-RELATIVE_CHANGE = 1e-9
-"""A relative change of the drop that cannot be excluded in practice: 4 nm of 4 m."""
 
 _STEP = 1e-6  # relative step of a law's closing speed, memory and largest indentation, for finite differences
 _JUMP = 1e-6  # of the force: a smaller change is no jump
@@ -67,19 +64,6 @@ class Neighbours:
         yield from run_in_lockstep(self._drops[drop].pass_visit(parts) for drop, parts in motions.items())
         ends = zip(leg.contact_drops, leg.contact.final_rate, strict=True)
         return np.array([self._drops[drop].leave(-float(speed)) for drop, speed in ends])
-
-
-def change_by_impact(impacts: Mapping[str, Floats], tolerance: float) -> Floats:
-    """Return the relative change of each impact for one of 1e-9 in the drop [-]; 0 where nothing vibrates.
-
-    The integration error, of the relative size of the tolerance, grows likewise: a tolerance above 1e-9 takes the place of it.
-
-    Examples
-    --------
-    >>> change_by_impact({"impact": np.ones(1), "sensitivity": np.array([1e6])}, 1e-9).round(6).tolist()
-    [0.001]
-    """
-    return impacts.get("sensitivity", np.zeros(len(impacts["impact"]))) * max(RELATIVE_CHANGE, tolerance)
 
 
 @dataclass

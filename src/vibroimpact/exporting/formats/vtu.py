@@ -70,10 +70,10 @@ def _text(points: NDArray[np.float32], cells: NDArray[np.int32], moved: NDArray[
 
 
 def _file(points: NDArray[np.float32], cells: NDArray[np.int32], kind: int, values: dict[str, NDArray[np.float32]]) -> bytes:
-    from vibroimpact.meshes.write_vtu import vtu_text  # imported here, since it loads scipy.sparse
+    from vibroimpact.meshes.write_vtu import grid_text, vtu_text  # imported here, since it loads scipy.sparse
 
     ends = np.cumsum(np.full(len(cells), cells.shape[1], dtype=np.int32), dtype=np.int32)
-    return vtu_text(points, cells.ravel(), ends, np.full(len(cells), kind, dtype=np.uint8), values).encode()
+    return vtu_text(grid_text(points, cells.ravel(), ends, np.full(len(cells), kind, dtype=np.uint8)), values).encode()
 
 
 def _sphere(drop: Drop) -> Cells:

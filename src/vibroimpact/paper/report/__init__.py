@@ -1,1 +1,1 @@
-"""The report of the reproduction: figures, Markdown and HTML pages, and the folder that holds them."""
+"""The report of the reproduction: charts, Markdown and HTML pages, and the folder that holds them."""

@@ -1,26 +1,26 @@
-"""The folder of a reproduction: parts, each written atomically, and the report on those available."""
+"""The folder of a reproduction: parts, each written atomically with its chart, and the report on those available."""
 
 from __future__ import annotations
 
 import json
-import re
 import shlex
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from os import PathLike
 from pathlib import Path
 from typing import Any
 
 from vibroimpact._version import __version__
+from vibroimpact.charts.pack import pack, unpack
+from vibroimpact.charts.plotly import plotly_chart
 from vibroimpact.errors import InputError
 from vibroimpact.files.atomic_write import write_into
-from vibroimpact.files.check_sums import read_sealed, sealed
+from vibroimpact.files.check_sums import CHECK_SUMS, check_file, file_digest, read_sealed, sealed
 from vibroimpact.files.recover import recover
 from vibroimpact.paper.report.markdown import FIGURES
 from vibroimpact.paper.report.outline import PARTS, ReportPart, find_parts, render_part
 from vibroimpact.paper.report.page import report_html, report_text
 from vibroimpact.paper.runs import Runs
-from vibroimpact.report.figure_files import save_figures
 from vibroimpact.report.page import replace_report_files
 from vibroimpact.results.csv_files import write_csv
 from vibroimpact.results.folder import SUMMARY, new_folder
@@ -94,15 +94,18 @@ def reproduce_paper(
 
 
 def missing_parts(directory: str | PathLike[str]) -> list[str]:
-    """Return the names of the parts that a folder lacks, or that another version of this package wrote."""
-    return [name for name in PARTS if _version(_file(Path(directory), name)) != __version__]
+    """Return the names of the parts that a folder lacks or has damaged, or that another version of this package wrote."""
+    return [name for name in PARTS if _version(Path(directory), name) != __version__]
 
 
-def _version(part: Path) -> str | None:
-    """Return the version of the package that wrote a part; None if the part is missing or damaged."""
+def _version(folder: Path, name: str) -> str | None:
+    """Return the version of the package that wrote a part; None if the part or its chart is missing or damaged."""
     try:
-        return str(read_sealed(part)["version"])
-    except (OSError, ValueError, KeyError, TypeError):
+        table = read_sealed(_file(folder, name))
+        if _has_chart(table["text"]):
+            _check_chart(folder, name, table)
+        return str(table["version"])
+    except (OSError, ValueError, KeyError, TypeError, AttributeError):
         return None
 
 
@@ -115,15 +118,11 @@ def write_reproduction_report(folder: Path) -> None:
         If a part is damaged, or the folder can't be written to.
     """
     parts = read_parts(folder)
-    for name, part in parts.items():
-        for picture in re.findall(rf"\]\(({FIGURES}/[^)]+)\.png\)", part["text"]):
-            if not (folder / f"{picture}.svg").is_file():
-                raise InputError(f"{folder / picture}.svg: the figure is missing; {_repair_hint(folder, name)}")
-    rows = [row for part in parts.values() for row in part["rows"]]
-    text = report_text(parts)
+    charts = read_charts(folder, parts)
+    rows, text = reproduced_values(parts), report_text(parts)
 
     def write(working: Path) -> None:
-        for name, page in {"report.md": text, "report.html": report_html(text, folder)}.items():
+        for name, page in {"report.md": text, "report.html": report_html(text, charts)}.items():
             (working / name).write_text(page, encoding="utf-8")
         if rows:
             write_csv(rows, list(rows[0]), working / "values.csv")
@@ -148,15 +147,54 @@ def read_parts(folder: Path) -> dict[str, dict[str, Any]]:
             try:
                 table = read_sealed(file)
                 rows = [{**row, "verdict": str(row["verdict"])} for row in table["rows"]]
-                found[name] = {"title": str(table["title"]), "text": str(table["text"]), "rows": rows}
+                texts = {"title": str(table["title"]), "text": str(table["text"])}
+                found[name] = {**texts, "rows": rows, CHECK_SUMS: dict(table.get(CHECK_SUMS, {}))}
             except (OSError, ValueError, KeyError, TypeError):
                 raise InputError(f"{file}: the file is damaged; {_repair_hint(folder, name)}") from None
     return found
 
 
-def _repair_hint(folder: Path, name: str) -> str:
-    """Return the command that writes a part again."""
-    return f"make it anew: vibroimpact reproduce -o {shlex.quote(str(folder))} --only {name}"
+def reproduced_values(parts: Mapping[str, Mapping[str, Any]]) -> list[dict[str, Any]]:
+    """Return the rows of `values.csv`: each value that the parts compare."""
+    return [row for part in parts.values() for row in part["rows"]]
+
+
+def read_charts(folder: Path, parts: Mapping[str, Mapping[str, Any]]) -> list[dict[str, Any]]:
+    """Return the charts of parts that `read_parts` returned, as `plotly_chart` returns them.
+
+    Raises
+    ------
+    InputError
+        If a chart is missing, as in a folder of an earlier version, or damaged.
+    """
+    found, lacking = [], []
+    for name, part in parts.items():
+        if _has_chart(part["text"]):
+            try:
+                _check_chart(folder, name, part)
+                found.append(unpack(_chart_file(folder, name).read_bytes()))
+            except (OSError, ValueError):
+                lacking.append(name)
+    if lacking:
+        others = f", and those of {', '.join(lacking[1:])}" if lacking[1:] else ""
+        raise InputError(f"{_chart_file(folder, lacking[0])}: the chart is missing or damaged{others}; {_repair_hint(folder, *lacking)}")
+    return found
+
+
+def _has_chart(text: str) -> bool:
+    return f"]({FIGURES}/" in text
+
+
+def _check_chart(folder: Path, name: str, part: Mapping[str, Any]) -> None:
+    """Check that the file of a part's chart is the one that was written with it."""
+    file = _chart_file(folder, name)
+    check_file(file, part.get(CHECK_SUMS, {}).get(file.name, ""))
+
+
+def _repair_hint(folder: Path, *names: str) -> str:
+    """Return the command that writes parts again."""
+    which = "it" if len(names) == 1 else "them"
+    return f"make {which} anew: vibroimpact reproduce -o {shlex.quote(str(folder))} --only {','.join(names)}"
 
 
 def is_reproduction(folder: Path) -> bool:
@@ -171,6 +209,10 @@ def _file(folder: Path, part: str) -> Path:
     return folder / _PARTS / f"{part}.json"
 
 
+def _chart_file(folder: Path, part: str) -> Path:
+    return folder / _PARTS / f"{part}.chart"
+
+
 def _write_part(part: ReportPart, runs: Runs, folder: Path) -> None:
     """Compute a part and write its files atomically."""
     rendered = render_part(part, runs)
@@ -178,9 +220,14 @@ def _write_part(part: ReportPart, runs: Runs, folder: Path) -> None:
     def write(working: Path) -> None:
         for name in (_PARTS, FIGURES):
             (working / name).mkdir()
-        if rendered.drawing is not None:
-            save_figures({part.name: rendered.drawing.figure}, working / FIGURES)
-        table = {"version": __version__, "title": rendered.title, "text": rendered.text, "rows": rendered.rows}
+        table: dict[str, Any] = {"version": __version__, "title": rendered.title, "text": rendered.text, "rows": rendered.rows}
+        if rendered.chart is not None:
+            from vibroimpact.charts.files import save_charts  # here, as it imports matplotlib, which `report` does without
+
+            save_charts([rendered.chart], working / FIGURES)
+            file = _chart_file(working, part.name)
+            file.write_bytes(pack(plotly_chart(rendered.chart)))
+            table[CHECK_SUMS] = {file.name: file_digest(file)}
         _file(working, part.name).write_text(sealed(table), encoding="utf-8")
 
     try:

@@ -1,12 +1,12 @@
-"""Sections and figures of the reproduction as Markdown, the common source of the report and the page of the documentation."""
+"""Sections and charts of the reproduction as Markdown, the common source of the report and the page of the documentation."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Sequence
 
+from vibroimpact.charts.chart import Chart
 from vibroimpact.paper.printed import PrintedValue
-from vibroimpact.paper.report.drawing import Drawing
 from vibroimpact.paper.report_section import ComparedValue, ReportSection
 from vibroimpact.report.markdown_table import markdown_table
 from vibroimpact.units.display import MISSING, digits
@@ -29,10 +29,10 @@ def section_text(section: ReportSection) -> str:
     return "\n\n".join([*parts, *map(escape_markdown, section.conclusion)]) + "\n"
 
 
-def drawing_text(name: str, drawing: Drawing, heading: bool = True) -> str:
-    """Return a figure as Markdown: an optional heading, the image, and the caption."""
-    title = f"### {escape_markdown(drawing.title)}\n\n" if heading else ""
-    return f"{title}![{escape_markdown(drawing.title)}]({FIGURES}/{name}.png)\n\n{escape_markdown(drawing.sentence)}\n"
+def chart_text(chart: Chart, heading: bool = True) -> str:
+    """Return a chart as Markdown: an optional heading, the image, and the caption."""
+    title = f"### {escape_markdown(chart.title)}\n\n" if heading else ""
+    return f"{title}![{escape_markdown(chart.title)}]({FIGURES}/{chart.name}.png)\n\n{escape_markdown(chart.caption)}\n"
 
 
 def rows_table(rows: Sequence[ComparedValue]) -> str:

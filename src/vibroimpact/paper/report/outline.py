@@ -1,4 +1,4 @@
-"""The outline of the reproduction: its chapters and parts, and the rendering of a part as text, values and figure."""
+"""The outline of the reproduction: its chapters and parts, and the rendering of a part as text, values and chart."""
 
 from __future__ import annotations
 
@@ -6,37 +6,30 @@ from collections.abc import Callable, Iterable, Mapping
 from functools import partial
 from typing import Any, NamedTuple
 
+from vibroimpact.charts.chart import Chart
 from vibroimpact.errors import InputError
 from vibroimpact.paper.conclusions import conclusions
 from vibroimpact.paper.elastic import section_5_1, section_5_2, section_5_3
 from vibroimpact.paper.inputs import corrections_section, section_3_1, section_4, table1
 from vibroimpact.paper.recovery import recovery_section
-from vibroimpact.paper.report.drawing import Drawing
-from vibroimpact.paper.report.elastic_figures import (
-    PLATE_QUANTITIES,
-    SPHERE_ENERGY,
-    SPHERE_MOTION,
-    draw_plate_quantity,
-    draw_sphere_quantity,
-)
-from vibroimpact.paper.report.markdown import drawing_text, section_text
-from vibroimpact.paper.report.mesh_figure import draw_meshes
-from vibroimpact.paper.report.model_figure import draw_model
-from vibroimpact.paper.report.recovery_figure import draw_recovery
-from vibroimpact.paper.report.rigid_figures import RIGID_FIGURES, draw_rigid
-from vibroimpact.paper.report.sampling_figure import draw_sampling
-from vibroimpact.paper.report.unresolved_figure import draw_unresolved
+from vibroimpact.paper.report.elastic_charts import PLATE_QUANTITIES, SPHERE_ENERGY, SPHERE_MOTION, plate_chart, sphere_chart
+from vibroimpact.paper.report.markdown import chart_text, section_text
+from vibroimpact.paper.report.mesh_chart import mesh_chart
+from vibroimpact.paper.report.model_chart import model_chart
+from vibroimpact.paper.report.recovery_chart import recovery_chart
+from vibroimpact.paper.report.rigid_charts import RIGID_FIGURES, rigid_chart
+from vibroimpact.paper.report.sampling_chart import sampling_chart
+from vibroimpact.paper.report.unresolved_chart import unresolved_chart
 from vibroimpact.paper.report_section import ComparedValue, ReportSection
 from vibroimpact.paper.rigid import damping_section, section_3_2, table2
 from vibroimpact.paper.runs import Runs
 from vibroimpact.paper.sampling import sampling_section
 from vibroimpact.paper.unresolved import unresolved_section
 from vibroimpact.registry import find_named
-from vibroimpact.report.style import style
 
 
 class ReportPart(NamedTuple):
-    """A part of the reproduction: a section, a figure, or both.
+    """A part of the reproduction: a section, a chart, or both.
 
     Parameters
     ----------
@@ -44,28 +37,28 @@ class ReportPart(NamedTuple):
         Name in the option `--only`.
     section : callable, optional
         Function that computes the section.
-    draw : callable, optional
-        Function that draws the figure.
+    chart : callable, optional
+        Function that returns the chart, which has the name of the part.
     """
 
     name: str
     section: Callable[[Runs], ReportSection] | None = None
-    draw: Callable[[Runs], Drawing] | None = None
+    chart: Callable[[Runs], Chart] | None = None
 
 
-PAPER_FIGURES: Mapping[str, Callable[[Runs], Drawing]] = {
-    "fig3": draw_model,
-    **{f"fig{figure.number}": partial(draw_rigid, figure) for figure in RIGID_FIGURES},
-    "fig9": draw_meshes,
-    **{f"fig{quantity.number}": partial(draw_sphere_quantity, quantity) for quantity in (*SPHERE_MOTION, *SPHERE_ENERGY)},
-    **{f"fig{quantity.number}": partial(draw_plate_quantity, quantity) for quantity in PLATE_QUANTITIES},
+PAPER_FIGURES: Mapping[str, Callable[[Runs], Chart]] = {
+    "fig3": model_chart,
+    **{f"fig{figure.number}": partial(rigid_chart, figure) for figure in RIGID_FIGURES},
+    "fig9": mesh_chart,
+    **{f"fig{quantity.number}": partial(sphere_chart, quantity) for quantity in (*SPHERE_MOTION, *SPHERE_ENERGY)},
+    **{f"fig{quantity.number}": partial(plate_chart, quantity) for quantity in PLATE_QUANTITIES},
 }
-"""Functions that draw the figures of the paper, by name and in its order."""
+"""Functions that return the charts of the paper's figures, by name and in its order."""
 
 
 def _figures(first: int, last: int) -> tuple[ReportPart, ...]:
     names = [f"fig{number}" for number in range(first, last + 1)]
-    return tuple(ReportPart(name, draw=PAPER_FIGURES[name]) for name in names)
+    return tuple(ReportPart(name, chart=PAPER_FIGURES[name]) for name in names)
 
 
 CHAPTERS: dict[str, tuple[ReportPart, ...]] = {
@@ -86,9 +79,9 @@ CHAPTERS: dict[str, tuple[ReportPart, ...]] = {
     "The vibration of the plate": (ReportPart("section5.3", section_5_3), *_figures(18, 23)),
     "The conclusions": (ReportPart("conclusions", conclusions),),
     "Forensics: what the numbers tell that the text does not": (
-        ReportPart("recovery", recovery_section, draw_recovery),
-        ReportPart("sampling", sampling_section, draw_sampling),
-        ReportPart("unresolved", unresolved_section, draw_unresolved),
+        ReportPart("recovery", recovery_section, recovery_chart),
+        ReportPart("sampling", sampling_section, sampling_chart),
+        ReportPart("unresolved", unresolved_section, unresolved_chart),
     ),
     "Corrections": (ReportPart("corrections", corrections_section),),
 }
@@ -128,26 +121,25 @@ class RenderedPart(NamedTuple):
         Paragraphs, tables and the reference to the figure, as Markdown.
     rows : list of mappings
         Printed and computed values, as rows of `values.csv`.
-    drawing : Drawing, optional
-        The figure.
+    chart : Chart, optional
+        The chart.
     """
 
     title: str
     text: str
     rows: list[dict[str, Any]]
-    drawing: Drawing | None
+    chart: Chart | None
 
 
 def render_part(part: ReportPart, runs: Runs) -> RenderedPart:
     """Return a part, computed and rendered."""
     section = part.section(runs) if part.section is not None else None
-    with style():
-        drawing = part.draw(runs) if part.draw is not None else None
+    chart = part.chart(runs) if part.chart is not None else None
     texts = [] if section is None else [section_text(section)]
-    if drawing is not None:
-        texts.append(drawing_text(part.name, drawing, heading=section is None))
-    title = section.title if section is not None else drawing.title if drawing is not None else part.name
-    return RenderedPart(title, "\n".join(texts), [_values_row(part.name, row) for row in (section.rows if section else ())], drawing)
+    if chart is not None:
+        texts.append(chart_text(chart, heading=section is None))
+    title = section.title if section is not None else chart.title if chart is not None else part.name
+    return RenderedPart(title, "\n".join(texts), [_values_row(part.name, row) for row in (section.rows if section else ())], chart)
 
 
 def _values_row(part: str, row: ComparedValue) -> dict[str, Any]:

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import re
-from base64 import b64encode
-from collections.abc import Mapping
-from pathlib import Path
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from markdown_it import MarkdownIt
@@ -15,7 +13,7 @@ from vibroimpact.paper.printed import PAPER
 from vibroimpact.paper.report.markdown import FIGURES, table
 from vibroimpact.paper.report.outline import CHAPTERS, PARTS
 from vibroimpact.paper.report_section import Verdict
-from vibroimpact.report.page import template
+from vibroimpact.report.page import render_drawn_page
 from vibroimpact.report.terminal_table import TerminalColumn, TerminalTable
 
 TITLE = "The paper, reproduced"
@@ -85,28 +83,35 @@ def _summary(parts: Mapping[str, Mapping[str, Any]]) -> list[str]:
     return [table(("Part", *(verdict.value.capitalize() for verdict in Verdict)), cells) + "\n"]
 
 
-def report_html(text: str, folder: Path) -> str:
-    """Return the report as a self-contained HTML page without scripts.
+_IMAGE = re.compile(rf'<p><img src="{FIGURES}/(?P<name>[^"]+)\.png" alt="(?P<title>[^"]*)" /></p>\n<p>.*?</p>\n', re.S)
+"""An image with its caption, as they are in HTML."""
+
+
+def report_html(text: str, charts: Sequence[dict[str, Any]]) -> str:
+    """Return the report as a self-contained HTML page whose charts can be explored.
 
     Parameters
     ----------
     text : str
         The report as Markdown.
-    folder : pathlib.Path
-        Folder with the figures.
+    charts : sequence of dict
+        The charts in the place of its images, as `plotly_chart` returns them.
     """
     body = MarkdownIt("commonmark", {"html": False}).enable("table").render(text)
-    # figures are embedded, tables can scroll, headings get anchors, and verdicts get classes for their colours
-    body = re.sub(r'src="(' + FIGURES + r'/[^"]+)\.png"', lambda found: f'src="{_data(folder / f"{found[1]}.svg")}"', body)
+    # tables can scroll, headings get anchors, and verdicts get classes for their colours
     body = re.sub(r"<table>(.*?)</table>", r'<div class="wide"><table class="words">\1</table></div>', body, flags=re.S)
     body = re.sub(r"<h2>(.*?)</h2>", lambda found: f'<h2 id="{_anchor(found[1])}">{found[1]}</h2>', body)
     for verdict in Verdict:
         body = re.sub(rf"<td>({verdict.value}(?:[:,][^<]*)?)</td>", rf'<td class="{verdict.name.lower()}">\1</td>', body)
-    return template(__package__).render(name=TITLE, body=body)
-
-
-def _data(file: Path) -> str:
-    return f"data:image/svg+xml;base64,{b64encode(file.read_bytes()).decode()}"
+    opening, chapters, rest = body.partition("<h2")
+    pieces, done = [], 0
+    for image in _IMAGE.finditer(chapters + rest):
+        # a chart has its title and caption itself
+        before = (chapters + rest)[done : image.start()].removesuffix(f"<h3>{image['title']}</h3>\n")
+        pieces.append((before, image["name"]))
+        done = image.end()
+    pieces.append(((chapters + rest)[done:], ""))
+    return render_drawn_page(__package__, charts, name=TITLE, opening=opening, pieces=pieces)
 
 
 def verdict_table(parts: Mapping[str, Mapping[str, Any]]) -> TerminalTable:

@@ -1,4 +1,4 @@
-"""The axes of a study in figures and tables."""
+"""The axes of a study in charts and tables."""
 
 from __future__ import annotations
 
@@ -10,6 +10,39 @@ from numpy.typing import NDArray
 
 from vibroimpact.studies.study import Study
 
+_WORDS = {
+    "contact": "contact law",
+    "contact.finite_sphere": "correction for a finite sphere",
+    "contact.full_damping_penetration": "full damping penetration",
+    "contact.law": "contact law",
+    "contact.local_compliance": "treatment of local indentation",
+    "contact.local_damping": "damping of the local element",
+    "contact.local_stiffness": "stiffness of the local element",
+    "contact.restitution": "restitution asked",
+    "drop.gravity": "gravity",
+    "drop.height": "drop height",
+    "drop.position.x": "place of the drop, x",
+    "drop.position.y": "place of the drop, y",
+    "drop.speed": "speed at first touch",
+    "plate.damping": "damping ratio of the plate",
+    "plate.element": "kind of element of the plate",
+    "plate.max_frequency": "highest frequency of the plate's modes",
+    "plate.modes": "number of modes of the plate",
+    "plate.radius": "radius of the lower sphere",
+    "run.impacts": "number of impacts",
+    "run.rest_speed": "rest speed",
+    "run.tolerance": "tolerance",
+    "sphere.damping": "damping ratio of the sphere",
+    "sphere.max_frequency": "highest frequency of the sphere's modes",
+    "sphere.modes": "number of modes of the sphere",
+    "sphere.material": "material of the sphere",
+    "plate.material": "material of the plate",
+}
+"""What a reader calls a key whose path or meaning says it less well."""
+
+_UNSAID = ("material", "size")
+"""Tables of a body whose keys are properties of the body."""
+
 
 @dataclass(frozen=True, eq=False)
 class StudyAxis:
@@ -19,6 +52,8 @@ class StudyAxis:
     ----------
     key : str
         Dotted key.
+    words : str
+        What it is, such as "radius of the sphere".
     unit : str
         SI unit; "1" for a plain number.
     values : array
@@ -26,6 +61,7 @@ class StudyAxis:
     """
 
     key: str
+    words: str
     unit: str
     values: NDArray[Any]
 
@@ -42,7 +78,36 @@ class StudyAxis:
 
 def study_axes(study: Study) -> list[StudyAxis]:
     """Return the axes of a study in order."""
-    return [StudyAxis(key, study.meanings[key][0], _as_numbers(values)) for key, values in study.coordinates.items()]
+    return [
+        StudyAxis(key, key_words(key, study.meanings[key][1]), study.meanings[key][0], _as_numbers(values))
+        for key, values in study.coordinates.items()
+    ]
+
+
+def key_words(key: str, meaning: str) -> str:
+    """Return what a key of a case is, in words.
+
+    Parameters
+    ----------
+    key : str
+        Dotted key.
+    meaning : str
+        Its meaning in the dataset; the key itself if it is not a quantity.
+
+    Examples
+    --------
+    >>> key_words("sphere.radius", "radius"), key_words("plate.material.youngs_modulus", "Young's modulus")
+    ('radius of the sphere', "Young's modulus of the plate")
+    >>> key_words("contact.exponent", "force exponent n, 1.5 for a sphere"), key_words("plate.mesh.size", "plate.mesh.size")
+    ('force exponent n', 'size of the mesh of the plate')
+    """
+    if key in _WORDS:
+        return _WORDS[key]
+    *way, last = key.split(".")
+    if way == ["contact"] and meaning != key:
+        return meaning.split(",")[0]
+    name = meaning.split(" of ")[0] if way and way[-1] in _UNSAID and meaning != key else last
+    return " of the ".join(part.replace("_", " ") for part in (name, *(part for part in reversed(way) if part not in _UNSAID)))
 
 
 def _as_numbers(values: NDArray[Any]) -> NDArray[Any]:

@@ -1,56 +1,120 @@
-"""Figure of a study with one axis: curves of the results over it."""
+"""Charts of a grid as curves: the results over one axis, a line for each of the first impacts, or for each level of a second axis."""
 
 from __future__ import annotations
 
-from matplotlib.figure import Figure
+from typing import Any
 
-from vibroimpact.report.style import ENLARGED, LOOPS, MARKS, lettering
+import numpy as np
+from numpy.typing import NDArray
+
+from vibroimpact.arrays import Floats, Indices
+from vibroimpact.charts.chart import Chart, Panel
+from vibroimpact.charts.marks import Line, Mark, Points
+from vibroimpact.charts.palette import series
+from vibroimpact.shown import shortened, visible
 from vibroimpact.studies.drop_variables import PEAK_TABLE
 from vibroimpact.studies.report.axes import StudyAxis
-from vibroimpact.studies.report.outputs import Output, on_grid
-from vibroimpact.studies.report.panels import add_legend, panels, scale_vertical, title_of
-from vibroimpact.studies.report.ticks import Ticks, ascending_order
+from vibroimpact.studies.report.drops import MOST_DROPS, drop_texts, results_of
+from vibroimpact.studies.report.labels import keys_told, level_words
+from vibroimpact.studies.report.outputs import Output, drop_numbers, on_grid, on_two_axes
+from vibroimpact.studies.report.panels import HEIGHT, in_rows
+from vibroimpact.studies.report.scales import ascending_order, key_axis, places, result_axis
 from vibroimpact.studies.study import Study
 
+MOST_LINES = 6
+"""Maximum number of levels drawn as lines; an axis of more levels is one of a map."""
+
+_MOST_IMPACTS = 5
 _MOST_MARKED, _MOST = 40, 3000  # levels up to which points are marked, and drawn
 
 
-def draw_curves(study: Study, axis: StudyAxis, outputs: list[Output]) -> Figure:
-    """Draw the results over one axis, with one line per impact for the first impacts if impacts were kept."""
-    ticks, order = Ticks(axis), ascending_order(axis, _MOST)
-    places = ticks.places(axis.values[order])
-    number = min(_impacts_kept(study), ENLARGED)
-    figure, some = panels([ticks.turned] * len(outputs), legend=number > 1)
-    for axes, output in zip(some, outputs, strict=True):
-        column = _column(study, output)
-        values = on_grid(study, column or output.name)[order].reshape(len(order), -1) / output.scale.size
-        for impact, (mark, (colour, dashes)) in enumerate(zip(MARKS[: values.shape[1]], LOOPS, strict=False)):
-            axes.plot(
-                places,
-                values[:, impact],
-                marker=mark if ticks.names or len(places) <= _MOST_MARKED else "",
-                color=colour,
-                linestyle="" if ticks.names else dashes,
-                markersize=3.0,
-                label=f"impact {impact + 1}",
-            )
-        axes.set_title(title_of(output._replace(title=output.short) if column else output))
-        scale_vertical(axes, output)
-        ticks.set_on(axes)
-        axes.set_xlabel(ticks.label)
-    if number > 1:
-        add_legend(figure, max(some, key=lambda axes: len(axes.lines)))
-    return figure
+def impact_curves(study: Study, axis: StudyAxis, outputs: list[Output]) -> Chart:
+    """Return the chart of results over the only axis, with one line per impact for the first impacts if impacts were kept.
+
+    Parameters
+    ----------
+    study : Study
+        A study on a grid.
+    axis : StudyAxis
+        Its axis of several levels.
+    outputs : list of Output
+        The results to draw.
+    """
+    order, across, number = ascending_order(axis, _MOST), key_axis(axis), min(_impacts_kept(study), _MOST_IMPACTS)
+    table = {one.name: on_grid(study, _column(study, one) or one.name)[order].reshape(len(order), -1) for one in outputs}
+    texts = [_texts_of_impact(study, outputs, table, order, impact, number) for impact in range(max(number, 1))]
+    panels = []
+    for output in outputs:
+        kept = range(min(table[output.name].shape[1], len(texts)))
+        names = [f"impact {impact + 1}" if number > 1 else "" for impact in kept]
+        marks = [_curve(axis, order, table[output.name][:, impact], impact, names[impact], texts[impact]) for impact in kept]
+        title = output.short if _column(study, output) else output.title
+        panels.append(Panel(across, result_axis(output, ""), tuple(marks), shortened(visible(title), 60)))
+    return Chart("curves", f"Over the {axis.words}", in_rows(panels), _impact_words(study, axis), HEIGHT)
 
 
-def curve_words(study: Study, axis: StudyAxis) -> str:
-    """Return the caption of the curves."""
+def level_curves(study: Study, axes: list[StudyAxis], outputs: list[Output], over: StudyAxis, each: StudyAxis) -> Chart:
+    """Return the chart of results over one axis of a grid, with a line for each level of another.
+
+    Parameters
+    ----------
+    study : Study
+        A study on a grid.
+    axes : list of StudyAxis
+        Its axes of several levels.
+    outputs : list of Output
+        The results to draw; of more than two axes their median over the others.
+    over, each : StudyAxis
+        The axis along which they are drawn, and that of the lines.
+    """
+    order, levels, across = ascending_order(over, _MOST), ascending_order(each), key_axis(over)
+    names = [f"{each.words} {level_words(each, level)}" if each.numeric else level_words(each, level) for level in levels]
+    texts: list[tuple[str, ...]] = [()] * len(levels)
+    if len(axes) == 2 and study.size <= MOST_DROPS:
+        told = np.array(drop_texts(study, results_of(study, outputs), drop_numbers(study)), dtype=object)
+        told = told.reshape([len(axis.values) for axis in axes]) if axes[0] is over else told.reshape([len(axis.values) for axis in axes]).T
+        texts = [tuple(told[order, level]) for level in levels]
+    panels = []
+    for output in outputs:
+        values = on_two_axes(study, output.name, axes.index(over), axes.index(each))
+        found = zip(levels, names, texts, strict=True)
+        marks = [_curve(over, order, values[order, level], line, name, words) for line, (level, name, words) in enumerate(found)]
+        panels.append(Panel(across, result_axis(output, ""), tuple(marks), shortened(visible(output.title), 60)))
+    words = "" if len(axes) == 2 else " The two keys that matter most to the first result; drawn is the median over the others."
+    caption = f"A line for each {each.words}.{words} {keys_told([over, each])}"
+    return Chart("curves", f"Over the {over.words}, for each {each.words}", in_rows(panels), caption, HEIGHT)
+
+
+def _curve(axis: StudyAxis, order: Indices, values: Floats, line: int, name: str, texts: tuple[str, ...]) -> Mark:
+    """Return a line over the levels of an axis, or points over names, between which there is nothing."""
+    across = places(axis, axis.values[order])
+    if not axis.numeric:
+        return Points(across, values, name, series(line), texts)
+    return Line(across, values, name, series(line), marked=len(across) <= _MOST_MARKED, texts=texts)
+
+
+def _texts_of_impact(
+    study: Study, outputs: list[Output], table: dict[str, NDArray[Any]], order: Indices, impact: int, number: int
+) -> tuple[str, ...]:
+    """Return what each drop is, with the results of one of its impacts."""
+    if len(order) > MOST_DROPS:
+        return ()
+    told = {}
+    for output in outputs:
+        column, values = _column(study, output), table[output.name]
+        told[output.short if column else output.title] = (output.unit, values[:, min(impact, values.shape[1] - 1)])
+    numbers = drop_numbers(study)[order]  # of a grid of one axis with several levels
+    return drop_texts(study, told, numbers, np.full(len(numbers), impact + 1) if number > 1 else None)
+
+
+def _impact_words(study: Study, axis: StudyAxis) -> str:
+    """Return the caption of the curves of impacts."""
     kept = _impacts_kept(study)
-    words = f"Results over {lettering(axis.key)}"
+    words = f"Results over the {axis.words}"
     if not kept:
-        return f"{words}; impacts were not kept one by one, so that these are the peaks of each drop."
-    of_many = f" (the first {ENLARGED} of {kept})" if kept > ENLARGED else ""
-    return f"{words}, a line an impact{of_many}." if kept > 1 else f"{words}."
+        return f"{words}; impacts were not kept one by one, so that these are the peaks of each drop. {keys_told([axis])}"
+    of_many = f" (the first {_MOST_IMPACTS} of {kept})" if kept > _MOST_IMPACTS else ""
+    return f"{words}, a line an impact{of_many}. {keys_told([axis])}" if kept > 1 else f"{words}. {keys_told([axis])}"
 
 
 def _column(study: Study, output: Output) -> str:

@@ -1,17 +1,18 @@
-"""Histograms of sampled inputs and of results."""
+"""Charts of histograms: the sampled inputs, and the results."""
 
 from __future__ import annotations
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from vibroimpact.arrays import Floats
-from vibroimpact.report.style import ACCENT, INK, MARK
+from vibroimpact.charts.axis import Axis
+from vibroimpact.charts.chart import Chart, Panel
+from vibroimpact.charts.marks import Bars, Level, Mark
 from vibroimpact.studies.report.axes import StudyAxis
+from vibroimpact.studies.report.labels import keys_told
 from vibroimpact.studies.report.outputs import Output, independent_drops, independent_values
-from vibroimpact.studies.report.panels import add_legend, is_log, panels, title_of
-from vibroimpact.studies.report.ticks import Ticks, plain_log_ticks
+from vibroimpact.studies.report.panels import HEIGHT, in_rows
+from vibroimpact.studies.report.scales import is_log, is_spread_by_factors, key_axis, names_of, places, result_axis
 from vibroimpact.studies.study import Study
 
 FEWEST = 20
@@ -20,48 +21,40 @@ FEWEST = 20
 _MOST_BINS = 60
 
 
-def draw_inputs(study: Study, axes: list[StudyAxis]) -> Figure:
-    """Draw histograms of the sampled inputs."""
-    ticks = [Ticks(axis) for axis in axes]
-    figure, some = panels([one.turned for one in ticks])
-    for axis, one, panel in zip(axes, ticks, some, strict=True):
-        drawn = one.places(axis.values[: independent_drops(study)])
-        if one.names:
-            panel.bar(range(len(one.names)), np.bincount(drawn.astype(int), minlength=len(one.names)), width=0.6, color=ACCENT)
+def inputs_chart(study: Study, axes: list[StudyAxis]) -> Chart:
+    """Return the chart of histograms of the sampled inputs."""
+    panels = []
+    for axis in axes:
+        drawn = places(axis, axis.values[: independent_drops(study)])
+        if axis.numeric:
+            bars = _histogram(drawn, log=is_spread_by_factors(axis.values))
         else:
-            _draw_histogram(panel, drawn, one.is_log)
-        one.set_on(panel)
-        panel.set_xlabel(one.label)
-        panel.set_title("Drops")
-    return figure
+            number = len(names_of(axis))
+            bars = Bars(np.arange(float(number)), np.bincount(drawn.astype(int), minlength=number).astype(float), role="pale")
+        panels.append(Panel(key_axis(axis), Axis("Drops", integer=True), (bars,)))
+    caption = f"How often values were drawn{_of_what(study)}. {keys_told(axes)}"
+    return Chart("inputs", "What was drawn", in_rows(panels), caption, HEIGHT)
 
 
-def draw_outputs(study: Study, outputs: list[Output]) -> Figure:
-    """Draw histograms of the results with their percentiles."""
-    figure, some = panels([False] * len(outputs), legend=True)
-    for output, panel in zip(outputs, some, strict=True):
-        size = output.scale.size
+def outputs_chart(study: Study, outputs: list[Output]) -> Chart:
+    """Return the chart of histograms of the results with their percentiles."""
+    panels = []
+    for output in outputs:
         values = independent_values(study, output.name)
-        values = values[np.isfinite(values)]
-        values /= size
-        _draw_histogram(panel, values, is_log(output))
         low, _, middle, _, high = output.spread.percentiles
-        panel.axvline(middle / size, color=INK, linewidth=1.2, label="median")
-        for number, edge in enumerate((low, high)):
-            panel.axvline(edge / size, color=MARK, linewidth=1.0, linestyle=(0, (4, 2)), label="5 and 95 %" if not number else None)
-        if is_log(output):
-            panel.set_xscale("log")
-            plain_log_ticks(panel.xaxis)
-        panel.set_xlabel(title_of(output))
-        panel.set_title("Drops")
-    add_legend(figure, some[0])
-    return figure
+        edges: list[Mark] = [Level(edge, "5 and 95 %", "mark line", upright=True) for edge in (low, high)]
+        marks = (_histogram(values[np.isfinite(values)], log=is_log(output)), *edges, Level(middle, "median", "main", upright=True))
+        panels.append(Panel(result_axis(output, output.title), Axis("Drops", integer=True), marks))
+    return Chart("outputs", "What came of it", in_rows(panels), f"How the results spread{_of_what(study)}.", HEIGHT)
 
 
-def _draw_histogram(panel: Axes, values: Floats, log: bool) -> None:
+def _of_what(study: Study) -> str:
+    return " in the blocks A and B, whose drops are independent" if study.design == "saltelli" else ""
+
+
+def _histogram(values: Floats, *, log: bool) -> Bars:
     number = int(np.clip(2.0 * np.cbrt(len(values)), 8, _MOST_BINS))
     low, high = float(values.min()), float(values.max())
-    edges = np.geomspace(low, high, number + 1) if log and low > 0.0 else np.linspace(low, high, number + 1)
-    counts, _ = np.histogram(values, np.unique(edges))
-    panel.stairs(counts, np.unique(edges), fill=True, color=ACCENT, alpha=0.35)
-    panel.stairs(counts, np.unique(edges), color=ACCENT, linewidth=0.9)
+    edges = np.unique(np.geomspace(low, high, number + 1) if log and low > 0.0 else np.linspace(low, high, number + 1))
+    counts, _ = np.histogram(values, edges)
+    return Bars(edges, counts.astype(float), role="pale")

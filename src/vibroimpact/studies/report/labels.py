@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -18,6 +19,32 @@ BAND = f"{PERCENTILES[0]} to {PERCENTILES[-1]} %"
 def value_text(axis: StudyAxis, value: Any) -> str:
     """Return one value of an axis as text."""
     return text(float(value), axis.unit) if axis.numeric else shortened(visible(str(value)), 60)
+
+
+def level_words(axis: StudyAxis, level: int) -> str:
+    """Return a level of an axis in the multiple of its unit that suits all of them, as short as it can be.
+
+    Examples
+    --------
+    >>> axis = StudyAxis("sphere.radius", "radius of the sphere", "m", np.array([0.01, 0.0225]))
+    >>> [level_words(axis, level).replace("\u00a0", " ") for level in (0, 1)]
+    ['10 mm', '22.5 mm']
+    """
+    if not axis.numeric:
+        return value_text(axis, axis.values[level])
+    scale = multiple(axis.unit, axis.values)
+    return f"{axis.values[level] / scale.size:.6g}\u00a0{scale.unit}".rstrip("\u00a0")
+
+
+def keys_told(axes: Sequence[StudyAxis]) -> str:
+    """Return the sentence of a caption that names the keys in a case file of axes that are drawn in words.
+
+    Examples
+    --------
+    >>> keys_told([StudyAxis("sphere.radius", "radius of the sphere", "m", np.array([0.01, 0.02]))])
+    'In the case: sphere.radius.'
+    """
+    return f"In the case: {', '.join(shortened(visible(axis.key), 60) for axis in axes)}."
 
 
 def range_text(axis: StudyAxis) -> str:

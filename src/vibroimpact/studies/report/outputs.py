@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from vibroimpact.arrays import Floats
+from vibroimpact.arrays import Floats, Indices
 from vibroimpact.dynamics.outcome import Outcome
 from vibroimpact.studies.drop_variables import OUTCOME, PEAK_TABLE, SENSOR_PEAK
 from vibroimpact.studies.percentiles import Spread, spread_of
@@ -49,6 +49,11 @@ class Output(NamedTuple):
     def is_sensor_reading(self) -> bool:
         """Whether it is the reading of a sensor."""
         return self.name not in PEAK_TABLE
+
+    @property
+    def is_zero(self) -> bool:
+        """Whether it is zero in all drops."""
+        return self.spread.drops > 0 and not self.spread.mean and not any(self.spread.percentiles)
 
     @property
     def is_informative(self) -> bool:
@@ -98,6 +103,30 @@ def on_grid(study: Study, name: str) -> NDArray[Any]:
     return read_output(study, name).reshape(*levels, *study.shapes[name][len(study.dimensions) :])
 
 
+def on_two_axes(study: Study, name: str, first: int, second: int) -> Floats:
+    """Return the median of a result over all axes of a grid but two, with the levels of the first as rows and of the second as columns.
+
+    Parameters
+    ----------
+    study : Study
+        A study on a grid.
+    name : str
+        Name of the result.
+    first, second : int
+        The two axes, counted among those of several levels.
+    """
+    values = on_grid(study, name)
+    moved = np.moveaxis(values, (first, second), (0, 1))
+    flat = moved.reshape(*moved.shape[:2], -1)
+    found = np.full(flat.shape[:2], np.nan)
+    for place in np.ndindex(*found.shape):
+        here = flat[place]
+        here = here[np.isfinite(here)]
+        if len(here):
+            found[place] = here[0] if len(here) == 1 else np.median(here)
+    return found
+
+
 def sampled_places(study: Study, most: int) -> tuple[slice, ...]:
     """Return slices along each dimension that select a representative subset of the drops, without randomness.
 
@@ -112,6 +141,17 @@ def sampled_places(study: Study, most: int) -> tuple[slice, ...]:
     while prod(left := [ceil(length / step) for length, step in zip(lengths, steps, strict=True)]) > most:
         steps[int(np.argmax(left))] += 1
     return tuple(slice(None, None, step) for step in steps)
+
+
+def drop_numbers(study: Study, *places: slice) -> Indices:
+    """Return the numbers in drops.csv of the drops at slices along each dimension, flat; without slices of all."""
+    if not places:
+        return np.arange(study.size)
+    if not study.is_grid:
+        return np.arange(study.size)[places[0]]
+    lengths = tuple(study.dimensions.values())
+    chosen = np.meshgrid(*(np.arange(length)[place] for length, place in zip(lengths, places, strict=True)), indexing="ij")
+    return np.asarray(np.ravel_multi_index(tuple(chosen), lengths).ravel(), dtype=np.intp)
 
 
 def sampled_output(study: Study, name: str, most: int) -> Floats:

@@ -1,26 +1,26 @@
-"""Restitution prescribed to the contact laws of a study and achieved by the drops: summary, sentence and figure."""
+"""Restitution prescribed to the contact laws of a study and achieved by the drops: summary, sentence and chart."""
 
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
-from vibroimpact.arrays import Floats
-from vibroimpact.report.layout import label_vertical, new_figure, row_of_axes, wide_axes
-from vibroimpact.report.style import LOOPS, MARKS
-from vibroimpact.studies.report.outputs import independent_values, sampled_output
-from vibroimpact.studies.report.panels import add_legend
-from vibroimpact.studies.report.ticks import is_spread_by_factors, plain_log_ticks
+from vibroimpact.arrays import Floats, Indices
+from vibroimpact.charts.axis import Axis
+from vibroimpact.charts.chart import Chart, Panel
+from vibroimpact.charts.marks import Level, Line, Mark, Points
+from vibroimpact.studies.report.axes import study_axes
+from vibroimpact.studies.report.drops import Group, drop_texts, grouped
+from vibroimpact.studies.report.outputs import drop_numbers, independent_values, sampled_output, sampled_places
+from vibroimpact.studies.report.panels import in_rows
+from vibroimpact.studies.report.scales import is_spread_by_factors
 from vibroimpact.studies.study import Study
 from vibroimpact.units.display import fixed
 
-_MOST = 1200  # maximum number of drops drawn
-_FEW, _SOME = 100, 300  # drops up to which marks are large, and are drawn as vectors
-_AS_ASKED: dict[str, Any] = {"color": "#888888", "linewidth": 0.9, "linestyle": (0, (4, 2)), "zorder": 1.5, "label": "as asked"}
+_MOST = 3000  # maximum number of impacts drawn
+_MOST_IMPACTS = 5  # of each drop
 
 
 class RestitutionSummary(NamedTuple):
@@ -72,66 +72,65 @@ def restitution_sentence(found: RestitutionSummary) -> str:
     return f"Restitution asked: {_ends(found.asked)}; {achieved}. The median of what was achieved less what was asked is {median}."
 
 
-def draw_restitution(study: Study) -> Figure | None:
-    """Draw achieved over prescribed restitution, and their difference over the approach speed; None if none is prescribed.
+class _Impacts(NamedTuple):
+    """Impacts that are drawn: number of the drop and of the impact, restitution prescribed and achieved, and approach speed."""
 
-    If all prescribed values are equal, the achieved restitution is drawn over the approach speed instead.
+    drop: Indices
+    impact: Indices
+    asked: Floats
+    achieved: Floats
+    speed: Floats
+
+
+def restitution_chart(study: Study) -> Chart | None:
+    """Return the chart of achieved over prescribed restitution, and of their difference over the approach speed.
+
+    If all prescribed values are equal, the achieved restitution is drawn over the approach speed instead; None if none is prescribed.
     """
-    found = _asked_achieved_speed(study)
-    if found is None:
+    found = _impacts(study)
+    if not len(found.drop):
         return None
-    asked, achieved, speed = found
-    least, most = float(np.nanmin(asked)), float(np.nanmax(asked))
-    figure = new_figure(4.3)
+    several = bool(found.impact.max() > 1)
+    told = {"Restitution asked": ("1", found.asked), "Restitution achieved": ("1", found.achieved), "Approach speed": ("m/s", found.speed)}
+    texts = drop_texts(study, told, found.drop, found.impact if several else None)
+    others = {"Impact": np.array([f"impact {one}" for one in found.impact.tolist()], dtype=object)} if several else {}
+    groups = grouped(study, [axis for axis in study_axes(study) if axis.varies], found.drop, texts, others)
+    achieved = Axis("Restitution achieved")
+    fast = Axis("Approach speed", "m/s", log=is_spread_by_factors(np.unique(found.speed)))
+    least, most = float(found.asked.min()), float(found.asked.max())
     if most > least:
-        left, right = row_of_axes(figure, 2, 0.9, 3.0)
-        _plot_impacts(left, asked, achieved)
-        ends = [min(least, float(np.nanmin(achieved))), max(most, float(np.nanmax(achieved)))]
-        left.plot(ends, ends, **_AS_ASKED)
-        left.set_title("Achieved over asked")
-        left.set_xlabel("Restitution asked")
-        _plot_impacts(right, speed, achieved - asked)
-        right.axhline(0.0, **_AS_ASKED)
-        right.set_title("Achieved less asked")
+        ends = np.array([min(least, float(found.achieved.min())), max(most, float(found.achieved.max()))])
+        over: tuple[Mark, ...] = (Line(ends, ends, "as asked", "reference"), *_points(groups, found.asked, found.achieved))
+        less: tuple[Mark, ...] = (Level(0.0, "as asked", "reference"), *_points(groups, found.speed, found.achieved - found.asked))
+        panels = [
+            Panel(Axis("Restitution asked"), achieved, over, "Achieved over asked"),
+            Panel(fast, Axis("Difference of restitution"), less, "Achieved less asked"),
+        ]
     else:
-        left = right = wide_axes(figure, 0.9, 3.0)
-        _plot_impacts(right, speed, achieved)
-        right.axhline(most, **_AS_ASKED)
-        right.set_title("Achieved over the approach speed")
-    label_vertical(left, "Restitution achieved")
-    right.set_xlabel("Approach speed [m/s]")
-    if is_spread_by_factors(np.unique(speed[np.isfinite(speed)])):
-        right.set_xscale("log")
-        plain_log_ticks(right.xaxis)
-    add_legend(figure, left, 1.0 if len(asked) < _FEW else 2.5)
-    return figure
+        panels = [Panel(fast, achieved, (Level(most, "as asked", "reference"), *_points(groups, found.speed, found.achieved)))]
+    words = "Each impact a mark" if several else "The first impact of each drop a mark"
+    caption = f"{words}; dashed is what was asked of the law. What it achieves may depend on the speed of the impact."
+    return Chart("restitution", "Restitution asked and achieved", in_rows(panels), caption, 3.0)
 
 
-def _asked_achieved_speed(study: Study) -> tuple[Floats, Floats, Floats] | None:
-    """Return prescribed and achieved restitution and approach speed, (drops, impacts) each: of all impacts if kept, else of the first."""
-    names = ("restitution_asked", "restitution_achieved", "approach_speed_m_s")
-    if not all(name in study.shapes for name in names):
+def _points(groups: list[Group], across: Floats, up: Floats) -> list[Points]:
+    return [Points(across[one.chosen], up[one.chosen], one.name, one.role, one.texts, one.keys) for one in groups]
+
+
+def _impacts(study: Study) -> _Impacts:
+    """Return the first impacts of some drops that have both values; the first one of each if no others were kept."""
+    names, each = ("restitution_asked", "restitution_achieved", "approach_speed_m_s"), 1
+    if all(name in study.shapes and study.shapes[name][-1] for name in names):
+        each = min(study.shapes[names[0]][-1], _MOST_IMPACTS)
+    else:
         names = ("first_restitution_asked", "first_restitution_achieved", "first_approach_speed_m_s")
     if names[0] not in study.shapes:
-        return None
-    asked, achieved, speed = (np.atleast_2d(sampled_output(study, name, _MOST).T).T for name in names)
-    return (asked, achieved, speed) if (np.isfinite(asked) & np.isfinite(achieved)).any() else None
-
-
-def _plot_impacts(axes: Axes, across: Floats, up: Floats) -> None:
-    """Draw the first impacts of each drop, with one mark style per impact."""
-    for impact, (mark, (colour, _), x, y) in enumerate(zip(MARKS, LOOPS, across.T, up.T, strict=False)):
-        axes.plot(
-            x,
-            y,
-            color=colour,
-            marker=mark,
-            linestyle="",
-            markersize=3.0 if len(x) < _FEW else 1.8,
-            markeredgewidth=0.0,
-            label=f"impact {impact + 1}",
-            rasterized=len(x) > _SOME,
-        )
+        return _Impacts(np.empty(0, np.intp), np.empty(0, np.intp), *np.empty((3, 0)))
+    drops = drop_numbers(study, *sampled_places(study, _MOST // each))
+    columns = [sampled_output(study, name, _MOST // each).reshape(len(drops), -1)[:, :each].ravel() for name in names]
+    there = np.isfinite(columns[0]) & np.isfinite(columns[1])
+    asked, achieved, speed = (column[there] for column in columns)
+    return _Impacts(np.repeat(drops, each)[there], np.tile(np.arange(1, each + 1), len(drops))[there], asked, achieved, speed)
 
 
 def _ends(ends: tuple[float, float]) -> str:

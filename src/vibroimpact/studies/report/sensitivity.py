@@ -9,7 +9,7 @@ import numpy as np
 from vibroimpact.arrays import Floats
 from vibroimpact.studies.report.axes import StudyAxis, study_axes
 from vibroimpact.studies.report.outputs import Output, on_grid, read_output, sampled_output, sampled_places
-from vibroimpact.studies.report.ticks import ascending_order
+from vibroimpact.studies.report.scales import ascending_order
 from vibroimpact.studies.sensitivity import MOST_LEFT_OUT, one_at_a_time, rank_correlations, sobol_indices
 from vibroimpact.studies.study import Study
 
@@ -54,6 +54,11 @@ def sensitivity_of(study: Study, outputs: list[Output]) -> Sensitivity | None:
     if study.design == "saltelli":
         return _indices(study, axes, outputs)
     return _ranges(study, [axis for axis in axes if len(axis.values) > 1], outputs) if study.is_grid else _ranks(study, varying, outputs)
+
+
+def informative_sensitivity(study: Study, outputs: list[Output]) -> Sensitivity | None:
+    """Return the sensitivity of the results that describe the response, as `sensitivity.csv` has it; None as `sensitivity_of`."""
+    return sensitivity_of(study, [one for one in outputs if one.is_informative])
 
 
 def strongest(found: Sensitivity, output: str) -> str | None:

@@ -1,95 +1,118 @@
-"""Figure of the signals of a sensor in the drops of a study: percentile band and single signals."""
+"""Chart of the signals of a sensor in the drops of a study: percentile band and single signals, from first touch on."""
 
 from __future__ import annotations
 
-import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
-from matplotlib.ticker import MaxNLocator
+from collections.abc import Iterator
 
-from vibroimpact.arrays import Floats
+import numpy as np
+
+from vibroimpact.arrays import Floats, Indices
+from vibroimpact.charts.axis import Axis, View
+from vibroimpact.charts.chart import Chart, Panel
+from vibroimpact.charts.decimation import visible_points
+from vibroimpact.charts.marks import Band, Line
+from vibroimpact.charts.palette import series
 from vibroimpact.files.plain_names import plain_names
-from vibroimpact.report.layout import label_vertical, new_figure, wide_axes
-from vibroimpact.report.style import ACCENT, INK, LOOPS, lettering
+from vibroimpact.shown import shortened, visible
 from vibroimpact.studies.drop_variables import SIGNAL
-from vibroimpact.studies.report.labels import BAND, drops_text, with_unit
-from vibroimpact.studies.report.outputs import sampled_output
-from vibroimpact.studies.report.panels import add_legend
+from vibroimpact.studies.report.labels import BAND, drops_text
+from vibroimpact.studies.report.outputs import drop_numbers, sampled_output, sampled_places
 from vibroimpact.studies.study import Study
-from vibroimpact.units.display import Multiple, multiple
+from vibroimpact.units.display import text
 
 MOST = 2
 """Maximum number of sensors drawn."""
 
 _BYTES = 30e6  # maximum memory of the evaluated signals
-_COLUMNS = 300  # time intervals of the band
-_CLOSE = 250  # samples shown of single signals from their onset
-_FEW = 3
-_BEGINS = 0.02  # fraction of the peak at which a signal has its onset
+_BEFORE = 0.05  # part of what is shown that lies before first touch
+_COLUMNS = 1200  # time intervals of the band
+_CLOSE, _FARTHER = 250, 8  # samples shown by the first view, and by each further one how many times more
+_FEW = 5
+_FINEST = 2500  # columns of a line that is drawn
 
 
-def signal_figures(study: Study) -> dict[str, str]:
-    """Return the names of the figures of sensors, with the names of the sensors."""
+def signal_charts(study: Study) -> Iterator[Chart]:
+    """Yield the charts of the signals of the first sensors."""
     sensors = [name.removeprefix(SIGNAL) for name in study.shapes if name.startswith(SIGNAL)]
-    return {f"signal_{plain_name}": sensor for sensor, plain_name in list(plain_names(sensors).items())[:MOST]}
+    for sensor, plain_name in list(plain_names(sensors).items())[:MOST]:
+        chart = _signal_chart(study, sensor, f"signal_{plain_name}")
+        if chart is not None:
+            yield chart
 
 
-def draw_signals(study: Study, sensor: str) -> Figure | None:
-    """Draw the signals of a sensor: percentile band of its readings over time, and single signals from their onset."""
-    name = f"{SIGNAL}{sensor}"
-    samples, unit = study.shapes[name][-1], study.meanings[name][0]
-    signals = sampled_output(study, name, max(_FEW, int(_BYTES / (8 * samples))))
-    signals = signals[np.isfinite(signals).all(axis=1)]
+def _signal_chart(study: Study, sensor: str, name: str) -> Chart | None:
+    """Return the chart of a sensor's signals: percentile band of its readings over time, and single signals; None without readings."""
+    variable = f"{SIGNAL}{sensor}"
+    most = max(_FEW, int(_BYTES / (8 * study.shapes[variable][-1])))
+    signals, numbers = sampled_output(study, variable, most), drop_numbers(study, *sampled_places(study, most))
+    touch = _first_touches(study, most)
+    there = np.isfinite(signals).all(axis=1) & np.isfinite(touch)
+    signals, numbers, touch = signals[there], numbers[there], touch[there]
     if not len(signals) or not np.abs(signals).max() > 0.0:
         return None
-    time = study.times(sensor)
-    scale = multiple(unit, signals)
-    figure = new_figure(5.9)
-    whole, close = wide_axes(figure, 3.65, 1.85), wide_axes(figure, 0.95, 1.85)
-    begin = min(_begin(one) for one in signals)
-    begin = max(begin - (len(time) - begin) // 20, 0)
-    _draw_band(whole, time[begin:], signals[:, begin:] / scale.size)
-    _draw_few(close, time, signals, scale)
-    for axes in (whole, close):
-        label_vertical(axes, with_unit(study.meanings[name][1].split(" that ")[0].capitalize(), scale.unit))
-    whole.set_title(f"Readings of {lettering(sensor, 40)} in {drops_text(len(signals))}, from just before the first one begins")
-    add_legend(figure, close)
-    return figure
+    times = study.times(sensor)
+    step = float(times[1] - times[0]) if len(times) > 1 else 1.0
+    before = float(min(touch.min(), _BEFORE * (times[-1] - touch.min())))
+    label = "Time since first touch" if touch.any() else "Time"
+    unit, meaning = study.meanings[variable]
+    reading = Axis(meaning.split(" that ")[0].capitalize(), unit)
+    band = Panel(Axis(label, "s"), reading, tuple(_band(signals, touch, step, before)), f"All readings in {drops_text(len(signals))}")
+    single = tuple(_single(signals, numbers, touch, times, before))
+    lower = Panel(Axis(label, "s", views=_views(step, len(times))), reading, single, "Single drops")
+    caption = (
+        "Above, all readings in short spans of the time since first touch, as long as half of the drops have readings. Below, single drops "
+        "laid over each other at first touch: those of the smallest and the largest peak, and some between."
+    )
+    return Chart(name, f"Sensor {shortened(visible(sensor), 60)}", ((band,), (lower,)), caption, 2.6)
 
 
-def _draw_band(axes: Axes, time: Floats, signals: Floats) -> None:
-    """Draw the percentile band of the readings in short time intervals."""
-    spans = np.array_split(np.arange(len(time)), min(_COLUMNS, len(time)))
-    parts = np.array([np.percentile(signals[:, span], (0, 5, 50, 95, 100)) for span in spans])
-    clock = multiple("s", time)
-    middle = np.array([time[span].mean() for span in spans]) / clock.size
-    axes.fill_between(middle, parts[:, 0], parts[:, 4], color=ACCENT, alpha=0.15, linewidth=0.0, label="all")
-    axes.fill_between(middle, parts[:, 1], parts[:, 3], color=ACCENT, alpha=0.55, linewidth=0.0, label=BAND)
-    axes.plot(middle, parts[:, 2], color=INK, linewidth=0.9, label="median")
-    axes.margins(x=0.01)
-    axes.legend(loc="upper right", ncols=3)
-    axes.set_xlabel(f"Time [{clock.unit}]")
+def _first_touches(study: Study, most: int) -> Floats:
+    """Return the time of first touch of each drop; zeros where the dataset does not have it."""
+    if "first_time_s" in study.shapes:
+        return sampled_output(study, "first_time_s", most)
+    return np.zeros(len(drop_numbers(study, *sampled_places(study, most))))
 
 
-def _draw_few(axes: Axes, time: Floats, signals: Floats, scale: Multiple) -> None:
-    """Draw the signals with the smallest, the median and the largest peak, each from its onset."""
-    by_peak = np.argsort(np.abs(signals).max(axis=1), kind="stable")
-    chosen = dict.fromkeys([int(by_peak[0]), int(by_peak[len(by_peak) // 2]), int(by_peak[-1])])
-    titles = ("smallest peak", "middle peak", "largest peak") if len(chosen) == _FEW else ("smallest peak", "largest peak")
-    step = time[1] - time[0] if len(time) > 1 else 1.0
-    clock = multiple("s", _CLOSE * step)
-    for place, (colour, dashes), title in zip(chosen, LOOPS, titles if len(chosen) > 1 else ("the drop",), strict=False):
-        one = signals[place]
-        begin = max(_begin(one) - _CLOSE // 20, 0)
-        part = one[begin : begin + _CLOSE]
-        axes.plot(np.arange(len(part)) * step / clock.size, part / scale.size, color=colour, linestyle=dashes, linewidth=1.0, label=title)
-    axes.margins(x=0.01)
-    axes.xaxis.set_major_locator(MaxNLocator(8, steps=[1, 2, 5, 10]))
-    axes.set_title("Single drops, each from just before its signal begins")
-    axes.set_xlabel(f"Time [{clock.unit}]")
+def _views(step: float, samples: int) -> tuple[View, ...]:
+    """Return the views: the beginning, each of a span several times that of the one before."""
+    spans: list[float] = []
+    while (count := _CLOSE * _FARTHER ** len(spans)) < samples:
+        spans.append(count * step)
+    return tuple(View(f"the first {text(span, 's', 2)}", -_BEFORE * span, span) for span in spans)
 
 
-def _begin(signal: Floats) -> int:
-    """Return the index of the onset of a signal."""
-    moved = np.abs(signal - signal[0])
-    return int(np.argmax(moved > _BEGINS * moved.max()))
+def _band(signals: Floats, touch: Floats, step: float, before: float) -> Iterator[Band | Line]:
+    """Yield all readings as bands in short intervals of the time since first touch."""
+    first, ahead = np.round(touch / step).astype(int), round(before / step)
+    aligned = np.full((len(signals), ahead + signals.shape[1] - int(np.median(first))), np.nan)
+    for row, one, begin in zip(aligned, signals, (first - ahead).tolist(), strict=True):
+        part = one[begin : begin + len(row)]
+        row[: len(part)] = part
+    spans = np.array_split(np.arange(aligned.shape[1]), min(_COLUMNS, aligned.shape[1]))
+    readings = (aligned[:, span].ravel() for span in spans)
+    parts = np.array([np.percentile(one[np.isfinite(one)], (0, 5, 50, 95, 100)) for one in readings])
+    middle = step * np.array([span.mean() - ahead for span in spans])
+    yield Band(middle, parts[:, 0], parts[:, 4], "all", "band")
+    yield Band(middle, parts[:, 1], parts[:, 3], BAND, "inner band")
+    yield Line(middle, parts[:, 2], "median")
+
+
+def _single(signals: Floats, numbers: Indices, touch: Floats, times: Floats, before: float) -> Iterator[Line]:
+    """Yield the signals with the smallest and the largest peak, and with some between, the largest below the others."""
+    by_peak = np.argsort(-np.abs(signals).max(axis=1), kind="stable")
+    chosen = dict.fromkeys(by_peak[np.linspace(0, len(by_peak) - 1, _FEW).astype(int)].tolist())
+    peaks = {int(by_peak[0]): ", largest peak", int(by_peak[-1]): ", smallest peak"} if len(chosen) > 1 else {}
+    for place, drop in enumerate(chosen):
+        since = times - touch[drop]
+        there = slice(int(np.searchsorted(since, -before)), None)
+        x, y = _drawn(since[there], signals[drop][there])
+        yield Line(x, y, f"drop {numbers[drop]}{peaks.get(drop, '')}", series(place))
+
+
+def _drawn(x: Floats, y: Floats) -> tuple[Floats, Floats]:
+    """Return the visible points of a signal, and all of its beginning, which the first views show."""
+    kept = visible_points(len(x), lambda first, last: (x[first:last], y[first:last]), _FINEST)
+    if kept is None:
+        return x, y
+    near = np.union1d(kept, np.arange(np.searchsorted(x, (x[1] - x[0]) * _CLOSE * _FARTHER)))
+    return x[near], y[near]

@@ -17,7 +17,7 @@ from vibroimpact.studies.report.outputs import Output
 from vibroimpact.studies.report.sensitivity import RANKS, SOBOL, Sensitivity
 from vibroimpact.studies.study import Study
 from vibroimpact.studies.unit_slips import study_slips
-from vibroimpact.units.display import digits, fixed
+from vibroimpact.units.display import MISSING, digits, fixed
 
 PERCENTILE_COLUMNS = ["output", "unit", "drops", "mean", "standard_deviation", *(f"percentile_{part}" for part in PERCENTILES)]
 """Columns of `percentiles.csv`."""
@@ -29,6 +29,7 @@ _WORST_KEYS = 4  # keys shown of the worst drop; all are in drops.csv
 _COUNT = "number_of_impacts"
 _FAILURES, _REASONS = 10, 5
 _MOST_KEYS = 20
+_IDLE = set(f"0. ±{MISSING}")
 _NUMBER = re.compile(r"[-+]?\d+\.?\d*(?:e[-+]?\d+)?")
 
 
@@ -85,26 +86,25 @@ def doubt_sentences(study: Study) -> list[str]:
 
 
 def axes_table(study: Study, axes: list[StudyAxis]) -> list[tuple[str, str, str]]:
-    """Return the table of the swept keys: key, meaning, and range."""
+    """Return the table of the swept keys: key, what it is, and range."""
     rows = []
     for axis in axes:
-        meaning = study.meanings[axis.key][1]
         levels = f"{len(axis.values)} levels, " if study.is_grid and axis.varies else ""
-        rows.append((axis.key, "" if meaning == axis.key else meaning, levels + range_text(axis)))
+        rows.append((axis.key, axis.words, levels + range_text(axis)))
     return rows
 
 
 def percentiles_table(outputs: list[Output]) -> tuple[list[str], list[list[str]]]:
-    """Return the table of the statistics of the results as text: headers, and a row per result with values."""
+    """Return the table of the statistics of the results as text: headers, and a row per result that is not zero in all drops."""
     rows = []
     for one in outputs:
         spread, (unit, size) = one.spread, one.scale
-        if not spread.drops:
+        if not spread.drops or one.is_zero:
             continue
         deviation = spread.standard_deviation if spread.varies or spread.drops < 2 else 0.0  # otherwise it is rounding
         parts = [f"{part:g}" if one.name == _COUNT else digits(part / size) for part in spread.percentiles]
         rows.append([one.title, unit, str(spread.drops), digits(spread.mean / size), digits(deviation / size), *parts])
-    return ["Result", "Unit", "Drops", "Mean", "Standard deviation", *(f"{part} %" for part in PERCENTILES)], rows
+    return _without_idle_columns(["Result", "Unit", "Drops", "Mean", "Standard deviation", *(f"{part} %" for part in PERCENTILES)], rows)
 
 
 def percentiles_rows(outputs: list[Output]) -> list[dict[str, Any]]:
@@ -119,17 +119,38 @@ def percentiles_rows(outputs: list[Output]) -> list[dict[str, Any]]:
 
 
 def sensitivity_table(found: Sensitivity, outputs: list[Output]) -> tuple[list[str], list[list[str]]]:
-    """Return the table of sensitivities as text: headers, and a row per key (two for Sobol indices) with a column per result."""
+    """Return the table of sensitivities as text: headers, and a row per key with an effect (two of Sobol indices), a column per result."""
     shown = [one for one in outputs if one.name in found.rows]
+    rows = [row for key in _sensitivity_cells(found, shown).values() for row in key if not _is_idle(row[1:])]
+    return _without_idle_columns(["Key", *(one.title for one in shown)], rows)
+
+
+def without_effect(found: Sensitivity, outputs: list[Output]) -> list[str]:
+    """Return the keys that the table of sensitivities leaves out, as they have no effect on any of the results."""
+    shown = [one for one in outputs if one.name in found.rows]
+    return [key for key, rows in _sensitivity_cells(found, shown).items() if all(_is_idle(row[1:]) for row in rows)]
+
+
+def _sensitivity_cells(found: Sensitivity, shown: list[Output]) -> dict[str, list[list[str]]]:
+    """Return the rows of each key."""
     columns = {SOBOL: {"first_order": ", alone", "total": ", in all"}, RANKS: {"rank_correlation": ""}}.get(
         found.way, {"relative_range": ""}
     )
-    rows = [
-        [f"{key}{words}", *(_cell(found.rows[one.name], column, place) for one in shown)]
+    return {
+        key: [[f"{key}{words}", *(_cell(found.rows[one.name], column, place) for one in shown)] for column, words in columns.items()]
         for place, key in enumerate(found.keys[:_MOST_KEYS])
-        for column, words in columns.items()
-    ]
-    return ["Key", *(one.title for one in shown)], rows
+    }
+
+
+def _without_idle_columns(headers: list[str], rows: list[list[str]]) -> tuple[list[str], list[list[str]]]:
+    """Return a table without columns of nothing but zeros and dashes."""
+    kept = [place for place in range(len(headers)) if place == 0 or not _is_idle([row[place] for row in rows])]
+    return [headers[place] for place in kept], [[row[place] for place in kept] for row in rows]
+
+
+def _is_idle(cells: list[str]) -> bool:
+    """Return whether cells are nothing but zeros and dashes."""
+    return bool(cells) and all(cell and set(cell) <= _IDLE for cell in cells)
 
 
 def sensitivity_rows(found: Sensitivity) -> list[dict[str, Any]]:

@@ -1,0 +1,111 @@
+"""The protocol of the live page: what a window asks, and what it is told. It knows nothing of how messages travel.
+
+A window sends texts of JSON with a `type`:
+
+`{"type": "open", "number": 1, "source": "paper:type3"}`
+    for the table of a shipped case, or `"text"` in place of `"source"` for that of the text of a TOML file;
+`{"type": "case", "number": 2, "case": {...}, "detail": "draft", "charts": ["position"]}`
+    to compute a case, a table as TOML has it; `"draft"` while it is being changed, `"full"` when it stays; with the names of the charts
+    that are looked at, or without them for all;
+`{"type": "cancel", "number": 2}`
+    to give up what is being computed;
+`{"type": "report", "number": 2}`, `{"type": "signals", "number": 2}`
+    for the report, or the signals as CSV, of the case computed last in full.
+
+It is told documents with arrays, as `vibroimpact.charts.pack` writes them, each with its `type` and the `number` asked:
+
+`welcome`
+    first of all: shipped cases, laws with their parameters, materials, and colours;
+`opened`
+    the table of a case, and what of it this page leaves out;
+`progress`
+    what is being computed, and the part that is done;
+`state`
+    charts, the plate in motion, tables, doubts, the resolved case, the case as TOML; in full detail also the signals;
+`files`
+    each a name, a kind and a text;
+`fault`
+    the lines of a message, as the command line gives them;
+`cancelled`
+    that it was given up.
+"""
+
+from __future__ import annotations
+
+import json
+from typing import Any, Literal, NamedTuple
+
+from vibroimpact.errors import InputError
+from vibroimpact.shown import shown
+
+LONGEST = 200_000
+"""Largest size of a message from a window [bytes]."""
+
+Detail = Literal["draft", "full"]
+
+_KEYS = {
+    "open": {"source", "text"},
+    "case": {"case", "detail", "charts"},
+    "cancel": set[str](),
+    "report": set[str](),
+    "signals": set[str](),
+}
+_KINDS: dict[str, tuple[type, str]] = {
+    "source": (str, "a text"),
+    "text": (str, "a text"),
+    "case": (dict, "a table"),
+    "detail": (str, "a text"),
+    "charts": (list, "a list"),
+}
+
+
+class Message(NamedTuple):
+    """A message of a window: its type, its number, and what else it has."""
+
+    type: str
+    number: int
+    content: dict[str, Any]
+
+
+def read_message(text: str | bytes) -> Message:
+    """Return a message.
+
+    Raises
+    ------
+    InputError
+        If it is not one of the protocol.
+
+    Examples
+    --------
+    >>> read_message('{"type": "open", "number": 1, "source": "paper:type3"}').content
+    {'source': 'paper:type3'}
+    >>> read_message("[]")
+    Traceback (most recent call last):
+        ...
+    vibroimpact.errors.InputError: a message is a table with a type: open, case, cancel, report, signals
+    """
+    if len(text) > LONGEST:
+        raise InputError(f"the message has {len(text)} bytes; {LONGEST} are the most")
+    try:
+        found = json.loads(text, parse_constant=_refuse)
+    except (ValueError, RecursionError):
+        raise InputError("the message is not JSON") from None
+    if not isinstance(found, dict) or not isinstance(found.get("type"), str) or found["type"] not in _KEYS:
+        raise InputError(f"a message is a table with a type: {', '.join(_KEYS)}")
+    kind, number = found.pop("type"), found.pop("number", 0)
+    if type(number) is not int or not 0 <= number < 2**53:
+        raise InputError(f"{shown(number)} is not the number of a message")
+    for key, value in found.items():
+        if key not in _KEYS[kind]:
+            raise InputError(f"a message of type {kind} has no {shown(key)}")
+        if not isinstance(value, _KINDS[key][0]):
+            raise InputError(f"{key} of a message must be {_KINDS[key][1]}")
+    if kind == "open" and len(found) != 1:
+        raise InputError("a message of type open has either a source or a text")
+    if kind == "case" and ("case" not in found or found.setdefault("detail", "full") not in ("draft", "full")):
+        raise InputError('a message of type case has a case, and "draft" or "full" as detail')
+    return Message(kind, number, found)
+
+
+def _refuse(constant: str) -> float:
+    raise ValueError(constant)

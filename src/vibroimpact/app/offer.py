@@ -1,0 +1,59 @@
+"""What the live page offers: shipped cases, contact laws with their parameters, materials, and colours."""
+
+from __future__ import annotations
+
+from dataclasses import fields
+from typing import Any
+
+from vibroimpact._version import __version__
+from vibroimpact.cases.reader import shipped_cases
+from vibroimpact.contact.law import CompliantLaw, unit_of
+from vibroimpact.contact.registry import contact_laws
+from vibroimpact.laws.plain_math import plain_text
+from vibroimpact.laws.text import law_text
+from vibroimpact.materials import material_library
+from vibroimpact.report.page import palette
+from vibroimpact.units.display import multiple
+
+
+def offer() -> dict[str, Any]:
+    """Return what a window is told first.
+
+    Examples
+    --------
+    >>> found = offer()
+    >>> [found["laws"]["hunt-crossley"]["parameters"][0][name] for name in ("name", "unit")]
+    ['stiffness', 'N/m¹·⁵']
+    """
+    return {
+        "version": __version__,
+        "cases": {name: title for name, title in shipped_cases().items() if name not in _OF_OTHER_COMMANDS},
+        "laws": {name: _law(law) for name, law in contact_laws().items()},
+        "materials": list(material_library()),
+        "palette": palette(),
+    }
+
+
+_OF_OTHER_COMMANDS = ("paper:sweep", "paper:calibration", "paper:full-damping-penetration")
+
+
+def _law(law: Any) -> dict[str, Any]:
+    text = law_text(law)
+    exponent = 1.5
+    units = {item.name: unit_of(item, exponent) for item in fields(law)}
+    parameters = [
+        {
+            "name": one.name,
+            "meaning": plain_text(one.meaning),
+            "unit": multiple(units.get(one.name, one.unit), 1.0).unit,
+            "allowed": one.allowed,
+            "default": one.default,
+        }
+        for one in text.parameters
+    ]
+    return {
+        "title": plain_text(text.title),
+        "equation": text.equation,
+        "parameters": parameters,
+        "compliant": issubclass(law, CompliantLaw),
+    }

@@ -1,0 +1,383 @@
+// The live page: a window that asks for a case at every change, and shows what comes.
+"use strict";
+
+{
+  const $ = (id) => document.getElementById(id);
+  const { make } = vibroimpact;
+  const SETTLED = 250;       // after the last change the case is computed in full [ms]
+  const LONGEST = 200000;    // size of a message that the server takes [bytes]
+
+  // `asked`: number of the case that is under way, `tables`: those asked for, by number; `last`: what is shown, and `table`: of which case;
+  // `opening`: number and name of the shipped case that is being opened, `opened`: name and table of the one that was.
+  const state = {
+    socket: null, number: 0, asked: 0, shown: 0, wanted: null, tables: new Map(), offer: null, last: null, table: null, held: null, view: -1,
+    retry: 500, timer: 0, notes: [], opening: [0, ""], opened: ["", ""],
+  };
+  const charts = new Map();
+  const controls = new vibroimpact.Controls($("controls"), (settled) => changed(settled));
+  let scene = null;
+
+  // ---- the address carries the case -----------------------------------------------------------------
+
+  const through = async (bytes, stream) => new Uint8Array(await new Response(new Blob([bytes]).stream().pipeThrough(stream)).arrayBuffer());
+  const toFragment = async (table) => {
+    const bytes = await through(new TextEncoder().encode(JSON.stringify(table)), new CompressionStream("deflate"));
+    const letters = btoa(Array.from(bytes, (byte) => String.fromCharCode(byte)).join(""));
+    return `#case=${letters.replaceAll("+", "-").replaceAll("/", "_").replace(/=+$/, "")}`;
+  };
+  const fromFragment = async (fragment) => {
+    const match = /^#case=([\w-]+)$/.exec(fragment);
+    if (!match) return null;
+    const letters = atob(match[1].replaceAll("-", "+").replaceAll("_", "/"));
+    const bytes = Uint8Array.from(letters, (letter) => letter.charCodeAt(0));
+    return JSON.parse(new TextDecoder().decode(await through(bytes, new DecompressionStream("deflate"))));
+  };
+  const remember = async (table) => {
+    // the address may be that of another program, whose compression is not the browser's
+    if (JSON.stringify(await fromFragment(location.hash).catch(() => null)) === JSON.stringify(table)) return;
+    const fragment = await toFragment(table);
+    if (location.hash) history.pushState(null, "", fragment); else history.replaceState(null, "", fragment);
+  };
+  // Open the case in the address; return whether there was to be one.
+  const openAddress = async () => {
+    if (!location.hash.startsWith("#case=")) return false;
+    try {
+      const table = await fromFragment(location.hash);
+      if (typeof table !== "object" || table === null || Array.isArray(table)) throw new Error("not a table");
+      begin(table);
+    } catch {
+      showFaults(["the address does not hold a case; choose one above"]);
+    }
+    return true;
+  };
+
+  // ---- asking -----------------------------------------------------------------------------------------
+
+  const send = (message) => {
+    if (!state.socket || state.socket.readyState !== WebSocket.OPEN) return false;
+    state.socket.send(JSON.stringify(message));
+    return true;
+  };
+  const isTooLong = (message) => {
+    const size = new Blob([JSON.stringify(message)]).size;
+    if (size > LONGEST) { setBusy(false); showFaults([`the case has ${size} bytes; ${LONGEST} are the most of the live page`]); }
+    return size > LONGEST;
+  };
+  const setBusy = (busy) => { $("results").setAttribute("aria-busy", String(busy)); $("get-report").disabled = busy || !state.last; $("get-signals").disabled = busy || !state.last || !(state.last.case.sensors || []).length; };
+
+  // One draft is under way at a time; of those asked for meanwhile the last one is sent when it is done. What takes longer is given up.
+  const ask = (table, detail) => {
+    state.wanted = { table, detail };
+    setBusy(true);
+    if (state.asked && detail === "draft" && state.detail === "draft" && !state.working) return;
+    post();
+  };
+  const post = () => {
+    if (!state.wanted) return;
+    const { table, detail } = state.wanted;
+    const near = detail === "draft" && state.last ? { charts: [...charts].filter(([, chart]) => chart.near).map(([name]) => name) } : {};
+    const number = ++state.number, message = { type: "case", number, case: table, detail, ...near };
+    if (isTooLong(message)) state.wanted = null;
+    else if (send(message)) { state.asked = number; state.detail = detail; state.tables.set(number, table); state.wanted = null; }
+  };
+
+  const changed = (settled) => {
+    vibroimpact.changes = (vibroimpact.changes || 0) + 1;
+    clearTimeout(state.timer);
+    ask(controls.table, "draft");
+    if (settled) state.timer = setTimeout(() => ask(controls.table, "full"), SETTLED);
+  };
+
+  const begin = (table) => { clearTimeout(state.timer); controls.begin(table); ask(table, "full"); };
+  const open = (what) => {
+    const number = ++state.number, message = { ...what, type: "open", number };
+    if (isTooLong(message) || !send(message)) return;
+    state.opening = [number, what.source || ""];
+    setBusy(true);
+  };
+  // What was asked for is not shown: the controls go back to the case that is.
+  const goBack = () => { if (state.last) controls.begin(state.table, state.last.case); showShipped(); };
+
+  // ---- what comes ---------------------------------------------------------------------------------------
+
+  const receive = {
+    welcome(message) {
+      state.offer = controls.offer = message;
+      vibroimpact.setPalette(message.palette);
+      $("shipped").replaceChildren(make("option", { value: "", text: "your own" }), ...Object.entries(message.cases).map(([name, title]) => make("option", { value: name, text: `${name}: ${title}` })));
+      state.retry = 500;
+      $("status").textContent = "";
+      showShipped();
+      if (controls.table) { ask(controls.table, "full"); return; }
+      openAddress().then((found) => { if (!found) open({ source: "paper:type1-theory" }); });
+    },
+    opened(message) {
+      state.opened = [state.opening[1], JSON.stringify(message.case)];
+      state.notes = message.left_out;
+      begin(message.case);
+    },
+    progress(message) {
+      if (message.number !== state.asked) return;
+      state.working = true;
+      $("work").hidden = false;
+      $("work-words").textContent = message.what;
+      $("work-part").value = message.part;
+    },
+    state(message) {
+      const table = state.tables.get(message.number);
+      finished(message.number);
+      if (message.number < state.shown) return;
+      state.shown = message.number;
+      showFaults([]);
+      show(message, table);
+    },
+    fault(message) {
+      const beginning = controls.beginning && state.tables.get(message.number) === controls.table;
+      if (finished(message.number)) { setBusy(false); if (beginning) goBack(); }
+      if (message.number === state.opening[0]) { setBusy(Boolean(state.asked)); showShipped(); }
+      showFaults(message.lines);
+    },
+    cancelled(message) {
+      if (!finished(message.number)) return;
+      setBusy(false);
+      goBack();
+      $("status").textContent = "Given up; the last case is shown.";
+    },
+    files(message) {
+      for (const file of message.files) {
+        const link = make("a", { href: URL.createObjectURL(new Blob([file.text], { type: file.kind })), download: file.name });
+        document.body.append(link);
+        link.click();
+        link.remove();
+        setTimeout(() => URL.revokeObjectURL(link.href), 10000);
+      }
+    },
+  };
+
+  // What was asked for is done, whatever came of it; return whether nothing else is wanted.
+  const finished = (number) => {
+    if (number !== state.asked) return false;
+    state.asked = 0;
+    state.working = false;
+    state.tables.clear();
+    $("work").hidden = true;
+    post();
+    return !state.asked;
+  };
+
+  // ---- showing --------------------------------------------------------------------------------------------
+
+  const showFaults = (lines) => {
+    controls.showFaults(lines);
+    $("faults").hidden = !lines.length;
+    $("faults").replaceChildren(...lines.map((line) => make("p", { text: line })));
+  };
+
+  // The name of the shipped case that is shown, unless it was changed.
+  const showShipped = () => { $("shipped").value = state.opened[1] && state.opened[1] === JSON.stringify(controls.table) ? state.opened[0] : ""; };
+
+  const show = (message, table) => {
+    // the controls show what came of what they ask for, not of what they asked for before
+    const current = table === controls.table, settled = current && message.detail === "full";
+    // a draft has the charts alone that are looked at
+    state.last = message.detail === "full" || !state.last ? message : { ...message, charts: state.last.charts };
+    state.table = table;
+    document.title = `${message.name} – vibroimpact`;
+    $("status").textContent = message.status;
+    showDoubts(message.doubts);
+    showImpacts(message.impacts);
+    showLedger(message.ledger);
+    showCharts(message.charts, message.names);
+    showScene(message.scene);
+    showSound(message);
+    if (settled || (current && !controls.moving)) controls.show(table, message.case);
+    showShipped();
+    $("get-toml").disabled = false;
+    if (settled) remember(table);
+    Promise.all([...charts.values()].filter((one) => one.near).map((one) => one.drawing)).then(() => {
+      document.documentElement.dataset.drawn = String(message.number);
+      document.documentElement.dataset.detail = message.detail;
+      vibroimpact.drawn = (vibroimpact.drawn || 0) + 1;
+      if (settled && table === controls.table) setBusy(false);
+    });
+  };
+
+  const showDoubts = (doubts) => {
+    const open = $("doubts").querySelector("details")?.open;
+    $("doubts").replaceChildren(...state.notes.map((text) => make("p", { text })), ...(doubts.length
+      ? [make("details", { open }, make("summary", { text: doubts.length === 1 ? "One doubt" : `${doubts.length} doubts` }), ...doubts.map((doubt) => make("p", { text: `Doubt: ${doubt}.` })))]
+      : []));
+  };
+
+  const tableOf = (headers, rows, held) => make("table", {},
+    make("thead", {}, make("tr", {}, ...headers.map(([name, unit]) => make("th", { scope: "col", text: name }, ...(unit ? [make("span", { class: "unit", text: unit })] : []))))),
+    make("tbody", {}, ...rows.map((row) => make("tr", {}, ...row.map((cell, index) => make(index ? "td" : "th", index ? { text: cell } : { scope: "row", text: cell })))),
+      ...(held || []).map((row) => make("tr", { class: "held" }, ...row.map((cell, index) => make(index ? "td" : "th", index ? { text: cell } : { scope: "row", text: `held ${cell}` }))))));
+
+  const showImpacts = ({ headers, rows, left_out }) => {
+    const comparable = state.held && JSON.stringify(state.held.impacts.headers) === JSON.stringify(headers);
+    $("impacts").replaceChildren(
+      rows.length ? tableOf(headers, rows, comparable ? state.held.impacts.rows.slice(0, rows.length) : []) : make("p", { text: "No impact within the run." }),
+      ...(left_out ? [make("p", { class: "note", text: `${left_out} more between them.` })] : []),
+    );
+  };
+
+  const showLedger = ({ unit, rows }) => {
+    const held = state.held && state.held.ledger.unit === unit ? new Map(state.held.ledger.rows.map((row) => [row[0], row[1]])) : null;
+    $("ledger").replaceChildren(tableOf(
+      [["Energy at the end", ""], ["", unit], ["", "%"], ...(held ? [["held", unit]] : [])],
+      rows.map((row) => [...row, ...(held ? [held.get(row[0]) ?? "–"] : [])]),
+    ));
+  };
+
+  // Show the charts that came; of those that did not, the ones that there no longer are go away.
+  const showCharts = (given, all) => {
+    const views = given.reduce((most, chart) => (chart.views.length > most.length ? chart.views : most), []);
+    const select = $("view");
+    // of a draft there may be charts alone that have no views
+    if ((views.length || given.length === all.length) && select.options.length !== views.length + 1) {
+      select.replaceChildren(make("option", { value: -1, text: "whole run" }), ...views.map((view, index) => make("option", { value: index, text: view.name })));
+      if (state.view >= views.length) state.view = -1;
+      showPlace();
+    }
+    const names = new Set(all);
+    for (const [name, chart] of charts) {
+      if (names.has(name)) continue;
+      Plotly.purge(chart.element);
+      chart.end();
+      chart.element.closest("section").remove();
+      charts.delete(name);
+    }
+    let before = null;
+    for (const chart of given) {
+      const ghost = state.held ? state.held.charts.find((one) => one.name === chart.name) || null : null;
+      if (!charts.has(chart.name)) {
+        const element = make("div", { class: "chart", role: "img", style: `min-height: ${chart.layout.height + 90}px` });
+        (chart.name === "position" ? $("lead-chart") : $("charts")).append(make("section", { id: `chart-${chart.name}` }, make("h2", { text: chart.title }), make("p", { class: "headline" }), element));
+        charts.set(chart.name, new vibroimpact.Chart(element, chart));
+      }
+      const one = charts.get(chart.name), section = one.element.parentElement;
+      // charts stand in the order given, also those that come later
+      if (chart.name !== "position") { if (section.previousElementSibling !== before) $("charts").insertBefore(section, before ? before.nextSibling : $("charts").firstChild); before = section; }
+      section.querySelector("h2").textContent = chart.title;
+      one.element.setAttribute("aria-label", `${chart.title}. ${chart.caption}`);
+      one.update({ chart, ghost, view: state.view < 0 || state.view >= chart.views.length ? null : state.view });
+      headline(one);
+    }
+  };
+
+  const headline = (one) => {
+    const view = one.state.view === null ? null : one.chart.views[one.state.view];
+    one.element.parentElement.querySelector(".headline").textContent = view ? `${view.name}${view.headline ? `: ${view.headline}` : ""}` : "";
+  };
+
+  const showPlace = () => {
+    $("view").value = String(state.view);
+    $("view-before").disabled = state.view < 0;
+    $("view-after").disabled = state.view + 2 >= $("view").options.length;
+  };
+
+  const showView = (number) => {
+    state.view = number;
+    showPlace();
+    for (const one of charts.values()) { one.update({ view: number < 0 || number >= one.chart.views.length ? null : number, ranges: {} }); headline(one); }
+  };
+
+  const showScene = (given) => {
+    if (scene) { scene.setScene(given); return; }
+    scene = vibroimpact.controlScene($("scene"), given, (x, y, settled) => {
+      const plate = controls.resolved.plate;
+      if (plate.radius !== undefined || !plate.size) return;
+      const inside = (value, side) => Math.min(Math.max(value, -0.5 * plate.size[side]), 0.5 * plate.size[side]);
+      controls.change((table) => { table.drop.position = [inside(x, 0), inside(y, 1)].map((value) => `${Number((1000 * value).toPrecision(3))} mm`); }, settled);
+    });
+  };
+
+  const showSound = (message) => {
+    const select = $("sound-of");
+    const names = (message.case.sensors || []).map((sensor) => sensor.name);
+    if (names.join("\n") !== Array.from(select.options, (option) => option.text).join("\n")) select.replaceChildren(...names.map((name, index) => make("option", { value: index, text: name })));
+    $("sound").hidden = !names.length;
+    $("sound-play").disabled = message.detail !== "full";
+  };
+
+  // ---- the controls of the page -------------------------------------------------------------------------------
+
+  const openFile = async (file) => {
+    if (!file) return;
+    if (file.size > 150000) { showFaults([`${file.name}: the file has ${file.size} bytes, and a case is a page of text`]); return; }
+    open({ text: await file.text() });
+  };
+
+  const download = (name, text, kind) => receive.files({ files: [{ name, text, kind }] });
+
+  const connectPage = () => {
+    $("shipped").addEventListener("change", () => { if ($("shipped").value) open({ source: $("shipped").value }); });
+    $("file").addEventListener("change", () => { openFile($("file").files[0]); $("file").value = ""; });
+    for (const name of ["dragover", "dragenter"]) addEventListener(name, (event) => { if (event.dataTransfer?.types.includes("Files")) { event.preventDefault(); $("drop").hidden = false; } });
+    addEventListener("dragleave", (event) => { if (!event.relatedTarget) $("drop").hidden = true; });
+    addEventListener("drop", (event) => { event.preventDefault(); $("drop").hidden = true; openFile(event.dataTransfer?.files[0]); });
+    $("hold").addEventListener("click", () => {
+      state.held = state.held ? null : state.last;
+      $("hold").setAttribute("aria-pressed", String(Boolean(state.held)));
+      $("hold").textContent = state.held ? "Release" : "Hold to compare";
+      if (state.last) { showImpacts(state.last.impacts); showLedger(state.last.ledger); showCharts(state.last.charts, state.last.names); }
+    });
+    $("get-toml").addEventListener("click", () => download("case.toml", state.last.toml, "application/toml"));
+    $("get-report").addEventListener("click", () => send({ type: "report", number: ++state.number }));
+    $("get-signals").addEventListener("click", () => send({ type: "signals", number: ++state.number }));
+    $("cancel").addEventListener("click", () => { clearTimeout(state.timer); state.wanted = null; send({ type: "cancel", number: state.asked }); });
+    $("theme").addEventListener("click", () => setTheme(vibroimpact.theme === "dark" ? "light" : "dark"));
+    $("view").addEventListener("change", () => showView(Number($("view").value)));
+    $("view-before").addEventListener("click", () => showView(state.view - 1));
+    $("view-after").addEventListener("click", () => showView(state.view + 1));
+    showPlace();
+    let sounding = false;
+    $("sound-play").addEventListener("click", () => {
+      if (sounding) { vibroimpact.stopSound(); return; }
+      const signal = state.last.signals[Number($("sound-of").value)];
+      if (!signal) return;
+      sounding = true;
+      $("sound-play").textContent = "Stop";
+      vibroimpact.playSound(signal, Number($("sound-slowed").value), () => { sounding = false; $("sound-play").textContent = "Play the sound"; });
+    });
+    addEventListener("popstate", openAddress);
+    // the address is that of the case: going to the results leaves it
+    document.querySelector(".skip").addEventListener("click", (event) => { event.preventDefault(); $("results").focus(); });
+    $("get-toml").disabled = true;
+    setBusy(false);
+  };
+
+  const setTheme = (theme) => {
+    document.documentElement.dataset.theme = theme;
+    vibroimpact.setTheme(theme);
+    for (const chart of charts.values()) chart.update();
+    if (scene) scene.draw();
+  };
+
+  // The connection comes back by itself after the server was started again; the case goes on where it was.
+  const connect = () => {
+    const socket = new WebSocket(`ws://${location.host}/live`);
+    socket.binaryType = "arraybuffer";
+    state.socket = socket;
+    socket.addEventListener("open", () => { document.documentElement.dataset.connected = "true"; });
+    socket.addEventListener("message", (event) => { const message = vibroimpact.unpack(event.data); receive[message.type](message); });
+    socket.addEventListener("close", (event) => {
+      delete document.documentElement.dataset.connected;
+      state.asked = 0;
+      state.working = false;
+      state.wanted = null;
+      state.tables.clear();
+      $("work").hidden = true;
+      $("status").textContent = event.reason || "The server does not answer; the page tries again. To start it: vibroimpact serve";
+      setTimeout(connect, state.retry);
+      state.retry = Math.min(2 * state.retry, 5000);
+    });
+  };
+
+  vibroimpact.setTheme(matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light");
+  document.documentElement.dataset.theme = vibroimpact.theme;
+  connectPage();
+  connect();
+  vibroimpact.live = { state, charts, controls, get scene() { return scene; } };
+}

@@ -1,0 +1,189 @@
+"""The server of the live page: HTTP and web sockets around sessions, for this machine alone."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+from collections.abc import Awaitable, Callable
+from importlib.resources import files
+from typing import Any
+from urllib.parse import urlsplit
+
+import uvicorn
+from starlette.applications import Starlette
+from starlette.requests import Request
+from starlette.responses import HTMLResponse, PlainTextResponse, Response
+from starlette.routing import Route, WebSocketRoute
+from starlette.types import ASGIApp, Receive, Scope
+from starlette.types import Send as Answer
+from starlette.websockets import WebSocket, WebSocketDisconnect
+
+from vibroimpact.app.messages import LONGEST
+from vibroimpact.app.session import Session
+from vibroimpact.report.page import plotly_script
+
+HOST = "127.0.0.1"
+"""The address of the server: nobody but this machine reaches it."""
+
+MOST_WINDOWS = 12
+"""Largest number of windows at a time."""
+
+_NAMES = ("127.0.0.1", "localhost", "[::1]")
+_FILES = {
+    "arrays.js": "vibroimpact.charts",
+    "charts.js": "vibroimpact.charts",
+    "scene.js": "vibroimpact.charts",
+    "theme.css": "vibroimpact.charts",
+    "live.css": "vibroimpact.app",
+    "controls.js": "vibroimpact.app",
+    "sound.js": "vibroimpact.app",
+    "live.js": "vibroimpact.app",
+}
+_POLICY = (
+    "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; img-src data: blob:; connect-src 'self' {socket}; "
+    "base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
+)
+
+
+def application(port: int) -> ASGIApp:
+    """Return the live page as an application for an ASGI server that listens to a port.
+
+    Requests that name another host than this machine, and web sockets from pages of another origin, are refused.
+    """
+    windows: set[WebSocket] = set()
+
+    async def page(request: Request) -> Response:
+        return HTMLResponse(_text("vibroimpact.app", "page.html"))
+
+    async def script(request: Request) -> Response:
+        name = request.path_params["name"]
+        if name == "plotly.js":
+            return Response(plotly_script(), media_type="text/javascript")
+        if name not in _FILES:
+            return PlainTextResponse("there is no such script", 404)
+        return Response(_text(_FILES[name], f"scripts/{name}"), media_type="text/css" if name.endswith(".css") else "text/javascript")
+
+    async def live(socket: WebSocket) -> None:
+        if not _is_own(socket.headers.get("origin", ""), port):
+            await socket.close(1008, "another origin")
+            return
+        if len(windows) >= MOST_WINDOWS:
+            await socket.accept()
+            await socket.close(1013, f"there are {MOST_WINDOWS} windows already; close one")
+            return
+        await socket.accept()
+        windows.add(socket)
+        try:
+            await _serve_window(socket)
+        finally:
+            windows.discard(socket)
+
+    routes = [Route("/", page), Route("/scripts/{name}", script), WebSocketRoute("/live", live)]
+    return _guarded(Starlette(routes=routes), port)
+
+
+async def _serve_window(socket: WebSocket) -> None:
+    """Serve a window until it closes."""
+    sending = asyncio.Lock()
+
+    async def send(message: bytes) -> None:
+        async with sending:
+            with contextlib.suppress(WebSocketDisconnect, RuntimeError):  # the window was closed meanwhile
+                await socket.send_bytes(message)
+
+    session = Session(send)
+    await session.welcome()
+    work = asyncio.create_task(session.work())
+    try:
+        while True:
+            message = await socket.receive()
+            if message["type"] == "websocket.disconnect":
+                break
+            await session.receive(message.get("text") or message.get("bytes") or "")
+    finally:
+        work.cancel()
+        with contextlib.suppress(asyncio.CancelledError):
+            await work
+
+
+def _guarded(app: ASGIApp, port: int) -> ASGIApp:
+    """Return an application that refuses foreign hosts and tells browsers what a page may load."""
+
+    async def guarded(scope: Scope, receive: Receive, send: Answer) -> None:
+        if scope["type"] not in ("http", "websocket"):
+            await app(scope, receive, send)
+            return
+        host = next((value.decode("latin-1") for name, value in scope["headers"] if name == b"host"), "")
+        if host not in {f"{name}:{port}" for name in _NAMES}:
+            await _refuse(scope, receive, send)
+            return
+        policy = _POLICY.format(socket=f"ws://{host}")
+
+        async def with_headers(message: Any) -> None:
+            if message["type"] == "http.response.start":
+                message["headers"] = [
+                    *message.get("headers", []),
+                    (b"content-security-policy", policy.encode()),
+                    (b"x-content-type-options", b"nosniff"),
+                    (b"referrer-policy", b"no-referrer"),
+                    (b"cross-origin-opener-policy", b"same-origin"),
+                    (b"cross-origin-resource-policy", b"same-origin"),
+                    (b"cache-control", b"no-cache"),
+                ]
+            await send(message)
+
+        await app(scope, receive, with_headers)
+
+    return guarded
+
+
+async def _refuse(scope: Scope, receive: Receive, send: Answer) -> None:
+    if scope["type"] == "websocket":
+        await receive()
+        await send({"type": "websocket.close", "code": 1008, "reason": "another host"})
+        return
+    await PlainTextResponse("this page is for the machine on which it runs", 403)(scope, receive, send)
+
+
+def _is_own(origin: str, port: int) -> bool:
+    """Return whether a web socket is opened by the live page itself.
+
+    Examples
+    --------
+    >>> _is_own("http://127.0.0.1:8421", 8421), _is_own("http://example.org", 8421), _is_own("", 8421)
+    (True, False, False)
+    """
+    parts = urlsplit(origin)
+    return parts.scheme == "http" and parts.netloc in {f"{name}:{port}" for name in _NAMES}
+
+
+def _text(package: str, file: str) -> str:
+    return files(package).joinpath(file).read_text(encoding="utf-8")
+
+
+def serve(sockets: list[Any], port: int, started: Callable[[], None]) -> None:
+    """Serve the live page on open sockets until interrupted.
+
+    Parameters
+    ----------
+    sockets : list of socket.socket
+        Bound sockets of this machine.
+    port : int
+        Their port.
+    started : callable
+        Called once it is served.
+    """
+    config = uvicorn.Config(
+        application(port), log_level="warning", ws_max_size=LONGEST, ws_per_message_deflate=False, lifespan="off", access_log=False
+    )
+    server = uvicorn.Server(config)
+
+    async def run() -> None:
+        task: Awaitable[None] = asyncio.ensure_future(server.serve(sockets))
+        while not server.started and not task.done():  # type: ignore[attr-defined]
+            await asyncio.sleep(0.01)
+        if server.started:
+            started()
+        await task
+
+    asyncio.run(run())

@@ -1,0 +1,169 @@
+"""One window of the live page: it computes one case at a time, and the last one asked for wins."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import logging
+from collections.abc import Awaitable, Callable
+from threading import Event
+from typing import Any
+
+from vibroimpact.app.limits import without_other_work
+from vibroimpact.app.messages import Message, read_message
+from vibroimpact.app.offer import offer
+from vibroimpact.app.state import MODES, State, state_of
+from vibroimpact.cases.reader import load_table, parse_case, shipped_cases
+from vibroimpact.charts.pack import pack
+from vibroimpact.errors import ComputationError, InputError, did_you_mean
+from vibroimpact.files.hdf5 import short_reason
+from vibroimpact.files.plain_names import identifier, plain_names
+from vibroimpact.results.csv_files import signal_csv
+from vibroimpact.runs.page import run_page
+from vibroimpact.shown import shown
+
+Send = Callable[[bytes], Awaitable[None]]
+"""Function that brings a message to the window."""
+
+_SECONDS_BETWEEN = 0.1
+"""Time between two messages on progress [s]."""
+
+
+class GivenUp(Exception):
+    """What is being computed is no longer wanted."""
+
+
+class Session:
+    """One window.
+
+    Parameters
+    ----------
+    send : callable
+        Brings a message to the window.
+    """
+
+    def __init__(self, send: Send) -> None:
+        self._send = send
+        self._wanted: Message | None = None  # the case to compute next
+        self._running: Message | None = None
+        self._stage = ""  # what is being computed
+        self._stop = Event()
+        self._changed = asyncio.Event()
+        self._last: State | None = None  # computed in full
+
+    async def welcome(self) -> None:
+        """Tell the window what there is."""
+        await self._tell("welcome", 0, await asyncio.to_thread(offer))
+
+    async def receive(self, text: str | bytes) -> None:
+        """Take a message of the window; a message that is none is answered by a fault."""
+        number = 0
+        try:
+            message = read_message(text)
+            number = message.number
+            match message.type:
+                case "open":
+                    await self._tell("opened", number, await asyncio.to_thread(_opened, message))
+                case "case":
+                    self._want(message)
+                case "cancel":
+                    self._wanted = None
+                    self._stop.set()
+                case "report" | "signals":
+                    await self._tell("files", number, await asyncio.to_thread(_files, message.type, self._last))
+        except InputError as error:
+            await self._fault(number, error)
+
+    def _want(self, message: Message) -> None:
+        """Compute a case next. What is computed now is given up unless it is short, or the modes that the new case needs as well."""
+        self._wanted = message
+        if self._running is not None:
+            modes = self._stage == MODES
+            short = not modes and self._running.content["detail"] == "draft"
+            if not (short or (modes and _same_bodies(self._running, message))):
+                self._stop.set()
+        self._changed.set()
+
+    async def work(self) -> None:
+        """Compute the cases that are asked for, until cancelled."""
+        try:
+            while True:
+                await self._changed.wait()
+                self._changed.clear()
+                while (message := self._wanted) is not None:
+                    self._wanted, self._running, self._stage = None, message, ""
+                    self._stop.clear()
+                    await self._compute(message)
+                    self._running = None
+        finally:
+            self._stop.set()
+
+    async def _compute(self, message: Message) -> None:
+        number, detail = message.number, message.content["detail"]
+        loop, told = asyncio.get_running_loop(), [0.0]
+
+        def tell(what: str, part: float) -> None:
+            if self._stop.is_set():
+                raise GivenUp
+            self._stage = what
+            if loop.time() - told[0] > _SECONDS_BETWEEN:
+                told[0] = loop.time()
+                asked = self._wanted or message  # modes are computed for the case that was asked for last
+                asyncio.run_coroutine_threadsafe(self._tell("progress", asked.number, {"what": what, "part": part}), loop)
+
+        try:
+            told[0] = loop.time() + _SECONDS_BETWEEN  # what is done at once needs no progress
+            state = await asyncio.to_thread(state_of, message.content["case"], detail, tell, message.content.get("charts"))
+            if detail == "full":
+                self._last = state
+            await self._send(await asyncio.to_thread(pack, {"type": "state", "number": number, **state.document}))
+        except GivenUp:
+            await self._tell("cancelled", number, {})
+        except (InputError, ComputationError) as error:
+            await self._fault(number, error)
+        except MemoryError:
+            await self._fault(number, ComputationError("there is not enough memory for this case"))
+        except Exception as error:  # the window must hear of it, and the next case is computed
+            logging.getLogger(__name__).exception("a case of the live page")
+            await self._fault(number, ComputationError(f"the case can't be computed: {short_reason(error)}"))
+
+    async def _tell(self, kind: str, number: int, content: dict[str, Any]) -> None:
+        await self._send(pack({"type": kind, "number": number, **content}))
+
+    async def _fault(self, number: int, error: InputError | ComputationError) -> None:
+        await self._tell("fault", number, {"lines": str(error).split("\n")})
+
+
+def _same_bodies(first: Message, second: Message) -> bool:
+    """Return whether two cases have the same bodies, and so the same modes."""
+    return all(
+        json.dumps(first.content["case"].get(name), sort_keys=True) == json.dumps(second.content["case"].get(name), sort_keys=True)
+        for name in ("sphere", "plate")
+    )
+
+
+def _opened(message: Message) -> dict[str, Any]:
+    """Return the table of a shipped case, or of a text."""
+    source = message.content.get("source")
+    if source is not None and source not in (known := shipped_cases()):  # a source is never the path of a file
+        raise InputError(f"there is no shipped case {shown(source)}; there are {', '.join(known)}.{did_you_mean(source, known)}")
+    table = parse_case(message.content["text"]) if source is None else load_table(source)
+    table, left_out = without_other_work(table)
+    return {"case": json.loads(json.dumps(table, default=str)), "left_out": left_out}
+
+
+def _files(kind: str, state: State | None) -> dict[str, Any]:
+    """Return the report, or the signals, of a state as files."""
+    if state is None:
+        raise InputError("nothing was computed in full yet")
+    result = state.result
+    if kind == "report":
+        return {
+            "files": [{"name": f"{identifier(result.name, 'A-Za-z0-9', 'drop', '-')}.html", "kind": "text/html", "text": run_page(result)}]
+        }
+    if not result.signals:
+        raise InputError("there are no signals: the case has no sensors", "sensors")
+    names = plain_names(list(result.signals))
+    return {
+        "files": [{"name": f"{names[name]}.csv", "kind": "text/csv", "text": signal_csv(signal)} for name, signal in result.signals.items()]
+    }

@@ -1,0 +1,98 @@
+"""What the live page shows of a case: computed, and as a document with arrays."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection
+from typing import Any, NamedTuple
+
+import numpy as np
+import tomli_w
+
+from vibroimpact.app.draft import TOLERANCE, draft_of
+from vibroimpact.app.limits import check_bounds, check_table
+from vibroimpact.app.messages import Detail
+from vibroimpact.cases.reader import read_case
+from vibroimpact.charts.plotly import plotly_chart
+from vibroimpact.dynamics.simulate import simulate
+from vibroimpact.results.result import Result, result_of
+from vibroimpact.runs.charts import chart_makers
+from vibroimpact.runs.scene import rigid_scene, scene_of
+from vibroimpact.runs.tables import impact_table, ledger_table
+
+Tell = Callable[[str, float], None]
+"""Function that is told what is being computed, and the part that is done; it may raise to give it up."""
+
+MODES = "computing modes"
+"""What is told while modes are computed, which may take long."""
+
+
+class State(NamedTuple):
+    """A case that was computed: its result, and the document that shows it."""
+
+    result: Result
+    document: dict[str, Any]
+
+
+def state_of(table: dict[str, Any], detail: Detail, tell: Tell, looked_at: Collection[str] | None = None) -> State:
+    """Return a case, computed.
+
+    Parameters
+    ----------
+    table : dict
+        The case, with the structure of a TOML case file.
+    detail : str
+        "draft" while the case is being changed, or "full".
+    tell : callable
+        Told what is being computed and how far it is.
+    looked_at : collection of str, optional
+        Names of the charts that are made; by default all.
+
+    Raises
+    ------
+    InputError
+        If it is not a valid case, with the words of the command line, or too large for the live page.
+
+    Examples
+    --------
+    >>> from vibroimpact.cases.reader import load_table
+    >>> state = state_of(load_table("paper:type1-theory"), "full", lambda what, part: None)
+    >>> state.document["status"]
+    'Stopped after 5 impacts, at the top of the last rebound, at 5.11709 s.'
+    """
+    check_table(table)
+    case = read_case(table)
+    check_bounds(case)
+    if detail == "draft" and isinstance(table.get("run", {}), dict):
+        case = read_case({**table, "run": {**table.get("run", {}), "tolerance": max(case.run.tolerance, TOLERANCE)}})
+    problem = case.to_problem(lambda part: tell(MODES, part), lambda note: None)
+    response = simulate(problem, lambda part: tell("simulating", part))
+    tell("reading histories", 1.0)
+    result = draft_of(response) if detail == "draft" else result_of(response)
+    tell("drawing", 1.0)
+    return State(result, _document(result, table, detail, looked_at))
+
+
+def _document(result: Result, table: dict[str, Any], detail: Detail, looked_at: Collection[str] | None) -> dict[str, Any]:
+    impacts, (unit, ledger) = impact_table(result), ledger_table(result)
+    makers = chart_makers(result)
+    names = [name for name in makers if name != "deflection"]  # the plate in motion takes the place of its maps
+    return {
+        "name": result.name,
+        "status": result.status,
+        "doubts": result.doubts,
+        "impacts": {"headers": impacts.headers, "rows": [*impacts.head, *impacts.tail], "left_out": impacts.left_out},
+        "ledger": {"unit": unit, "rows": [[row.title, row.energy, row.part] for row in ledger]},
+        "charts": [plotly_chart(makers[name]()) for name in names if looked_at is None or name in looked_at],
+        "names": names,
+        "scene": scene_of(result) if result.deflection is not None else rigid_scene(result),
+        "case": result.case,
+        "toml": tomli_w.dumps(table),
+        "detail": detail,
+        "signals": [
+            {"name": name, "rate": signal.sensor.rate, "unit": signal.sensor.unit, "value": signal.value}
+            for name, signal in result.signals.items()
+        ]
+        if detail == "full"
+        else [],
+        "frequencies": {body: np.array(result.frequencies(body)) for body in ("sphere", "plate")},
+    }

@@ -1,0 +1,99 @@
+"""Charts of a calibration: the value over the approach speed, the measured record, and the remaining differences."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from vibroimpact.calibration.calibration import Calibration
+from vibroimpact.calibration.differences import COMPARED, WAYS, differences
+from vibroimpact.calibration.record_chart import record_chart
+from vibroimpact.charts.axis import Axis
+from vibroimpact.charts.chart import Chart, Panel
+from vibroimpact.charts.marks import Band, Level, Line, Mark, Points
+from vibroimpact.charts.palette import series
+
+_SMOOTH = 200
+_FEW = 12
+"""Impacts up to which each has its number on the axis."""
+
+
+def calibration_charts(found: Calibration) -> list[Chart]:
+    """Return the charts of a calibration.
+
+    Parameters
+    ----------
+    found : Calibration
+        Result of the calibration.
+
+    Returns
+    -------
+    list of Chart
+        `parameter`; `record` if a record was measured; `differences` if there are several impacts and a reference.
+
+    Examples
+    --------
+    >>> import vibroimpact as vi
+    >>> found = vi.calibrate_case(vi.load_calibration("paper:type1-theory"))
+    >>> [chart.name for chart in calibration_charts(found)]
+    ['parameter', 'differences']
+    """
+    charts = [_parameter_chart(found)]
+    if found.overlays:
+        charts.append(record_chart(found.overlays))
+    if differences(found) and len(found.impacts[1]) > 1:
+        charts.append(_differences_chart(found))
+    return charts
+
+
+def parameter_words(found: Calibration) -> str:
+    """Return in words what was found, such as "largest damping C"."""
+    law = found.problem.laws[0]
+    if found.parameter in law.__dataclass_fields__:
+        return str(law.__dataclass_fields__[found.parameter].metadata["meaning"])
+    return f"damping ratio of the {found.parameter.partition('.')[0]}"
+
+
+def _parameter_chart(found: Calibration) -> Chart:
+    function, speeds, words = found.fit.function, found.observations.speeds, parameter_words(found)
+    marks: list[Mark] = []
+    if function.degree or len(speeds) > 1:
+        smooth = np.linspace(function.slowest, function.fastest, _SMOOTH)
+        fitted, band = function(smooth), found.fit.band(smooth, found.confidence)
+        if np.isfinite(band).all():
+            of_what = "band" if found.observations.measured else "band of the misfit"
+            low, high = found.allowed.bounded(np.array([fitted - band, fitted + band]))
+            marks.append(Band(smooth, low, high, f"{100.0 * found.confidence:g} % {of_what}", "band"))
+        name = ("constant", "line")[function.degree] if function.degree < 2 else f"polynomial of degree {function.degree}"
+        marks.append(Line(smooth, fitted, name, "fit"))
+    if found.curve is not None:
+        marks.append(Line(*found.curve, "exact at each speed"))
+    low, high = (None, None) if found.intervals is None else found.intervals.T
+    marks.append(Points(speeds, found.values, "impacts matched", "matched", found.observations.labels, low=low, high=high))
+    if found.as_given and not np.allclose(found.given, found.values, rtol=1e-3):
+        marks.append(Points(speeds, found.given, "as the case gives it", "muted", found.observations.labels))
+    panel = Panel(Axis("Approach speed", "m/s"), Axis(_begun(words), found.unit), tuple(marks))
+    caption = f"In a case it is {found.parameter}. Each impact by itself, and the polynomial through them."
+    if found.intervals is not None:
+        caption += f" Bars: the interval of each impact at {100.0 * found.confidence:g} %."
+    return Chart("parameter", f"{_begun(words)} over the approach speed", ((panel,),), caption, height=3.4)
+
+
+def _differences_chart(found: Calibration) -> Chart:
+    off = differences(found)
+    shown = [name for name in COMPARED if name in off and not (name == "separation_speed_m_s" and "rebound_height_m" in off)]
+    panels = []
+    for name in shown:
+        marks: list[Mark] = [Level(0.0)]
+        for number, way in enumerate(WAYS):
+            values = 100.0 * off[name][way]
+            marks.append(Line(np.arange(1.0, len(values) + 1.0), values, way, series(number), marked=True))
+        ticks = tuple(range(1, len(values) + 1)) if len(values) <= _FEW else ()
+        panels.append(Panel(Axis("Impact", ticks=ticks, integer=True), Axis("Difference", "%"), tuple(marks), COMPARED[name]))
+    rows = tuple(tuple(panels[start : start + 2]) for start in range(0, len(panels), 2))
+    caption = "Each impact of the drop beside what was wanted, with the value given in three ways: that of the first impact throughout "
+    caption += "(constant), each impact its own (variable), and the polynomial of the approach speed (function)."
+    return Chart("differences", "Remaining differences", rows, caption, height=2.3)
+
+
+def _begun(words: str) -> str:
+    return words[:1].upper() + words[1:]

@@ -1,0 +1,180 @@
+"""The multiple of a unit and the origin in which an axis of a chart is shown."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+import numpy as np
+
+from vibroimpact.arrays import Floats
+from vibroimpact.charts.axis import Axis, View
+from vibroimpact.charts.chart import Chart, Panel, values_on
+from vibroimpact.charts.marks import Band, Facets, Level, Line, Map, Mark, Points
+from vibroimpact.units.display import multiple
+
+_MARGIN = 0.06
+"""Margin above and below what a view shows, relative to its range."""
+
+_NEAR = 0.35
+"""Largest distance from the lines of a view at which a level is shown, relative to their range: a farther one would flatten them."""
+
+
+@dataclass(frozen=True)
+class Frame:
+    """How the values of an axis are shown: less an origin, in a multiple of the unit, with a label.
+
+    Parameters
+    ----------
+    label, unit : str
+        The quantity, and the multiple of its unit.
+    size : float
+        Size of that multiple in the SI unit.
+    origin : float
+        Value from which the axis counts [SI].
+    """
+
+    label: str
+    unit: str
+    size: float
+    origin: float = 0.0
+
+    @property
+    def title(self) -> str:
+        """The label with the unit."""
+        return f"{self.label} [{self.unit}]" if self.unit and self.label else self.label or self.unit
+
+    def shown(self, values: Floats) -> Floats:
+        """Return values as shown."""
+        return np.asarray((values - self.origin) / self.size)
+
+
+def frame_of(axis: Axis, panels: tuple[Panel, ...]) -> Frame:
+    """Return the frame of an axis for everything that is drawn along it.
+
+    Examples
+    --------
+    >>> time, force = Axis("Time", "s"), Axis("Force", "N")
+    >>> frame_of(force, (Panel(time, force, (Line(np.array([0.0, 1.0]), np.array([5.0, 7000.0])),)),)).title
+    'Force [kN]'
+    """
+    given = np.array(axis.range or (np.nan, np.nan))
+    # a range without an upper end reaches as far as what is drawn
+    best = multiple(axis.unit, given if np.isfinite(given[1]) else np.append(given, values_on(axis, panels)))
+    return Frame(axis.label, best.unit, best.size)
+
+
+def frames_of(chart: Chart) -> dict[Axis, Frame]:
+    """Return the frame of every axis of a chart, those of its maps' scales included."""
+    axes: dict[Axis, None] = {}
+    for panel in chart.panels:
+        scales = (mark.scale for mark in panel.marks if isinstance(mark, Map | Facets))
+        axes |= dict.fromkeys((panel.x, panel.y, *(scale for scale in scales if scale is not None)))
+    return {axis: frame_of(axis, chart.panels) for axis in axes}
+
+
+def ends_on(axis: Axis, chart: Chart) -> tuple[float, float]:
+    """Return the smallest and the largest finite value along an axis; 0 and 1 if there is none.
+
+    Examples
+    --------
+    >>> time, force = Axis("Time", "s"), Axis("Force", "N")
+    >>> line = Line(np.array([0.0, 1.0]), np.array([np.nan, 7.0]))
+    >>> ends_on(force, Chart("force", "Force", ((Panel(time, force, (line,)),),)))
+    (7.0, 7.0)
+    """
+    values = values_on(axis, chart.panels)
+    values = values[np.isfinite(values)]
+    return (float(values.min()), float(values.max())) if len(values) else (0.0, 1.0)
+
+
+def is_log(scale: Axis, chart: Chart) -> bool:
+    """Return whether the scale of maps is drawn as a logarithmic one: if it is, and all values are positive."""
+    return scale.log and ends_on(scale, chart)[0] > 0.0
+
+
+def panels_without_label(chart: Chart, frames: dict[Axis, Frame]) -> set[Panel]:
+    """Return the panels whose vertical axis needs no label, since that of the panel to the left has the same; a view may change it."""
+    neighbours = [pair for row in chart.rows for pair in pairwise(row)]
+    return {panel for before, panel in neighbours if not panel.x.views and frames[before.y].title == frames[panel.y].title}
+
+
+def view_frames(panel: Panel, view: View, base: Frame, panels: tuple[Panel, ...]) -> tuple[Frame, Frame]:
+    """Return the frames of the horizontal and the vertical axis of a panel in a view.
+
+    Parameters
+    ----------
+    panel : Panel
+        The panel.
+    view : View
+        The part of it that is shown.
+    base : Frame
+        Frame of the vertical axis of the whole panel.
+    panels : tuple of Panel
+        All panels; those with the same vertical axis have the same frame.
+    """
+    across = multiple(panel.x.unit, [view.start - view.origin, view.end - view.origin])
+    seen = _seen(panel, view, panels) - view.level
+    up = multiple(panel.y.unit, seen) if np.any(seen) and not panel.y.log else None
+    return (
+        Frame(view.label or panel.x.label, across.unit, across.size, view.origin),
+        Frame(view.level_label or base.label, up.unit if up else base.unit, up.size if up else base.size, view.level),
+    )
+
+
+def view_range(panel: Panel, view: View, panels: tuple[Panel, ...]) -> tuple[float, float] | None:
+    """Return the range of the vertical axis of a panel in a view: that of what is drawn there, and of the levels near it.
+
+    Returns
+    -------
+    tuple of float or None
+        None if the range of the axis is given, or nothing in the view has one.
+
+    Examples
+    --------
+    >>> time, force = Axis("Time", "s", views=(View("contact", 0.0, 1.0),)), Axis("Force", "N")
+    >>> panel = Panel(time, force, (Line(np.array([-1.0, 3.0]), np.array([-10.0, 30.0])), Level(12.0), Level(100.0)))
+    >>> view_range(panel, time.views[0], (panel,))
+    (-0.72, 12.72)
+    """
+    seen = _seen(panel, view, panels)
+    seen = seen[np.isfinite(seen)]
+    if panel.y.range is not None or panel.y.log or not len(seen) or not np.ptp(seen):
+        return None
+    low, high = float(seen.min()), float(seen.max())
+    reach = _NEAR * (high - low)
+    levels = [mark.value for one in panels if one.y is panel.y for mark in one.marks if isinstance(mark, Level) and not mark.upright]
+    near = [level for level in levels if low - reach <= level <= high + reach]
+    low, high = min([low, *near]), max([high, *near])
+    return low - _MARGIN * (high - low), high + _MARGIN * (high - low)
+
+
+def own_view(mark: Mark, panel: Panel, view: View) -> View:
+    """Return a view of a panel as it is for a mark: around the origin of a line that has its own."""
+    if not (isinstance(mark, Line) and mark.origins):
+        return view
+    origin = mark.origins[panel.x.views.index(view)]
+    return replace(view, start=view.start - view.origin + origin, end=view.end - view.origin + origin, origin=origin)
+
+
+def _seen(panel: Panel, view: View, panels: tuple[Panel, ...]) -> Floats:
+    """Return what a view shows along the vertical axis of a panel, of all panels that have it."""
+    number = panel.x.views.index(view)
+    parts = [
+        values_within(mark, own_view(mark, one, one.x.views[number]))
+        for one in panels
+        if one.y is panel.y and number < len(one.x.views)
+        for mark in one.marks
+        if isinstance(mark, Line | Points | Band)
+    ]
+    return np.concatenate(parts) if parts else np.empty(0)
+
+
+def values_within(mark: Line | Points | Band, view: View) -> Floats:
+    """Return the values of a line, of points or of a band inside a view; of what is connected, also those at its ends."""
+    if isinstance(mark, Points):
+        return np.asarray(mark.y[(mark.x >= view.start) & (mark.x <= view.end)])
+    inside = slice(int(np.searchsorted(mark.x, view.start)), int(np.searchsorted(mark.x, view.end, side="right")))
+    ends = [end for end in (view.start, view.end) if len(mark.x) and mark.x[0] < end < mark.x[-1]]
+    connected = (mark.low, mark.high) if isinstance(mark, Band) else (mark.y,)
+    return np.concatenate([part for values in connected for part in (values[inside], np.interp(ends, mark.x, values))])

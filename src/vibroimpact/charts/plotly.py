@@ -1,0 +1,405 @@
+"""A chart as a figure of plotly, in plain dictionaries: its traces and layout, with arrays in SI units and the frames that show them.
+
+Neither plotly itself nor a browser is needed here. A page completes the figure in the browser, where a view or a zoom chooses what is
+drawn of long arrays (`scripts/charts.js`); `vibroimpact.charts.notebook` completes it in Python. Colours are names of roles after an
+"@", replaced by those of the light or the dark ground.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from vibroimpact.charts.axis import Axis
+from vibroimpact.charts.chart import Chart, Panel, values_on
+from vibroimpact.charts.contours import contours_of
+from vibroimpact.charts.frame import Frame, ends_on, frames_of, is_log, panels_without_label, view_frames, view_range
+from vibroimpact.charts.marks import (
+    Arrow,
+    Band,
+    Bars,
+    Facets,
+    Label,
+    Level,
+    Line,
+    Map,
+    Mark,
+    Outline,
+    Points,
+    Rug,
+    Spans,
+    Stack,
+    cell_edges,
+)
+from vibroimpact.charts.palette import DIVERGING, LOOKS, SEQUENTIAL, SHADES
+from vibroimpact.charts.traces import area, bars_trace, colour_between, line_trace, pen, plain, points_trace, scale_of, silence
+
+ROW, SMALL_ROW, PICTURE_ROW = 300, 170, 340
+"""Height of a row: the only one, one of several, and one of pictures [px]."""
+
+_PICTURE_INCH = 118.0
+"""What an inch of a picture in print is on a wide page [px]."""
+
+_GAP_ACROSS, _GAP_BESIDE, _GAP_BETWEEN_PICTURES, _GAP_UP = 0.07, 0.17, 0.03, 64
+"""Gap between panels of a row, where colour bars are in it, and between pictures of a row [parts of the width], and between rows [px]."""
+
+_ANCHORS: dict[str, dict[str, Any]] = {
+    "left": {"xanchor": "left", "yanchor": "middle", "xshift": 6},
+    "right": {"xanchor": "right", "yanchor": "middle", "xshift": -6},
+    "center": {"xanchor": "center", "yanchor": "middle"},
+    "above": {"xanchor": "center", "yanchor": "bottom", "yshift": 4},
+    "below": {"xanchor": "center", "yanchor": "top", "yshift": -4},
+}
+"""How words lie beside their place."""
+
+_SHADES = 40
+"""Number of colours of facets, which are drawn as one trace each."""
+
+
+def plotly_chart(chart: Chart) -> dict[str, Any]:
+    """Return a chart as a figure of plotly whose arrays are in SI units.
+
+    Returns
+    -------
+    dict
+        `name`, `title`, `subtitle`, `caption`; `data`, traces whose arrays are SI values; `layout`; `pictures`, whether all panels are;
+        `rows`, suffix and height of the panels of each row; `bars`, the colour axis of a panel that has its own; `frames`, by axis, what
+        divides these values; `levels` and `spans`, the lines and shaded ranges across panels; `views`, each with the frames that it
+        changes.
+
+    Examples
+    --------
+    >>> time, force = Axis("Time", "s"), Axis("Force", "N")
+    >>> line = Line(np.array([0.0, 1.0]), np.array([5.0, 7000.0]))
+    >>> figure = plotly_chart(Chart("force", "Force", ((Panel(time, force, (line,)),),)))
+    >>> figure["data"][0]["type"], figure["frames"]["y"]["title"]
+    ('scatter', 'Force [kN]')
+    """
+    return _Drawing(chart).figure()
+
+
+class _Drawing:
+    """The figure while it is put together: the number of each panel names its axes."""
+
+    def __init__(self, chart: Chart) -> None:
+        self.chart = chart
+        self.frames = frames_of(chart)
+        self.data: list[dict[str, Any]] = []
+        self.layout: dict[str, Any] = {"annotations": []}
+        self.levels: list[dict[str, Any]] = []
+        self.spans: list[dict[str, Any]] = []
+        self.named: set[tuple[str, str]] = set()
+        self.scales: dict[Axis, str] = {}
+        self.bars: dict[str, str] = {}
+
+    def figure(self) -> dict[str, Any]:
+        chart = self.chart
+        shown: dict[str, Frame] = {}
+        places: dict[str, Panel] = {}
+        number, heights = 0, self._heights()
+        bottom = sum(heights) + _GAP_UP * (len(heights) - 1)
+        total = bottom
+        first: dict[Axis, str] = {}
+        rows: list[list[tuple[str, int]]] = []
+        for place, (row, height) in enumerate(zip(chart.rows, heights, strict=True)):
+            rows.append([])
+            below = {panel.x for later in chart.rows[place + 1 :] for panel in later}
+            for column, panel in enumerate(row):
+                number += 1
+                suffix = "" if number == 1 else str(number)
+                own_bar = any(isinstance(mark, Map) and self._own_scale(mark.scale) for mark in row[0].marks)
+                gap = _GAP_BETWEEN_PICTURES if self._pictures() else _GAP_BESIDE if own_bar else _GAP_ACROSS
+                width = (1.0 - gap * (len(row) - 1)) / len(row)
+                left = column * (width + gap)
+                self._place(panel, suffix, (left, left + width), ((bottom - height) / total, bottom / total), first, panel.x not in below)
+                if column and panel.y.names and panel.y is row[column - 1].y:  # names that the panel before has already
+                    self.layout[f"yaxis{suffix}"]["showticklabels"] = False
+                rows[-1] += [(suffix, height)] if panel.marks else []
+                shown |= {f"x{suffix}": self.frames[panel.x], f"y{suffix}": self.frames[panel.y]}
+                places[suffix] = panel
+                for mark in panel.marks:
+                    self._draw(mark, panel, suffix)
+            bottom -= height + _GAP_UP
+        without = panels_without_label(chart, self.frames)
+        for suffix in (suffix for suffix, panel in places.items() if panel in without):
+            self.layout[f"yaxis{suffix}"]["title"]["text"] = ""
+        self.layout["height"] = total
+        self.layout["showlegend"] = bool(self.named)
+        return {
+            "name": chart.name,
+            "title": chart.title,
+            "subtitle": chart.subtitle,
+            "caption": chart.caption,
+            "data": self.data,
+            "layout": self.layout,
+            "pictures": self._pictures(),
+            "rows": rows,
+            "bars": self.bars,
+            "frames": {name: _as_dict(frame) for name, frame in shown.items()},
+            "levels": self.levels,
+            "spans": self.spans,
+            "views": self._views(places),
+        }
+
+    def _heights(self) -> list[int]:
+        if self.chart.height is not None:
+            pixels = _PICTURE_INCH if self._pictures() else 96.0
+            return [round(pixels * self.chart.height)] * len(self.chart.rows)
+        usual = ROW if len(self.chart.rows) == 1 else SMALL_ROW
+        return [PICTURE_ROW if any(panel.picture for panel in row) and len(row) < 3 else usual for row in self.chart.rows]
+
+    def _pictures(self) -> bool:
+        """Return whether all panels are pictures, whose height follows from the width."""
+        return all(panel.picture for panel in self.chart.panels)
+
+    def _place(
+        self, panel: Panel, suffix: str, across: tuple[float, float], up: tuple[float, float], first: dict[Axis, str], last: bool
+    ) -> None:
+        """Add the axes of a panel; one that is shared follows the first panel that has it."""
+        for side, axis, domain, other in (("x", panel.x, across, "y"), ("y", panel.y, up, "x")):
+            name, frame = f"{side}{suffix}", self.frames[axis]
+            line: dict[str, Any] = {"domain": list(domain), "anchor": f"{other}{suffix}"}
+            if axis in first:
+                line["matches"] = first[axis]
+            else:
+                first[axis] = name
+            shared_below = side == "x" and not last and bool(axis.views)
+            line["title"] = {"text": "" if shared_below or panel.picture else plain(frame.title)}
+            line |= {"showticklabels": False} if shared_below else {}
+            line |= scale_of(axis, frame)
+            if panel.picture:
+                # an axis that follows another one has its scale already
+                line |= {"visible": False} | ({"scaleanchor": f"x{suffix}"} if side == "y" and "matches" not in line else {})
+            self.layout[f"{side}axis{suffix}"] = line
+        if panel.title and (len(self.chart.panels) > 1 or panel.title != self.chart.title):
+            self._write(panel.title, f"x{suffix} domain", f"y{suffix} domain", 0.0, 1.0, xanchor="left", yanchor="bottom", size=13)
+
+    def _write(self, words: str, xref: str, yref: str, x: float, y: float, size: int = 12, **more: Any) -> None:
+        note = {"text": plain(words), "xref": xref, "yref": yref, "x": x, "y": y, "showarrow": False, "font": {"size": size}, **more}
+        self.layout["annotations"].append(note)
+
+    def _draw(self, mark: Mark, panel: Panel, suffix: str) -> None:
+        at = {"xaxis": f"x{suffix}", "yaxis": f"y{suffix}"}
+        match mark:
+            case Line():
+                self._add(mark, at, line_trace(mark) | silence(mark, panel))
+            case Points():
+                self._add(mark, at, points_trace(mark) | silence(mark, panel))
+            case Band():
+                self._add(
+                    mark, at, {"type": "band", "x": mark.x, "low": mark.low, "high": mark.high, "line": {"width": 0}, **area(mark.role)}
+                )
+            case Stack():
+                for layer in mark.layers:
+                    self.named.add((layer.name, layer.role))
+                layers = [{"name": plain(layer.name), "y": layer.values, **area(layer.role)} for layer in mark.layers]
+                self.data.append(
+                    {"type": "stack", "x": mark.x, "layers": layers, **({} if mark.overview is None else {"overview": mark.overview}), **at}
+                )
+            case Bars():
+                self._add(mark, at, bars_trace(mark))
+            case Map():
+                self._map(mark, panel, at)
+            case Facets():
+                self._facets(mark, at)
+            case Outline():
+                look = LOOKS[mark.role]
+                closed = {"x": np.append(mark.x, mark.x[0]), "y": np.append(mark.y, mark.y[0])}
+                edge = {"color": "@main", "width": look.width}
+                self._add(
+                    mark,
+                    at,
+                    {"type": "scatter", "mode": "lines", "fill": "toself", "line": edge, "hoverinfo": "skip", **closed, **area(mark.role)},
+                )
+            case Level():
+                self.levels.append(
+                    {
+                        "axis": f"{'x' if mark.upright else 'y'}{suffix}",
+                        "across": f"{'y' if mark.upright else 'x'}{suffix}",
+                        "value": mark.value,
+                        "line": pen(mark.role),
+                        "label": plain(mark.label),
+                    }
+                )
+                self._name(mark, at)
+            case Spans():
+                look = LOOKS[mark.role]
+                self.spans.append(
+                    {
+                        "axis": f"x{suffix}",
+                        "across": f"y{suffix}",
+                        "starts": mark.starts,
+                        "ends": mark.ends,
+                        "fillcolor": f"@{mark.role}",
+                        "opacity": look.opacity,
+                    }
+                )
+                self._name(mark, at)
+            case Rug():
+                self._add(mark, at, {"type": "rug", "x": mark.values, "color": f"@{mark.role}", "hover": plain(mark.name)})
+            case Label():
+                xref, yref = (f"x{suffix} domain", f"y{suffix} domain") if mark.corner else (f"x{suffix}", f"y{suffix}")
+                x, y = (mark.x, mark.y) if mark.corner else (self._place_of(panel.x, mark.x), self._place_of(panel.y, mark.y))
+                self._write(mark.words, xref, yref, x, y, **_ANCHORS[mark.anchor])
+            case Arrow():
+                self._arrow(mark, panel, suffix)
+
+    def _add(self, mark: Any, at: dict[str, str], trace: dict[str, Any]) -> None:
+        self.data.append({**trace, **at, **self._legend(mark)})
+
+    def _legend(self, mark: Any) -> dict[str, Any]:
+        """Return the entry of a mark in the legend, which names each look once."""
+        if not mark.name:
+            return {"showlegend": False}
+        new = (mark.name, mark.role) not in self.named
+        self.named.add((mark.name, mark.role))
+        return {"name": plain(mark.name), "legendgroup": f"{mark.name} {mark.role}", "showlegend": new}
+
+    def _name(self, mark: Level | Spans, at: dict[str, str]) -> None:
+        """Add the legend's entry of what is not a trace."""
+        if mark.name and (mark.name, mark.role) not in self.named:
+            look = {"mode": "lines", "line": pen(mark.role)}
+            if isinstance(mark, Spans):
+                look = {
+                    "mode": "markers",
+                    "marker": {"symbol": "square", "size": 12, "color": f"@{mark.role}", "opacity": LOOKS[mark.role].opacity},
+                }
+            self._add(mark, at, {"type": "scatter", "x": [None], "y": [None], "hoverinfo": "skip", **look})
+
+    def _map(self, mark: Map, panel: Panel, at: dict[str, str]) -> None:
+        frame = self.frames[mark.scale]
+        if mark.scale not in self.scales:
+            self._add_scale(mark, frame)
+        # plotly would put the edges of a logarithmic axis midway, or below zero
+        x, y = (cell_edges(mark.x, log=panel.x.log), cell_edges(mark.y, log=panel.y.log)) if mark.cells else (mark.x, mark.y)
+        shown, unit = frame.shown(mark.values), plain(frame.unit)
+        trace = {"type": "heatmap", "x": x, "y": y, "z": shown, "coloraxis": self.scales[mark.scale], "hoverongaps": False}
+        trace["hovertemplate"] = f"%{{z:.5~g}} {unit}<extra></extra>"
+        if is_log(mark.scale, self.chart):
+            trace |= {"z": np.log10(shown), "customdata": shown, "hovertemplate": f"%{{customdata:.5~g}} {unit}<extra></extra>"}
+        if mark.texts:
+            trace |= {"text": [plain(text) for text in mark.texts], "hovertemplate": "%{text}<extra></extra>"}
+        self.data.append({**trace, **({} if mark.cells else {"zsmooth": "best"}), **at, "showlegend": False})
+        for found in contours_of(shown) if mark.contours else ():
+            lines = {"type": "contour", "x": mark.x, "y": mark.y, "z": found.values, "showscale": False, "hoverinfo": "skip"}
+            step = found.levels[1] - found.levels[0] if len(found.levels) > 1 else 1.0
+            # the end lies beyond the last level, which rounding would leave out
+            levels = {"coloring": "none", "start": found.levels[0], "end": found.levels[-1] + 0.01 * step, "size": step}
+            pen = {"color": "@contour", "width": 1.2 * found.width, "dash": "4px,3px" if found.dashed else "solid"}
+            self.data.append({**lines, "contours": levels, "line": pen, "showlegend": False, **at})
+
+    def _add_scale(self, mark: Map | Facets, frame: Frame) -> None:
+        """Add the colour scale that maps or facets share."""
+        assert mark.scale is not None  # checked by the caller
+        name = f"coloraxis{'' if not self.scales else len(self.scales) + 1}"
+        self.scales[mark.scale] = name
+        log = is_log(mark.scale, self.chart)
+        low, high = frame.shown(np.array(ends_on(mark.scale, self.chart))).tolist()
+        low, high = (math.log10(low), math.log10(high)) if log else (low, high)
+        most = max(abs(low), abs(high)) or 1.0
+        bar: dict[str, Any] = {"title": {"text": plain(frame.title), "side": "right"}, "thickness": 12, "outlinewidth": 0, "len": 1.0}
+        if log:
+            powers = np.arange(np.ceil(low), np.floor(high) + 1.0)
+            ticks = powers if len(powers) > 1 else np.linspace(low, high, 3)
+            bar |= {"tickvals": ticks.tolist(), "ticktext": [f"{10.0**value:.3g}" for value in ticks]}
+        if len([one for one in self.chart.panels if any(isinstance(m, Map) for m in one.marks)]) > 1 and self._own_scale(mark.scale):
+            bar |= self._beside(mark.scale)
+        self.layout[name] = {
+            "cmin": -most if mark.diverging else low,
+            "cmax": most if mark.diverging else high,
+            "colorscale": [list(stop) for stop in (DIVERGING if mark.diverging else SEQUENTIAL)],
+            "colorbar": bar,
+        }
+
+    def _own_scale(self, scale: Axis) -> bool:
+        """Return whether a scale is that of a single panel among several."""
+        return sum(any(getattr(mark, "scale", None) is scale for mark in panel.marks) for panel in self.chart.panels) == 1
+
+    def _beside(self, scale: Axis) -> dict[str, Any]:
+        """Return the place of a colour bar beside its only panel."""
+        number = next(
+            index for index, panel in enumerate(self.chart.panels) if any(getattr(mark, "scale", None) is scale for mark in panel.marks)
+        )
+        suffix = "" if number == 0 else str(number + 1)
+        self.bars[suffix] = self.scales[scale]
+        across, up = self.layout[f"xaxis{suffix}"]["domain"], self.layout[f"yaxis{suffix}"]["domain"]
+        return {
+            "x": across[1],
+            "xanchor": "left",
+            "y": 0.5 * (up[0] + up[1]),
+            "yanchor": "middle",
+            "len": up[1] - up[0],
+            "title": {"text": self.frames[scale].unit, "side": "top"},
+        }
+
+    def _facets(self, mark: Facets, at: dict[str, str]) -> None:
+        """Draw facets in a few colours: one filled trace of each, whose outlines are interrupted by NaN."""
+        values = mark.values if mark.scale is None else values_on(mark.scale, self.chart.panels)
+        low, high = float(values.min()), float(values.max())
+        if mark.diverging:
+            high = max(abs(low), abs(high)) or 1.0
+            low = -high
+        part = (mark.values - low) / ((high - low) or 1.0)
+        shade = np.clip((part * _SHADES).astype(int), 0, _SHADES - 1)
+        stops = DIVERGING if mark.diverging else SHADES
+        for number in np.unique(shade):
+            here = shade == number
+            corners = mark.corners[here]
+            closed = np.concatenate([corners, corners[:, :1], np.full_like(corners[:, :1], np.nan)], axis=1).reshape(-1, 2)
+            colour = colour_between(stops, (number + 0.5) / _SHADES)
+            trace: dict[str, Any] = {
+                "type": "scatter",
+                "mode": "lines",
+                "fill": "toself",
+                "fillcolor": colour,
+                "line": {"color": colour, "width": 0.5},
+            }
+            trace |= {"hoverinfo": "skip", "showlegend": False}
+            if mark.scale is not None:
+                frame = self.frames[mark.scale]
+                mean = float(frame.shown(mark.values[here].mean()))
+                trace |= {"hoveron": "fills", "hoverinfo": "text", "text": f"{mean:.2g} {frame.unit}".rstrip()}
+            self.data.append({**trace, "x": closed[:, 0], "y": closed[:, 1], **at})
+        if mark.scale is not None and mark.scale not in self.scales:
+            self._add_scale(mark, self.frames[mark.scale])
+            # the bar belongs to a trace of markers, of which there is none
+            bar = {"color": [0.0], "coloraxis": self.scales[mark.scale]}
+            nothing = {"type": "scatter", "mode": "markers", "x": [None], "y": [None], "hoverinfo": "skip", "showlegend": False}
+            self.data.append({**nothing, "marker": bar, **at})
+
+    def _place_of(self, axis: Axis, value: float) -> float:
+        """Return the place of an annotation along an axis: on a logarithmic one plotly takes the logarithm, other than of a trace."""
+        shown = float(self.frames[axis].shown(np.array(value)))
+        return math.log10(shown) if axis.log else shown
+
+    def _arrow(self, mark: Arrow, panel: Panel, suffix: str) -> None:
+        (x0, y0), (x1, y1) = ((self._place_of(panel.x, x), self._place_of(panel.y, y)) for x, y in (mark.start, mark.end))
+        ref = {"xref": f"x{suffix}", "yref": f"y{suffix}", "axref": f"x{suffix}", "ayref": f"y{suffix}"}
+        heads = {
+            "arrowhead": 2,
+            "arrowside": "end+start" if mark.both else "end",
+            "arrowwidth": LOOKS[mark.role].width,
+            "arrowcolor": f"@{mark.role}",
+        }
+        self.layout["annotations"].append({"text": "", "showarrow": True, "x": x1, "y": y1, "ax": x0, "ay": y0, **ref, **heads})
+
+    def _views(self, places: dict[str, Panel]) -> list[dict[str, Any]]:
+        """Return the views with the frames and ranges that each of them changes."""
+        found = []
+        for number, view in enumerate(self.chart.views):
+            frames: dict[str, Any] = {}
+            for suffix, panel in places.items():
+                if number < len(panel.x.views):
+                    own, panels = panel.x.views[number], self.chart.panels
+                    across, up = view_frames(panel, own, self.frames[panel.y], panels)
+                    span = view_range(panel, own, panels)
+                    frames[f"x{suffix}"] = {**_as_dict(across), "range": across.shown(np.array([own.start, own.end])).tolist()}
+                    frames[f"y{suffix}"] = _as_dict(up) | ({} if span is None else {"range": up.shown(np.array(span)).tolist()})
+            found.append({"name": view.name, "headline": view.headline, "frames": frames})
+        return found
+
+
+def _as_dict(frame: Frame) -> dict[str, Any]:
+    return {"title": plain(frame.title), "unit": frame.unit, "size": frame.size, "origin": frame.origin}

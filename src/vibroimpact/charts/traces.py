@@ -1,0 +1,127 @@
+"""Traces of plotly for the marks of a chart, with roles in place of colours."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from vibroimpact.charts.axis import Axis
+from vibroimpact.charts.chart import Panel
+from vibroimpact.charts.frame import Frame
+from vibroimpact.charts.marks import Bars, Line, Points
+from vibroimpact.charts.palette import LOOKS, MANY
+
+
+def line_trace(line: Line) -> dict[str, Any]:
+    """Return the trace of a line."""
+    drawn: dict[str, Any] = {"type": "scatter", "mode": "lines+markers" if line.marked else "lines", "x": line.x, "y": line.y}
+    drawn["line"] = pen(line.role)
+    look = LOOKS[line.role]
+    if look.opacity < 1.0 and line.role == "under":
+        drawn["opacity"] = look.opacity
+    drawn |= {"origins": list(line.origins)} if line.origins else {}
+    return drawn | ({"marker": _symbol(line.role, 5)} if line.marked else {}) | _texts(line.texts)
+
+
+def silence(mark: Line | Points, panel: Panel) -> dict[str, Any]:
+    """Return that nothing is told at the pointer of what has no name in a picture, where places are not quantities."""
+    return {"hoverinfo": "skip"} if panel.picture and not mark.name else {}
+
+
+def points_trace(points: Points) -> dict[str, Any]:
+    """Return the trace of points: small ones without an edge where there are many."""
+    many, size = len(points.x) > MANY, LOOKS[points.role].size
+    drawn: dict[str, Any] = {"type": "scatter", "mode": "markers", "x": points.x, "y": points.y}
+    dot = {"symbol": LOOKS[points.role].symbol, "size": min(4.0, size), "color": f"@{points.role}", "opacity": 0.6, "line": {"width": 0}}
+    drawn["marker"] = dot if many else _symbol(points.role, size)
+    drawn |= _texts(points.texts)
+    if points.keys:
+        drawn["keys"] = {
+            key: values if values.dtype.kind in "fiu" else [str(value) for value in values] for key, values in points.keys.items()
+        }
+    if points.low is not None and points.high is not None:
+        drawn |= {"low": points.low, "high": points.high}
+    return drawn
+
+
+def _texts(texts: tuple[str, ...]) -> dict[str, Any]:
+    """Return what points are, which takes the place of their coordinates if it has several lines."""
+    found: dict[str, Any] = {"text": [plain(text) for text in texts]} if texts else {}
+    return found | ({"hovertemplate": "%{text}<extra></extra>"} if texts and "\n" in texts[0] else {})
+
+
+def bars_trace(bars: Bars) -> dict[str, Any]:
+    """Return the trace of bars, at places of given widths."""
+    places, width = bars.places, np.full(len(bars.values), bars.width)
+    if len(places) == len(bars.values) + 1:
+        places, width = 0.5 * (places[1:] + places[:-1]), np.diff(places)
+    drawn: dict[str, Any] = {"type": "bars", "lying": bars.lying, "places": places, "values": bars.values, "widths": width}
+    drawn["marker"] = {"color": f"@{bars.role}", "line": {"width": 0.5, "color": "@main"}} | _hatch(bars.role, "pattern")
+    if bars.base is not None:
+        drawn["base"] = bars.base
+    if bars.low is not None and bars.high is not None:
+        drawn |= {"low": bars.low, "high": bars.high}
+    return drawn
+
+
+def pen(role: str) -> dict[str, Any]:
+    """Return colour, width and dashes of lines of a role."""
+    look = LOOKS[role]
+    return {"color": f"@{role}", "width": look.width, "dash": ",".join(f"{part}px" for part in look.dashes) or "solid"}
+
+
+def _symbol(role: str, size: float) -> dict[str, Any]:
+    look = LOOKS[role]
+    if look.hollow:
+        return {"symbol": look.symbol, "size": size, "color": "@ground", "line": {"color": f"@{role}", "width": 1.2}}
+    return {"symbol": look.symbol, "size": size, "color": f"@{role}"}
+
+
+def area(role: str) -> dict[str, Any]:
+    """Return colour, opacity and hatch of areas of a role."""
+    look = LOOKS[role]
+    return {"fillcolor": f"@{role}", "fillopacity": look.opacity} | _hatch(role, "fillpattern")
+
+
+def _hatch(role: str, name: str) -> dict[str, Any]:
+    look = LOOKS[role]
+    return {name: {"shape": look.hatch, "size": 7, "solidity": 0.15, "fgcolor": "@main", "bgcolor": f"@{role}"}} if look.hatch else {}
+
+
+def colour_between(stops: tuple[tuple[float, str], ...], part: float) -> str:
+    """Return the colour at a part of a scale."""
+    places = [place for place, _ in stops]
+    colours = [[int(colour[index : index + 2], 16) for index in (1, 3, 5)] for _, colour in stops]
+    return "#" + "".join(f"{round(float(np.interp(part, places, [colour[index] for colour in colours]))):02x}" for index in range(3))
+
+
+def plain(words: str) -> str:
+    """Return words that plotly shows as they are: it reads a few tags of HTML, and formulas between dollar signs.
+
+    Examples
+    --------
+    >>> plain("a < b & $c$")
+    'a &lt; b &amp; &#36;c&#36;'
+    """
+    return words.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;").replace("$", "&#36;").replace("\n", "<br>")
+
+
+def scale_of(axis: Axis, frame: Frame) -> dict[str, Any]:
+    """Return kind, range and ticks of an axis, as a layout of plotly has them."""
+    if axis.names:
+        places = list(range(len(axis.names)))
+        return {
+            "tickvals": places,
+            "ticktext": [plain(name) for name in axis.names],
+            "range": [-0.6, len(places) - 0.4],
+            "zeroline": False,
+        }
+    found: dict[str, Any] = {"type": "log"} if axis.log else {}
+    found |= {"dtick": "D2", "tickformat": "~g"} if axis.log and axis.range is None else {}
+    if axis.range is not None:
+        ends = [None if not np.isfinite(end) else float(frame.shown(np.array(end))) for end in axis.range]
+        found["range"] = [None if end is None else float(np.log10(end)) for end in ends] if axis.log else ends
+    if axis.ticks:
+        found |= {"tickvals": frame.shown(np.array(axis.ticks)).tolist()}
+    return found | ({"tickformat": "d"} if axis.integer else {})

@@ -1,0 +1,20 @@
+"""What `export --json` prints: the formats, or what was written in one."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from vibroimpact.exporting.drop import Drop
+from vibroimpact.exporting.export_format import ExportFormat, export_formats
+
+
+def formats_document() -> dict[str, Any]:
+    """Return the export formats by name: the programs that read one, its files, and what its writer was tested against."""
+    return {"formats": {name: {"program": one.program, "files": one.files, "tested": one.tested} for name, one in export_formats().items()}}
+
+
+def export_document(drop: Drop, format: ExportFormat, files: Sequence[Path]) -> dict[str, Any]:
+    """Return the files written, the limitations of the format for this drop, and what its writer was tested against."""
+    return {"format": format.name, "files": [str(file) for file in files], "notes": format.notes(drop), "tested": format.tested}

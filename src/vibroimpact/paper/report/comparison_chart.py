@@ -1,0 +1,89 @@
+"""A quantity over time, beside printed values: a row of curves for each treatment, and each impact as a view."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from vibroimpact.arrays import Floats
+from vibroimpact.charts.axis import Axis
+from vibroimpact.charts.chart import Panel
+from vibroimpact.charts.marks import Label, Level
+from vibroimpact.dynamics.response import Response
+from vibroimpact.paper.report.compared_quantity import ComparedQuantity
+from vibroimpact.paper.report.impact_views import impact_views, response_line
+
+_MARK_DISTANCE = 0.35
+"""Largest distance of a printed value from the curves at which it is shown, relative to their range."""
+_LABEL_DISTANCE = 0.1
+"""Distance below which printed values share a label, relative to the range shown."""
+
+
+class ResponseLine(NamedTuple):
+    """A curve in a row: its label, its role, and the response that it shows."""
+
+    name: str
+    role: str
+    response: Response
+
+
+def comparison_rows(
+    shown: ComparedQuantity,
+    rows: Mapping[str, Sequence[ResponseLine]],
+    marks: Mapping[str, float],
+    window: Callable[[int], tuple[float, float]],
+) -> tuple[tuple[Panel, ...], ...]:
+    """Return the rows of the chart of a quantity, with a common scale.
+
+    Parameters
+    ----------
+    shown : ComparedQuantity
+        The quantity.
+    rows : mapping of str to sequence of ResponseLine
+        Curves of each row, by row title.
+    marks : mapping of str to float
+        Printed values [SI], by what has them: a type, or "".
+    window : callable
+        Function of an impact, counted from 0, that returns the times shown before and after its first touch [s].
+    """
+    responses = [line.response for lines in rows.values() for line in lines]
+    views = impact_views(responses, window)
+    time, value = Axis("Time", "s", views=views), Axis(shown.short, shown.unit)
+    # a response that is in every row is drawn once
+    several = dict.fromkeys(line for lines in rows.values() for line in lines)
+    curves = {line: response_line(shown.timeline, line.response, views, line.name, line.role) for line in several}
+    levels = _levels(shown, marks, np.concatenate([curve.y for curve in curves.values()]))
+    panels = []
+    for title, lines in rows.items():
+        drawn = [curves[line] for line in lines]
+        nothing = [Label(0.5, 0.4, "zero", corner=True)] if not any(np.any(curve.y) for curve in drawn) else []
+        panels.append((Panel(time, value, (*drawn, *levels, *nothing), title),))
+    return tuple(panels)
+
+
+def _levels(shown: ComparedQuantity, marks: Mapping[str, float], values: Floats) -> list[Level]:
+    """Return the printed values that do not lie far from the curves, which they would flatten; neighbouring ones share a label."""
+    low, high = float(np.nanmin(values)), float(np.nanmax(values))
+    reach = _MARK_DISTANCE * (high - low) if high > low else np.inf
+    found = [(sign * value, kind) for kind, value in marks.items() for sign in shown.signs]
+    near = sorted(one for one in found if low - reach <= one[0] <= high + reach)
+    span = max([high, *(level for level, _ in near)]) - min([low, *(level for level, _ in near)])
+    groups: list[list[tuple[float, str]]] = []
+    for one in near:
+        if groups and one[0] - groups[-1][-1][0] < _LABEL_DISTANCE * span:
+            groups[-1].append(one)
+        else:
+            groups.append([one])
+    # the highest of the neighbours has the label, which stands above it
+    return [
+        Level(level, "printed", "dotted", label=_label([kind for _, kind in group]) if level == group[-1][0] else "")
+        for group in groups
+        for level, _ in group
+    ]
+
+
+def _label(kinds: Sequence[str]) -> str:
+    names = sorted(kind for kind in kinds if kind)
+    return f"Type{'s' if len(names) > 1 else ''} {' and '.join(names)}" if names else ""

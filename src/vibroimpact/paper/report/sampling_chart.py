@@ -1,0 +1,105 @@
+"""The chart of the scatter of Table 2: ranges of the errors of sampled peaks, and the sampling of one contact."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from vibroimpact.arrays import Floats
+from vibroimpact.charts.axis import Axis
+from vibroimpact.charts.chart import Chart, Panel
+from vibroimpact.charts.marks import Bars, Line, Mark, Points, Spans
+from vibroimpact.paper.runs import DAMPINGS, IMPACTS, Runs
+from vibroimpact.paper.sampling import (
+    CONTACTS,
+    QUANTITIES,
+    contact_pulses,
+    error_range,
+    grid_error,
+    grid_samples,
+    implied_instants,
+    output_step,
+    spacing_bound,
+    table2_error,
+)
+
+_OFFSET = 0.19
+"""Horizontal offset of the two dampings from the impact number."""
+
+_WIDTHS = (0.30, 0.16)
+_BARS = {"constant": "series 7", "variable": "contact elastic"}
+_CURVES = {"compression": "series 0", "force": "series 2"}
+
+
+def sampling_chart(runs: Runs) -> Chart:
+    """Return the chart of the errors of Table 2 with the ranges of the errors of sampled peaks.
+
+    Parameters
+    ----------
+    runs : Runs
+        The simulations.
+    """
+    step, spacing = output_step(), spacing_bound(runs)
+    # the contact drawn below has sampling instants for both errors, and the largest error on the printed grid
+    candidates = [
+        contact for contact in CONTACTS if not np.isnan([implied_instants(runs, quantity, *contact) for quantity in QUANTITIES]).any()
+    ]
+    damping, impact = max(candidates, key=lambda contact: grid_error(runs, step, "force", *contact))
+    rows = (tuple(_errors(runs, quantity, step, spacing) for quantity in QUANTITIES), (_contact(runs, damping, impact, step),))
+    caption = (
+        f"The printed errors (dots) scatter about the exact ones (bars across) within what samples {1e6 * spacing:.0f} µs apart can "
+        f"give; samples {1e3 * step:.2f} ms apart can give almost anything. Below, one contact: the times at which compression and "
+        "force have the printed values, and the one sample that the printed output step puts there."
+    )
+    return Chart("sampling", "Table 2: what can be read off samples", rows, caption, 2.4)
+
+
+def _errors(runs: Runs, quantity: str, step: float, spacing: float) -> Panel:
+    """Return the ten errors of a quantity: exact, printed, and the ranges of both spacings."""
+    ranges = {
+        (damping, size): np.array([error_range(runs, size, quantity, damping, impact) for impact in IMPACTS])
+        for damping in DAMPINGS
+        for size in (0.0, spacing, step)
+    }
+    ends = np.concatenate([ranges[damping, spacing] for damping in DAMPINGS])
+    low, high = math.floor(ends.min()) - 1.0, math.ceil(ends.max()) + 1.0
+    places = {damping: np.array(IMPACTS) + side for damping, side in zip(DAMPINGS, (-_OFFSET, _OFFSET), strict=True)}
+    marks: list[Mark] = []
+    for damping, at in places.items():
+        beyond = np.clip(ranges[damping, step], low - 1.0, high + 1.0)
+        marks.append(_bars(at, beyond, f"samples {1e3 * step:.2f} ms apart, beyond the picture", "body", _WIDTHS[0]))
+    for damping, at in places.items():
+        name = f"samples {1e6 * spacing:.0f} µs apart, {damping} damping"
+        marks.append(_bars(at, ranges[damping, spacing], name, _BARS[damping], _WIDTHS[1]))
+    for damping, at in places.items():
+        half, exact, gap = 0.5 * _WIDTHS[0], ranges[damping, 0.0][:, 0], np.full(len(at), np.nan)
+        marks.append(Line(np.column_stack([at - half, at + half, gap]).ravel(), np.column_stack([exact, exact, gap]).ravel(), "exact"))
+        texts = tuple(f"impact {impact}, {damping} damping" for impact in IMPACTS)
+        values = np.array([table2_error(quantity, damping, impact).value for impact in IMPACTS])
+        marks.append(Points(at, values, "printed", "matched", texts))
+    impacts = Axis("Impact", range=(0.5, len(IMPACTS) + 0.5), ticks=tuple(float(impact) for impact in IMPACTS))
+    return Panel(impacts, Axis("Below the theory's by", "%", range=(low, high)), tuple(marks), f"Largest {quantity}")
+
+
+def _bars(at: Floats, ranges: Floats, name: str, role: str, width: float) -> Bars:
+    return Bars(at, ranges[:, 1] - ranges[:, 0], name, role, width, base=np.ascontiguousarray(ranges[:, 0]))
+
+
+def _contact(runs: Runs, damping: str, impact: int, step: float) -> Panel:
+    """Return compression and force of one contact relative to the theory's peaks, with the instants at which they were sampled."""
+    marks: list[Mark] = []
+    for quantity, role in _CURVES.items():
+        simulation, theory = (contact_pulses(runs)[name, quantity, impact] for name in (damping, "theory"))
+        scale = 100.0 / theory.value
+        marks.append(Line(simulation.times, scale * simulation.values, f"{quantity} of the simulation", role))
+        value = 100.0 - table2_error(quantity, damping, impact).value
+        moments = np.array(implied_instants(runs, quantity, damping, impact))
+        marks.append(Points(moments, np.full(len(moments), value), f"printed {quantity}", role))
+        times, values = grid_samples(runs, damping, step, quantity, impact)
+        marks.append(Points(times, scale * values, f"output every {1e3 * step:.2f} ms", "muted"))
+    end = float(simulation.times[-1])
+    marks.insert(0, Spans(np.array([0.0]), np.array([end]), "in contact"))
+    time = Axis("Time since first touch", "s", range=(-0.03 * end, 1.03 * end))
+    title = f"Impact {impact}, {damping} damping, in parts of the theory's peaks"
+    return Panel(time, Axis("Of the theory's peak", "%", range=(0.0, 108.0)), tuple(marks), title)

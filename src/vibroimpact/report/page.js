@@ -1,0 +1,121 @@
+// A report: draws its charts from the data in the page, and connects its controls.
+"use strict";
+
+{
+  const $ = (id) => document.getElementById(id);
+
+  // Run a script whose text lies compressed in the page; its hash is among those that the content policy allows.
+  const run = async (id) => {
+    const script = document.createElement("script");
+    script.textContent = new TextDecoder().decode(await vibroimpact.inflated($(id).textContent));
+    document.head.append(script);
+    $(id).remove();
+  };
+
+  const showTheme = (theme, charts) => {
+    document.documentElement.dataset.theme = theme;
+    vibroimpact.setTheme(theme);
+    for (const chart of charts.values()) chart.update();
+  };
+
+  const connectViews = (charts) => {
+    const select = $("view");
+    if (!select) return;
+    const move = (number) => {
+      select.value = String(number);
+      for (const chart of charts.values()) if (chart.chart.views.length) chart.update({ view: number < 0 ? null : number, ranges: {} });
+      $("view-before").disabled = number < 0;
+      $("view-after").disabled = number + 1 >= select.options.length - 1;
+      for (const row of document.querySelectorAll("[data-impact]")) row.classList.toggle("chosen", Number(row.dataset.impact) === number + 1);
+      for (const [name, chart] of charts) {
+        const words = document.querySelector(`[data-headline="${CSS.escape(name)}"]`);
+        const view = chart.chart.views[number];
+        if (words) words.textContent = view ? `${view.name}${view.headline ? `: ${view.headline}` : ""}` : "";
+      }
+    };
+    select.addEventListener("change", () => move(Number(select.value)));
+    $("view-before").addEventListener("click", () => move(Number(select.value) - 1));
+    $("view-after").addEventListener("click", () => move(Number(select.value) + 1));
+    for (const row of document.querySelectorAll("[data-impact] button")) {
+      row.addEventListener("click", () => { move(Number(row.closest("[data-impact]").dataset.impact) - 1); $("charts").scrollIntoView(); });
+    }
+    move(-1);
+  };
+
+  const connectKeys = (charts) => {
+    for (const select of document.querySelectorAll("select[data-key-of]")) {
+      const chart = charts.get(select.dataset.keyOf);
+      select.addEventListener("change", () => chart.update({ key: select.value }));
+    }
+  };
+
+  const connectCopies = () => {
+    for (const button of document.querySelectorAll("button[data-copy]")) {
+      button.addEventListener("click", async () => {
+        const text = $(button.dataset.copy).textContent;
+        try { await navigator.clipboard.writeText(text); button.textContent = "Copied"; } catch {
+          getSelection().selectAllChildren($(button.dataset.copy));
+          button.textContent = "Selected: press Ctrl+C";
+        }
+      });
+    }
+  };
+
+  // On paper: light, with everything open and drawn, as wide as it is there [px]; afterwards as before.
+  const connectPaper = (charts) => {
+    const COLUMN = 330, PAGE = 680;
+    let theme = "light", closed = [];
+    addEventListener("beforeprint", () => {
+      theme = vibroimpact.theme;
+      closed = [...document.querySelectorAll("details:not([open])")];
+      for (const part of closed) part.open = true;
+      showTheme("light", charts);
+      for (const chart of charts.values()) chart.update({ paper: chart.element.closest(".broad") ? PAGE : COLUMN });
+    });
+    addEventListener("afterprint", () => {
+      for (const part of closed) part.open = false;
+      for (const chart of charts.values()) chart.update({ paper: null });
+      showTheme(theme, charts);
+    });
+  };
+
+  // A click on a point of a study writes its command below the charts' heading, to be copied.
+  const clicked = (point) => {
+    const line = $("command");
+    if (!line || !point.text) return;
+    line.textContent = new DOMParser().parseFromString(point.text.split("<br>").pop(), "text/html").body.textContent;
+    line.closest("[hidden]")?.removeAttribute("hidden");
+    document.querySelector("button[data-copy=command]").textContent = "Copy";
+  };
+
+  const start = async () => {
+    const [data] = await Promise.all([vibroimpact.inflated($("data").textContent), run("plotly")]);
+    $("data").textContent = "";
+    const { charts: given, scene, palette } = vibroimpact.unpack(data);
+    vibroimpact.setPalette(palette);
+    const charts = new Map();
+    for (const chart of given) {
+      const element = document.querySelector(`[data-chart="${CSS.escape(chart.name)}"]`);
+      if (element) charts.set(chart.name, new vibroimpact.Chart(element, chart, clicked));
+    }
+    const preferred = matchMedia("(prefers-color-scheme: dark)");
+    showTheme(preferred.matches ? "dark" : "light", charts);
+    const button = $("theme");
+    button.addEventListener("click", () => showTheme(vibroimpact.theme === "dark" ? "light" : "dark", charts));
+    connectViews(charts);
+    connectKeys(charts);
+    connectCopies();
+    if (scene) vibroimpact.controlScene($("scene"), scene);
+    connectPaper(charts);
+    vibroimpact.charts = charts;
+    await Promise.all([...charts.values()].map((chart) => chart.drawing));
+    document.documentElement.dataset.ready = "true";
+  };
+
+  start().catch((error) => {
+    const notice = $("notice");
+    notice.hidden = false;
+    notice.textContent = `The charts can't be drawn: ${error.message}`;
+    console.error(error);
+  });
+}

@@ -1,0 +1,88 @@
+"""Chart of the plate's deflection: maps at six times."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from vibroimpact.arrays import Floats
+from vibroimpact.charts.axis import Axis
+from vibroimpact.charts.chart import Chart, Panel
+from vibroimpact.charts.marks import Label, Line, Map, Mark, Outline, Points
+from vibroimpact.results.deflection import Deflection
+from vibroimpact.results.result import Result
+from vibroimpact.runs.supports import support_outlines
+from vibroimpact.shown import shortened, visible
+from vibroimpact.units.display import digits, multiple, text
+
+_COLUMNS, _ROWS = 3, 2
+
+_MOST_NAMED = 12
+"""Places of sensors that are named; the names of more would cover each other."""
+
+_ROUNDING = 1e-9
+"""Relative to the largest deflection of all maps: smaller values are drawn as zero."""
+
+
+def deflection_chart(result: Result, caption: str) -> Chart:
+    """Return the chart of the plate's deflection from above at six times after first touch, all on one colour scale."""
+    deflection = result.deflection
+    assert deflection is not None  # checked by the caller
+    touch, frames = float(result.impacts["time_s"][0]), chosen_frames(result, deflection)
+    across, up, scale = Axis("x", "m"), Axis("y", "m"), Axis("Deflection, upwards", "m")
+    most = float(np.nanmax(np.abs(deflection.height[frames])))
+    unit = multiple("m", most)
+    panels = []
+    for frame in frames:
+        height = np.where(np.abs(deflection.height[frame]) <= _ROUNDING * most, 0.0, deflection.height[frame]).astype(float)
+        low, high = (digits(float(pick(height)) / unit.size, 2) for pick in (np.nanmin, np.nanmax))
+        title = f"{text(float(deflection.time[frame]) - touch, 's', 3)} after first touch"
+        least_and_most = Label(0.5, 0.0, f"{low} to {high} {unit.unit}", "below", corner=True)
+        map_ = Map(deflection.x, deflection.y, height, scale, diverging=True, contours=True, cells=False)
+        panels.append(Panel(across, up, (map_, *plate_marks(result), least_and_most), title, picture=True))
+    rows = tuple(tuple(panels[start : start + _COLUMNS]) for start in range(0, len(panels), _COLUMNS))
+    shape = float(np.clip(np.ptp(deflection.y) / np.ptp(deflection.x), 0.2, 1.6))
+    return Chart("deflection", "Deflection of the plate from above", rows, caption, height=2.3 * shape + 0.2)
+
+
+def chosen_frames(result: Result, deflection: Deflection) -> list[int]:
+    """Return the indices of the frames drawn: in mid-contact, at release, and up to the last at geometrically growing times."""
+    touch, duration = (float(result.impacts[name][0]) for name in ("time_s", "duration_s"))
+    after = float(deflection.time[-1]) - touch
+    wanted = touch + np.append(0.5 * duration, np.geomspace(min(duration, 0.3 * after), after, _COLUMNS * _ROWS - 1))
+    return sorted({int(np.abs(deflection.time - time).argmin()) for time in wanted})
+
+
+def plate_marks(result: Result) -> tuple[Mark, ...]:
+    """Return what is marked on the plate seen from above: its edge, its supports, the contact point and the sensors."""
+    deflection = result.deflection
+    assert deflection is not None  # checked by the caller
+    marks: list[Mark] = [Line(*_edge(deflection.x, deflection.y), role="main")]
+    marks += [Outline(*outline, name="support", role="held") for outline in support_outlines(result)]
+    marks.append(Points(np.array([deflection.contact[0]]), np.array([deflection.contact[1]]), "contact point", "mark"))
+    return (*marks, *sensor_marks(result))
+
+
+def _edge(x: Floats, y: Floats) -> tuple[Floats, Floats]:
+    return x[[0, -1, -1, 0, 0]], y[[0, 0, -1, -1, 0]]
+
+
+def sensor_marks(result: Result) -> tuple[Mark, ...]:
+    """Return the sensors seen from above, with the names of those that stand apart; of many none."""
+    placed = sensor_places(result)
+    if not placed:
+        return ()
+    names, x, y = zip(*placed, strict=True)
+    marks: list[Mark] = [Points(np.array(x), np.array(y), "sensor", "sensor", texts=tuple(shortened(visible(name), 60) for name in names))]
+    together: dict[tuple[float, float], list[str]] = {}
+    for name, *place in placed:
+        together.setdefault((place[0], place[1]), []).append(name)
+    if len(together) <= _MOST_NAMED:
+        marks += [Label(*place, shortened(visible(", ".join(names)), 20), "left") for place, names in together.items()]
+    return tuple(marks)
+
+
+def sensor_places(result: Result) -> list[tuple[str, float, float]]:
+    """Return name, x and y [m] of the sensors whose positions the case gives as coordinates."""
+    sensors = result.case.get("sensors", [])
+    placed = [(one["name"], one["position"]) for one in sensors]
+    return [(name, float(place[0]), float(place[1])) for name, place in placed if not isinstance(place, str)]

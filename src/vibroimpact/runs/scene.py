@@ -1,0 +1,99 @@
+"""The plate in motion with ball, supports and sensors: what the page and the animation draw."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from vibroimpact.results.deflection import Deflection
+from vibroimpact.results.result import Result
+from vibroimpact.runs.chart_data import touch_height
+from vibroimpact.runs.deflection_chart import sensor_places
+from vibroimpact.runs.supports import support_outlines
+
+HEIGHT = 0.16
+"""Largest drawn deflection, relative to the longer side of the plate."""
+
+_FRAMES = 240
+"""Frames of a whole run."""
+
+
+def exaggeration(deflection: Deflection) -> float:
+    """Return the factor by which the deflection is exaggerated: 1, 2 or 5 times a power of ten; 1 if there is no deflection."""
+    largest = float(np.nanmax(np.abs(deflection.height)))
+    if largest == 0.0:
+        return 1.0
+    wanted = HEIGHT * float(max(np.ptp(deflection.x), np.ptp(deflection.y))) / largest
+    power = 10.0 ** np.floor(np.log10(wanted))
+    return float(max((step * power for step in (1.0, 2.0, 5.0) if step * power <= wanted), default=power))
+
+
+def scene_of(result: Result) -> dict[str, Any]:
+    """Return what a page draws of the plate in motion, with arrays in SI units.
+
+    Parameters
+    ----------
+    result : Result
+        Result with a deflection.
+
+    Returns
+    -------
+    dict
+        `x`, `y`: lines of the grid; `height`: deflections, (frames, rows, columns); `time`: of the frames, since first touch;
+        `sphere` and `contact_height`: height of the sphere's centre and of the contact point in each frame; `contact`: its place;
+        `radius`; `exaggeration` of the deflection, `gap_scale` of the gap between them; `supports`: their outlines; `sensors`: their
+        names and places.
+    """
+    deflection = result.deflection
+    assert deflection is not None  # checked by the caller
+    return {
+        "x": deflection.x,
+        "y": deflection.y,
+        "height": deflection.height,
+        "time": deflection.time - float(result.impacts["time_s"][0]),
+        "sphere": deflection.sphere_position,
+        "contact_height": deflection.contact_deflection,
+        "contact": list(deflection.contact),
+        "radius": touch_height(result),
+        "exaggeration": exaggeration(deflection),
+        "gap_scale": 1.0,
+        "supports": [np.column_stack(outline) for outline in support_outlines(result)],
+        "sensors": [{"name": name, "x": x, "y": y} for name, x, y in sensor_places(result)],
+    }
+
+
+def rigid_scene(result: Result) -> dict[str, Any]:
+    """Return what a page draws of a ball that bounces on a plate at rest, over the whole run; the same as `scene_of` otherwise.
+
+    Parameters
+    ----------
+    result : Result
+        Result of one drop on a plate that does not deform.
+    """
+    size = [float(side) for side in result.case.get("plate", {}).get("size", ())]
+    radius = touch_height(result)
+    radius = radius if np.isfinite(radius) else float(result.case.get("sphere", {}).get("radius", 0.025))
+    half = (0.5 * size[0], 0.5 * size[1]) if size else (8.0 * radius, 8.0 * radius)
+    position = result.case.get("drop", {}).get("position", (0.0, 0.0))
+    history = result.history
+    time = np.linspace(0.0, float(history["time_s"][-1]), _FRAMES)
+    # the lowest points lie between the frames: of a bounce at least its first touch is seen
+    time = np.union1d(time, result.impacts["time_s"][:_FRAMES])
+    height = np.interp(time, history["time_s"], history["position_m"])
+    reach = 1.1 * max(half)
+    first = float(result.impacts["time_s"][0]) if len(result.impacts["time_s"]) else 0.0
+    return {
+        "x": np.array([-half[0], half[0]]),
+        "y": np.array([-half[1], half[1]]),
+        "height": np.zeros((len(time), 4), dtype=np.float32),
+        "time": time - first,
+        "sphere": height,
+        "contact_height": np.zeros(len(time)),
+        "contact": [float(position[0]), float(position[1])],
+        "radius": radius,
+        "exaggeration": 1.0,
+        "gap_scale": min(1.0, reach / max(float(height.max()) - radius, 1e-300)),
+        "supports": [np.column_stack(outline) for outline in support_outlines(result)],
+        "sensors": [{"name": name, "x": x, "y": y} for name, x, y in sensor_places(result)],
+    }

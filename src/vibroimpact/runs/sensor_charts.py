@@ -1,0 +1,80 @@
+"""Chart of a sensor: its signal over the run, and the amplitude spectrum of the response to the first impact."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from vibroimpact.charts.axis import Axis
+from vibroimpact.charts.chart import Chart, Panel
+from vibroimpact.charts.marks import Level, Line, Rug
+from vibroimpact.files.plain_names import plain_names
+from vibroimpact.results.result import Result
+from vibroimpact.runs.chart_data import drawn_signal, spans_of_contact
+from vibroimpact.runs.spectrum import amplitude_spectrum, first_response
+from vibroimpact.runs.vibration_charts import plate_time
+from vibroimpact.shown import shortened, visible
+from vibroimpact.units.display import digits, largest, multiple
+
+MOST = 8
+"""Number of sensors drawn; the signals of all are in the data files."""
+
+_NEAR = 0.3
+"""Part of its range that a signal must reach for the range to be drawn."""
+
+_DECADES = 4.5
+"""Decades below its peak down to which a spectrum is shown."""
+
+
+def drawn_sensors(result: Result) -> dict[str, str]:
+    """Return the names of the sensors that are drawn, by the name of the chart; none without an impact."""
+    plain = plain_names(list(result.signals))
+    return {f"sensor_{plain[name]}": name for name in list(result.signals)[:MOST] if len(result.impacts["time_s"])}
+
+
+def sensor_chart(result: Result, chart: str, name: str, caption: str) -> Chart:
+    """Return the chart of a sensor's signal, and of its amplitude spectrum from the first touch to the next.
+
+    Parameters
+    ----------
+    result : Result
+        The result.
+    chart : str
+        Name of the chart.
+    name : str
+        Name of the sensor.
+    caption : str
+        The caption.
+    """
+    signal, first = result.signals[name], first_response(result, name)
+    sensor = signal.sensor
+    level = Axis(sensor.quantity.capitalize(), sensor.unit)
+    range_words, levels = _range(result, name)
+    line = Line(*drawn_signal(signal, first.start, first.stop))
+    upper = Panel(plate_time(result), level, (spans_of_contact(result), line, *levels), f"{sensor.quantity.capitalize()}{range_words}")
+    return Chart(chart, f"Sensor {shortened(visible(name), 60)}", ((upper,), (_spectrum(result, name),)), caption, height=2.6)
+
+
+def _range(result: Result, name: str) -> tuple[str, tuple[Level, ...]]:
+    """Return the part of the title that states the range of a sensor's accelerometer, and lines at its ends if the signal comes near."""
+    signal = result.signals[name]
+    given = {one["name"]: one.get("accelerometer", {}).get("range") for one in result.case.get("sensors", ())}
+    if (end := given.get(name)) is None:
+        return "", ()
+    scale = multiple(signal.sensor.unit, signal.largest)
+    words = f" (range ±{digits(end / scale.size, 3)} {scale.unit}"
+    if largest(signal.value) < _NEAR * end:  # drawn to the range, the signal would be too small to read
+        return f"{words}, beyond the axes)", ()
+    return f"{words})", (Level(-end, "range", "mark line"), Level(end, "range", "mark line"))
+
+
+def _spectrum(result: Result, name: str) -> Panel:
+    signal = result.signals[name]
+    found = amplitude_spectrum(signal.value[first_response(result, name)], signal.sensor.rate)
+    most = largest(found.amplitude[1:])
+    modes = np.array(result.frequencies("plate"))
+    modes = modes[modes < 0.5 * signal.sensor.rate]
+    shown = min(0.5 * signal.sensor.rate, 1.25 * float(modes.max(initial=0.0)) or np.inf)
+    frequency = Axis("Frequency", "Hz", range=(0.0, shown if np.isfinite(shown) else np.nan))
+    amplitude = Axis("Amplitude", signal.sensor.unit, log=True, range=(most * 10.0**-_DECADES, 3.0 * most) if most > 0.0 else None)
+    line = Line(found.frequency[1:], np.maximum(found.amplitude[1:], 1e-12 * most + 1e-300), role="detail")
+    return Panel(frequency, amplitude, (line, Rug(modes, "modes")), "Amplitude spectrum after the first touch")

@@ -1,0 +1,195 @@
+"""The set-up of a drop: a dimensioned sketch, and what bodies, law and sensors are, in words."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from vibroimpact.charts.axis import Axis
+from vibroimpact.charts.chart import Chart, Panel
+from vibroimpact.charts.marks import Arrow, Label, Line, Mark, Outline
+from vibroimpact.contact.law import unit_of
+from vibroimpact.contact.registry import contact_laws
+from vibroimpact.results.result import Result
+from vibroimpact.runs.chart_data import touch_height
+from vibroimpact.runs.deflection_chart import sensor_marks
+from vibroimpact.runs.supports import Extent, plate_extent, support_outlines, support_words, supports_from_the_side
+from vibroimpact.shown import shortened, visible
+from vibroimpact.units.display import digits, multiple
+
+_TURN = np.linspace(0.0, 2.0 * np.pi, 61)
+_THIN = 0.015
+"""Drawn thickness of a plate whose thickness is not known, relative to its longer side."""
+_USUAL_RADIUS = 0.025
+"""Drawn radius of a sphere whose radius is not known [m]."""
+
+
+def setup_chart(result: Result) -> Chart:
+    """Return a dimensioned sketch of the set-up: from the side, and from above where the plate has a size.
+
+    Parameters
+    ----------
+    result : Result
+        The result; without a case only what it holds itself is drawn.
+    """
+    extent = plate_extent(result)
+    panels = [_from_the_side(result, extent)] + ([_from_above(result, extent)] if extent else [])
+    caption = "To scale but for the height of the drop"
+    caption += " and the depth of the supports." if extent else "."
+    return Chart("setup", "Set-up", (tuple(panels),), caption, height=2.9)
+
+
+def _radius(result: Result) -> float:
+    """Return the radius of the sphere as it is drawn [m]; of a body made in Python the height of its centre at first touch."""
+    given = result.case.get("sphere", {}).get("radius")
+    radius = float(given) if given is not None else touch_height(result)
+    return radius if np.isfinite(radius) and radius > 0.0 else _USUAL_RADIUS
+
+
+def _contact_point(result: Result) -> tuple[float, float]:
+    """Return where on the plate the sphere falls [m]."""
+    if result.deflection is not None:  # of a mesh that was brought the case may give a named set
+        return float(result.deflection.contact[0]), float(result.deflection.contact[1])
+    x, y = result.case.get("drop", {}).get("position", (0.0, 0.0))
+    return float(x), float(y)
+
+
+def _from_the_side(result: Result, extent: Extent | None) -> Panel:
+    radius, below = _radius(result), result.case.get("plate", {}).get("radius")
+    if below is not None:
+        marks, half, at = _sphere_below(result, float(below)), max(float(below), 2.0 * radius), 0.0
+    else:
+        at = _contact_point(result)[0]
+        around = extent or Extent((at - 5.0 * radius, at + 5.0 * radius), (0.0, 0.0), 1.2 * radius)
+        marks, half = _plate(result, around, dimensioned=extent is not None), 0.5 * (around.x[1] - around.x[0])
+    high = max(3.4 * radius, 0.42 * half)
+    marks += [
+        Line(np.array([at, at]), np.array([0.0, high - radius]), role="dotted"),
+        Outline(at + radius * np.cos(_TURN), high + radius * np.sin(_TURN), role="ball"),
+        Label(at - radius, high, f"radius {_given(radius, 'm')}", "right"),
+    ]
+    beside = at + 1.8 * radius + 0.02 * half
+    marks += _dimension((beside, 0.0), (beside, high), _drop_words(result), "left")
+    return Panel(Axis("x", "m"), Axis("z", "m"), tuple(marks), "From the side", picture=True)
+
+
+def _sphere_below(result: Result, radius: float) -> list[Mark]:
+    """Return the sphere in the plate's place, on what holds it."""
+    marks: list[Mark] = [Outline(radius * np.cos(_TURN), radius * np.sin(_TURN) - radius)]
+    marks.append(Label(radius, -radius, f"radius {_given(radius, 'm')}", "left"))
+    if result.case["plate"].get("supports") != "free":
+        ground, deep = np.array([-0.6, 0.6, 0.6, -0.6]) * radius, np.array([2.0, 2.0, 2.25, 2.25]) * radius
+        marks.insert(0, Outline(ground, -deep, role="support"))
+    return marks
+
+
+def _plate(result: Result, extent: Extent, *, dimensioned: bool) -> list[Mark]:
+    known = bool(np.isfinite(extent.thickness))
+    (left, right), thickness = extent.x, extent.thickness if known else _THIN * extent.longer
+    marks: list[Mark] = [Outline(np.array([left, right, right, left]), np.array([0.0, 0.0, -thickness, -thickness]))]
+    marks += supports_from_the_side(result, extent, thickness)
+    if dimensioned:
+        outlines = [mark for mark in marks if isinstance(mark, Outline)]
+        low, beside = min(float(one.y.min()) for one in outlines) - 0.04 * (right - left), max(float(one.x.max()) for one in outlines)
+        marks += _dimension((left, low), (right, low), _given(right - left, "m"), "below")
+        marks += [Label(beside, -0.5 * thickness, f"{_given(thickness, 'm')} thick", "left")] if known else []
+    return marks
+
+
+def _drop_words(result: Result) -> str:
+    start = float(result.history["position_m"][0])
+    if start <= touch_height(result):  # a run that begins at first touch
+        return f"arrives at {_given(float(result.impacts['approach_speed_m_s'][0]), 'm/s')}"
+    below = "lower sphere" if result.case.get("plate", {}).get("radius") is not None else "plate"
+    return f"{_given(start, 'm')} above the {below}"
+
+
+def _from_above(result: Result, extent: Extent) -> Panel:
+    (left, right), (front, back), radius, (x, y) = extent.x, extent.y, _radius(result), _contact_point(result)
+    marks: list[Mark] = [Outline(np.array([left, right, right, left]), np.array([front, front, back, back]))]
+    marks += [Outline(*outline, name="support", role="held") for outline in support_outlines(result)]
+    marks.append(Outline(x + radius * np.cos(_TURN), y + radius * np.sin(_TURN), role="ball"))
+    low, beside = min(front, y - radius) - 0.07 * (back - front), max(right, x + radius) + 0.05 * (right - left)
+    marks += _dimension((left, low), (right, low), _given(right - left, "m"), "below")
+    marks += _dimension((beside, front), (beside, back), _given(back - front, "m"), "left")
+    return Panel(Axis("x", "m"), Axis("y", "m"), (*marks, *sensor_marks(result)), "From above", picture=True)
+
+
+def _dimension(start: tuple[float, float], end: tuple[float, float], words: str, anchor: str) -> list[Mark]:
+    middle = 0.5 * (start[0] + end[0]), 0.5 * (start[1] + end[1])
+    return [Arrow(start, end, both=True), Label(*middle, words, anchor)]
+
+
+def _given(value: float, unit: str) -> str:
+    """Return a value [SI] as somebody gave it, without zeros at its end."""
+    best = multiple(unit, value)
+    shown = digits(value / best.size, 6)
+    plain = shown.rstrip("0").rstrip(".") if "." in shown and "\u00b7" not in shown else shown
+    return f"{plain}\u00a0{best.unit}".rstrip("\u00a0")
+
+
+def setup_rows(result: Result) -> list[tuple[str, str]]:
+    """Return what bodies, drop, law and sensors are: name and words of each; empty without a case.
+
+    Examples
+    --------
+    >>> import vibroimpact as vi
+    >>> from vibroimpact.results.result import result_of
+    >>> rows = setup_rows(result_of(vi.simulate(vi.load_case("paper:type1-theory"))))
+    >>> [words.replace(chr(160), " ") for name, words in rows][2]
+    '4 m above the plate, gravity 9.8 m/s²'
+    """
+    case = result.case
+    if not case:
+        return []
+    below = "Plate" if case["plate"].get("radius") is None else "Lower sphere"
+    rows = [("Sphere", _body_words(case["sphere"])), (below, f"{_body_words(case['plate'])}, {support_words(result)}")]
+    rows.append(("Drop", f"{_drop_words(result)}, gravity {_given(float(case['drop'].get('gravity', 0.0)), 'm/s2')}"))
+    rows.append(("Contact law", _law_words(case["contact"])))
+    for one in case.get("sensors", ()):
+        words = f"{one['quantity']} at {_place(one['position'])}, {_given(float(one['rate']), 'Hz')}"
+        rows.append((f"Sensor {shortened(visible(one['name']), 60)}", words))
+    return rows
+
+
+def _body_words(body: Mapping[str, Any]) -> str:
+    words = [str(body.get("model", "rigid"))]
+    if body.get("radius") is not None:
+        words.append(f"radius {_given(float(body['radius']), 'm')}")
+    if body.get("size"):
+        words.append(" \u00d7 ".join(_given(float(side), "m") for side in body["size"]))
+    material = body.get("material")
+    if isinstance(material, Mapping):
+        name = f"{shortened(visible(material['name']), 60)}: " if material.get("name") else ""
+        stiff = f"E {_given(float(material['youngs_modulus']), 'Pa')}, \u03bd {_given(float(material['poissons_ratio']), '')}"
+        words.append(f"{name}{stiff}, {_given(float(material['density']), 'kg/m^3')}")
+    elif material is not None:
+        words.append(f"material {material}")
+    if body.get("modes"):
+        words.append(f"{body['modes']} modes")
+    return ", ".join(words)
+
+
+def _law_words(contact: Mapping[str, Any]) -> str:
+    """Return a law with its parameters in their units; of a law that is not installed here they are not known."""
+    name, law = str(contact["law"]), contact_laws().get(contact["law"])
+    if law is None:
+        return shortened(visible(name), 60)
+    found = []
+    for key, item in law.__dataclass_fields__.items():
+        value = contact.get(key)
+        if value is None or (item.metadata.get("memory") and not np.any(value)):
+            continue
+        unit = unit_of(item, contact.get("exponent", 1))
+        numbers = [_given(float(one), unit) for one in (value if isinstance(value, Sequence) else [value])]
+        found.append(f"{key.replace('_', ' ')} {', '.join(numbers)}")
+    return f"{name}: {', '.join(found)}" if found else name
+
+
+def _place(position: Any) -> str:
+    if isinstance(position, str):
+        return shortened(visible(position), 60)
+    best = multiple("m", position)
+    return f"({', '.join(_given(float(part) / best.size, '') for part in position)})\u00a0{best.unit}"

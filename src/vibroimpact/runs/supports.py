@@ -1,0 +1,200 @@
+"""How a plate is held: its extent, and its supports from above, from the side and in words."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Mapping
+from itertools import product
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from vibroimpact.arrays import Floats
+from vibroimpact.charts.marks import Line, Mark, Outline
+from vibroimpact.resolved_case import ResolvedCase
+from vibroimpact.results.result import Result
+from vibroimpact.shown import shortened, visible
+
+_EDGES = ("x-min", "x-max", "y-min", "y-max")
+_TURN = np.linspace(0.0, 2.0 * np.pi, 25)
+_THIN = 0.012
+"""Size of what stands for a point or an edge, relative to the longer side of the plate."""
+_DEPTH = 0.07
+"""Drawn depth of a support, relative to the length of the plate; columns may be this many times deeper."""
+_MOST_DEEP = 4.0
+
+
+class Extent(NamedTuple):
+    """Extent of a plate [m]: the smallest and the largest x and y, and the thickness, NaN where it is not known."""
+
+    x: tuple[float, float]
+    y: tuple[float, float]
+    thickness: float
+
+    @property
+    def longer(self) -> float:
+        """The longer side [m]."""
+        return max(self.x[1] - self.x[0], self.y[1] - self.y[0])
+
+
+def plate_extent(result: Result) -> Extent | None:
+    """Return the extent of the plate: of its case, or of its mesh if that was brought; None if it has none."""
+    plate, deflection = result.case.get("plate", {}), result.deflection
+    size = [float(side) for side in plate.get("size", ())]
+    thickness = size[2] if size else math.nan
+    if deflection is not None and ("file" in plate.get("mesh", {}) or not size):
+        (left, right), (front, back) = ((float(side[0]), float(side[-1])) for side in (deflection.x, deflection.y))
+        return Extent((left, right), (front, back), thickness)
+    return Extent((-0.5 * size[0], 0.5 * size[0]), (-0.5 * size[1], 0.5 * size[1]), thickness) if size else None
+
+
+def single_supports(case: ResolvedCase) -> list[Mapping[str, Any]]:
+    """Return the supports of a case one by one: of types patch, bar, edge, point, spring and set.
+
+    Examples
+    --------
+    >>> [one["edge"] for one in single_supports({"plate": {"supports": "clamped"}})]
+    ['x-min', 'x-max', 'y-min', 'y-max']
+    >>> four = {"type": "patches", "spacing": [0.4, 0.2], "radius": 0.01}
+    >>> single_supports({"plate": {"supports": [four]}})[0]
+    {'type': 'patch', 'spacing': [0.4, 0.2], 'radius': 0.01, 'position': (-0.2, -0.1)}
+    """
+    given = case.get("plate", {}).get("supports", ())
+    if isinstance(given, str):
+        return [] if given == "free" else [{"type": "edge", "edge": edge, "condition": given} for edge in _EDGES]
+    found: list[Mapping[str, Any]] = []
+    for one in given:
+        if "spacing" in one:  # four of them, at the corners of a rectangle
+            across, up = (0.5 * float(side) for side in one["spacing"])
+            kind = {"patches": "patch", "bars": "bar"}[one["type"]]
+            found += [{**one, "type": kind, "position": (x * across, y * up)} for x, y in product((-1.0, 1.0), repeat=2)]
+        else:
+            found.append(one)
+    return found
+
+
+def support_outlines(result: Result) -> list[tuple[Floats, Floats]]:
+    """Return the outlines of the supports seen from above as x and y [m]; edges are narrow strips, sets of nodes are left out."""
+    extent = plate_extent(result)
+    if extent is None:
+        return []
+    found = [_outline(one, extent) for one in single_supports(result.case)]
+    return [outline for outline in found if outline is not None]
+
+
+def _outline(one: Mapping[str, Any], extent: Extent) -> tuple[Floats, Floats] | None:
+    small = _THIN * extent.longer
+    if one["type"] == "edge":
+        return _strip(one["edge"], extent, small)
+    if "position" not in one:
+        return None
+    x, y = (float(part) for part in one["position"])
+    if one.get("size"):
+        across, up = (0.5 * float(side) for side in one["size"])
+        return x + across * np.array([-1.0, 1.0, 1.0, -1.0]), y + up * np.array([-1.0, -1.0, 1.0, 1.0])
+    radius = float(one.get("radius") or small)
+    return x + radius * np.cos(_TURN), y + radius * np.sin(_TURN)
+
+
+def _strip(edge: str, extent: Extent, wide: float) -> tuple[Floats, Floats]:
+    """Return a narrow strip along an edge of the plate, such as "x-min"."""
+    side, end = edge.split("-")
+    across, along = (extent.x, extent.y) if side == "x" else (extent.y, extent.x)
+    at, inner = (across[0], across[0] + wide) if end == "min" else (across[1], across[1] - wide)
+    first, second = np.array([at, inner, inner, at]), np.array([along[0], along[0], along[1], along[1]])
+    return (first, second) if side == "x" else (second, first)
+
+
+def supports_from_the_side(result: Result, extent: Extent, thickness: float) -> list[Mark]:
+    """Return the supports as they are seen along y: what is fixed is hatched. A rigid plate lies on what is fixed.
+
+    Parameters
+    ----------
+    result : Result
+        The result.
+    extent : Extent
+        Extent of the plate.
+    thickness : float
+        Thickness as it is drawn [m].
+    """
+    deep, wide = _DEPTH * (extent.x[1] - extent.x[0]), _THIN * extent.longer
+    if result.case.get("plate", {}).get("model") == "rigid":
+        return [_block(*extent.x, -thickness, -thickness - deep)]
+    found: dict[tuple[Any, ...], list[Mark]] = {}  # of those behind each other one is seen
+    for one in single_supports(result.case):
+        outline = _outline(one, extent)
+        if outline is None:
+            continue
+        low, high = float(outline[0].min()), float(outline[0].max())
+        key = one["type"], one.get("condition"), round(low, 9), round(high, 9)
+        found.setdefault(key, _from_the_side(one, (low, high), thickness, (deep, wide)))
+    # the widest, which may be the support of a whole edge, lie behind the others
+    return [mark for _, marks in sorted(found.items(), key=lambda item: item[0][2] - item[0][3]) for mark in marks]
+
+
+def _from_the_side(one: Mapping[str, Any], across: tuple[float, float], thickness: float, sizes: tuple[float, float]) -> list[Mark]:
+    (low, high), (deep, wide), below, middle = across, sizes, -thickness, 0.5 * (across[0] + across[1])
+    if one["type"] == "edge" and high - low > 2.0 * wide:  # along the plate, in front and behind
+        return [_block(low, high, below, below - 0.5 * deep, "held")]
+    if one["type"] == "edge" and one["condition"] == "clamped":
+        outside = (low - deep, low) if one["edge"] == "x-min" else (high, high + deep)
+        return [_block(*outside, 0.5 * deep, below - 0.5 * deep)]
+    if one["type"] in ("edge", "point"):  # a knife
+        side, down = np.array([0.0, 0.5, -0.5]), np.array([0.0, 1.0, 1.0])
+        return [Outline(middle + deep * side, below - deep * down, role="support")]
+    if one["type"] == "spring":
+        turns = np.array([0.0, 0.0, 1.0, -1.0, 1.0, -1.0, 0.0, 0.0])
+        heights = below - deep * np.array([0.0, 0.15, 0.25, 0.42, 0.58, 0.75, 0.85, 1.0])
+        ground = _block(middle - 0.5 * deep, middle + 0.5 * deep, below - deep, below - 1.3 * deep)
+        return [Line(middle + 0.25 * deep * turns, heights), ground]
+    if one["type"] == "bar":
+        foot = below - min(float(one["length"]), _MOST_DEEP * deep)
+        return [_block(low, high, below, foot, "body"), _block(low - 0.3 * deep, high + 0.3 * deep, foot, foot - 0.3 * deep)]
+    return [_block(low, high, below, below - deep)]
+
+
+def _block(left: float, right: float, top: float, bottom: float, role: str = "support") -> Outline:
+    return Outline(np.array([left, right, right, left]), np.array([top, top, bottom, bottom]), role=role)
+
+
+def support_words(result: Result) -> str:
+    """Return in words how the plate is held.
+
+    Examples
+    --------
+    >>> empty = Result({"plate": {"model": "elastic", "supports": "clamped"}}, {}, {}, {}, "")
+    >>> support_words(empty)
+    'clamped along all edges'
+    """
+    plate = result.case.get("plate", {})
+    given = plate.get("supports")
+    if given == "free":
+        return "free"
+    if plate.get("model", "rigid") == "rigid":
+        return "held fixed"
+    if isinstance(given, str):
+        return f"{given.replace('-', ' ')} along all edges"
+    singles = single_supports(result.case)
+    counts = Counter(_kind(one) for one in singles if one["type"] in _PLURALS)
+    words = [f"{count} {plural}" if count > 1 else kind for (kind, plural), count in counts.items()]
+    for condition in dict.fromkeys(one["condition"] for one in singles if one["type"] == "edge"):
+        edges = [one["edge"] for one in singles if one.get("condition") == condition]
+        words.append(f"{condition.replace('-', ' ')} at {', '.join(edges)}")
+    words += [f"held at its set {shortened(visible(one['name']), 40)}" for one in singles if one["type"] == "set"]
+    return "; ".join(words)
+
+
+_PLURALS = {
+    "patch": ("rigid patch", "rigid patches"),
+    "bar": ("elastic column", "elastic columns"),
+    "spring": ("spring", "springs"),
+    "point": ("point", "points"),
+}
+
+
+def _kind(one: Mapping[str, Any]) -> tuple[str, str]:
+    """Return what a support is called, one and several of them."""
+    single, several = _PLURALS[one["type"]]
+    along = f" held along {', '.join(one['directions'])}" if one["type"] == "point" else ""
+    return single + along, several + along

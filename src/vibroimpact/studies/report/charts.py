@@ -1,0 +1,88 @@
+"""The charts of a study, chosen by its design and number of axes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from vibroimpact.charts.chart import Chart
+from vibroimpact.studies.report.axes import StudyAxis, study_axes
+from vibroimpact.studies.report.curves import MOST_LINES, impact_curves, level_curves
+from vibroimpact.studies.report.drops import drawn_groups
+from vibroimpact.studies.report.histograms import FEWEST, inputs_chart, outputs_chart
+from vibroimpact.studies.report.maps import maps_chart
+from vibroimpact.studies.report.outputs import Output, drawn_outputs, independent_drops, study_outputs
+from vibroimpact.studies.report.over_axes import MOST_AXES, over_axes_chart
+from vibroimpact.studies.report.restitution import restitution_chart
+from vibroimpact.studies.report.sensitivity import Sensitivity, sensitivity_of
+from vibroimpact.studies.report.sensitivity_chart import sensitivity_chart
+from vibroimpact.studies.report.signals import signal_charts
+from vibroimpact.studies.study import Study
+
+_MOST_RESULTS = 6  # of a chart of the sensitivity
+
+
+def study_charts(study: Study, outputs: list[Output] | None = None, found: Sensitivity | None = None) -> list[Chart]:
+    """Return the charts of a study in the order of its report.
+
+    Parameters
+    ----------
+    study : Study
+        The completed study.
+    outputs : list of Output, optional
+        Its results, where they are known already.
+    found : Sensitivity, optional
+        Their sensitivity to the keys, where it is known already.
+
+    Returns
+    -------
+    list of Chart
+        `curves` or `maps` of a grid; `inputs` and `outputs` of drawn points; of many keys one by the name of each result; `restitution`,
+        `sensitivity`, and one per sensor whose signals were kept. Left out is what has nothing to show.
+    """
+    if outputs is None:
+        outputs = study_outputs(study)
+        found = sensitivity_of(study, [one for one in outputs if one.is_informative])
+    drawn = drawn_outputs(outputs)
+    axes = [axis for axis in study_axes(study) if (len(axis.values) > 1 if study.is_grid else axis.varies)]
+    charts: list[Chart | None] = []
+    if drawn and axes:
+        charts += _of_grid(study, axes, drawn, found) if study.is_grid else _of_samples(study, axes, drawn)
+    charts.append(restitution_chart(study))
+    if found is not None:
+        charts.append(sensitivity_chart(study, found, drawn[:_MOST_RESULTS]))
+    return [*(chart for chart in charts if chart is not None), *signal_charts(study)]
+
+
+def _of_grid(study: Study, axes: list[StudyAxis], drawn: list[Output], found: Sensitivity | None) -> Iterator[Chart]:
+    if len(axes) == 1:
+        yield impact_curves(study, axes[0], drawn)
+        return
+    first, second = _two_axes(axes, drawn, found)
+    # lines for names rather than numbers, and for the fewer levels
+    each = min((first, second), key=lambda axis: (len(axis.values) > MOST_LINES, axis.numeric, len(axis.values)))
+    if len(each.values) <= MOST_LINES:
+        yield level_curves(study, axes, drawn, second if each is first else first, each)
+    else:
+        yield maps_chart(study, axes, drawn, first, second)
+    if len(axes) > 2:
+        groups = drawn_groups(study, axes, drawn)
+        yield from (over_axes_chart(study, axes, output, groups) for output in drawn)
+
+
+def _of_samples(study: Study, axes: list[StudyAxis], drawn: list[Output]) -> Iterator[Chart]:
+    if independent_drops(study) >= FEWEST and study.design != "zip":
+        yield inputs_chart(study, axes[:MOST_AXES])
+        yield outputs_chart(study, drawn)
+    groups = drawn_groups(study, axes, drawn)
+    yield from (over_axes_chart(study, axes, output, groups) for output in drawn)
+
+
+def _two_axes(axes: list[StudyAxis], drawn: list[Output], found: Sensitivity | None) -> tuple[StudyAxis, StudyAxis]:
+    """Return the two axes of the largest effect on the first result if known, else the first two."""
+    strength = None if found is None else found.strength.get(drawn[0].name)
+    if len(axes) == 2 or strength is None:
+        return axes[0], axes[1]
+    first, second = sorted(np.argsort(np.nan_to_num(strength), kind="stable")[-2:].tolist())
+    return axes[first], axes[second]

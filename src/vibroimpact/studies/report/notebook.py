@@ -1,0 +1,75 @@
+"""What a notebook shows of a study: a chart by its name, and a short table."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from markupsafe import Markup
+
+from vibroimpact.charts.notebook import plotly_figure
+from vibroimpact.errors import InputError, did_you_mean
+from vibroimpact.shown import shown, visible
+from vibroimpact.studies.report.axes import study_axes
+from vibroimpact.studies.report.charts import study_charts
+from vibroimpact.studies.report.outputs import study_outputs
+from vibroimpact.studies.report.tables import axes_table, counts_sentence, percentiles_table
+from vibroimpact.studies.study import Study
+
+if TYPE_CHECKING:
+    import plotly.graph_objects as go
+
+_RESULTS, _KEYS = 8, 20
+
+
+def plot_study(study: Study, name: str = "") -> go.Figure:
+    """Return a chart of a study as a figure of plotly, for notebooks and scripts.
+
+    Parameters
+    ----------
+    study : Study
+        The completed study.
+    name : str
+        Name of the chart, such as "maps", "restitution" or "sensitivity"; by default the first chart of the report.
+
+    Returns
+    -------
+    plotly.graph_objects.Figure
+        The figure; values are in the multiples of units that its axes name.
+
+    Raises
+    ------
+    InputError
+        If the study has no such chart.
+    """
+    charts = {chart.name: chart for chart in study_charts(study)}
+    if not charts:
+        raise InputError("this study has no charts, as no result varies")
+    if name and name not in charts:
+        raise InputError(f"there is no chart {shown(name)} of this study; there are {', '.join(charts)}.{did_you_mean(str(name), charts)}")
+    return plotly_figure(charts[name or next(iter(charts))])
+
+
+def study_html(study: Study) -> str:
+    """Return a short summary of a study as a piece of HTML without scripts: name, drops, swept keys and how the results spread.
+
+    Parameters
+    ----------
+    study : Study
+        The completed study.
+    """
+    head = Markup("<p><strong>{}</strong><br>{}</p>").format(visible(study.name), counts_sentence(study))
+    axes = [list(row) for row in axes_table(study, study_axes(study))]
+    keys = _table(["Key", "", "Values"], axes[:_KEYS])
+    results = _table(*percentiles_table(study_outputs(study, _RESULTS)))
+    return str(Markup("\n").join([head, keys, results]))
+
+
+def _table(headers: list[str], rows: list[list[str]]) -> Markup:
+    if not rows:
+        return Markup("")
+    lines = Markup("").join(Markup("<tr>{}</tr>").format(_cells("td", row)) for row in rows)
+    return Markup("<table><thead><tr>{}</tr></thead><tbody>{}</tbody></table>").format(_cells("th", headers), lines)
+
+
+def _cells(kind: str, texts: list[str]) -> Markup:
+    return Markup("").join(Markup("<{0}>{1}</{0}>").format(kind, visible(text)) for text in texts)

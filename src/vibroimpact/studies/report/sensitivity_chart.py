@@ -1,0 +1,84 @@
+"""Chart of the sensitivity of the results to the swept keys."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from vibroimpact.arrays import Indices
+from vibroimpact.charts.axis import Axis
+from vibroimpact.charts.chart import Chart, Panel
+from vibroimpact.charts.marks import Bars, Level, Mark
+from vibroimpact.shown import shortened, visible
+from vibroimpact.studies.report.axes import study_axes
+from vibroimpact.studies.report.labels import keys_told
+from vibroimpact.studies.report.outputs import Output
+from vibroimpact.studies.report.panels import in_rows
+from vibroimpact.studies.report.scales import sentence
+from vibroimpact.studies.report.sensitivity import RANGES, RANKS, SOBOL, Sensitivity
+from vibroimpact.studies.study import Study
+
+_MOST_KEYS = 15
+_LETTERS = 34  # letters of a key beside the bars
+_LABELS = {SOBOL: ("Part of the variance", ""), RANKS: ("Rank correlation", ""), RANGES: ("From the middle", "%")}
+_WORDS = {
+    SOBOL: "Sobol's indices: the part of the variance that a key makes alone, and in all; the thin lines are intervals of 95 %.",
+    RANKS: "Spearman's rank correlation of each result with each key.",
+    RANGES: "How far each result moves along one key, the others at their middle level. Each panel has its own scale.",
+}
+
+
+def sensitivity_chart(study: Study, found: Sensitivity, outputs: list[Output]) -> Chart | None:
+    """Return the chart of indices, correlations or ranges, one panel per result; None with fewer than two keys or no result.
+
+    Parameters
+    ----------
+    study : Study
+        The study.
+    found : Sensitivity
+        Its sensitivities.
+    outputs : list of Output
+        The results to draw.
+    """
+    shown = [one for one in outputs if one.name in found.rows]
+    if not shown or len(found.keys) < 2:
+        return None
+    # sort the keys by their effect summed over all results, the largest at the top
+    order = np.argsort(np.nansum([found.strength[one.name] for one in shown], axis=0), kind="stable")[-_MOST_KEYS:]
+    axes = {axis.key: axis for axis in study_axes(study)}
+    keys = [axes[found.keys[key]] for key in order]
+    names = [shortened(visible(sentence(axis.words)), _LETTERS) for axis in keys]
+    panels, common = [], Axis(*_LABELS[found.way], range=(-1.05, 1.05) if found.way == RANKS else None)
+    up = Axis(names=tuple(names))
+    for output in shown:
+        across = Axis(*_LABELS[RANGES]) if found.way == RANGES else common  # ranges may differ widely between results
+        marks = (*_bars(found, output, order), Level(0.0, role="main", upright=True))
+        panels.append(Panel(across, up, marks, shortened(visible(output.short), 40)))
+    caption = f"{_WORDS[found.way]} {keys_told(keys[::-1])}"
+    return Chart("sensitivity", "What matters", in_rows(panels), caption, 0.7 + 0.28 * len(order))
+
+
+def _bars(found: Sensitivity, output: Output, order: Indices) -> tuple[Mark, ...]:
+    """Return the bars of one result."""
+    row, places = found.rows[output.name], np.arange(float(len(order)))
+    if found.way == SOBOL:
+        sides = ((0.18, "first_order", "alone (first order)", "detail"), (-0.18, "total", "in all (total)", "pale"))
+        return tuple(
+            Bars(
+                places + side,
+                row[name][order],
+                label,
+                role,
+                0.34,
+                lying=True,
+                low=row[f"{name}_low"][order],
+                high=row[f"{name}_high"][order],
+            )
+            for side, name, label, role in sides
+        )
+    if found.way == RANKS:
+        return (Bars(places, np.nan_to_num(row["rank_correlation"][order]), lying=True),)
+    middle = row["at_the_middle"][order]
+    moved = [np.nan_to_num(row[name][order] - middle) for name in ("lowest", "highest")]
+    # a result that is zero at the middle has no relative range
+    low, high = (100.0 * np.divide(one, np.abs(middle), out=np.zeros(len(order)), where=middle != 0.0) for one in moved)
+    return Bars(places, high, "up to the highest", "detail", lying=True), Bars(places, low, "down to the lowest", "lower", lying=True)
