@@ -67,6 +67,10 @@ class PlaneRule:
         From values at the nodes to values at evenly spaced y.
     barycentric : array, shape (N, 1)
         Barycentric weights of the nodes.
+    barycentric_to_end : array, shape (N + 1, 1)
+        The same of the nodes and 1, for integrals.
+    end : array, shape (N,)
+        From values at the nodes to the value at 1.
     """
 
     segments: int
@@ -87,6 +91,8 @@ class PlaneRule:
     coefficients: Floats
     dense: Floats
     barycentric: Floats
+    barycentric_to_end: Floats
+    end: Floats
 
     def split(self, values: Floats) -> Floats:
         """Return values at all nodes (S N, B) as an array by segments (S, N, B)."""
@@ -118,17 +124,34 @@ class PlaneRule:
 
     def weights_at(self, y: Floats) -> Floats:
         """Return the weights of barycentric interpolation from the nodes of a segment to y (B,): (N, B)."""
-        distance = y - self.nodes
-        distance[distance == 0.0] = 1e-300  # at a node the interpolant is its value
-        weights = self.barycentric / distance
-        weights /= weights.sum(axis=0)
-        return np.asarray(weights)
+        return _weights(self.barycentric, y - self.nodes)
+
+    def weights_to_end(self, y: Floats) -> Floats:
+        """Return the weights of barycentric interpolation from the nodes of a segment and its end to y (T,): (N + 1, T)."""
+        return _weights(self.barycentric_to_end, y - np.append(self.nodes, 1.0)[:, None])
+
+    def with_end(self, values: Floats) -> Floats:
+        """Return values at the nodes and the ends of the segments (N + 1, S), of values at the nodes of one drop (S N, 1)."""
+        by_segment = self.split(values)[..., 0].T
+        return np.concatenate([by_segment, (self.end @ by_segment)[None]])
+
+    def integrals_of(self, values: Floats) -> Floats:
+        """Return the integrals from the deep end of each segment to its nodes and end (N + 1, S), of values of one drop (S N, 1)."""
+        return np.asarray(self.integral @ self.split(values)[..., 0].T)
 
     def shape_at(self, segment: Indices, y: Floats) -> tuple[Floats, Floats]:
         """Return s and f at y (B,) of segments (B,)."""
         inside = 1.0 - y * y if self.turns else 1.0 - y
         touching = (segment == self.segments - 1) & self.touches
         return np.where(touching, inside**self.root, inside), np.where((segment == 0) & self.turns, y, 1.0)
+
+
+def _weights(barycentric: Floats, distance: Floats) -> Floats:
+    """Return the weights of barycentric interpolation at distances from the points (N, T)."""
+    distance[distance == 0.0] = 1e-300  # at a point the interpolant is its value
+    weights = barycentric / distance
+    weights /= weights.sum(axis=0)
+    return np.asarray(weights)
 
 
 @cache
@@ -165,6 +188,7 @@ def plane_rule(number: int, root: int, segments: int = 1, *, turns: bool = True,
         shape.append(inside**power)
         slope.append(-falls / factor[-1] * power * inside ** (power - 1))
         mean.append(np.ascontiguousarray(integrals(times_y) / (ends * ends)[:, None]) if turning else integral)
+    barycentric = 1.0 / np.prod(4.0 * (nodes[:, None] - nodes) + np.eye(number), axis=1)  # the factor 4 avoids underflow
     return PlaneRule(
         segments,
         number,
@@ -183,5 +207,7 @@ def plane_rule(number: int, root: int, segments: int = 1, *, turns: bool = True,
         np.stack([slopes(1), slopes(2)]),
         coefficients,
         legendre.legvander(np.linspace(-1.0, 1.0, DENSE), number - 1) @ coefficients,
-        (1.0 / np.prod(4.0 * (nodes[:, None] - nodes) + np.eye(number), axis=1))[:, None],  # the factor 4 avoids underflow
+        barycentric[:, None],
+        np.append(barycentric / (4.0 * (nodes - 1.0)), 1.0 / np.prod(4.0 * (1.0 - nodes)))[:, None],
+        coefficients.sum(axis=0),
     )

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.polynomial import Legendre
 
-from vibroimpact.arrays import Bools, Floats
+from vibroimpact.arrays import Bools, Floats, Indices
 from vibroimpact.dynamics.encounter import Encounter
 from vibroimpact.dynamics.phase_plane.phase import PlanePath, PlanePhase
 
@@ -37,17 +37,10 @@ class PlaneMotion(PlanePath):
         """Return the indentation at its start, of one drop [m]."""
         return float(self.levels[-1 if self.name == "compression" else 0, 0])
 
-    def elapsed(self) -> list[Legendre]:
-        """Return the time between the deep end of each segment and y, of one drop [s]."""
-        return [pace.integ(lbnd=0.0) for pace in self._series(-self.rule.indentation_slope(self.levels) / np.sqrt(self.squares))]
-
     def grid(self) -> Floats:
         """Return times since the start at which the motion of one drop is well resolved [s]."""
-        y, begin, times = np.linspace(0.0, 1.0, 61), 0.0, []
-        for elapsed in self.elapsed():
-            times.append(begin + elapsed(y))
-            begin = float(times[-1][-1])
-        since = np.unique(np.concatenate(times))
+        elapsed = self.rule.integrals_of(self._pace)
+        since = np.unique(self.rule.weights_to_end(np.linspace(0.0, 1.0, 61)).T @ elapsed + _sums_before(elapsed[-1]))
         if self.name == "compression":
             since = since[-1] - since[::-1]
         return np.append(since[since < self.duration[0]], self.duration[0])
@@ -58,49 +51,60 @@ class PlaneMotion(PlanePath):
         sign, slope = 1.0 if compressing else -1.0, rule.indentation_slope(levels)
         velocity = sign * rule.factor * np.sqrt(self.squares)
         static, dissipative = encounter.law.forces(rule.indentations(levels), velocity, encounter.approach_speed)
-        losses = [power.integ(lbnd=0.0) for power in self._series(-sign * dissipative * rule.factor * slope)]
-        rates = self._series(2.0 * (encounter.gravity - (static + dissipative) / encounter.mass) * slope)
-        squares = self._series(self.squares)
+        losses = rule.integrals_of(-sign * dissipative * rule.factor * slope)
+        squares = rule.integrals_of(2.0 * (encounter.gravity - (static + dissipative) / encounter.mass) * slope)
+        squares += np.concatenate([self.begun, self.ends[:-1, 0]])
+        if rule.turns:  # in the first segment w is y^2 u
+            squares[:, 0] = rule.with_end(self.squares)[:, 0]
 
-        elapsed = self.elapsed()
-        lengths = np.array([float(one(1.0)) for one in elapsed])
-        ends = np.cumsum(lengths)
+        elapsed = rule.integrals_of(self._pace)
+        ends = np.cumsum(elapsed[-1])
         since = np.clip(ends[-1] - time if compressing else time, 0.0, ends[-1])  # time from or to the deep end
-        segments = np.minimum(np.searchsorted(ends, since), rule.segments - 1)
-        delta, square, lost = (np.empty_like(since) for _ in range(3))
-        spent = 0.0
+        segment = np.minimum(np.searchsorted(ends, since), rule.segments - 1)
+        y = self._place(elapsed, since - _sums_before(elapsed[-1])[segment], segment)
+        shape, factor = rule.shape_at(segment, y)
+        delta = levels[segment + 1, 0] + (levels[segment, 0] - levels[segment + 1, 0]) * shape
+        square, lost = self._values([squares, losses], segment, y)
+        rate = factor * np.sqrt(np.maximum(square, 0.0))
+        lost = lost + _sums_before(losses[-1])[segment]
+        return (delta, rate, losses[-1].sum() - lost) if compressing else (delta, -rate, lost)
+
+    @property
+    def _pace(self) -> Floats:
+        """dt/dy at the nodes [s] (S N, 1)."""
+        return np.asarray(-self.rule.indentation_slope(self.levels) / np.sqrt(self.squares))
+
+    def _values(self, series: Sequence[Floats], segment: Indices, y: Floats) -> list[Floats]:
+        """Return the values at y (T,), each in a segment (T,), of quantities at the nodes and ends of the segments (N + 1, S)."""
+        weights = self.rule.weights_to_end(y)
+        return [np.asarray((weights * one[:, segment]).sum(axis=0)) for one in series]
+
+    def _place(self, elapsed: Floats, since: Floats, segment: Indices) -> Floats:
+        """Return y at times since the deep end of a segment [s], by Newton's method in a root of the remaining time."""
+        rule, grid = self.rule, np.linspace(0.0, 1.0, 65)
+        roots = np.ones(rule.segments, dtype=int)
+        if rule.touches:
+            roots[-1] = rule.root
+        length, root = elapsed[-1, segment], roots[segment]
+
+        def remaining(time: Floats) -> Floats:
+            return np.asarray(np.maximum(length - time, 0.0) ** (1.0 / root))
+
+        wanted, y = remaining(since), np.empty_like(since)
+        left = np.maximum(elapsed[-1] - rule.weights_to_end(grid).T @ elapsed, 0.0) ** (1.0 / roots)
         for number in range(rule.segments):
-            here, touches = segments == number, rule.touches and number == rule.segments - 1
-            y = _place(elapsed[number], since[here] - (ends[number] - lengths[number]), rule.root if touches else 1)
-            shape, factor = rule.shape_at(np.full(len(y), number), y)
-            delta[here] = levels[number + 1, 0] + (levels[number, 0] - levels[number + 1, 0]) * shape
-            if number == 0 and rule.turns:
-                square[here] = factor**2 * squares[0](y)
-            else:
-                begun = self.ends[number - 1, 0] if number else self.begun[0]
-                square[here] = begun + rates[number].integ(lbnd=0.0)(y)
-            lost[here] = spent + losses[number](y)
-            spent += float(losses[number](1.0))
-        rate = np.sqrt(np.maximum(square, 0.0))
-        return (delta, rate, spent - lost) if compressing else (delta, -rate, lost)
-
-    def _series(self, values: Floats) -> list[Legendre]:
-        """Return the interpolating polynomials in y of values at the nodes (S N, 1), one per segment."""
-        return [Legendre(self.rule.coefficients @ part[:, 0], domain=[0.0, 1.0]) for part in self.rule.split(values)]
+            here = segment == number
+            y[here] = np.interp(-wanted[here], -left[:, number], grid)
+        pace = rule.with_end(self._pace)
+        for _ in range(_STEPS):
+            time, slope = self._values([elapsed, pace], segment, y)
+            now = remaining(time)
+            with np.errstate(all="ignore"):
+                step = (now - wanted) * root * now ** (root - 1) / slope
+            y = np.clip(y + np.where(np.isfinite(step), step, 0.0), 0.0, 1.0)
+        return np.where(wanted > 0.0, y, 1.0)
 
 
-def _place(elapsed: Legendre, since: Floats, root: int) -> Floats:
-    """Return y in a segment at times since its deep end [s], by Newton's method in a root of the remaining time."""
-    pace, length, grid = elapsed.deriv(), float(elapsed(1.0)), np.linspace(0.0, 1.0, 65)
-
-    def remaining(time: Floats) -> Floats:
-        return np.maximum(length - time, 0.0) ** (1.0 / root)
-
-    wanted = remaining(since)
-    y = np.interp(-wanted, -remaining(elapsed(grid)), grid)
-    for _ in range(_STEPS):
-        now = remaining(elapsed(y))
-        with np.errstate(all="ignore"):
-            step = (now - wanted) * root * now ** (root - 1) / pace(y)
-        y = np.clip(y + np.where(np.isfinite(step), step, 0.0), 0.0, 1.0)
-    return np.where(wanted > 0.0, y, 1.0)
+def _sums_before(values: Floats) -> Floats:
+    """Return the sum of the values before each one."""
+    return np.concatenate([[0.0], np.cumsum(values)[:-1]])

@@ -80,10 +80,11 @@ def timeline_of(legs: Sequence[Leg], rest: RestSegment | None, lost: Floats) -> 
     for number, leg in enumerate(legs):
         firsts.append(len(starts))
         so_far = before[number]
-        for segment in segments_of(leg):
+        segments = segments_of(leg)
+        for segment in segments:
             starts.append(segment.start)
             spent.append(so_far)
-            if isinstance(segment, (ContactSegment, GlideSegment)):
+            if isinstance(segment, (ContactSegment, GlideSegment)) and segment is not segments[-1]:
                 so_far = so_far + [float(part[0]) for part in segment.at(segment.duration)[-2:]]
     if rest is not None:
         firsts.append(len(starts))
