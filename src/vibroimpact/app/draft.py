@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
+
 from vibroimpact.dynamics.response import Response
+from vibroimpact.dynamics.sensors.recording import Signal
 from vibroimpact.results.deflection import deflection_of
 from vibroimpact.results.peaks import peaks_of
 from vibroimpact.results.result import Result, result_of
@@ -10,15 +13,34 @@ from vibroimpact.results.result import Result, result_of
 TOLERANCE = 1e-6
 """Tolerance of a draft: its numbers are right to six digits."""
 
-_POINTS = 2000
+_POINTS = 1000
 """Points of its history, about."""
 
 _FRAMES = 36
 """Frames of the plate in motion."""
 
 
+class _Signals(Mapping[str, Signal]):
+    """The signals of a response, computed when one is looked at."""
+
+    def __init__(self, response: Response) -> None:
+        self._response, self._names = response, [sensor.name for sensor in response.problem.sensors]
+        self._found: dict[str, Signal] = {}
+
+    def __getitem__(self, name: str) -> Signal:
+        if not self._found:
+            self._found = self._response.signals()
+        return self._found[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._names)
+
+    def __len__(self) -> int:
+        return len(self._names)
+
+
 def draft_of(response: Response) -> Result:
-    """Return the result of a response to one drop whose bodies vibrate, with a history of about 2000 points.
+    """Return the result of a response to one drop whose bodies vibrate, with a history of about 1000 points.
 
     For rigid bodies it is the result itself, which takes no time.
     """
@@ -34,6 +56,6 @@ def draft_of(response: Response) -> Result:
         deformation=dict(response.problem.facts),
         truncation=response.truncation,
         peaks=peaks_of(response, history),
-        signals=response.signals() if response.problem.sensors else {},
+        signals=_Signals(response),
         deflection=deflection_of(response, _FRAMES),
     )

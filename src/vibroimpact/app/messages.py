@@ -21,7 +21,7 @@ It is told documents with arrays, as `vibroimpact.charts.pack` writes them, each
 `progress`
     what is being computed, and the part that is done;
 `state`
-    charts, the plate in motion, tables, doubts, the resolved case, the case as TOML; in full detail also the signals;
+    charts, the plate in motion, tables, the resolved case, the case as TOML; in full detail also doubts and signals;
 `files`
     each a name, a kind and a text;
 `fault`

@@ -12,7 +12,7 @@ from typing import Any
 from vibroimpact.app.limits import without_other_work
 from vibroimpact.app.messages import Message, read_message
 from vibroimpact.app.offer import offer
-from vibroimpact.app.state import MODES, State, state_of
+from vibroimpact.app.state import MODES, State, Tell, state_of
 from vibroimpact.cases.reader import load_table, parse_case, shipped_cases
 from vibroimpact.charts.pack import pack
 from vibroimpact.errors import ComputationError, InputError, did_you_mean
@@ -113,10 +113,10 @@ class Session:
 
         try:
             told[0] = loop.time() + _SECONDS_BETWEEN  # what is done at once needs no progress
-            state = await asyncio.to_thread(state_of, message.content["case"], detail, tell, message.content.get("charts"))
+            state, answer = await asyncio.to_thread(_answered, message, tell)
             if detail == "full":
                 self._last = state
-            await self._send(await asyncio.to_thread(pack, {"type": "state", "number": number, **state.document}))
+            await self._send(answer)
         except GivenUp:
             await self._tell("cancelled", number, {})
         except (InputError, ComputationError) as error:
@@ -132,6 +132,12 @@ class Session:
 
     async def _fault(self, number: int, error: InputError | ComputationError) -> None:
         await self._tell("fault", number, {"lines": str(error).split("\n")})
+
+
+def _answered(message: Message, tell: Tell) -> tuple[State, bytes]:
+    """Return the state of the case of a message, and the answer that brings it."""
+    state = state_of(message.content["case"], message.content["detail"], tell, message.content.get("charts"))
+    return state, pack({"type": "state", "number": message.number, **state.document})
 
 
 def _same_bodies(first: Message, second: Message) -> bool:

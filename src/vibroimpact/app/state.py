@@ -79,7 +79,7 @@ def _document(result: Result, table: dict[str, Any], detail: Detail, looked_at: 
     return {
         "name": result.name,
         "status": result.status,
-        "doubts": result.doubts,
+        "doubts": result.doubts if detail == "full" else [],
         "impacts": {"headers": impacts.headers, "rows": [*impacts.head, *impacts.tail], "left_out": impacts.left_out},
         "ledger": {"unit": unit, "rows": [[row.title, row.energy, row.part] for row in ledger]},
         "charts": [plotly_chart(makers[name]()) for name in names if looked_at is None or name in looked_at],

@@ -49,8 +49,6 @@ class Rule:
         `integral` applied twice.
     coefficients : array, shape (N, N)
         From values at the nodes to Legendre coefficients in 2 x - 1.
-    antiderivative : array, shape (N + 1, N)
-        From values at the nodes to Legendre coefficients of their integral from 0.
     barycentric : array, shape (N + 1,)
         Barycentric weights of the points 0 and the nodes.
     dense : array, shape (65, N)
@@ -65,7 +63,6 @@ class Rule:
     integral: Floats
     integral_twice: Floats
     coefficients: Floats
-    antiderivative: Floats
     barycentric: Floats
     dense: Floats
 
@@ -103,12 +100,11 @@ class Rule:
 
     def integrate(self, x: Floats, values: Floats) -> Floats:
         """Return the time integral per unit duration of nodal `values` (N,) or (N, B), from 0 to x (T,)."""
-        slope = self.slope if values.ndim == 1 else self.slope[:, None]
-        return np.asarray(legendre.legvander(2.0 * x - 1.0, len(self.nodes)) @ (self.antiderivative @ (slope * values)))
+        return self.integral_to(x) @ values
 
     def integral_to(self, x: Floats) -> Floats:
         """Return the matrix of `integrate`: from nodal values to time integrals per unit duration up to x (T,), of shape (T, N)."""
-        return np.asarray(legendre.legvander(2.0 * x - 1.0, len(self.nodes)) @ self.antiderivative * self.slope)
+        return np.asarray(self.weights(x)[1:].T @ self.integral)  # a polynomial that is zero at 0
 
     def weights(self, x: Floats) -> Floats:
         """Return the barycentric weights of the values at 0 and at the nodes, for interpolation at x of any shape: (N + 1, ...)."""
@@ -144,7 +140,7 @@ def collocation_rule(number: int, time_map: Map, root: int = 2) -> Rule:
     >>> bool(abs((rule.integral @ (3 * rule.time**2))[-1] - 1) < 1e-14)
     True
     """
-    nodes, coefficients, antiderivative, integral = _radau(number)
+    nodes, coefficients, integral = _radau(number)
     if time_map == "touch":
         time, slope = nodes**root, root * nodes ** (root - 1)
     elif time_map == "release":
@@ -155,12 +151,12 @@ def collocation_rule(number: int, time_map: Map, root: int = 2) -> Rule:
     points = np.concatenate([[0.0], nodes])
     barycentric = 1.0 / np.prod(4.0 * (points[:, None] - points) + np.eye(number + 1), axis=1)  # the factor 4 avoids underflow
     dense = legendre.legvander(np.linspace(-1.0, 1.0, 65), number - 1) @ coefficients
-    return Rule(time_map, root, nodes, time, slope, integral, integral @ integral, coefficients, antiderivative, barycentric, dense)
+    return Rule(time_map, root, nodes, time, slope, integral, integral @ integral, coefficients, barycentric, dense)
 
 
 @cache
-def _radau(number: int) -> tuple[Floats, Floats, Floats, Floats]:
-    """Return the nodes on (0, 1], and the matrices to Legendre coefficients, to those of the integral, and of integration at the nodes."""
+def _radau(number: int) -> tuple[Floats, Floats, Floats]:
+    """Return the nodes on (0, 1], and the matrices to Legendre coefficients and of integration at the nodes."""
     polynomial = np.zeros(number + 1)
     polynomial[number], polynomial[number - 1] = 1.0, -1.0  # P_N - P_{N-1} vanishes at the right-hand nodes
     z = np.sort(legendre.legroots(polynomial).real)
@@ -169,5 +165,5 @@ def _radau(number: int) -> tuple[Floats, Floats, Floats, Floats]:
         z -= legendre.legval(z, polynomial) / legendre.legval(z, derivative)
     z[-1] = 1.0
     coefficients: Floats = np.asarray(np.linalg.inv(legendre.legvander(z, number - 1)), dtype=np.float64)
-    antiderivative: Floats = np.asarray(legendre.legint(coefficients, lbnd=-1, axis=0), dtype=np.float64) / 2.0
-    return (z + 1.0) / 2.0, coefficients, antiderivative, legendre.legvander(z, number) @ antiderivative
+    antiderivative = legendre.legint(coefficients, lbnd=-1, axis=0) / 2.0
+    return (z + 1.0) / 2.0, coefficients, np.asarray(legendre.legvander(z, number) @ antiderivative)

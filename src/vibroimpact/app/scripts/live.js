@@ -75,8 +75,8 @@
   const post = () => {
     if (!state.wanted) return;
     const { table, detail } = state.wanted;
-    const near = detail === "draft" && state.last ? { charts: [...charts].filter(([, chart]) => chart.near).map(([name]) => name) } : {};
-    const number = ++state.number, message = { type: "case", number, case: table, detail, ...near };
+    const seen = detail === "draft" && state.last ? { charts: [...charts].filter(([, chart]) => chart.seen).map(([name]) => name) } : {};
+    const number = ++state.number, message = { type: "case", number, case: table, detail, ...seen };
     if (isTooLong(message)) state.wanted = null;
     else if (send(message)) { state.asked = number; state.detail = detail; state.tables.set(number, table); state.wanted = null; }
   };
@@ -184,11 +184,11 @@
     state.table = table;
     document.title = `${message.name} – vibroimpact`;
     $("status").textContent = message.status;
-    showDoubts(message.doubts);
+    if (message.detail === "full") showDoubts(message.doubts);
     showImpacts(message.impacts);
     showLedger(message.ledger);
     showCharts(message.charts, message.names);
-    showScene(message.scene);
+    showScene(message.scene, message.detail === "draft");
     showSound(message);
     if (settled || (current && !controls.moving)) controls.show(table, message.case);
     showShipped();
@@ -283,8 +283,8 @@
     for (const one of charts.values()) { one.update({ view: number < 0 || number >= one.chart.views.length ? null : number, ranges: {} }); headline(one); }
   };
 
-  const showScene = (given) => {
-    if (scene) { scene.setScene(given); return; }
+  const showScene = (given, waiting) => {
+    if (scene) { scene.waiting = waiting; scene.setScene(given); return; }
     scene = vibroimpact.controlScene($("scene"), given, (x, y, settled) => {
       const plate = controls.resolved.plate;
       if (plate.radius !== undefined || !plate.size) return;

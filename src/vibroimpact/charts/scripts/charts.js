@@ -331,17 +331,20 @@
       this.clicked = clicked;
       this.chart = chart;
       this.state = { view: null, ranges: {}, key: "", ghost: null, paper: null };
-      this.near = false;
+      this.near = false;        // to the window, so that it is drawn
+      this.seen = false;        // within it, by more than a strip
       this.stale = true;
       this.drawing = null;
-      const seen = new IntersectionObserver((entries) => {
+      const seen = new IntersectionObserver((entries) => { this.seen = entries[entries.length - 1].isIntersecting; }, { rootMargin: "-60px" });
+      const near = new IntersectionObserver((entries) => {
         this.near = entries[entries.length - 1].isIntersecting;
         if (this.near && this.stale) this.draw();
       }, { rootMargin: "200px" });
       const sized = new ResizeObserver(() => { if (Math.abs(element.clientWidth - (this.width || 0)) > 1) this.update(); });
       seen.observe(element);
+      near.observe(element);
       sized.observe(element);
-      this.end = () => { seen.disconnect(); sized.disconnect(); };
+      this.end = () => { seen.disconnect(); near.disconnect(); sized.disconnect(); };
     }
 
     // Show another chart, or another state of it; it is drawn when it can be seen, or at once for paper, whose width the state gives.

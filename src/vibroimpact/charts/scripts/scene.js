@@ -41,6 +41,7 @@
       this.speed = 1;
       this.frame = 0;
       this.playing = false;
+      this.waiting = false;     // it stands, though it is playing
       this.setScene(scene);
       this.listen();
       new ResizeObserver(() => this.draw()).observe(canvas);
@@ -103,7 +104,8 @@
       let before = performance.now();
       const next = (now) => {
         if (!this.playing) return;
-        if (now - before >= BETWEEN) {
+        if (this.waiting) before = now;
+        else if (now - before >= BETWEEN) {
           this.seek((this.frame + this.speed * (now - before) / MILLISECONDS) % (this.frames - 1));
           before = now;
         }
