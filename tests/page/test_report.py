@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 import vibroimpact as vi
+from access import assert_headings_are_in_order, faint_texts, names_of_controls, scrolls_sideways
 from plotted import (
     COLUMNS,
     ROWS,
@@ -333,6 +334,22 @@ def test_theme_follows_the_system_and_the_button(new_page: MakePage, report: Any
         assert grounds[0][1] != grounds[1][1]
 
 
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_everything_has_a_name_and_stands_out(scheme: str, new_page: MakePage, report: Any) -> None:
+    _, path = report("type3")
+    page = new_page(color_scheme=scheme)
+    open_report(page, path)
+    page.select_option("#view", "0")
+    for name in names(page):
+        show(page, name)
+    found = names_of_controls(page)
+    assert len(found) > 40
+    assert [role for role, name in found if not name] == []
+    assert_headings_are_in_order(page)
+    assert page.locator("tr.chosen").count() == 1
+    assert faint_texts(page) == []
+
+
 def test_scene_plays_pauses_scrubs_and_turns(page: Page, report: Any) -> None:
     _, path = report("type3")
     open_report(page, path)
@@ -490,7 +507,7 @@ def test_the_page_does_not_scroll_sideways(case: str, size: tuple[int, int], new
     open_report(page, path)
     for name in names(page):
         show(page, name)
-    assert page.evaluate("() => document.documentElement.scrollWidth <= document.documentElement.clientWidth")
+    assert not scrolls_sideways(page)
 
 
 def test_charts_follow_the_width_of_the_window(page: Page, report: Any) -> None:
