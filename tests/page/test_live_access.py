@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from access import assert_headings_are_in_order, faint_texts, names_of_controls, scrolls_sideways
-from live_page import ELASTIC, RIGID, open_live, row, settle, shown, type_value
+from live_page import ELASTIC, LONG_NAMES, RIGID, open_live, row, settle, shown, type_value
 from plotted import names, show, until
 
 if TYPE_CHECKING:
@@ -179,11 +179,11 @@ def test_text_stands_out_and_headings_are_in_order(scheme: str, new_page: MakePa
     assert_headings_are_in_order(page)
 
 
-@pytest.mark.parametrize("case", ["rigid", "elastic"])
+@pytest.mark.parametrize("case", ["rigid", "elastic", "long names"])
 @pytest.mark.parametrize("size", [(390, 844), (1024, 768), (1440, 900)])
 def test_the_page_does_not_scroll_sideways(case: str, size: tuple[int, int], new_page: MakePage, server: Server) -> None:
     page = new_page(*size)
-    open_live(page, server, {"rigid": RIGID, "elastic": ELASTIC}[case])
+    open_live(page, server, {"rigid": RIGID, "elastic": ELASTIC, "long names": LONG_NAMES}[case])
     page.locator("#hold").click()
     type_value(page, "drop.height", 0.3)
     for name in names(page):

@@ -13,6 +13,7 @@ import pytest
 
 import vibroimpact as vi
 from access import assert_headings_are_in_order, faint_texts, names_of_controls, scrolls_sideways
+from live_page import LONG_NAMES
 from plotted import (
     COLUMNS,
     ROWS,
@@ -75,6 +76,7 @@ CASES: dict[str, Any] = {
             {"name": "'; drop $\\alpha$ \U0001f600", "position": [0, 0], "quantity": "velocity"},
         ],
     },
+    "long names": LONG_NAMES,
 }
 CHARTS = {
     "type1": ["setup", "position", "force", "velocity", "acceleration", "force_indentation", "energy"],
@@ -500,7 +502,7 @@ def test_on_paper_everything_is_there(new_page: MakePage, report: Any) -> None:
 
 
 @pytest.mark.parametrize("size", [(390, 844), (1024, 768), (1440, 900)])
-@pytest.mark.parametrize("case", ["type3", "hostile"])
+@pytest.mark.parametrize("case", ["type3", "hostile", "long names"])
 def test_the_page_does_not_scroll_sideways(case: str, size: tuple[int, int], new_page: MakePage, report: Any) -> None:
     _, path = report(case)
     page = new_page(*size)
