@@ -15,7 +15,7 @@ import vibroimpact
 
 PACKAGE = Path(vibroimpact.__file__).parent
 FLOORS = {  # top to bottom: what a floor is, its colour, its rooms and what they hold
-    "the command line": ("#e4e4e4", {"app": "the live page", "cli": "commands, help,\nexit status"}),
+    "commands and page": ("#e4e4e4", {"cli": "commands, help,\nexit status", "app": "the live page"}),
     "what people do": (
         "#a9c4dc",
         {
@@ -59,6 +59,9 @@ FLOORS = {  # top to bottom: what a floor is, its colour, its rooms and what the
         },
     ),
 }
+
+SHOWN = {room for _, rooms in FLOORS.values() for room in rooms}
+assert {place.parent.name for place in PACKAGE.glob("*/__init__.py")} <= SHOWN, "a room is not in the picture"
 
 
 def lines_of(room: str) -> int:

@@ -36,6 +36,11 @@ ELASTIC: dict[str, Any] = {
     "run": {"impacts": 2},
     "sensors": [{"name": "a1", "position": ["30 mm", "20 mm"], "rate": "20 kHz"}],
 }
+LONG_NAMES: dict[str, Any] = ELASTIC | {
+    "name": "AName" * 14,
+    "sensors": [{"name": "beside_the_third_bolt" + 39 * "_", "position": ["90 mm", "20 mm"], "rate": "20 kHz"}],
+}
+"""Names of which each is one long word."""
 PATCHES = {"type": "patches", "spacing": ["170 mm", "120 mm"], "radius": "8 mm"}
 """Supports that are costlier to compute."""
 

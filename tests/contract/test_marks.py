@@ -246,6 +246,28 @@ def test_a_long_line_keeps_its_peak_everywhere() -> None:
         assert not missing(at(5.0 * (200_001 // 3) / 200_000, 8.0), found)
 
 
+@pytest.mark.parametrize("every", [3, 7, 1000])
+def test_a_long_line_with_gaps_is_drawn_in_all_of_its_parts_and_not_across_its_gaps(every: int) -> None:
+    parts = 60_000 // every
+    number = np.arange(parts * every)
+    y = np.where(number % every == 0, np.nan, 1e3 * np.sin(number))
+    first = number[1::every]
+    wanted = np.concatenate([first, first + every - 2, [np.nanargmin(y), np.nanargmax(y)]])
+    whole = chart_of(Line(np.linspace(0.0, 5e-3, len(y)), y))
+    drawn = [max((line.get_xydata() for line in matplotlib_figure(whole).axes[0].lines), key=len)]
+    for figure in [in_python(whole)] + ([in_a_page(whole)] if NODE else []):
+        line = max(figure["data"], key=lambda trace: len(trace["x"]))
+        drawn.append(points_of_plotly({"data": [line], "layout": {}}))
+    for points in drawn:
+        kept = np.rint(points[:, 0] / 5.0 * (len(y) - 1)).astype(int)
+        there = np.isfinite(points[:, 1])
+        joined = there[1:] & there[:-1]
+        before, after = kept[:-1][joined], kept[1:][joined]
+        assert np.array_equal(before // every, after // every)
+        assert np.isin(wanted, np.concatenate([before, after])).all()
+        assert len(kept) < len(y) or every < 10  # or there is nothing to be left out
+
+
 @pytest.mark.skipif(NODE is None, reason="node is not there")
 def test_a_zoom_shows_the_points_that_the_whole_leaves_out() -> None:
     count = 200_001
@@ -268,6 +290,18 @@ def test_axes_of_names_ticks_and_whole_numbers() -> None:
     assert [label.get_text() for label in figure.axes[0].get_xticklabels()] == list(names)
     assert figure.axes[0].get_ylim()[0] == 0.0
     assert all(float(tick).is_integer() for tick in figure.axes[0].get_yticks())
+
+
+def test_the_pointer_tells_what_a_bar_is() -> None:
+    across, up = Axis("Part", "%"), Axis(names=("speed", ""))  # as names that have no room are left out
+    bars = Bars(np.array([0.2, 1.2]), np.array([3.0, 4.0]), "alone", lying=True, texts=("speed", "a < b"))
+    chart = Chart("a", "A", ((Panel(across, up, (bars, Bars(np.array([0.0, 1.0]), np.array([1.0, 2.0]), lying=True))),),))
+    for figure in [in_python(chart)] + ([in_a_page(chart)] if NODE else []):
+        named, nameless = figure["data"]
+        assert list(named["hovertext"]) == ["speed", "a &lt; b"]
+        assert named["hovertemplate"] == "%{hovertext}<br>%{x:.5~g} %"
+        assert nameless["hovertemplate"] == "%{y:.5~g} <br>%{x:.5~g} %<extra></extra>"
+        assert "text" not in named
 
 
 def test_a_legend_names_each_look_once() -> None:

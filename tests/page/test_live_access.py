@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from live_page import ELASTIC, RIGID, open_live, row, settle, shown, type_value
+from access import assert_headings_are_in_order, faint_texts, names_of_controls, scrolls_sideways
+from live_page import ELASTIC, LONG_NAMES, RIGID, open_live, row, settle, shown, type_value
 from plotted import names, show, until
 
 if TYPE_CHECKING:
@@ -106,18 +107,11 @@ def test_everything_is_changed_by_keyboard_alone(page: Page, server: Server) -> 
 
 def test_every_control_has_a_name(page: Page, server: Server) -> None:
     open_live(page, server, ELASTIC)
-    tree = page.context.new_cdp_session(page).send("Accessibility.getFullAXTree")["nodes"]
-    roles = {"slider", "spinbutton", "textbox", "combobox", "button", "link", "progressbar", "form", "alert", "table"}
-    unnamed, count = [], 0
-    for node in tree:
-        if node.get("ignored") or node["role"]["value"] not in roles:
-            continue
-        count += 1
-        if not node.get("name", {}).get("value", "").strip() and node["role"]["value"] not in ("alert", "table"):
-            unnamed.append(node)
-    assert count > 70
-    assert unnamed == []
-    assert page.evaluate("() => [...document.querySelectorAll('[role=img]')].every((one) => one.ariaLabel.length > 20)")
+    found = names_of_controls(page)
+    assert len(found) > 70
+    assert [role for role, name in found if not name] == []
+    assert all(len(name) > 20 for role, name in found if role == "img")
+    assert {("region", "Impacts"), ("region", "Energy at the end")} <= set(found)
     # a slider tells its value with the unit
     assert row(page, "sphere.radius").locator("input[type=range]").get_attribute("aria-valuetext") == "10 mm"
     labels = page.evaluate(
@@ -171,17 +165,30 @@ def test_light_and_dark(scheme: str, new_page: MakePage, server: Server) -> None
     assert looks() == after
 
 
-@pytest.mark.parametrize("case", ["rigid", "elastic"])
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_text_stands_out_and_headings_are_in_order(scheme: str, new_page: MakePage, server: Server) -> None:
+    page = new_page(color_scheme=scheme)
+    open_live(page, server, ELASTIC)
+    page.locator("#hold").click()
+    type_value(page, "contact.restitution", 7)
+    page.locator("#doubts summary").click()
+    for name in names(page):
+        show(page, name)
+    assert page.locator("tr.held, .fault-here, .unit, .headline, #doubts details p").count() > 10
+    assert faint_texts(page) == []
+    assert_headings_are_in_order(page)
+
+
+@pytest.mark.parametrize("case", ["rigid", "elastic", "long names"])
 @pytest.mark.parametrize("size", [(390, 844), (1024, 768), (1440, 900)])
 def test_the_page_does_not_scroll_sideways(case: str, size: tuple[int, int], new_page: MakePage, server: Server) -> None:
     page = new_page(*size)
-    open_live(page, server, {"rigid": RIGID, "elastic": ELASTIC}[case])
+    open_live(page, server, {"rigid": RIGID, "elastic": ELASTIC, "long names": LONG_NAMES}[case])
     page.locator("#hold").click()
     type_value(page, "drop.height", 0.3)
     for name in names(page):
         show(page, name)
-    inside = "() => document.documentElement.scrollWidth <= document.documentElement.clientWidth"
-    assert page.evaluate(inside)
+    assert not scrolls_sideways(page)
     # nor do the numbers in the fields get cut off
     cut = page.evaluate(
         """() => [...document.querySelectorAll("#controls input[type=number]")]
@@ -189,7 +196,7 @@ def test_the_page_does_not_scroll_sideways(case: str, size: tuple[int, int], new
     )
     assert cut == []
     type_value(page, "contact.restitution", 7)
-    assert page.evaluate(inside)
+    assert not scrolls_sideways(page)
 
 
 def test_touch_leaves_charts_to_scrolling(new_page: MakePage, server: Server) -> None:

@@ -12,6 +12,8 @@ import numpy as np
 import pytest
 
 import vibroimpact as vi
+from access import assert_headings_are_in_order, faint_texts, names_of_controls, scrolls_sideways
+from live_page import LONG_NAMES
 from plotted import (
     COLUMNS,
     ROWS,
@@ -74,6 +76,7 @@ CASES: dict[str, Any] = {
             {"name": "'; drop $\\alpha$ \U0001f600", "position": [0, 0], "quantity": "velocity"},
         ],
     },
+    "long names": LONG_NAMES,
 }
 CHARTS = {
     "type1": ["setup", "position", "force", "velocity", "acceleration", "force_indentation", "energy"],
@@ -333,6 +336,22 @@ def test_theme_follows_the_system_and_the_button(new_page: MakePage, report: Any
         assert grounds[0][1] != grounds[1][1]
 
 
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_everything_has_a_name_and_stands_out(scheme: str, new_page: MakePage, report: Any) -> None:
+    _, path = report("type3")
+    page = new_page(color_scheme=scheme)
+    open_report(page, path)
+    page.select_option("#view", "0")
+    for name in names(page):
+        show(page, name)
+    found = names_of_controls(page)
+    assert len(found) > 40
+    assert [role for role, name in found if not name] == []
+    assert_headings_are_in_order(page)
+    assert page.locator("tr.chosen").count() == 1
+    assert faint_texts(page) == []
+
+
 def test_scene_plays_pauses_scrubs_and_turns(page: Page, report: Any) -> None:
     _, path = report("type3")
     open_report(page, path)
@@ -483,14 +502,14 @@ def test_on_paper_everything_is_there(new_page: MakePage, report: Any) -> None:
 
 
 @pytest.mark.parametrize("size", [(390, 844), (1024, 768), (1440, 900)])
-@pytest.mark.parametrize("case", ["type3", "hostile"])
+@pytest.mark.parametrize("case", ["type3", "hostile", "long names"])
 def test_the_page_does_not_scroll_sideways(case: str, size: tuple[int, int], new_page: MakePage, report: Any) -> None:
     _, path = report(case)
     page = new_page(*size)
     open_report(page, path)
     for name in names(page):
         show(page, name)
-    assert page.evaluate("() => document.documentElement.scrollWidth <= document.documentElement.clientWidth")
+    assert not scrolls_sideways(page)
 
 
 def test_charts_follow_the_width_of_the_window(page: Page, report: Any) -> None:

@@ -32,8 +32,9 @@ def decimated(x: Floats, y: Floats, columns: int = COLUMNS) -> tuple[Floats, Flo
     there = np.flatnonzero(~gaps)
     kept = visible_points(len(there), lambda first, last: (x[there[first:last]], y[there[first:last]]), columns)
     shown = there if kept is None else there[kept]
-    if gaps.any():  # one point of each gap interrupts the line
-        shown = np.union1d(shown, np.flatnonzero(gaps & ~np.append(False, gaps[:-1])))
+    # both sides of the ends of each gap: it interrupts the line, and no part between two of them is a single point
+    ends = np.flatnonzero(np.diff(gaps))
+    shown = np.union1d(shown, np.concatenate([ends, ends + 1]))
     return x[shown], y[shown]
 
 

@@ -128,6 +128,8 @@ class Bars:
         Whether the bars are horizontal.
     low, high : array, optional
         Ends of the intervals of the values.
+    texts : tuple of str
+        What each of the bars is, such as its name on an axis of names; shown where the pointer is, in place of where the bar is.
     """
 
     places: Floats
@@ -139,6 +141,7 @@ class Bars:
     lying: bool = False
     low: Floats | None = None
     high: Floats | None = None
+    texts: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)

@@ -95,7 +95,7 @@ def _traces(one: dict[str, Any], frames: dict[str, dict[str, Any]]) -> list[dict
         above, below = (one["high"] - one["y"]) / y["size"], (one["y"] - one["low"]) / y["size"]
         kept["error_y"] = {"array": above, "arrayminus": below, "thickness": 1.0, "width": 3, "color": "@main"}
     if one.get("hoverinfo") != "skip" and "hovertemplate" not in one:
-        kept["hovertemplate"] = hover(x["unit"], y["unit"], "text" in one)
+        kept["hovertemplate"] = hover(x["unit"], y["unit"], "text" in one) + _name_of(one)
     return [{**kept, "x": _shown(across, x), "y": _shown(up, y)}]
 
 
@@ -108,6 +108,11 @@ def hover(across: str, up: str, texts: bool) -> str:
     '%{x:.7~g} ms<br>%{y:.5~g} kN'
     """
     return f"{'%{text}<br>' if texts else ''}%{{x:.7~g}} {across}<br>%{{y:.5~g}} {up}"
+
+
+def _name_of(one: dict[str, Any]) -> str:
+    """Return what takes the name of a trace away at the pointer where it has none: plotly would call it by its number."""
+    return "" if one.get("name") else "<extra></extra>"
 
 
 def _stack(one: dict[str, Any], x: dict[str, Any], y: dict[str, Any], common: dict[str, Any]) -> list[dict[str, Any]]:
@@ -133,6 +138,11 @@ def _bars(one: dict[str, Any], x: dict[str, Any], y: dict[str, Any], common: dic
     if "low" in one:
         error = {"array": (one["high"] - one["values"]) / across["size"], "arrayminus": (one["values"] - one["low"]) / across["size"]}
         bars["error_x" if one["lying"] else "error_y"] = {**error, "thickness": 1.0, "width": 3, "color": "@main"}
+    if "text" in one:
+        bars["hovertext"] = one["text"]  # as "text" it would be written on the bars
+    place, value = ("y", "x") if one["lying"] else ("x", "y")
+    what = "%{hovertext}" if "text" in one else f"%{{{place}:.5~g}} {along['unit']}"
+    bars["hovertemplate"] = f"{what}<br>%{{{value}:.5~g}} {across['unit']}" + _name_of(one)
     return {**bars, **common, "x": values if one["lying"] else places, "y": places if one["lying"] else values}
 
 

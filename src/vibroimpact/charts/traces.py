@@ -62,7 +62,7 @@ def bars_trace(bars: Bars) -> dict[str, Any]:
         drawn["base"] = bars.base
     if bars.low is not None and bars.high is not None:
         drawn |= {"low": bars.low, "high": bars.high}
-    return drawn
+    return drawn | _texts(bars.texts)
 
 
 def pen(role: str) -> dict[str, Any]:

@@ -51,23 +51,22 @@
     ? [0, x.length]
     : [Math.max(searched(x, range[0]) - 1, 0), Math.min(searched(x, range[1]) + 1, x.length)];
 
-  // Return the indices of the visible points of a line: the first, last, lowest and highest in each column.
+  // Return the indices of the visible points of a line: the first, last, lowest and highest in each column, of every part between NaN.
   const visible = (x, y, range) => {
     const [first, last] = slice(x, range);
     if (last - first <= 4 * COLUMNS || !isAscending(x)) return Array.from({ length: last - first }, (_, index) => first + index);
     const found = [];
     const start = x[first], step = (x[last - 1] - start) / COLUMNS;
+    const partOf = (index) => (Number.isNaN(y[index]) ? -1 : Math.min(Math.floor((x[index] - start) / step), COLUMNS - 1));
     let index = first;
     while (index < last) {
-      const column = Math.min(Math.floor((x[index] - start) / step), COLUMNS - 1);
-      const begin = index;
-      let low = index, high = index, gap = index;  // NaN interrupts a line
-      for (; index < last && (index === begin || Math.min(Math.floor((x[index] - start) / step), COLUMNS - 1) === column); index++) {
-        if (Number.isNaN(y[index])) { gap = index; continue; }
-        if (!(y[index] >= y[low])) low = index;
-        if (!(y[index] <= y[high])) high = index;
+      const part = partOf(index), begin = index;
+      let low = index, high = index;
+      for (index++; index < last && partOf(index) === part; index++) {
+        if (y[index] < y[low]) low = index;
+        if (y[index] > y[high]) high = index;
       }
-      const kept = [begin, low, high, gap, index - 1].sort((a, b) => a - b);
+      const kept = [begin, low, high, index - 1].sort((a, b) => a - b);
       for (const one of kept) if (found[found.length - 1] !== one) found.push(one);
     }
     return found;
@@ -88,7 +87,9 @@
     ? Float64Array.from(indices, (index) => (values[index] - frame.origin) / frame.size)
     : Float64Array.from(values, (value) => (value - frame.origin) / frame.size);
 
-  const hover = (x, y, texts) => `${texts ? "%{text}<br>" : ""}%{x:.7~g} ${x.unit}<br>%{y:.5~g} ${y.unit}`;
+  // What is written at the pointer. Plotly calls what has no name by its number, unless it is told to write nothing.
+  const nameOf = (trace) => (trace.name ? "" : "<extra></extra>");
+  const hover = (x, y, trace) => `${trace.text ? "%{text}<br>" : ""}%{x:.7~g} ${x.unit}<br>%{y:.5~g} ${y.unit}${nameOf(trace)}`;
   const COMMON = ["xaxis", "yaxis", "name", "showlegend", "legendgroup"];
   const common = (trace) => Object.fromEntries(COMMON.filter((key) => key in trace).map((key) => [key, trace[key]]));
 
@@ -115,7 +116,7 @@
         const reach = (a, b) => Float64Array.from(a, (value, index) => (value - b[index]) / y.size);
         kept.error_y = { array: reach(high, trace.y), arrayminus: reach(trace.y, low), thickness: 1, width: 3, color: "@main" };
       }
-      if (trace.hoverinfo !== "skip" && !trace.hovertemplate) kept.hovertemplate = hover(x, y, Boolean(trace.text));
+      if (trace.hoverinfo !== "skip" && !trace.hovertemplate) kept.hovertemplate = hover(x, y, trace);
       if (keys && keys[state.key]) Object.assign(kept, { showlegend: false, marker: { ...kept.marker, ...state.colouring.marker(keys[state.key]) } });
       return [kept];
     },
@@ -150,6 +151,10 @@
       bar.width = Float64Array.from(trace.widths, (value) => value / along.size);
       [bar.x, bar.y] = trace.lying ? [values, places] : [places, values];
       if (trace.base) bar.base = shown(trace.base, across);
+      if (trace.text) bar.hovertext = trace.text;  // as "text" it would be written on the bars
+      const [place, value] = trace.lying ? ["y", "x"] : ["x", "y"];
+      const what = trace.text ? "%{hovertext}" : `%{${place}:.5~g} ${along.unit}`;
+      bar.hovertemplate = `${what}<br>%{${value}:.5~g} ${across.unit}${nameOf(trace)}`;
       if (trace.low) {
         const reach = (a, b) => Float64Array.from(a, (value, index) => (value - b[index]) / across.size);
         const error = { array: reach(trace.high, trace.values), arrayminus: reach(trace.values, trace.low), thickness: 1, width: 3, color: "@main" };

@@ -248,14 +248,15 @@
         pen.lineWidth = 3;
         pen.strokeStyle = "rgba(255, 255, 255, 0.75)";
         const words = name.length > 24 ? `${name.slice(0, 22)}…` : name;
-        // names that would lie over each other stand below each other
-        let line = up - 3;
+        // a name for which there is no room beside its sensor stands above, and names that would lie over each other below each other
+        const beside = across + 8, left = Math.min(beside, this.canvas.clientWidth - pen.measureText(words).width - 2);
+        let line = left < beside ? up - 12 : up - 3;
         while (taken.some(([other, row]) => Math.abs(other - across) < 7 * words.length + 12 && Math.abs(row - line) < 13)) line += 13;
         taken.push([across, line]);
-        pen.strokeText(words, across + 8, line);
+        pen.strokeText(words, left, line);
         pen.lineWidth = 1;
         pen.fillStyle = "#1b1b1b";
-        pen.fillText(words, across + 8, line);
+        pen.fillText(words, left, line);
       }
     }
 
@@ -291,7 +292,7 @@
       place.setAttribute("aria-valuetext", words);
       clock.textContent = words;
     }, moved);
-    const show = () => { play.textContent = drawn.playing ? "Pause" : "Play"; play.setAttribute("aria-pressed", String(drawn.playing)); };
+    const show = () => { play.textContent = drawn.playing ? "Pause" : "Play"; };
     play.addEventListener("click", () => { if (drawn.playing) drawn.pause(); else drawn.play(); show(); });
     place.addEventListener("input", () => { drawn.pause(); show(); drawn.seek(Number(place.value) / 1000 * (drawn.frames - 1)); });
     speed.addEventListener("change", () => { drawn.speed = Number(speed.value); });

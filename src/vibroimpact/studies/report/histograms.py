@@ -8,6 +8,7 @@ from vibroimpact.arrays import Floats
 from vibroimpact.charts.axis import Axis
 from vibroimpact.charts.chart import Chart, Panel
 from vibroimpact.charts.marks import Bars, Level, Mark
+from vibroimpact.shown import shortened, visible
 from vibroimpact.studies.report.axes import StudyAxis
 from vibroimpact.studies.report.labels import keys_told
 from vibroimpact.studies.report.outputs import Output, independent_drops, independent_values
@@ -29,8 +30,9 @@ def inputs_chart(study: Study, axes: list[StudyAxis]) -> Chart:
         if axis.numeric:
             bars = _histogram(drawn, log=is_spread_by_factors(axis.values))
         else:
-            number = len(names_of(axis))
-            bars = Bars(np.arange(float(number)), np.bincount(drawn.astype(int), minlength=number).astype(float), role="pale")
+            names = tuple(shortened(visible(name), 60) for name in names_of(axis))
+            counts = np.bincount(drawn.astype(int), minlength=len(names)).astype(float)
+            bars = Bars(np.arange(float(len(names))), counts, role="pale", texts=names)
         panels.append(Panel(key_axis(axis), Axis("Drops", integer=True), (bars,)))
     caption = f"How often values were drawn{_of_what(study)}. {keys_told(axes)}"
     return Chart("inputs", "What was drawn", in_rows(panels), caption, HEIGHT)

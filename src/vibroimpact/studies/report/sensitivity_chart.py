@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 
 from vibroimpact.arrays import Indices
@@ -46,39 +48,31 @@ def sensitivity_chart(study: Study, found: Sensitivity, outputs: list[Output]) -
     order = np.argsort(np.nansum([found.strength[one.name] for one in shown], axis=0), kind="stable")[-_MOST_KEYS:]
     axes = {axis.key: axis for axis in study_axes(study)}
     keys = [axes[found.keys[key]] for key in order]
-    names = [shortened(visible(sentence(axis.words)), _LETTERS) for axis in keys]
+    names = tuple(shortened(visible(sentence(axis.words)), 60) for axis in keys)
     panels, common = [], Axis(*_LABELS[found.way], range=(-1.05, 1.05) if found.way == RANKS else None)
-    up = Axis(names=tuple(names))
+    up = Axis(names=tuple(shortened(name, _LETTERS) for name in names))
     for output in shown:
         across = Axis(*_LABELS[RANGES]) if found.way == RANGES else common  # ranges may differ widely between results
-        marks = (*_bars(found, output, order), Level(0.0, role="main", upright=True))
+        marks = (*_bars(found, output, order, names), Level(0.0, role="main", upright=True))
         panels.append(Panel(across, up, marks, shortened(visible(output.short), 40)))
     caption = f"{_WORDS[found.way]} {keys_told(keys[::-1])}"
     return Chart("sensitivity", "What matters", in_rows(panels), caption, 0.7 + 0.28 * len(order))
 
 
-def _bars(found: Sensitivity, output: Output, order: Indices) -> tuple[Mark, ...]:
-    """Return the bars of one result."""
+def _bars(found: Sensitivity, output: Output, order: Indices, names: tuple[str, ...]) -> tuple[Mark, ...]:
+    """Return the bars of one result, one for each of the named keys."""
+    lying = partial(Bars, lying=True, texts=names)
     row, places = found.rows[output.name], np.arange(float(len(order)))
     if found.way == SOBOL:
         sides = ((0.18, "first_order", "alone (first order)", "detail"), (-0.18, "total", "in all (total)", "pale"))
         return tuple(
-            Bars(
-                places + side,
-                row[name][order],
-                label,
-                role,
-                0.34,
-                lying=True,
-                low=row[f"{name}_low"][order],
-                high=row[f"{name}_high"][order],
-            )
+            lying(places + side, row[name][order], label, role, 0.34, low=row[f"{name}_low"][order], high=row[f"{name}_high"][order])
             for side, name, label, role in sides
         )
     if found.way == RANKS:
-        return (Bars(places, np.nan_to_num(row["rank_correlation"][order]), lying=True),)
+        return (lying(places, np.nan_to_num(row["rank_correlation"][order])),)
     middle = row["at_the_middle"][order]
     moved = [np.nan_to_num(row[name][order] - middle) for name in ("lowest", "highest")]
     # a result that is zero at the middle has no relative range
     low, high = (100.0 * np.divide(one, np.abs(middle), out=np.zeros(len(order)), where=middle != 0.0) for one in moved)
-    return Bars(places, high, "up to the highest", "detail", lying=True), Bars(places, low, "down to the lowest", "lower", lying=True)
+    return lying(places, high, "up to the highest", "detail"), lying(places, low, "down to the lowest", "lower")
