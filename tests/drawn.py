@@ -6,6 +6,7 @@ import json
 import re
 import shutil
 import subprocess
+from collections.abc import Sequence
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -29,27 +30,33 @@ _COMPLETE = """
 const fs = require("fs"), vm = require("vm");
 globalThis.performance ??= { now: () => 0 };
 for (const script of JSON.parse(process.argv[1])) vm.runInThisContext(fs.readFileSync(script, "utf8"));
-const block = fs.readFileSync(process.argv[2]);
-const { chart, palette, state } = vibroimpact.unpack(block.buffer.slice(block.byteOffset, block.byteOffset + block.length));
-vibroimpact.setPalette(palette);
 const plain = (key, value) => ArrayBuffer.isView(value) ? Array.from(value) : value;
-console.log(JSON.stringify(vibroimpact.complete(chart, state), plain));
+for (const file of process.argv.slice(2)) {
+  const block = fs.readFileSync(file);
+  const { chart, palette, state } = vibroimpact.unpack(block.buffer.slice(block.byteOffset, block.byteOffset + block.length));
+  vibroimpact.setPalette(palette);
+  console.log(JSON.stringify(vibroimpact.complete(chart, state), plain));
+}
 """
 
 
 def in_a_page(chart: Chart, **state: Any) -> dict[str, Any]:
     """Return the figure that the script of a page makes of a chart; needs node."""
+    return in_pages([chart], **state)[0]
+
+
+def in_pages(charts: Sequence[Chart], **state: Any) -> list[dict[str, Any]]:
+    """Return the figures that the script of a page makes of charts; needs node."""
     assert NODE is not None
-    document = {"chart": plotly_chart(chart), "palette": palette(), "state": {"view": None, "ranges": {}, "key": "", "width": 900, **state}}
+    state = {"view": None, "ranges": {}, "key": "", "width": 900, **state}
     scripts = [str(SCRIPTS / name) for name in ("arrays.js", "charts.js")]
     with TemporaryDirectory() as folder:
-        (Path(folder) / "block").write_bytes(pack(document))
-        command = [NODE, "-e", _COMPLETE, json.dumps(scripts), f"{folder}/block"]
-        done = subprocess.run(command, capture_output=True, text=True, check=False)
+        blocks = [Path(folder, f"block-{number}") for number in range(len(charts))]
+        for block, chart in zip(blocks, charts, strict=True):
+            block.write_bytes(pack({"chart": plotly_chart(chart), "palette": palette(), "state": state}))
+        done = subprocess.run([NODE, "-e", _COMPLETE, json.dumps(scripts), *blocks], capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
-    found = json.loads(done.stdout)
-    assert isinstance(found, dict)
-    return found
+    return [json.loads(line) for line in done.stdout.rstrip("\n").split("\n")]
 
 
 def in_python(chart: Chart) -> dict[str, Any]:

@@ -38,17 +38,16 @@ def commands(pages: list[Path]) -> list[str]:
     ]
 
 
-def deforms(command: str) -> bool:
-    """Are the bodies elastic? Their modes take longer than all that the other commands do."""
-    return any(case in command.split() for case in ("paper:type3", "elastic.toml"))
+def is_quick(command: str) -> bool:
+    """Modes of elastic bodies, and figures for print, take longer than all that the other commands do."""
+    return not {"paper:type3", "elastic.toml", "figures"} & set(command.split())
 
 
-# each command of a page is in one of these and no more
 @pytest.mark.parametrize(
     ("pages", "chosen"),
     [
-        pytest.param(PAGES[:1], lambda command: not deforms(command), id="README"),
-        pytest.param(PAGES[:1], deforms, id="README, elastic", marks=pytest.mark.slow),
+        pytest.param(PAGES[:1], is_quick, id="README, quick"),
+        pytest.param(PAGES[:1], lambda _: True, id="README", marks=pytest.mark.slow),
         pytest.param(PAGES[1:], lambda _: True, id="docs", marks=pytest.mark.slow),
     ],
 )
@@ -89,7 +88,11 @@ def test_readme_shows_what_the_demo_prints(variable: vi.Response) -> None:
         assert line in printed or " closure " in line  # which is rounding, and not the same everywhere
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+@pytest.mark.parametrize(
+    "page",
+    # of the pages on elastic bodies the other one computes modes too, and fewer
+    [pytest.param(page, id=page.name, marks=pytest.mark.slow if page.name == "elastic-drops.md" else ()) for page in PAGES],
+)
 def test_documented_python_runs(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     names: dict = {}
@@ -112,7 +115,7 @@ def test_links_lead_somewhere(page: Path) -> None:
         assert target.startswith("https://") or (page.parent / target).exists(), target
 
 
-LONG_EXAMPLES = {"a_nanometre", "tolerances"}  # the modes of a plate, and a study with its report
+LONG_EXAMPLES = {"a_nanometre", "tolerances", "charts_of_studies", "how_it_works"}  # modes of a plate, studies, many pictures
 
 
 @pytest.mark.parametrize(

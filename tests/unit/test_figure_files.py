@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import shutil
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -20,22 +21,35 @@ from vibroimpact.charts.files import save_charts
 from vibroimpact.charts.marks import Points
 from vibroimpact.cli import main
 from vibroimpact.report.page import replace_report_files
+from vibroimpact.results.result import result_of
+from vibroimpact.runs.figures import write_figures
 
 RIGID = {"setup", "position", "force", "velocity", "acceleration", "force_indentation", "energy"}
 ELASTIC = RIGID | {"sphere_energy", "plate_motion", "plate_energy", "deflection", "sensor_a_1"}
 
 
-@pytest.fixture(autouse=True)
-def small(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("vibroimpact.charts.files._DPI", 40)
-    monkeypatch.setattr("vibroimpact.results.deflection._FRAMES", 24)
+@pytest.fixture(autouse=True, scope="module")
+def small() -> Iterator[None]:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("vibroimpact.charts.files._DPI", 40)
+        patch.setattr("vibroimpact.results.deflection._FRAMES", 12)
+        yield
 
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     place = tmp_path_factory.mktemp("results") / "rigid"
-    vi.simulate(vi.read_case(plain_case())).save(place)
+    vi.simulate(vi.read_case(plain_case(run={"impacts": 2}))).save(place)
     return place
+
+
+@pytest.fixture(scope="module")
+def elsewhere(folder: Path, tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, list[float]]:
+    """The figures of the folder in all formats at another place, and how far they were while they were drawn."""
+    fractions: list[float] = []
+    place = tmp_path_factory.mktemp("elsewhere") / "deep" / "there"
+    assert vi.save_figures(folder, ["png", "svg", "pdf"], place, fractions.append) == place
+    return place, fractions
 
 
 def run(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], *arguments: object) -> tuple[int, str]:
@@ -50,7 +64,14 @@ def test_a_result_folder_has_none_unless_asked(folder: Path) -> None:
     assert not (folder / "figures").exists()
 
 
-def test_figures_of_a_folder(folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+def test_figures_of_a_folder(
+    folder: Path,
+    elsewhere: tuple[Path, list[float]],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    """They are the same byte for byte, wherever and in whichever order of formats they are drawn."""
     copy = Path(shutil.copytree(folder, tmp_path / "copy"))
     before = {path.name: path.read_bytes() for path in copy.iterdir()}
     assert run(monkeypatch, capsys, "figures", copy) == (0, f"wrote {copy / 'figures'}\n")
@@ -68,12 +89,8 @@ def test_figures_of_a_folder(folder: Path, tmp_path: Path, monkeypatch: pytest.M
             assert picture.width == 8 * 40
         assert (copy / "figures" / f"{name}.svg").read_text().lstrip().startswith("<?xml")
         assert (copy / "figures" / f"{name}.pdf").read_bytes().startswith(b"%PDF")
-
-
-def test_figures_are_the_same_byte_for_byte(folder: Path, tmp_path: Path) -> None:
-    first, second = (vi.save_figures(folder, ["png", "svg", "pdf"], tmp_path / name) for name in ("a", "b"))
-    for path in first.iterdir():
-        assert path.read_bytes() == (second / path.name).read_bytes(), path.name
+    for name in names:
+        assert (copy / "figures" / name).read_bytes() == (elsewhere[0] / name).read_bytes(), name
 
 
 def test_formats_do_not_depend_on_each_other(tmp_path: Path) -> None:
@@ -87,18 +104,16 @@ def test_formats_do_not_depend_on_each_other(tmp_path: Path) -> None:
         assert path.read_bytes() == (tmp_path / "b" / path.name).read_bytes(), path.name
 
 
-def test_figures_may_go_elsewhere(folder: Path, tmp_path: Path) -> None:
-    fractions: list[float] = []
-    place = vi.save_figures(folder, output=tmp_path / "deep" / "there", progress=fractions.append)
-    assert place == tmp_path / "deep" / "there"
-    assert len(list(place.iterdir())) == len(RIGID)
+def test_figures_may_go_elsewhere(folder: Path, elsewhere: tuple[Path, list[float]]) -> None:
+    place, fractions = elsewhere
+    assert len(list(place.iterdir())) == 3 * len(RIGID)
     assert fractions == sorted(fractions)
     assert fractions[-1] == 1.0
     assert not (folder / "figures").exists()
 
 
 def test_a_run_writes_them_when_it_is_asked(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
-    (tmp_path / "case.toml").write_text(tomli_w.dumps(elastic(sensors=[sensor("a 1")])))
+    (tmp_path / "case.toml").write_text(tomli_w.dumps(elastic(sensors=[sensor("a 1")], run={"impacts": 1})))
     status, written = run(monkeypatch, capsys, "run", tmp_path / "case.toml", "-o", tmp_path / "out", "--figures")
     assert status == 0
     assert written.rstrip().endswith(f"wrote {tmp_path / 'out' / 'report.html'}, and figures beside it")
@@ -106,9 +121,17 @@ def test_a_run_writes_them_when_it_is_asked(tmp_path: Path, monkeypatch: pytest.
     assert names == {f"{name}.png" for name in ELASTIC} | {"plate.gif"}
     with Image.open(tmp_path / "out" / "figures" / "plate.gif") as picture:
         assert getattr(picture, "n_frames", 1) > 10
+
+
+@pytest.mark.slow
+def test_those_of_a_run_are_those_of_its_folder(tmp_path: Path) -> None:
+    response = vi.simulate(vi.read_case(elastic(sensors=[sensor("a 1")])))
+    response.save(tmp_path / "out")
+    (tmp_path / "figures").mkdir()
+    write_figures(result_of(response), tmp_path / "figures")
     again = vi.save_figures(tmp_path / "out", output=tmp_path / "again")
     for path in again.iterdir():
-        assert path.read_bytes() == (tmp_path / "out" / "figures" / path.name).read_bytes(), path.name
+        assert path.read_bytes() == (tmp_path / "figures" / path.name).read_bytes(), path.name
 
 
 @pytest.mark.parametrize(

@@ -73,7 +73,8 @@ def test_the_grid_is_that_of_the_elements(simple: tuple[vi.BodyModes, Chart]) ->
 def test_edge_supports_contact_and_sensors_are_marked() -> None:
     supports = [{"type": "patches", "spacing": [0.2, 0.12], "radius": 0.01}, {"type": "edge", "edge": "x-max", "condition": "clamped"}]
     sensors = [{"name": name, "position": [0.05, 0.01 * place], "rate": 50e3} for place, name in enumerate(HOSTILE)]
-    case = plate_case(plate={"supports": supports}, drop={"speed": 1.0, "position": [0.03, -0.02]}, sensors=sensors)
+    plate = {"supports": supports, "mesh": {"element_size": 0.03}}
+    case = plate_case(plate=plate, drop={"speed": 1.0, "position": [0.03, -0.02]}, sensors=sensors)
     modes = vi.compute_modes(case)
     (chart,) = mode_charts(modes)
     for panel in chart.panels[:6]:

@@ -52,7 +52,7 @@ def test_a_run_of_every_kind_has_a_page(name: str) -> None:
         assert all(cell in page.text for cell in cells)
 
 
-@pytest.mark.parametrize("name", one_in(4, RUNS))
+@pytest.mark.parametrize("name", one_in(6, RUNS))
 def test_the_charts_of_every_kind_are_drawn_for_print(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("vibroimpact.charts.files._DPI", 30)
     charts = [setup_chart(run_of(name)), *run_charts(run_of(name))]

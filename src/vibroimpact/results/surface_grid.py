@@ -45,7 +45,7 @@ class SurfaceGrid:
 def surface_grid(mesh: Mesh, points: int = POINTS) -> SurfaceGrid:
     """Return a regular grid over the upper side of a mesh, with a grid point at the middle of its bounding box.
 
-    The outer faces are subdivided into triangles smaller than the grid steps, and each grid point is interpolated in the uppermost
+    The faces of that side are subdivided into triangles smaller than the grid steps, and each grid point is interpolated in the uppermost
     triangle that contains it. This avoids the inverse mapping to element coordinates, and the mesh may have any outline and holes.
 
     Parameters
@@ -111,16 +111,16 @@ def _shares(corner: Floats, point: Integers) -> Floats:
 
 
 def _triangles(mesh: Mesh, step: Floats) -> tuple[Floats, csr_array, Integers]:
-    """Return subdivision points of the outer faces, their interpolation matrix from the nodes, and the triangles between them.
+    """Return subdivision points of the upper faces, their interpolation matrix from the nodes, and the triangles between them.
 
     The points have shape (points, 3) [m], the matrix (points, nodes), and the triangles, as point numbers, (triangles, 3).
     """
     from scipy.sparse import csr_array, vstack
 
-    from vibroimpact.structures.surface import outer_faces
+    from vibroimpact.structures.surface import facing
 
     points, motions, triangles, start = [], [], [], 0
-    for group in outer_faces(mesh):
+    for group in facing(mesh, "upper"):
         corner = mesh.nodes[group.connectivity[:, list(group.corners)], :2]
         size = np.ptp(corner, axis=1) / step
         # faces with the same number of subdivisions share one lattice of reference points
