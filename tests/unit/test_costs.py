@@ -11,7 +11,7 @@ from typer.testing import CliRunner
 
 import vibroimpact as vi
 from support import plain_case
-from vibroimpact.cases.costs import costs_of, describe_costs, impacts_expected
+from vibroimpact.cases.costs import costs_of, describe_costs, impacts_expected, seconds_at_most, seconds_expected
 from vibroimpact.cli import app
 from vibroimpact.errors import InputError
 
@@ -30,6 +30,16 @@ def test_about_as_many_impacts_as_there_are(restitution: float, run: dict[str, A
     case = bouncing(restitution, **run)
     found = len(vi.simulate(case).impacts["impact"])
     assert 0.7 * found - 2 <= impacts_expected(case) <= 1.3 * found + 2
+
+
+@pytest.mark.parametrize(
+    ("restitution", "run"), [(0.3, {}), (0.9, {}), (0.5, {"impacts": 3}), (1.0, {"impacts": 4}), (0.9, {"duration": "1 s"})]
+)
+def test_about_as_long_as_it_takes(restitution: float, run: dict[str, Any]) -> None:
+    case = bouncing(restitution, **run)
+    end = vi.simulate(case).history()["time_s"][-1]
+    assert seconds_expected(case) == pytest.approx(end, rel=0.3)
+    assert seconds_at_most(case) >= 0.99 * end
 
 
 def test_a_run_of_tens_of_thousands_of_impacts_is_told() -> None:
@@ -70,6 +80,15 @@ def test_modes_that_take_long_are_told_until_they_are_stored(monkeypatch: pytest
     assert told.startswith("the modes of the sphere take about 40 s, 1 GB of memory")
     monkeypatch.setattr("vibroimpact.structures.store.has_model", lambda key: True)
     assert costs_of(case, modes_alone=True) == []
+
+
+def test_modes_below_a_frequency_take_as_long_as_their_number(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setenv("VIBROIMPACT_STORE", str(tmp_path))
+    sphere = {"radius": 0.025, "material": "rock-paper", "model": "elastic", "mesh": {"elements_across": 12}}
+    cases = [vi.read_case(plain_case(sphere={**sphere, "max_frequency": most})) for most in ("20 kHz", "60 kHz")]
+    (few,), (many,) = (costs_of(case, modes_alone=True) for case in cases)
+    assert few.seconds < 0.5 * many.seconds
+    assert many.remedy.startswith("give a lower sphere.max_frequency")
 
 
 def test_many_impacts_of_bodies_that_vibrate_are_told() -> None:

@@ -41,6 +41,9 @@ from vibroimpact.shown import shown
 LONGEST = 200_000
 """Largest size of a message from a window [bytes]."""
 
+_DEEPEST = 100  # levels of tables and lists that are read; of these, a case that has too many is refused with its key
+_DEEP = f"tables and lists of the message lie more than {_DEEPEST} deep in one another"
+
 Detail = Literal["draft", "full"]
 
 _KEYS = {
@@ -84,12 +87,7 @@ def read_message(text: str | bytes) -> Message:
         ...
     vibroimpact.errors.InputError: a message is a table with a type: open, case, cancel, report, signals
     """
-    if len(text) > LONGEST:
-        raise InputError(f"the message has {len(text)} bytes; {LONGEST} are the most")
-    try:
-        found = json.loads(text, parse_constant=_refuse)
-    except (ValueError, RecursionError):
-        raise InputError("the message is not JSON") from None
+    found = _parsed(text.encode("utf-8", "surrogatepass") if isinstance(text, str) else text)
     if not isinstance(found, dict) or not isinstance(found.get("type"), str) or found["type"] not in _KEYS:
         raise InputError(f"a message is a table with a type: {', '.join(_KEYS)}")
     kind, number = found.pop("type"), found.pop("number", 0)
@@ -105,6 +103,26 @@ def read_message(text: str | bytes) -> Message:
     if kind == "case" and ("case" not in found or found.setdefault("detail", "full") not in ("draft", "full")):
         raise InputError('a message of type case has a case, and "draft" or "full" as detail')
     return Message(kind, number, found)
+
+
+def _parsed(block: bytes) -> Any:
+    """Return what a block of JSON says."""
+    if len(block) > LONGEST:
+        raise InputError(f"the message has {len(block)} bytes; {LONGEST} are the most")
+    try:
+        found = json.loads(block, parse_constant=_refuse)
+        json.dumps(found, ensure_ascii=False).encode()  # half of a surrogate pair is no text, and can't be answered
+    except RecursionError:
+        raise InputError(_DEEP) from None
+    except ValueError:
+        raise InputError("the message is not JSON") from None
+    level: list[Any] = [[found]]
+    for _ in range(_DEEPEST + 1):
+        tables = (one.values() if isinstance(one, dict) else one for one in level)
+        level = [value for table in tables for value in table if isinstance(value, (dict, list))]
+    if level:
+        raise InputError(_DEEP)
+    return found
 
 
 def _refuse(constant: str) -> float:

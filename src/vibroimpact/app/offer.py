@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import fields
+from functools import cache
 from typing import Any
 
 from vibroimpact._version import __version__
@@ -16,8 +17,9 @@ from vibroimpact.report.page import palette
 from vibroimpact.units.display import multiple
 
 
+@cache
 def offer() -> dict[str, Any]:
-    """Return what a window is told first.
+    """Return what a window is told first, the same for each.
 
     Examples
     --------

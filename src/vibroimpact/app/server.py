@@ -114,7 +114,7 @@ def _guarded(app: ASGIApp, port: int) -> ASGIApp:
             await app(scope, receive, send)
             return
         host = next((value.decode("latin-1") for name, value in scope["headers"] if name == b"host"), "")
-        if host not in {f"{name}:{port}" for name in _NAMES}:
+        if host not in _hosts(port):
             await _refuse(scope, receive, send)
             return
         policy = _POLICY.format(socket=f"ws://{host}")
@@ -154,7 +154,18 @@ def _is_own(origin: str, port: int) -> bool:
     (True, False, False)
     """
     parts = urlsplit(origin)
-    return parts.scheme == "http" and parts.netloc in {f"{name}:{port}" for name in _NAMES}
+    return parts.scheme == "http" and parts.netloc in _hosts(port)
+
+
+def _hosts(port: int) -> set[str]:
+    """Return the names of this server; browsers leave out the port where it is that of HTTP.
+
+    Examples
+    --------
+    >>> sorted(_hosts(80))
+    ['127.0.0.1', '127.0.0.1:80', '[::1]', '[::1]:80', 'localhost', 'localhost:80']
+    """
+    return {f"{name}:{port}" for name in _NAMES} | (set(_NAMES) if port == 80 else set())
 
 
 def _text(package: str, file: str) -> str:

@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, NamedTuple
 
+from vibroimpact.cases.fields.section import derived
 from vibroimpact.cases.rigid import contact_laws_of, contact_pair, deforms, elastic_names, impact_limit, touch_speed
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.static import static_indentation
@@ -27,6 +28,8 @@ _MODES_SECONDS, _MODES_DOFS, _MODES_NUMBER = 35.0, 42_423, 300  # of a sphere, c
 _WHOLE = 4.0  # factor for imported meshes, which are rarely symmetric
 _DOF_BYTES = 20e3
 _ELASTIC = 1e-7  # relative loss of speed per impact below which a drop counts as lossless
+_FEW = 300  # impacts that take 6 s at most, which is never told: so few that are allowed count in full, and no contact is integrated
+_ONE_BLOW = 10.0  # seconds of a run without gravity, a guess
 _LONG, _LARGE, _MUCH = 10.0, 1e9, 500e6
 """Seconds, bytes of memory and bytes on disk above which costs are reported."""
 
@@ -70,29 +73,58 @@ def describe_costs(case: Case, *, modes_alone: bool = False) -> list[str]:
     return told
 
 
+@derived
 def impacts_expected(case: Case) -> int:
-    r"""Return the estimated number of impacts of a drop with rigid bodies, an upper bound for elastic ones.
+    r"""Return the estimated number of impacts of a drop with rigid bodies, an upper bound for elastic ones; of 300 or fewer their limit.
 
     All impacts are assumed to have the restitution e of the first: from a speed :math:`v` to the rest speed :math:`v_r` there are
     :math:`\ln(v_r/v)/\ln e` impacts; a duration :math:`T` is filled by the flights, which take :math:`2 v e^k / g`.
     """
-    most = impact_limit(case) or MOST_IMPACTS
-    law, pair, speed, gravity = contact_laws_of(case)[-1], contact_pair(case), touch_speed(case), case.drop.gravity
-    mass = float(pair.effective_mass)
-    kept = float(achieved_restitution(law, mass, speed))
-    if kept <= 0.0 or not (speed > 0.0 and gravity > 0.0):
+    most, speed, gravity = impact_limit(case) or MOST_IMPACTS, touch_speed(case), case.drop.gravity
+    if not (speed > 0.0 and gravity > 0.0):
+        return 1
+    if most <= _FEW:
+        return most
+    kept = _restitution(case)
+    if kept <= 0.0:
         return 1
     if kept >= 1.0 - _ELASTIC:
         return int(min(most, 1.0 + 0.5 * (case.run.duration or math.inf) * gravity / speed))
-    rest = case.run.rest_speed
+    rest, law = case.run.rest_speed, contact_laws_of(case)[-1]
     if rest is None:
-        sag = float(static_indentation(law, mass * gravity)) - float(law.touch_level) if isinstance(law, CompliantLaw) else 0.0
+        weight = float(contact_pair(case).effective_mass) * gravity
+        sag = float(static_indentation(law, weight)) - float(law.touch_level) if isinstance(law, CompliantLaw) else 0.0
         rest = max(1e-6 * speed, math.sqrt(2.0 * gravity * max(sag, 0.0)))
     count = math.log(rest / speed) / math.log(kept) if 0.0 < rest < speed else math.inf
     if case.run.duration is not None:
         left = 1.0 - case.run.duration * gravity * (1.0 - kept) / (2.0 * speed * kept)
         count = min(count, math.log(left) / math.log(kept) if left > 0.0 else math.inf)
     return int(min(most, max(count, 0.0) + 1.0))
+
+
+def seconds_expected(case: Case) -> float:
+    """Return the estimated length of a run [s]: its duration, or that of its flights if all impacts have the restitution of the first."""
+    return _seconds(case, _restitution(case))
+
+
+def seconds_at_most(case: Case) -> float:
+    """Return an upper bound of `seconds_expected` [s], that of flights without losses, which integrates no contact."""
+    return _seconds(case, 1.0)
+
+
+def _seconds(case: Case, kept: float) -> float:
+    speed, gravity = touch_speed(case), case.drop.gravity
+    if case.run.duration is not None or not (speed > 0.0 and gravity > 0.0):
+        return case.run.duration or _ONE_BLOW
+    number = impacts_expected(case)
+    flights = number if kept >= 1.0 - _ELASTIC else kept * (1.0 - kept**number) / (1.0 - kept)
+    return (1.0 + 2.0 * flights) * speed / gravity
+
+
+@derived
+def _restitution(case: Case) -> float:
+    """Return the restitution of the last law at the speed of the first impact."""
+    return float(achieved_restitution(contact_laws_of(case)[-1], float(contact_pair(case).effective_mass), touch_speed(case)))
 
 
 def _impact_costs(case: Case) -> Iterator[Cost]:
@@ -121,6 +153,7 @@ def _mode_costs(case: Case) -> Iterator[Cost]:
     if not elastic_names(case):
         return
     from vibroimpact.cases.elastic.bodies import elastic_bodies  # imports scipy.sparse
+    from vibroimpact.structures.mode_count import modes_expected
     from vibroimpact.structures.recipe import ImportedMesh, model_key
     from vibroimpact.structures.store import has_model
 
@@ -128,11 +161,12 @@ def _mode_costs(case: Case) -> Iterator[Cost]:
         recipe = body.recipe
         if has_model(model_key(recipe)):
             continue
-        mesh, number = recipe.shape.mesh(recipe.supports), recipe.reduction.modes or 100
+        mesh, number = recipe.shape.mesh(recipe.supports), modes_expected(recipe)
         dofs = mesh.dofs_per_node * len(mesh.nodes)
         share = 0.3 + 0.7 * number / _MODES_NUMBER
         seconds = _MODES_SECONDS * (dofs / _MODES_DOFS) ** (4.0 / 3.0) * share * (_WHOLE if isinstance(recipe.shape, ImportedMesh) else 1.0)
-        remedy = f"give fewer {name}.modes or larger elements; they are computed once and kept"
+        fewer = f"fewer {name}.modes" if recipe.reduction.max_frequency is None else f"a lower {name}.max_frequency"
+        remedy = f"give {fewer} or larger elements; they are computed once and kept"
         yield Cost(seconds, _DOF_BYTES * dofs, 8.0 * dofs * number, f"the modes of the {name}", remedy)
 
 
