@@ -112,7 +112,7 @@ def test_links_lead_somewhere(page: Path) -> None:
         assert target.startswith("https://") or (page.parent / target).exists(), target
 
 
-LONG_EXAMPLES = {"a_nanometre", "tolerances"}  # the modes of a plate, and a study with its report
+LONG_EXAMPLES = {"a_nanometre", "pictures_of_pages", "tolerances"}  # the modes of a plate, pages in a browser, and a study with its report
 
 
 @pytest.mark.parametrize(
