@@ -115,7 +115,8 @@ def test_links_lead_somewhere(page: Path) -> None:
         assert target.startswith("https://") or (page.parent / target).exists(), target
 
 
-LONG_EXAMPLES = {"a_nanometre", "tolerances", "charts_of_studies", "how_it_works"}  # modes of a plate, studies, many pictures
+# modes of a plate, studies, many pictures, pages in a browser
+LONG_EXAMPLES = {"a_nanometre", "charts_of_studies", "how_it_works", "pictures_of_pages", "tolerances"}
 
 
 @pytest.mark.parametrize(

@@ -80,7 +80,7 @@ def rectangle_blocks(
     17
     """
     most = MOST_NODES // order**2
-    if (size[0] / element_size) * (size[1] / element_size) > most:
+    if max(1.0, size[0] / element_size) * max(1.0, size[1] / element_size) > most:
         words = f"elements of {element_size:g} m would be more than {most} on this plate; make them larger"
         raise InputError(words, "mesh.element_size")
     boxes = [_box(disc, size, discs) for disc in discs]

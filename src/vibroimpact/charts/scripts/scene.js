@@ -133,8 +133,7 @@
       if (canvas.width !== Math.round(width * ratio)) canvas.width = Math.round(width * ratio);
       if (canvas.height !== Math.round(height * ratio)) canvas.height = Math.round(height * ratio);
       const pen = canvas.getContext("2d");
-      const style = getComputedStyle(canvas);
-      const ink = style.getPropertyValue("--ink").trim() || "#1b1b1b", soft = style.getPropertyValue("--soft").trim() || "#5a5a5a";
+      const soft = getComputedStyle(canvas).getPropertyValue("--soft").trim() || "#5a5a5a";
       pen.setTransform(ratio, 0, 0, ratio, 0, 0);
       pen.clearRect(0, 0, width, height);
       const half = [0.5 * (scene.x[scene.x.length - 1] - scene.x[0]), 0.5 * (scene.y[scene.y.length - 1] - scene.y[0])];
@@ -155,8 +154,10 @@
       const factor = scene.exaggeration;
       this.drawSupports(pen, place, soft);
       this.drawPlate(pen, place, factor, [sin, cos]);
-      this.drawSensors(pen, place, factor, ink);
+      const feet = scene.sensors.map(({ x, y }) => place(x, y, factor * this.nearest(x, y)));
+      this.drawSensors(pen, feet);
       if (scene.radius) this.drawBall(pen, place, scale, factor, rise);
+      this.nameSensors(pen, feet);
       this.tell(this.frames > 1 ? this.frame / (this.frames - 1) : 0, clockText(this.time, scene.clock));
     }
 
@@ -233,31 +234,34 @@
       return Number.isFinite(height) ? height : 0;
     }
 
-    drawSensors(pen, place, factor, ink) {
-      pen.font = "12px system-ui, sans-serif";
-      const taken = [];
-      for (const { name, x, y } of this.scene.sensors) {
-        const [across, up] = place(x, y, factor * this.nearest(x, y));
-        pen.fillStyle = "#c79000";
-        pen.strokeStyle = "#3a2c00";
+    drawSensors(pen, feet) {
+      pen.fillStyle = "#c79000";
+      pen.strokeStyle = "#3a2c00";
+      for (const [across, up] of feet) {
         pen.beginPath();
         pen.moveTo(across, up - 9); pen.lineTo(across - 5, up); pen.lineTo(across + 5, up);
         pen.closePath();
         pen.fill();
         pen.stroke();
-        pen.lineWidth = 3;
-        pen.strokeStyle = "rgba(255, 255, 255, 0.75)";
-        const words = name.length > 24 ? `${name.slice(0, 22)}…` : name;
-        // a name for which there is no room beside its sensor stands above, and names that would lie over each other below each other
-        const beside = across + 8, left = Math.min(beside, this.canvas.clientWidth - pen.measureText(words).width - 2);
-        let line = left < beside ? up - 12 : up - 3;
-        while (taken.some(([other, row]) => Math.abs(other - across) < 7 * words.length + 12 && Math.abs(row - line) < 13)) line += 13;
-        taken.push([across, line]);
-        pen.strokeText(words, left, line);
-        pen.lineWidth = 1;
-        pen.fillStyle = "#1b1b1b";
-        pen.fillText(words, left, line);
       }
+    }
+
+    // Names stand beside their sensors, or above where there is no room; lower, if they would lie over other sensors and names.
+    nameSensors(pen, feet) {
+      const taken = feet.map(([across, up]) => [across - 6, across + 6, up - 9, up]);
+      pen.font = "12px system-ui, sans-serif";
+      pen.strokeStyle = "rgba(255, 255, 255, 0.75)";
+      pen.fillStyle = "#1b1b1b";
+      pen.lineWidth = 3;
+      this.scene.sensors.forEach(({ name }, index) => {
+        const [across, up] = feet[index], words = name.length > 24 ? `${name.slice(0, 22)}…` : name;
+        const width = pen.measureText(words).width, left = Math.min(across + 8, this.canvas.clientWidth - width - 2);
+        let line = left < across + 8 ? up - 12 : up - 3;
+        while (taken.some(([start, end, top, bottom]) => left < end && left + width > start && line - 10 < bottom && line + 3 > top)) line += 13;
+        taken.push([left, left + width, line - 10, line + 3]);
+        pen.strokeText(words, left, line);
+        pen.fillText(words, left, line);
+      });
     }
 
     drawBall(pen, place, scale, factor, rise) {
