@@ -1,10 +1,22 @@
-"""Shared drops."""
+"""Shared drops, and the commands, which are made once."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from functools import cache
+
 import pytest
+import typer.main
 
 import vibroimpact as vi
+
+
+@pytest.fixture(autouse=True, scope="session")
+def commands_once() -> Iterator[None]:
+    """Typer makes all commands anew each time that one is called, which the tests do a thousand times in a process."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(typer.main, "get_command", cache(typer.main.get_command))
+        yield
 
 
 @pytest.fixture(scope="session")

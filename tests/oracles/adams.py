@@ -147,16 +147,14 @@ class Motion:
         for functions in model.requests.values():
             for function in functions:
                 parse_function(function, self.scope)
+        self.heights = {one: (model.place(one)[2], float(part == self.key)) for one, (part, _) in model.markers.items()}
         self.held = dict.fromkeys(model.sensors, 0.0)
         self.always = True
 
     def state(self, moved: float, velocity: float) -> State:
         """The state when the part is so much higher than at the start."""
-        heights, velocities = {}, {}
-        for one, (part, _) in self.model.markers.items():
-            moves = part == self.key
-            heights[one] = self.model.place(one)[2] + (moved if moves else 0.0)
-            velocities[one] = velocity if moves else 0.0
+        heights = {one: start + moves * moved for one, (start, moves) in self.heights.items()}
+        velocities = {one: moves * velocity for one, (_, moves) in self.heights.items()}
         state = State(heights, velocities, dict(self.held))
         if self.always:
             for one, (function, evaluate, sensor) in self.sensors.items():

