@@ -86,7 +86,7 @@ def test_plate_and_sphere_end_where_their_weight_puts_them() -> None:
 
 
 def test_rest_is_the_motion_of_both_together() -> None:
-    """scipy's Radau goes on with the contact as it is; the closed form agrees with it to what is not linear in the contact."""
+    """scipy's LSODA goes on with the contact as it is; the closed form agrees with it to what is not linear in the contact."""
     response = vi.simulate(drop_on(LOSSY, SPRUNG, height=0.2, impacts=None, duration=2.0))
     lying, begun = response.rest.lying[0], float(response.rest.time[0])
     assert lying is not None
@@ -101,7 +101,7 @@ def test_rest_is_the_motion_of_both_together() -> None:
     times = np.linspace(0.0, 0.3, 400)
     fall = [float(part) for part in centre_of(start, 0.09032078879)]
     begins = np.concatenate([fall, start.displacement[1:], start.velocity[1:]])
-    found = solve_ivp(slopes, (0.0, 0.3), begins, "Radau", times, rtol=1e-8, atol=1e-14).y
+    found = solve_ivp(slopes, (0.0, 0.3), begins, "LSODA", times, rtol=1e-8, atol=1e-14).y
     history = response.at(begun + times)
     for seen, expected in ((history["position_m"], 0.025 - found[0]), (history["plate_deflection_m"], shape @ found[2:5])):
         np.testing.assert_allclose(seen, expected, atol=0.02 * np.ptp(expected))
@@ -142,7 +142,7 @@ def test_codes_in_files_stay() -> None:
 def test_a_sensor_on_a_plate_that_carries_the_sphere() -> None:
     """It reads what the history says, under the contact, before rest and after."""
     plate = SPRUNG
-    sensor = vi.Sensor(name="a", rate=4e4, quantity="displacement", filter="none")
+    sensor = vi.Sensor(name="a", rate=1e4, quantity="displacement", filter="none")
     response = vi.simulate(drop_on(LOSSY, plate, height=0.2, impacts=None, duration=2.0, sensors=(sensor,)))
     signal = response.signals()["a"]
     assert response.rest.time[0] < 1.5
