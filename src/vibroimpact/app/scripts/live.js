@@ -59,7 +59,7 @@
     return true;
   };
   const isTooLong = (message) => {
-    const size = new Blob([JSON.stringify(message)]).size;
+    const size = new TextEncoder().encode(JSON.stringify(message)).length;
     if (size > LONGEST) { setBusy(false); showFaults([`the case has ${size} bytes; ${LONGEST} are the most of the live page`]); }
     return size > LONGEST;
   };
