@@ -1,4 +1,4 @@
-"""Shared drops, and the commands, which are made once."""
+"""Shared drops and a shared calibration, and the commands, which are made once."""
 
 from __future__ import annotations
 
@@ -27,3 +27,9 @@ def theory() -> vi.Response:
 @pytest.fixture(scope="session")
 def variable() -> vi.Response:
     return vi.simulate(vi.load_case("paper:type1-variable"))
+
+
+@pytest.fixture(scope="session")
+def damping() -> vi.Calibration:
+    """The damping that the paper calibrates."""
+    return vi.calibrate_case(vi.load_calibration("paper:calibration"))

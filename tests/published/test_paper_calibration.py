@@ -20,26 +20,21 @@ PRINTED_FIT = [138.93525, 6.00288, -0.15582]
 SPEEDS = [8.8266641, 6.8386265, 5.2982339, 4.1046840, 3.1798731]  # m/s
 
 
-@pytest.fixture(scope="module")
-def found() -> vi.Calibration:
-    return vi.calibrate_case(vi.load_calibration("paper:calibration"))
+def test_dampings(damping: vi.Calibration) -> None:
+    assert damping.observations.speeds == pytest.approx(SPEEDS, rel=1e-7)
+    assert damping.values == pytest.approx(EXACT, rel=1e-5)
+    assert damping.outcomes["separation_speed"] == pytest.approx(damping.observations.wanted["separation_speed"], rel=1e-10)
 
 
-def test_dampings(found: vi.Calibration) -> None:
-    assert found.observations.speeds == pytest.approx(SPEEDS, rel=1e-7)
-    assert found.values == pytest.approx(EXACT, rel=1e-5)
-    assert found.outcomes["separation_speed"] == pytest.approx(found.observations.wanted["separation_speed"], rel=1e-10)
+def test_function_of_the_speed(damping: vi.Calibration) -> None:
+    assert damping.fit.function.coefficients == pytest.approx(EXACT_FIT, rel=1e-5)
 
 
-def test_function_of_the_speed(found: vi.Calibration) -> None:
-    assert found.fit.function.coefficients == pytest.approx(EXACT_FIT, rel=1e-5)
-
-
-def test_the_printed_ones_stand_beside_it(found: vi.Calibration) -> None:
-    assert found.given.tolist() == PRINTED
-    assert found.values == pytest.approx(PRINTED, rel=1.1e-3)
+def test_the_printed_ones_stand_beside_it(damping: vi.Calibration) -> None:
+    assert damping.given.tolist() == PRINTED
+    assert damping.values == pytest.approx(PRINTED, rel=1.1e-3)
     printed = vi.SpeedFunction(tuple(PRINTED_FIT), 3.0, 9.0)
-    assert printed(found.observations.speeds) == pytest.approx(found.values, abs=0.22)  # N s/m, the hand's precision
+    assert printed(damping.observations.speeds) == pytest.approx(damping.values, abs=0.22)  # N s/m, the hand's precision
 
 
 def test_the_theory_is_the_default_target() -> None:
@@ -49,9 +44,9 @@ def test_the_theory_is_the_default_target() -> None:
     assert np.isnan(found.given).all()
 
 
-def test_what_is_still_wrong(found: vi.Calibration) -> None:
+def test_what_is_still_wrong(damping: vi.Calibration) -> None:
     """With each rebound right, compression and force are as far off as PAPER's table 2 has them computed for variable damping."""
-    off = differences(found)
+    off = differences(damping)
     compression, force = (100.0 * np.abs(off[name]["variable"]) for name in ("max_indentation_m", "max_force_N"))
     assert compression == pytest.approx([0.376, 0.277, 0.149, 0.013, 0.189], abs=0.02)
     assert force == pytest.approx([5.178, 5.019, 4.814, 4.551, 4.256], abs=0.03)

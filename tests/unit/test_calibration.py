@@ -135,28 +135,27 @@ def test_a_run_takes_no_notice(tmp_path: Path) -> None:
     assert again.calibrate == case.calibrate
 
 
-def test_the_folder(tmp_path: Path) -> None:
-    what = vi.load_calibration("paper:calibration")
-    found = vi.calibrate_case(what)
-    folder = vi.save_calibration(what.case, found, tmp_path / "calibrated", figures=("png",))
+def test_the_folder(damping: vi.Calibration, tmp_path: Path) -> None:
+    case = vi.load_case("paper:calibration")
+    folder = vi.save_calibration(case, damping, tmp_path / "calibrated", figures=("png",))
     table = json.loads((folder / "calibration.json").read_text())
     assert table["parameter"] == "damping_max"
     assert [row["impact"] for row in table["impacts"]] == [1, 2, 3, 4, 5]
-    assert [row["value"] for row in table["impacts"]] == found.values.tolist()
-    assert table["fit"]["coefficients"] == list(found.fit.function.coefficients)
-    assert vi.load_case(folder / "case.toml").contact.parameters["damping_max"] == tuple(found.values)
+    assert [row["value"] for row in table["impacts"]] == damping.values.tolist()
+    assert table["fit"]["coefficients"] == list(damping.fit.function.coefficients)
+    assert vi.load_case(folder / "case.toml").contact.parameters["damping_max"] == tuple(damping.values)
     assert {file.name for file in (folder / "figures").iterdir()} == {"parameter.png", "differences.png"}
     assert "139.408" in (folder / "report.html").read_text()
     drop = load_drop(folder)
     assert drop.function is not None
-    assert drop.function[1](5.0) == pytest.approx(found.fit.function(5.0), rel=1e-15)
+    assert drop.function[1](5.0) == pytest.approx(damping.fit.function(5.0), rel=1e-15)
     with pytest.raises(vi.InputError, match="this is a calibration"):
         vi.read_result(folder)
     with pytest.raises(vi.InputError, match="is there already"):
-        vi.save_calibration(what.case, found, folder)
+        vi.save_calibration(case, damping, folder)
 
 
-def test_the_charts_hold_the_values() -> None:
+def test_the_charts_hold_the_values(damping: vi.Calibration) -> None:
     """Each impact with its interval, the fit, and the remaining differences in per cent; the parameter in words."""
     found, _ = calibrated({"target": {"restitution": [0.8, 0.78, 0.77, 0.75], "approach_speed": [1.0, 2.0, 3.0, 4.0]}, "degree": 1})
     (chart,) = calibration_charts(found)
@@ -172,13 +171,11 @@ def test_the_charts_hold_the_values() -> None:
     np.testing.assert_array_equal(points.y, found.values)
     assert found.intervals is not None
     np.testing.assert_array_equal(np.transpose([points.low, points.high]), found.intervals)
-    what = vi.load_calibration("paper:calibration")
-    found = vi.calibrate_case(what)
-    last = calibration_charts(found)[-1]
+    last = calibration_charts(damping)[-1]
     assert [panel.title for panel in last.panels] == ["Largest indentation", "Largest force", "Contact duration", "Rebound height"]
     for panel, column in zip(last.panels, ("max_indentation_m", "max_force_N", "duration_s", "rebound_height_m"), strict=True):
         drawn = {mark.name: mark.y for mark in panel.marks if isinstance(mark, Line)}
-        for way, values in differences(found)[column].items():
+        for way, values in differences(damping)[column].items():
             np.testing.assert_array_equal(drawn[way], 100.0 * values)
 
 

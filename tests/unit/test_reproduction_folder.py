@@ -361,46 +361,53 @@ def test_a_damaged_part_is_told_and_mended_by_the_command_it_names(copy: Path, m
     assert list(read_parts(copy)) == ["table1", "section3.1", "fig4"]
 
 
-def without_chart(folder: Path) -> None:
-    (folder / "parts" / "fig4.chart").unlink()
+@pytest.fixture(scope="module")
+def drawn(made: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """With a chart that takes little time too."""
+    return reproduce_paper(shutil.copytree(made, tmp_path_factory.mktemp("drawn") / "paper"), ["fig3"])
 
 
-def with_another_chart(folder: Path) -> None:
-    chart = folder / "parts" / "fig4.chart"
+def without_chart(chart: Path) -> None:
+    chart.unlink()
+
+
+def with_another_chart(chart: Path) -> None:
     chart.write_bytes(chart.read_bytes()[:-8] + b"\x00" * 8)
 
 
-def with_half_a_chart(folder: Path) -> None:
-    chart = folder / "parts" / "fig4.chart"
+def with_half_a_chart(chart: Path) -> None:
     chart.write_bytes(chart.read_bytes()[:1000])
 
 
-def as_of_an_earlier_version(folder: Path) -> None:
+def as_of_an_earlier_version(chart: Path) -> None:
     """The charts were files alone."""
-    part = folder / "parts" / "fig4.json"
+    part = chart.with_suffix(".json")
     part.write_text(sealed({key: value for key, value in read_sealed(part).items() if key != "check_sums"}), encoding="utf-8")
 
 
 @pytest.mark.parametrize("damage", [without_chart, with_another_chart, with_half_a_chart, as_of_an_earlier_version])
 def test_a_missing_chart_is_told_and_mended_by_the_command_it_names(
-    copy: Path, monkeypatch: pytest.MonkeyPatch, damage: Callable[[Path], None]
+    drawn: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, damage: Callable[[Path], None]
 ) -> None:
-    assert "fig4" not in missing_parts(copy)
-    damage(copy)
+    copy = Path(shutil.copytree(drawn, tmp_path / "paper"))
+    assert "fig3" not in missing_parts(copy)
+    damage(copy / "parts" / "fig3.chart")
     with pytest.raises(vi.InputError, match="the chart is missing or damaged; make it anew: vibroimpact reproduce") as told:
         write_reproduction_report(copy)
-    assert str(told.value).startswith(f"{copy / 'parts' / 'fig4.chart'}: ")
-    assert "fig4" in missing_parts(copy)
+    assert str(told.value).startswith(f"{copy / 'parts' / 'fig3.chart'}: ")
+    assert "fig3" in missing_parts(copy)
     assert command(monkeypatch, *shlex.split(str(told.value).partition("anew: vibroimpact ")[2])) == 0
-    assert "fig4" not in missing_parts(copy)
-    assert [chart["name"] for chart in read_charts(copy, read_parts(copy))] == ["fig4"]
+    assert "fig3" not in missing_parts(copy)
+    assert [chart["name"] for chart in read_charts(copy, read_parts(copy))] == ["fig3", "fig4"]
 
 
-def test_all_missing_charts_are_told_at_once(copy: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    reproduce_paper(copy, ["fig3", "fig6"])
-    without_chart(copy)
-    (copy / "parts" / "fig6.chart").write_text("")
-    with pytest.raises(vi.InputError, match=r"damaged, and those of fig6; make them anew: .* --only fig4,fig6$") as told:
+def test_all_missing_charts_are_told_at_once(drawn: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    copy = Path(shutil.copytree(drawn, tmp_path / "paper"))
+    monkeypatch.setitem(PARTS, "fig5", ReportPart("fig5", chart=PARTS["fig3"].chart))  # which takes less time
+    reproduce_paper(copy, ["fig5"])
+    (copy / "parts" / "fig3.chart").unlink()
+    (copy / "parts" / "fig5.chart").write_text("")
+    with pytest.raises(vi.InputError, match=r"damaged, and those of fig5; make them anew: .* --only fig3,fig5$") as told:
         write_reproduction_report(copy)
     assert command(monkeypatch, *shlex.split(str(told.value).partition("anew: vibroimpact ")[2])) == 0
     assert (copy / "report.html").read_text(encoding="utf-8").count("<figcaption>") == 3
