@@ -45,15 +45,14 @@ def series(point: tuple[float, float], theory: str) -> float:
     return found + ((1.0 - POISSON**2) / (np.pi * MODULUS * apart) if theory == "upper" else 0.0)
 
 
-@pytest.mark.parametrize("face", ["upper", "lower"])
-@pytest.mark.parametrize("apart", [0.0, 0.5, 1.0, 2.0, 5.0])
-def test_the_face_of_a_plate(apart: float, face: Side) -> None:
+def test_the_faces_of_a_plate() -> None:
     """Plate elements of seven thicknesses, with what a layer has beyond plate theory."""
-    if face == "upper" and not apart:
-        return  # without bound there
     recipe = Recipe(PlateOfPlates((LENGTH, WIDTH, THICKNESS), 0.0405), 7850.0, MODULUS, POISSON, HELD)
-    found = computed_transfer(recipe, SPOT, "upper", [(place(apart), face)], faces=2)[0, 2]
-    assert found == pytest.approx(series(place(apart), face), rel=0.002)
+    lower: list[tuple[float, Side]] = [(apart, "lower") for apart in (0.0, 0.5, 1.0, 2.0, 5.0)]
+    upper: list[tuple[float, Side]] = [(apart, "upper") for apart in (0.5, 1.0, 2.0, 5.0)]  # without bound at the force
+    points = [(place(apart), face) for apart, face in (*lower, *upper)]
+    found = computed_transfer(recipe, SPOT, "upper", points, faces=2)[:, 2]
+    np.testing.assert_allclose(found, [series(point, face) for point, face in points], rtol=0.002)
 
 
 @pytest.mark.slow
