@@ -196,8 +196,8 @@ def program(*arguments: str) -> str:
     ("shell", "file"),
     [
         ("bash", ".bash_completions/vibroimpact.sh"),
-        ("zsh", ".zfunc/_vibroimpact"),
-        ("fish", ".config/fish/completions/vibroimpact.fish"),
+        pytest.param("zsh", ".zfunc/_vibroimpact", marks=pytest.mark.slow),
+        pytest.param("fish", ".config/fish/completions/vibroimpact.fish", marks=pytest.mark.slow),
     ],
 )
 def test_what_is_installed_is_what_is_shown(shell: str, file: str, home: Path) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import cache
 
 import numpy as np
 import pytest
@@ -31,15 +32,18 @@ CORNERS = tuple(Patch(x, y, 0.02) for x in (-0.2292, 0.2292) for y in (-0.18, 0.
 SIDES = (Edge("x-min", "clamped"), Edge("x-max", "clamped"))
 
 
+@cache
 def plate(*supports: Support, theory: str = "thick") -> HeldStructure:
     mesh = plate_mesh(SIZE[:2], 0.14, *mesh_features(supports))
     return held_by(plate_structure(mesh, STEEL, SIZE[2], theory), supports)
 
 
+@cache
 def sphere(across: int = 6, grading: float = 1.0, kind: str = "hex20") -> HeldStructure:
     return held_by(solid_structure(sphere_mesh(0.025, across, kind, grading), STEEL))
 
 
+@cache
 def bricks(*supports: Support) -> HeldStructure:
     return held_by(solid_structure(solid_plate_mesh(SIZE, 0.08, 1, "hex20", *mesh_features(supports)), STEEL), supports)
 
@@ -90,14 +94,14 @@ def test_modes_are_those_that_arpack_finds(held: Callable[[], HeldStructure]) ->
     assert np.abs(left).max() < 1e-6 * np.abs(structure.stiffness @ found.shapes).max()
 
 
-@pytest.mark.parametrize("number", [1, 5, 7, 40])
-def test_modes_of_a_sphere_are_those_of_the_whole(number: int) -> None:
+def test_modes_of_a_sphere_are_those_of_the_whole() -> None:
     """Many are equal, and a number of modes may end among equal ones."""
     structure = sphere()
-    whole = ElasticSystem(structure.stiffness, structure.mass, structure.rigid, structure.order).modes(number)
-    found = elastic_system(structure).modes(number)
-    np.testing.assert_allclose(found.angular_frequencies, whole.angular_frequencies, rtol=1e-8)
-    assert np.abs(structure.rigid.T @ (structure.mass @ found.shapes)).max() < 1e-9 * np.abs(structure.rigid).max()
+    whole = ElasticSystem(structure.stiffness, structure.mass, structure.rigid, structure.order).modes(40)
+    for number in (1, 5, 7, 40):
+        found = elastic_system(structure).modes(number)
+        np.testing.assert_allclose(found.angular_frequencies, whole.angular_frequencies[:number], rtol=1e-8)
+        assert np.abs(structure.rigid.T @ (structure.mass @ found.shapes)).max() < 1e-9 * np.abs(structure.rigid).max()
 
 
 def test_one_part_may_have_most_of_the_modes() -> None:
