@@ -79,11 +79,11 @@ def rectangle_blocks(
     >>> len(rectangle_blocks((1.0, 1.0), 0.1, 2, [Disc(0.0, 0.0, 0.1)]))
     17
     """
+    boxes = [_box(disc, size, discs) for disc in discs]
     most = MOST_NODES // order**2
     if max(1.0, size[0] / element_size) * max(1.0, size[1] / element_size) > most:
         words = f"elements of {element_size:g} m would be more than {most} on this plate; make them larger"
         raise InputError(words, "mesh.element_size")
-    boxes = [_box(disc, size, discs) for disc in discs]
     breaks = []
     for axis in range(2):
         sides = [-0.5 * size[axis], 0.5 * size[axis], *rims[axis]]

@@ -12,6 +12,7 @@ from vibroimpact.dynamics.encounter import Encounter
 from vibroimpact.dynamics.phase_plane.phase import PlanePath, PlanePhase
 
 _STEPS = 4
+_BEFORE_END = 1.0 - 1e-9  # of the duration: a point later than this is its end, except for rounding
 
 
 @dataclass(frozen=True)
@@ -40,10 +41,12 @@ class PlaneMotion(PlanePath):
     def grid(self) -> Floats:
         """Return times since the start at which the motion of one drop is well resolved [s]."""
         elapsed = self.rule.integrals_of(self._pace)
-        since = np.unique(self.rule.weights_to_end(np.linspace(0.0, 1.0, 61)).T @ elapsed + _sums_before(elapsed[-1]))
+        within = self.rule.weights_to_end(np.linspace(0.0, 1.0, 61)).T @ elapsed
+        within[0] = 0.0  # where two segments meet there is one point, whatever the rounding
+        since = np.unique(within + _sums_before(elapsed[-1]))
         if self.name == "compression":
             since = since[-1] - since[::-1]
-        return np.append(since[since < self.duration[0]], self.duration[0])
+        return np.append(since[since < _BEFORE_END * self.duration[0]], self.duration[0])
 
     def at(self, time: Floats, encounter: Encounter) -> tuple[Floats, Floats, Floats]:
         """Return indentation [m], its rate [m/s] and the energy dissipated since the start [J] of one drop at times since then [s]."""
