@@ -284,10 +284,10 @@ def test_hover_tells_value_and_unit(page: Page, report: Any) -> None:
     )
     page.mouse.move(place[0] - 30, place[1] + 10)
     page.mouse.move(*place, steps=4)
-    label = page.locator('[data-chart="force"] .hoverlayer .hovertext').first
+    # on its way the pointer is told of other points
+    label = page.locator('[data-chart="force"] .hoverlayer .hovertext').filter(has_text="impact 2").first
     label.wait_for()
     words = " ".join(label.locator("text").all_text_contents())
-    assert "impact 2" in words
     assert re.search(r"\d kN", words)
     assert re.search(r"\d s", words)
     told = float(re.search(r"([\d.]+) kN", words).group(1))

@@ -16,8 +16,10 @@ from websockets.exceptions import ConnectionClosed, InvalidStatus
 from websockets.sync.client import connect
 
 from serving import Server
+from vibroimpact.app.address import fragment_of
 from vibroimpact.app.messages import LONGEST
 from vibroimpact.app.server import MOST_WINDOWS
+from vibroimpact.cases.reader import load_table
 from vibroimpact.charts.pack import unpack
 
 
@@ -129,6 +131,11 @@ def test_a_case_that_is_none() -> None:
     found = serve("paper:type9")
     assert found.returncode == 2
     assert "there is no shipped case" in found.stderr
+
+
+def test_who_opens_the_page_is_told_the_address_with_the_case() -> None:
+    with Server("paper:type1-theory") as other:
+        assert other.said == f"the live page is at {other.address}{fragment_of(load_table('paper:type1-theory'))}; Ctrl-C ends it\n"
 
 
 def test_without_the_extra(tmp_path: Path) -> None:

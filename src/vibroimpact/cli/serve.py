@@ -33,13 +33,14 @@ def serve(
     fragment = _fragment_of(case)
     listening = _listen(HOST, port)
     port = int(listening.getsockname()[1])
-    address = f"http://{HOST}:{port}/"
+    place = f"http://{HOST}:{port}/"
+    address = place + fragment  # which is long, and told where people open it themselves
 
     def tell() -> None:
-        say(f"the live page is at {address}; Ctrl-C ends it")
-        note(f"on another machine: ssh -L {port}:{HOST}:{port} THIS-MACHINE, and open {address} there")
-        if browser and not _open(address + fragment):
-            note("no browser could be opened; open this address in one")
+        say(f"the live page is at {place if browser else address}; Ctrl-C ends it")
+        note(f"on another machine: ssh -L {port}:{HOST}:{port} THIS-MACHINE, and open {place if browser else address} there")
+        if browser and not _open(address):
+            note(f"no browser could be opened; open this address in one: {address}")
 
     serve_page([listening], port, tell)
 

@@ -389,13 +389,14 @@
       let found = false;
       const view = this.state.view === null ? null : this.chart.views[this.state.view];
       for (const [key, value] of Object.entries(change)) {
-        const match = /^([xy])axis(\d*)\.(range\[0\]|autorange)$/.exec(key);
+        // a whole range comes when the axes are set back
+        const match = /^([xy])axis(\d*)\.(range|range\[0\]|autorange)$/.exec(key);
         if (!match) continue;
         const name = match[1] + match[2];
         const frame = { ...this.chart.frames, ...(view ? view.frames : {}) }[name];
         const ends = [change[`${match[1]}axis${match[2]}.range[0]`], change[`${match[1]}axis${match[2]}.range[1]`]];
         const log = (this.chart.layout[`${match[1]}axis${match[2]}`] || {}).type === "log";
-        if (match[3] === "autorange") delete ranges[name];
+        if (match[3] !== "range[0]") delete ranges[name];
         else if (log) continue;
         else ranges[name] = ends.map((end) => end * frame.size + frame.origin);
         found = true;
