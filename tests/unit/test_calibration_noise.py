@@ -157,6 +157,7 @@ def nearly_elastic(random: np.random.Generator, damping: float) -> Observations:
     return from_table(speeds, wanted, {"separation_speed": 0.01 * exact}, ("slow", "medium", "fast"))
 
 
+@pytest.mark.slow
 def test_at_the_end_of_the_range_it_bootstraps_by_itself() -> None:
     """First order ends at no damping, and is not believed there."""
     problem = vi.read_case(plain_case(contact={"law": "adams-impact", "damping_max": 5.0}, run={"impacts": 1})).to_problem()

@@ -70,6 +70,7 @@ def test_the_grid_is_that_of_the_elements(simple: tuple[vi.BodyModes, Chart]) ->
     np.testing.assert_allclose(exact * np.sign(exact @ drawn) / ratio, drawn, atol=2e-3)
 
 
+@pytest.mark.slow
 def test_edge_supports_contact_and_sensors_are_marked() -> None:
     supports = [{"type": "patches", "spacing": [0.2, 0.12], "radius": 0.01}, {"type": "edge", "edge": "x-max", "condition": "clamped"}]
     sensors = [{"name": name, "position": [0.05, 0.01 * place], "rate": 50e3} for place, name in enumerate(HOSTILE)]

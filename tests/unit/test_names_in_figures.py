@@ -76,6 +76,7 @@ def test_the_folder_holds_a_picture_and_a_table_of_each(folder: Path) -> None:
         assert all("value" in group for group in file["sensors"].values())
 
 
+@pytest.mark.slow
 def test_figures_show_every_name_in_one_line(result: Result) -> None:
     charts = {chart.name: chart for chart in (setup_chart(result), *run_charts(result))}
     names = drawn_sensors(result)

@@ -232,6 +232,7 @@ def test_bars_of_the_sensitivity_are_those_of_its_table(drawn: Study, charts: di
     }
 
 
+@pytest.mark.slow
 def test_a_large_study_stays_light(tmp_path: Path) -> None:
     study = study_of(tmp_path, {"over": DRAWN, "design": "sobol", "samples": 2**13, "keep": ["peaks"]})
     assert (study.path.parent / "report.html").stat().st_size < 4e6

@@ -115,6 +115,7 @@ def test_dop853(law: CompliantLaw) -> None:
 NAMES = ("separation_speed", "max_force")
 
 
+@pytest.mark.slow
 def test_a_nanometre() -> None:
     """Two drops 1 nm apart on an undamped plate: the force of the fourth impact differs by several per cent, and the run says so."""
     case = {

@@ -84,6 +84,7 @@ def at_rest_of(drops: dict[str, vi.Problem]) -> int:
     return len(balls)
 
 
+@pytest.mark.slow
 def test_two_drops_at_random() -> None:
     assert at_rest_of({f"any {seed}": random_drop(seed) for seed in range(2)}) == 1
 
