@@ -12,6 +12,9 @@ from vibroimpact.charts.frame import Frame
 from vibroimpact.charts.marks import Bars, Line, Points
 from vibroimpact.charts.palette import LOOKS, MANY
 
+_LARGEST = 6.0
+"""Largest size of a point [px]: of larger ones, plotly would rather tell a point of the line beneath, be it half a pixel off."""
+
 
 def line_trace(line: Line) -> dict[str, Any]:
     """Return the trace of a line."""
@@ -34,7 +37,7 @@ def points_trace(points: Points) -> dict[str, Any]:
     many, size = len(points.x) > MANY, LOOKS[points.role].size
     drawn: dict[str, Any] = {"type": "scatter", "mode": "markers", "x": points.x, "y": points.y}
     dot = {"symbol": LOOKS[points.role].symbol, "size": min(4.0, size), "color": f"@{points.role}", "opacity": 0.6, "line": {"width": 0}}
-    drawn["marker"] = dot if many else _symbol(points.role, size)
+    drawn["marker"] = dot if many else _symbol(points.role, min(_LARGEST, size))
     drawn |= _texts(points.texts)
     if points.keys:
         drawn["keys"] = {
