@@ -85,13 +85,6 @@ def spans_of_contact(result: Result) -> Spans:
     return Spans(time[np.flatnonzero(edges == 1)], time[np.flatnonzero(edges == -1) - 1], "in contact")
 
 
-def history_around(result: Result, impact: int) -> dict[str, Floats]:
-    """Return the history from shortly before to shortly after a contact, with time counted from first touch [s]."""
-    touch, duration = result.impacts["time_s"][impact], result.impacts["duration_s"][impact]
-    part = history_window(result.history, touch - MARGIN * duration, touch + (1.0 + MARGIN) * duration)
-    return {**part, "time_s": part["time_s"] - touch}
-
-
 def contact_history(result: Result, impact: int) -> dict[str, Floats]:
     """Return the history of a contact from first touch to release, as drawn over indentation.
 
