@@ -50,7 +50,7 @@ def run(
         Path | None, typer.Option("-o", "--output", metavar="DIR", help="The result folder to make; by default named after the case.")
     ] = None,
     changes: Changes = None,
-    figures: Annotated[bool, typer.Option("--figures", help="Write the charts of the report as files too, as PNG.")] = False,
+    figures: Figures = False,
     drop: Annotated[
         int | None,
         typer.Option("--drop", metavar="N", min=0, help="Of a case with a [sweep] section the drop of this number, as in drops.csv."),
