@@ -4,18 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-import numpy as np
-
 from vibroimpact.arrays import Floats
+from vibroimpact.charts.outlines import THIN, disc, rectangle, strip
 from vibroimpact.structures.mesh import Mesh
 from vibroimpact.structures.supports.edge import Edge
 from vibroimpact.structures.supports.node_set import NodeSet
 from vibroimpact.structures.supports.patch import RectangularPatch
 from vibroimpact.structures.supports.support import Support
-
-_TURN = np.linspace(0.0, 2.0 * np.pi, 25)
-_THIN = 0.012
-"""Size of what stands for a point or an edge, relative to the longer side of the plate."""
 
 
 def support_outlines(supports: Sequence[Support], mesh: Mesh) -> list[tuple[Floats, Floats]]:
@@ -32,22 +27,13 @@ def support_outlines(supports: Sequence[Support], mesh: Mesh) -> list[tuple[Floa
 
 
 def _outline(support: Support, mesh: Mesh) -> tuple[Floats, Floats]:
-    small = _THIN * float(mesh.extent[:2].max())
+    small = THIN * float(mesh.extent[:2].max())
     match support:
         case Edge():
-            return _strip(support, mesh, small)
+            low, high = mesh.nodes.min(axis=0), mesh.nodes.max(axis=0)
+            return strip(support.edge, (low[0], high[0]), (low[1], high[1]), small)
         case RectangularPatch():
-            across, up = 0.5 * support.length, 0.5 * support.width
-            return support.x + across * np.array([-1.0, 1.0, 1.0, -1.0]), support.y + up * np.array([-1.0, -1.0, 1.0, 1.0])
+            return rectangle(support.x, support.y, support.length, support.width)
         case _:  # a disc: a patch, a bar, a spring; or a point
-            radius = float(getattr(support, "radius", 0.0)) or small
             x, y = (float(getattr(support, side)) for side in "xy")
-            return x + radius * np.cos(_TURN), y + radius * np.sin(_TURN)
-
-
-def _strip(support: Edge, mesh: Mesh, wide: float) -> tuple[Floats, Floats]:
-    side = 0 if support.edge[0] == "x" else 1
-    low, high = mesh.nodes.min(axis=0), mesh.nodes.max(axis=0)
-    at, inner = (low[side], low[side] + wide) if support.edge.endswith("min") else (high[side], high[side] - wide)
-    first, second = np.array([at, inner, inner, at]), np.array([low[1 - side]] * 2 + [high[1 - side]] * 2)
-    return (first, second) if side == 0 else (second, first)
+            return disc(x, y, float(getattr(support, "radius", 0.0)) or small)

@@ -12,14 +12,12 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.charts.marks import Line, Mark, Outline
+from vibroimpact.charts.outlines import THIN, disc, rectangle, strip
 from vibroimpact.resolved_case import ResolvedCase
 from vibroimpact.results.result import Result
 from vibroimpact.shown import shortened, visible
 
 _EDGES = ("x-min", "x-max", "y-min", "y-max")
-_TURN = np.linspace(0.0, 2.0 * np.pi, 25)
-_THIN = 0.012
-"""Size of what stands for a point or an edge, relative to the longer side of the plate."""
 _DEPTH = 0.07
 """Drawn depth of a support, relative to the length of the plate; columns may be this many times deeper."""
 _MOST_DEEP = 4.0
@@ -84,26 +82,16 @@ def support_outlines(result: Result) -> list[tuple[Floats, Floats]]:
 
 
 def _outline(one: Mapping[str, Any], extent: Extent) -> tuple[Floats, Floats] | None:
-    small = _THIN * extent.longer
+    small = THIN * extent.longer
     if one["type"] == "edge":
-        return _strip(one["edge"], extent, small)
+        return strip(one["edge"], extent.x, extent.y, small)
     if "position" not in one:
         return None
     x, y = (float(part) for part in one["position"])
     if one.get("size"):
-        across, up = (0.5 * float(side) for side in one["size"])
-        return x + across * np.array([-1.0, 1.0, 1.0, -1.0]), y + up * np.array([-1.0, -1.0, 1.0, 1.0])
-    radius = float(one.get("radius") or small)
-    return x + radius * np.cos(_TURN), y + radius * np.sin(_TURN)
-
-
-def _strip(edge: str, extent: Extent, wide: float) -> tuple[Floats, Floats]:
-    """Return a narrow strip along an edge of the plate, such as "x-min"."""
-    side, end = edge.split("-")
-    across, along = (extent.x, extent.y) if side == "x" else (extent.y, extent.x)
-    at, inner = (across[0], across[0] + wide) if end == "min" else (across[1], across[1] - wide)
-    first, second = np.array([at, inner, inner, at]), np.array([along[0], along[0], along[1], along[1]])
-    return (first, second) if side == "x" else (second, first)
+        length, width = (float(side) for side in one["size"])
+        return rectangle(x, y, length, width)
+    return disc(x, y, float(one.get("radius") or small))
 
 
 def supports_from_the_side(result: Result, extent: Extent, thickness: float) -> list[Mark]:
@@ -118,7 +106,7 @@ def supports_from_the_side(result: Result, extent: Extent, thickness: float) -> 
     thickness : float
         Thickness as it is drawn [m].
     """
-    deep, wide = _DEPTH * (extent.x[1] - extent.x[0]), _THIN * extent.longer
+    deep, wide = _DEPTH * (extent.x[1] - extent.x[0]), THIN * extent.longer
     if result.case.get("plate", {}).get("model") == "rigid":
         return [_block(*extent.x, -thickness, -thickness - deep)]
     found: dict[tuple[Any, ...], list[Mark]] = {}  # of those behind each other one is seen
