@@ -7,8 +7,7 @@ from collections.abc import Iterator, Mapping
 from vibroimpact.dynamics.response import Response
 from vibroimpact.dynamics.sensors.recording import Signal
 from vibroimpact.results.deflection import deflection_of
-from vibroimpact.results.peaks import peaks_of
-from vibroimpact.results.result import Result, result_of
+from vibroimpact.results.result import Result, bare_result, result_of
 
 TOLERANCE = 1e-6
 """Tolerance of a draft: its numbers are right to six digits."""
@@ -46,16 +45,4 @@ def draft_of(response: Response) -> Result:
     """
     if not response.problem.vibrates:
         return result_of(response)
-    history = response.history(_POINTS)
-    return Result(
-        case=response.problem.source or {},
-        impacts=response.impacts,
-        history=history,
-        energy={name: float(value) for name, value in response.energy.items()},
-        status=response.status,
-        deformation=dict(response.problem.facts),
-        truncation=response.truncation,
-        peaks=peaks_of(response, history),
-        signals=_Signals(response),
-        deflection=deflection_of(response, _FRAMES),
-    )
+    return bare_result(response, response.history(_POINTS), _Signals(response), deflection_of(response, _FRAMES))

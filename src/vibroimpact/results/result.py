@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import platform
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
 from typing import TYPE_CHECKING
 
@@ -140,12 +140,9 @@ def result_of(response: Response) -> Result:
         If the response is of several drops, or keeps no history.
     """
     history = fine_history(response)
-    return Result(
-        case=response.problem.source or {},
-        impacts=response.impacts,
-        history=history,
-        energy={name: float(value) for name, value in response.energy.items()},
-        status=response.status,
+    signals = response.signals() if response.problem.sensors else {}
+    return replace(
+        bare_result(response, history, signals, deflection_of(response)),
         provenance={
             "version": __version__,
             "created": datetime.now(UTC).isoformat(timespec="seconds"),
@@ -155,9 +152,20 @@ def result_of(response: Response) -> Result:
             "tolerance": f"{response.problem.tolerance:g}",
             **({} if response.problem.source else {"problem": repr(response.problem)}),
         },
+    )
+
+
+def bare_result(response: Response, history: dict[str, Floats], signals: Mapping[str, Signal], deflection: Deflection | None) -> Result:
+    """Return the result of a response to one drop without provenance, from what may be as fine as one likes."""
+    return Result(
+        case=response.problem.source or {},
+        impacts=response.impacts,
+        history=history,
+        energy={name: float(value) for name, value in response.energy.items()},
+        status=response.status,
         deformation=dict(response.problem.facts),
         truncation=response.truncation,
         peaks=peaks_of(response, history),
-        signals=response.signals() if response.problem.sensors else {},
-        deflection=deflection_of(response),
+        signals=signals,
+        deflection=deflection,
     )
