@@ -13,6 +13,7 @@ from vibroimpact.errors import InputError
 from vibroimpact.materials import Material
 from vibroimpact.structures.damping import ConstantRatio, Damping
 from vibroimpact.structures.modal_model import ModalBasis, ModalModel, modal_basis, rigid_basis
+from vibroimpact.structures.mode_count import OF_AN_EDGE
 from vibroimpact.structures.plate_waves import wave_numbers
 from vibroimpact.structures.recipe import PlateOfPlates, PlateOfSolids, Recipe, Reduction, Shape, SphereOfSolids
 from vibroimpact.structures.supports.edge import Edge
@@ -22,7 +23,6 @@ from vibroimpact.structures.surface import Side, Spot
 _PER_WAVE = 3.0  # second-order bricks per shortest shear wavelength
 _ACROSS = 8  # least number of elements from pole to pole, for errors of 0.03 % of the lowest modes
 _SOLID_STEP, _PLATE_STEP = 0.1, 0.6  # sides of second-order bricks and of plate elements, over the shortest bending wavelength
-_CLAMPED = 1.763  # coefficient of the perimeter in the mode count of a clamped plate
 _MARGIN = 1.5  # thicknesses: width of plate elements along edges, where the shear varies within half a thickness
 _LAYERS = (0.32, 0.9, 3.0)  # wave number times thickness above which a plate has two, three and four layers of bricks
 _MOST_BRICKS = 6000  # of a mesh that is chosen here; finer meshes, for higher modes, have to be specified
@@ -180,14 +180,14 @@ def _bending_wave_number(
 ) -> float:
     """Return the wave number of bending waves at the highest frequency of a reduction [1/m].
 
-    Held edges reduce the number of modes below it: Weyl's count A k^2 / (4 pi) has a further term -c P k / (4 pi) of the perimeter P,
-    with c = 1 where it is simply supported and 1.763 where it is clamped (E. Bogomolny and E. Hugues, Phys. Rev. E 57:5404, 1998).
+    Held edges reduce the number of modes below it: Weyl's count A k^2 / (4 pi) has a further term c P k / (4 pi) of each, of length P
+    and with c < 0 of `OF_AN_EDGE` (E. Bogomolny and E. Hugues, Phys. Rev. E 57:5404, 1998).
     """
     length, width, thickness = size
     if reduction.modes is None:
         return float(wave_numbers(np.array(2.0 * math.pi * (reduction.max_frequency or 0.0)), thickness, material, thin=True))
     held = {support.edge: support.condition for support in supports if isinstance(support, Edge)}
-    part = sum((_CLAMPED if how == "clamped" else 1.0) * (width if edge[0] == "x" else length) for edge, how in held.items())
+    part = -sum(OF_AN_EDGE[how] * (width if edge[0] == "x" else length) for edge, how in held.items())
     area = length * width
     of_area = (part + math.sqrt(part**2 + 16.0 * math.pi * (reduction.modes + 4) * area)) / (2.0 * area)
     return min(of_area, math.pi * (reduction.modes + 4) / max(length, width))  # a narrow plate has the modes of a beam

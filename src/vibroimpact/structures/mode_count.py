@@ -24,7 +24,7 @@ from vibroimpact.structures.supports.edge import EDGES, Edge
 _OF_ANY_SHAPE = 100
 """Number of modes below a frequency of a body with an imported mesh: a guess."""
 
-_OF_AN_EDGE = {"free": 1.713, "simply-supported": -1.0, "clamped": -1.763}
+OF_AN_EDGE = {"free": 1.713, "simply-supported": -1.0, "clamped": -1.763}
 """Coefficients of the edges; that of free ones for a Poisson's ratio of 0.3."""
 
 
@@ -54,7 +54,7 @@ def modes_expected(recipe: Recipe) -> float:
         material = Material(recipe.density, recipe.youngs_modulus, ratio)
         bending = float(wave_numbers(np.array(omega), thickness, material, is_thin(recipe)))
         held = {support.edge: support.condition for support in recipe.supports if isinstance(support, Edge)}
-        edges = sum(_OF_AN_EDGE[held.get(edge, "free")] * (width if edge[0] == "x" else length) for edge in EDGES)
+        edges = sum(OF_AN_EDGE[held.get(edge, "free")] * (width if edge[0] == "x" else length) for edge in EDGES)
         area = length * width
         waves = area * (bending**2 + shear**2 * (1.0 + 0.5 * (1.0 - ratio))) + edges * bending
         return max(0.0, waves / (4.0 * math.pi) + area * thickness * of_volume)
