@@ -29,8 +29,7 @@
       for (const row of document.querySelectorAll("[data-impact]")) row.classList.toggle("chosen", Number(row.dataset.impact) === number + 1);
       for (const [name, chart] of charts) {
         const words = document.querySelector(`[data-headline="${CSS.escape(name)}"]`);
-        const view = chart.chart.views[number];
-        if (words) words.textContent = view ? `${view.name}${view.headline ? `: ${view.headline}` : ""}` : "";
+        if (words) words.textContent = chart.headline;
       }
     };
     select.addEventListener("change", () => move(Number(select.value)));

@@ -266,10 +266,7 @@
     }
   };
 
-  const headline = (one) => {
-    const view = one.state.view === null ? null : one.chart.views[one.state.view];
-    one.element.parentElement.querySelector(".headline").textContent = view ? `${view.name}${view.headline ? `: ${view.headline}` : ""}` : "";
-  };
+  const headline = (one) => { one.element.parentElement.querySelector(".headline").textContent = one.headline; };
 
   const showPlace = () => {
     $("view").value = String(state.view);

@@ -352,6 +352,10 @@
       this.end = () => { seen.disconnect(); near.disconnect(); sized.disconnect(); };
     }
 
+    // The view that is shown, if any, and what is to be written above it.
+    get view() { return this.chart.views[this.state.view]; }
+    get headline() { return this.view ? this.view.name + (this.view.headline && `: ${this.view.headline}`) : ""; }
+
     // Show another chart, or another state of it; it is drawn when it can be seen, or at once for paper, whose width the state gives.
     update(changes = {}) {
       if (changes.chart) this.chart = changes.chart;
@@ -387,13 +391,12 @@
     zoomed(change) {
       const ranges = { ...this.state.ranges };
       let found = false;
-      const view = this.state.view === null ? null : this.chart.views[this.state.view];
       for (const [key, value] of Object.entries(change)) {
         // a whole range comes when the axes are set back
         const match = /^([xy])axis(\d*)\.(range|range\[0\]|autorange)$/.exec(key);
         if (!match) continue;
         const name = match[1] + match[2];
-        const frame = { ...this.chart.frames, ...(view ? view.frames : {}) }[name];
+        const frame = { ...this.chart.frames, ...this.view?.frames }[name];
         const ends = [change[`${match[1]}axis${match[2]}.range[0]`], change[`${match[1]}axis${match[2]}.range[1]`]];
         const log = (this.chart.layout[`${match[1]}axis${match[2]}`] || {}).type === "log";
         if (match[3] !== "range[0]") delete ranges[name];
