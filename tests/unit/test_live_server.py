@@ -84,7 +84,8 @@ def window(server: Server):  # type: ignore[no-untyped-def]
 
 def test_a_window_is_welcomed_and_served(server: Server) -> None:
     with window(server) as socket:
-        assert unpack(socket.recv())["type"] == "welcome"
+        welcome = unpack(socket.recv())
+        assert (welcome["type"], welcome["longest"]) == ("welcome", LONGEST)
         socket.send(json.dumps({"type": "open", "number": 1, "source": "paper:type1-theory"}))
         case = unpack(socket.recv())["case"]
         socket.send(json.dumps({"type": "case", "number": 2, "case": case}))

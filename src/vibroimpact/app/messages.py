@@ -15,7 +15,7 @@ A window sends texts of JSON with a `type`:
 It is told documents with arrays, as `vibroimpact.charts.pack` writes them, each with its `type` and the `number` asked:
 
 `welcome`
-    first of all: shipped cases, laws with their parameters, materials, and colours;
+    first of all: shipped cases, laws with their parameters, materials, colours, and the `longest` message that is taken [bytes];
 `opened`
     the table of a case, and what of it this page leaves out;
 `progress`

@@ -1,4 +1,4 @@
-"""What the live page offers: shipped cases, contact laws with their parameters, materials, and colours."""
+"""What the live page offers: shipped cases, contact laws with their parameters, materials, colours, and the length of messages."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from functools import cache
 from typing import Any
 
 from vibroimpact._version import __version__
+from vibroimpact.app.messages import LONGEST
 from vibroimpact.cases.reader import shipped_cases
 from vibroimpact.contact.law import CompliantLaw, unit_of
 from vibroimpact.contact.registry import contact_laws
@@ -33,6 +34,7 @@ def offer() -> dict[str, Any]:
         "laws": {name: _law(law) for name, law in contact_laws().items()},
         "materials": list(material_library()),
         "palette": palette(),
+        "longest": LONGEST,
     }
 
 

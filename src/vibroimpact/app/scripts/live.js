@@ -5,7 +5,6 @@
   const $ = (id) => document.getElementById(id);
   const { make } = vibroimpact;
   const SETTLED = 250;       // after the last change the case is computed in full [ms]
-  const LONGEST = 200000;    // size of a message that the server takes [bytes]
 
   // `asked`: number of the case that is under way, `tables`: those asked for, by number; `last`: what is shown, and `table`: of which case;
   // `opening`: number and name of the shipped case that is being opened, `opened`: name and table of the one that was.
@@ -59,9 +58,9 @@
     return true;
   };
   const isTooLong = (message) => {
-    const size = new TextEncoder().encode(JSON.stringify(message)).length;
-    if (size > LONGEST) { setBusy(false); showFaults([`the case has ${size} bytes; ${LONGEST} are the most of the live page`]); }
-    return size > LONGEST;
+    const size = new TextEncoder().encode(JSON.stringify(message)).length, most = state.offer?.longest;
+    if (size > most) { setBusy(false); showFaults([`the case has ${size} bytes; ${most} are the most of the live page`]); }
+    return size > most;
   };
   const setBusy = (busy) => { $("results").setAttribute("aria-busy", String(busy)); $("get-report").disabled = busy || !state.last; $("get-signals").disabled = busy || !state.last || !(state.last.case.sensors || []).length; };
 
