@@ -69,6 +69,40 @@ def test_a_history_of_many_times_is_that_of_each_time() -> None:
             assert value == pytest.approx(together[name][index], rel=1e-12, abs=1e-14 * np.abs(together[name]).max()), name
 
 
+def test_columns_of_a_history_are_the_same_alone() -> None:
+    """Those of motion and force alone are found from less; a column that there is not is named."""
+    response = vi.simulate(drop_on(LOSSY, random_modes(3, 30, 100.0, 2e4, 1.2, 0.02), height=0.3, impacts=2))
+    history, times = response.history(), np.linspace(0.0, float(response.end_time[0]), 50)
+    whole = response.at(times)
+    for columns in (("force_N",), ("plate_deflection_m", "time_s"), ("plate_strain_J", "position_m"), tuple(history)):
+        for found, expected in ((response.history(columns=columns), history), (response.at(times, columns), whole)):
+            assert tuple(found) == columns
+            for name in columns:
+                np.testing.assert_array_equal(found[name], expected[name])
+    with pytest.raises(vi.InputError, match=r"no column 'force_kN'; it has time_s, position_m.*\. Did you mean \"force_N\"\?"):
+        response.history(columns=["force_kN"])
+
+
+def test_without_sensitivity_the_run_is_the_same() -> None:
+    problem = drop_on(LOSSY, random_modes(3, 30, 100.0, 2e4, 1.2, 0.02), height=0.3, impacts=3)
+    whole, part = vi.simulate(problem), vi.simulate(replace(problem, sensitivity=False))
+    assert set(whole.impacts) - set(part.impacts) == {"sensitivity"}
+    for name, values in part.impacts.items():
+        np.testing.assert_array_equal(values, whole.impacts[name])
+
+
+def test_the_motion_of_a_stretch_is_kept_for_a_while(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of stretches that are no longer kept the motion is found again, and is the same."""
+    problem = drop_on(LOSSY, random_modes(3, 30, 100.0, 2e4, 1.2, 0.02), height=0.3, impacts=3)
+    kept = vi.simulate(problem).history()
+    monkeypatch.setattr("vibroimpact.dynamics.vibrating.stretch._KEPT", 2)
+    response = vi.simulate(problem)
+    stretches = [piece.motion for leg in response.legs or () if leg.contact is not None for piece in leg.contact.pieces]
+    assert sum("motion" in vars(motion) for motion in stretches) <= 2 < len(stretches)
+    for name, values in response.history().items():
+        np.testing.assert_array_equal(values, kept[name])
+
+
 @pytest.mark.parametrize("seed", range(3))
 def test_the_impulse_is_the_change_of_momentum(seed: int) -> None:
     """The integral of the force over a contact, by Gauss's rule in a time smooth at both ends, less the weight's."""

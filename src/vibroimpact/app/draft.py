@@ -1,15 +1,23 @@
-"""The result of a drop while it is being changed: as of a run, but with fewer points, so that it is there at once."""
+"""The result of a drop while it is being changed: as of a run, but with fewer points and without doubts, so that it is there at once."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import replace
+from functools import cache, partial
+from typing import TYPE_CHECKING, Any
 
+from vibroimpact.dynamics.columns import MOTION_COLUMNS
+from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.response import Response
-from vibroimpact.dynamics.sensors.recording import Signal
 from vibroimpact.results.deflection import deflection_of
+from vibroimpact.results.peaks import FREQUENCIES, MAXIMA, frequencies_of, peaks_of
 from vibroimpact.results.result import Result, bare_result, result_of
 
-TOLERANCE = 1e-6
+if TYPE_CHECKING:
+    from vibroimpact.structures.modal_model import ModalBasis
+
+_TOLERANCE = 1e-6
 """Tolerance of a draft: its numbers are right to six digits."""
 
 _POINTS = 1000
@@ -19,30 +27,47 @@ _FRAMES = 36
 """Frames of the plate in motion."""
 
 
-class _Signals(Mapping[str, Signal]):
-    """The signals of a response, computed when one is looked at."""
+class _Deferred(Mapping[str, Any]):
+    """Values by their names, in groups of which each is computed when one of its values is looked at."""
 
-    def __init__(self, response: Response) -> None:
-        self._response, self._names = response, [sensor.name for sensor in response.problem.sensors]
-        self._found: dict[str, Signal] = {}
+    def __init__(self, *groups: tuple[Iterable[str], Callable[[], Mapping[str, Any]]]) -> None:
+        self._compute = {name: once for names, once in ((names, cache(compute)) for names, compute in groups) for name in names}
 
-    def __getitem__(self, name: str) -> Signal:
-        if not self._found:
-            self._found = self._response.signals()
-        return self._found[name]
+    def __getitem__(self, name: str) -> Any:
+        return self._compute[name]()[name]
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._compute
 
     def __iter__(self) -> Iterator[str]:
-        return iter(self._names)
+        return iter(self._compute)
 
     def __len__(self) -> int:
-        return len(self._names)
+        return len(self._compute)
+
+
+def drafted(problem: Problem) -> Problem:
+    """Return the problem that is simulated while it is being changed: to six digits, and without the growth of small changes."""
+    return replace(problem, tolerance=max(problem.tolerance, _TOLERANCE), sensitivity=False)
 
 
 def draft_of(response: Response) -> Result:
     """Return the result of a response to one drop whose bodies vibrate, with a history of about 1000 points.
 
-    For rigid bodies it is the result itself, which takes no time.
+    Of the history, the peaks and the signals only what is looked at is computed. For rigid bodies it is the result itself, which takes no
+    time.
     """
-    if not response.problem.vibrates:
+    problem = response.problem
+    if not problem.vibrates:
         return result_of(response)
-    return bare_result(response, response.history(_POINTS), _Signals(response), deflection_of(response, _FRAMES))
+    further = [name for name in response.history_columns if name not in MOTION_COLUMNS]
+    history = _Deferred(*((names, partial(response.history, _POINTS, names)) for names in (MOTION_COLUMNS, further)))
+    maxima = cache(lambda: peaks_of(response, history))
+
+    def of_body(body: str, modes: ModalBasis) -> _Deferred:
+        return _Deferred((MAXIMA, lambda: maxima()[body]), (FREQUENCIES, partial(frequencies_of, modes)))
+
+    bodies = {"sphere": problem.sphere.modes, "plate": problem.plate.modes}
+    peaks = {body: of_body(body, modes) for body, modes in bodies.items() if modes is not None}
+    signals = _Deferred(([sensor.name for sensor in problem.sensors], response.signals))
+    return bare_result(response, history, peaks, signals, deflection_of(response, _FRAMES))

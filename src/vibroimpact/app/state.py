@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import tomli_w
 
-from vibroimpact.app.draft import TOLERANCE, draft_of
+from vibroimpact.app.draft import draft_of, drafted
 from vibroimpact.app.limits import check_bounds, check_table
 from vibroimpact.app.messages import Detail
 from vibroimpact.cases.reader import read_case
@@ -62,10 +62,8 @@ def state_of(table: dict[str, Any], detail: Detail, tell: Tell, looked_at: Colle
     check_table(table)
     case = read_case(table)
     check_bounds(case)
-    if detail == "draft" and isinstance(table.get("run", {}), dict):
-        case = read_case({**table, "run": {**table.get("run", {}), "tolerance": max(case.run.tolerance, TOLERANCE)}})
     problem = case.to_problem(lambda part: tell(MODES, part), lambda note: None)
-    response = simulate(problem, lambda part: tell("simulating", part))
+    response = simulate(drafted(problem) if detail == "draft" else problem, lambda part: tell("simulating", part))
     tell("reading histories", 1.0)
     result = draft_of(response) if detail == "draft" else result_of(response)
     tell("drawing", 1.0)

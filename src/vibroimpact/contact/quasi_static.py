@@ -51,19 +51,26 @@ class QuasiStatic:
 
     def indentation(self, force: Array) -> Array:
         """Return s [m] at a force [N]."""
-        return force * (self.linear + self.unit * self._compliance_factor(force, 0.0, (1.0, 1.0, 1.0)))
+        x, logs = self._relative_radius(force)
+        return force * (self.linear + self.unit * self._factor(x, logs))
 
-    def compliance(self, force: Array) -> Array:
-        """Return ds/dF [m/N] at a force [N]."""
-        return self.linear + self.unit * self._compliance_factor(force, 1.0 / 3.0, (1.0, 4.0 / 3.0, 5.0 / 3.0))
+    def linearised(self, force: Array) -> tuple[Array, Array]:
+        """Return s [m] and ds/dF [m/N] at a force [N]."""
+        x, logs = self._relative_radius(force)
+        yielded = force * (self.linear + self.unit * self._factor(x, logs))
+        return yielded, self.linear + self.unit * self._factor(x, logs + 1.0 / 3.0, (4.0 / 3.0, 5.0 / 3.0))
 
     def energy(self, force: Array) -> Array:
         """Return the integral of F ds from zero to a force [J]; negative for a negative compliance."""
-        return 0.5 * force * force * (self.linear + self.unit * self._compliance_factor(force, 1.0 / 6.0, (1.0, 8.0 / 7.0, 1.25)))
+        x, logs = self._relative_radius(force)
+        return 0.5 * force * force * (self.linear + self.unit * self._factor(x, logs + 1.0 / 6.0, (8.0 / 7.0, 1.25)))
 
-    def _compliance_factor(self, force: Array, shift: float, weights: tuple[float, float, float]) -> Array:
-        """Return c(x) with a shifted logarithm and weighted terms c0, c2, c3, as s, its derivative and its integral need them."""
+    def _relative_radius(self, force: Array) -> tuple[Array, Array]:
+        """Return x, at least 1e-9, and its logarithm."""
+        x = np.maximum(np.cbrt(np.abs(force) / self.force), 1e-9)
+        return x, np.log(x)
+
+    def _factor(self, x: Array, logs: Array, weights: tuple[float, float] = (1.0, 1.0)) -> Array:
+        """Return c(x) with weighted terms of c2 and c3 and, as its derivative and its integral need them, with a shifted logarithm."""
         constant, logarithm, linear, square = self.factors
-        first, second, third = weights
-        x = np.maximum(np.cbrt(np.abs(force) / self.force), 1e-9)  # the logarithm needs a positive ratio
-        return first * constant + logarithm * (np.log(x) + shift) + x * (second * linear + third * square * x)
+        return constant + logarithm * logs + x * (weights[0] * linear + weights[1] * square * x)

@@ -129,6 +129,9 @@ VIBRATION_HISTORY_COLUMNS: dict[str, Column] = {
 ALL_IMPACT_COLUMNS = {**IMPACT_COLUMNS, **VIBRATION_IMPACT_COLUMNS}
 ALL_HISTORY_COLUMNS = {**HISTORY_COLUMNS, **VIBRATION_HISTORY_COLUMNS}
 
+MOTION_COLUMNS = (*tuple(HISTORY_COLUMNS)[:8], "plate_deflection_m")
+"""Those of motion and force, from `time_s` to `potential_J`, which are found from the state without the losses so far."""
+
 LEDGER = tuple(name for name, column in HISTORY_COLUMNS.items() if column.in_ledger)
 """The columns of a history that share the energy put in; their sum is constant."""
 

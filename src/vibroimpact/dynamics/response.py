@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from numbers import Integral
@@ -25,7 +25,7 @@ from vibroimpact.dynamics.sensors.recording import Signal
 from vibroimpact.dynamics.sensors.sensor import Sensor, sample_count
 from vibroimpact.dynamics.status import Ended, status_of
 from vibroimpact.dynamics.truncation import truncation_estimates
-from vibroimpact.errors import InputError
+from vibroimpact.errors import InputError, did_you_mean
 
 if TYPE_CHECKING:
     import plotly.graph_objects as go
@@ -127,13 +127,15 @@ class Response:
         """
         return status_of(Ended(self.problem, self.impacts, self.energy, self.outcomes, self.end_time, self.rest))
 
-    def at(self, times: Any) -> dict[str, Floats]:
+    def at(self, times: Any, columns: Collection[str] | None = None) -> dict[str, Floats]:
         """Return the motion, force and energies of one drop at given times.
 
         Parameters
         ----------
         times : array_like
             Times since the start [s], within the run.
+        columns : collection of str, optional
+            Names of the columns to compute; by default all. Where bodies vibrate, those of motion and force alone take half the time.
 
         Returns
         -------
@@ -143,7 +145,7 @@ class Response:
         Raises
         ------
         InputError
-            If a time lies outside the run, or the response is of several drops or without histories.
+            If a time lies outside the run, there is no such column, or the response is of several drops or without histories.
 
         Examples
         --------
@@ -159,12 +161,12 @@ class Response:
             raise InputError(f"times must lie within the run, 0 to {end:.6g} s")
         starts = self._starts
         index = np.maximum(np.searchsorted(starts, flat, side="right") - 1, 0)
-        columns = {name: np.empty(flat.shape) for name in self.history_columns}
+        found = {name: np.empty(flat.shape) for name in self._names(columns)}
         for number in np.unique(index):
             here = index == number
-            for name, values in self._history(int(number), flat[here] - starts[number]).items():
-                columns[name][here] = values
-        return {name: values.reshape(times.shape) for name, values in columns.items()}
+            for name, values in self._history(int(number), flat[here] - starts[number], found).items():
+                found[name][here] = values
+        return {name: values.reshape(times.shape) for name, values in found.items()}
 
     def sample(self, rate: float) -> dict[str, Floats]:
         """Return the motion, force and energies of one drop at a constant sampling rate.
@@ -183,7 +185,7 @@ class Response:
             raise InputError(f"{count:.3g} samples are more than 1e8; ask for a lower rate, or for parts by at()")
         return self.at(np.minimum(np.arange(sample_count(float(self.end_time[0]), rate)) / rate, self.end_time[0]))
 
-    def history(self, most: int | None = None) -> dict[str, Floats]:
+    def history(self, most: int | None = None, columns: Collection[str] | None = None) -> dict[str, Floats]:
         """Return the history of one drop on a grid that resolves every contact, with both sides of each event.
 
         Parameters
@@ -192,21 +194,24 @@ class Response:
             How many points there may be, about. Of a longer history the first impacts keep all of theirs, as many as fill a
             quarter; each flight and each part of a contact after them keeps its ends and equally many points between. Each impact
             takes about 170 points, and each point 100 bytes, or twice as many where bodies vibrate.
+        columns : collection of str, optional
+            As in `at`.
 
         Raises
         ------
         InputError
-            If the response is of several drops or without histories.
+            If there is no such column, or the response is of several drops or without histories.
         """
         points = np.array([len(segment.grid()) for segment in self._segments])
         kept = points if most is None else points_kept(points, most)
-        history = {name: np.empty(int(kept.sum())) for name in self.history_columns}
+        history = {name: np.empty(int(kept.sum())) for name in self._names(columns)}
         begin = 0
         for number, (segment, count) in enumerate(zip(self._segments, kept.tolist(), strict=True)):
-            for name, values in self._history(number, thinned(segment.grid(), count)).items():
+            for name, values in self._history(number, thinned(segment.grid(), count), history).items():
                 history[name][begin : begin + count] = values
             begin += count
-        np.maximum.accumulate(history["time_s"], out=history["time_s"])  # the times of both sides of an event may differ by rounding
+        if "time_s" in history:  # the times of both sides of an event may differ by rounding
+            np.maximum.accumulate(history["time_s"], out=history["time_s"])
         return history
 
     def modal(self, times: Any) -> dict[str, Floats]:
@@ -306,18 +311,26 @@ class Response:
 
     # the history of one drop, segment by segment ---------------------------------------------------
 
-    def _history(self, number: int, times: Floats) -> dict[str, Floats]:
-        """Return all columns at times since the start of one segment."""
+    def _names(self, columns: Collection[str] | None) -> Collection[str]:
+        """Return the names of columns of a history that were asked for, checked; by default all."""
+        known = self.history_columns
+        for name in columns or ():
+            if name not in known:
+                raise InputError(f"a history has no column {name!r}; it has {', '.join(known)}.{did_you_mean(name, known)}")
+        return known if columns is None else columns
+
+    def _history(self, number: int, times: Floats, columns: Collection[str]) -> dict[str, Floats]:
+        """Return columns at times since the start of one segment."""
         segments, problem = self._segments, self.problem
         if not isinstance(segments, Timeline):
             from vibroimpact.dynamics.vibrating.history import vibrating_history
 
-            return vibrating_history(problem, segments[number], times)
+            return vibrating_history(problem, segments[number], times, columns)
         segment, mass, gravity = segments[number], float(problem.sphere.mass), float(problem.gravity)
         gap, velocity, force, stored, lost, plastic = segment.at(times)
         lost_before, plastic_before = segments.spent[number]
         resting, flying = isinstance(segment, RestSegment), isinstance(segment, FlightSegment)
-        return {
+        found = {
             "time_s": segment.start + times,
             "position_m": float(problem.sphere.contact_offset) + gap,
             "velocity_m_s": velocity,
@@ -331,6 +344,7 @@ class Response:
             "plastic_work_J": plastic_before + plastic,
             "written_off_at_rest_J": np.full_like(times, self.rest.written_off[0] if resting else 0.0),
         }
+        return {name: found[name] for name in columns}
 
     @cached_property
     def _segments(self) -> Sequence[VibratingSegment] | Timeline:

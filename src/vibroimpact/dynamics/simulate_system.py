@@ -155,8 +155,6 @@ class SystemResponse:
         for motion, here, since in self._parts_at(times):
             state = motion.state(since)
             displacement[here], velocity[here] = state.displacement, state.velocity
-            if isinstance(motion, VibratingStretch):
-                motion.clear_cache()
         return State(displacement, velocity, np.zeros((len(times), 0)))
 
     def _parts(self, name: str, state: State, shape: tuple[int, ...]) -> tuple[Floats, Floats, Floats]:

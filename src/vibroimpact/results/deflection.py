@@ -82,7 +82,7 @@ def deflection_of(response: Response, frames: int = _FRAMES) -> Deflection | Non
 
     grid, shapes = model.cached("vertical displacement on a grid", shapes_on_grid, POINTS)
     height = response.modal(time)["plate"] @ shapes
-    history = response.at(time)
+    history = response.at(time, ("position_m", "plate_deflection_m"))
     return Deflection(
         time,
         grid.x,

@@ -14,10 +14,14 @@ if TYPE_CHECKING:
     from vibroimpact.dynamics.response import Response
     from vibroimpact.structures.modal_model import ModalBasis
 
-Peaks = dict[str, Any]
+Peaks = Mapping[str, Any]
+
+MAXIMA = ("max_displacement_m", "max_velocity_m_s", "max_acceleration_m_s2", "max_kinetic_energy_J", "max_strain_energy_J", "max_bending_m")
+"""Names of the peak values of a body, the last one of a plate only."""
+FREQUENCIES = ("frequencies_Hz", "frequency_errors")
 
 
-def peaks_of(response: Response, history: Mapping[str, Floats]) -> dict[str, Peaks]:
+def peaks_of(response: Response, history: Mapping[str, Floats]) -> Mapping[str, Peaks]:
     """Return peak values and frequencies of the bodies that have modes, by body name.
 
     Displacement, velocity and acceleration are largest magnitudes of the vertical motion of the centre of mass; the sphere's
@@ -31,37 +35,36 @@ def peaks_of(response: Response, history: Mapping[str, Floats]) -> dict[str, Pea
     history : mapping of str to array
         Its history, as returned by `fine_history`.
     """
-    problem, found = response.problem, {}
+    problem = response.problem
+    found: dict[str, dict[str, Any]] = {}
     if problem.sphere.modes is not None:
         rise = history["position_m"] - history["position_m"][0]
         impact = float(np.max(response.impacts["max_acceleration_m_s2"], initial=0.0))
         acceleration = max(impact, _largest(history["acceleration_m_s2"]))
         kinetic = history["kinetic_J"] + history["sphere_vibration_J"]
-        found["sphere"] = _peaks(problem.sphere.modes, rise, history["velocity_m_s"], acceleration, kinetic, history["sphere_strain_J"])
+        motion = rise, history["velocity_m_s"], acceleration
+        found["sphere"] = _maxima(*motion, kinetic, history["sphere_strain_J"]) | frequencies_of(problem.sphere.modes)
     if problem.plate.modes is not None:
-        found["plate"] = _peaks(
-            problem.plate.modes,
+        found["plate"] = _maxima(
             history["plate_displacement_m"],
             history["plate_velocity_m_s"],
             _largest(history["plate_acceleration_m_s2"]),
             history["plate_kinetic_J"],
             history["plate_strain_J"],
-        )
+        ) | frequencies_of(problem.plate.modes)
         if np.isfinite(bending := largest_bending(response)):
             found["plate"]["max_bending_m"] = bending
     return found
 
 
-def _peaks(modes: ModalBasis, displacement: Floats, velocity: Floats, acceleration: float, kinetic: Floats, strain: Floats) -> Peaks:
-    return {
-        "max_displacement_m": _largest(displacement),
-        "max_velocity_m_s": _largest(velocity),
-        "max_acceleration_m_s2": acceleration,
-        "max_kinetic_energy_J": _largest(kinetic),
-        "max_strain_energy_J": _largest(strain),
-        "frequencies_Hz": modes.frequencies.tolist(),
-        "frequency_errors": known_errors(modes.frequency_errors, len(modes.frequencies)),
-    }
+def _maxima(displacement: Floats, velocity: Floats, acceleration: float, kinetic: Floats, strain: Floats) -> dict[str, Any]:
+    return dict(zip(MAXIMA, (*map(_largest, (displacement, velocity)), acceleration, *map(_largest, (kinetic, strain))), strict=False))
+
+
+def frequencies_of(modes: ModalBasis) -> dict[str, Any]:
+    """Return the frequencies of a body's modes [Hz] and their errors, as stored in `summary.json`."""
+    errors = known_errors(modes.frequency_errors, len(modes.frequencies))
+    return dict(zip(FREQUENCIES, (modes.frequencies.tolist(), errors), strict=True))
 
 
 def known_errors(errors: Floats | None, number: int) -> list[float | None]:

@@ -40,7 +40,7 @@ class Result:
         Resolved case in SI units, as in `case.toml`; empty for a problem defined in Python.
     impacts : dict of str to array
         Impact table: columns of shape (impacts,).
-    history : dict of str to array
+    history : mapping of str to array
         History on a time grid that resolves every contact, but for very long runs: columns of shape (times,).
     energy : dict of str to float
         Energy ledger at the end of the run: energies [J], and the relative closure.
@@ -64,7 +64,7 @@ class Result:
 
     case: ResolvedCase
     impacts: dict[str, Floats]
-    history: dict[str, Floats]
+    history: Mapping[str, Floats]
     energy: dict[str, float]
     status: str
     provenance: Mapping[str, str] = field(default_factory=dict)
@@ -142,7 +142,7 @@ def result_of(response: Response) -> Result:
     history = fine_history(response)
     signals = response.signals() if response.problem.sensors else {}
     return replace(
-        bare_result(response, history, signals, deflection_of(response)),
+        bare_result(response, history, peaks_of(response, history), signals, deflection_of(response)),
         provenance={
             "version": __version__,
             "created": datetime.now(UTC).isoformat(timespec="seconds"),
@@ -155,7 +155,13 @@ def result_of(response: Response) -> Result:
     )
 
 
-def bare_result(response: Response, history: dict[str, Floats], signals: Mapping[str, Signal], deflection: Deflection | None) -> Result:
+def bare_result(
+    response: Response,
+    history: Mapping[str, Floats],
+    peaks: Mapping[str, Peaks],
+    signals: Mapping[str, Signal],
+    deflection: Deflection | None,
+) -> Result:
     """Return the result of a response to one drop without provenance, from what may be as fine as one likes."""
     return Result(
         case=response.problem.source or {},
@@ -165,7 +171,7 @@ def bare_result(response: Response, history: dict[str, Floats], signals: Mapping
         status=response.status,
         deformation=dict(response.problem.facts),
         truncation=response.truncation,
-        peaks=peaks_of(response, history),
+        peaks=peaks,
         signals=signals,
         deflection=deflection,
     )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
 import numpy as np
 
@@ -86,14 +86,15 @@ def spans_of_contact(result: Result) -> Spans:
 
 
 def contact_history(result: Result, impact: int) -> dict[str, Floats]:
-    """Return the history of a contact from first touch to release, as drawn over indentation.
+    """Return time, force and indentation of a contact from first touch to release, as drawn over indentation.
 
     At each end the history has a point in flight as well, which shows the jump of the force but has zero indentation. It is left out
     where contact begins or ends at another indentation: in a permanent dent, or with an adhesive neck. The rest of a sphere that stays
     is left out too.
     """
     touch = result.impacts["time_s"][impact]
-    part = history_window(result.history, touch, touch + result.impacts["duration_s"][impact])
+    drawn = {name: result.history[name] for name in ("time_s", "force_N", "indentation_m")}
+    part = history_window(drawn, touch, touch + result.impacts["duration_s"][impact])
     away = np.abs(part["indentation_m"]) > 1e-9 * np.max(np.abs(part["indentation_m"]))
     first, last = int(away[1] and not away[0]), len(away) - int(away[-2] and not away[-1])
     if result.impacts["separation_speed_m_s"][impact] == 0.0:
@@ -102,7 +103,7 @@ def contact_history(result: Result, impact: int) -> dict[str, Floats]:
     return {name: values[first:last] for name, values in part.items()}
 
 
-def history_window(history: dict[str, Floats], start: float, end: float) -> dict[str, Floats]:
+def history_window(history: Mapping[str, Floats], start: float, end: float) -> dict[str, Floats]:
     """Return the history between two times [s], interpolated linearly at each of them that lies within the run."""
     time = history["time_s"]
     first, last = np.searchsorted(time, start, side="left"), np.searchsorted(time, end, side="right")
@@ -128,7 +129,7 @@ def gravity_of(result: Result) -> float:
     return -float(result.history["acceleration_m_s2"][0])
 
 
-def drawn_history(result: Result) -> dict[str, Floats]:
+def drawn_history(result: Result) -> Mapping[str, Floats]:
     """Return the history that is drawn: all of it, or of a very long one the points that show the whole, and the first contacts in full."""
     history = result.history
     count = len(history["time_s"])

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from vibroimpact.arrays import Floats, Indices
@@ -36,7 +38,7 @@ _COLUMNS = 110
 """Number of points along the edge of a band over the whole run, besides those at impacts."""
 
 
-def ledger_chart(result: Result, history: dict[str, Floats], caption: str) -> Chart:
+def ledger_chart(result: Result, history: Mapping[str, Floats], caption: str) -> Chart:
     """Return the chart of the entries of the ledger as stacked bands over time.
 
     Parameters
@@ -67,7 +69,7 @@ def ledger_chart(result: Result, history: dict[str, Floats], caption: str) -> Ch
     return Chart("energy", title, ((panel,),), caption, height=3.9)
 
 
-def bands_of(history: dict[str, Floats]) -> dict[str, Floats]:
+def bands_of(history: Mapping[str, Floats]) -> dict[str, Floats]:
     """Return the time and the energies of the bands of a history [SI].
 
     Kinetic and strain energy of a vibrating body alternate, so they are summed to one band.
@@ -78,7 +80,7 @@ def bands_of(history: dict[str, Floats]) -> dict[str, Floats]:
     return bands
 
 
-def _drawn_points(result: Result, history: dict[str, Floats]) -> Indices:
+def _drawn_points(result: Result, history: Mapping[str, Floats]) -> Indices:
     """Return the indices of the points of the history to draw: evenly spaced ones, and those at touch and release of the first contacts."""
     time, touch = history["time_s"], result.impacts["time_s"][:45]
     release = touch + result.impacts["duration_s"][:45]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -45,7 +45,7 @@ class PlottedQuantity(NamedTuple):
     from_touch: bool = False
 
 
-def history_chart(result: Result, history: dict[str, Floats], quantity: PlottedQuantity, caption: str) -> Chart:
+def history_chart(result: Result, history: Mapping[str, Floats], quantity: PlottedQuantity, caption: str) -> Chart:
     """Return the chart of a quantity over time.
 
     Parameters

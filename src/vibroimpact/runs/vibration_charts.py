@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -49,7 +49,7 @@ _VISIT = 1.6
 """Time shown after first touch in the chart of the sphere, relative to the duration of the visit."""
 
 
-def sphere_energy_chart(result: Result, history: dict[str, Floats], caption: str) -> Chart:
+def sphere_energy_chart(result: Result, history: Mapping[str, Floats], caption: str) -> Chart:
     """Return the chart of the sphere's energies: kinetic and potential, and those of its modes and rotation that are not negligible."""
     modes = _SPHERE_MODES if "sphere" in result.peaks else ()
     rows = _SPHERE + tuple(row for row in modes if exceeds_rounding(result, row.columns[0]))
@@ -57,12 +57,12 @@ def sphere_energy_chart(result: Result, history: dict[str, Floats], caption: str
     return _chart(result, history, ("sphere_energy", "Energy of the sphere", caption), rows, time)
 
 
-def plate_motion_chart(result: Result, history: dict[str, Floats], caption: str) -> Chart:
+def plate_motion_chart(result: Result, history: Mapping[str, Floats], caption: str) -> Chart:
     """Return the chart of the plate's motion: that of its centre of mass, and the displacement at the contact point."""
     return _chart(result, history, ("plate_motion", "Motion of the plate, upwards", caption), _PLATE_MOTION, plate_time(result))
 
 
-def plate_energy_chart(result: Result, history: dict[str, Floats], caption: str) -> Chart:
+def plate_energy_chart(result: Result, history: Mapping[str, Floats], caption: str) -> Chart:
     """Return the chart of the plate's energies: kinetic, strain, their sum, and the change of its potential energy."""
     return _chart(result, history, ("plate_energy", "Energy of the plate", caption), _PLATE_ENERGY, plate_time(result))
 
@@ -72,7 +72,7 @@ def plate_time(result: Result) -> Axis:
     return time_axis(result, views_of_contacts(result, lambda impact: plate_span(result, impact)))
 
 
-def _chart(result: Result, history: dict[str, Floats], words: tuple[str, str, str], rows: Sequence[Row], time: Axis) -> Chart:
+def _chart(result: Result, history: Mapping[str, Floats], words: tuple[str, str, str], rows: Sequence[Row], time: Axis) -> Chart:
     name, title, caption = words
     panels = []
     for row in rows:

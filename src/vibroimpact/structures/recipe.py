@@ -239,12 +239,16 @@ def modal_model_of(recipe: Recipe, progress: Progress | None = None, tell: Calla
     ComputationError
         If the modes cannot be computed.
     """
-    similar = _normalised(recipe)
-    model = _stored_model(similar, progress, tell or (lambda text: None))
+    similar, tell = _normalised(recipe), tell or (lambda text: None)
     if similar is recipe:
-        return model
+        return _stored_model(recipe, progress, tell)
     assert isinstance(recipe.shape, SphereOfSolids)
-    return model.scaled(recipe.shape.radius, recipe.density, recipe.youngs_modulus)
+    here = _place(recipe)
+    model = _MODELS.get(here)  # which knows its shapes at places that were asked for before
+    if model is None:
+        model = _stored_model(similar, progress, tell).scaled(recipe.shape.radius, recipe.density, recipe.youngs_modulus)
+        _MODELS.put(here, model, model.size)
+    return model
 
 
 def model_key(recipe: Recipe) -> str:
@@ -263,8 +267,7 @@ def _normalised(recipe: Recipe) -> Recipe:
 
 def _stored_model(recipe: Recipe, progress: Progress | None, say: Callable[[str], None]) -> ModalModel:
     """Return a model from memory, else from the store, else computed; a model that cannot be stored stays in memory."""
-    key = key_of(recipe)
-    here = f"{store_folder()}/{key}"
+    key, here = key_of(recipe), _place(recipe)
     model = _MODELS.get(here)
     if model is not None:
         return model
@@ -279,6 +282,11 @@ def _stored_model(recipe: Recipe, progress: Progress | None, say: Callable[[str]
         say(trouble)
     _MODELS.put(here, model, model.size)
     return model
+
+
+def _place(recipe: Recipe) -> str:
+    """Return the key of the modes of a recipe in memory, which differs from store to store."""
+    return f"{store_folder()}/{key_of(recipe)}"
 
 
 def computed_model(recipe: Recipe, progress: Progress | None = None) -> ModalModel:

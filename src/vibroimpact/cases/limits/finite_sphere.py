@@ -48,7 +48,7 @@ def force_lacking(force: Array, radius: Array, modulus: Array, youngs_modulus: A
     for _ in range(_STEPS):
         part = np.cbrt(more)
         wrong = hertz * (part**5 - 1.0) + series.energy(more * force)
-        more = more - wrong / (hertz * 5.0 / 3.0 * part**2 + more * force**2 * series.compliance(more * force))
+        more = more - wrong / (hertz * 5.0 / 3.0 * part**2 + more * force**2 * series.linearised(more * force)[1])
     return 1.0 - 1.0 / more
 
 

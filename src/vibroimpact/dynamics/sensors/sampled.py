@@ -113,7 +113,6 @@ def sample_at_instants(chain: MeasuringChain, rate: float, segments: Sequence[Vi
             offset = first / rate - segment.start
             if isinstance(segment.trajectory, VibratingStretch):
                 values[:, first:last] = _in_contact(chain, segment.trajectory, instrument_state, offset + np.arange(last - first) / rate)
-                segment.trajectory.clear_cache()
             elif isinstance(segment.trajectory, RestMotion):
                 chained = rest_chain(chain, segment.trajectory, instrument_state + _rest_jump(segments)[:, None])
                 _blocks(chained.oscillators, chained.outputs, rate).sample(values[:, first:last], chained.initial, offset)

@@ -84,7 +84,7 @@ class VibratingBodies:
 
     def __init__(self, problem: Problem, mass: Floats, gravity: Floats) -> None:
         self.problem, self.mass, size = problem, mass, len(mass)
-        self.columns = tuple(ALL_IMPACT_COLUMNS)
+        self.columns = tuple(name for name in ALL_IMPACT_COLUMNS if problem.sensitivity or name != "sensitivity")
         pairs = list(zip(mass.tolist(), gravity.tolist(), strict=True))
         self.system = system_of(problem, *pairs[0])
         distinct = {(mass, gravity): self.system.with_sphere(mass**-0.5, gravity * mass**0.5) for mass, gravity in set(pairs)}
@@ -94,7 +94,7 @@ class VibratingBodies:
         self.lost = np.zeros((size, self.system.number + 1))
         self.lying: list[RestMotion | None] = [None] * size
         self.left = np.full(size, np.nan)
-        self.neighbours = Neighbours(problem, mass, self.system)
+        self.neighbours = Neighbours(problem, mass, self.system) if problem.sensitivity else None
 
     def state(self, drop: int, gap: float, velocity: float) -> State:
         """Return the state of a drop whose sphere has a gap [m] and a velocity upwards [m/s]."""
@@ -192,8 +192,8 @@ class VibratingBodies:
         return ends[:, 0], ends[:, 1], ends[:, 2]
 
     def growth(self, leg: Leg) -> Coroutine[Floats]:
-        """Return the growth of a small change of each drop by the impact of a leg [-]."""
-        return (yield from self.neighbours.follow(leg))
+        """Return the growth of a small change of each drop by the impact of a leg [-], or nothing where it is not asked for."""
+        return np.zeros(0) if self.neighbours is None else (yield from self.neighbours.follow(leg))
 
     def energies(self) -> dict[str, Floats]:
         """Return the entries of the energy balance [J], (B,), with separate ones for the local elements."""

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 
 from vibroimpact.arrays import Bools, Floats
+from vibroimpact.dynamics.collocation import Map
 from vibroimpact.dynamics.vibrating.linear_system import State
+from vibroimpact.dynamics.vibrating.receptance import radau_eigenbasis
 from vibroimpact.dynamics.vibrating.solve_stretches import EndCondition
 from vibroimpact.dynamics.vibrating.stretch import VibratingStretch
 
@@ -38,9 +41,15 @@ class OtherEvent:
 
 def first_event(stretch: VibratingStretch, speed: float, span: float) -> Event | None:
     """Return the first event in a stretch of contacts of about a speed [m/s] and a duration [s], or None."""
-    weights = stretch.rule.weights(GRID).T
+    weights = _weights_on_grid(stretch.rule.time_map, stretch.rule.root)
     found = (event for place in range(len(stretch.contacts)) for event in _events(stretch, place, weights, speed, span))
     return min(found, key=lambda event: event.x, default=None)
+
+
+@cache
+def _weights_on_grid(time_map: Map, root: int) -> Floats:
+    """Return the weights of the values at the start and the nodes of a stretch for interpolation on `GRID`."""
+    return radau_eigenbasis(time_map, root).rule.weights(GRID).T
 
 
 def _events(stretch: VibratingStretch, place: int, weights: Floats, speed: float, span: float) -> list[Event]:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from vibroimpact.arrays import Floats
+from vibroimpact.dynamics.columns import MOTION_COLUMNS
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.vibrating.bodies import bases_of_plate, centre_of, slices_of
 from vibroimpact.dynamics.vibrating.free_motion import FreePhase
@@ -24,24 +25,48 @@ _BLOCK = 128
 """Number of times evaluated together: their states lie in the processor's cache, which halves the time of a flight of many modes."""
 
 
-def vibrating_history(problem: Problem, segment: VibratingSegment, time: Floats) -> dict[str, Floats]:
-    """Return all columns at times since the start of a segment [s] (T,)."""
-    blocks = [_columns(problem, segment, part) for part in np.split(time, range(_BLOCK, len(time) - _BLOCK + 1, _BLOCK))]
-    return {name: np.concatenate([block[name] for block in blocks]) for name in blocks[0]}
+def vibrating_history(problem: Problem, segment: VibratingSegment, time: Floats, columns: Collection[str]) -> dict[str, Floats]:
+    """Return columns, by their names, at times since the start of a segment [s] (T,)."""
+    further, blocks = not set(columns).issubset(MOTION_COLUMNS), []
+    for part in np.split(time, range(_BLOCK, len(time) - _BLOCK + 1, _BLOCK)):
+        state = segment.state(part)
+        block = _motion_columns(problem, segment, part, state)
+        blocks.append({**block, **_further_columns(problem, segment, part, state, block["force_N"])} if further else block)
+    return {name: np.concatenate([block[name] for block in blocks]) for name in columns}
 
 
-def _columns(problem: Problem, segment: VibratingSegment, time: Floats) -> dict[str, Floats]:
-    """Return all columns at times since the start of a segment [s] (T,), evaluated together."""
+def _motion_columns(problem: Problem, segment: VibratingSegment, time: Floats, state: State) -> dict[str, Floats]:
+    """Return the columns of motion and force at times since the start of a segment [s] (T,), from the states then."""
     system, motion = segment.system, segment.motion
-    state, same = segment.state(time), np.ones_like(time)
     mass, gravity = float(problem.sphere.mass), float(problem.gravity)
-    stored, plastic, force, lost = system.local_energy(state), 0.0 * same, 0.0 * same, segment.lost_before[:-1]
+    force = np.zeros_like(time)
     if isinstance(motion, VibratingStretch):
         force = motion.contacts[0].force_at(motion.rule.unmap_time(time / motion.length))
-        lost = lost + motion.lost_by(time)
-        motion.clear_cache()
     elif isinstance(motion, RestMotion):
-        force, lost, stored = motion.force(time), lost + motion.lost_by(time), stored + motion.stored(time)
+        force = motion.force(time)
+    depth, fall_speed = centre_of(state, mass)
+    indentation = np.maximum(state.displacement @ system.indentation_shape[0], 0.0) if segment.in_contact else np.zeros_like(time)
+    return {
+        "time_s": segment.start + time,
+        "position_m": float(problem.sphere.contact_offset) - depth,
+        "velocity_m_s": -fall_speed,
+        "acceleration_m_s2": force / mass - gravity,
+        "force_N": force,
+        "indentation_m": indentation,
+        "kinetic_J": 0.5 * mass * fall_speed**2,
+        "potential_J": -mass * gravity * depth,
+        "plate_deflection_m": state.displacement[:, system.ground] @ system.shape[0, system.ground],
+    }
+
+
+def _further_columns(problem: Problem, segment: VibratingSegment, time: Floats, state: State, force: Floats) -> dict[str, Floats]:
+    """Return the other columns: energies of the contact, and motion and energies of the bodies that vibrate."""
+    system, motion, same = segment.system, segment.motion, np.ones_like(time)
+    stored, plastic, lost = system.local_energy(state), 0.0 * same, segment.lost_before[:-1]
+    if isinstance(motion, VibratingStretch):
+        lost = lost + motion.lost_by(time)
+    elif isinstance(motion, RestMotion):
+        lost, stored = lost + motion.lost_by(time), stored + motion.stored(time)
     else:
         lost = lost + motion.lost_at(state)
     local = motion.local if isinstance(motion, FreePhase) else motion.contacts[0].local if isinstance(motion, VibratingStretch) else None
@@ -50,16 +75,7 @@ def _columns(problem: Problem, segment: VibratingSegment, time: Floats) -> dict[
         stored = stored + contact_energy
         if isinstance(motion, VibratingStretch):
             plastic = plastic - local.plastic_work(max(float(motion.contacts[0].approach[0]), local.release_level))
-    depth, fall_speed = centre_of(state, mass)
     return {
-        "time_s": segment.start + time,
-        "position_m": float(problem.sphere.contact_offset) - depth,
-        "velocity_m_s": -fall_speed,
-        "acceleration_m_s2": force / mass - gravity,
-        "force_N": force,
-        "indentation_m": np.maximum(state.displacement @ system.indentation_shape[0], 0.0) if segment.in_contact else 0.0 * same,
-        "kinetic_J": 0.5 * mass * fall_speed**2,
-        "potential_J": -mass * gravity * depth,
         "contact_elastic_J": stored,
         "contact_dissipated_J": lost[:, -1].copy(),  # a view would keep the losses of all modes in memory
         "plastic_work_J": segment.lost_before[-1] + plastic,
@@ -70,9 +86,9 @@ def _columns(problem: Problem, segment: VibratingSegment, time: Floats) -> dict[
 
 def _contact_energies(local: LocalContact, system: LinearSystem, state: State) -> tuple[Floats, Floats]:
     """Return the energy stored by the contact, and its plastic work since the last update of the law's memory [J]."""
-    approach = np.maximum(system.approach(state)[:, 0], local.release_level)
-    plastic = local.plastic_work(approach) if local.law.yields else np.zeros_like(approach)
-    return np.asarray(local.elastic_energy(approach)), np.asarray(plastic)
+    delta = local.indentation_at(np.maximum(system.approach(state)[:, 0], local.release_level))
+    plastic = local.law.plastic_work(delta) if local.law.yields else np.zeros_like(delta)
+    return np.asarray(local.energy_at_indentation(delta)), np.asarray(plastic)
 
 
 def _body_columns(problem: Problem, system: LinearSystem, state: State, lost: Floats, force: Floats) -> dict[str, Floats]:
@@ -97,7 +113,6 @@ def _body_columns(problem: Problem, system: LinearSystem, state: State, lost: Fl
         "plate_displacement_m": displacement @ translation / mass,
         "plate_velocity_m_s": velocity @ translation / mass,
         "plate_acceleration_m_s2": acceleration @ translation / mass,
-        "plate_deflection_m": displacement @ system.shape[0, system.ground],
     }
 
 

@@ -80,7 +80,8 @@ class LocalContact:
         stiffness = (static[1] - static[0]) * (held / step)
         approach, slope = delta, np.ones_like(delta)
         if self.series:
-            approach, slope = delta + self.series.indentation(static[0]), 1.0 + self.series.compliance(static[0]) * stiffness
+            yielded, compliance = self.series.linearised(static[0])
+            approach, slope = delta + yielded, 1.0 + compliance * stiffness
         by_delta, by_rate = (dissipative[1] - dissipative[0]) * (held / step), (dissipative[2] - dissipative[0]) / faster
         return Linearised(static[0], dissipative[0], approach, slope, stiffness, by_delta, by_rate)
 
@@ -124,8 +125,9 @@ class LocalContact:
         offsets = np.array([0.0, step]).reshape((2,) + (1,) * approach.ndim)
         for _ in range(_MOST_ITERATIONS):
             force, deeper = self._static(delta + offsets)
-            slope = 1.0 + self.series.compliance(force) * ((deeper - force) / step)
-            change = (delta + self.series.indentation(force) - approach) / slope
+            yielded, compliance = self.series.linearised(force)
+            slope = 1.0 + compliance * ((deeper - force) / step)
+            change = (delta + yielded - approach) / slope
             delta = np.maximum(delta - change, self.release_indentation)
             if np.abs(change).max() <= _CONVERGED * size:
                 break

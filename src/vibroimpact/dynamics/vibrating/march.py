@@ -324,7 +324,7 @@ class March:
             if not contact.pushes:  # recoiling contacts, which are not part of the stretch
                 self.lost[-1] += float(recoil_loss(self.system, contact.number, contact.local, self.state, end))
         self.append_motion(stretch, end, lost)
-        stretch.clear_cache()  # bounds the memory of long runs
+        stretch.keep()
 
     def append_motion(self, motion: VibratingStretch | FreePhase, state: State, lost: Floats) -> None:
         """Append a motion to the history, and advance to its end."""

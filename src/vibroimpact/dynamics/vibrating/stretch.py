@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import weakref
+from collections import deque
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
@@ -16,6 +18,10 @@ from vibroimpact.dynamics.vibrating.receptance import ContactView, RadauEigenbas
 
 _RIGID_ROUNDING = 2e-15  # relative rounding error of the kinetic energy of the rigid motions that move the contacts
 _ROUNDING = 2e-14  # relative rounding error of the energy of the modes, which may far exceed that of a soft contact
+_KEPT = 64
+"""Number of stretches whose motion is kept in memory, the last ones that were solved or read: those of a few impacts."""
+
+_kept: deque[weakref.ref[VibratingStretch]] = deque()
 
 
 class StretchMotion(NamedTuple):
@@ -78,7 +84,8 @@ class VibratingStretch:
 
     @cached_property
     def motion(self) -> StretchMotion:
-        """Motion of the coordinates; recomputed from the forces if it was cleared."""
+        """Motion of the coordinates; recomputed from the forces if it is no longer kept."""
+        self.keep()
         systems, length = StackedSystems([self.view], [self.start]), np.array([self.length])
         admittance = 1.0 / systems.impedance(length[:, None] * self.basis.values)
         responses = systems.drive(self.basis, length) * admittance
@@ -151,12 +158,15 @@ class VibratingStretch:
             return np.zeros(len(self.contacts))
         return np.asarray(self.force @ self.rule.end_slope / self.length)
 
-    def clear_cache(self) -> None:
-        """Free the memory of the motion at the nodes, which is recomputed on demand; the state and the losses at the end are kept."""
-        if "motion" in self.__dict__:
-            _ = self.end, self.lost
-        for name in ("motion", "powers", "force"):
-            self.__dict__.pop(name, None)
+    def keep(self) -> None:
+        """Keep the motion at the nodes in memory until other stretches take its place; the state and the losses at the end stay."""
+        _kept.append(weakref.ref(self))
+        while len(_kept) > _KEPT:
+            oldest = _kept.popleft()()
+            if oldest is not None:
+                _ = oldest.end, oldest.lost
+                for name in ("motion", "powers", "force"):
+                    oldest.__dict__.pop(name, None)
 
     def _x(self, time: Floats) -> Floats:
         """Return x at times since the start [s]."""

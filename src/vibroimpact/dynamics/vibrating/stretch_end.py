@@ -109,6 +109,7 @@ def with_separation_loss(stretch: VibratingStretch, place: int, held: float) -> 
     contacts[place] = replace(contacts[place], separation_loss=held)
     found = replace(stretch, contacts=tuple(contacts))
     found.__dict__["motion"] = stretch.motion  # unchanged
+    found.keep()
     return found
 
 
