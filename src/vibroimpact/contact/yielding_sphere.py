@@ -17,7 +17,8 @@ class YieldingSphereLaw(ElasticPairLaw, ElasticPlasticLaw):
     r"""Base of the elastic-plastic laws of a sphere.
 
     Up to `yield_indentation` the contact is Hertzian. Beyond, it unloads as the Hertzian contact of a sphere of larger radius
-    with the same contact radius :math:`a_m = \sqrt{R \delta_m}` and force :math:`F_m`, so that
+    with the same contact radius :math:`a_m`, which is :math:`\sqrt{R \delta_m}` unless a law has it otherwise, and force
+    :math:`F_m`, so that
 
     .. math:: \delta_m - \delta_r = \frac{3 F_m}{4 E^* a_m}
 
@@ -36,6 +37,10 @@ class YieldingSphereLaw(ElasticPairLaw, ElasticPlasticLaw):
     def plastic_loading_work(self, delta: Array) -> Array:
         """Return the integral of `plastic_force` from `yield_indentation` [J]."""
         raise NotImplementedError
+
+    def contact_radius(self, delta: Array) -> Array:
+        """Return the contact radius beyond `yield_indentation` [m]."""
+        return np.sqrt(self.effective_radius * delta)
 
     @property
     def breakpoints(self) -> tuple[Array, ...]:
@@ -61,7 +66,7 @@ class YieldingSphereLaw(ElasticPairLaw, ElasticPlasticLaw):
     def elastic_recovery(self, deepest: Array) -> Array:
         """Return the elastic recovery [m], which is the full indentation up to yield."""
         yielded, elastic = self._split(deepest)
-        recovery = 0.75 * self.plastic_force(yielded) / (self.effective_modulus * np.sqrt(self.effective_radius * yielded))
+        recovery = 0.75 * self.plastic_force(yielded) / (self.effective_modulus * self.contact_radius(yielded))
         return np.where(deepest > elastic, recovery, deepest)
 
     def _split(self, delta: Array) -> tuple[Array, Array]:

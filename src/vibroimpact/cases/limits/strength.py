@@ -60,7 +60,7 @@ def _strength_sentence(body: str, drop: Conditions, ratio: float) -> str:
         times = "just above" if ratio < 1.05 else f"{ratio:.2g} times"
         how = f", {times} that at which it begins to {begins} ({_YIELD} times {known})"
     remedy = (
-        "take a law that yields, such as thornton"
+        "take a law that yields, such as meyer"
         if name == "yield_strength"
         else "take the force for an upper bound, or a measured restitution"
     )

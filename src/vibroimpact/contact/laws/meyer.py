@@ -1,0 +1,127 @@
+"""Meyer's law: sphere whose contact pressure rises as a power of the contact radius between first yield and full plasticity."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from vibroimpact.arrays import Array
+from vibroimpact.contact.law import parameter
+from vibroimpact.contact.yielding_sphere import YieldingSphereLaw
+
+_AT_YIELD, _FULLY_PLASTIC = 1.6, 2.8  # largest pressure at first yield, and mean pressure when fully plastic, over the yield strength
+_RISE = 1.5 * _FULLY_PLASTIC / _AT_YIELD  # ratio of the mean pressures, which is two thirds of the largest one at first yield
+_MOST_ITERATIONS, _CONVERGED = 60, 1e-15
+
+
+@dataclass(frozen=True, kw_only=True)
+class Meyer(YieldingSphereLaw):
+    r"""Elastic-plastic sphere with Meyer's index (Tabor 1951; Kharaz and Gorham 2000).
+
+    Beyond first yield the mean pressure rises with the contact radius as Meyer's law has it, up to full plasticity:
+
+    .. math:: \bar p = \min\left(1.07\, Y (a/a_y)^{n-2},\; 2.8\, Y\right),\qquad F = \pi a^2 \bar p,\qquad
+              \delta = \frac{a^2}{2 R} + \frac{3 F}{8 E^* a}
+
+    with :math:`\delta_y = a_y^2/R = R\, (1.6\, \pi Y/2 E^*)^2` at yield. Unloading is Hertz's, of a sphere in the dent of the same
+    contact radius.
+
+    Notes
+    -----
+    The indentation is that of a sphere that leaves a spherical dent: Hertz's :math:`a^2/R` at yield, and :math:`a^2/2R`, the depth of
+    the dent, far beyond. With :math:`n = 3` the contact is Hertzian until the pressure is full, with :math:`n = 2` the mean pressure does
+    not rise. In between e tends to a power of the speed, :math:`v^{-(3-n)/(n+2)}`, as long as the pressure rises, and to
+    :math:`v^{-1/4}` where it is full. Of a material whose hardness H is known rather than its yield strength, give :math:`Y = H/2.8`.
+
+    Spheres of alumina on thick plates of mild steel and of an aluminium alloy, dropped from 0.6 mm to 1.75 m, follow such a power, and
+    become fully plastic at about 100 times the speed of first yield (Kharaz and Gorham 2000); the default index does so as well. Laws of
+    constant pressure, as Thornton's, lose too much in between.
+
+    References
+    ----------
+    Tabor, D. (1951). The Hardness of Metals. Oxford University Press, chapters 5 and 8.
+
+    Kharaz, A. H. and Gorham, D. A. (2000). A study of the restitution coefficient in elastic-plastic impact. Philosophical Magazine
+    Letters 80, 549-559.
+
+    Examples
+    --------
+    >>> law = Meyer(effective_modulus=7e10, effective_radius=0.01, yield_strength=4e8)
+    >>> [round(float(law.closed_form_restitution(0.01, v)), 5) for v in (0.001, 1.0, 10.0)]
+    [1.0, 0.79307, 0.59643]
+    """
+
+    name = "meyer"
+    equation = (
+        "F = pi a^2 p, p = min(1.07 Y (a/a_y)^(n-2), 2.8 Y) beyond yield, delta = a^2/(2 R) + 3 F/(8 E* a); "
+        "unloading Hertz's, of a sphere in its dent"
+    )
+    source = "Kharaz & Gorham 2000, Philos. Mag. Lett. 80:549; Tabor 1951, The Hardness of Metals"
+    free_parameter = "yield_strength"
+
+    yield_strength: Array = parameter(
+        "yield strength Y",
+        "Pa",
+        detail="Yield strength :math:`Y` of the body that yields.",
+        example=1e8,
+        above=0,
+        from_pair="yield_strength",
+    )
+    meyer_index: Array = parameter(
+        "Meyer's index n, 2 for constant pressure, 3 for an elastic contact",
+        detail="Meyer's index :math:`n`; with the default the contact is fully plastic from 100 times the speed of first yield on.",
+        default=2.45,
+        at_least=2,
+        at_most=3,
+    )
+
+    @property
+    def yield_indentation(self) -> Array:
+        r"""Indentation :math:`\delta_y` at yield [m]."""
+        return self.effective_radius * (0.5 * np.pi * _AT_YIELD * self.yield_strength / self.effective_modulus) ** 2
+
+    @property
+    def breakpoints(self) -> tuple[Array, ...]:
+        """The indentations at yield and at full plasticity, or the largest so far where that is larger."""
+        at_full = self.yield_indentation * 0.5 * self._full_radius * (self._full_radius + _RISE)
+        return (np.maximum(self.yield_indentation, self.loaded_to), np.maximum(at_full, self.loaded_to))
+
+    def contact_radius(self, delta: Array) -> Array:
+        """Return the contact radius beyond the yield indentation [m]."""
+        return self._relative_radius(delta) * np.sqrt(self.effective_radius * self.yield_indentation)
+
+    def plastic_force(self, delta: Array) -> Array:
+        """Return the loading force beyond the yield indentation [N]."""
+        x = self._relative_radius(delta)
+        return self._yield_force * np.minimum(x**self.meyer_index, _RISE * x * x)
+
+    def plastic_loading_work(self, delta: Array) -> Array:
+        """Return the integral of the plastic force from the yield indentation [J]."""
+        n, x = self.meyer_index, self._relative_radius(delta)
+        rising = np.minimum(x, self._full_radius)
+        work = (rising ** (n + 2.0) - 1.0) / (n + 2.0) + 0.5 * (n - 1.0) * (rising ** (2.0 * n - 1.0) - 1.0) / (2.0 * n - 1.0)
+        work = work + _RISE * ((x**4 - rising**4) / 4.0 + _RISE * (x**3 - rising**3) / 6.0)
+        return self._yield_force * self.yield_indentation * work
+
+    def _relative_radius(self, delta: Array) -> Array:
+        """Return the contact radius relative to that at yield [-], at indentations from that at yield on [m]."""
+        depth, power = 2.0 * delta / self.yield_indentation, self.meyer_index - 1.0
+        full = 0.5 * (np.sqrt(_RISE * _RISE + 4.0 * depth) - _RISE)  # where the pressure is full: x^2 + _RISE x
+        x = 0.5 * (np.sqrt(1.0 + 4.0 * depth) - 1.0)  # where it does not rise, and not less where it does
+        for _ in range(_MOST_ITERATIONS):  # x^2 + x^(n-1) is convex: Newton's method goes down to the root
+            step = (x * x + x**power - depth) / (2.0 * x + power * x ** (power - 1.0))
+            x = x - step
+            if np.all(np.abs(step) <= _CONVERGED * x):
+                break
+        return np.where(full > self._full_radius, full, np.maximum(x, 1.0))
+
+    @property
+    def _full_radius(self) -> Array:
+        """Contact radius at full plasticity, relative to that at yield [-]; infinite for a pressure that does not rise."""
+        with np.errstate(divide="ignore", over="ignore"):
+            return _RISE ** np.divide(1.0, self.meyer_index - 2.0)
+
+    @property
+    def _yield_force(self) -> Array:
+        return self.stiffness * self.yield_indentation * np.sqrt(self.yield_indentation)
