@@ -61,8 +61,6 @@ class PlaneRule:
         From values at the nodes to their last two Legendre coefficients.
     derivatives : array, shape (2, N, N)
         From values at the nodes to the first and the second derivative there.
-    coefficients : array, shape (N, N)
-        From values at the nodes to Legendre coefficients in 2 y - 1.
     dense : array, shape (33, N)
         From values at the nodes to values at evenly spaced y.
     barycentric : array, shape (N, 1)
@@ -88,7 +86,6 @@ class PlaneRule:
     weights: Floats
     last: Floats
     derivatives: Floats
-    coefficients: Floats
     dense: Floats
     barycentric: Floats
     barycentric_to_end: Floats
@@ -205,7 +202,6 @@ def plane_rule(number: int, root: int, segments: int = 1, *, turns: bool = True,
         weights / 2.0,
         coefficients[-2:],
         np.stack([slopes(1), slopes(2)]),
-        coefficients,
         legendre.legvander(np.linspace(-1.0, 1.0, DENSE), number - 1) @ coefficients,
         barycentric[:, None],
         np.append(barycentric / (4.0 * (nodes - 1.0)), 1.0 / np.prod(4.0 * (1.0 - nodes)))[:, None],

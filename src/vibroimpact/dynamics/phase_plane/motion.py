@@ -50,7 +50,7 @@ class PlaneMotion(PlanePath):
 
     def at(self, time: Floats, encounter: Encounter) -> tuple[Floats, Floats, Floats]:
         """Return indentation [m], its rate [m/s] and the energy dissipated since the start [J] of one drop at times since then [s]."""
-        rule, levels, compressing = self.rule, self.levels, self.name == "compression"
+        rule, levels, compressing, pace = self.rule, self.levels, self.name == "compression", self._pace
         sign, slope = 1.0 if compressing else -1.0, rule.indentation_slope(levels)
         velocity = sign * rule.factor * np.sqrt(self.squares)
         static, dissipative = encounter.law.forces(rule.indentations(levels), velocity, encounter.approach_speed)
@@ -60,11 +60,11 @@ class PlaneMotion(PlanePath):
         if rule.turns:  # in the first segment w is y^2 u
             squares[:, 0] = rule.with_end(self.squares)[:, 0]
 
-        elapsed = rule.integrals_of(self._pace)
+        elapsed = rule.integrals_of(pace)
         ends = np.cumsum(elapsed[-1])
         since = np.clip(ends[-1] - time if compressing else time, 0.0, ends[-1])  # time from or to the deep end
         segment = np.minimum(np.searchsorted(ends, since), rule.segments - 1)
-        y = self._place(elapsed, since - _sums_before(elapsed[-1])[segment], segment)
+        y = self._place(elapsed, pace, since - _sums_before(elapsed[-1])[segment], segment)
         shape, factor = rule.shape_at(segment, y)
         delta = levels[segment + 1, 0] + (levels[segment, 0] - levels[segment + 1, 0]) * shape
         square, lost = self._values([squares, losses], segment, y)
@@ -82,8 +82,11 @@ class PlaneMotion(PlanePath):
         weights = self.rule.weights_to_end(y)
         return [np.asarray((weights * one[:, segment]).sum(axis=0)) for one in series]
 
-    def _place(self, elapsed: Floats, since: Floats, segment: Indices) -> Floats:
-        """Return y at times since the deep end of a segment [s], by Newton's method in a root of the remaining time."""
+    def _place(self, elapsed: Floats, pace: Floats, since: Floats, segment: Indices) -> Floats:
+        """Return y at times since the deep end of a segment [s], by Newton's method in a root of the remaining time.
+
+        `elapsed`: time from the deep end of each segment to its nodes and end [s], (N + 1, S); `pace`: dt/dy at all nodes [s], (S N, 1).
+        """
         rule, grid = self.rule, np.linspace(0.0, 1.0, 65)
         roots = np.ones(rule.segments, dtype=int)
         if rule.touches:
@@ -98,9 +101,9 @@ class PlaneMotion(PlanePath):
         for number in range(rule.segments):
             here = segment == number
             y[here] = np.interp(-wanted[here], -left[:, number], grid)
-        pace = rule.with_end(self._pace)
+        paces = rule.with_end(pace)
         for _ in range(_STEPS):
-            time, slope = self._values([elapsed, pace], segment, y)
+            time, slope = self._values([elapsed, paces], segment, y)
             now = remaining(time)
             with np.errstate(all="ignore"):
                 step = (now - wanted) * root * now ** (root - 1) / slope
