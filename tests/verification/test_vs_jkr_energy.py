@@ -7,11 +7,13 @@ import math
 import numpy as np
 import pytest
 from scipy.integrate import quad
-from scipy.optimize import brentq
+from scipy.optimize import brentq, minimize_scalar
 
 import vibroimpact as vi
 from support import plain_case
 from vibroimpact.cases.limits.adhesion import WORK_OF_ADHESION, sticking_speed
+from vibroimpact.contact.laws.jkr import JKR
+from vibroimpact.contact.quasi_static import QuasiStatic
 
 RADIUS, MODULUS = 2e-5, 3e10
 
@@ -45,3 +47,27 @@ def test_the_restitution_that_is_lost() -> None:
     mass = 4 / 3 * math.pi * RADIUS**3 * 2500
     speed = float(sticking_speed(RADIUS, MODULUS, mass))
     assert 1 - np.sqrt(1 - (speed / 0.1) ** 2) == pytest.approx(lost, rel=0.03)
+
+
+def test_the_energy_lost_with_a_compliance_in_series() -> None:
+    """The work of force over approach, from the state at first touch, which the adhesion stretches, to where the approach turns; 1 %."""
+    compliance = 5e-5  # a fifth of that of the contact at zero indentation
+    law = JKR(effective_modulus=MODULUS, effective_radius=RADIUS, work_of_adhesion=WORK_OF_ADHESION)
+
+    def force(a: float) -> float:
+        return 4 * MODULUS * a**3 / (3 * RADIUS) - math.sqrt(8 * math.pi * WORK_OF_ADHESION * MODULUS * a**3)
+
+    def approach(a: float) -> float:
+        return a**2 / RADIUS - math.sqrt(2 * math.pi * WORK_OF_ADHESION * a / MODULUS) + compliance * force(a)
+
+    at_zero = (2 * math.pi * WORK_OF_ADHESION * RADIUS**2 / MODULUS) ** (1 / 3)
+    at_break = minimize_scalar(approach, bounds=(0.1 * at_zero, at_zero), method="bounded", options={"xatol": 1e-9 * at_zero}).x
+    at_touch = brentq(approach, at_break, 2 * at_zero)
+    steps = np.linspace(at_break, at_touch, 20001)
+    work = -float(np.trapezoid([force(a) for a in steps], [approach(a) for a in steps]))
+    mass = 4 / 3 * math.pi * RADIUS**3 * 2500
+    sphere, plate = vi.Body(mass=mass, contact_offset=RADIUS), vi.Body(mass=np.inf, contact_offset=0.0)
+    series = QuasiStatic(linear=compliance)
+    energy = vi.simulate(vi.Problem(sphere=sphere, plate=plate, laws=(law,), speed=0.1, gravity=0.0, impacts=1, quasi_static=series)).energy
+    assert energy["contact_dissipated_J"] == pytest.approx(work, rel=0.01)
+    assert energy["closure_relative"] < 1e-9

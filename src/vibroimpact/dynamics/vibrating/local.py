@@ -99,10 +99,10 @@ class LocalContact:
         return np.interp(approach, *self._table(self._scale(approach)))
 
     def energy_at_indentation(self, delta: Array) -> Array:
-        """Return the stored energy at an indentation of the law [J]."""
+        """Return the energy stored since touch, at an indentation of the law [J]."""
         delta = np.maximum(delta, self.release_indentation)
         stored = self.law.elastic_energy(delta)
-        return stored + self.series.energy(self._static(delta)) if self.series else stored
+        return stored + self.series.energy(self._static(delta)) - self.energy_of_jump if self.series else stored
 
     def work_at_indentation(self, delta: Array) -> Array:
         """Return the sum of stored energy and plastic work at an indentation of the law [J]."""
@@ -158,9 +158,16 @@ class LocalContact:
     # levels and energies in terms of the approach ---------------------------------------------------
 
     @cached_property
-    def touch_level(self) -> float:
-        """Approach at touch [m]."""
-        return float(self.approach_at(np.asarray(self.law.touch_level, dtype=float)))
+    def energy_of_jump(self) -> float:
+        """Energy that an adhesive law and the compliance in series store as they jump into contact, relative to the law alone [J], <= 0.
+
+        Energies are those since touch, as those of the law are, so that this one is a part of what is lost at release.
+        """
+        touch = np.asarray(self.law.touch_level, dtype=float)
+        if not self._static(touch):
+            return 0.0
+        delta = self.indentation_at(touch)
+        return float(self.law.elastic_energy(delta) + self.series.energy(self._static(delta)))
 
     @cached_property
     def release_level(self) -> float:
@@ -178,7 +185,7 @@ class LocalContact:
         return float(delta[torn[-1]]) if torn.size else least
 
     def elastic_energy(self, approach: Array) -> Array:
-        """Return the energy stored by the law and in series with it [J], at an approach [m]."""
+        """Return the energy stored since touch by the law and in series with it [J], at an approach [m]."""
         return self.energy_at_indentation(self.indentation_at(approach))
 
     def plastic_work(self, approach: Array) -> Array:
@@ -219,7 +226,8 @@ def stack_contacts(contacts: Sequence[LocalContact]) -> LocalContact:
     stacked = replace(
         first, series=series, law=first.law.changed(parameters), approach_speed=np.array([contact.approach_speed for contact in contacts])
     )
-    stacked.__dict__["release_indentation"] = np.array([contact.release_indentation for contact in contacts])
+    for level in ("release_indentation", "energy_of_jump"):
+        stacked.__dict__[level] = np.array([getattr(contact, level) for contact in contacts])
     return stacked
 
 

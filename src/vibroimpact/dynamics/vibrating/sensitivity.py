@@ -150,7 +150,8 @@ class _Neighbour:
         system, start, local = stretch.system, stretch.start, stretch.contacts[0].local
         same_surface = self.local is not None and self.local.law.memories() == local.law.memories()
         self.law_differences = {name: self.law_differences.get(name, 0.0) if same_surface else 0.0 for name in local.law.memories()}
-        level = sum(weight * (varied.touch_level - local.touch_level) for varied, weight in _law_variations(local, self.law_differences))
+        laws = [(varied.law, weight) for varied, weight in _law_variations(local, self.law_differences)]
+        level = sum(weight * (law.touch_level - local.law.touch_level) for law, weight in laws)
         rate = float(system.rates(start)[0])
         later = (level - float(system.approach(self.difference)[0])) / rate
         self.difference = _shifted(self.difference, _state_rates(system, start, 0.0, 0.0), later)
