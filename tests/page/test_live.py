@@ -377,6 +377,23 @@ def test_cancel_keeps_the_last_plate(page: Page, server: Server) -> None:
     assert shown(page) == {**before, "drop": {**before["drop"], "height": 0.25}}
 
 
+def test_cancel_while_the_case_in_full_waits(page: Page, server: Server) -> None:
+    open_live(page, server, ELASTIC)
+    before = shown(page)
+    page.evaluate(
+        """() => vibroimpact.live.controls.change(
+            (table) => { table.plate.mesh = { element_size: "5.9 mm" }; table.plate.modes = 120; }, true)"""
+    )
+    until(page, "() => document.getElementById('work-words').textContent === 'computing modes' && vibroimpact.live.state.detail === 'full'")
+    page.locator("#cancel").click()
+    settle(page)
+    assert page.locator("#status").text_content() == "Given up; the last case is shown."
+    assert page.locator("#work").is_hidden()
+    assert page.locator("#get-report").is_enabled()
+    assert not page.evaluate("() => vibroimpact.live.scene.waiting")
+    assert shown(page) == before
+
+
 def test_a_change_while_modes_are_computed_wins(page: Page, server: Server) -> None:
     open_live(page, server, ELASTIC)
     slow = {**ELASTIC, "plate": {**ELASTIC["plate"], "mesh": {"element_size": "6.1 mm"}, "modes": 120}}

@@ -272,6 +272,26 @@ def test_a_zoom_survives_the_theme_and_ends_with_the_view(page: Page, report: An
     assert plotted(page, "force", ("s", "N")).ranges["x"] != pytest.approx(ranges)
 
 
+def test_a_zoom_of_logarithmic_axes_survives_the_theme(page: Page, report: Any) -> None:
+    result, path = report("type3")
+    open_report(page, path)
+    name = next(one for one in names(page) if one.startswith("sensor_"))
+    plotted(page, name, {"y": ("s", next(iter(result.signals.values())).sensor.unit), "y2": ("Hz", "")})
+    ranges = """(name) => { const { layout } = vibroimpact.charts.get(name).element;
+        return Object.keys(layout).filter((key) => layout[key].type === "log").map((key) => [key, Array.from(layout[key].range)]); }"""
+    whole = dict(page.evaluate(ranges, name))
+    assert whole
+    inside = {key: [low + 0.2 * (high - low), high - 0.3 * (high - low)] for key, (low, high) in whole.items()}
+    page.evaluate(
+        """([name, change]) => Plotly.relayout(vibroimpact.charts.get(name).element, change)""",
+        [name, {f"{key}.range[{end}]": value for key, ends in inside.items() for end, value in enumerate(ends)}],
+    )
+    page.get_by_role("button", name="Light or dark").click()
+    page.evaluate("(name) => vibroimpact.charts.get(name).drawing", name)
+    for key, ends in page.evaluate(ranges, name):
+        assert ends == pytest.approx(inside[key], abs=1e-9)
+
+
 def test_hover_tells_value_and_unit(page: Page, report: Any) -> None:
     result, path = report("type1")
     open_report(page, path)

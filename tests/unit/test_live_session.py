@@ -153,6 +153,51 @@ def test_cancel_gives_up(monkeypatch: pytest.MonkeyPatch) -> None:
         await asyncio.sleep(0.05)
         await session.receive('{"type": "cancel", "number": 1}')
         await until(heard, 1, "cancelled")
+        # the case in full waits for the modes that the draft computes: both are given up, and told
+        await session.receive(case(2, PLATE, "draft"))
+        await asyncio.sleep(0.05)
+        await session.receive(case(3, PLATE))
+        await session.receive('{"type": "cancel", "number": 3}')
+        await until(heard, 2, "cancelled")
+        await until(heard, 3, "cancelled")
+
+    told(talk)
+
+
+def test_a_long_draft_is_given_up(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sessions, "_SHORT", 0.2)
+
+    def long(table: dict[str, Any], detail: str, tell: Callable[[str, float], None], *_: Any) -> Any:
+        while table["name"] == "long":
+            tell("computing the drop", 0.0)
+            time.sleep(0.01)
+        return state_of(RIGID, "full", lambda what, part: None)
+
+    monkeypatch.setattr(sessions, "state_of", long)
+
+    async def talk(session: Session, heard: list[dict[str, Any]]) -> None:
+        await session.receive(case(1, {**RIGID, "name": "long"}, "draft"))
+        await asyncio.sleep(0.3)
+        await session.receive(case(2, {**RIGID, "name": "short"}, "draft"))
+        await until(heard, 1, "cancelled")
+        await until(heard, 2, "state")
+
+    told(talk)
+
+
+def test_a_report_that_fails_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    def fails(result: Any) -> str:
+        raise ZeroDivisionError("by nothing")
+
+    monkeypatch.setattr(sessions, "run_page", fails)
+
+    async def talk(session: Session, heard: list[dict[str, Any]]) -> None:
+        await session.receive(case(1, RIGID))
+        await until(heard, 1)
+        await session.receive('{"type": "report", "number": 2}')
+        await until(heard, 2, "fault")
+        await session.receive(case(3, RIGID))
+        await until(heard, 3, "state")
 
     told(talk)
 

@@ -28,7 +28,7 @@ _FRAMES = 36
 
 
 class _Deferred(Mapping[str, Any]):
-    """Values by their names, in groups of which each is computed when one of its values is looked at."""
+    """Mapping whose values are computed group by group, at the first access to one of the group."""
 
     def __init__(self, *groups: tuple[Iterable[str], Callable[[], Mapping[str, Any]]]) -> None:
         self._compute = {name: once for names, once in ((names, cache(compute)) for names, compute in groups) for name in names}

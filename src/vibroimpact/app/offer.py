@@ -6,10 +6,9 @@ from dataclasses import fields
 from functools import cache
 from typing import Any
 
-from vibroimpact._version import __version__
 from vibroimpact.app.messages import LONGEST
 from vibroimpact.cases.reader import shipped_cases
-from vibroimpact.contact.law import CompliantLaw, unit_of
+from vibroimpact.contact.law import unit_of
 from vibroimpact.contact.registry import contact_laws
 from vibroimpact.laws.plain_math import plain_text
 from vibroimpact.laws.text import law_text
@@ -29,7 +28,6 @@ def offer() -> dict[str, Any]:
     ['stiffness', 'N/m¹·⁵']
     """
     return {
-        "version": __version__,
         "cases": {name: title for name, title in shipped_cases().items() if name not in _OF_OTHER_COMMANDS},
         "laws": {name: _law(law) for name, law in contact_laws().items()},
         "materials": list(material_library()),
@@ -55,9 +53,4 @@ def _law(law: Any) -> dict[str, Any]:
         }
         for one in text.parameters
     ]
-    return {
-        "title": plain_text(text.title),
-        "equation": text.equation,
-        "parameters": parameters,
-        "compliant": issubclass(law, CompliantLaw),
-    }
+    return {"equation": text.equation, "parameters": parameters}

@@ -7,7 +7,6 @@ import contextlib
 from collections.abc import Awaitable, Callable
 from importlib.resources import files
 from typing import Any
-from urllib.parse import urlsplit
 
 import uvicorn
 from starlette.applications import Starlette
@@ -71,9 +70,9 @@ def application(port: int) -> ASGIApp:
             await socket.accept()
             await socket.close(1013, f"there are {MOST_WINDOWS} windows already; close one")
             return
-        await socket.accept()
-        windows.add(socket)
+        windows.add(socket)  # before it is accepted, so that windows that open at once are counted
         try:
+            await socket.accept()
             await _serve_window(socket)
         finally:
             windows.discard(socket)
@@ -150,11 +149,10 @@ def _is_own(origin: str, port: int) -> bool:
 
     Examples
     --------
-    >>> _is_own("http://127.0.0.1:8421", 8421), _is_own("http://example.org", 8421), _is_own("", 8421)
-    (True, False, False)
+    >>> _is_own("http://127.0.0.1:8421", 8421), _is_own("http://example.org", 8421), _is_own("", 8421), _is_own("http://[", 8421)
+    (True, False, False, False)
     """
-    parts = urlsplit(origin)
-    return parts.scheme == "http" and parts.netloc in _hosts(port)
+    return origin in {f"http://{host}" for host in _hosts(port)}
 
 
 def _hosts(port: int) -> set[str]:

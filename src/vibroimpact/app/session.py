@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import json
 import logging
-from collections.abc import Awaitable, Callable
+from collections.abc import Awaitable, Callable, Mapping
 from threading import Event
 from typing import Any
 
@@ -28,6 +28,9 @@ Send = Callable[[bytes], Awaitable[None]]
 _SECONDS_BETWEEN = 0.1
 """Time between two messages on progress [s]."""
 
+_SHORT = 2.0
+"""Time after which a draft is given up for what is asked for next [s]; until then it is finished, so that charts follow a slider."""
+
 
 class GivenUp(Exception):
     """What is being computed is no longer wanted."""
@@ -47,6 +50,7 @@ class Session:
         self._wanted: Message | None = None  # the case to compute next
         self._running: Message | None = None
         self._stage = ""  # what is being computed
+        self._since = 0.0  # and since when [s]
         self._stop = Event()
         self._changed = asyncio.Event()
         self._last: State | None = None  # computed in full
@@ -57,29 +61,35 @@ class Session:
 
     async def receive(self, text: str | bytes) -> None:
         """Take a message of the window; a message that is none is answered by a fault."""
-        number = 0
         try:
             message = read_message(text)
-            number = message.number
-            match message.type:
-                case "open":
-                    await self._tell("opened", number, await asyncio.to_thread(_opened, message))
-                case "case":
-                    self._want(message)
-                case "cancel":
-                    self._wanted = None
-                    self._stop.set()
-                case "report" | "signals":
-                    await self._tell("files", number, await asyncio.to_thread(_files, message.type, self._last))
         except InputError as error:
-            await self._fault(number, error)
+            await self._fault(0, error)
+        else:
+            await self._answer(message.number, self._take(message))
+
+    async def _take(self, message: Message) -> None:
+        match message.type:
+            case "open":
+                await self._send(await asyncio.to_thread(_packed, "opened", message, lambda: _opened(message)))
+            case "case":
+                self._want(message)
+            case "cancel":
+                waiting, self._wanted = self._wanted, None
+                self._stop.set()
+                if waiting is not None:
+                    await self._tell("cancelled", waiting.number, {})
+            case "report" | "signals":
+                last = self._last
+                await self._send(await asyncio.to_thread(_packed, "files", message, lambda: _files(message.type, last)))
 
     def _want(self, message: Message) -> None:
         """Compute a case next. What is computed now is given up unless it is short, or the modes that the new case needs as well."""
         self._wanted = message
         if self._running is not None:
             modes = self._stage == MODES
-            short = not modes and self._running.content["detail"] == "draft"
+            begun = asyncio.get_running_loop().time() - self._since
+            short = not modes and self._running.content["detail"] == "draft" and begun < _SHORT
             if not (short or (modes and _same_bodies(self._running, message))):
                 self._stop.set()
         self._changed.set()
@@ -92,14 +102,14 @@ class Session:
                 self._changed.clear()
                 while (message := self._wanted) is not None:
                     self._wanted, self._running, self._stage = None, message, ""
+                    self._since = asyncio.get_running_loop().time()
                     self._stop.clear()
-                    await self._compute(message)
+                    await self._answer(message.number, self._compute(message))
                     self._running = None
         finally:
             self._stop.set()
 
     async def _compute(self, message: Message) -> None:
-        number, detail = message.number, message.content["detail"]
         loop, told = asyncio.get_running_loop(), [0.0]
 
         def tell(what: str, part: float) -> None:
@@ -111,20 +121,24 @@ class Session:
                 asked = self._wanted or message  # modes are computed for the case that was asked for last
                 asyncio.run_coroutine_threadsafe(self._tell("progress", asked.number, {"what": what, "part": part}), loop)
 
+        told[0] = loop.time() + _SECONDS_BETWEEN  # what is done at once needs no progress
+        state, answer = await asyncio.to_thread(_answered, message, tell)
+        if message.content["detail"] == "full":
+            self._last = state
+        await self._send(answer)
+
+    async def _answer(self, number: int, work: Awaitable[None]) -> None:
+        """Do what a message asks for; the window hears of whatever goes wrong, and the next message is taken."""
         try:
-            told[0] = loop.time() + _SECONDS_BETWEEN  # what is done at once needs no progress
-            state, answer = await asyncio.to_thread(_answered, message, tell)
-            if detail == "full":
-                self._last = state
-            await self._send(answer)
+            await work
         except GivenUp:
             await self._tell("cancelled", number, {})
         except (InputError, ComputationError) as error:
             await self._fault(number, error)
         except MemoryError:
             await self._fault(number, ComputationError("there is not enough memory for this case"))
-        except Exception as error:  # the window must hear of it, and the next case is computed
-            logging.getLogger(__name__).exception("a case of the live page")
+        except Exception as error:
+            logging.getLogger(__name__).exception("a message of the live page")
             await self._fault(number, ComputationError(f"the case can't be computed: {short_reason(error)}"))
 
     async def _tell(self, kind: str, number: int, content: dict[str, Any]) -> None:
@@ -137,7 +151,12 @@ class Session:
 def _answered(message: Message, tell: Tell) -> tuple[State, bytes]:
     """Return the state of the case of a message, and the answer that brings it."""
     state = state_of(message.content["case"], message.content["detail"], tell, message.content.get("charts"))
-    return state, pack({"type": "state", "number": message.number, **state.document})
+    return state, _packed("state", message, lambda: state.document)
+
+
+def _packed(kind: str, message: Message, content: Callable[[], Mapping[str, Any]]) -> bytes:
+    """Return the answer of a kind to a message."""
+    return pack({"type": kind, "number": message.number, **content()})
 
 
 def _same_bodies(first: Message, second: Message) -> bool:

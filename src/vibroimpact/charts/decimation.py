@@ -15,7 +15,7 @@ _AT_ONCE = 2**17  # points sorted at once, which bounds the memory of the sort
 
 
 def decimated(x: Floats, y: Floats, columns: int = COLUMNS) -> tuple[Floats, Floats]:
-    """Return a line reduced to its visible points: the first, last, lowest and highest in each of 1500 columns.
+    """Return a line reduced to its visible points: the first, last, lowest and highest in each of a number of columns.
 
     Lines of up to four points a column, and those whose x does not ascend, are returned as they are. NaN in y interrupts a line.
 

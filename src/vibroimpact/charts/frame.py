@@ -150,7 +150,7 @@ def view_range(panel: Panel, view: View, panels: tuple[Panel, ...]) -> tuple[flo
 
 
 def own_view(mark: Mark, panel: Panel, view: View) -> View:
-    """Return a view of a panel as it is for a mark: around the origin of a line that has its own."""
+    """Return a view of a panel for a mark, shifted to the origin of a line that has one of its own."""
     if not (isinstance(mark, Line) and mark.origins):
         return view
     origin = mark.origins[panel.x.views.index(view)]

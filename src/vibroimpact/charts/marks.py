@@ -110,7 +110,7 @@ class Stack:
 
 @dataclass(frozen=True, eq=False)
 class Bars:
-    """Bars at places along an axis, from `base` on; `ends` are the edges of a histogram instead of places.
+    """Bars at places along an axis, from `base` on; of a histogram, `places` are the edges.
 
     Parameters
     ----------

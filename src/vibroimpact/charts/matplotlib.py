@@ -129,7 +129,7 @@ class _Print:
                 getattr(axes, f"set_{side}lim")(min(low for low, _ in limits), max(high for _, high in limits))
 
     def _label_once(self, part: Any) -> None:
-        """Write the label that all panels of a row have once, below all of them."""
+        """Replace equal labels of the x axes of a row by one below all of them."""
         if len({axes.get_xlabel() for axes in part.axes}) == 1:
             part.supxlabel(part.axes[0].get_xlabel(), fontsize=9.0)
             for axes in part.axes:
@@ -179,9 +179,6 @@ class _Print:
             set_axis(axes, "y", panel.y, up)
             if view is not None:
                 axes.set_xlim(*across.shown(np.array([view.start, view.end])))
-            else:
-                self.drawn.setdefault((panel.x, "x"), []).append(axes)
-                self.drawn.setdefault((panel.y, "y"), []).append(axes)
             if span is not None:
                 axes.set_ylim(*up.shown(np.array(span)))
             axes.tick_params(labelbottom=lowest)

@@ -86,7 +86,7 @@ class PrintedMarks:
             case Bars():
                 self._bars(axes, mark, x, y)
             case Map():
-                self._map(axes, mark, x, y)
+                self._map(axes, mark, panel, x, y)
             case Facets():
                 self._facets(axes, mark, x, y)
             case Outline():
@@ -241,7 +241,7 @@ class PrintedMarks:
         for start, end in zip(x.shown(mark.starts[near][:60]), x.shown(mark.ends[near][:60]), strict=True):
             self._name(mark, axes.axvspan(float(start), float(end), color=look.light, alpha=look.opacity, linewidth=0, zorder=0))
 
-    def _map(self, axes: Axes, mark: Map, x: Frame, y: Frame) -> None:
+    def _map(self, axes: Axes, mark: Map, panel: Panel, x: Frame, y: Frame) -> None:
         frame = self.frames[mark.scale]
         values = frame.shown(mark.values)
         low, high = frame.shown(np.array(ends_on(mark.scale, self.chart))).tolist()
@@ -252,12 +252,10 @@ class PrintedMarks:
         colours = LinearSegmentedColormap.from_list("scale", list(stops))
         axes.patch.set(facecolor="#f2f2f2", edgecolor="#9a9a9a", hatch="" if np.isfinite(values).all() or not mark.cells else "xxxx")
         across, up = x.shown(mark.x), y.shown(mark.y)
-        log = mark.cells and (log_spaced(across), log_spaced(up))
         if mark.cells:
-            assert log
             picture: Any = axes.pcolormesh(
-                cell_edges(across, log=log[0]),
-                cell_edges(up, log=log[1]),
+                cell_edges(across, log=panel.x.log),
+                cell_edges(up, log=panel.y.log),
                 np.ma.masked_invalid(values),
                 cmap=colours,
                 norm=norm,
@@ -305,11 +303,3 @@ def within(x: Floats, y: Floats, inside: tuple[float, float]) -> tuple[Floats, F
 def print_pen(look: Look) -> dict[str, Any]:
     """Return colour, width and dashes of a line of matplotlib."""
     return {"color": look.light, "linewidth": look.width, "linestyle": (0, look.dashes) if look.dashes else "-"}
-
-
-def log_spaced(places: Floats) -> bool:
-    """Return whether places are closer to equal ratios than to equal steps."""
-    if len(places) < 3 or not places[0] > 0.0:
-        return False
-    steps, ratios = np.diff(places), np.diff(np.log(places))
-    return bool(np.ptp(ratios) / np.mean(ratios) < np.ptp(steps) / np.mean(steps))

@@ -28,7 +28,7 @@ def line_trace(line: Line) -> dict[str, Any]:
 
 
 def silence(mark: Line | Points, panel: Panel) -> dict[str, Any]:
-    """Return that nothing is told at the pointer of what has no name in a picture, where places are not quantities."""
+    """Return the setting that hides the hover text of unnamed marks of a picture, where coordinates are not quantities."""
     return {"hoverinfo": "skip"} if panel.picture and not mark.name else {}
 
 

@@ -110,8 +110,9 @@ def _acceleration_peaks(result: Result) -> tuple[Floats, Floats]:
 
 def _touch_and_release(result: Result) -> tuple[Floats, Floats]:
     impacts = result.impacts
-    times = np.concatenate([impacts["time_s"], impacts["time_s"] + impacts["duration_s"]])
-    return times, np.concatenate([-impacts["approach_speed_m_s"], impacts["separation_speed_m_s"]])
+    times = np.stack([impacts["time_s"], impacts["time_s"] + impacts["duration_s"]], axis=1)
+    # in the order of time, so that pages keep them in full precision
+    return times.ravel(), np.stack([-impacts["approach_speed_m_s"], impacts["separation_speed_m_s"]], axis=1).ravel()
 
 
 POSITION = PlottedQuantity(

@@ -26,6 +26,8 @@
     if (value === undefined) delete part[last]; else part[last] = value;
   };
   const digits = (value) => { const size = Math.abs(value); return size >= 1e6 || (size < 1e-3 && size > 0) ? Number(value.toPrecision(5)).toExponential().replace("e+", "e") : String(Number(value.toPrecision(6))); };
+  // The unit of a stiffness, told for Hertz's exponent, with that of the case.
+  const unitWith = (exponent, unit) => (typeof exponent === "number" ? unit.replace("¹·⁵", exponent === 1 ? "" : Array.from(String(exponent), (letter) => "⁰¹²³⁴⁵⁶⁷⁸⁹"[letter] || "·").join("")) : unit);
   const words = (name) => name[0].toUpperCase() + name.slice(1).replaceAll("_", " ");
 
   // A slider with a field, of a number at a path: `size` is that of its unit in SI, `low` and `high` the ends of the slider in this unit;
@@ -34,7 +36,7 @@
     const key = path.join(".");
     const id = `c-${key.replaceAll(".", "-")}`;
     const toPlace = (value) => (log ? Math.log(value / low) / Math.log(high / low) : (value - low) / (high - low));
-    const fromPlace = (place) => { const value = log ? low * (high / low) ** place : low + place * (high - low); return whole ? Math.round(value) : Number(value.toPrecision(3)); };
+    const fromPlace = (place) => { const value = log ? low * (high / low) ** place : low + place * (high - low); return Math.min(Math.max(whole ? Math.round(value) : Number(value.toPrecision(3)), low), high); };
     const within = (place) => Math.min(Math.max(place, 0), 1) || 0;
     const range = make("input", { type: "range", id: `${id}-slider`, min: 0, max: 1, step: "any", "aria-label": `${label}, slider` });
     const field = make("input", { type: "number", id, step: "any", title: meaning });
@@ -225,7 +227,7 @@
         const old = new Set((controls.offer.laws[table.contact.law] || { parameters: [] }).parameters.map((one) => one.name));
         const kept = Object.fromEntries(Object.entries(table.contact).filter(([key]) => !old.has(key)));
         for (const one of controls.offer.laws[value].parameters) {
-          if (old.has(one.name) && one.name in table.contact && !["stiffness"].includes(one.name)) kept[one.name] = table.contact[one.name];
+          if (old.has(one.name) && one.name in table.contact && one.name !== "stiffness") kept[one.name] = table.contact[one.name];
           const example = /such as ([-+.\deE]+)/.exec(one.default);
           if (example && !(one.name in kept)) kept[one.name] = Number(example[1]);
         }
@@ -244,7 +246,7 @@
       // ends that follow the value would run away from the pointer: those of the first look stay
       const key = `${contact.law} ${one.name}`;
       controls.ends[key] = controls.ends[key] || ends;
-      rows.push(slider(controls, { path: ["contact", one.name], label: words(one.name), unit: one.unit, meaning: `${one.meaning} Allowed: ${one.allowed || "any number"}.`, ...controls.ends[key] }));
+      rows.push(slider(controls, { path: ["contact", one.name], label: words(one.name), unit: unitWith(contact.exponent, one.unit), meaning: `${one.meaning} Allowed: ${one.allowed || "any number"}.`, ...controls.ends[key] }));
     }
     return rows;
   };

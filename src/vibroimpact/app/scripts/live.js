@@ -62,9 +62,15 @@
     if (size > most) { setBusy(false); showFaults([`the case has ${size} bytes; ${most} are the most of the live page`]); }
     return size > most;
   };
-  const setBusy = (busy) => { $("results").setAttribute("aria-busy", String(busy)); $("get-report").disabled = busy || !state.last; $("get-signals").disabled = busy || !state.last || !(state.last.case.sensors || []).length; };
+  // Report and signals are those of the last case that was computed in full, and given where that is the one shown.
+  const setBusy = (busy) => {
+    const whole = !busy && state.last?.detail === "full";
+    $("results").setAttribute("aria-busy", String(busy));
+    $("get-report").disabled = !whole;
+    $("get-signals").disabled = !whole || !(state.last.case.sensors || []).length;
+  };
 
-  // One draft is under way at a time; of those asked for meanwhile the last one is sent when it is done. What takes longer is given up.
+  // One draft is under way at a time; of those asked for meanwhile the last one is sent when it is done. The server gives up what takes long.
   const ask = (table, detail) => {
     state.wanted = { table, detail };
     setBusy(true);
@@ -81,7 +87,6 @@
   };
 
   const changed = (settled) => {
-    vibroimpact.changes = (vibroimpact.changes || 0) + 1;
     clearTimeout(state.timer);
     ask(controls.table, "draft");
     if (settled) state.timer = setTimeout(() => ask(controls.table, "full"), SETTLED);
@@ -94,6 +99,8 @@
     state.opening = [number, what.source || ""];
     setBusy(true);
   };
+  // Nothing more comes of what was asked for: the plate of the last draft moves on.
+  const stopWaiting = () => { setBusy(false); if (scene) scene.waiting = false; };
   // What was asked for is not shown: the controls go back to the case that is.
   const goBack = () => { if (state.last) controls.begin(state.table, state.last.case); showShipped(); };
 
@@ -132,13 +139,13 @@
     },
     fault(message) {
       const beginning = controls.beginning && state.tables.get(message.number) === controls.table;
-      if (finished(message.number)) { setBusy(false); if (beginning) goBack(); }
+      if (finished(message.number)) { stopWaiting(); if (beginning) goBack(); }
       if (message.number === state.opening[0]) { setBusy(Boolean(state.asked)); showShipped(); }
       showFaults(message.lines);
     },
     cancelled(message) {
       if (!finished(message.number)) return;
-      setBusy(false);
+      stopWaiting();
       goBack();
       $("status").textContent = "Given up; the last case is shown.";
     },
@@ -284,8 +291,8 @@
     scene = vibroimpact.controlScene($("scene"), given, (x, y, settled) => {
       const plate = controls.resolved.plate;
       if (plate.radius !== undefined || !plate.size) return;
-      const inside = (value, side) => Math.min(Math.max(value, -0.5 * plate.size[side]), 0.5 * plate.size[side]);
-      controls.change((table) => { table.drop.position = [inside(x, 0), inside(y, 1)].map((value) => `${Number((1000 * value).toPrecision(3))} mm`); }, settled);
+      const rounded = (value, side) => Math.min(Math.max(Number((1000 * value).toPrecision(3)), -500 * plate.size[side]), 500 * plate.size[side]);
+      controls.change((table) => { table.drop.position = [x, y].map((value, side) => `${rounded(value, side)} mm`); }, settled);
     });
   };
 

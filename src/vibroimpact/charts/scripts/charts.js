@@ -272,7 +272,7 @@
       const frame = frames[name];
       const axis = { ...grey, ...layout[key] };
       if (axis.title.text && frame.title !== chart.frames[name].title) axis.title = { text: frame.title };
-      if (ranges[name]) axis.range = ranges[name].map((end) => (end - frame.origin) / frame.size);
+      if (ranges[name]) axis.range = ranges[name].map((end) => (end - frame.origin) / frame.size).map((end) => (axis.type === "log" ? Math.log10(end) : end));
       if (axis.type !== "log") axis.exponentformat = "none";
       axis.title = { ...axis.title, font: { size: state.paper ? 10 : 12 }, standoff: state.paper ? 2 : 6 };
       // what plotly measures of letters costs half of a drawing: it is left to axes of names
@@ -400,8 +400,7 @@
         const ends = [change[`${match[1]}axis${match[2]}.range[0]`], change[`${match[1]}axis${match[2]}.range[1]`]];
         const log = (this.chart.layout[`${match[1]}axis${match[2]}`] || {}).type === "log";
         if (match[3] !== "range[0]") delete ranges[name];
-        else if (log) continue;
-        else ranges[name] = ends.map((end) => end * frame.size + frame.origin);
+        else ranges[name] = ends.map((end) => (log ? 10 ** end : end) * frame.size + frame.origin);
         found = true;
       }
       if (found) this.update({ ranges });

@@ -61,23 +61,29 @@
     }
 
     listen() {
-      let from = null, ball = false;
+      let from = null, ball = false, dragged = false, grip = [0, 0];
       const place = (event) => { const box = this.canvas.getBoundingClientRect(); return [event.clientX - box.left, event.clientY - box.top]; };
+      const within = (value, ends) => Math.min(Math.max(value, ends[0]), ends[ends.length - 1]);
+      // the place of the ball on the plate: it is held where it was gripped
+      const under = (event) => { const seen = this.onPlate(...place(event)); return [within(seen[0] - grip[0], this.scene.x), within(seen[1] - grip[1], this.scene.y)]; };
       this.canvas.addEventListener("pointerdown", (event) => {
         from = [event.clientX, event.clientY, this.turn, this.tilt];
+        dragged = false;
         const [x, y] = place(event);
         ball = Boolean(this.moved) && [this.foot, this.ball].some((at) => at && Math.hypot(x - at[0], y - at[1]) < Math.max(16, 1.2 * at[2]));
         this.canvas.setPointerCapture(event.pointerId);
-        if (ball) event.preventDefault();
+        if (ball) { event.preventDefault(); const seen = this.onPlate(x, y); grip = Array.from(this.scene.contact, (at, side) => seen[side] - at); }
       });
       this.canvas.addEventListener("pointermove", (event) => {
         if (!from) return;
-        if (ball) { this.moved(...this.onPlate(...place(event)), false); return; }
+        dragged = true;
+        if (ball) { this.moved(...under(event), false); return; }
         this.turn = from[2] + (event.clientX - from[0]) / 200;
         this.tilt = Math.min(Math.max(from[3] + (event.clientY - from[1]) / 250, 0.08), Math.PI / 2);
         this.draw();
       });
-      this.canvas.addEventListener("pointerup", (event) => { if (ball) this.moved(...this.onPlate(...place(event)), true); from = null; ball = false; });
+      // a click that moves nothing changes nothing
+      this.canvas.addEventListener("pointerup", (event) => { if (ball && dragged) this.moved(...under(event), true); from = null; ball = false; });
       this.canvas.addEventListener("pointercancel", () => { from = null; ball = false; });
       this.canvas.addEventListener("keydown", (event) => {
         const moves = { ArrowLeft: [-0.1, 0], ArrowRight: [0.1, 0], ArrowUp: [0, 0.08], ArrowDown: [0, -0.08] };
@@ -89,13 +95,11 @@
       });
     }
 
-    // Return the place on the plate that is seen at a place of the canvas, within the plate.
+    // Return the place in the plane of the plate that is seen at a place of the canvas.
     onPlate(across, down) {
-      const { scene, seen } = this;
+      const { seen } = this;
       const a = (across - seen.centre[0]) / seen.scale, b = (seen.centre[1] - down) / seen.scale / Math.sin(this.tilt);
-      const x = seen.middle[0] + a * Math.cos(this.turn) + b * Math.sin(this.turn), y = seen.middle[1] - a * Math.sin(this.turn) + b * Math.cos(this.turn);
-      const within = (value, ends) => Math.min(Math.max(value, ends[0]), ends[ends.length - 1]);
-      return [within(x, scene.x), within(y, scene.y)];
+      return [seen.middle[0] + a * Math.cos(this.turn) + b * Math.sin(this.turn), seen.middle[1] - a * Math.sin(this.turn) + b * Math.cos(this.turn)];
     }
 
     play() {

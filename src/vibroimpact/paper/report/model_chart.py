@@ -32,7 +32,7 @@ def model_chart(runs: Runs) -> Chart:
     Parameters
     ----------
     runs : Runs
-        The simulations; the case of Type 3 has the dimensions.
+        The simulations, which no value is taken from: the dimensions are those of the case of Type 3.
     """
     case = resolved_case(load_case("paper:type3"))
     length, width, thickness = case["plate"]["size"]

@@ -166,7 +166,7 @@ def _told(axis: StudyAxis, values: NDArray[Any]) -> list[str]:
 
 
 def _key_label(axis: StudyAxis) -> str:
-    """Return what a key is, with the multiple of its unit in which points are coloured by it."""
+    """Return the label of a key, with the unit of the scale of colours."""
     label = shortened(visible(sentence(axis.words)), 60)
     return with_unit(label, multiple(axis.unit, axis.values).unit) if axis.numeric else label
 
