@@ -13,6 +13,8 @@ from vibroimpact.runs.spectrum import amplitude_spectrum, first_response
 from vibroimpact.runs.tables import energy_text, impact_text, significant_figures
 from vibroimpact.units.display import certain, digits, fixed, text
 
+_NOTHING_LEFT = 1e-9  # of the energy put in
+
 
 def caption(name: str, result: Result) -> str:
     """Return the caption of a chart of the result, by the name of the chart."""
@@ -106,7 +108,10 @@ def _energy(result: Result) -> str:
 def _vibration(result: Result) -> str:
     """Return a sentence on the energy of vibration: the part dissipated by damping, and the part left at the end."""
     damped = energy_text(result, "sphere_damping_J", "plate_damping_J")
-    left = energy_text(result, "sphere_vibration_J", "sphere_strain_J", "plate_kinetic_J", "plate_strain_J")
+    names = [name for name in ("sphere_vibration_J", "sphere_strain_J", "plate_kinetic_J", "plate_strain_J") if name in result.energy]
+    least = _NOTHING_LEFT * result.energy["input_J"]
+    still = sum(abs(result.energy[name]) for name in names)
+    left = energy_text(result, *names) if still > least else f"less than {text(least, 'J', 1)}"
     return f" The damping of the bodies took {damped}, and {left} is still in their motion."
 
 
