@@ -211,7 +211,7 @@ def test_labels_and_arrows_on_a_logarithmic_axis_are_where_the_values_are() -> N
 
 
 def view() -> Chart:
-    parts = (View("First", 1e-3, 2e-3, 1e-3, "Since it began", "largest 3\u00a0N"), View("Second", 2e-3, 4e-3, 2e-3, level=1e3))
+    parts = (View("First", 1e-3, 2e-3, 1e-3, "Since it began", "largest 3 N"), View("Second", 2e-3, 4e-3, 2e-3, level=1e3))
     x = np.linspace(0.0, 5e-3, 11)
     line = Line(x, np.where(x < 2.2e-3, 3.0, 9e3))
     return Chart("a", "A", ((Panel(Axis("Time", "s", views=parts), Axis("Force", "N"), (line, Spans(x[2:3], x[4:5], "in contact"))),),))
@@ -224,7 +224,7 @@ def test_print_shows_views_in_panels_of_their_own() -> None:
     assert first.get_xlabel() == "Since it began [ms]"
     assert first.get_xlim() == pytest.approx((0.0, 1.0))
     assert second.get_xlim() == pytest.approx((0.0, 2.0))
-    assert first.get_title(loc="left") == "First: 3 N"
+    assert first.get_title(loc="left") == "First: largest 3 N"
     assert np.max(first.lines[0].get_ydata()) == pytest.approx(3.0)
     assert np.max(second.lines[0].get_ydata()) == pytest.approx(8.0)  # kN above the level
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 import tomllib
 from pathlib import Path
@@ -109,6 +110,26 @@ def test_a_run_takes_them(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsy
     assert result.case["drop"]["height"] == 1.0
 
 
+def test_a_calibration_takes_them(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    monkeypatch.chdir(tmp_path)
+    arguments = ["calibrate", "paper:type1-theory", "-o", "out", "--set", "run.impacts=1", "--set", "calibrate.target={restitution=0.7}"]
+    assert command(monkeypatch, capsys, *arguments, "--set", "calibrate.model=adams-impact")[0] == 0
+    assert len(json.loads((tmp_path / "out" / "calibration.json").read_text())["impacts"]) == 1
+    assert vi.simulate(vi.load_case(tmp_path / "out" / "case.toml")).impacts["restitution_achieved"] == pytest.approx([0.7], abs=1e-6)
+
+
+def test_a_new_case_has_them(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    monkeypatch.chdir(tmp_path)
+    settings = ["--set", "plate.size.thickness=10 mm", "--set", "drop.height=2 m", "--set", "contact.law=flores"]
+    assert command(monkeypatch, capsys, "new", "thick", *settings)[0] == 0
+    changes = {"name": "thick", "plate.size.thickness": "10 mm", "drop.height": "2 m", "contact.law": "flores"}
+    assert vi.load_case("thick.toml") == vi.load_case("paper:type1-theory", changes)
+    text = (tmp_path / "thick.toml").read_text()
+    assert 'size = ["520 mm", "420 mm", "10 mm"]\n' in text
+    assert "# speed = " in text
+
+
+@pytest.mark.parametrize("name", ["check", "run", "modes", "calibrate", "new"])
 @pytest.mark.parametrize(
     ("setting", "words"),
     [
@@ -120,7 +141,13 @@ def test_a_run_takes_them(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsy
         ("drop.speed=3", "drop: give either height or speed; both are given"),
     ],
 )
-def test_wrong_settings(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], setting: str, words: str) -> None:
-    status, said = command(monkeypatch, capsys, "check", "paper:type1-theory", "--set", setting)
+def test_wrong_settings(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], name: str, setting: str, words: str
+) -> None:
+    """Every command that takes them says the same, and writes nothing."""
+    monkeypatch.chdir(tmp_path)
+    case = ["mine", "--from", "paper:type1-theory"] if name == "new" else ["paper:type1-theory"]
+    status, said = command(monkeypatch, capsys, name, *case, "--set", setting)
     assert status == 2
     assert words in said
+    assert not list(tmp_path.iterdir())

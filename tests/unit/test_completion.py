@@ -44,6 +44,8 @@ def completed(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str
         (["run", "x.toml", "--set", "plate.size.w"], ["plate.size.width=", "plate.size.width=VALUE"]),
         (["check", "x.toml", "--set", "drop.position."], ["drop.position.x=", "drop.position.y="]),
         (["modes", "x.toml", "--set", "sphere.mod"], ["sphere.model=", "sphere.modes="]),
+        (["calibrate", "x.toml", "--set", "calibrate.speeds.sc"], ["calibrate.speeds.scale=linear", "calibrate.speeds.scale=log"]),
+        (["new", "mine", "--set", "plate.model="], ["plate.model=rigid", "plate.model=elastic"]),
         (["run", "x.toml", "--set", "sphere.model="], ["sphere.model=rigid", "sphere.model=elastic"]),
         (["run", "x.toml", "--set", "sphere.model"], ["sphere.model=rigid", "sphere.model=elastic"]),
         (["run", "x.toml", "--set", "run.impacts"], ["run.impacts=", "run.impacts=all"]),

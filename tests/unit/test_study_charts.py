@@ -314,12 +314,23 @@ def test_the_command_of_a_drop_gives_its_results(
 def test_a_drop_may_be_changed_and_must_exist(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     command = "vibroimpact run paper:sweep --drop 13 --set drop.height='1 m' --set sphere.radius='20 mm' -o changed"
     assert run(monkeypatch, tmp_path, command) == 0
+    assert "[sweep]" not in capsys.readouterr().err
     case = vi.read_result(tmp_path / "changed").case
     assert (case["drop"]["height"], case["sphere"]["radius"], case["contact"]["restitution"]) == (1.0, 0.02, 0.95)
     assert run(monkeypatch, tmp_path, "vibroimpact run paper:sweep --drop 140") == 2
     assert "paper:sweep: there is no drop 140; the study has 140, counted from 0" in capsys.readouterr().err
     assert run(monkeypatch, tmp_path, "vibroimpact run paper:type1-theory --drop 0") == 2
     assert "paper:type1-theory: sweep: it is missing" in capsys.readouterr().err
+
+
+def test_a_run_tells_that_it_leaves_the_study_out(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run(monkeypatch, tmp_path, "vibroimpact run paper:sweep --set run.impacts=1 --json") == 0
+    said = capsys.readouterr()
+    assert said.out.startswith("{")
+    words = "vibroimpact sweep paper:sweep runs the study, and --drop N one of its drops"
+    assert f"vibroimpact: [sweep] is left out, as this is a single drop; {words}\n" in said.err
 
 
 # where they are shown ---------------------------------------------------------------------------------

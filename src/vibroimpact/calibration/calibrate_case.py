@@ -42,15 +42,24 @@ class ToCalibrate(NamedTuple):
     given: bool
 
 
-def load_calibration(source: str | PathLike[str]) -> ToCalibrate:
+def load_calibration(source: str | PathLike[str], changes: Mapping[str, Any] | None = None) -> ToCalibrate:
     """Read a case to calibrate from a file, as `load_case` does, except that the parameter to be found may be missing.
+
+    Parameters
+    ----------
+    source : path or str
+        A TOML file, or "paper:NAME".
+    changes : mapping, optional
+        Other values by dotted key, such as ``{"calibrate.degree": 1}``.
 
     Examples
     --------
     >>> load_calibration("paper:type1-theory").case.contact.law
     'adams-impact'
+    >>> load_calibration("paper:calibration", {"calibrate.degree": 1}).case.calibrate.degree
+    1
     """
-    return prefix_errors(source, lambda: read_calibration(load_table(source)))
+    return prefix_errors(source, lambda: read_calibration(load_table(source, changes)))
 
 
 def read_calibration(table: Mapping[str, Any]) -> ToCalibrate:

@@ -5,14 +5,14 @@ from __future__ import annotations
 import json
 import re
 import tomllib
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import MISSING, fields
 from os import PathLike
 from typing import Any, Literal, get_args, get_origin
 
-import tomli_w
 from pydantic.fields import FieldInfo
 
+from vibroimpact.cases.changed_text import changed_text
 from vibroimpact.cases.fields.json_schema import JsonSchema
 from vibroimpact.cases.fields.local import LocalSection
 from vibroimpact.cases.fields.section import Section
@@ -24,11 +24,10 @@ from vibroimpact.contact.registry import find_contact_law
 
 _SECTIONS: dict[str, type[Section]] = {**SECTIONS, "contact": LocalSection, "sensors": SensorSection}
 _HEADER = re.compile(r"^\s*\[\[?\s*([\w-]+)\s*[].]")  # of a section or of a table in it
-_NAME = re.compile(r"^name\s*=.*$", re.MULTILINE)
 _WIDTH = 40  # columns of a key with its value, before its meaning
 
 
-def case_template(source: str | PathLike[str] = "paper:type1-theory", name: str = "") -> str:
+def case_template(source: str | PathLike[str] = "paper:type1-theory", name: str = "", changes: Mapping[str, Any] | None = None) -> str:
     """Return the text of a case file to start from: that of another case, with its unused keys as comments.
 
     Parameters
@@ -37,11 +36,13 @@ def case_template(source: str | PathLike[str] = "paper:type1-theory", name: str 
         A TOML file, or "paper:NAME".
     name : str, optional
         Name of the new case; by default that of the source.
+    changes : mapping, optional
+        Other values by dotted key, such as ``{"plate.size.thickness": "10 mm"}``.
 
     Raises
     ------
     InputError
-        If the source can't be read or is not a valid case.
+        If the source can't be read or is not a valid case, with these values.
 
     Examples
     --------
@@ -50,10 +51,9 @@ def case_template(source: str | PathLike[str] = "paper:type1-theory", name: str 
     (True, True)
     """
     text = prefix_errors(source, lambda: case_text(source))
-    load_case(source, {"name": name} if name else None)  # which must be valid
-    if name:
-        line = tomli_w.dumps({"name": name}).rstrip()
-        text = _NAME.sub(lambda _: line, text, count=1) if _NAME.search(text) else f"{line}\n{text}"
+    others = {**({"name": name} if name else {}), **(changes or {})}
+    load_case(source, others)  # which must be valid
+    text = changed_text(text, others)
     used: dict[str, Any] = tomllib.loads(text)
     blocks = _blocks(text.rstrip().split("\n"))
     for place in range(len(blocks) - 1, -1, -1):

@@ -15,6 +15,7 @@ from vibroimpact.charts.axis import Axis, View
 from vibroimpact.charts.chart import Chart, Panel
 from vibroimpact.charts.frame import (
     Frame,
+    ends_on,
     frames_of,
     own_view,
     panels_without_label,
@@ -22,6 +23,7 @@ from vibroimpact.charts.frame import (
     view_range,
 )
 from vibroimpact.charts.marks import (
+    Label,
     Level,
     Points,
 )
@@ -44,9 +46,17 @@ _MOST_ENLARGED = 5
 _MOST_BESIDE = 3
 """Views drawn beside each of two rows."""
 
+_PICTURE_GAP, _PICTURE_TITLE, _PICTURE_WORDS = 0.15, 0.3, 0.2
+"""Width between pictures, and height of the title of one and of words below it [in]."""
 
-_LEGEND_LINE = 0.17
-"""Height of a line of the legend [in]."""
+_LOW, _HIGH = 0.4, 4.5
+"""The least height of a picture, and the largest of a row of them with their words [in]."""
+
+_LEGEND_LINE, _COLOUR_BAR = 0.17, 0.65
+"""Height of a line of the legend, and of a colour bar below its maps with numbers and label [in]."""
+
+_NUMBERS, _LETTER = 0.52, 0.06
+"""Width that a panel leaves to the numbers at its side, and of a letter of the title of a view [in]."""
 
 
 def matplotlib_figure(chart: Chart) -> Figure:
@@ -78,48 +88,82 @@ class _Print:
         self.unlabelled = panels_without_label(chart, self.frames)
 
     def figure(self) -> Figure:
+        """Return the figure."""
         chart, rows = self.chart, self.chart.rows
         views = [panel.x.views for panel in chart.panels if panel.x.views]
-        beside = bool(views) and len(rows) > 1
-        below = list(views[0][:_MOST_ENLARGED]) if views and not beside else []
-        usual = _ROW if len(rows) == 1 else _SMALL_ROW
-        heights = [chart.height or (3.4 if row[0].picture and len(row) < 3 else usual) for row in rows]
-        heights = [max(height, 2.1) if len(rows) > 1 and not self._aligned() else height for height in heights]
-        lines = [lettering(line, 150) for line in chart.subtitle.splitlines()]
-        under_title = _SUBTITLE_LINE * (len(lines) + 0.5) if lines else 0.0
-        total = sum(heights) + (_ENLARGED_ROW if below else 0.0) + 0.55 + under_title
-        figure = Figure(figsize=(WIDTH, total), layout="constrained")
-        figure.suptitle(lettering(chart.title, 110), x=0.01, ha="left", fontsize=10.5, fontweight="bold")
-        if lines:
-            figure.set_layout_engine("constrained", rect=(0.0, 0.0, 1.0, 1.0 - under_title / total))
-            figure.text(0.01, 1.0 - _TITLE / total, "\n".join(lines), fontsize=8.0, va="top", linespacing=1.3)
+        below = views[0][:_MOST_ENLARGED] if views and len(rows) == 1 else ()
+        heights = [self._height(row) for row in rows]
+        figure = Figure(figsize=(WIDTH, sum(heights) + (_ENLARGED_ROW if below else 0.0) + 0.55), layout="constrained")
         parts: Any = figure.subfigures(2, 1, height_ratios=[sum(heights), _ENLARGED_ROW]) if below else [figure]
-        shown = _MOST_BESIDE if len(rows) == 2 and self._aligned() else 1
-        parted = [[(panel, view) for panel in row for view in panel.x.views[:shown]] if beside else [] for row in rows]
-        columns = [len(row) + len(views) for row, views in zip(rows, parted, strict=True)]
-        even = len(set(columns)) == 1
+        self._rows(parts[0], heights, 0 if len(rows) == 1 else _MOST_BESIDE if len(rows) == 2 and self._aligned() else 1)
+        if below:
+            self._views_below(parts[1], below)
+        self._same_ranges()
+        self._colour_bars(figure, parts[0])
+        self._legend(figure)
+        self._titles(figure)
+        return figure
+
+    def _rows(self, part: Any, heights: list[float], beside: int) -> None:
+        """Draw the rows of panels, with some of their views beside them."""
+        rows = self.chart.rows
+        views = [[(panel, view) for panel in row for view in panel.x.views[:beside]] for row in rows]
+        columns = [len(row) + len(some) for row, some in zip(rows, views, strict=True)]
+        most = max(columns)
+        if self._pictures():  # those of a row that is not full are as large as the others
+            columns = [most] * len(rows)
+        even = all(most % count == 0 for count in columns)
         # a common grid, where there is one, aligns the rows, and lets all maps share one colour bar
-        grid = parts[0].add_gridspec(len(rows), columns[0] if even else 1, height_ratios=heights)
-        for number, (row, panel_views) in enumerate(zip(rows, parted, strict=True)):
-            cells, at = (grid, number) if even else (grid[number, 0].subgridspec(1, columns[number]), 0)
-            places = [cells[at, column] for column in range(columns[number])]
+        grid = part.add_gridspec(len(rows), most if even else 1, height_ratios=heights)
+        for number, (row, some, count) in enumerate(zip(rows, views, columns, strict=True)):
+            cells, at, wide = (grid, number, most // count) if even else (grid[number, 0].subgridspec(1, count), 0, 1)
+            places = [cells[at, wide * column : wide * (column + 1)] for column in range(count)]
             last = number == len(rows) - 1 or not self._aligned()
             for column, (place, panel) in enumerate(zip(places, row, strict=False)):
-                axes = parts[0].add_subplot(place)
+                axes = part.add_subplot(place)
                 self._panel(axes, panel, self.frames[panel.x], self.frames[panel.y], None, lowest=last)
                 if column and panel.y.names and panel.y is row[column - 1].y:  # names that the panel before has already
                     axes.tick_params(labelleft=False)
-            for place, (panel, view) in zip(places[len(row) :], panel_views, strict=True):
-                self._view(parts[0].add_subplot(place), panel, view, lowest=last, first=False)
-        if below:
-            panel, inner = chart.panels[0], parts[1].add_gridspec(1, len(below))
-            for number, view in enumerate(below):
-                self._view(parts[1].add_subplot(inner[0, number]), panel, view, lowest=True, first=number == 0)
-            self._label_once(parts[1])
-        self._same_ranges()
-        self._colour_bars(parts[0])
-        self._legend(figure)
-        return figure
+            for place, (panel, view) in zip(places[len(row) :], some, strict=False):
+                self._view(part.add_subplot(place), panel, view, count, self.frames[panel.y], lowest=last)
+        if even and len(rows) > 1:
+            part.align_ylabels()
+
+    def _height(self, row: tuple[Panel, ...]) -> float:
+        """Return the height of a row [in]; that of pictures follows from their width, a single row of them is no higher than usual."""
+        several = len(self.chart.rows) > 1
+        usual = self.chart.height or (3.4 if row[0].picture and len(row) < 3 else _SMALL_ROW if several else _ROW)
+        if self._pictures():
+            extents = ((np.ptp(ends_on(panel.x, self.chart)), np.ptp(ends_on(panel.y, self.chart))) for panel in row)
+            width = WIDTH / max(map(len, self.chart.rows)) - _PICTURE_GAP
+            highest = max(width * float(up / (across or up or 1.0)) for across, up in extents)
+            below = any(isinstance(mark, Label) and mark.corner for panel in row for mark in panel.marks)
+            words = _PICTURE_TITLE + (_PICTURE_WORDS if below or not several else 0.0)
+            return min(max(highest, _LOW) + words, _HIGH if several else usual)
+        return max(usual, 2.1) if several and not self._aligned() else usual
+
+    def _pictures(self) -> bool:
+        """Return whether all panels are pictures."""
+        return all(panel.picture for panel in self.chart.panels)
+
+    def _views_below(self, part: Any, views: tuple[View, ...]) -> None:
+        """Draw views of the first panel in a row; the first one has the label of the vertical axis."""
+        panel, grid = self.chart.panels[0], part.add_gridspec(1, len(views))
+        _, named = view_frames(panel, views[0], self.frames[panel.y], self.chart.panels)
+        for number, view in enumerate(views):
+            self._view(part.add_subplot(grid[0, number]), panel, view, len(views), named if number else None, lowest=True)
+        self._label_once(part)
+
+    def _titles(self, figure: Figure) -> None:
+        """Write the title and the lines below it, once the height of the figure is known."""
+        chart, total = self.chart, figure.get_figheight()
+        figure.suptitle(lettering(chart.title, 110), x=0.01, ha="left", fontsize=10.5, fontweight="bold")
+        lines = [lettering(line, 150) for line in chart.subtitle.splitlines()]
+        if lines:
+            height = _SUBTITLE_LINE * (len(lines) + 0.5)
+            figure.set_size_inches(WIDTH, total + height)
+            figure.set_layout_engine("constrained", rect=(0.0, 0.0, 1.0, total / (total + height)))
+            figure.text(0.01, 1.0 - _TITLE / (total + height), "\n".join(lines), fontsize=8.0, va="top", linespacing=1.3)
 
     def _same_ranges(self) -> None:
         """Give the panels that have the same axis its range."""
@@ -139,17 +183,18 @@ class _Print:
         """Return whether all rows have one axis of time, whose numbers the lowest row has."""
         return len({id(panel.x) for panel in self.chart.panels}) == 1
 
-    def _view(self, axes: Axes, panel: Panel, view: View, *, lowest: bool, first: bool) -> None:
+    def _view(self, axes: Axes, panel: Panel, view: View, columns: int, beside: Frame | None, *, lowest: bool) -> None:
+        """Draw a view in one of some columns, beside a panel whose vertical axis has a label; None if there is none."""
         across, up = view_frames(panel, view, self.frames[panel.y], self.chart.panels)
         since = across.label.removeprefix("Time ").partition(" of ")[0]
         short = Frame(since[:1].upper() + since[1:], across.unit, across.size, across.origin)
-        self._panel(axes, panel, short, up, view, lowest=lowest, labelled=first)
-        # the upper row names the view, with the number that it is about; where it has another unit than the whole, this follows
-        number = view.headline.rsplit(" ", 1)[-1] if view.headline else ""
-        title = f"{view.name}: {number}" if number else view.name
-        unit = f"[{up.unit}]" if not first and up.unit and (up.unit != self.frames[panel.y].unit or not number) else ""
-        upper = panel in self.chart.rows[0] or not number
-        axes.set_title(lettering(f"{title if upper else ''} {unit}".strip()), fontsize=8.5)
+        self._panel(axes, panel, short, up, view, lowest=lowest, labelled=beside is None)
+        told = beside is None or up.unit == beside.unit or view.headline.split()[-1:] == [up.unit]
+        unit = "" if told else f"[{up.unit}]"
+        # the upper row names the view and what it is about
+        upper = panel in self.chart.rows[0] or not view.headline
+        title = _title(view, unit, int((WIDTH / columns - _NUMBERS) / _LETTER)) if upper else unit
+        axes.set_title("\n".join(lettering(line) for line in title.splitlines()), fontsize=8.0 if columns > _MOST_BESIDE else 8.5)
 
     def _panel(
         self, axes: Axes, panel: Panel, across: Frame, up: Frame, view: View | None, *, lowest: bool = True, labelled: bool = True
@@ -170,7 +215,7 @@ class _Print:
                 artist.set_zorder(2.0 + 0.001 * order)
         if panel.picture:
             axes.set_axis_off()
-            axes.set_aspect("equal")
+            axes.set_aspect("equal", anchor="N")  # the titles of a row in a line
             axes.margins(0.02)
         else:
             has_symbols = any(isinstance(mark, Points) or getattr(mark, "marked", False) for mark in panel.marks)
@@ -192,12 +237,15 @@ class _Print:
         if title and view is None:
             axes.set_title(lettering(title, 70), fontsize=8.5 if len(self.chart.panels) > 1 else 9.5)
 
-    def _colour_bars(self, figure: Any) -> None:
+    def _colour_bars(self, figure: Figure, part: Any) -> None:
         for scale, (picture, axes) in self.marks.scales.items():
             frame = self.frames[scale]
-            bar = figure.colorbar(
+            if len(axes) > 1:
+                figure.set_size_inches(WIDTH, figure.get_figheight() + _COLOUR_BAR)
+            bar = part.colorbar(
                 picture,
                 ax=axes,
+                panchor=False,  # the maps stay where they are in their cells
                 location="bottom" if len(axes) > 1 else "right",
                 shrink=0.5 if len(axes) > 1 else 1.0,
                 aspect=40 if len(axes) > 1 else 25,
@@ -215,3 +263,29 @@ class _Print:
         further = math.ceil(len(labels) / columns) - 1
         figure.set_size_inches(WIDTH, figure.get_figheight() + _LEGEND_LINE * further)
         figure.legend(list(self.marks.named.values()), labels, loc="outside lower center", ncols=columns, handlelength=3.2)
+
+
+def _title(view: View, unit: str, most: int) -> str:
+    r"""Return the title of a view with the unit of its axis: its headline beside its name or below it, or the number in it alone.
+
+    Parameters
+    ----------
+    view : View
+        The view.
+    unit : str
+        What stands behind its name.
+    most : int
+        Number of letters that a line may have.
+
+    Examples
+    --------
+    >>> view = View("Impact 1", 0.0, 1.0, headline="largest force 9.35\u00a0kN")
+    >>> _title(view, "", 32), _title(view, "", 22), _title(view, "[N]", 12)
+    ('Impact 1: largest force 9.35\xa0kN', 'Impact 1\nlargest force 9.35\xa0kN', 'Impact 1 [N]\n9.35\xa0kN')
+    """
+    name = f"{view.name} {unit}".strip()
+    if not view.headline:
+        return name
+    if len(name) + 2 + len(view.headline) <= most:
+        return f"{name}: {view.headline}"
+    return f"{name}\n{view.headline if len(view.headline) <= most else view.headline.rsplit(' ', 1)[-1]}"

@@ -43,7 +43,7 @@ def _numbers(axes: Axes, side: str) -> int:
     """Return how many numbers fit along an axis."""
     place = axes.get_subplotspec()
     assert place is not None
-    columns = place.get_gridspec().ncols
+    columns = place.get_gridspec().ncols // len(place.colspan)
     return (7 if columns == 1 else 6 if columns == 2 else 3) if side == "x" else 5
 
 

@@ -8,6 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
 from matplotlib.colors import LinearSegmentedColormap, LogNorm, Normalize
+from matplotlib.patches import Rectangle
 from matplotlib.patheffects import withStroke
 
 from vibroimpact.arrays import Floats
@@ -45,6 +46,9 @@ _SYMBOLS = {"circle": "o", "square": "s", "triangle-up": "^", "triangle-down": "
 _HATCHES = {"": "", "/": "////", "\\": "\\\\\\\\", "|": "||||", "-": "----", "x": "xxxx", ".": "...."}
 _HALO = [withStroke(linewidth=1.8, foreground="white", alpha=0.8)]
 _STACK_POINTS = 220
+
+_THINNEST = 1e-3
+"""Width of the narrowest span drawn, relative to the axis: a narrower one is less than a dot, seen or not as the dots fall."""
 
 
 class PrintedMarks:
@@ -118,7 +122,7 @@ class PrintedMarks:
                         path_effects=_HALO,
                     )
             case Spans():
-                self._spans(axes, mark, x, inside)
+                self._spans(axes, mark, x, inside if np.isfinite(inside[0]) else ends_on(panel.x, self.chart))
             case Rug():
                 places = x.shown(mark.values)
                 line = axes.plot(
@@ -231,14 +235,9 @@ class PrintedMarks:
         self._name(mark, artist)
 
     def _spans(self, axes: Axes, mark: Spans, x: Frame, inside: tuple[float, float]) -> None:
-        look = LOOKS[mark.role]
-        low, high = (
-            (end if np.isfinite(end) else float(pick(mark.starts)) for end, pick in zip(inside, (np.min, np.max), strict=True))
-            if len(mark.starts)
-            else inside
-        )
-        near = (mark.ends >= low) & (mark.starts <= high)
-        for start, end in zip(x.shown(mark.starts[near][:60]), x.shown(mark.ends[near][:60]), strict=True):
+        look, (low, high) = LOOKS[mark.role], inside
+        seen = (mark.ends >= low) & (mark.starts <= high) & (mark.ends - mark.starts >= _THINNEST * (high - low))
+        for start, end in zip(x.shown(mark.starts[seen][:60]), x.shown(mark.ends[seen][:60]), strict=True):
             self._name(mark, axes.axvspan(float(start), float(end), color=look.light, alpha=look.opacity, linewidth=0, zorder=0))
 
     def _map(self, axes: Axes, mark: Map, panel: Panel, x: Frame, y: Frame) -> None:
@@ -266,6 +265,9 @@ class PrintedMarks:
             half = 0.5 * (across[1] - across[0]), 0.5 * (up[1] - up[0])
             edges = (across[0] - half[0], across[-1] + half[0], up[0] - half[1], up[-1] + half[1])
             picture = axes.imshow(values, extent=edges, origin="lower", cmap=colours, norm=norm, interpolation="bicubic", aspect="auto")
+            # a pixel lies around its point, and half of it beyond the edge
+            inner = (across[0], up[0]), across[-1] - across[0], up[-1] - up[0]
+            picture.set_clip_path(Rectangle(*inner, transform=axes.transData))
         for found in contours_of(values) if mark.contours else ():
             style: dict[str, Any] = {"linewidths": found.width, "linestyles": "--" if found.dashed else "-"}
             axes.contour(across, up, np.ma.masked_invalid(found.values), levels=found.levels, colors="#1b1b1b", **style)

@@ -9,6 +9,7 @@ import typer
 
 from vibroimpact.cli.shared import (
     CaseArgument,
+    Changes,
     Figures,
     Force,
     Json,
@@ -17,6 +18,7 @@ from vibroimpact.cli.shared import (
     exit_on_interrupt,
     note,
     say,
+    settings_of,
     show,
     stem,
 )
@@ -28,6 +30,7 @@ def calibrate(
     output: Annotated[
         Path | None, typer.Option("-o", "--output", metavar="DIR", help="The folder to make; by default CASE-calibrated.")
     ] = None,
+    changes: Changes = None,
     figures: Figures = False,
     force: Force = False,
     as_json: Json = False,
@@ -45,7 +48,7 @@ def calibrate(
     from vibroimpact.report.progress import patient_progress
     from vibroimpact.results.folder import check_free
 
-    what = load_calibration(case)
+    what = load_calibration(case, settings_of(changes))
     target = Path(f"{stem(case)}-calibrated") if output is None else output
     check_free(target, force=force)
     screen = console(err=as_json)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -112,6 +113,9 @@ def _run(name: str, output: Path | None, changes: dict[str, Any], drop: int | No
     case = load_case(name, changes) if drop is None else load_drop(name, drop, changes)
     target = Path(stem(name) if drop is None else f"{stem(name)}-drop-{drop}") if output is None else output
     check_free(target, force=force)  # fail before the computation
+    if case.sweep is not None:
+        words = f"vibroimpact sweep {shlex.quote(name)} runs the study, and --drop N one of its drops"
+        note(f"[sweep] is left out, as this is a single drop; {words}")
     for sentence in describe_costs(case):
         note(sentence)
     screen = console(err=as_json)

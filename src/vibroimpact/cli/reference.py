@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from vibroimpact.cli.completion import complete_case, complete_law, complete_material
-from vibroimpact.cli.shared import Json, app, console, say, show
+from vibroimpact.cli.shared import Changes, Json, app, console, say, settings_of, show
 from vibroimpact.errors import ComputationError, InputError
 
 
@@ -32,6 +32,7 @@ def new(
             help='The case to start from: a TOML file, or a shipped one such as "paper:type3".',
         ),
     ] = "paper:type1-theory",
+    changes: Changes = None,
     force: Annotated[bool, typer.Option("--force", help="Replace an existing file.")] = False,
 ) -> None:
     """Write a case to start from: that of another case, with the keys that it does not use as comments."""
@@ -45,7 +46,7 @@ def new(
         raise InputError(f'"{name}" is no name of a file; give one without folders, such as my-plate')
     if path.exists() and not force:
         raise InputError(f"{path} exists; take another name, or --force to replace it")
-    text = case_template(source, title)
+    text = case_template(source, title, settings_of(changes))
     recover(path)
     write_text_file(path, text)
     say(f"wrote {path}; explain it: vibroimpact check {path}; run it: vibroimpact run {path}")

@@ -9,6 +9,7 @@ from vibroimpact.cases.elastic.modes import BodyModes, contact_place
 from vibroimpact.charts.axis import Axis
 from vibroimpact.charts.chart import Panel
 from vibroimpact.charts.marks import Label, Line, Map, Mark, Outline, Points
+from vibroimpact.charts.outlines import AT_REST, on_supports
 from vibroimpact.modes.supports import support_outlines
 from vibroimpact.modes.titles import mode_title
 from vibroimpact.results.surface_grid import SurfaceGrid, surface_grid
@@ -22,9 +23,6 @@ _POINTS = 12_000
 
 _IN_PLANE = 0.2
 """Part of the largest displacement below which that upwards is no more than the plate's Poisson contraction."""
-
-_AT_REST = 0.01
-"""Part of the largest displacement below which the plate on a support is drawn at rest, without nodal lines."""
 
 _LINES, _EXAGGERATED = 13, 0.05
 """Lines of a deformed grid along the longer side, and its largest displacement over that side."""
@@ -52,7 +50,7 @@ def plate_panels(body: BodyModes, number: int) -> list[Panel]:
         else:
             height = grid.interpolate(moved[:, 2])
             values = height / np.nanmax(np.abs(height))
-            values[held & (np.abs(values) < _AT_REST)] = 0.0
+            values[held & (np.abs(values) < AT_REST)] = 0.0
             marks = [Map(grid.x, grid.y, values, scale, diverging=True, contours=True, cells=False), *marked]
         panels.append(Panel(across, up, tuple(marks), mode_title(model, mode), picture=True))
     return panels
@@ -64,16 +62,9 @@ def is_in_plane(moved: Floats) -> bool:
 
 
 def _on_supports(body: BodyModes, grid: SurfaceGrid) -> Bools:
-    """Return which points of a grid lie on supports, whose outlines are convex; but for those of edges, which have no width."""
-    points = np.stack(np.meshgrid(grid.x, grid.y), axis=-1)
-    found = np.zeros(points.shape[:2], dtype=bool)
+    """Return which points of a grid lie on supports, but for those of edges, which have no width."""
     supports = [support for support in body.body.recipe.supports if not isinstance(support, Edge)]
-    for x, y in support_outlines(supports, body.model.mesh):
-        corners = np.stack([x, y], axis=-1)
-        side, to = np.roll(corners, -1, axis=0) - corners, points[..., None, :] - corners
-        turn = side[:, 0] * to[..., 1] - side[:, 1] * to[..., 0]
-        found |= (turn >= 0.0).all(axis=-1) | (turn <= 0.0).all(axis=-1)
-    return found
+    return on_supports(support_outlines(supports, body.model.mesh), grid.x, grid.y)
 
 
 def _plate_marks(body: BodyModes) -> list[Mark]:

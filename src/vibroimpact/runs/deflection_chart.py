@@ -8,9 +8,10 @@ from vibroimpact.arrays import Floats
 from vibroimpact.charts.axis import Axis
 from vibroimpact.charts.chart import Chart, Panel
 from vibroimpact.charts.marks import Label, Line, Map, Mark, Outline, Points
+from vibroimpact.charts.outlines import AT_REST, on_supports
 from vibroimpact.results.deflection import Deflection
 from vibroimpact.results.result import Result
-from vibroimpact.runs.supports import support_outlines
+from vibroimpact.runs.supports import Extent, plate_extent, support_outlines
 from vibroimpact.shown import shortened, visible
 from vibroimpact.units.display import digits, multiple, text
 
@@ -18,6 +19,12 @@ _COLUMNS, _ROWS = 3, 2
 
 _MOST_NAMED = 12
 """Places of sensors that are named; the names of more would cover each other."""
+
+_MOST_LETTERS, _FEWEST_LETTERS = 20, 8
+"""Letters of a name: the most, and the fewest to which it is shortened."""
+
+_ACROSS, _SHAPE = 38, 1.6
+"""Letters that fit across a map in print, and its length over its width from which on a map is narrower than its place."""
 
 _ROUNDING = 1e-9
 """Relative to the largest deflection of all maps: smaller values are drawn as zero."""
@@ -30,10 +37,13 @@ def deflection_chart(result: Result, caption: str) -> Chart:
     touch, frames = float(result.impacts["time_s"][0]), chosen_frames(result, deflection)
     across, up, scale = Axis("x", "m"), Axis("y", "m"), Axis("Deflection, upwards", "m")
     most = float(np.nanmax(np.abs(deflection.height[frames])))
+    held = on_supports(support_outlines(result, edges=False), deflection.x, deflection.y)
     unit = multiple("m", most)
     panels = []
     for frame in frames:
-        height = np.where(np.abs(deflection.height[frame]) <= _ROUNDING * most, 0.0, deflection.height[frame]).astype(float)
+        height = deflection.height[frame].astype(float)
+        size = np.abs(height)
+        height[(size <= _ROUNDING * most) | (held & (size < AT_REST * np.nanmax(size)))] = 0.0
         low, high = (digits(float(pick(height)) / unit.size, 2) for pick in (np.nanmin, np.nanmax))
         title = f"{text(float(deflection.time[frame]) - touch, 's', 3)} after first touch"
         least_and_most = Label(0.5, 0.0, f"{low} to {high} {unit.unit}", "below", corner=True)
@@ -77,8 +87,21 @@ def sensor_marks(result: Result) -> tuple[Mark, ...]:
     for name, *place in placed:
         together.setdefault((place[0], place[1]), []).append(name)
     if len(together) <= _MOST_NAMED:
-        marks += [Label(*place, shortened(visible(", ".join(names)), 20), "left") for place, names in together.items()]
+        labels = (_label(place, visible(", ".join(names)), plate_extent(result)) for place, names in together.items())
+        marks += [label for label in labels if label.words]
     return tuple(marks)
+
+
+def _label(place: tuple[float, float], name: str, extent: Extent | None) -> Label:
+    """Return the name of a sensor on the side where the edge is farther, no longer than what fits there; none where too little does."""
+    if extent is None:
+        return Label(*place, shortened(name, _MOST_LETTERS), "left")
+    (left, right), (front, back) = extent.x, extent.y
+    before, after = place[0] - left, right - place[0]
+    across = _ACROSS * min(1.0, _SHAPE * (right - left) / (back - front))
+    room = min(int(across * max(before, after) / (right - left)) - 1, _MOST_LETTERS)
+    words = name if len(name) <= room else shortened(name, room) if room >= _FEWEST_LETTERS else ""
+    return Label(*place, words, "left" if before <= after else "right")
 
 
 def sensor_places(result: Result) -> list[tuple[str, float, float]]:

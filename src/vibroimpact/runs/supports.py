@@ -72,12 +72,20 @@ def single_supports(case: ResolvedCase) -> list[Mapping[str, Any]]:
     return found
 
 
-def support_outlines(result: Result) -> list[tuple[Floats, Floats]]:
-    """Return the outlines of the supports seen from above as x and y [m]; edges are narrow strips, sets of nodes are left out."""
+def support_outlines(result: Result, *, edges: bool = True) -> list[tuple[Floats, Floats]]:
+    """Return the outlines of the supports seen from above as x and y [m]; edges are narrow strips, sets of nodes are left out.
+
+    Parameters
+    ----------
+    result : Result
+        The result.
+    edges : bool
+        Whether those of edges are among them.
+    """
     extent = plate_extent(result)
     if extent is None:
         return []
-    found = [_outline(one, extent) for one in single_supports(result.case)]
+    found = [_outline(one, extent) for one in single_supports(result.case) if edges or one["type"] != "edge"]
     return [outline for outline in found if outline is not None]
 
 
