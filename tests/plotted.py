@@ -67,8 +67,9 @@ class Plotted:
 
 def show(page: Page, name: str) -> None:
     """Bring a chart into the window, and wait until it is drawn."""
-    page.evaluate(f"(name) => {_CHART}.element.scrollIntoView({{ block: 'center', behavior: 'instant' }})", name)
-    until(page, f"(name) => {{ const one = {_CHART}; return one.near && !one.stale && !one.drawing; }}", name)
+    # charts above that are drawn meanwhile may push it out again
+    into = "one.element.scrollIntoView({ block: 'center', behavior: 'instant' })"
+    until(page, f"(name) => {{ const one = {_CHART}; {into}; return one.near && !one.stale && !one.drawing; }}", name)
 
 
 def names(page: Page) -> list[str]:

@@ -7,13 +7,14 @@ from functools import partial
 from os import PathLike
 from pathlib import Path
 
+from vibroimpact.charts.figures_folder import FIGURES
 from vibroimpact.charts.files import check_formats, save_charts
 from vibroimpact.errors import InputError
 from vibroimpact.files.recover import recover
 from vibroimpact.report.page import replace_report_files
 from vibroimpact.results.folder import read_result
 from vibroimpact.results.result import Result
-from vibroimpact.runs.figures import FIGURES, write_figures
+from vibroimpact.runs.figures import write_figures
 
 
 def save_figures(

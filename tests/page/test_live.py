@@ -156,6 +156,24 @@ def test_the_ball_is_dragged_over_the_plate(case: str, page: Page, server: Serve
     assert shown(page)["drop"]["position"][0] == pytest.approx(0.1, abs=1e-12)
 
 
+def test_the_ball_stays_under_the_pointer_while_progress_is_shown(page: Page, server: Server) -> None:
+    open_live(page, server, ELASTIC)
+    page.locator("[data-scene=play]").click()
+    page.mouse.move(*place_on_plate(page, *shown(page)["drop"]["position"]))
+    page.mouse.down()
+    (x, y), top = place_on_plate(page, 0.05, -0.03), "() => document.querySelector('canvas').getBoundingClientRect().top"
+    page.mouse.move(x, y, steps=3)
+    before = page.evaluate(top)
+    page.evaluate("() => { document.getElementById('work').hidden = false; }")
+    assert page.evaluate(top) == before
+    page.evaluate("() => document.getElementById('doubts').append(vibroimpact.make('p', { text: 'a line that comes meanwhile' }))")
+    assert page.evaluate(top) > before
+    page.mouse.move(x, y, steps=1)
+    page.mouse.up()
+    settle(page)
+    assert shown(page)["drop"]["position"] == pytest.approx([0.05, -0.03], abs=6e-4)
+
+
 def drop_file(page: Page, name: str, content: bytes) -> None:
     """Drop a file over the page, as from the desktop."""
     transfer = page.evaluate_handle(
@@ -427,6 +445,33 @@ def test_hold_shows_the_case_of_before_beside_the_new_one(page: Page, server: Se
     release.click()
     assert len(plotted(page, "position", ("s", "m")).lines()) == 1
     assert len(tables(page, "impacts")) == len(kept)
+
+
+def test_what_is_held_is_aligned_at_first_touch_in_a_view(page: Page, server: Server, tmp_path: Path) -> None:
+    """The impact of the case held, from its own first touch and height; a smaller ball falls longer, and its energies have other units."""
+    open_live(page, server, RIGID)
+    held = computed(page, tmp_path)
+    page.get_by_role("button", name="Hold to compare").click()
+    type_value(page, "sphere.radius", 2)
+    type_value(page, "drop.height", 0.1)
+    result = computed(page, tmp_path)
+    page.locator("#view").select_option("1")
+    ghost, own = plotted(page, "position", ("s", "m")).lines()
+    for line, one, radius in ((ghost, held, 0.02), (own, result, 0.002)):
+        touch = one.impacts["time_s"][1]
+        near = np.abs(one.history["time_s"] - touch) < 2e-4
+        expected = np.interp(line.x, one.history["time_s"][near] - touch, one.history["position_m"][near] - radius)
+        inside = (line.x > one.history["time_s"][near][0] - touch) & (line.x < one.history["time_s"][near][-1] - touch)
+        assert inside.sum() > 10
+        np.testing.assert_allclose(line.y[inside], expected[inside], rtol=0, atol=1e-3 * np.abs(line.y[inside]).max())
+    table, kept = impact_table(result), impact_table(held)
+    place = [name for name, _ in kept.headers].index("Largest force")
+    (now, before), cell = (one.headers[place][1] for one in (table, kept)), kept.head[0][place]
+    assert now != before
+    assert tables(page, "impacts")[len(table.head)][place] == f"{cell} {before}"
+    units = [ledger_table(one)[0] for one in (result, held)]
+    assert units[0] != units[1]
+    assert [cells[3] for cells in tables(page, "ledger")] == [f"{one.energy} {units[1]}" for one in ledger_table(held)[1]]
 
 
 SOUNDS = """

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from serving import Server
 
 CASES = {"rigid": RIGID, "elastic": ELASTIC}
-SIZES = {"mm": 1e-3, "GPa": 1e9}
+SIZES = {"mm": 1e-3, "GPa": 1e9, "MPa": 1e6, "µs": 1e-6}
 
 
 def keys(page: Page, kind: str) -> list[str]:
@@ -147,6 +147,57 @@ def test_every_law(page: Page, server: Server) -> None:
     assert [one for one in keys(page, "input[type=range]") if one.startswith("contact.")] == ["contact.stiffness", "contact.exponent"]
 
 
+@pytest.mark.parametrize(("law", "key", "unit"), [("thornton", "yield_pressure", "MPa"), ("meyer", "yield_strength", "MPa")])
+def test_a_law_that_needs_what_the_materials_do_not_tell(law: str, key: str, unit: str, page: Page, server: Server) -> None:
+    stone = {"density": "2700 kg/m^3", "youngs_modulus": "60 GPa", "poissons_ratio": 0.2}
+    open_live(page, server, {**RIGID, "sphere": {"radius": "20 mm", "material": stone}, "plate": {**RIGID["plate"], "material": stone}})
+    row(page, "contact.law").locator("select").select_option(law)
+    settle(page)
+    assert faults(page)[0].startswith(f"contact.{key}: ")
+    field = row(page, f"contact.{key}")
+    assert field.locator(".unit").text_content() == unit
+    assert field.locator(".fault-here").count() == 1
+    assert page.locator("#controls .note").text_content() == page.evaluate(f"() => vibroimpact.live.state.offer.laws['{law}'].equation")
+    type_value(page, f"contact.{key}", 400)
+    assert faults(page) == []
+    assert shown(page)["contact"][key] == pytest.approx(400e6)
+    assert field.locator("input[type=range]").count() == 1
+
+
+def test_patches_come_back_where_they_were(page: Page, server: Server) -> None:
+    open_live(page, server, {**ELASTIC, "plate": {**ELASTIC["plate"], "supports": PATCHES}})
+    before = shown(page)
+    for value in ("clamped", "free", "patches"):
+        row(page, "plate.supports").locator("select").select_option(value)
+        settle(page)
+        assert faults(page) == []
+    assert shown(page) == before
+
+
+@pytest.mark.parametrize(
+    ("change", "field"),
+    [
+        ({"drop": {"height": "0.2 m", "position": ["150 mm", 0]}}, "drop.position.0"),
+        ({"sensors": [{"name": "a1", "position": [0, 0]}, {"name": "the 2nd: b", "position": ["150 mm", 0]}]}, "sensors.1.position.0"),
+        ({"sensors": [{"name": "a1", "position": [0, 0], "rate": "20 kHz"}, {"name": "", "position": [0, 0]}]}, "sensors.1.name"),
+        ({"sensors": [{"name": "a1", "position": [0, 0]}, {"name": "a1", "position": ["9 mm", 0]}]}, "sensors.1.name"),
+    ],
+)
+def test_a_message_stands_at_the_field_that_it_is_about(change: dict[str, Any], field: str, page: Page, server: Server) -> None:
+    kept = {"sensors": [{"name": "a1", "position": [0, 0]}, {"name": "a2", "position": ["9 mm", 0]}]}
+    open_live(page, server, {**ELASTIC, **kept})
+    edit = "(change) => vibroimpact.live.controls.change((table) => Object.assign(table, change), true)"
+    page.evaluate(edit, change)
+    settle(page)
+    (words,) = faults(page)
+    assert row(page, field).locator(".fault-here").all_text_contents() == [words]
+    marked = page.locator("[aria-invalid=true]")
+    assert (marked.count(), page.locator(f"#{marked.get_attribute('aria-describedby')}").text_content()) == (1, words)
+    page.evaluate(edit, kept | {"drop": ELASTIC["drop"]})
+    settle(page)
+    assert page.locator("[aria-invalid], [aria-describedby], .fault-here").count() == 0
+
+
 def test_a_body_that_becomes_elastic_and_rigid_again(page: Page, server: Server) -> None:
     open_live(page, server, ELASTIC)
     before = shown(page)
@@ -236,6 +287,13 @@ def test_a_case_with_values_that_the_controls_have_no_words_for(page: Page, serv
     type_value(page, "plate.modes", 5)
     assert faults(page) == []
     assert shown(page)["plate"]["modes"] == 5
+    damping = row(page, "contact.damping_max").locator("input")
+    assert (damping.count(), damping.input_value()) == (1, "20, 10")
+    type_value(page, "contact.damping_max", "20, 15, 12.5")
+    assert faults(page) == []
+    assert shown(page)["contact"]["damping_max"] == [20.0, 15.0, 12.5]
+    type_value(page, "contact.damping_max", "20, -1")
+    assert row(page, "contact.damping_max").locator(".fault-here").count() == 1
     type_value(page, "contact.damping_max", 15)
     assert faults(page) == []
     assert shown(page)["contact"]["damping_max"] in (15, [15.0])

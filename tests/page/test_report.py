@@ -5,11 +5,13 @@ from __future__ import annotations
 import re
 import tomllib
 from collections.abc import Callable
+from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
+from PIL import Image
 
 import vibroimpact as vi
 from access import assert_headings_are_in_order, faint_texts, names_of_controls, scrolls_sideways
@@ -29,6 +31,7 @@ from plotted import (
     until,
     zoom,
 )
+from vibroimpact.charts.palette import DIVERGING, DIVERGING_ON_DARK
 from vibroimpact.results.result import Result, result_of
 from vibroimpact.runs.page import run_page
 from vibroimpact.runs.spectrum import amplitude_spectrum, first_response
@@ -416,6 +419,23 @@ def test_scene_plays_pauses_scrubs_and_turns(page: Page, report: Any) -> None:
     first = page.evaluate(picture)
     page.mouse.move(box["x"] + 0.2 * box["width"], box["y"] + 0.2 * box["height"], steps=4)
     assert page.evaluate(picture) == first
+
+
+def test_a_plate_at_rest_has_the_colour_of_the_theme(new_page: MakePage, report: Any) -> None:
+    """Beside the ball, of a plate that stands still: also after the theme was changed."""
+    page = new_page(reduced_motion="reduce", color_scheme="dark")
+    _, path = report("type3")
+    open_report(page, path)
+
+    def near(colour: str) -> bool:
+        picture = Image.open(BytesIO(page.locator("#scene canvas").screenshot())).convert("RGB")
+        seen = picture.getpixel((picture.width // 2, 7 * picture.height // 10))
+        wanted = [int(colour[at : at + 2], 16) for at in (1, 3, 5)]
+        return max(abs(one - other) for one, other in zip(seen, wanted, strict=True)) < 12
+
+    assert near(DIVERGING_ON_DARK[2][1])
+    page.get_by_role("button", name="Light or dark").click()
+    assert near(DIVERGING[2][1])
 
 
 def test_less_motion_is_respected(new_page: MakePage, report: Any) -> None:

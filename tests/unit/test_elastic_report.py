@@ -127,6 +127,15 @@ def test_a_result_prints_the_same_from_memory_as_from_its_folder(result: Result,
     assert printed(result_of(response)) == printed(result)
 
 
+def test_the_energy_lost_is_told_to_be_that_of_the_contact(result: Result) -> None:
+    """Where the table has the column, and bodies vibrate."""
+    words = "Energy lost is what is dissipated in the contact, without what goes into vibration."
+    assert words in printed(result)
+    assert words in " ".join(run_page(result).split())
+    assert "Energy lost is" not in printed(result, 60)
+    assert "Energy lost is" not in printed(result_of(vi.simulate(vi.load_case("paper:type1-theory"))))
+
+
 def test_summary_has_the_promised_peaks(folder: Path, response: vi.Response) -> None:
     summary = json.loads((folder / "summary.json").read_text())
     assert list(summary["impacts"][0]) == [*IMPACT_COLUMNS, *VIBRATION_IMPACT_COLUMNS]

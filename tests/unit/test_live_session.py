@@ -8,6 +8,7 @@ import random
 import time
 import tomllib
 from collections.abc import Awaitable, Callable
+from threading import Event
 from typing import Any
 
 import pytest
@@ -185,6 +186,42 @@ def test_a_long_draft_is_given_up(monkeypatch: pytest.MonkeyPatch) -> None:
     told(talk)
 
 
+def test_cancel_does_not_wait_for_a_report(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Further reports wait in order, each of the case that was the last one when it was asked for; the cancel overtakes them."""
+    done = Event()
+
+    def slow(result: Any) -> str:
+        assert done.wait(60.0)
+        return str(result.name)
+
+    def long_second(table: dict[str, Any], detail: str, tell: Callable[[str, float], None], *_: Any) -> Any:
+        while table["name"] == "second":
+            tell("computing modes", 0.0)
+            time.sleep(0.01)
+        return state_of(table, "full", lambda what, part: None)
+
+    monkeypatch.setattr(sessions, "run_page", slow)
+    monkeypatch.setattr(sessions, "state_of", long_second)
+
+    async def talk(session: Session, heard: list[dict[str, Any]]) -> None:
+        await session.receive(case(1, {**RIGID, "name": "first"}))
+        await until(heard, 1)
+        await session.receive('{"type": "report", "number": 2}')
+        await session.receive('{"type": "report", "number": 3}')
+        await session.receive(case(4, {**RIGID, "name": "second"}))
+        await until(heard, 4, "progress")
+        await session.receive('{"type": "cancel", "number": 4}')
+        await until(heard, 4, "cancelled")
+        await session.receive(case(5, {**RIGID, "name": "third"}))
+        await until(heard, 5)
+        assert not any(one["type"] == "files" for one in heard)
+        done.set()
+        for number in (2, 3):
+            assert (await until(heard, number))["files"][0]["text"] == "first"
+
+    told(talk)
+
+
 def test_a_report_that_fails_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
     def fails(result: Any) -> str:
         raise ZeroDivisionError("by nothing")
@@ -223,10 +260,12 @@ def test_a_failure_is_told_and_the_next_case_is_computed(monkeypatch: pytest.Mon
 def test_report_and_signals_are_those_of_the_last_case() -> None:
     async def talk(session: Session, heard: list[dict[str, Any]]) -> None:
         await session.receive('{"type": "report", "number": 1}')
+        await until(heard, 1)
         await session.receive(case(2, changed({**PLATE, "sensors": [{"name": "a/1", "position": [0.02, 0.0]}]}, run={"duration": "2 ms"})))
         await until(heard, 2)
         await session.receive('{"type": "signals", "number": 3}')
         await session.receive('{"type": "report", "number": 4}')
+        await until(heard, 4)
 
     heard = told(talk)
     first, signals, report = heard[0], *(one for one in heard if one["type"] == "files")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 
 import numpy as np
@@ -101,6 +102,22 @@ def test_the_motion_of_a_stretch_is_kept_for_a_while(monkeypatch: pytest.MonkeyP
     assert sum("motion" in vars(motion) for motion in stretches) <= 2 < len(stretches)
     for name, values in response.history().items():
         np.testing.assert_array_equal(values, kept[name])
+
+
+def test_runs_of_other_threads_leave_the_motions_that_are_kept() -> None:
+    problem = drop_on(LOSSY, random_modes(3, 30, 100.0, 2e4, 1.2, 0.02), height=0.3, impacts=3)
+
+    def kept(response: vi.Response) -> list[bool]:
+        return ["motion" in vars(piece.motion) for leg in response.legs or () if leg.contact is not None for piece in leg.contact.pieces]
+
+    response = vi.simulate(problem)
+    before = kept(response)
+    assert any(before)
+    with ThreadPoolExecutor(1) as thread:
+        list(thread.map(vi.simulate, [problem] * 5))
+    assert kept(response) == before
+    list(map(vi.simulate, [problem] * 5))
+    assert not any(kept(response))
 
 
 @pytest.mark.parametrize("seed", range(3))

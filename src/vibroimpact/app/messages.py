@@ -8,7 +8,7 @@ A window sends texts of JSON with a `type`:
     to compute a case, a table as TOML has it; `"draft"` while it is being changed, `"full"` when it stays; with the names of the charts
     that are looked at, or without them for all;
 `{"type": "cancel", "number": 2}`
-    to give up what is being computed;
+    to give up the case that is being computed, and the one that waits; reports and signals come nevertheless;
 `{"type": "report", "number": 2}`, `{"type": "signals", "number": 2}`
     for the report, or the signals as CSV, of the case computed last in full.
 

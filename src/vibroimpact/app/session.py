@@ -32,6 +32,10 @@ _SHORT = 2.0
 """Time after which a draft is given up for what is asked for next [s]; until then it is finished, so that charts follow a slider."""
 
 
+_MOST_FILES = 2
+"""Number of reports and signals that wait for the one being made; for a further one the session takes no message until there is room."""
+
+
 class GivenUp(Exception):
     """What is being computed is no longer wanted."""
 
@@ -54,6 +58,7 @@ class Session:
         self._stop = Event()
         self._changed = asyncio.Event()
         self._last: State | None = None  # computed in full
+        self._files: asyncio.Queue[tuple[Message, State | None]] = asyncio.Queue(_MOST_FILES)  # those to make, each of a state
 
     async def welcome(self) -> None:
         """Tell the window what there is."""
@@ -80,8 +85,7 @@ class Session:
                 if waiting is not None:
                     await self._tell("cancelled", waiting.number, {})
             case "report" | "signals":
-                last = self._last
-                await self._send(await asyncio.to_thread(_packed, "files", message, lambda: _files(message.type, last)))
+                await self._files.put((message, self._last))
 
     def _want(self, message: Message) -> None:
         """Compute a case next. What is computed now is given up unless it is short, or the modes that the new case needs as well."""
@@ -95,7 +99,20 @@ class Session:
         self._changed.set()
 
     async def work(self) -> None:
-        """Compute the cases that are asked for, until cancelled."""
+        """Compute the cases that are asked for, and make files beside them, until cancelled."""
+        async with asyncio.TaskGroup() as tasks:
+            tasks.create_task(self._compute_cases())
+            tasks.create_task(self._make_files())
+
+    async def _make_files(self) -> None:
+        while True:
+            message, state = await self._files.get()
+            await self._answer(message.number, self._send_files(message, state))
+
+    async def _send_files(self, message: Message, state: State | None) -> None:
+        await self._send(await asyncio.to_thread(_packed, "files", message, lambda: _files(message.type, state)))
+
+    async def _compute_cases(self) -> None:
         try:
             while True:
                 await self._changed.wait()

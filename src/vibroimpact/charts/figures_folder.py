@@ -7,6 +7,9 @@ from pathlib import Path
 
 from vibroimpact.charts.chart import Chart
 
+FIGURES = "figures"
+"""Name of the folder of the charts as files, inside a result folder."""
+
 
 def write_figures(charts: Sequence[Chart], folder: Path, formats: Sequence[str]) -> None:
     """Write charts as files into a new folder `figures` of an existing folder; nothing if there are no formats.
@@ -24,5 +27,5 @@ def write_figures(charts: Sequence[Chart], folder: Path, formats: Sequence[str])
         return
     from vibroimpact.charts.files import save_charts  # here, as it imports matplotlib
 
-    (folder / "figures").mkdir()
-    save_charts(charts, folder / "figures", formats)
+    (folder / FIGURES).mkdir()
+    save_charts(charts, folder / FIGURES, formats)

@@ -111,7 +111,10 @@ LOOKS: dict[str, Look] = {
 """The look of each role."""
 
 DIVERGING = ((0.0, "#0b3c73"), (0.25, "#5b9bcf"), (0.5, "#f7f7f7"), (0.75, "#e38a63"), (1.0, "#8f1d14"))
-"""Colours of a scale that is symmetric about zero."""
+"""Colours of a scale that is symmetric about zero, in even steps."""
+
+DIVERGING_ON_DARK = ((0.0, "#a8d6ff"), (0.25, "#4a8fca"), (0.5, "#4a525b"), (0.75, "#cc6a48"), (1.0, "#ffb79c"))
+"""The same for surfaces on dark ground, where zero is dark; maps have the first on any ground."""
 
 SEQUENTIAL = ((0.0, "#00224e"), (0.25, "#3b496c"), (0.5, "#7d7c78"), (0.75, "#bcae6c"), (1.0, "#fee838"))
 """Colours of a scale from small to large, of rising luminance."""

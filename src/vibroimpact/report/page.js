@@ -12,10 +12,13 @@
     $(id).remove();
   };
 
+  let scene = null;
+
   const showTheme = (theme, charts) => {
     document.documentElement.dataset.theme = theme;
     vibroimpact.setTheme(theme);
     for (const chart of charts.values()) chart.update();
+    scene?.draw();
   };
 
   const connectViews = (charts) => {
@@ -94,7 +97,7 @@
   const start = async () => {
     const [data] = await Promise.all([vibroimpact.inflated($("data").textContent), run("plotly")]);
     $("data").textContent = "";
-    const { charts: given, scene, palette } = vibroimpact.unpack(data);
+    const { charts: given, scene: moving, palette } = vibroimpact.unpack(data);
     vibroimpact.setPalette(palette);
     const charts = new Map();
     for (const chart of given) {
@@ -108,7 +111,7 @@
     connectViews(charts);
     connectKeys(charts);
     connectCopies();
-    if (scene) vibroimpact.controlScene($("scene"), scene);
+    if (moving) scene = vibroimpact.controlScene($("scene"), moving);
     connectPaper(charts);
     vibroimpact.charts = charts;
     await Promise.all([...charts.values()].map((chart) => chart.drawing));

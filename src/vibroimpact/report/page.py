@@ -18,7 +18,7 @@ from markupsafe import Markup
 
 from vibroimpact.charts.chart import Chart
 from vibroimpact.charts.pack import pack
-from vibroimpact.charts.palette import GRID, GROUND, INK, LOOKS, SOFT
+from vibroimpact.charts.palette import DIVERGING, DIVERGING_ON_DARK, GRID, GROUND, INK, LOOKS, SOFT
 from vibroimpact.charts.plotly import plotly_chart
 from vibroimpact.errors import InputError
 from vibroimpact.files.atomic_write import write_into
@@ -96,16 +96,20 @@ def template(package: str) -> Template:
     return environment.get_template("page.html.j2")
 
 
-def palette() -> dict[str, dict[str, str]]:
-    """Return the colour of every role on light and on dark ground.
+def palette() -> dict[str, dict[str, str | list[str]]]:
+    """Return the colour of every role on light and on dark ground, and as `diverging` those of a surface that moves up and down.
 
     Examples
     --------
-    >>> palette()["dark"]["ground"]
-    '#14181d'
+    >>> palette()["dark"]["ground"], palette()["light"]["diverging"][2]
+    ('#14181d', '#f7f7f7')
     """
     looks = {"ground": GROUND, "ink": INK, "soft": SOFT, "grid": GRID, **LOOKS}
-    return {theme: {role: asdict(look)[theme] for role, look in looks.items()} for theme in ("light", "dark")}
+    scales = {"light": DIVERGING, "dark": DIVERGING_ON_DARK}
+    return {
+        theme: {**{role: asdict(look)[theme] for role, look in looks.items()}, "diverging": [colour for _, colour in stops]}
+        for theme, stops in scales.items()
+    }
 
 
 def _script(package: str, file: str) -> str:

@@ -5,14 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
+from vibroimpact.charts.figures_folder import FIGURES as FIGURES
 from vibroimpact.charts.files import save_charts
 from vibroimpact.results.result import Result
 from vibroimpact.runs.animation import animate
 from vibroimpact.runs.charts import run_charts
 from vibroimpact.runs.setup import setup_chart
 
-FIGURES, ANIMATION = "figures", "plate.gif"
-"""Folder of the figures inside a result folder, and the animation in it."""
+ANIMATION = "plate.gif"
+"""The animation of the plate, in the folder of the figures."""
 
 
 def write_figures(

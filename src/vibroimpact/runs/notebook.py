@@ -8,6 +8,7 @@ from markupsafe import Markup
 
 from vibroimpact.charts.notebook import plotly_figure
 from vibroimpact.errors import InputError, did_you_mean
+from vibroimpact.report.html_table import html_table
 from vibroimpact.results.result import Result
 from vibroimpact.runs.captions import sensor_caption
 from vibroimpact.runs.charts import run_charts
@@ -86,13 +87,5 @@ def _impacts(result: Result) -> Markup:
     table = impact_table(result)
     if not table.head:
         return Markup("<p>No impact within the run.</p>")
-    head = Markup("").join(Markup("<th>{}<br>{}</th>").format(header, f"[{unit}]" if unit else "") for header, unit in table.headers)
-    gap = Markup('<tr><td colspan="{}">… {} more …</td></tr>').format(len(table.headers), table.left_out) if table.left_out else Markup("")
-    rows = _rows(table.head) + gap + _rows(table.tail)
-    return Markup("<table><thead><tr>{}</tr></thead><tbody>{}</tbody></table>").format(head, rows)
-
-
-def _rows(rows: list[list[str]]) -> Markup:
-    return Markup("").join(
-        Markup("<tr>{}</tr>").format(Markup("").join(Markup("<td>{}</td>").format(cell) for cell in row)) for row in rows
-    )
+    gap = [f"… {table.left_out} more …"] if table.left_out else []
+    return html_table(table.headers, [*table.head, *gap, *table.tail])

@@ -15,7 +15,7 @@ from vibroimpact.runs.charts import run_charts
 from vibroimpact.runs.deformation import deformation_rows, treatment_sentence
 from vibroimpact.runs.scene import scene_of
 from vibroimpact.runs.setup import setup_chart, setup_rows
-from vibroimpact.runs.tables import impact_table, ledger_table
+from vibroimpact.runs.tables import SUM, impact_table, ledger_table
 from vibroimpact.units.display import digits
 
 
@@ -54,7 +54,8 @@ def run_page(result: Result) -> str:
         setup=setup_rows(result),
         impacts=impact_table(result),
         ledger_unit=unit,
-        ledger=ledger,
+        ledger=[(row.title, row.energy, row.part) for row in ledger],
+        sum=SUM,
         closure=f"{digits(result.energy['closure_J'], 2)} J",
         closure_relative=digits(result.energy["closure_relative"], 2),
         closure_limit=digits(CLOSURE_LIMIT, 1),

@@ -46,8 +46,12 @@ def impact_table_for_terminal(result: Result, width: int) -> RenderableType:
     while left_out and TerminalTable(tuple(columns.values())).width > width:
         del columns[left_out.pop(0)]
     table = TerminalTable(with_gap(tuple(columns.values()), _FIRST_ROWS) if len(rows) < number else tuple(columns.values()))
-    note = Text(" A wider terminal shows more columns; impacts.csv has all, in SI units.", style="dim")
-    return Group(table, *([note] if len(columns) < len(cells) else []))
+    notes = []
+    if "energy_lost_J" in columns and "energy_to_vibration_J" in impacts:
+        notes.append(" Energy lost is what is dissipated in the contact, without what goes into vibration.")
+    if len(columns) < len(cells):
+        notes.append(" A wider terminal shows more columns; impacts.csv has all, in SI units.")
+    return Group(table, *(Text(note, style="dim") for note in notes))
 
 
 def energy_table_for_terminal(result: Result) -> RenderableType:

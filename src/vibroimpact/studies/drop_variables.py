@@ -58,7 +58,9 @@ PEAK_TABLE: dict[str, PeakVariable] = {
     "largest_indentation_m": _largest("max_indentation_m", "of all impacts"),
     "first_restitution_achieved": _first("restitution_achieved", "restitution achieved at the first impact"),
     "first_duration_s": _first("duration_s", "duration of the first contact", "Duration of the first contact", "Duration of contact"),
-    "total_energy_lost_J": _total("energy_lost_J", "mechanical energy lost in all contacts", "Energy lost in all contacts"),
+    "total_energy_lost_J": _total(
+        "energy_lost_J", "energy dissipated in all contacts, without what goes into vibration", "Energy lost in all contacts"
+    ),
     "first_rebound_height_m": _first(
         "rebound_height_m", "height of the sphere's centre at the top of the first rebound", "Height of the first rebound"
     ),

@@ -78,6 +78,30 @@
     };
     return row;
   };
+  // A field of the numbers of a list at a path, such as one for each impact, in a unit.
+  const listField = (controls, { path, label, unit = "", size = 1, meaning = "" }) => {
+    const id = `c-${path.join("-")}`;
+    const field = make("input", { type: "text", id, class: "list", title: meaning });
+    const row = make("div", { class: "row", "data-key": path.join(".") }, make("label", { for: id, text: label, title: meaning }), field, make("span", { class: "unit", text: unit }));
+    const read = (words) => (words === "" || Number.isNaN(Number(words)) ? words : size === 1 ? Number(words) : `${words} ${unit}`);
+    field.addEventListener("change", () => controls.change((table) => {
+      const values = field.value.split(",").map((words) => read(words.trim()));
+      put(table, path, values.length > 1 ? values : values[0]);
+    }, true));
+    row.show = () => {
+      const value = at(controls.resolved, path);
+      if (Array.isArray(value) && document.activeElement !== field) field.value = value.map((one) => digits(one / size)).join(", ");
+    };
+    return row;
+  };
+  // A field of a number that the case does not give; where nothing is given, `hint` stands in it.
+  const openField = (controls, { path, label, unit = "", size = 1, hint = "", meaning = "" }) => {
+    const id = `c-${path.join("-")}`;
+    const field = make("input", { type: "number", id, step: "any", class: "list", placeholder: hint, title: meaning });
+    const row = make("div", { class: "row", "data-key": path.join(".") }, make("label", { for: id, text: label, title: meaning }), field, make("span", { class: "unit", text: unit }));
+    field.addEventListener("change", () => controls.change((table) => put(table, path, field.value === "" ? undefined : size === 1 ? Number(field.value) : `${field.value} ${unit}`), true));
+    return row;
+  };
   // A copy of a list, or of a material, which has no name of the library any more.
   const ownCopy = (part) => {
     if (ArrayBuffer.isView(part) || Array.isArray(part)) return Array.from(part);
@@ -204,7 +228,8 @@
           table.drop = controls.kept.drop;
           delete controls.kept.drop;
         }
-        put(table, path, value === "patches" ? { type: "patches", spacing: [`${digits(880 * size[0])} mm`, `${digits(860 * size[1])} mm`], radius: `${digits(Math.min(20, 45 * size[0], 45 * size[1]))} mm` } : value);
+        if (at(table, [...path, "type"]) === "patches") controls.kept.patches = at(table, path);
+        put(table, path, value === "patches" ? controls.kept.patches || { type: "patches", spacing: [`${digits(880 * size[0])} mm`, `${digits(860 * size[1])} mm`], radius: `${digits(Math.min(20, 45 * size[0], 45 * size[1]))} mm` } : value);
       },
     })];
     if (now && now.type === "patches") {
@@ -217,11 +242,15 @@
     return rows;
   };
 
+  // Multiples of the units of a law's parameters that numbers of everyday size have.
+  const MULTIPLES = { Pa: (name) => (name.includes("modulus") ? ["GPa", 1e9] : ["MPa", 1e6]), m: () => ["mm", 1e-3], s: () => ["µs", 1e-6] };
+
+  // The law of the table, which the resolved case does not have yet where a parameter is missing.
   const law = (controls) => {
-    const contact = controls.resolved.contact;
-    const found = controls.offer.laws[contact.law];
+    const name = at(controls.table, ["contact", "law"]), found = controls.offer.laws[name];
+    const contact = controls.resolved.contact.law === name ? controls.resolved.contact : controls.table.contact;
     const rows = [choice(controls, {
-      path: ["contact", "law"], label: "Law", options: Object.keys(controls.offer.laws).map((name) => [name, name]),
+      path: ["contact", "law"], label: "Law", options: Object.keys(controls.offer.laws).map((one) => [one, one]),
       chosen: (table) => at(table, ["contact", "law"]),
       choose: (table, value) => {
         const old = new Set((controls.offer.laws[table.contact.law] || { parameters: [] }).parameters.map((one) => one.name));
@@ -238,15 +267,18 @@
     rows.push(make("p", { class: "note", text: found.equation }));
     for (const one of found.parameters) {
       const value = contact[one.name];
-      const number = Array.isArray(value) ? value[0] : value;
-      if (typeof number !== "number") continue;
-      const part = /at most 1\b/.test(one.allowed) || (one.name === "restitution");
+      const [unit, size] = MULTIPLES[one.unit] ? MULTIPLES[one.unit](one.name) : [unitWith(contact.exponent, one.unit), 1];
+      const described = { path: ["contact", one.name], label: words(one.name), unit, size, meaning: `${one.meaning} Allowed: ${one.allowed || "any number"}.` };
+      if (Array.isArray(value)) { rows.push(listField(controls, described)); continue; }
+      if (typeof value !== "number") { rows.push(openField(controls, { ...described, hint: one.default })); continue; }
+      const number = value / size, part = /at most 1\b/.test(one.allowed) || (one.name === "restitution");
       const ends = part ? { low: 0.01, high: 1 } : number > 0 ? { low: number / 30, high: number * 30, log: true } : { low: 0, high: 1 };
       if (one.name === "exponent") Object.assign(ends, { low: 1, high: 3, log: false });
+      if (one.name === "meyer_index") Object.assign(ends, { low: 2, high: 3, log: false });
       // ends that follow the value would run away from the pointer: those of the first look stay
-      const key = `${contact.law} ${one.name}`;
+      const key = `${name} ${one.name}`;
       controls.ends[key] = controls.ends[key] || ends;
-      rows.push(slider(controls, { path: ["contact", one.name], label: words(one.name), unit: unitWith(contact.exponent, one.unit), meaning: `${one.meaning} Allowed: ${one.allowed || "any number"}.`, ...controls.ends[key] }));
+      rows.push(slider(controls, { ...described, ...controls.ends[key] }));
     }
     return rows;
   };
@@ -338,7 +370,7 @@
       this.moving = false;
       this.beginning = false;
       const shape = JSON.stringify([
-        resolved.contact.law, resolved.sphere.model, resolved.plate.model, resolved.plate.material === "rigid", "height" in resolved.drop && !("speed" in table.drop),
+        table.contact.law, Object.entries(resolved.contact).map(([name, value]) => [name, Array.isArray(value) ? "list" : typeof value]), resolved.sphere.model, resolved.plate.model, resolved.plate.material === "rigid", "height" in resolved.drop && !("speed" in table.drop),
         table.plate.supports && resolved.plate.supports, typeof resolved.plate.damping, typeof resolved.sphere.damping,
         (table.sensors || []).map((sensor) => sensor.name), resolved.plate.size && resolved.plate.size.slice(0, 2), resolved.plate.radius === undefined,
       ]);
@@ -355,7 +387,7 @@
       this.form.replaceChildren(
         group("Sphere", slider(this, { path: ["sphere", "radius"], label: "Radius", unit: "mm", size: 1e-3, low: 1, high: 100, log: true }), ...material(this, "sphere"), ...bodyRows(this, "sphere")),
         group("Drop", ...drop(this)),
-        group("Contact", ...law(this)),
+        this.law = group("Contact", ...law(this)),
         group("Plate", ...below, ...size.map(([label, side, low, high]) => slider(this, { path: ["plate", "size", side], label, unit: "mm", size: 1e-3, low, high, log: true })), ...material(this, "plate"), ...bodyRows(this, "plate")),
         ...all,
         group("Run", slider(this, { path: ["run", "impacts"], label: "Impacts", low: 1, high: 30, whole: true })),
@@ -363,17 +395,38 @@
       if (focused && document.getElementById(focused)) document.getElementById(focused).focus();
     }
 
+    // Show what is asked for and could not be computed: the fields of the law that lacks a parameter.
+    showAsked() {
+      if (this.table.contact?.law === this.resolved?.contact.law) return;
+      const asked = group("Contact", ...law(this));
+      this.law.replaceWith(asked);
+      this.law = asked;
+      this.shape = "";
+      for (const row of asked.querySelectorAll(".row")) if (row.show) row.show();
+    }
+
+    // Return the keys of controls that a key of a message may be about, such as "sensors.a1.position" about "sensors.0.position.0".
+    keysOf(key) {
+      const list = this.table?.sensors || [];
+      const number = (one, name) => one.findIndex((sensor) => sensor.name === name);
+      let plain = key.replace(/^(.*)\.(length|width|thickness)$/, (_, part, name) => `${part}.${["length", "width", "thickness"].indexOf(name)}`)
+        .replace(/^sensors \(the (\d+)\w+\)/, (_, place) => `sensors.${place - 1}`)
+        .replace(/^sensors\.("[^"]*"|[^.]+)(?=\.)/, (whole, name) => { const index = number(list, name.replace(/^"|"$/g, "")); return index < 0 ? whole : `sensors.${index}`; })
+        .replace(/\.x$/, ".0").replace(/\.y$/, ".1");
+      if (key === "sensors") plain = `sensors.${list.findLastIndex((sensor, index) => number(list, sensor.name) < index)}.name`;
+      return [key, plain, `${plain}.0`];
+    }
+
     // Show the lines of a message at the controls that they are about.
     showFaults(lines) {
       for (const words of this.form.querySelectorAll(".fault-here")) words.remove();
-      for (const field of this.form.querySelectorAll("[aria-invalid]")) field.removeAttribute("aria-invalid");
+      for (const field of this.form.querySelectorAll("[aria-invalid]")) { field.removeAttribute("aria-invalid"); field.removeAttribute("aria-describedby"); }
       for (const line of lines) {
-        const key = line.split(": ")[0];
-        const plain = key.replace(/^(.*)\.(length|width|thickness)$/, (_, list, name) => `${list}.${["length", "width", "thickness"].indexOf(name)}`).replace(/\.x$/, ".0").replace(/\.y$/, ".1");
-        const row = [key, plain].map((name) => this.form.querySelector(`[data-key="${CSS.escape(name)}"]`)).find(Boolean);
+        const key = /^(?:[^":]|"[^"]*")*/.exec(line)[0];   // a name in quotes may have a colon
+        const row = this.keysOf(key).map((name) => this.form.querySelector(`[data-key="${CSS.escape(name)}"]`)).find(Boolean);
         if (!row) continue;
         const field = row.querySelector("input[type=number], input[type=text], select");
-        const id = `f-${key.replaceAll(".", "-")}`;
+        const id = `f-${row.dataset.key.replaceAll(".", "-")}`;
         row.append(make("p", { class: "fault-here", id, text: line }));
         if (field) { field.setAttribute("aria-invalid", "true"); field.setAttribute("aria-describedby", id); }
       }

@@ -27,9 +27,7 @@
   const fromFragment = async (fragment) => {
     const match = /^#case=([\w-]+)$/.exec(fragment);
     if (!match) return null;
-    const letters = atob(match[1].replaceAll("-", "+").replaceAll("_", "/"));
-    const bytes = Uint8Array.from(letters, (letter) => letter.charCodeAt(0));
-    return JSON.parse(new TextDecoder().decode(await through(bytes, new DecompressionStream("deflate"))));
+    return JSON.parse(new TextDecoder().decode(await vibroimpact.inflated(match[1].replaceAll("-", "+").replaceAll("_", "/"))));
   };
   const remember = async (table) => {
     // the address may be that of another program, whose compression is not the browser's
@@ -139,7 +137,7 @@
     },
     fault(message) {
       const beginning = controls.beginning && state.tables.get(message.number) === controls.table;
-      if (finished(message.number)) { stopWaiting(); if (beginning) goBack(); }
+      if (finished(message.number)) { stopWaiting(); if (beginning) goBack(); else if (controls.table) controls.showAsked(); }
       if (message.number === state.opening[0]) { setBusy(Boolean(state.asked)); showShipped(); }
       showFaults(message.lines);
     },
@@ -220,19 +218,24 @@
     make("tbody", {}, ...rows.map((row) => make("tr", {}, ...row.map((cell, index) => make(index ? "td" : "th", index ? { text: cell } : { scope: "row", text: cell })))),
       ...(held || []).map((row) => make("tr", { class: "held" }, ...row.map((cell, index) => make(index ? "td" : "th", index ? { text: cell } : { scope: "row", text: `held ${cell}` }))))));
 
+  // What is held may be told in other multiples of its units: then they stand beside its numbers.
+  const heldCell = (cell, unit, now) => (unit === now || cell === "–" ? cell : `${cell} ${unit}`);
+
   const showImpacts = ({ headers, rows, left_out }) => {
-    const comparable = state.held && JSON.stringify(state.held.impacts.headers) === JSON.stringify(headers);
+    const held = state.held?.impacts, places = new Map((held?.headers || []).map(([name], place) => [name, place]));
+    const heldRow = (row) => headers.map(([name, unit]) => (places.has(name) ? heldCell(row[places.get(name)], held.headers[places.get(name)][1], unit) : "–"));
     $("impacts").replaceChildren(
-      rows.length ? tableOf(headers, rows, comparable ? state.held.impacts.rows.slice(0, rows.length) : []) : make("p", { text: "No impact within the run." }),
+      rows.length ? tableOf(headers, rows, held ? held.rows.slice(0, rows.length).map(heldRow) : []) : make("p", { text: "No impact within the run." }),
       ...(left_out ? [make("p", { class: "note", text: `${left_out} more between them.` })] : []),
     );
   };
 
   const showLedger = ({ unit, rows }) => {
-    const held = state.held && state.held.ledger.unit === unit ? new Map(state.held.ledger.rows.map((row) => [row[0], row[1]])) : null;
+    const before = state.held?.ledger, held = new Map((before?.rows || []).map(([name, energy]) => [name, heldCell(energy, before.unit, unit)]));
+    const names = new Set(rows.map(([name]) => name)), sums = rows.slice(-2), gone = [...held.keys()].filter((name) => !names.has(name)).map((name) => [name, "–", "–"]);
     $("ledger").replaceChildren(tableOf(
-      [["Energy at the end", ""], ["", unit], ["", "%"], ...(held ? [["held", unit]] : [])],
-      rows.map((row) => [...row, ...(held ? [held.get(row[0]) ?? "–"] : [])]),
+      [["Energy at the end", ""], ["", unit], ["", "%"], ...(before ? [["held", unit]] : [])],
+      [...rows.slice(0, -2), ...gone, ...sums].map((row) => [...row, ...(before ? [held.get(row[0]) ?? "–"] : [])]),
     ));
   };
 

@@ -41,6 +41,8 @@ def fault_messages(error: ValidationError, section_at: SectionAt) -> Iterator[tu
             yield path, f"{given} is not allowed; it must be {context['expected']}"
         elif kind == "string_type":
             yield path, f"{given} is not a text; put it in quotes"
+        elif kind == "string_too_short":
+            yield path, f"the text is empty{_about(where, section_at)}"
         elif kind == "bool_type":
             yield path, f"{given} is not allowed; it must be true or false"
         elif kind in ("model_type", "dict_type"):

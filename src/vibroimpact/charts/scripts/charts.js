@@ -10,12 +10,12 @@
   const STACKED = 760;      // width [px] below which panels side by side have no room
   const GAP = 64;           // between panels below each other [px]
 
-  let palette = { light: {}, dark: {} };
   let colours = {};
 
   // Set the colours of all roles, as vibroimpact.charts.palette gives them.
-  vibroimpact.setPalette = (given) => { palette = given; vibroimpact.setTheme(vibroimpact.theme || "light"); };
-  vibroimpact.setTheme = (theme) => { vibroimpact.theme = theme; colours = palette[theme]; };
+  vibroimpact.palette = { light: {}, dark: {} };
+  vibroimpact.setPalette = (given) => { vibroimpact.palette = given; vibroimpact.setTheme(vibroimpact.theme || "light"); };
+  vibroimpact.setTheme = (theme) => { vibroimpact.theme = theme; colours = vibroimpact.palette[theme]; };
 
   const faded = (colour, opacity) => colour + Math.round(255 * opacity).toString(16).padStart(2, "0");
 
@@ -258,7 +258,25 @@
     }
   };
 
-  const layoutOf = (chart, frames, ranges, state, entries) => {
+  const TICKS = 5;          // of a vertical axis, at least about
+  const LETTER = 7;         // width of a figure [px]
+
+  // Return the number of letters of the widest number at an axis from one value to another.
+  const lettersAt = (low, high) => {
+    const decimals = Math.max(0, -Math.floor(Math.log10((high - low) / TICKS)));
+    return Math.max(...[low, high].map((end) => (end < 0 ? 1 : 0) + Math.max(1, Math.floor(Math.log10(Math.abs(end) || 1)) + 1) + (decimals && decimals + 1)));
+  };
+
+  // Return the ends of what is drawn at a vertical axis, or of the range to which it was zoomed.
+  const endsAt = (name, axis, data) => {
+    if (axis.range) return axis.range;
+    let [low, high] = [0, 0];
+    for (const trace of data) if ((trace.yaxis || "y") === name) for (const value of trace.y) { if (value < low) low = value; if (value > high) high = value; }
+    return [low, high];
+  };
+
+  const layoutOf = (chart, frames, ranges, state, data) => {
+    const entries = data.filter((trace) => trace.showlegend === true).length;
     const layout = { ...chart.layout, ...state.colouring.layout };
     const narrow = state.width < 560, reflowed = narrow && chart.pictures && "xaxis2" in layout;
     if (reflowed) narrowPictures(layout, state.width);
@@ -266,6 +284,7 @@
     else if (state.width < STACKED && chart.rows.some((row) => row.length > 1)) stack(layout, chart);
     if (state.paper) layout.height = Math.round((layout.yaxis.domain[0] > 0 ? 0.85 : 0.7) * layout.height);   // several rows need room for their titles
     const bar = reflowed && "coloraxis" in layout ? 60 : 0;
+    let room = chart.pictures ? 8 : narrow ? 48 : 64;
     const grey = { gridcolor: "@grid", linecolor: "@soft", zerolinecolor: "@soft", zerolinewidth: 0.7, ticks: "outside", tickcolor: "@soft", ticklen: 4 };
     for (const key of Object.keys(layout).filter((name) => /^[xy]axis/.test(name))) {
       const name = key.replace("axis", "");
@@ -279,6 +298,11 @@
       const named = Boolean(axis.ticktext);
       Object.assign(axis, { automargin: named, ticklabeloverflow: named ? "hide past div" : "allow" }, named ? {} : { tickangle: 0 });
       layout[key] = axis;
+      // the numbers beside the title, at the left edge
+      if (key[0] === "y" && !named && !chart.pictures && axis.type !== "log" && (layout[key.replace("y", "x")]?.domain?.[0] || 0) === 0) {
+        const [low, high] = endsAt(name, axis, data);
+        if (high > low) room = Math.max(room, LETTER * lettersAt(low, high) + (axis.title.text ? 32 : 12));
+      }
     }
     const letters = state.paper ? 10 : narrow ? 11 : 13;
     layout.annotations = (layout.annotations || []).map((note) => ({ ...note, font: { ...note.font, size: Math.min(note.font?.size ?? letters, letters) } }));
@@ -286,7 +310,7 @@
     layout.font = { color: "@ink", family: "system-ui, -apple-system, 'Segoe UI', Roboto, 'DejaVu Sans', Arial, sans-serif", size: 12 };
     Object.assign(layout, { paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)", hovermode: "closest", bargap: 0.2, barmode: "overlay" });
     layout.hoverlabel = { bgcolor: "@ground", bordercolor: "@soft", font: { color: "@ink" } };
-    layout.margin = { l: chart.pictures ? 8 : narrow ? 48 : 64, r: narrow ? 8 : 20, t: 30, b: 48 + bar };
+    layout.margin = { l: room, r: narrow ? 8 : 20, t: 30, b: 48 + bar };
     layout.legend = { orientation: "h", x: 0, y: -(chart.pictures ? 20 + bar : 64) / layout.height, yanchor: "top", font: { size: state.paper ? 9 : 11 }, ...(layout.legend || {}) };
     const lines = layout.showlegend ? Math.ceil(entries / Math.max(1, Math.floor(state.width / (state.paper ? 150 : 190)))) : 0;
     layout.height += 78 + bar + 22 * lines;
@@ -302,27 +326,28 @@
     const frames = { ...chart.frames, ...(view ? view.frames : {}) };
     const ranges = {};
     for (const [name, frame] of Object.entries(view ? view.frames : {})) {
-      if (frame.range) ranges[name] = frame.range.map((end) => end * frame.size + frame.origin);
+      const before = state.ghost?.views[state.view]?.frames[name];
+      const reach = (end) => { const ends = [frame, before].filter((one) => one?.range).map((one) => one.range[end] * one.size); return (end ? Math.max : Math.min)(...ends) + frame.origin; };
+      if (frame.range) ranges[name] = [reach(0), reach(1)];   // the ghost's as well
     }
     Object.assign(ranges, state.ranges || {});
     for (const key of Object.keys(chart.layout)) {
       const axis = /^xaxis/.test(key) && chart.layout[key].matches && chart.layout[key].matches;
       if (axis && ranges[axis] && !ranges[key.replace("axis", "")]) ranges[key.replace("axis", "")] = ranges[axis];
     }
-    const drawn = (trace) => {
-      let x = frames[trace.xaxis], range = ranges[trace.xaxis] || null;
-      if (view && trace.origins) {  // the line counts from an origin of its own
-        const later = trace.origins[state.view] - x.origin;
-        x = { ...x, origin: x.origin + later };
-        range = range && range.map((end) => end + later);
-      }
-      return completions[trace.type](trace, x, frames[trace.yaxis], range, state);
+    // Return how traces are drawn that count from the origins of some frames, which the view or their own may put elsewhere.
+    const drawnFrom = (own) => (trace) => {
+      const [x, y] = [frames[trace.xaxis], frames[trace.yaxis]];
+      const origin = view && trace.origins ? trace.origins[state.view] : own[trace.xaxis].origin, later = origin - x.origin;
+      const range = ranges[trace.xaxis] ? ranges[trace.xaxis].map((end) => end + later) : null;
+      return completions[trace.type](trace, { ...x, origin }, { ...y, origin: own[trace.yaxis].origin }, range, state);
     };
-    const ghosts = (state.ghost ? state.ghost.data : []).filter((trace) => trace.type === "scatter" && trace.mode === "lines" && trace.fill === undefined && frames[trace.xaxis]);
-    const ghost = ghosts.flatMap(drawn).map((trace) => ({ ...trace, line: { color: "@ghost", width: 1.2, dash: "4px,3px" }, opacity: 0.9, showlegend: false, hoverinfo: "skip", hovertemplate: undefined }));
-    const data = [...ghost, ...chart.data.flatMap(drawn), ...state.colouring.legend];
-    const entries = data.filter((trace) => trace.showlegend === true).length;
-    return coloured({ data, layout: layoutOf(chart, frames, ranges, state, entries) });
+    const before = state.ghost && (!view || state.ghost.views[state.view]) ? state.ghost : { data: [] };
+    const there = { ...frames, ...before.frames, ...(view ? before.views?.[state.view].frames : {}) };
+    const ghosts = before.data.filter((trace) => trace.type === "scatter" && trace.mode === "lines" && trace.fill === undefined && frames[trace.xaxis]);
+    const ghost = ghosts.flatMap(drawnFrom(there)).map((trace) => ({ ...trace, line: { color: "@ghost", width: 1.2, dash: "4px,3px" }, opacity: 0.9, showlegend: false, hoverinfo: "skip", hovertemplate: undefined }));
+    const data = [...ghost, ...chart.data.flatMap(drawnFrom(frames)), ...state.colouring.legend];
+    return coloured({ data, layout: layoutOf(chart, frames, ranges, state, data) });
   };
 
   // nothing of a chart is offered to be sent anywhere

@@ -2,16 +2,26 @@
 "use strict";
 
 {
-  const STOPS = [[11, 60, 115], [91, 155, 207], [247, 247, 247], [227, 138, 99], [143, 29, 20]];
   const MOST_CELLS = 64;      // along the longer side: more can't be seen
   const MILLISECONDS = 70;    // of a frame at usual speed
   const BETWEEN = 32;         // two pictures, so that charts are drawn as well [ms]
 
-  const colourOf = (part) => {
-    const place = Math.min(Math.max(part, 0), 1) * (STOPS.length - 1), low = Math.min(Math.floor(place), STOPS.length - 2);
-    return STOPS[low].map((value, index) => Math.round(value + (place - low) * (STOPS[low + 1][index] - value)));
+  const rgb = (colour) => [1, 3, 5].map((at) => parseInt(colour.slice(at, at + 2), 16));
+
+  // Return 256 shades between stops at even distances.
+  const between = (stops) => Array.from({ length: 256 }, (_, index) => {
+    const place = index / 255 * (stops.length - 1), low = Math.min(Math.floor(place), stops.length - 2);
+    const [first, last] = [rgb(stops[low]), rgb(stops[low + 1])];
+    return `rgb(${first.map((value, part) => Math.round(value + (place - low) * (last[part] - value))).join()})`;
+  });
+
+  // Return the shades of deflections on the ground of now, those of the palette that charts are given.
+  const known = new Map();
+  const shadesNow = () => {
+    const stops = vibroimpact.palette[vibroimpact.theme].diverging;
+    if (!known.has(stops)) known.set(stops, between(stops));
+    return known.get(stops);
   };
-  const SHADES = Array.from({ length: 256 }, (_, index) => `rgb(${colourOf(index / 255).join()})`);
 
   const PERIOD_FRAMES = 24;
 
@@ -61,14 +71,16 @@
     }
 
     listen() {
-      let from = null, ball = false, dragged = false, grip = [0, 0];
-      const place = (event) => { const box = this.canvas.getBoundingClientRect(); return [event.clientX - box.left, event.clientY - box.top]; };
+      let from = null, ball = false, dragged = false, grip = [0, 0], box = null;
+      // where the canvas was when it was gripped: the page may be laid out anew meanwhile
+      const place = (event) => [event.clientX - box.left, event.clientY - box.top];
       const within = (value, ends) => Math.min(Math.max(value, ends[0]), ends[ends.length - 1]);
       // the place of the ball on the plate: it is held where it was gripped
       const under = (event) => { const seen = this.onPlate(...place(event)); return [within(seen[0] - grip[0], this.scene.x), within(seen[1] - grip[1], this.scene.y)]; };
       this.canvas.addEventListener("pointerdown", (event) => {
         from = [event.clientX, event.clientY, this.turn, this.tilt];
         dragged = false;
+        box = this.canvas.getBoundingClientRect();
         const [x, y] = place(event);
         ball = Boolean(this.moved) && [this.foot, this.ball].some((at) => at && Math.hypot(x - at[0], y - at[1]) < Math.max(16, 1.2 * at[2]));
         this.canvas.setPointerCapture(event.pointerId);
@@ -174,7 +186,7 @@
     }
 
     drawPlate(pen, place, factor, [sin, cos]) {
-      const { scene, columns, rows } = this;
+      const { scene, columns, rows } = this, shade = shadesNow();
       const corners = rows.map((row) => columns.map((column) => {
         const height = this.heightAt(row, column);
         return [...place(scene.x[column], scene.y[row], factor * height), height];
@@ -188,7 +200,7 @@
         const four = [corners[row][column], corners[row][column + 1], corners[row + 1][column + 1], corners[row + 1][column]];
         const mean = 0.25 * (four[0][2] + four[1][2] + four[2][2] + four[3][2]);
         if (!Number.isFinite(mean)) return;
-        pen.fillStyle = pen.strokeStyle = SHADES[Math.round(127.5 * (1 + mean / this.most))];
+        pen.fillStyle = pen.strokeStyle = shade[Math.round(127.5 * (1 + mean / this.most))];
         pen.beginPath();
         four.forEach(([x, y], index) => (index ? pen.lineTo(x, y) : pen.moveTo(x, y)));
         pen.closePath();

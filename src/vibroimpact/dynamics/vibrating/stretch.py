@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 import weakref
 from collections import deque
 from dataclasses import dataclass
@@ -19,9 +20,21 @@ from vibroimpact.dynamics.vibrating.receptance import ContactView, RadauEigenbas
 _RIGID_ROUNDING = 2e-15  # relative rounding error of the kinetic energy of the rigid motions that move the contacts
 _ROUNDING = 2e-14  # relative rounding error of the energy of the modes, which may far exceed that of a soft contact
 _KEPT = 64
-"""Number of stretches whose motion is kept in memory, the last ones that were solved or read: those of a few impacts."""
+"""Number of stretches whose motion a thread keeps in memory, the last ones that were solved or read: those of a few impacts."""
 
-_kept: deque[weakref.ref[VibratingStretch]] = deque()
+
+class _Kept(threading.local):
+    """The stretches whose motion a thread keeps, oldest first.
+
+    They are those of a thread, so that runs beside each other, as for windows of the live page, take nothing from one another. They are
+    not those of a run: responses that are held would then hold their motions, which is four times the memory.
+    """
+
+    def __init__(self) -> None:
+        self.stretches: deque[weakref.ref[VibratingStretch]] = deque()
+
+
+_kept = _Kept()
 
 
 class StretchMotion(NamedTuple):
@@ -159,10 +172,11 @@ class VibratingStretch:
         return np.asarray(self.force @ self.rule.end_slope / self.length)
 
     def keep(self) -> None:
-        """Keep the motion at the nodes in memory until other stretches take its place; the state and the losses at the end stay."""
-        _kept.append(weakref.ref(self))
-        while len(_kept) > _KEPT:
-            oldest = _kept.popleft()()
+        """Keep the motion at the nodes in memory until others of this thread take its place; the state and the losses at the end stay."""
+        kept = _kept.stretches
+        kept.append(weakref.ref(self))
+        while len(kept) > _KEPT:
+            oldest = kept.popleft()()
             if oldest is not None:
                 _ = oldest.end, oldest.lost
                 for name in ("motion", "powers", "force"):

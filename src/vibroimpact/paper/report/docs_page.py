@@ -7,7 +7,7 @@ import sys
 from os import PathLike
 from pathlib import Path
 
-from vibroimpact.paper.report.markdown import FIGURES
+from vibroimpact.charts.figures_folder import FIGURES
 
 _IMAGES = "images/reproduction"
 

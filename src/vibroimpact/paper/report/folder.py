@@ -11,13 +11,13 @@ from pathlib import Path
 from typing import Any
 
 from vibroimpact._version import __version__
+from vibroimpact.charts.figures_folder import FIGURES
 from vibroimpact.charts.pack import pack, unpack
 from vibroimpact.charts.plotly import plotly_chart
 from vibroimpact.errors import InputError
 from vibroimpact.files.atomic_write import write_into
 from vibroimpact.files.check_sums import CHECK_SUMS, check_file, file_digest, read_sealed, sealed
 from vibroimpact.files.recover import recover
-from vibroimpact.paper.report.markdown import FIGURES
 from vibroimpact.paper.report.outline import PARTS, ReportPart, find_parts, render_part
 from vibroimpact.paper.report.page import report_html, report_text
 from vibroimpact.paper.runs import Runs

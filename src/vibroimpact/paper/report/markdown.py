@@ -6,13 +6,11 @@ import re
 from collections.abc import Iterable, Sequence
 
 from vibroimpact.charts.chart import Chart
+from vibroimpact.charts.figures_folder import FIGURES
 from vibroimpact.paper.printed import PrintedValue
 from vibroimpact.paper.report_section import ComparedValue, ReportSection
 from vibroimpact.report.markdown_table import markdown_table
 from vibroimpact.units.display import MISSING, digits
-
-FIGURES = "figures"
-"""Folder of the figures, next to the report."""
 
 _ROUNDING = 1e-7  # per cent: smaller differences depend on the machine
 _NO_BREAK = "\u00a0"  # no-break space

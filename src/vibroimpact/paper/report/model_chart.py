@@ -13,7 +13,6 @@ from vibroimpact.cases.reader import load_case
 from vibroimpact.charts.axis import Axis
 from vibroimpact.charts.chart import Chart, Panel
 from vibroimpact.charts.marks import Arrow, Facets, Label, Line, Mark, Outline
-from vibroimpact.paper.runs import Runs
 from vibroimpact.report.projection import TURN, light_on, projected
 from vibroimpact.units.display import text
 
@@ -26,14 +25,8 @@ _ROUND = np.linspace(0.0, 2.0 * np.pi, 73)
 Point = tuple[float, float, float]
 
 
-def model_chart(runs: Runs) -> Chart:
-    """Return a sketch of the sphere above the plate on its four bars, in parallel projection, with dimensions.
-
-    Parameters
-    ----------
-    runs : Runs
-        The simulations, which no value is taken from: the dimensions are those of the case of Type 3.
-    """
+def model_chart() -> Chart:
+    """Return a sketch of the sphere above the plate on its four bars, in parallel projection, with the dimensions of the case of Type 3."""
     case = resolved_case(load_case("paper:type3"))
     length, width, thickness = case["plate"]["size"]
     support = case["plate"]["supports"][0]

@@ -9,8 +9,9 @@ from typing import Any
 from markdown_it import MarkdownIt
 
 from vibroimpact._version import __version__
+from vibroimpact.charts.figures_folder import FIGURES
 from vibroimpact.paper.printed import PAPER
-from vibroimpact.paper.report.markdown import FIGURES, table
+from vibroimpact.paper.report.markdown import table
 from vibroimpact.paper.report.outline import CHAPTERS, PARTS
 from vibroimpact.paper.report_section import Verdict
 from vibroimpact.report.page import render_drawn_page

@@ -8,6 +8,7 @@ from markupsafe import Markup
 
 from vibroimpact.charts.notebook import plotly_figure
 from vibroimpact.errors import InputError, did_you_mean
+from vibroimpact.report.html_table import html_table
 from vibroimpact.shown import shown, visible
 from vibroimpact.studies.report.axes import study_axes
 from vibroimpact.studies.report.charts import study_charts
@@ -58,18 +59,6 @@ def study_html(study: Study) -> str:
         The completed study.
     """
     head = Markup("<p><strong>{}</strong><br>{}</p>").format(visible(study.name), counts_sentence(study))
-    axes = [list(row) for row in axes_table(study, study_axes(study))]
-    keys = _table(["Key", "", "Values"], axes[:_KEYS])
-    results = _table(*percentiles_table(study_outputs(study, _RESULTS)))
-    return str(Markup("\n").join([head, keys, results]))
-
-
-def _table(headers: list[str], rows: list[list[str]]) -> Markup:
-    if not rows:
-        return Markup("")
-    lines = Markup("").join(Markup("<tr>{}</tr>").format(_cells("td", row)) for row in rows)
-    return Markup("<table><thead><tr>{}</tr></thead><tbody>{}</tbody></table>").format(_cells("th", headers), lines)
-
-
-def _cells(kind: str, texts: list[str]) -> Markup:
-    return Markup("").join(Markup("<{0}>{1}</{0}>").format(kind, visible(text)) for text in texts)
+    keys = ["Key", "", "Values"], axes_table(study, study_axes(study))[:_KEYS]
+    results = percentiles_table(study_outputs(study, _RESULTS))
+    return str(Markup("\n").join([head, *(html_table(headers, rows) if rows else "" for headers, rows in (keys, results))]))
