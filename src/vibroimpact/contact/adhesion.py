@@ -7,8 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from vibroimpact.arrays import Array
-from vibroimpact.contact.law import CompliantLaw, parameter
+from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.mixins import ElasticPairLaw
+from vibroimpact.contact.parameters import parameter
 
 # made dimensionless by the contact radius a0 at zero indentation, with z^2 = a/a0: indentation z^4 - z, force 4/3 z^6 - 2 z^3,
 # energy 8/15 z^10 - 4/3 z^7 + 1/2 z^4 + 3/10; pull-off is at the minimum of the indentation

@@ -8,7 +8,8 @@ from typing import ClassVar, Self
 import numpy as np
 
 from vibroimpact.arrays import Array
-from vibroimpact.contact.law import CompliantLaw, memory
+from vibroimpact.contact.law import CompliantLaw
+from vibroimpact.contact.parameters import memory
 from vibroimpact.contact.power_law import power
 
 

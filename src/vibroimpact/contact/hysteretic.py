@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from vibroimpact.arrays import Array
-from vibroimpact.contact.law import parameter
+from vibroimpact.contact.parameters import parameter
 from vibroimpact.contact.power_law import PowerLaw
 
 # power series e(D) = 1 - 2 D/3 + ... of the equation in `hysteretic_restitution`, exact to 1e-17 for D < 0.02

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from vibroimpact.arrays import Array
-from vibroimpact.contact.law import CompliantLaw, parameter
+from vibroimpact.contact.law import CompliantLaw
+from vibroimpact.contact.parameters import parameter
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -11,135 +11,18 @@ A law is a frozen dataclass in a file of its own under `vibroimpact.contact.laws
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from typing import Any, ClassVar, Literal, Self
 
 import numpy as np
 
 from vibroimpact.arrays import Array
-from vibroimpact.contact.docstring import with_parameters
-from vibroimpact.contact.pair import ContactPair
-from vibroimpact.errors import InputError, did_you_mean
-from vibroimpact.ranges import Range
-
-
-def parameter(
-    meaning: str,
-    unit: str = "",
-    *,
-    detail: str = "",
-    from_pair: str | None = None,
-    default: Any = dataclasses.MISSING,
-    example: float | None = None,
-    **bounds: float,
-) -> Any:
-    """Declare a parameter of a law.
-
-    Parameters
-    ----------
-    meaning : str
-        What it is, in a few words of plain text; messages and the JSON schema print it.
-    unit : str, default ""
-        SI unit; "N/m^n" follows the exponent.
-    detail : str, optional
-        What it is, in sentences with reStructuredText markup; the law's docstring, sheet and page print it. Left out, it is
-        the meaning as a sentence.
-    from_pair : str, optional
-        The attribute of `ContactPair` from which the parameter is taken where a case leaves it out.
-    default : optional
-        The default value.
-    example : float, optional
-        A typical value, for figures and tests, of a parameter with neither `from_pair` nor `default`.
-    **bounds : float
-        The range, in the arguments of `Range`.
-    """
-    return dataclasses.field(default=default, metadata=_metadata(meaning, unit, detail, Range(**bounds), from_pair, example))
-
-
-def memory(meaning: str, unit: str = "", *, detail: str = "") -> Any:
-    """Declare a state variable that a law carries through a contact; at least zero, and zero in a fresh contact.
-
-    Parameters
-    ----------
-    meaning, unit, detail : str
-        As those of `parameter`.
-    """
-    return dataclasses.field(default=0.0, metadata={**_metadata(meaning, unit, detail, Range(at_least=0)), "memory": True})
-
-
-def inherited_parameter(base: type[ContactLaw], name: str, *, detail: str = "", **bounds: float) -> Any:
-    """Declare a parameter or state of a base class again, with another detail or range; the rest is kept.
-
-    Parameters
-    ----------
-    base : type of ContactLaw
-        The class that declares it.
-    name : str
-        Its name.
-    detail : str, optional
-        As that of `parameter`.
-    **bounds : float
-        The new range; left out, the range is kept.
-    """
-    item = base.__dataclass_fields__[name]
-    changes = {"detail": detail or item.metadata["detail"], "range": Range(**bounds) if bounds else item.metadata["range"]}
-    return dataclasses.field(default=item.default, metadata={**item.metadata, **changes})
-
-
-def _metadata(
-    meaning: str, unit: str, detail: str, allowed: Range, from_pair: str | None = None, example: float | None = None
-) -> dict[str, Any]:
-    return {
-        "meaning": meaning,
-        "detail": detail or f"{meaning[:1].upper()}{meaning[1:]}.",
-        "unit": unit,
-        "range": allowed,
-        "from_pair": from_pair,
-        "example": example,
-        "memory": False,
-    }
+from vibroimpact.contact.parameters import Parameters
 
 
 @dataclass(frozen=True, kw_only=True)
-class ContactLaw:
-    """Base of all contact laws. Parameters are floats, or arrays with one value per drop."""
-
-    name: ClassVar[str]
-    equation: ClassVar[str]
-    source: ClassVar[str]
-
-    def __init_subclass__(cls, **options: Any) -> None:
-        super().__init_subclass__(**options)
-        items: dict[str, dataclasses.Field[Any]] = {}
-        for base in reversed(cls.__mro__[1:]):
-            items |= getattr(base, "__dataclass_fields__", {})
-        # `dataclass` decorates the class after this: its own fields are still class attributes
-        items |= {key: value for key, value in vars(cls).items() if isinstance(value, dataclasses.Field)}
-        declared = {key: item for key, item in items.items() if "meaning" in item.metadata}  # class variables are fields as well
-        if cls.__doc__:  # None under python -OO
-            cls.__doc__ = with_parameters(cls.__doc__, declared)
-
-    def __post_init__(self) -> None:
-        for item in fields(self):
-            value = getattr(self, item.name)
-            if isinstance(value, (str, bytes)):
-                raise InputError(f'"{value!s}" is a text; it must be a number in SI, or an array of them', item.name)
-            if isinstance(value, (list, tuple)):
-                value = np.asarray(value, dtype=float)
-                object.__setattr__(self, item.name, value)
-            try:
-                if value is not None:
-                    item.metadata["range"].check(value, item.metadata["unit"])
-            except InputError as error:
-                raise InputError(error.message, item.name) from None
-
-    @classmethod
-    def example(cls, pair: ContactPair) -> Self:
-        """Return the law of a pair, with typical values of the parameters that the pair does not give, for figures and tests."""
-        given = {item.name for item in fields(cls) if item.metadata["from_pair"] and getattr(pair, item.metadata["from_pair"]) is not None}
-        typical = {item.name: item.metadata["example"] for item in fields(cls) if item.metadata["example"] is not None}
-        return cls.for_pair(pair, **{name: value for name, value in typical.items() if name not in given})
+class ContactLaw(Parameters):
+    """Base of all contact laws."""
 
     @property
     def free_parameter(self) -> str | None:
@@ -157,48 +40,6 @@ class ContactLaw:
             Approach speed [m/s].
         """
         return None
-
-    @classmethod
-    def for_pair(cls, pair: ContactPair, **parameters: Any) -> Self:
-        """Return the law of two bodies; parameters that are not given come from the pair or from their defaults.
-
-        Raises
-        ------
-        InputError
-            If a parameter is unknown, missing, outside its range, or can't be taken from the pair.
-        """
-        known = {item.name: item for item in fields(cls)}
-        for key in parameters:
-            if key not in known:
-                raise InputError(f'unknown key "{key}"; {cls.name} takes {", ".join(known)}.{did_you_mean(key, known)}', key)
-        given = dict(parameters)
-        for key, item in known.items():
-            if key not in given and item.metadata["from_pair"]:
-                given[key] = getattr(pair, item.metadata["from_pair"])
-                if given[key] is None:
-                    raise InputError(
-                        f"{cls.name} needs {_with_unit(item)}, and no yield_strength is known of the materials to take it from; "
-                        f"give it here, or give one of the materials a yield_strength",
-                        key,
-                    )
-                if np.any(np.isinf(given[key])):
-                    raise InputError("it must be given, since two rigid materials have no contact stiffness of their own", key)
-            if key not in given and item.default is dataclasses.MISSING:
-                raise InputError(f"this key is missing; {cls.name} needs {_with_unit(item)}", key)
-        return cls(**given)
-
-    def take(self, drops: Any) -> Self:
-        """Return the law of selected drops of a batch: array parameters are indexed by `drops`."""
-        return self.changed({item.name: value[drops] for item in fields(self) if np.ndim(value := getattr(self, item.name))})
-
-    def changed(self, changes: Mapping[str, Any]) -> Self:
-        """Return a copy with some fields replaced; the new values are not checked."""
-        if not changes:
-            return self
-        copy = object.__new__(type(self))
-        for item in fields(self):
-            object.__setattr__(copy, item.name, changes.get(item.name, getattr(self, item.name)))
-        return copy
 
     def memories(self) -> dict[str, Array]:
         """Return the state variables by name."""
@@ -333,8 +174,3 @@ def is_conservative(law: ContactLaw) -> bool:
     deltas = np.geomspace(1e-9, 1e-1, 9)[:, None]
     _, dissipative = law.forces(deltas, np.ones((9, 1)), np.ones((9, 1)))
     return not (np.any(dissipative) or np.any(law.plastic_work(deltas)) or np.any(law.elastic_energy(law.release_level)))
-
-
-def _with_unit(item: dataclasses.Field[Any]) -> str:
-    """Return the meaning of a parameter with its unit, for messages."""
-    return f"{item.metadata['meaning']} [{item.metadata['unit']}]" if item.metadata["unit"] else str(item.metadata["meaning"])

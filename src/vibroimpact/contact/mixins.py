@@ -8,7 +8,8 @@ from typing import Self
 import numpy as np
 
 from vibroimpact.arrays import Array
-from vibroimpact.contact.law import CompliantLaw, ContactLaw, memory, parameter
+from vibroimpact.contact.law import CompliantLaw, ContactLaw
+from vibroimpact.contact.parameters import memory, parameter
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from vibroimpact.arrays import Array
-from vibroimpact.contact.law import CompliantLaw, parameter
+from vibroimpact.contact.law import CompliantLaw
+from vibroimpact.contact.parameters import parameter
 
 HERTZ_TIME = 0.8 * math.gamma(0.4) * math.gamma(0.5) / math.gamma(0.9)
 r"""Contact duration of an elastic Hertzian impact over largest indentation / approach speed [-], 2.9433.

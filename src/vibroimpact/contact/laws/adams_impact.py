@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from vibroimpact.arrays import Array
-from vibroimpact.contact.law import inherited_parameter, parameter
+from vibroimpact.contact.parameters import inherited_parameter, parameter
 from vibroimpact.contact.power_law import PowerLaw
 
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from vibroimpact.arrays import Array
-from vibroimpact.contact.law import parameter
 from vibroimpact.contact.mixins import TwoPhaseLaw
+from vibroimpact.contact.parameters import parameter
 
 
 @dataclass(frozen=True, kw_only=True)

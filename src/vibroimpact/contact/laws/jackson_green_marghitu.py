@@ -7,8 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from vibroimpact.arrays import Array
-from vibroimpact.contact.law import InstantaneousLaw, parameter
+from vibroimpact.contact.law import InstantaneousLaw
 from vibroimpact.contact.mixins import ElasticPairLaw
+from vibroimpact.contact.parameters import parameter
 
 _CHANGE = 60.0  # dimensionless approach speed at which the fit changes its form
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from vibroimpact.arrays import Array
 from vibroimpact.contact.adhesion import AdhesiveLaw
-from vibroimpact.contact.law import inherited_parameter
+from vibroimpact.contact.parameters import inherited_parameter
 
 
 @dataclass(frozen=True, kw_only=True)

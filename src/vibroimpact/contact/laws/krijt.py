@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 from vibroimpact.arrays import Array
 from vibroimpact.contact.adhesion import AdhesiveLaw
-from vibroimpact.contact.law import inherited_parameter
 from vibroimpact.contact.mixins import ViscoelasticLaw
+from vibroimpact.contact.parameters import inherited_parameter
 
 
 @dataclass(frozen=True, kw_only=True)

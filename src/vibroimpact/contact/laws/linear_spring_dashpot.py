@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from vibroimpact.arrays import Array
 from vibroimpact.contact.kelvin_voigt import KelvinVoigtLaw, dashpot_for_restitution
-from vibroimpact.contact.law import parameter
+from vibroimpact.contact.parameters import parameter
 from vibroimpact.errors import InputError
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from vibroimpact.arrays import Array
-from vibroimpact.contact.law import parameter
+from vibroimpact.contact.parameters import parameter
 from vibroimpact.contact.yielding_sphere import YieldingSphereLaw
 
 _AT_YIELD, _FULLY_PLASTIC = 1.6, 2.8  # largest pressure at first yield, and mean pressure when fully plastic, over the yield strength

@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from vibroimpact.arrays import Array
-from vibroimpact.contact.law import InstantaneousLaw, parameter
+from vibroimpact.contact.law import InstantaneousLaw
+from vibroimpact.contact.parameters import parameter
 
 
 @dataclass(frozen=True, kw_only=True)

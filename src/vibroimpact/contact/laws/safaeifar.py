@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from vibroimpact.arrays import Array
 from vibroimpact.contact.hysteretic import HystereticLaw
-from vibroimpact.contact.law import inherited_parameter
+from vibroimpact.contact.parameters import inherited_parameter
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from vibroimpact.arrays import Array
-from vibroimpact.contact.law import parameter
+from vibroimpact.contact.parameters import parameter
 from vibroimpact.contact.yielding_sphere import YieldingSphereLaw
 
 

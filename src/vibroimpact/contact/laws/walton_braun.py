@@ -8,7 +8,7 @@ import numpy as np
 
 from vibroimpact.arrays import Array
 from vibroimpact.contact.elastic_plastic import ElasticPlasticLaw
-from vibroimpact.contact.law import inherited_parameter, parameter
+from vibroimpact.contact.parameters import inherited_parameter, parameter
 from vibroimpact.errors import InputError
 
 
