@@ -47,12 +47,16 @@ if TYPE_CHECKING:
     from vibroimpact.comparison.comparison import Comparison as Comparison
     from vibroimpact.comparison.comparison import compare_laws as compare_laws
     from vibroimpact.comparison.folder import save_comparison as save_comparison
+    from vibroimpact.contact.friction.law import FrictionLaw as FrictionLaw
     from vibroimpact.contact.law import ContactLaw as ContactLaw
     from vibroimpact.contact.quasi_static import QuasiStatic as QuasiStatic
     from vibroimpact.contact.registry import contact_laws as contact_laws
     from vibroimpact.contact.registry import find_contact_law as find_contact_law
+    from vibroimpact.contact.registry import find_friction_law as find_friction_law
+    from vibroimpact.contact.registry import friction_laws as friction_laws
     from vibroimpact.dynamics.local_element import identify_local_element as identify_local_element
     from vibroimpact.dynamics.local_element import local_element_deviations as local_element_deviations
+    from vibroimpact.dynamics.oblique.statement import Oblique as Oblique
     from vibroimpact.dynamics.outcome import Outcome as Outcome
     from vibroimpact.dynamics.problem import Problem as Problem
     from vibroimpact.dynamics.response import Response as Response
@@ -125,6 +129,7 @@ _HOME = {
     "Observations": "calibration.observations",
     "Outcome": "dynamics.outcome",
     "PointContact": "dynamics.system",
+    "Oblique": "dynamics.oblique.statement",
     "Problem": "dynamics.problem",
     "QuasiStatic": "contact.quasi_static",
     "Response": "dynamics.response",
@@ -152,6 +157,8 @@ _HOME = {
     "export_formats": "exporting.export_format",
     "export_result": "exporting.export_result",
     "find_contact_law": "contact.registry",
+    "find_friction_law": "contact.registry",
+    "friction_laws": "contact.registry",
     "find_material": "materials",
     "identify_local_element": "dynamics.local_element",
     "impacts_in_force": "calibration.force_record",

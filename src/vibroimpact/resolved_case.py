@@ -32,13 +32,17 @@ class ResolvedPlate(ResolvedBody, total=False):
     size: Sequence[Array]
     element: str
     supports: Any
+    inclination: Array
 
 
 class ResolvedDrop(TypedDict, total=False):
-    """The drop: height or speed [m], [m/s], position [m], gravity [m/s^2]."""
+    """The drop: height or speed [m], [m/s], its angle [rad] or a velocity, spin [rad/s], position [m], gravity [m/s^2]."""
 
     height: Array
     speed: Array
+    angle: Array
+    velocity: Sequence[Array]
+    spin: Sequence[Array]
     position: Sequence[Array]
     gravity: Array
     same_spot: bool
@@ -70,7 +74,7 @@ class ResolvedSensor(TypedDict, total=False):
 class ResolvedCase(TypedDict, total=False):
     """A resolved case; empty for a problem that was made in Python.
 
-    `contact`: the name of the law, its parameters, and the treatment of local compliance.
+    `contact`: the name of the law, its parameters, the treatment of local compliance, and `friction`: its law and parameters.
     """
 
     schema_version: int

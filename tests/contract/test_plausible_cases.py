@@ -16,8 +16,8 @@ import vibroimpact as vi
 from support import one_in
 from vibroimpact.calibration.calibrate_case import read_calibration
 from vibroimpact.cases.build import resolved_case
+from vibroimpact.cases.pair import contact_pair
 from vibroimpact.cases.reader import load_table, shipped_cases
-from vibroimpact.cases.rigid import contact_pair
 from vibroimpact.cases.slips.find import slips, swept_slips
 from vibroimpact.cases.slips.hertz_estimate import HertzEstimate
 from vibroimpact.studies.sweep import read_sweep

@@ -148,7 +148,11 @@ def test_keys_are_those_that_a_case_takes() -> None:
         "contact.law",
         "run.impacts",
     } <= keys.keys()
-    contact = {item for law in vi.contact_laws().values() for item in law.__dataclass_fields__} | LocalSection.model_fields.keys() | {"law"}
+    contact = (
+        {item for law in vi.contact_laws().values() for item in law.__dataclass_fields__}
+        | LocalSection.model_fields.keys()
+        | {"law", "friction"}
+    )
     assert {key.split(".")[1] for key in keys if key.startswith("contact.")} <= contact
     # what a mesh and supports take follows from their kind
     others = [key for key in keys if not key.startswith(("contact.", "plate.mesh.", "sphere.mesh.", "plate.supports.", "calibrate."))]

@@ -9,7 +9,8 @@ import pytest
 
 import vibroimpact as vi
 from vibroimpact.cases.elastic.bodies import elastic_bodies
-from vibroimpact.cases.rigid import contact_laws_of, contact_pair
+from vibroimpact.cases.pair import contact_pair
+from vibroimpact.cases.rigid import contact_laws_of
 from vibroimpact.cases.schema import SECTIONS, SensorSection
 from vibroimpact.contact.law import ContactLaw
 from vibroimpact.resolved_case import ResolvedBody, ResolvedCase, ResolvedDrop, ResolvedPlate, ResolvedRun, ResolvedSensor

@@ -1,4 +1,4 @@
-"""Against Chung and Ooi (2011), Granular Matter 13, 643-656, doi 10.1007/s10035-011-0277-0: tests 1 and 2.
+"""Against Chung and Ooi (2011), Granular Matter 13, 643-656, doi 10.1007/s10035-011-0277-0: tests 1, 2 and 5.
 
 Inputs from the article; values from Hertz's closed form, which its digitised curves meet to 1 %. Tolerance 1e-5,
 the digits given.
@@ -8,11 +8,12 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
 import pytest
 
 import vibroimpact as vi
 from vibroimpact.contact.laws.hertz import Hertz
-from vibroimpact.contact.pair import effective_modulus, hertz_stiffness
+from vibroimpact.contact.pair import effective_modulus, effective_shear_modulus, hertz_stiffness
 
 
 def impact(mass: float, stiffness: float, speed: float) -> dict:
@@ -92,3 +93,45 @@ def test_2_aluminium_sphere_on_a_rigid_wall() -> None:
     assert row["max_indentation_m"][0] == pytest.approx(49.7172e-6, rel=1e-5)
     assert row["max_force_N"][0] == pytest.approx(11369.9, rel=1e-5)
     assert row["duration_s"][0] == pytest.approx(731.657e-6, rel=1e-5)
+
+
+FINITE_ELEMENTS_5 = (
+    (0.318, 0.187),
+    (0.595, 0.406),
+    (0.890, 0.665),
+    (1.185, 0.982),
+    (1.532, 1.355),
+    (1.896, 1.793),
+    (2.277, 2.321),
+    (2.763, 2.856),
+    (3.301, 3.441),
+    (3.890, 4.041),
+    (4.688, 4.569),
+    (5.659, 4.941),
+    (7.03, 4.941),
+    (9.04, 4.972),
+    (18.8, 4.975),
+)
+"""Slip before and spin after of test 5, over the coefficient of friction and the normal speed: points read from the figure."""
+
+
+@pytest.mark.parametrize(("law", "mean", "largest"), [("mdr", 0.008, 0.019), ("mindlin", 0.06, 0.12)])
+def test_5_spin_of_a_sphere_that_hits_at_an_angle(law: str, mean: float, largest: float) -> None:
+    """Mean and largest differences to the finite elements, over the largest spin: the contact that slips at its rim is the better one."""
+    radius, speed, friction, steel = 1e-5, 5.0, 0.3, vi.Material(density=7850, youngs_modulus=208e9, poissons_ratio=0.3)
+    rigid = vi.Material(density=7850, youngs_modulus=np.inf, poissons_ratio=0.3)
+    moduli = {"effective_modulus": effective_modulus(steel, rigid), "effective_shear_modulus": effective_shear_modulus(steel, rigid)}
+    slip, spin = np.array(FINITE_ELEMENTS_5).T
+    oblique = vi.Oblique(
+        velocity=(slip * friction * speed, 0.0),
+        friction=vi.find_friction_law(law)(coefficient=friction, effective_radius=radius, **moduli),
+    )
+    hertz = Hertz(stiffness=hertz_stiffness(moduli["effective_modulus"], radius))
+    problem = vi.Problem(
+        sphere=vi.rigid_sphere(radius, steel), plate=vi.rigid_plate(), laws=(hertz,), speed=speed, gravity=0.0, impacts=1, oblique=oblique
+    )
+    found = radius * vi.tabulate(problem).impacts["spin_y_after_rad_s"][:, 0] / (friction * speed)
+    apart = np.abs(found - spin) / spin.max()
+    assert apart.mean() < mean
+    assert apart.max() < largest
+    assert (law == "mdr") == (apart.mean() < 0.015)

@@ -18,7 +18,8 @@ from vibroimpact.calibration.observations import Observations, from_table
 from vibroimpact.calibration.position_record import impacts_in_position
 from vibroimpact.calibration.section import FileTarget
 from vibroimpact.cases.case import Case
-from vibroimpact.cases.rigid import contact_pair, mass_of_sphere
+from vibroimpact.cases.pair import contact_pair
+from vibroimpact.cases.rigid import mass_of_sphere
 from vibroimpact.errors import InputError
 from vibroimpact.measurements.record_file import SPHERE_ACCELERATION, is_universal, read_universal_record
 from vibroimpact.measurements.table_file import TableFile, read_table_file, strictly_increasing

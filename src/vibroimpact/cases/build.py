@@ -8,8 +8,11 @@ from typing import TYPE_CHECKING, Any, Literal, cast
 
 from vibroimpact.calibration.section import calibrate_table
 from vibroimpact.cases.fields.material import material_table
-from vibroimpact.cases.rigid import PLATE_FALLS, contact_laws_of, deforms, elastic_names, impact_limit, is_free_sphere, rigid_problem
-from vibroimpact.contact.law import CompliantLaw, is_conservative
+from vibroimpact.cases.oblique import friction_law_of, is_oblique
+from vibroimpact.cases.pair import is_free_sphere
+from vibroimpact.cases.rigid import PLATE_FALLS, contact_laws_of, deforms, elastic_names, impact_limit, rigid_problem
+from vibroimpact.contact.friction.law import CompliantFriction
+from vibroimpact.contact.law import CompliantLaw, ContactLaw, is_conservative
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.errors import InputError
 from vibroimpact.resolved_case import ResolvedCase
@@ -39,6 +42,7 @@ def check_case(case: CaseTable) -> None:
         if isinstance(law, CompliantLaw) and law.lasting and case.drop.same_spot and is_conservative(law.after_compression(1.0)):
             words = f"and {law.name} loses none on a dent that it has made"
             raise InputError(f'"all" needs a law that loses energy, {words}; {remedy}, or drop.same_spot = false', "run.impacts")
+    _check_oblique(case, law)
     if case.sensors and case.plate.model == "rigid":
         remedy = 'give it model = "elastic", or leave out the sensors' if case.plate.radius is None else "leave out the sensors"
         raise InputError(f"the plate is rigid, so that its points do not move; {remedy}", "sensors")
@@ -56,6 +60,31 @@ def check_case(case: CaseTable) -> None:
 
         check_positions(case)
         elastic_bodies(case)
+
+
+def _check_oblique(case: CaseTable, law: ContactLaw) -> None:
+    """Check a drop that is not along the normal alone.
+
+    Raises
+    ------
+    InputError
+        If bodies deform, a sphere takes the place of the plate, or the friction law needs a force that the contact law does not have.
+    """
+    if not is_oblique(case):
+        return
+    given: dict[str, object] = {"drop.velocity": case.drop.velocity, "drop.angle": case.drop.angle, "drop.spin": case.drop.spin}
+    given |= {"plate.inclination": case.plate.inclination, "contact.friction": case.contact.friction}
+    key = next(name for name, value in given.items() if value is not None)
+    if case.contact.local.finite_sphere:
+        raise InputError("an oblique drop has Hertz's half space in its contact; leave this out", "contact.finite_sphere")
+    if deforms(case) or case.plate.radius is not None:
+        raise InputError(
+            "only a rigid sphere on a rigid, flat plate may fall obliquely, spin or rub; leave this out, or both bodies rigid", key
+        )
+    friction = friction_law_of(case)
+    if isinstance(friction, CompliantFriction) and not isinstance(law, CompliantLaw):
+        words = f"{law.name} gives no normal force, which {friction.name} follows"
+        raise InputError(f'{words}; take another contact law, or friction by the impulse: "coulomb" or "rigid"', "contact.friction.law")
 
 
 def check_drop(case: CaseTable) -> None:
@@ -113,8 +142,8 @@ def resolved_case(case: CaseTable) -> ResolvedCase:
         "name": case.name,
         "sphere": _body(case, "sphere"),
         "plate": _body(case, "plate"),
-        "drop": {**case.drop.model_dump(exclude_none=True), "position": list(case.drop.position)},
-        "contact": {**contact, **case.contact.local.model_dump(exclude_none=True)},
+        "drop": {key: list(value) if isinstance(value, tuple) else value for key, value in case.drop.model_dump(exclude_none=True).items()},
+        "contact": {**contact, **case.contact.local.model_dump(exclude_none=True), **_friction(case)},
         "run": {**case.run.model_dump(exclude_none=True, exclude={"impacts"}), "impacts": "all" if number is None else number},
         **({"sensors": [sensor.model_dump(exclude_none=True, mode="json") for sensor in case.sensors]} if case.sensors else {}),
         **({"calibrate": calibrate_table(case.calibrate)} if case.calibrate else {}),
@@ -123,12 +152,18 @@ def resolved_case(case: CaseTable) -> ResolvedCase:
     return cast("ResolvedCase", table)
 
 
+def _friction(case: CaseTable) -> dict[str, Any]:
+    """Return the friction table of a case under its key, with all parameters; nothing without friction."""
+    law = friction_law_of(case)
+    return {} if law is None else {"friction": {"law": law.name, **{item.name: getattr(law, item.name) for item in fields(law)}}}
+
+
 def _body(case: CaseTable, name: Literal["sphere", "plate"]) -> dict[str, Any]:
     """Return the table of a body, without the keys that do not apply to its model."""
     section: SphereSection | PlateSection = getattr(case, name)
     found = section.model_dump(exclude_none=True, exclude={"material", "supports", "damping", "mesh"})
     if section.model == "rigid":
-        found = {key: found[key] for key in ("radius", "size", "model") if key in found}
+        found = {key: found[key] for key in ("radius", "size", "model", "inclination") if key in found}
         found |= {"supports": "free"} if name == "plate" and is_free_sphere(case) else {}
     else:
         from vibroimpact.cases.elastic.bodies import elastic_table  # imports scipy.sparse

@@ -46,5 +46,6 @@ def case_schema() -> dict[str, Any]:
     schema = Case.model_json_schema()
     schema["$schema"] = "https://json-schema.org/draft/2020-12/schema"
     schema["properties"]["contact"] = contact_schema()
-    schema["$defs"].pop("ContactSection", None)
+    for name in ("ContactSection", "FrictionTable"):  # their keys are those of the laws
+        schema["$defs"].pop(name, None)
     return schema

@@ -7,7 +7,8 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, NamedTuple
 
 from vibroimpact.cases.fields.section import derived
-from vibroimpact.cases.rigid import contact_laws_of, contact_pair, deforms, elastic_names, impact_limit, touch_speed
+from vibroimpact.cases.pair import contact_pair
+from vibroimpact.cases.rigid import contact_laws_of, deforms, elastic_names, impact_limit, touch_speed
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.static import static_indentation
 from vibroimpact.dynamics.history_grid import MOST_POINTS

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from vibroimpact.cases.conditions import DropSummary
-from vibroimpact.cases.rigid import contact_laws_of, contact_pair, touch_speed
+from vibroimpact.cases.pair import contact_pair
+from vibroimpact.cases.rigid import contact_laws_of, touch_speed
 from vibroimpact.contact.law import CompliantLaw, ContactLaw
 from vibroimpact.contact.power_law import HERTZ_TIME
 from vibroimpact.dynamics.encounter import encounter_of

@@ -14,14 +14,17 @@ from vibroimpact.cases.fields.material import InlineMaterial, material_table
 from vibroimpact.cases.fields.quantities import Quantity
 from vibroimpact.cases.schema import SECTIONS
 from vibroimpact.contact.law import unit_of
-from vibroimpact.contact.registry import find_contact_law
+from vibroimpact.contact.registry import find_contact_law, friction_laws
 from vibroimpact.errors import InputError, did_you_mean
 from vibroimpact.materials import find_material
 from vibroimpact.ranges import Range
 from vibroimpact.shown import shown
 
-_PLACES = {"position": ("x", "y"), "size": ("length", "width", "thickness")}
+_PLACES = {"position": ("x", "y"), "velocity": ("x", "y", "z"), "spin": ("x", "y", "z"), "size": ("length", "width", "thickness")}
 """Names of the numbers of a list, such as x in "drop.position.x"."""
+
+_AT_REST = {"position": 2, "velocity": 3, "spin": 3}
+"""Lists that a case need not have, of zeros then, and how many."""
 
 _DAMPING = Quantity("", "damping ratio", Range(at_least=0))
 
@@ -110,7 +113,8 @@ def with_values(table: Mapping[str, Any], values: Mapping[str, Any], done: str =
             holder = inside
             if not isinstance(inside, dict):
                 raise InputError(f"{shown(inside)} is not a table, so that it has no {part}", ".".join(way[:number]))
-            inside = inside.setdefault(part, [0.0, 0.0] if way[number:] == ["position"] else {})
+            missing: Any = [0.0] * _AT_REST[part] if part in _AT_REST and way[number:] == [part] else {}
+            inside = inside.setdefault(part, missing)
             if isinstance(inside, str) and part == "material":
                 named = material_table(find_material(inside))
                 if isinstance(named, str):
@@ -153,6 +157,12 @@ def _keys(table: Mapping[str, Any]) -> Iterator[tuple[str, Quantity | None]]:
         exponent = contact.get("exponent", 1.5)
         for item in fields(find_contact_law(contact["law"])):
             yield f"contact.{item.name}", Quantity(unit_of(item, exponent), item.metadata["meaning"], item.metadata["range"])
+        friction = contact.get("friction")
+        if isinstance(friction, dict) and friction.get("law") in friction_laws():
+            yield "contact.friction.law", None
+            for item in fields(friction_laws()[friction["law"]]):
+                metadata = item.metadata
+                yield f"contact.friction.{item.name}", Quantity(metadata["unit"], metadata["meaning"], metadata["range"])
     for field, info in LocalSection.model_fields.items():
         yield f"contact.{field}", quantity_of(info)
 

@@ -1,4 +1,4 @@
-"""Contact pair, laws and stop rule of a case, and its problem with rigid bodies."""
+"""Contact laws and stop rule of a case, and its problem with rigid bodies."""
 
 from __future__ import annotations
 
@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from vibroimpact.arrays import Array
 from vibroimpact.bodies.body import Body
 from vibroimpact.bodies.rigid import rigid_plate, rigid_sphere
 from vibroimpact.cases.fields.section import derived
+from vibroimpact.cases.oblique import normal_motion_of, oblique_of
+from vibroimpact.cases.pair import contact_pair, is_free_sphere
 from vibroimpact.contact.law import ContactLaw
-from vibroimpact.contact.pair import ContactPair, effective_modulus
 from vibroimpact.contact.registry import find_contact_law
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.errors import InputError
@@ -28,35 +28,9 @@ PLATE_FALLS = (
 """Message for a plate that its supports do not hold, raised before its modes are computed (`"free"`) or after."""
 
 
-@derived
-def contact_pair(case: CaseTable) -> ContactPair:
-    """Return the contact pair of a case: effective modulus, radius and mass, and the yield strength of the weaker body."""
-    modulus, below = effective_modulus(case.sphere.material, case.plate.material), case.plate.radius
-    mass, radius = rigid_sphere(case.sphere.radius, case.sphere.material).mass, case.sphere.radius
-    if below is not None:
-        radius = radius * below / (radius + below)
-    if is_free_sphere(case):
-        mass_below = rigid_sphere(below, case.plate.material).mass
-        mass = mass * mass_below / (mass + mass_below)
-    strength: Array | None = None
-    ratio: Array = case.sphere.material.poissons_ratio
-    for material in (case.sphere.material, case.plate.material):
-        if material.yield_strength is None:
-            continue
-        weaker = np.less(material.yield_strength, np.inf if strength is None else strength)
-        strength = np.where(weaker, material.yield_strength, np.inf if strength is None else strength)[()]
-        ratio = np.where(weaker, material.poissons_ratio, ratio)[()]
-    return ContactPair(modulus, radius, mass, strength, ratio)
-
-
 def mass_of_sphere(case: CaseTable) -> float:
     """Return the mass of the falling sphere [kg]."""
     return float(rigid_sphere(case.sphere.radius, case.sphere.material).mass)
-
-
-def is_free_sphere(case: CaseTable) -> bool:
-    """Return whether a free sphere replaces the plate."""
-    return case.plate.radius is not None and case.plate.supports == "free"
 
 
 @derived
@@ -99,9 +73,8 @@ def rigid_problem(case: CaseTable) -> Problem:
         sphere=rigid_sphere(case.sphere.radius, case.sphere.material),
         plate=_rigid_below(case),
         laws=contact_laws_of(case),
-        height=case.drop.height,
-        speed=case.drop.speed,
-        gravity=case.drop.gravity,
+        **normal_motion_of(case),
+        oblique=oblique_of(case),
         impacts=impact_limit(case),
         duration=case.run.duration,
         rest_speed=case.run.rest_speed,
@@ -119,6 +92,7 @@ def _rigid_below(case: CaseTable) -> Body:
 
 def touch_speed(case: CaseTable) -> float:
     """Return the approach speed of the first impact [m/s]."""
-    if case.drop.speed is not None:
-        return case.drop.speed
-    return float((2.0 * case.drop.gravity * ((case.drop.height or 0.0) - case.sphere.radius)) ** 0.5)
+    motion = normal_motion_of(case)
+    if "speed" in motion:
+        return float(motion["speed"])
+    return float((motion["velocity"] ** 2 + 2.0 * motion["gravity"] * (motion["height"] - case.sphere.radius)) ** 0.5)

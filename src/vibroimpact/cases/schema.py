@@ -36,6 +36,8 @@ from vibroimpact.ranges import Range
 from vibroimpact.shown import shown
 from vibroimpact.studies.section import SweepSection
 
+_RIGHT_ANGLE = 0.5 * math.pi
+
 
 class SphereSection(Section):
     """The body that falls."""
@@ -77,6 +79,13 @@ class PlateSection(Section):
     max_frequency: FrequencyField | None = None
     damping: DampingField = None
     supports: SupportsField = None
+    inclination: (
+        Annotated[
+            float,
+            Quantity("rad", "inclination about y, which gives gravity a part along +x", Range(above=-_RIGHT_ANGLE, below=_RIGHT_ANGLE)),
+        ]
+        | None
+    ) = None
     mesh: PlateMeshField = None
     reduction: MethodField | None = Field(None, description="how the finite elements are reduced to modes; modal by default")
     attachment_mode: StrictBool = Field(False, description="add a residual attachment mode at the contact point")
@@ -89,12 +98,25 @@ class PlateSection(Section):
 
 
 class DropSection(Section):
-    """How the sphere comes down: from a height at rest, or with a speed at first touch."""
+    """How the sphere comes down: from a height, or with a speed or velocity at first touch."""
 
     height: (
         Annotated[float, Quantity("m", "height of the sphere's centre above the plate's upper surface, at rest", Range(above=0))] | None
     ) = None
-    speed: Annotated[float, Quantity("m/s", "downward speed at first touch, where the run then begins", Range(above=0))] | None = None
+    speed: Annotated[float, Quantity("m/s", "speed at first touch, where the run then begins", Range(above=0))] | None = None
+    angle: (
+        Annotated[
+            float, Quantity("rad", "angle of the speed from the plate's normal, towards +x", Range(above=-_RIGHT_ANGLE, below=_RIGHT_ANGLE))
+        ]
+        | None
+    ) = None
+    velocity: (
+        tuple[Annotated[float, Quantity("m/s", "x")], Annotated[float, Quantity("m/s", "y")], Annotated[float, Quantity("m/s", "z")]] | None
+    ) = Field(None, description="velocity along x, y and the normal z, upwards, at the start: at the height, or at first touch [m/s]")
+    spin: (
+        tuple[Annotated[float, Quantity("rad/s", "x")], Annotated[float, Quantity("rad/s", "y")], Annotated[float, Quantity("rad/s", "z")]]
+        | None
+    ) = Field(None, description="angular velocity about x, y and z at the start [rad/s]")
     position: tuple[Annotated[float, Quantity("m", "x")], Annotated[float, Quantity("m", "y")]] = Field(
         (0.0, 0.0), description="x and y on the plate, from its centre [m]"
     )
@@ -105,7 +127,15 @@ class DropSection(Section):
 
     @model_validator(mode="after")
     def _one_of_two(self) -> DropSection:
-        check_alternatives(self, "height", "speed", needed=True)
+        if self.velocity is None:
+            check_alternatives(self, "height", "speed", needed=True)
+        elif self.speed is not None:
+            raise InputError("give either speed or velocity; both are given")
+        elif self.height is None and self.velocity[2] >= 0.0:
+            words = f"its z is {self.velocity[2]:g} m/s, which leads away from the plate"
+            raise InputError(f"{words}; at first touch it is negative, or give the height at which the drop starts", "velocity")
+        if self.angle is not None and self.speed is None:
+            raise InputError("an angle is that of the speed at first touch; give speed, or velocity in place of both", "angle")
         return self
 
 

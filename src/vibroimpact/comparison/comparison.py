@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 
 from vibroimpact.cases.case import Case
-from vibroimpact.cases.rigid import contact_laws_of, contact_pair, touch_speed
+from vibroimpact.cases.pair import contact_pair
+from vibroimpact.cases.rigid import contact_laws_of, touch_speed
 from vibroimpact.comparison.laws import cases_under
 from vibroimpact.contact.law import ContactLaw
 from vibroimpact.dynamics.columns import ALL_IMPACT_COLUMNS

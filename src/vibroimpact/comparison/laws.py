@@ -8,8 +8,9 @@ from typing import Any
 
 from vibroimpact.cases.build import resolved_case
 from vibroimpact.cases.case import Case
+from vibroimpact.cases.pair import contact_pair
 from vibroimpact.cases.reader import read_case
-from vibroimpact.cases.rigid import contact_laws_of, contact_pair, touch_speed
+from vibroimpact.cases.rigid import contact_laws_of, touch_speed
 from vibroimpact.contact.law import ContactLaw, unit_of
 from vibroimpact.contact.registry import find_contact_law
 from vibroimpact.dynamics.restitution import law_achieving

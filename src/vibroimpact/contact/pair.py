@@ -33,6 +33,29 @@ def effective_modulus(first: Material, second: Material) -> Array:
         return np.divide(1.0, compliance)
 
 
+def effective_shear_modulus(first: Material, second: Material) -> Array:
+    r"""Return the effective shear modulus of a contact pair [Pa].
+
+    .. math:: 1/G^* = (2 - \nu_1)/(4 G_1) + (2 - \nu_2)/(4 G_2)
+
+    A contact that sticks has the tangential stiffness :math:`2 G^* a`. Infinite if both materials are rigid.
+
+    References
+    ----------
+    Mindlin, R. D. (1949). Compliance of elastic bodies in contact. J. Appl. Mech. 16, 259-268.
+
+    Examples
+    --------
+    >>> alumina = Material(density=4000, youngs_modulus=380e9, poissons_ratio=0.23)
+    >>> glass = Material(density=2500, youngs_modulus=70e9, poissons_ratio=0.25)
+    >>> f"{effective_shear_modulus(alumina, glass):.4e}"
+    '5.4084e+10'
+    """
+    shares = [0.5 * (2.0 - one.poissons_ratio) * (1.0 + one.poissons_ratio) / one.youngs_modulus for one in (first, second)]
+    with np.errstate(divide="ignore"):
+        return np.divide(1.0, shares[0] + shares[1])
+
+
 def hertz_stiffness(modulus: Array, radius: Array) -> Array:
     r"""Return the stiffness K of the Hertzian contact force :math:`K \delta^{3/2}` [N/m^1.5].
 
@@ -71,6 +94,8 @@ class ContactPair:
         :math:`m_1 m_2 / (m_1 + m_2)` [kg]; the mass of the sphere if the plate is fixed.
     yield_strength, poissons_ratio : float or array, optional
         Of the material that yields first [Pa], [-]; Poisson's ratio of the sphere if no yield strength is known.
+    effective_shear_modulus : float or array, optional
+        :math:`G^*` [Pa]; infinite for two rigid materials.
     """
 
     effective_modulus: Array
@@ -78,6 +103,7 @@ class ContactPair:
     effective_mass: Array
     yield_strength: Array | None = None
     poissons_ratio: Array | None = None
+    effective_shear_modulus: Array | None = None
 
     @property
     def hertz_stiffness(self) -> Array:

@@ -1,15 +1,19 @@
-"""The registry of contact laws: those of this package, and those of other packages by their entry points."""
+"""The registries of contact and friction laws: those of this package, and those of other packages by their entry points."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import cache
 from importlib.metadata import EntryPoint, entry_points
-from typing import cast
+from typing import TypeVar, cast
 
+from vibroimpact.contact.friction.law import FrictionLaw
 from vibroimpact.contact.law import ContactLaw
+from vibroimpact.contact.parameters import Parameters
 from vibroimpact.errors import InputError
 from vibroimpact.registry import find_named, modules_in
+
+Law = TypeVar("Law", bound=Parameters)
 
 
 @cache
@@ -26,36 +30,57 @@ def contact_laws() -> Mapping[str, type[ContactLaw]]:
     >>> "hertz" in contact_laws()
     True
     """
-    modules = modules_in("vibroimpact.contact.laws")
-    laws = [law for module in modules for law in vars(module).values() if _is_law(law) and law.__module__ == module.__name__]
-    found: dict[str, type[ContactLaw]] = {}
-    for law in laws + [_loaded(point) for point in entry_points(group="vibroimpact.contact_laws")]:
+    return _laws("contact law", ContactLaw, "vibroimpact.contact.laws", "vibroimpact.contact_laws")
+
+
+@cache
+def friction_laws() -> Mapping[str, type[FrictionLaw]]:
+    """Return all friction laws by name: those of this package and those of the entry points "vibroimpact.friction_laws".
+
+    Raises
+    ------
+    InputError
+        If two laws have the same name, or an entry point can't be loaded or is not a friction law.
+
+    Examples
+    --------
+    >>> "mdr" in friction_laws()
+    True
+    """
+    return _laws("friction law", FrictionLaw, "vibroimpact.contact.friction.laws", "vibroimpact.friction_laws")
+
+
+def _laws(kind: str, base: type[Law], package: str, group: str) -> dict[str, type[Law]]:
+    """Return the laws of a kind by name: those of the modules of a package, and those of a group of entry points."""
+    laws = [law for module in modules_in(package) for law in vars(module).values() if _is(law, base) and law.__module__ == module.__name__]
+    found: dict[str, type[Law]] = {}
+    for law in laws + [_loaded(point, kind, base) for point in entry_points(group=group)]:
         if law.name in found:
             raise InputError(
-                f'two contact laws are called "{law.name}": {found[law.name].__module__} and {law.__module__}; '
+                f'two {kind}s are called "{law.name}": {found[law.name].__module__} and {law.__module__}; '
                 "rename one, or uninstall its package"
             )
         found[law.name] = law
     return found
 
 
-def _is_law(candidate: object) -> bool:
-    return isinstance(candidate, type) and issubclass(candidate, ContactLaw)
+def _is(candidate: object, base: type[Law]) -> bool:
+    return isinstance(candidate, type) and issubclass(candidate, base)
 
 
-def _loaded(point: EntryPoint) -> type[ContactLaw]:
-    """Return the contact law of an entry point."""
+def _loaded(point: EntryPoint, kind: str, base: type[Law]) -> type[Law]:
+    """Return the law of an entry point."""
     try:
         law = point.load()
     except Exception as error:  # any error of another package is reported with the entry point's name
         raise InputError(
-            f'the contact law "{point.name}" of the entry point {point.value} can\'t be loaded: {error}; mend or uninstall its package'
+            f'the {kind} "{point.name}" of the entry point {point.value} can\'t be loaded: {error}; mend or uninstall its package'
         ) from error
     missing = [key for key in ("name", "equation", "source") if not isinstance(getattr(law, key, None), str)]
-    if not _is_law(law) or missing:
-        lacks = f"; it has no {', '.join(missing)}" if _is_law(law) else ""
-        raise InputError(f'the entry point "{point.name}", {point.value}, is not a contact law with name, equation and source{lacks}')
-    return cast("type[ContactLaw]", law)
+    if not _is(law, base) or missing:
+        lacks = f"; it has no {', '.join(missing)}" if _is(law, base) else ""
+        raise InputError(f'the entry point "{point.name}", {point.value}, is not a {kind} with name, equation and source{lacks}')
+    return cast("type[Law]", law)
 
 
 def find_contact_law(name: str) -> type[ContactLaw]:
@@ -69,3 +94,21 @@ def find_contact_law(name: str) -> type[ContactLaw]:
     if not isinstance(name, str):
         raise InputError(f"a contact law is found by its name, a text, not {name!r}")
     return find_named("contact law", name, contact_laws())
+
+
+def find_friction_law(name: str) -> type[FrictionLaw]:
+    """Return the friction law with a name.
+
+    Raises
+    ------
+    InputError
+        If there is none; the message names the closest.
+
+    Examples
+    --------
+    >>> find_friction_law("mdr").__name__
+    'Mdr'
+    """
+    if not isinstance(name, str):
+        raise InputError(f"a friction law is found by its name, a text, not {name!r}")
+    return find_named("friction law", name, friction_laws())

@@ -126,8 +126,53 @@ VIBRATION_HISTORY_COLUMNS: dict[str, Column] = {
 }
 """Further columns of a history, where a body vibrates."""
 
-ALL_IMPACT_COLUMNS = {**IMPACT_COLUMNS, **VIBRATION_IMPACT_COLUMNS}
-ALL_HISTORY_COLUMNS = {**HISTORY_COLUMNS, **VIBRATION_HISTORY_COLUMNS}
+OBLIQUE_IMPACT_COLUMNS: dict[str, Column] = {
+    "position_x_m": Column("m", "place of the sphere's centre at first touch, along x"),
+    "position_y_m": Column("m", "place of the sphere's centre at first touch, along y"),
+    "approach_velocity_x_m_s": Column("m/s", "velocity of the centre at first touch, along x"),
+    "approach_velocity_y_m_s": Column("m/s", "velocity of the centre at first touch, along y"),
+    "separation_velocity_x_m_s": Column("m/s", "velocity of the centre at release, along x"),
+    "separation_velocity_y_m_s": Column("m/s", "velocity of the centre at release, along y"),
+    "spin_x_before_rad_s": Column("rad/s", "angular velocity at first touch, about x"),
+    "spin_y_before_rad_s": Column("rad/s", "angular velocity at first touch, about y"),
+    "spin_z_before_rad_s": Column("rad/s", "angular velocity at first touch, about the normal"),
+    "spin_x_after_rad_s": Column("rad/s", "angular velocity at release, about x"),
+    "spin_y_after_rad_s": Column("rad/s", "angular velocity at release, about y"),
+    "spin_z_after_rad_s": Column("rad/s", "angular velocity at release, about the normal"),
+    "tangential_restitution": Column(
+        "1",
+        "velocity of the centre along the plate after over before, in the direction of before",
+        "Tangential restitution",
+        "e\u00a0tangential",
+        "ratio",
+    ),
+    "rebound_angle_deg": Column("deg", "angle of the rebound from the normal, positive onwards", "Rebound angle", "rebound angle"),
+    "friction_lost_J": Column("J", "energy that friction took", "Lost by friction", "friction"),
+}
+"""Further columns of the impact table, where motion is not along the normal alone."""
+
+VIBRATING_IMPACT_COLUMNS = {**IMPACT_COLUMNS, **VIBRATION_IMPACT_COLUMNS}
+ALL_IMPACT_COLUMNS = {**VIBRATING_IMPACT_COLUMNS, **OBLIQUE_IMPACT_COLUMNS}
+OBLIQUE_HISTORY_COLUMNS: dict[str, Column] = {
+    "position_x_m": Column("m", "place of the sphere's centre along x, from the centre of the plate"),
+    "position_y_m": Column("m", "place of the sphere's centre along y, from the centre of the plate"),
+    "velocity_x_m_s": Column("m/s", "velocity of the centre along x"),
+    "velocity_y_m_s": Column("m/s", "velocity of the centre along y"),
+    "spin_x_rad_s": Column("rad/s", "angular velocity about x"),
+    "spin_y_rad_s": Column("rad/s", "angular velocity about y"),
+    "spin_z_rad_s": Column("rad/s", "angular velocity about the normal"),
+    "friction_x_N": Column("N", "friction force on the sphere along x"),
+    "friction_y_N": Column("N", "friction force on the sphere along y"),
+    "rotation_J": _held("kinetic energy of the sphere's rotation", "Kinetic energy of the sphere's rotation", "rotation"),
+    "friction_J": _lost(
+        "energy that friction took so far; within a contact also what is stored in its tangential deformation",
+        "Lost by friction",
+        "friction",
+    ),
+}
+"""Further columns of a history, where motion is not along the normal alone."""
+
+ALL_HISTORY_COLUMNS = {**HISTORY_COLUMNS, **VIBRATION_HISTORY_COLUMNS, **OBLIQUE_HISTORY_COLUMNS}
 
 MOTION_COLUMNS = (*tuple(HISTORY_COLUMNS)[:8], "plate_deflection_m")
 """Those of motion and force, from `time_s` to `potential_J`, which are found from the state without the losses so far."""
@@ -136,7 +181,10 @@ LEDGER = tuple(name for name, column in HISTORY_COLUMNS.items() if column.in_led
 """The columns of a history that share the energy put in; their sum is constant."""
 
 VIBRATION_LEDGER = tuple(name for name, column in VIBRATION_HISTORY_COLUMNS.items() if column.in_ledger)
-"""The further columns that share it."""
+"""The further columns that share it, where a body vibrates."""
+
+OBLIQUE_LEDGER = tuple(name for name, column in OBLIQUE_HISTORY_COLUMNS.items() if column.in_ledger)
+"""The further columns that share it, where motion is not along the normal alone."""
 
 
 def impact_columns(impacts: Iterable[str]) -> dict[str, Column]:

@@ -11,6 +11,7 @@ from vibroimpact.arrays import Floats, Indices
 from vibroimpact.dynamics.contact import Contact
 from vibroimpact.dynamics.encounter import Encounter
 from vibroimpact.dynamics.flight import Flight
+from vibroimpact.dynamics.oblique.state import ObliqueContacts, Sphere, State
 
 if TYPE_CHECKING:  # a drop of rigid bodies does not load what vibrates
     from vibroimpact.dynamics.vibrating.linear_system import FreeMotion
@@ -32,6 +33,9 @@ class Leg:
     encounter: Encounter | None = None
     motions: tuple[FreeMotion, ...] = ()
     """Free motions of the bodies of each drop in flight, where a body vibrates."""
+    oblique: tuple[Sphere, State] | None = None
+    """The spheres, and their motion along the plate at the start of the flight, where they have any."""
+    oblique_contacts: ObliqueContacts = ()
 
     def of(self, drop: int) -> Leg | None:
         """Return the leg of one drop, or None if the drop is not in it."""
@@ -42,7 +46,10 @@ class Leg:
         alone = Flight(flight.start[here], flight.gap[here], flight.velocity[here], flight.gravity[here])
         contact_here = np.flatnonzero(self.contact_drops == drop)
         motions = self.motions[int(here[0]) : int(here[0]) + 1]
+        oblique = None if self.oblique is None else (self.oblique[0].take(here), self.oblique[1].take(here))
         if self.contact is None or self.encounter is None or not contact_here.size:
-            return Leg(one, alone, self.flight_end[here], one[: contact_here.size], motions=motions)
+            return Leg(one, alone, self.flight_end[here], one[: contact_here.size], motions=motions, oblique=oblique)
         contact, encounter = self.contact.of(int(contact_here[0])), self.encounter.take(contact_here)
-        return Leg(one, alone, self.flight_end[here], one, contact, encounter, motions)
+        place = int(contact_here[0])
+        along = tuple((one, part.of(int(np.flatnonzero(places == place)[0]))) for places, part in self.oblique_contacts if place in places)
+        return Leg(one, alone, self.flight_end[here], one, contact, encounter, motions, oblique, along)

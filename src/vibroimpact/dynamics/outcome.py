@@ -17,6 +17,7 @@ class Outcome(Enum):
     LIMIT = "limit of impacts"
     FAILED = "failed"
     RIDING = "limit of a ride"
+    FELL = "beside the plate"
 
     @property
     def at_rest(self) -> bool:

@@ -12,8 +12,10 @@ import numpy as np
 
 from vibroimpact.arrays import Array
 from vibroimpact.bodies.body import Body
+from vibroimpact.contact.friction.law import CompliantFriction
 from vibroimpact.contact.law import ContactLaw, InstantaneousLaw
 from vibroimpact.contact.quasi_static import QuasiStatic
+from vibroimpact.dynamics.oblique.statement import Oblique
 from vibroimpact.dynamics.sensors.sensor import Sensor
 from vibroimpact.errors import InputError
 from vibroimpact.resolved_case import ResolvedCase
@@ -41,10 +43,15 @@ class Problem:
         The contact law of the first impact, the second, ...; the last one goes on. All of one kind.
     height : float or array, optional
         Height of the sphere's centre above the plate's upper surface at rest, at the start [m].
+    velocity : float or array, default 0
+        Upward velocity at that height [m/s].
     speed : float or array, optional
         Downward speed at first touch, where the run then begins [m/s]. Give this or `height`.
     gravity : float or array, default 9.80665
-        Acceleration of gravity [m/s^2], >= 0.
+        Acceleration of gravity [m/s^2], >= 0; with an inclined plate its part along the normal.
+    oblique : Oblique, optional
+        Velocity along the plate, spin, friction and an inclination of the plate. By default the sphere falls along the normal and
+        does not turn.
     impacts : int, optional
         Stop after so many impacts, at the top of the last rebound. None: go on to rest.
     duration : float, optional
@@ -96,8 +103,10 @@ class Problem:
     plate: Body
     laws: tuple[ContactLaw, ...]
     height: Array | None = None
+    velocity: Array = 0.0
     speed: Array | None = None
     gravity: Array = STANDARD_GRAVITY
+    oblique: Oblique | None = None
     impacts: int | None = 5
     duration: float | None = None
     rest_speed: Array | None = None
@@ -118,7 +127,7 @@ class Problem:
         one_kind = isinstance(self.laws, (tuple, list)) and len({type(law) for law in self.laws}) == 1
         if not one_kind or not isinstance(self.laws[0], ContactLaw):
             raise InputError("laws must be one or more contact laws, all of one kind")
-        for name in ("height", "speed", "gravity", "duration", "rest_speed", "tolerance"):
+        for name in ("height", "velocity", "speed", "gravity", "duration", "rest_speed", "tolerance"):
             value = getattr(self, name)
             if value is not None and np.asarray(value).dtype.kind not in "iuf":
                 raise InputError(f"{name} must be a number in SI, or an array of them, not {value!r}")
@@ -128,7 +137,7 @@ class Problem:
             raise InputError("the sphere's mass and radius must be finite")
         if np.any(np.isfinite(self.plate.mass)):
             raise InputError("the plate must be held fixed: a body with an infinite mass")
-        for name, least in (("height", -np.inf), ("speed", 0.0), ("gravity", 0.0), ("rest_speed", 0.0)):
+        for name, least in (("height", -np.inf), ("velocity", -np.inf), ("speed", 0.0), ("gravity", 0.0), ("rest_speed", 0.0)):
             value = getattr(self, name)
             if value is not None and not np.all(np.isfinite(value) & (np.asarray(value) >= least)):
                 raise InputError(f"{name} must be finite{'' if np.isinf(least) else ' and not negative'}")
@@ -153,6 +162,16 @@ class Problem:
             raise InputError("nothing holds the plate, so that it falls away from under the sphere: set gravity to 0, and give speed")
         if self.vibrates and isinstance(self.laws[0], InstantaneousLaw):
             raise InputError(f"{self.laws[0].name} gives no force, and bodies that deform need one; take another law")
+        if self.oblique is not None and not isinstance(self.oblique, Oblique):
+            raise InputError(f"oblique must be an Oblique, not {self.oblique!r}")
+        if self.oblique is not None and self.vibrates:
+            raise InputError(
+                "only a rigid sphere on a rigid plate that is held may fall obliquely, spin or rub; "
+                "bodies that deform fall along the normal"
+            )
+        if self.oblique is not None and isinstance(self.oblique.friction, CompliantFriction) and isinstance(self.laws[0], InstantaneousLaw):
+            words = f"{self.laws[0].name} gives no normal force for {self.oblique.friction.name} to follow"
+            raise InputError(f"{words}; take another contact law, or friction by the impulse, as of coulomb or rigid")
         try:
             _ = self.shape
         except ValueError:
@@ -169,8 +188,9 @@ class Problem:
     @cached_property
     def shape(self) -> tuple[int, ...]:
         """() for one drop, (B,) for a batch."""
-        values = [self.sphere.mass, self.sphere.contact_offset, self.height, self.speed, self.gravity, self.rest_speed]
+        values = [self.sphere.mass, self.sphere.contact_offset, self.height, self.velocity, self.speed, self.gravity, self.rest_speed]
         values += [getattr(law, item.name) for law in self.laws for item in fields(law)]
+        values += [] if self.oblique is None else self.oblique.values
         return np.broadcast_shapes(*(np.shape(value) for value in values if value is not None))
 
     def law_of(self, impact: int) -> ContactLaw:
@@ -192,9 +212,11 @@ class Problem:
             plate=part(self.plate),
             laws=tuple(law.take(drop) for law in self.laws),
             height=one(self.height),
+            velocity=one(self.velocity),
             speed=one(self.speed),
             gravity=one(self.gravity),
             rest_speed=one(self.rest_speed),
+            oblique=None if self.oblique is None else self.oblique.take(drop),
         )
 
     def to_problem(self) -> Problem:

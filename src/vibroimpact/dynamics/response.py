@@ -12,10 +12,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.dynamics.columns import HISTORY_COLUMNS, VIBRATION_HISTORY_COLUMNS, meanings
+from vibroimpact.dynamics.columns import HISTORY_COLUMNS, OBLIQUE_HISTORY_COLUMNS, VIBRATION_HISTORY_COLUMNS, meanings
 from vibroimpact.dynamics.energy import why_failed
 from vibroimpact.dynamics.history_grid import points_kept, thinned
 from vibroimpact.dynamics.leg import Leg
+from vibroimpact.dynamics.oblique.history import oblique_history
 from vibroimpact.dynamics.outcome import Outcome
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.rest import Rest
@@ -117,7 +118,8 @@ class Response:
     @property
     def history_columns(self) -> dict[str, tuple[str, str]]:
         """Unit and meaning of the columns of a history."""
-        return meanings({**HISTORY_COLUMNS, **(VIBRATION_HISTORY_COLUMNS if self.problem.vibrates else {})})
+        further = VIBRATION_HISTORY_COLUMNS if self.problem.vibrates else {} if self.problem.oblique is None else OBLIQUE_HISTORY_COLUMNS
+        return meanings({**HISTORY_COLUMNS, **further})
 
     @property
     def status(self) -> str:
@@ -344,6 +346,13 @@ class Response:
             "plastic_work_J": plastic_before + plastic,
             "written_off_at_rest_J": np.full_like(times, self.rest.written_off[0] if resting else 0.0),
         }
+        if self.legs is not None and problem.oblique is not None:
+            along = oblique_history(problem.oblique, self.legs, self.impacts["friction_lost_J"], found["time_s"])
+            found |= {
+                **along,
+                "kinetic_J": found["kinetic_J"] + along["kinetic_J"],
+                "potential_J": found["potential_J"] + along["potential_J"],
+            }
         return {name: found[name] for name in columns}
 
     @cached_property

@@ -11,6 +11,7 @@ from vibroimpact.arrays import Drops, Floats
 from vibroimpact.contact.law import CompliantLaw, ContactLaw, InstantaneousLaw
 from vibroimpact.contact.static import static_indentation
 from vibroimpact.dynamics.bodies import Bodies
+from vibroimpact.dynamics.columns import OBLIQUE_IMPACT_COLUMNS
 from vibroimpact.dynamics.contact import CAPTURED, FAILED, RIDING
 from vibroimpact.dynamics.encounter import Encounter, encounter_of
 from vibroimpact.dynamics.energy import CLOSURE_LIMIT, WRITE_OFF_LIMIT, close_ledger
@@ -18,6 +19,8 @@ from vibroimpact.dynamics.flight import Flight
 from vibroimpact.dynamics.impact_rows import ImpactRows
 from vibroimpact.dynamics.leg import Leg
 from vibroimpact.dynamics.lockstep import Coroutine
+from vibroimpact.dynamics.oblique.motion import OBLIQUE_STEPS, ObliqueMotion
+from vibroimpact.dynamics.oblique.normal_motion import normal_motions
 from vibroimpact.dynamics.outcome import OUTCOMES, Outcome
 from vibroimpact.dynamics.problem import MOST_IMPACTS, Problem
 from vibroimpact.dynamics.response import Response
@@ -36,10 +39,13 @@ class Run:
         self.gravity = self.spread(problem.gravity)
         self.time, self.gap, self.velocity = np.zeros(self.size), np.zeros(self.size), np.zeros(self.size)
         if problem.height is not None:
-            self.gap = self.spread(problem.height) - self.radius
+            self.gap, self.velocity = self.spread(problem.height) - self.radius, self.spread(problem.velocity)
         else:
             self.velocity = -self.spread(problem.speed)
+        self.oblique = None if problem.oblique is None else ObliqueMotion(problem.oblique, self.mass, self.radius)
         self.energy_in = self.mechanical_energy()
+        if self.oblique is not None:
+            self.energy_in = sum(self.oblique.energies(), self.energy_in)
         self.dissipated, self.plastic, self.deepest = np.zeros(self.size), np.zeros(self.size), np.zeros(self.size)
         self.moving = np.ones(self.size, dtype=bool)
         self.outcomes = np.full(self.size, Outcome.FAILED.code)
@@ -48,7 +54,7 @@ class Run:
         self.rest_speed = self.default_rest_speed() if problem.rest_speed is None else self.spread(problem.rest_speed)
         self.bodies = self.vibrating_bodies() if problem.vibrates else RigidBodies(self.size, solve_contact)
         self.memories = {name: self.spread(value) for name, value in problem.laws[0].memories().items()}
-        self.rows = ImpactRows(self.bodies.columns, self.size)
+        self.rows = ImpactRows((*self.bodies.columns, *(() if self.oblique is None else OBLIQUE_IMPACT_COLUMNS)), self.size)
 
     def vibrating_bodies(self) -> Bodies:
         """Return the bodies of the problem, of which one vibrates."""
@@ -109,12 +115,18 @@ class Run:
         by_time = last == end
         last = np.maximum(last, flight.start)  # a contact under way at the end of the run is finished first
         gone = np.isinf(touch) & np.isinf(last)
+        fell = np.zeros_like(gone) if self.oblique is None else self.oblique.beside(drops, touch - flight.start) & (touch < last)
+        last = np.where(fell, touch, last)
         stops = (touch >= last) | gone
         self.stop(drops[stops], outcome, last[stops])
-        self.stop(drops[stops & by_time], Outcome.DURATION, last[stops & by_time])
+        self.stop(drops[stops & by_time & ~fell], Outcome.DURATION, last[stops & by_time & ~fell])
+        self.stop(drops[fell], Outcome.FELL, touch[fell])
         self.stop(drops[gone], Outcome.LEFT, flight.start[gone])
         leg = Leg(drops, flight, np.where(gone, flight.start, np.where(stops, last, touch)), drops[~stops], motions=motions)
         self.bodies.pass_flight(drops, motions, leg.flight_end - flight.start)
+        if self.oblique is not None:
+            leg = replace(leg, oblique=self.oblique.now(drops))
+            self.oblique.fly(drops, leg.flight_end - flight.start)
         if not stops.all():
             gap, velocity = flight.at(leg.flight_end)
             self.gap[drops[~stops]], self.velocity[drops[~stops]] = gap[~stops], velocity[~stops]
@@ -134,6 +146,8 @@ class Run:
             self.time[drops], self.gap[drops], self.velocity[drops] = touch, 0.0, law.separation_speed(speed, self.mass[drops])
             row["separation_speed_m_s"][drops] = self.velocity[drops]
             row["duration_s"][drops] = row["max_indentation_m"][drops] = row["plastic_work_J"][drops] = 0.0
+            if self.oblique is not None:
+                self.oblique.collide_at_once(drops, self.mass[drops] * (speed + self.velocity[drops]), row)
             lost = 0.5 * self.mass[drops] * (speed**2 - self.velocity[drops] ** 2)
         else:
             assert isinstance(law, CompliantLaw)
@@ -149,9 +163,22 @@ class Run:
         with np.errstate(divide="ignore", invalid="ignore"):
             rise = np.where(self.gravity[drops] > 0.0, 0.5 * separation**2 / self.gravity[drops], np.nan)
         row["rebound_height_m"][drops] = self.radius[drops] + self.gap[drops] + rise
+        if self.oblique is not None:
+            self.leave_dents(drops, row)
         moving = self.moving[drops]
         self.stop_resting(drops[moving], law if moving.all() else law.take(np.flatnonzero(moving)), row)
         return leg
+
+    def leave_dents(self, drops: Drops, row: dict[str, Floats]) -> None:
+        """Forget the dents of drops that move on by more than the radius of their contact before they touch again."""
+        assert self.oblique is not None
+        flight = Flight(self.time[drops], self.gap[drops], self.velocity[drops], self.gravity[drops])
+        away = self.oblique.distance(drops, flight.touch(np.zeros(1))[0] - self.time[drops])
+        gone = drops[away > np.sqrt(self.radius[drops] * np.nan_to_num(row["max_indentation_m"][drops]))]
+        fresh = self.problem.laws[0].memories()
+        for name, values in self.memories.items():
+            self.memories[name] = values.copy()  # laws of earlier contacts refer to the previous array
+            self.memories[name][gone] = self.spread(fresh[name])[gone]
 
     def solve_contact(self, leg: Leg, encounter: Encounter, touch: Floats, row: dict[str, Floats]) -> Coroutine[tuple[Leg, Floats]]:
         """Return the leg with the contact of drops, and the energy lost in it [J]."""
@@ -182,7 +209,11 @@ class Run:
         if captured.any():
             self.bring_to_rest(drops[captured], contact.law.take(np.flatnonzero(captured)), self.time[drops[captured]], stored[captured])
         self.stored[drops[riding]] = stored[riding]
-        return replace(leg, contact=contact, encounter=encounter), contact.dissipated + np.where(captured | riding, 0.0, stored)
+        leg = replace(leg, contact=contact, encounter=encounter)
+        if self.oblique is not None:
+            motions = normal_motions(leg, contact, encounter, OBLIQUE_STEPS)
+            leg = replace(leg, oblique_contacts=self.oblique.collide(drops, motions, row))
+        return leg, contact.dissipated + np.where(captured | riding, 0.0, stored)
 
     def next_law(self, drops: Drops) -> CompliantLaw:
         """Return the law under which drops will touch next."""
@@ -226,22 +257,25 @@ class Run:
     def batch(self) -> Response:
         """Return the response of the batch without a history."""
         at_rest = np.array([outcome.at_rest for outcome in OUTCOMES])[self.outcomes]
-        if self.problem.duration is not None:
+        # a sphere that bounces no more may move on along the plate, which is not followed
+        if self.problem.duration is not None and self.oblique is None:
             self.end_time[at_rest] = np.maximum(self.end_time, self.problem.duration)[at_rest]
         final_gap, final_velocity = self.final_motion(np.flatnonzero(at_rest))
         vibration = self.bodies.energies()
+        along = self.oblique_energies()
         added = self.mass * self.gravity * self.deepest + np.maximum(-self.stored, 0.0)  # the stored energy is negative where it sticks
         energy = close_ledger(
             self.energy_in,
             added,
             {
-                "kinetic_J": 0.5 * self.mass * final_velocity**2,
-                "potential_J": self.mass * self.gravity * final_gap,
+                "kinetic_J": 0.5 * self.mass * final_velocity**2 + along.pop("kinetic_J", 0.0),
+                "potential_J": self.mass * self.gravity * final_gap + along.pop("potential_J", 0.0),
                 "contact_elastic_J": self.stored + vibration.pop("local_J", 0.0),
                 "contact_dissipated_J": self.dissipated + vibration.pop("local_damping_J", 0.0),
                 "plastic_work_J": self.plastic,
                 "written_off_at_rest_J": self.written_off,
                 **vibration,
+                **along,
             },
         )
         closes = energy["closure_relative"] <= CLOSURE_LIMIT
@@ -255,6 +289,16 @@ class Run:
             Rest(self.rest_speed, self.rest_time, self.sag, self.stored, self.written_off, self.bodies.left, tuple(self.bodies.lying)),
             None,
         )
+
+    def oblique_energies(self) -> dict[str, Floats]:
+        """Return the entries of the ledger for the motion along the plate and the spin at the end of the run."""
+        if self.oblique is None:
+            return {}
+        everyone = np.arange(self.size)
+        resting = np.array([outcome.at_rest for outcome in OUTCOMES])[self.outcomes]
+        self.oblique.fly(everyone, np.where(resting, np.maximum(self.end_time - self.time, 0.0), 0.0))
+        kinetic, rotation, potential = self.oblique.energies()
+        return {"kinetic_J": kinetic, "potential_J": potential, "rotation_J": rotation, "friction_J": self.oblique.lost}
 
     def final_motion(self, at_rest: Drops) -> tuple[Floats, Floats]:
         """Return gap [m] and upward velocity [m/s] at the end of the run."""

@@ -52,6 +52,8 @@ def status_of(run: Ended) -> str:
         return f"Stopped {after}, the most that are followed, at {_time(run, end, 6)} s; the sphere is not at rest."
     if outcome is Outcome.LEFT:
         return f"The sphere leaves {after} and, without gravity, never comes back."
+    if outcome is Outcome.FELL:
+        return f"The sphere falls off the edge of the plate {after}, and is level with its surface at {_time(run, end, 6)} s."
     if outcome is Outcome.FAILED:
         return f"Failed {after}: {why_failed(run.energy)}"
     return f"At rest {after}: {_at_rest(run)}"

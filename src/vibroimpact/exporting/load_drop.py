@@ -9,6 +9,7 @@ from typing import Any
 from vibroimpact.calibration.file_contents import CALIBRATION
 from vibroimpact.calibration.speed_function import SpeedFunction
 from vibroimpact.cases.case import Case
+from vibroimpact.cases.oblique import is_oblique
 from vibroimpact.cases.reader import load_case, read_case
 from vibroimpact.cases.rigid import contact_laws_of, deforms, elastic_names, mass_of_sphere, rigid_problem
 from vibroimpact.errors import InputError
@@ -89,9 +90,11 @@ def drop_of_result(result: Result, case: Case, function: tuple[str, SpeedFunctio
 
 
 def _check_flat(case: Case) -> None:
-    """Raise if the sphere falls on another sphere, which no export format supports."""
+    """Raise if the sphere falls on another sphere, or obliquely, which no export format supports."""
     if case.plate.radius is not None:
         raise InputError("what is exported falls on a flat plate, and this sphere falls on another", "plate.radius")
+    if is_oblique(case):
+        raise InputError("what is exported falls along the plate's normal, and does not spin or rub", "drop")
 
 
 def _of_calibration(folder: Path) -> Drop:

@@ -10,8 +10,8 @@ import numpy as np
 from vibroimpact.arrays import Floats
 from vibroimpact.bodies.body import Body
 from vibroimpact.bodies.rigid import rigid_plate
+from vibroimpact.cases.pair import contact_pair
 from vibroimpact.cases.reader import read_case
-from vibroimpact.cases.rigid import contact_pair
 from vibroimpact.charts.axis import Axis
 from vibroimpact.charts.chart import Chart, Panel
 from vibroimpact.charts.marks import Level, Line, Mark, Points

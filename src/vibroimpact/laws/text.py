@@ -6,8 +6,8 @@ from dataclasses import MISSING, Field, dataclass, fields
 from functools import cache
 from typing import Any
 
+from vibroimpact.cases.pair import contact_pair
 from vibroimpact.cases.reader import load_case
-from vibroimpact.cases.rigid import contact_pair
 from vibroimpact.contact.docstring import docstring_sections
 from vibroimpact.contact.law import CompliantLaw, ContactLaw, default_origin
 from vibroimpact.contact.pair import ContactPair

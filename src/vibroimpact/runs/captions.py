@@ -223,6 +223,18 @@ def _part(value: float, whole: float) -> str:
     return f"{text(value, 'J')} ({fixed(100.0 * value / whole, 2)}\u00a0%)"
 
 
+def _along_plate(result: Result) -> str:
+    friction = result.case.get("contact", {}).get("friction")
+    words = "Along the plate the sphere flies freely between impacts"
+    if friction is None:
+        return f"{words}; there is no friction."
+    words += f"; in contact, friction ({friction['law']}, coefficient {float(friction['coefficient']):g}) acts on it."
+    ratio = result.impacts["tangential_restitution"]
+    if len(ratio) and np.isfinite(ratio[0]):
+        words += f" Impact 1 leaves {fixed(float(ratio[0]), 4)} of the velocity along the plate."
+    return words
+
+
 _WRITERS = {
     "position": _position,
     "force": _force,
@@ -230,6 +242,7 @@ _WRITERS = {
     "acceleration": _acceleration,
     "force_indentation": _loops,
     "energy": _energy,
+    "along_plate": _along_plate,
     "sphere_energy": sphere_energy_caption,
     "plate_motion": plate_motion_caption,
     "plate_energy": plate_energy_caption,

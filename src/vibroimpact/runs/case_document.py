@@ -10,7 +10,8 @@ from vibroimpact.cases.case import Case
 from vibroimpact.cases.costs import describe_costs
 from vibroimpact.cases.doubts import doubts
 from vibroimpact.cases.expected import expected_of, expected_restitution
-from vibroimpact.cases.rigid import contact_laws_of, contact_pair, elastic_names, mass_of_sphere, touch_speed
+from vibroimpact.cases.pair import contact_pair
+from vibroimpact.cases.rigid import contact_laws_of, elastic_names, mass_of_sphere, touch_speed
 
 
 def case_document(case: Case, aside: Container[str] = ()) -> dict[str, Any]:

@@ -14,16 +14,9 @@ from vibroimpact.cases.case import Case
 from vibroimpact.cases.costs import describe_costs
 from vibroimpact.cases.doubts import doubts
 from vibroimpact.cases.expected import expected_of, expected_restitution
-from vibroimpact.cases.rigid import (
-    contact_laws_of,
-    contact_pair,
-    deforms,
-    elastic_names,
-    impact_limit,
-    is_free_sphere,
-    mass_of_sphere,
-    touch_speed,
-)
+from vibroimpact.cases.oblique import friction_law_of, is_oblique
+from vibroimpact.cases.pair import contact_pair, is_free_sphere
+from vibroimpact.cases.rigid import contact_laws_of, deforms, elastic_names, impact_limit, mass_of_sphere, touch_speed
 from vibroimpact.cases.schema import SensorSection
 from vibroimpact.contact.law import CompliantLaw, ContactLaw, unit_of
 from vibroimpact.dynamics.problem import STANDARD_GRAVITY
@@ -59,7 +52,7 @@ def case_explained(case: Case, aside: Container[str] = ()) -> RenderableType:
         *_elastic_rows(case),
         *_coupling_rows(case),
         ("effective modulus", f"{pair.effective_modulus:.6g} Pa"),
-        ("first approach speed", f"{speed:.6g} m/s, gravity {gravity:g} m/s2"),
+        ("first approach speed", f"{speed:.6g} m/s{' along the normal' if is_oblique(case) else ''}, gravity {gravity:g} m/s2"),
         ("contact law", f"{case.contact.law}: {laws[0].equation}"),
     ]
     # a list in the case gives one law per impact: parameters that differ are shown for each
@@ -71,6 +64,9 @@ def case_explained(case: Case, aside: Container[str] = ()) -> RenderableType:
             ", ".join(f"{value:.9g}" for value in values) if len(set(values)) > 1 else f"{values[0]:.9g}" if values[0] is not None else "-"
         )
         rows.append((f"  {item.name}", f"{shown} {unit_of(item, getattr(laws[0], 'exponent', 1))}"))
+    if (friction := friction_law_of(case)) is not None:
+        rows.append(("friction law", f"{friction.name}: {friction.equation}"))
+        rows += [(f"  {item.name}", f"{getattr(friction, item.name):.9g} {item.metadata['unit']}".rstrip()) for item in fields(friction)]
     number = impact_limit(case)
     stop = ["at rest"] + ([f"after {number} impact{'' if number == 1 else 's'}"] if number else [])
     stop += [f"at {case.run.duration:g} s"] if case.run.duration else []

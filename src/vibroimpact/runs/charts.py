@@ -13,6 +13,7 @@ from vibroimpact.runs.deflection_chart import deflection_chart
 from vibroimpact.runs.energy_chart import ledger_chart
 from vibroimpact.runs.force_indentation_chart import loops_chart
 from vibroimpact.runs.history_charts import ACCELERATION, FORCE, POSITION, VELOCITY, history_chart
+from vibroimpact.runs.oblique_chart import moves_along, oblique_chart
 from vibroimpact.runs.sensor_charts import drawn_sensors, sensor_chart
 from vibroimpact.runs.vibration_charts import plate_energy_chart, plate_motion_chart, sphere_energy_chart
 
@@ -28,9 +29,9 @@ def chart_makers(result: Result) -> dict[str, Callable[[], Chart]]:
     Returns
     -------
     dict of str to callable
-        `position`, `force`, `velocity`, `acceleration`, `force_indentation` and `energy`; where bodies vibrate also `sphere_energy`,
-        `plate_motion`, `plate_energy`, `deflection` and one per sensor. Force, acceleration and force over indentation exist only for
-        contacts of finite duration, not with an instantaneous law.
+        `position`, `force`, `velocity`, `acceleration`, `force_indentation`, `along_plate` where there is such a motion, and `energy`;
+        where bodies vibrate also `sphere_energy`, `plate_motion`, `plate_energy`, `deflection` and one per sensor. Force, acceleration
+        and force over indentation exist only for contacts of finite duration, not with an instantaneous law.
     """
     history = drawn_history(result)
     in_contact = bool(len(contacts_with_duration(result)))
@@ -39,6 +40,8 @@ def chart_makers(result: Result) -> dict[str, Callable[[], Chart]]:
     makers: dict[str, Callable[..., Chart]] = {name: partial(history_chart, result, history, what) for name, what in over_time.items()}
     if in_contact:
         makers["force_indentation"] = partial(loops_chart, result)
+    if moves_along(history):
+        makers["along_plate"] = partial(oblique_chart, result, history)
     makers["energy"] = partial(ledger_chart, result, history)
     if result.vibrates and len(result.impacts["time_s"]):
         makers["sphere_energy"] = partial(sphere_energy_chart, result, history)

@@ -23,10 +23,12 @@ _MOTIONS = {
 _ROLES = {
     "contact_dissipated_J": "contact damping",
     "plastic_work_J": "plastic work",
+    "friction_J": "sphere damping",
     "sphere_damping_J": "sphere damping",
     "plate_damping_J": "plate damping",
     "written_off_at_rest_J": "written off",
     "contact_elastic_J": "contact elastic",
+    "rotation_J": "sphere motion",
     "sphere_motion_J": "sphere motion",
     "plate_motion_J": "plate motion",
     "potential_J": "potential",

@@ -11,7 +11,7 @@ from vibroimpact.charts.axis import Axis
 from vibroimpact.charts.chart import Chart, Panel
 from vibroimpact.charts.marks import Arrow, Label, Line, Mark, Outline
 from vibroimpact.contact.law import unit_of
-from vibroimpact.contact.registry import contact_laws
+from vibroimpact.contact.registry import contact_laws, friction_laws
 from vibroimpact.results.result import Result
 from vibroimpact.runs.chart_data import touch_height
 from vibroimpact.runs.deflection_chart import sensor_marks
@@ -98,10 +98,16 @@ def _plate(result: Result, extent: Extent, *, dimensioned: bool) -> list[Mark]:
     return marks
 
 
+_APPROACH = ("approach_speed_m_s", "approach_velocity_x_m_s", "approach_velocity_y_m_s")
+
+
 def _drop_words(result: Result) -> str:
     start = float(result.history["position_m"][0])
     if start <= touch_height(result):  # a run that begins at first touch
-        return f"arrives at {_given(float(result.impacts['approach_speed_m_s'][0]), 'm/s')}"
+        parts = [float(result.impacts[name][0]) if name in result.impacts else 0.0 for name in _APPROACH]
+        down, speed = parts[0], float(np.linalg.norm(parts))
+        angle = f" at {np.degrees(np.arccos(down / speed)):.4g}° from the normal" if down < speed else ""
+        return f"arrives at {_given(speed, 'm/s')}{angle}"
     below = "lower sphere" if result.case.get("plate", {}).get("radius") is not None else "plate"
     return f"{_given(start, 'm')} above the {below}"
 
@@ -147,7 +153,12 @@ def setup_rows(result: Result) -> list[tuple[str, str]]:
     below = "Plate" if case["plate"].get("radius") is None else "Lower sphere"
     rows = [("Sphere", _body_words(case["sphere"])), (below, f"{_body_words(case['plate'])}, {support_words(result)}")]
     rows.append(("Drop", f"{_drop_words(result)}, gravity {_given(float(case['drop'].get('gravity', 0.0)), 'm/s2')}"))
-    rows.append(("Contact law", _law_words(case["contact"])))
+    plate: Mapping[str, Any] = case["plate"]
+    if (inclination := plate.get("inclination")) is not None:
+        rows.append(("Inclination", f"{np.degrees(float(inclination)):.4g}° about y"))
+    rows.append(("Contact law", _law_words({key: value for key, value in case["contact"].items() if key != "friction"})))
+    if (friction := case["contact"].get("friction")) is not None:
+        rows.append(("Friction", _law_words(friction)))
     for one in case.get("sensors", ()):
         words = f"{one['quantity']} at {_place(one['position'])}, {_given(float(one['rate']), 'Hz')}"
         rows.append((f"Sensor {shortened(visible(one['name']), 60)}", words))
@@ -174,7 +185,7 @@ def _body_words(body: Mapping[str, Any]) -> str:
 
 def _law_words(contact: Mapping[str, Any]) -> str:
     """Return a law with its parameters in their units; of a law that is not installed here they are not known."""
-    name, law = str(contact["law"]), contact_laws().get(contact["law"])
+    name, law = str(contact["law"]), {**contact_laws(), **friction_laws()}.get(contact["law"])
     if law is None:
         return shortened(visible(name), 60)
     found = []

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from vibroimpact.arrays import Floats, Indices
-from vibroimpact.dynamics.columns import ALL_HISTORY_COLUMNS, ALL_IMPACT_COLUMNS, LEDGER, VIBRATION_LEDGER
+from vibroimpact.dynamics.columns import ALL_HISTORY_COLUMNS, ALL_IMPACT_COLUMNS, LEDGER, OBLIQUE_LEDGER, VIBRATION_LEDGER
 from vibroimpact.results.result import Result
 from vibroimpact.units.display import ALL_FIGURES, certain, certain_figures, column_texts, digits, fixed, multiple
 
@@ -36,6 +36,9 @@ _SHOWN_COLUMNS = (
     "max_acceleration_m_s2",
     "rebound_height_m",
     "energy_lost_J",
+    "tangential_restitution",
+    "rebound_angle_deg",
+    "friction_lost_J",
     "contacts",
     "sensitivity",
 )
@@ -87,7 +90,7 @@ def shown_columns(result: Result) -> list[str]:
     impacts = result.impacts
     told = {"contacts": several_contacts(impacts), "sensitivity": loses_digits(result.change_by_impact)}
     told |= {name: bool(np.any(impacts[name])) for name in ("duration_s", "max_indentation_m")}
-    return [name for name in _SHOWN_COLUMNS if told.get(name, True) and np.isfinite(impacts[name]).any()]
+    return [name for name in _SHOWN_COLUMNS if told.get(name, True) and np.isfinite(impacts.get(name, np.nan)).any()]
 
 
 def several_contacts(impacts: Mapping[str, Floats]) -> bool:
@@ -101,7 +104,11 @@ def ledger_table(result: Result) -> tuple[str, list[LedgerRow]]:
     Entries that are zero but for rounding are left out.
     """
     put_in, scale = result.energy["input_J"], multiple("J", result.energy["input_J"])
-    values = {name: result.energy[name] for name in (*LEDGER, *VIBRATION_LEDGER) if abs(result.energy.get(name, 0.0)) > _ROUNDING * put_in}
+    values = {
+        name: result.energy[name]
+        for name in (*LEDGER, *VIBRATION_LEDGER, *OBLIQUE_LEDGER)
+        if abs(result.energy.get(name, 0.0)) > _ROUNDING * put_in
+    }
     figures = {name: _certain_figures_of_energy(name, result) for name in values}
     values |= {SUM: sum(values.values()), PUT_IN: put_in}
 

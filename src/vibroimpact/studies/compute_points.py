@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from vibroimpact.arrays import Indices
 from vibroimpact.cases.case import Case
+from vibroimpact.cases.oblique import is_oblique
 from vibroimpact.cases.rigid import deforms, rigid_problem
 from vibroimpact.dynamics.outcome import Outcome
 from vibroimpact.dynamics.response import Response
@@ -111,7 +112,8 @@ def _parts(study: _Study, places: Indices) -> Iterator[_Part]:
     else:
         return
     arrays = {key: values[places] for key, values in study.points.items() if is_array_key(key, values)}
-    if deforms(case) or not arrays:
+    off_the_edge = any(key.startswith("plate.size.") for key in arrays) and is_oblique(with_arrays(case, arrays))
+    if deforms(case) or off_the_edge or not arrays:
         yield from _side_by_side(study, places)
         return
     height: Any = arrays.get("drop.height", case.drop.height)

@@ -15,7 +15,8 @@ from vibroimpact.cases.reader import read_case
 from vibroimpact.studies.axes import Values
 
 _OF_THE_RUN = ("run.duration", "run.tolerance")  # the same for all drops of a batch
-_WITHOUT_EFFECT = ("drop.position.", "plate.size.")  # on rigid bodies
+_WITHOUT_EFFECT = "plate.size."  # on rigid bodies, unless the sphere may fall off the edge
+_PARTS = {"x": 0, "y": 1, "z": 2}
 
 
 def case_at(table: Mapping[str, Any], values: Mapping[str, Any]) -> Case:
@@ -53,11 +54,21 @@ def with_arrays(case: Case, arrays: Mapping[str, Values]) -> Case:
         section, _, field = key.partition(".")
         if field.startswith("material."):
             materials[section][field.removeprefix("material.")] = values
+        elif section == "drop" and "." in field:
+            whole, _, part = field.partition(".")
+            now = list(fields[section].get(whole, getattr(case.drop, whole) or (0.0, 0.0, 0.0)))
+            now[_PARTS[part]] = values
+            fields[section][whole] = tuple(now)
         elif not key.startswith(_WITHOUT_EFFECT):
             fields[section][field] = values
     for section, numbers in materials.items():
         fields[section]["material"] = replace(getattr(case, section).material, **numbers)
     changed: dict[str, Any] = {name: getattr(case, name).model_copy(update=given) for name, given in fields.items() if name != "contact"}
     if "contact" in fields:
+        friction = {key: fields["contact"].pop(key) for key in list(fields["contact"]) if key.startswith("friction.")}
         changed["contact"] = replace(case.contact, parameters={**case.contact.parameters, **fields["contact"]})
+        if friction and case.contact.friction is not None:
+            inner = {key.removeprefix("friction."): values for key, values in friction.items()}
+            table = replace(case.contact.friction, parameters={**case.contact.friction.parameters, **inner})
+            changed["contact"] = replace(changed["contact"], friction=table)
     return case.model_copy(update=changed)

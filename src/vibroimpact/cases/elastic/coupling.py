@@ -19,7 +19,8 @@ from vibroimpact.bodies.rigid import rigid_sphere
 from vibroimpact.cases.elastic.modes import BodyModes, compute_modes, contact_place
 from vibroimpact.cases.elastic.residuals import residual_key, with_residuals
 from vibroimpact.cases.fields.local import MeasuredImpact
-from vibroimpact.cases.rigid import PLATE_FALLS, contact_laws_of, contact_pair, elastic_names, is_free_sphere, touch_speed
+from vibroimpact.cases.pair import contact_pair, is_free_sphere
+from vibroimpact.cases.rigid import PLATE_FALLS, contact_laws_of, elastic_names, touch_speed
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.quasi_static import QuasiStatic
 from vibroimpact.dynamics.encounter import encounter_of

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from typing import Any
 
+from vibroimpact.cases.fields.friction import FrictionTable, friction_schema, read_friction
 from vibroimpact.cases.fields.local import LocalSection
 from vibroimpact.cases.fields.quantities import quantity_schema, read_quantity
 from vibroimpact.cases.fields.section import read_table
@@ -18,7 +19,7 @@ from vibroimpact.shown import shown
 
 @dataclass(frozen=True)
 class ContactSection:
-    """Name and parameters [SI] of a contact law, and how it is combined with the local deformation of elastic bodies (`local`).
+    """Name and parameters [SI] of a contact law, how it is combined with the local deformation of elastic bodies (`local`), and friction.
 
     A tuple has one value per impact; its last value holds for all later impacts.
     """
@@ -26,6 +27,7 @@ class ContactSection:
     law: str
     parameters: Mapping[str, float | tuple[float, ...]]
     local: LocalSection = LocalSection()
+    friction: FrictionTable | None = None
 
 
 def read_contact(value: Any) -> ContactSection:
@@ -46,10 +48,10 @@ def read_contact(value: Any) -> ContactSection:
     exponent = value.get("exponent", known["exponent"].default if "exponent" in known else 1.0)
     parameters: dict[str, float | tuple[float, ...]] = {}
     for key, given in value.items():
-        if key == "law" or key in LocalSection.model_fields:
+        if key in ("law", "friction") or key in LocalSection.model_fields:
             continue
         if key not in known:
-            others = ", ".join(LocalSection.model_fields)
+            others = ", ".join([*LocalSection.model_fields, "friction"])
             hint = did_you_mean(key, [*known, *LocalSection.model_fields])
             raise InputError(f"unknown key {shown(key)}; {law.name} takes {', '.join(known)}, and every law {others}.{hint}", key)
         unit, allowed = unit_of(known[key], exponent), known[key].metadata["range"]
@@ -64,12 +66,13 @@ def read_contact(value: Any) -> ContactSection:
         except InputError as error:
             raise InputError(error.message, key) from None
     local = {key: value[key] for key in LocalSection.model_fields if key in value}
-    return ContactSection(law.name, parameters, read_table(LocalSection, local))
+    friction = read_friction(value["friction"]) if "friction" in value else None
+    return ContactSection(law.name, parameters, read_table(LocalSection, local), friction)
 
 
 def contact_schema() -> dict[str, Any]:
     """Return the JSON schema of the [contact] section: one alternative per law."""
-    local = LocalSection.model_json_schema()["properties"]
+    local = {**LocalSection.model_json_schema()["properties"], "friction": friction_schema()}
     return {"description": "the contact law and its parameters", "oneOf": [_law_schema(law, local) for law in contact_laws().values()]}
 
 

@@ -80,10 +80,12 @@ def _number(drops: Conditions) -> Array:
 
 
 def _sentence(drop: Conditions, lacking: float) -> str:
+    case = drop.case
+    oblique = {"velocity", "angle", "spin"} & set(case["drop"]) or "inclination" in case["plate"] or "friction" in case["contact"]
+    remedy = "" if oblique else "; contact.finite_sphere = true corrects it"
     return (
         f"Hertz's half space makes the largest force about {percent_less(lacking).removeprefix('-')} too small: the contact radius is "
-        f"{float(drop.contact_radius / drop.radius):.2g} of the sphere's, which is stiffer than a half space; contact.finite_sphere = true "
-        "corrects it"
+        f"{float(drop.contact_radius / drop.radius):.2g} of the sphere's, which is stiffer than a half space{remedy}"
     )
 
 

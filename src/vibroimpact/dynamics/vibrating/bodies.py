@@ -10,7 +10,7 @@ from vibroimpact.arrays import Bools, Drops, Floats
 from vibroimpact.bodies.body import Body
 from vibroimpact.contact.law import CompliantLaw, ContactLaw
 from vibroimpact.dynamics.bodies import Motions
-from vibroimpact.dynamics.columns import ALL_IMPACT_COLUMNS
+from vibroimpact.dynamics.columns import VIBRATING_IMPACT_COLUMNS
 from vibroimpact.dynamics.contact import CAPTURED, RIDING, SETTLED, Contact, Piece
 from vibroimpact.dynamics.encounter import Encounter
 from vibroimpact.dynamics.flight import Flight
@@ -84,7 +84,7 @@ class VibratingBodies:
 
     def __init__(self, problem: Problem, mass: Floats, gravity: Floats) -> None:
         self.problem, self.mass, size = problem, mass, len(mass)
-        self.columns = tuple(name for name in ALL_IMPACT_COLUMNS if problem.sensitivity or name != "sensitivity")
+        self.columns = tuple(name for name in VIBRATING_IMPACT_COLUMNS if problem.sensitivity or name != "sensitivity")
         pairs = list(zip(mass.tolist(), gravity.tolist(), strict=True))
         self.system = system_of(problem, *pairs[0])
         distinct = {(mass, gravity): self.system.with_sphere(mass**-0.5, gravity * mass**0.5) for mass, gravity in set(pairs)}

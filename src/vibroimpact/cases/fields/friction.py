@@ -1,0 +1,65 @@
+"""The [contact.friction] table: the name of a friction law, and the parameters of that law."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+from typing import Any
+
+from vibroimpact.cases.fields.quantities import quantity_schema, read_quantity
+from vibroimpact.contact.registry import find_friction_law, friction_laws
+from vibroimpact.errors import InputError, did_you_mean
+from vibroimpact.shown import shown
+
+NO_FRICTION = "none"
+
+
+@dataclass(frozen=True)
+class FrictionTable:
+    """Name and parameters [SI] of a friction law."""
+
+    law: str
+    parameters: Mapping[str, float]
+
+
+def read_friction(value: Any) -> FrictionTable | None:
+    """Return the validated [contact.friction] table; None for the law "none".
+
+    Raises
+    ------
+    InputError
+        If the law or a parameter is unknown, or a value can't be read or lies outside its range.
+    """
+    names = [NO_FRICTION, *friction_laws()]
+    if not isinstance(value, dict) or not isinstance(value.get("law"), str):
+        raise InputError(f'it needs law = "...", one of {", ".join(names)}', "friction")
+    if value["law"] not in names:
+        words = f"there is no friction law {shown(value['law'])}; there are {', '.join(names)}.{did_you_mean(value['law'], names)}"
+        raise InputError(words, "friction.law")
+    # "none" may have what others take: so a law can be switched off, or swept
+    laws = list(friction_laws().values()) if value["law"] == NO_FRICTION else [find_friction_law(value["law"])]
+    known = {item.name: item for law in laws for item in fields(law)}
+    parameters = {}
+    for key, given in value.items():
+        if key == "law":
+            continue
+        if key not in known:
+            raise InputError(
+                f"unknown key {shown(key)}; {value['law']} takes {', '.join(known)}.{did_you_mean(key, known)}", f"friction.{key}"
+            )
+        try:
+            parameters[key] = read_quantity(given, known[key].metadata["unit"], known[key].metadata["range"])
+        except InputError as error:
+            raise InputError(error.message, f"friction.{key}") from None
+    return None if value["law"] == NO_FRICTION else FrictionTable(value["law"], parameters)
+
+
+def friction_schema() -> dict[str, Any]:
+    """Return the JSON schema of the [contact.friction] table: one alternative per law."""
+    none: dict[str, Any] = {"type": "object", "properties": {"law": {"const": NO_FRICTION}}, "required": ["law"]}
+    found = [none]
+    for law in friction_laws().values():
+        properties: dict[str, Any] = {"law": {"const": law.name, "description": f"{law.equation} ({law.source})"}}
+        properties |= {item.name: quantity_schema(item.metadata["unit"], item.metadata["meaning"]) for item in fields(law)}
+        found.append({"type": "object", "properties": properties, "required": ["law"], "additionalProperties": False})
+    return {"description": "the friction law and its parameters", "oneOf": found}

@@ -1,0 +1,98 @@
+"""The interface of a friction law.
+
+A law is a frozen dataclass in a file of its own under `vibroimpact.contact.friction.laws`, where the registry finds it. It declares `name`,
+`equation` and `source`, its parameters as contact laws do, and is one of
+
+* `ImpulsiveFriction`, whose slip velocity follows from the normal impulse so far;
+* `CompliantFriction`, whose force depends on the tangential displacement and its history, kept in a `Memory`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from vibroimpact.arrays import Array, Drops, Floats
+from vibroimpact.contact.parameters import Parameters, parameter
+
+
+@dataclass(frozen=True, kw_only=True)
+class FrictionLaw(Parameters):
+    """Base of all friction laws."""
+
+    coefficient: Array = parameter("coefficient of friction mu", detail=r"Coefficient of friction :math:`\mu`.", example=0.3, at_least=0)
+
+
+@dataclass(frozen=True, kw_only=True)
+class ImpulsiveFriction(FrictionLaw):
+    """Base of the laws without tangential compliance."""
+
+    def slip_after(self, slip: Floats, impulse: Floats, whole: Floats, mass: Floats) -> Floats:
+        """Return the slip velocity [m/s], of the shape of `impulse`.
+
+        Parameters
+        ----------
+        slip : array, shape (..., B)
+            Slip velocity without friction [m/s].
+        impulse : array, shape (..., B)
+            Normal impulse so far [N s].
+        whole : array, shape (B,)
+            Normal impulse of the whole contact [N s].
+        mass : array, shape (B,)
+            Effective mass of the tangential motion [kg].
+        """
+        raise NotImplementedError
+
+    def force(self, slip: Floats, normal_force: Floats) -> Floats:
+        """Return the friction force against the slip [N]; none where the law tells the impulse alone."""
+        return np.zeros_like(slip)
+
+
+@dataclass(frozen=True, kw_only=True)
+class CompliantFriction(FrictionLaw):
+    r"""Base of the laws with the tangential compliance of elastic half-spaces.
+
+    The normal force F acts on a Hertzian contact, whose depth under it is :math:`D = [3F / (4 E^* \sqrt R)]^{2/3}`. Tangential
+    displacements s are counted in :math:`\kappa = \mu E^* / G^*`, and the friction force is :math:`2 G^* \sqrt R\, \kappa I`, at most
+    :math:`\mu F`, where :math:`I = \tfrac23 D^{3/2}`.
+    """
+
+    effective_modulus: Array = parameter(
+        "effective modulus E*", "Pa", detail="Effective modulus :math:`E^*`.", above=0, from_pair="effective_modulus"
+    )
+    effective_shear_modulus: Array = parameter(
+        "effective shear modulus G*", "Pa", detail="Effective shear modulus :math:`G^*`.", above=0, from_pair="effective_shear_modulus"
+    )
+    effective_radius: Array = parameter(
+        "effective radius R", "m", detail="Effective radius :math:`R`.", above=0, from_pair="effective_radius"
+    )
+
+    def memory(self, size: int, steps: int) -> Memory:
+        """Return the memory of `size` contacts before first touch, for at most `steps` advances."""
+        raise NotImplementedError
+
+
+Pair = tuple[Floats, Floats]
+"""Two arrays (b,)."""
+
+
+class Memory(Protocol):
+    """Tangential displacements of a contact under way, of B contacts, and the force that follows from them."""
+
+    def advance(self, drops: Drops, depth: Floats, displacement: Floats, sticking: Floats, rates: Pair) -> Pair:
+        """Go on to another depth and displacement; return the integral I [m^1.5] and its rate.
+
+        Parameters
+        ----------
+        drops : array of int, shape (b,)
+            Which of the contacts.
+        depth, displacement : array, shape (b,)
+            Depth D under the normal force [m], and s over kappa [m].
+        sticking : array, shape (b,)
+            The integral if no point of the contact slips on the way.
+        rates : tuple of two arrays, shape (b,)
+            Rates of depth and displacement at the end of the way.
+        """
+        ...

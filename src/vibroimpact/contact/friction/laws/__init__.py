@@ -1,0 +1,1 @@
+"""The friction laws of this package, one a file."""

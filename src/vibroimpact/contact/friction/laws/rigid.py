@@ -1,0 +1,49 @@
+"""Walton's impulse: a restitution of the slip, bounded by sliding."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from vibroimpact.arrays import Array, Floats
+from vibroimpact.contact.friction.law import ImpulsiveFriction
+from vibroimpact.contact.parameters import parameter
+
+
+@dataclass(frozen=True, kw_only=True)
+class Rigid(ImpulsiveFriction):
+    r"""A coefficient of restitution of the slip, where the friction suffices, else sliding (Walton 1993).
+
+    .. math:: v_s' = -\beta_0 v_s \quad\text{or, if that takes more than}\ \mu J,\quad v_s' = v_s - \mu J / m_t
+
+    with J the normal impulse and :math:`m_t` the effective mass of the tangential motion.
+
+    Notes
+    -----
+    The impulse acts as a whole when the contact ends: the law says nothing of the force.
+
+    References
+    ----------
+    Walton, O. R. (1993). Numerical simulation of inelastic, frictional particle-particle interactions. In: Particulate Two-Phase Flow,
+    ed. M. C. Roco, Butterworth-Heinemann, 884-911.
+
+    Examples
+    --------
+    >>> law, one = Rigid(coefficient=0.5, slip_restitution=0.4), np.ones(1)
+    >>> law.slip_after(one, np.array([[1.0], [4.0]]), 4 * one, one).round(12).tolist()
+    [[1.0], [-0.4]]
+    """
+
+    slip_restitution: Array = parameter(
+        "restitution of the slip, beta0", detail=r"Restitution of the slip :math:`\beta_0`.", default=0.0, at_least=-1, at_most=1
+    )
+
+    name = "rigid"
+    equation = "v_s' = -beta0 v_s, or v_s - mu J / m if it slips"
+    source = "Walton 1993, in Particulate Two-Phase Flow, p. 884"
+
+    def slip_after(self, slip: Floats, impulse: Floats, whole: Floats, mass: Floats) -> Floats:
+        """Return the slip of first touch, and after the whole impulse what friction has made of it; see `ImpulsiveFriction`."""
+        change = np.minimum((1.0 + self.slip_restitution) * np.abs(slip), self.coefficient * whole / mass)
+        return np.where(impulse >= whole, slip - np.sign(slip) * change, slip)

@@ -1,0 +1,1 @@
+"""Motion of a sphere along the plate and its spin: oblique impacts with friction."""

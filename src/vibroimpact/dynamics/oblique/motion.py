@@ -1,0 +1,146 @@
+"""The motion along the plate and the spin of the drops of a run, through flights and contacts."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from vibroimpact.arrays import Bools, Drops, Floats
+from vibroimpact.contact.friction.law import CompliantFriction, FrictionLaw, ImpulsiveFriction
+from vibroimpact.dynamics.columns import OBLIQUE_IMPACT_COLUMNS
+from vibroimpact.dynamics.oblique.normal_motion import NormalMotion
+from vibroimpact.dynamics.oblique.sliding import slide
+from vibroimpact.dynamics.oblique.state import ObliqueContact, ObliqueContacts, Sphere, State
+from vibroimpact.dynamics.oblique.statement import Oblique
+
+OBLIQUE_STEPS = 48
+"""Steps for each phase of a contact: the slip velocity at its end is then within 1e-4 of that at first touch."""
+
+_TWISTING = 3.0 * np.pi / 16.0
+"""Moment of full twisting under Hertz's pressure over friction force and contact radius [-] (Johnson 1985, section 7.2; Lubkin 1951)."""
+
+
+class ObliqueMotion:
+    """Places, velocities along the plate and spins of the B drops of a run.
+
+    Parameters
+    ----------
+    oblique : Oblique
+        What the drops have at the start.
+    mass, radius : array, shape (B,)
+        Of the spheres [kg], [m].
+    """
+
+    def __init__(self, oblique: Oblique, mass: Floats, radius: Floats) -> None:
+        def spread(values: Any) -> Floats:
+            return np.array([np.broadcast_to(np.asarray(value, dtype=float), mass.shape) for value in values])
+
+        self.sphere = Sphere(mass, radius, mass * radius**2 * oblique.inertia_ratio, spread(oblique.gravity))
+        self.state = State(spread(oblique.position), spread(oblique.velocity), spread(oblique.spin))
+        self.start, self.half = self.state.position, None if oblique.size is None else 0.5 * np.array(oblique.size)[:, None]
+        self.law, self.lost = oblique.friction, np.zeros(len(mass))
+
+    def fly(self, drops: Drops, elapsed: Floats) -> None:
+        """Advance drops through a time without contact [s]."""
+        self._put(drops, self.sphere.take(drops).fly(self.state.take(drops), elapsed))
+
+    def now(self, drops: Drops) -> tuple[Sphere, State]:
+        """Return spheres and state of drops."""
+        return self.sphere.take(drops), self.state.take(drops)
+
+    def distance(self, drops: Drops, elapsed: Floats) -> Floats:
+        """Return how far drops move along the plate in a time without contact [m]."""
+        before = self.state.take(drops)
+        with np.errstate(invalid="ignore"):
+            moved = self.sphere.take(drops).fly(before, elapsed).position - before.position
+        return np.asarray(np.nan_to_num(np.hypot(*moved)))
+
+    def beside(self, drops: Drops, elapsed: Floats) -> Bools:
+        """Return which drops will be beside the plate after a time without contact [s]."""
+        if self.half is None:
+            return np.zeros(len(drops), dtype=bool)
+        with np.errstate(invalid="ignore"):
+            place = self.sphere.take(drops).fly(self.state.take(drops), elapsed).position
+        return np.asarray(np.isfinite(elapsed) & (np.abs(place) > self.half).any(axis=0))
+
+    def collide(self, drops: Drops, motions: Sequence[tuple[Drops, NormalMotion]], row: dict[str, Floats]) -> ObliqueContacts:
+        """Advance drops through a contact, write its columns, and return the motion in it.
+
+        `motions`: normal motions of groups of the drops, with their places among these.
+        """
+        return tuple((places, self._collide(drops[places], normal, row)) for places, normal in motions)
+
+    def _collide(self, drops: Drops, normal: NormalMotion, row: dict[str, Floats]) -> ObliqueContact:
+        sphere, before = self.sphere.take(drops), self.state.take(drops)
+        law = self.law if self.law is None or len(drops) == len(self.lost) else self.law.take(drops)
+        direction, slip, pull = _along(sphere, before)
+        contact = ObliqueContact(
+            sphere, before, direction, slide(law, normal, slip, sphere.tangential_mass, pull), _twist(law, normal, sphere, before.spin[2])
+        )
+        self._finish(drops, contact.end, row)
+        return contact
+
+    def collide_at_once(self, drops: Drops, impulse: Floats, row: dict[str, Floats]) -> None:
+        """Let a normal impulse without duration act on drops [N s], and write its columns."""
+        sphere, before = self.sphere.take(drops), self.state.take(drops)
+        direction, slip, _ = _along(sphere, before)
+        left = slip
+        if isinstance(self.law, ImpulsiveFriction):
+            left = self.law.take(drops).slip_after(slip, impulse, impulse, sphere.tangential_mass)
+        change, turn = sphere.tangential_mass * (left - slip) * direction, sphere.radius / sphere.inertia
+        spin = before.spin + np.stack([turn * change[1], -turn * change[0], np.zeros(len(drops))])
+        self._finish(drops, State(before.position, before.velocity + change / sphere.mass, spin), row)
+
+    def _finish(self, drops: Drops, after: State, row: dict[str, Floats]) -> None:
+        """Put drops into their states after a contact, and write its columns."""
+        sphere, before = self.sphere.take(drops), self.state.take(drops)
+        work = sphere.mass * (sphere.gravity * (after.position - before.position)).sum(axis=0)
+        lost = sum(sphere.kinetic(before)) + work - sum(sphere.kinetic(after))
+        self.lost[drops] += lost
+        values = [*before.position, *before.velocity, *after.velocity, *before.spin, *after.spin]
+        speed = np.hypot(*before.velocity)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            onward = np.where(speed > 0.0, (before.velocity * after.velocity).sum(axis=0) / speed, np.hypot(*after.velocity))
+            ratio = np.where(speed > 0.0, onward / speed, np.nan)
+        angle = np.degrees(np.arctan2(onward, row["separation_speed_m_s"][drops]))
+        for name, value in zip(OBLIQUE_IMPACT_COLUMNS, [*values, ratio, angle, lost], strict=True):
+            row[name][drops] = value
+        self._put(drops, after)
+
+    def _put(self, drops: Drops, state: State) -> None:
+        now = State(self.state.position.copy(), self.state.velocity.copy(), self.state.spin.copy())
+        for name, values in vars(now).items():
+            values[:, drops] = getattr(state, name)
+        self.state = now
+
+    def energies(self) -> tuple[Floats, Floats, Floats]:
+        """Return the kinetic energies along the plate and of rotation, and the potential energy along the plate, zero at the start [J]."""
+        fallen = (self.sphere.gravity * (self.state.position - self.start)).sum(axis=0)
+        return *self.sphere.kinetic(self.state), -self.sphere.mass * fallen
+
+
+def _along(sphere: Sphere, state: State) -> tuple[Floats, Floats, Floats]:
+    """Return the directions of slip (2, B), the slip speeds [m/s], and the accelerations of gravity along the directions [m/s^2].
+
+    Where nothing slips the direction is that of gravity. A pull across the direction acts on the centre alone: within a contact it would
+    turn the slip by its duration times gravity over the slip speed.
+    """
+    slip = sphere.slip(state)
+    speed = np.hypot(*slip)
+    ahead = np.where(speed > 0.0, slip, sphere.gravity)
+    length = np.hypot(*ahead)
+    with np.errstate(invalid="ignore"):
+        direction = np.where(length > 0.0, ahead / length, np.array([[1.0], [0.0]]))
+    return direction, speed, (sphere.gravity * direction).sum(axis=0)
+
+
+def _twist(law: FrictionLaw | None, normal: NormalMotion, sphere: Sphere, spin: Floats) -> Floats:
+    """Return the change of the spin about the normal by full twisting of the contact, which ends where the spin does [rad/s]."""
+    if not isinstance(law, CompliantFriction) or not spin.any():
+        return np.zeros_like(spin)
+    radius = np.cbrt(0.75 * normal.force * law.effective_radius / law.effective_modulus)
+    moment = _TWISTING * law.coefficient * normal.force * radius
+    impulse = 0.5 * ((moment[1:] + moment[:-1]) * np.diff(normal.time, axis=0)).sum(axis=0)
+    return np.asarray(-np.sign(spin) * np.minimum(impulse / sphere.inertia, np.abs(spin)))

@@ -1,0 +1,150 @@
+"""The normal motion of contacts on a grid, which drives their friction: time and force as functions of a parameter.
+
+The parameter rises evenly through each part of a contact, slowly at its ends, so that the depth of the contact grows with its square.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from vibroimpact.arrays import Drops, Floats
+from vibroimpact.dynamics.contact import Contact, Piece
+from vibroimpact.dynamics.encounter import Encounter
+from vibroimpact.dynamics.leg import Leg
+from vibroimpact.dynamics.phase_plane.collocation import PlaneRule
+from vibroimpact.dynamics.phase_plane.motion import PlaneMotion
+from vibroimpact.dynamics.rigid.timeline import segments_of
+
+_FEWEST = 24  # steps for half of a part that was not solved in the phase plane
+_ROUNDING = 1e-12
+_HALVINGS = 30
+
+
+@dataclass(frozen=True)
+class NormalMotion:
+    """The normal motion of B contacts at G points of a parameter; arrays are (G, B).
+
+    `steps`: of the parameter (G - 1,); a step of zero joins two parts, between which the others may jump. `time`: since first touch [s].
+    `pace`, `pace_slope`: derivatives of the time by the parameter [s]. `force`: >= 0 [N], `force_slope`: its derivative. `impulse`: of the
+    force so far [N s].
+    """
+
+    steps: Floats
+    time: Floats
+    pace: Floats
+    pace_slope: Floats
+    force: Floats
+    force_slope: Floats
+    impulse: Floats
+
+
+def normal_motions(leg: Leg, contact: Contact, encounter: Encounter, steps: int) -> list[tuple[Drops, NormalMotion]]:
+    """Return the normal motion of the contacts of a leg in groups that consist of the same parts, with the places of their drops.
+
+    `steps`: of each segment of a phase.
+    """
+    pieces, size = contact.pieces, len(encounter.mass)
+    member = np.zeros((len(pieces), size), dtype=bool)
+    for number, piece in enumerate(pieces):
+        member[number, piece.drops] = True
+    kinds, kind_of = np.unique(member, axis=1, return_inverse=True)
+    found, alone = [], []
+    for kind in range(kinds.shape[1]):
+        places, parts = np.flatnonzero(kind_of.ravel() == kind), [pieces[number] for number in np.flatnonzero(kinds[:, kind])]
+        if all(isinstance(part.motion, PlaneMotion) for part in parts):
+            found.append((places, _joined([one for part in parts for one in _of_phase(part, encounter, places, steps)])))
+        else:
+            alone.extend(places.tolist())
+    found.extend((np.array([place]), _read(leg.of(int(leg.contact_drops[place])), max(steps, _FEWEST))) for place in alone)
+    return found
+
+
+_ARRAYS = ("time", "pace", "pace_slope", "force", "force_slope", "impulse")
+
+
+def _of_phase(piece: Piece, encounter: Encounter, places: Drops, steps: int) -> list[NormalMotion]:
+    """Return the normal motion in the segments of a phase that was solved in the phase plane, in order of time.
+
+    The parameter is y, which falls in compression.
+    """
+    here = np.isin(piece.drops, places)
+    motion, encounter = piece.motion.take(here), encounter.under(piece.law).take(places)
+    assert isinstance(motion, PlaneMotion)
+    rule, compressing, law = motion.rule, motion.name == "compression", encounter.law
+    sign, slope = 1.0 if compressing else -1.0, rule.indentation_slope(motion.levels)
+    velocity = sign * rule.factor * np.sqrt(motion.squares)
+    static, dissipative = law.forces(rule.indentations(motion.levels), velocity, encounter.approach_speed)
+    forces = static + dissipative
+    if law.tension == "cut":
+        forces = np.maximum(forces, 0.0)
+    paces, grid, left, found = rule.split(-slope / np.sqrt(motion.squares)), np.linspace(0.0, 1.0, steps + 1), motion.duration, []
+    for pace, force in zip(paces, rule.split(forces), strict=True):
+        ends = _reach(rule, pace, left)
+        if (ends == 1.0).all():
+            values, sums = rule.weights_at(grid).T, rule.weights_to_end(grid).T
+            series = [values @ one for one in (pace, rule.derivatives[0] @ pace, force, rule.derivatives[0] @ force)]
+            time, impulse = sums @ (rule.integral @ pace), sums @ (rule.integral @ (force * pace))
+        else:  # released within the segment, each drop at a place of its own
+            at = grid[:, None] * ends
+            values, sums = (weights(at.ravel()).reshape(-1, *at.shape) for weights in (rule.weights_at, rule.weights_to_end))
+            nodes = (pace, rule.derivatives[0] @ pace, force, rule.derivatives[0] @ force)
+            series = [np.einsum("ngb,nb->gb", values, one) * ends**power for one, power in zip(nodes, (1, 2, 0, 1), strict=True)]
+            time, impulse = (np.einsum("ngb,nb->gb", sums, rule.integral @ one) for one in (pace, force * pace))
+        time[0] = impulse[0] = 0.0
+        speeds, strengths = series[:2], (np.maximum(series[2], 0.0), series[3])
+        found.append(NormalMotion(np.full(steps, 1.0 / steps), time, speeds[0], speeds[1], *strengths, impulse))
+        left = left - time[-1]
+    return [_reversed(one) for one in reversed(found)] if compressing else found
+
+
+def _reach(rule: PlaneRule, pace: Floats, left: Floats) -> Floats:
+    """Return the y at which a time from the deep end of a segment has passed [s] (B,), at most 1; `pace`: dt/dy at the nodes (N, B)."""
+    elapsed = rule.integral @ pace
+    found = np.ones(pace.shape[-1])
+    short = np.flatnonzero(left < elapsed[-1] * (1.0 - _ROUNDING))
+    if short.size:
+        low, high = np.zeros(len(short)), np.ones(len(short))
+        for _ in range(_HALVINGS):  # by Newton's method within a bracket
+            y = found[short]
+            passed = (rule.weights_to_end(y) * elapsed[:, short]).sum(axis=0) - left[short]
+            low, high = np.where(passed <= 0.0, y, low), np.where(passed > 0.0, y, high)
+            step = y - passed / (rule.weights_at(y) * pace[:, short]).sum(axis=0)
+            found[short] = np.where((step > low) & (step < high), step, 0.5 * (low + high))
+    return found
+
+
+def _reversed(motion: NormalMotion) -> NormalMotion:
+    """Return a motion whose parameter counts from the other end."""
+    time, pace, slope, force, force_slope, impulse = (getattr(motion, name)[::-1] for name in _ARRAYS)
+    return NormalMotion(motion.steps[::-1], time[0] - time, pace, -slope, force, -force_slope, impulse[0] - impulse)
+
+
+def _joined(parts: list[NormalMotion]) -> NormalMotion:
+    """Return the motion through parts one after the other, with a step of zero between them."""
+    arrays: dict[str, Floats] = {}
+    for name in _ARRAYS:
+        series = [getattr(part, name) for part in parts]
+        if name in ("time", "impulse"):
+            for number in range(1, len(series)):
+                series[number] = series[number - 1][-1] + series[number]
+        arrays[name] = np.concatenate(series)
+    steps = np.concatenate([one for part in parts for one in ([0.0], part.steps)][1:])
+    return NormalMotion(steps, **arrays)
+
+
+def _read(leg: Leg | None, steps: int) -> NormalMotion:
+    """Return the normal motion of the contact of one drop, read from its history; in each part the time is a cosine of the parameter."""
+    from scipy.interpolate import CubicSpline  # a drop along the normal does not load it
+
+    assert leg is not None
+    parts, angle = [], np.linspace(0.0, np.pi, 2 * steps + 1)
+    for segment in segments_of(leg)[1:]:
+        half = 0.5 * (segment.end - segment.start)
+        time, pace = half * (1.0 - np.cos(angle)), half * np.sin(angle)
+        force = np.maximum(segment.at(time)[2], 0.0)
+        impulse = CubicSpline(angle, force * pace).antiderivative()(angle)
+        arrays = (time, pace, half * np.cos(angle), force, CubicSpline(angle, force)(angle, 1), impulse)
+        parts.append(NormalMotion(np.diff(angle), *(values[:, None] for values in arrays)))
+    return _joined(parts)

@@ -1,0 +1,124 @@
+"""The motion of spheres along the plate and their spin: the state, and its change in flights and contacts."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from vibroimpact.arrays import Bools, Drops, Floats
+
+
+@dataclass(frozen=True)
+class Sliding:
+    """Motion of the contact points of B contacts along one direction, at G points of time; arrays are (G, B).
+
+    `time`: since first touch [s]. `slip`: velocity of the contact point [m/s]. `displacement`: since first touch [m]. `force`: of
+    friction, against the direction [N].
+    """
+
+    time: Floats
+    slip: Floats
+    displacement: Floats
+    force: Floats
+
+
+@dataclass(frozen=True)
+class State:
+    """Places of the centres [m] (2, B), their velocities along the plate [m/s] (2, B), and angular velocities [rad/s] (3, B)."""
+
+    position: Floats
+    velocity: Floats
+    spin: Floats
+
+    def take(self, drops: Drops | Bools) -> State:
+        """Return the state of some drops."""
+        return State(self.position[:, drops], self.velocity[:, drops], self.spin[:, drops])
+
+
+@dataclass(frozen=True)
+class Sphere:
+    """Masses [kg], radii [m] and moments of inertia [kg m^2] of B spheres, and accelerations of gravity along the plate [m/s^2] (2, B)."""
+
+    mass: Floats
+    radius: Floats
+    inertia: Floats
+    gravity: Floats
+
+    def take(self, drops: Drops) -> Sphere:
+        """Return some of the spheres."""
+        return Sphere(self.mass[drops], self.radius[drops], self.inertia[drops], self.gravity[:, drops])
+
+    @property
+    def tangential_mass(self) -> Floats:
+        """Effective mass of the motion of the contact point [kg]: 2/7 of that of a solid sphere."""
+        return np.asarray(1.0 / (1.0 / self.mass + self.radius**2 / self.inertia))
+
+    def slip(self, state: State) -> Floats:
+        """Return the velocity of the contact point along the plate [m/s] (2, B)."""
+        return np.asarray(state.velocity + self.radius * np.stack([-state.spin[1], state.spin[0]]))
+
+    def kinetic(self, state: State) -> tuple[Floats, Floats]:
+        """Return the kinetic energies of the motion along the plate and of the rotation [J]."""
+        return 0.5 * self.mass * (state.velocity**2).sum(axis=0), 0.5 * self.inertia * (state.spin**2).sum(axis=0)
+
+    def fly(self, state: State, elapsed: Floats) -> State:
+        """Return the state after a time without contact [s]."""
+        moved = state.position + (state.velocity + 0.5 * self.gravity * elapsed) * elapsed
+        return State(moved, state.velocity + self.gravity * elapsed, state.spin)
+
+
+@dataclass(frozen=True)
+class ObliqueContact:
+    """The motion along the plate during contacts of B drops.
+
+    `before`: state at first touch. `direction`: of the slip at first touch (2, B). `sliding`: along it. `twist`: changes of the spin about
+    the normal by the end [rad/s] (B,).
+    """
+
+    sphere: Sphere
+    before: State
+    direction: Floats
+    sliding: Sliding
+    twist: Floats
+
+    def of(self, drop: int) -> ObliqueContact:
+        """Return the motion of one drop."""
+        here, sliding = np.array([drop]), self.sliding
+        alone = Sliding(*(values[:, here] for values in (sliding.time, sliding.slip, sliding.displacement, sliding.force)))
+        return ObliqueContact(self.sphere.take(here), self.before.take(here), self.direction[:, here], alone, self.twist[here])
+
+    def after(self, time: Floats, slip: Floats, displacement: Floats, twist: Floats) -> State:
+        """Return the state at a time since first touch, from slip and displacement along the direction and the twist so far."""
+        sphere, before = self.sphere, self.before
+        slip_before = (sphere.slip(before) * self.direction).sum(axis=0)
+        pull = (sphere.gravity * self.direction).sum(axis=0)
+        impulse = sphere.tangential_mass * (slip - slip_before - pull * time) * self.direction
+        moved = sphere.tangential_mass * (displacement - slip_before * time - 0.5 * pull * time**2) * self.direction
+        flown, turn = sphere.fly(before, time), sphere.radius / sphere.inertia
+        spin = before.spin + np.stack([turn * impulse[1], -turn * impulse[0], twist])
+        return State(flown.position + moved / sphere.mass, flown.velocity + impulse / sphere.mass, spin)
+
+    @property
+    def end(self) -> State:
+        """The state at the end of the contact."""
+        return self.after(self.sliding.time[-1], self.sliding.slip[-1], self.sliding.displacement[-1], self.twist)
+
+    def at(self, time: Floats) -> tuple[State, Floats]:
+        """Return the states of one drop at times since first touch [s] (T,), and the friction force on it [N] (2, T)."""
+        from scipy.interpolate import CubicHermiteSpline  # a drop along the normal does not load it
+
+        sliding = self.sliding
+        times = sliding.time[:, 0]
+        kept = np.append(True, np.diff(times) > 0.0)
+        times, slip, displacement, force = (
+            values[kept] for values in (times, sliding.slip[:, 0], sliding.displacement[:, 0], sliding.force[:, 0])
+        )
+        path = CubicHermiteSpline(times, displacement, slip)
+        now = np.minimum(time, times[-1])
+        state = self.after(now, path(now, 1), path(now), self.twist * now / times[-1])
+        return state, -self.direction * np.interp(now, times, force)
+
+
+ObliqueContacts = tuple[tuple[Drops, ObliqueContact], ...]
+"""The motion along the plate during contacts of groups of drops, with their places among all drops of the contact."""

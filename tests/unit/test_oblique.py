@@ -1,0 +1,331 @@
+"""Oblique drops: symmetries, balances, histories, and cases."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import vibroimpact as vi
+from vibroimpact.arrays import Floats
+from vibroimpact.cases.keys import with_values
+from vibroimpact.dynamics.columns import OBLIQUE_LEDGER
+
+RADIUS, MASS = 0.01, 0.02
+PAIR = {"effective_modulus": 1e9, "effective_shear_modulus": 0.8e9, "effective_radius": RADIUS}
+FRICTION = {
+    "none": None,
+    "mdr": vi.find_friction_law("mdr")(coefficient=0.3, **PAIR),
+    "mindlin": vi.find_friction_law("mindlin")(coefficient=0.3, **PAIR),
+    "mindlin-rescale": vi.find_friction_law("mindlin-rescale")(coefficient=0.3, **PAIR),
+    "mindlin-force": vi.find_friction_law("mindlin-force")(coefficient=0.3, **PAIR),
+    "coulomb": vi.find_friction_law("coulomb")(coefficient=0.3),
+    "rigid": vi.find_friction_law("rigid")(coefficient=0.3, slip_restitution=0.4),
+}
+LAWS = {
+    "hertz": vi.find_contact_law("hertz")(stiffness=1.3e8),
+    "hunt-crossley": vi.find_contact_law("hunt-crossley")(stiffness=1.3e8, restitution=0.7),
+    "tsuji": vi.find_contact_law("tsuji")(stiffness=1.3e8, restitution=0.7, effective_mass=MASS),
+    "adams-impact": vi.find_contact_law("adams-impact")(stiffness=1.3e8, damping_max=20.0),
+    "thornton": vi.find_contact_law("thornton")(effective_modulus=1e9, effective_radius=RADIUS, yield_pressure=2e7),
+}
+CASE: dict[str, Any] = {
+    "sphere": {"radius": "10 mm", "material": {"density": 2500, "youngs_modulus": "60 GPa", "poissons_ratio": 0.2}},
+    "plate": {"size": ["2 m", "1 m", "20 mm"], "material": {"density": 7850, "youngs_modulus": "210 GPa", "poissons_ratio": 0.3}},
+    "drop": {"speed": "3 m/s", "angle": "30 deg", "position": ["-300 mm", 0]},
+    "contact": {"law": "hunt-crossley", "restitution": 0.6, "friction": {"law": "mdr", "coefficient": 0.2}},
+    "run": {"impacts": 3},
+}
+
+
+def problem(law: str = "hertz", **changes: Any) -> vi.Problem:
+    values: dict[str, Any] = {"speed": 2.0, "gravity": 9.81, "impacts": 3, **changes}
+    return vi.Problem(sphere=vi.Body(mass=MASS, contact_offset=RADIUS), plate=vi.rigid_plate(), laws=(LAWS[law],), **values)
+
+
+def spinning(friction: str) -> vi.Oblique:
+    return vi.Oblique(velocity=(1.0, 0.4), spin=(10.0, -30.0, 50.0), friction=FRICTION[friction])
+
+
+def kinetic(impacts: dict[str, Floats], when: str) -> Floats:
+    """Return the energy of the motion along the plate and of the rotation, before or after [J]."""
+    motion, side = {"before": ("approach", "before"), "after": ("separation", "after")}[when]
+    velocity = sum(impacts[f"{motion}_velocity_{axis}_m_s"] ** 2 for axis in "xy")
+    spin = sum(impacts[f"spin_{axis}_{side}_rad_s"] ** 2 for axis in "xyz")
+    return np.asarray(0.5 * MASS * velocity + 0.2 * MASS * RADIUS**2 * spin)
+
+
+@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize("friction", FRICTION)
+def test_the_normal_motion_does_not_feel_the_friction(law: str, friction: str) -> None:
+    plain = vi.tabulate(problem(law, same_spot=False))
+    oblique = vi.tabulate(problem(law, same_spot=False, oblique=spinning(friction)))
+    for name, values in plain.impacts.items():
+        np.testing.assert_array_equal(oblique.impacts[name], values)
+    assert oblique.status == plain.status
+
+
+@pytest.mark.parametrize("friction", FRICTION)
+@pytest.mark.parametrize("law", LAWS)
+def test_energy_is_not_made_and_the_impulse_turns_the_sphere(law: str, friction: str) -> None:
+    impacts = vi.tabulate(
+        problem(law, oblique=vi.Oblique(velocity=(1.0, 0.4), spin=(10.0, -30.0, 50.0), friction=FRICTION[friction]))
+    ).impacts
+    lost = kinetic(impacts, "before") - kinetic(impacts, "after")
+    np.testing.assert_allclose(impacts["friction_lost_J"], lost, atol=1e-12 * kinetic(impacts, "before").max())
+    assert (lost >= -1e-9 * kinetic(impacts, "before")).all()
+    change = {axis: impacts[f"separation_velocity_{axis}_m_s"] - impacts[f"approach_velocity_{axis}_m_s"] for axis in "xy"}
+    turn = {axis: impacts[f"spin_{axis}_after_rad_s"] - impacts[f"spin_{axis}_before_rad_s"] for axis in "xyz"}
+    np.testing.assert_allclose(turn["y"], -2.5 * change["x"] / RADIUS, atol=1e-9)
+    np.testing.assert_allclose(turn["x"], 2.5 * change["y"] / RADIUS, atol=1e-9)
+    assert (impacts["spin_z_after_rad_s"] >= 0.0).all()
+    assert (impacts["spin_z_after_rad_s"] <= 50.0).all()
+
+
+@pytest.mark.parametrize("friction", ["mdr", "mindlin-rescale", "coulomb"])
+def test_directions_are_alike(friction: str) -> None:
+    """What falls in another direction moves on alike; a mirror image is a mirror image."""
+    angle = np.array([0.0, 0.7, 2.0, 4.0])
+    cos, sin = np.cos(angle), np.sin(angle)
+    spin = (10.0 * cos - 20.0 * sin, 10.0 * sin + 20.0 * cos, 5.0)
+    found = vi.tabulate(
+        problem("hunt-crossley", oblique=vi.Oblique(velocity=(1.0 * cos, 1.0 * sin), spin=spin, friction=FRICTION[friction]))
+    )
+    x, y = (found.impacts[f"separation_velocity_{axis}_m_s"] for axis in "xy")
+    back = cos[:, None] * x + sin[:, None] * y, -sin[:, None] * x + cos[:, None] * y
+    for part in back:
+        np.testing.assert_allclose(part, np.broadcast_to(part[0], part.shape), atol=1e-12)
+    mirrored = vi.tabulate(
+        problem("hunt-crossley", oblique=vi.Oblique(velocity=(1.0, 0.0), spin=(-10.0, 20.0, -5.0), friction=FRICTION[friction]))
+    )
+    np.testing.assert_allclose(mirrored.impacts["separation_velocity_x_m_s"], x[0], atol=1e-12)
+    np.testing.assert_allclose(mirrored.impacts["separation_velocity_y_m_s"], -y[0], atol=1e-12)
+
+
+def test_coulomb_ends_in_rolling() -> None:
+    """A sphere that stops slipping rolls with 5/7 of its velocity; one with backspin that just suffices stops."""
+    oblique = vi.Oblique(velocity=(0.7, 0.0), friction=vi.find_friction_law("coulomb")(coefficient=10.0))
+    impacts = vi.tabulate(problem(oblique=oblique, gravity=0.0, impacts=1)).impacts
+    assert impacts["tangential_restitution"][0] == pytest.approx(5.0 / 7.0, abs=1e-14)
+    back = vi.Oblique(velocity=(0.7, 0.0), spin=(0.0, -2.5 * 0.7 / RADIUS, 0.0), friction=oblique.friction)
+    assert vi.tabulate(problem(oblique=back, gravity=0.0, impacts=1)).impacts["separation_velocity_x_m_s"][0] == pytest.approx(
+        0.0, abs=1e-14
+    )
+
+
+@pytest.mark.parametrize("law", ["hertz", "hunt-crossley", "adams-impact"])
+@pytest.mark.parametrize("friction", ["mdr", "mindlin", "coulomb"])
+def test_histories_conserve_energy_and_end_where_impacts_do(law: str, friction: str) -> None:
+    oblique = vi.Oblique(
+        velocity=(1.0, 0.4), spin=(10.0, -30.0, 50.0), position=(0.1, -0.2), gravity=(2.0, 0.5), friction=FRICTION[friction]
+    )
+    response = vi.simulate(problem(law, oblique=oblique, speed=None, height=0.3, velocity=0.5))
+    history = response.history()
+    assert set(history) == set(response.history_columns)
+    entries = ("kinetic_J", "potential_J", "contact_elastic_J", "contact_dissipated_J", *OBLIQUE_LEDGER)
+    total = sum(history[name] for name in entries)
+    np.testing.assert_allclose(total, response.energy["input_J"], rtol=1e-8)
+    assert response.energy["closure_relative"] < 1e-12
+    for impact in range(3):
+        touch = float(response.impacts["time_s"][impact])
+        parts = response.at([touch, touch + float(response.impacts["duration_s"][impact])])
+        for axis in "xy":
+            velocity = [response.impacts[f"{when}_velocity_{axis}_m_s"][impact] for when in ("approach", "separation")]
+            np.testing.assert_allclose(parts[f"velocity_{axis}_m_s"], velocity, atol=1e-8)
+        np.testing.assert_allclose(
+            parts["spin_y_rad_s"], [response.impacts[f"spin_y_{when}_rad_s"][impact] for when in ("before", "after")], atol=1e-5
+        )
+    place = 0.1 + 1.0 * history["time_s"] + history["time_s"] ** 2
+    flying = history["time_s"] < response.impacts["time_s"][0]
+    np.testing.assert_allclose(history["position_x_m"][flying], place[flying], rtol=1e-14)
+
+
+def test_a_batch_is_its_drops() -> None:
+    speeds = np.array([0.1, 0.8, 3.0])
+    whole = vi.simulate(problem("hunt-crossley", oblique=vi.Oblique(velocity=(speeds, 0.2), friction=FRICTION["mdr"])))
+    for drop, speed in enumerate(speeds):
+        alone = vi.simulate(problem("hunt-crossley", oblique=vi.Oblique(velocity=(speed, 0.2), friction=FRICTION["mdr"])))
+        for name, values in alone.impacts.items():
+            np.testing.assert_allclose(whole.drop(drop).impacts[name], values, rtol=1e-12, atol=1e-15)
+        time = np.linspace(0.0, float(alone.end_time[0]), 50)
+        np.testing.assert_allclose(whole.drop(drop).at(time)["position_x_m"], alone.at(time)["position_x_m"], rtol=1e-12)
+
+
+def energies_of_random_impacts(number: int, seed: int) -> tuple[Floats, Floats]:
+    """Return the energies along the plate before and after random impacts [J]."""
+    random = np.random.default_rng(seed)
+    before, after = [], []
+    for _ in range(0, number, 2000):
+        pair = {"effective_modulus": 10 ** random.uniform(7, 11, 2000), "effective_shear_modulus": 10 ** random.uniform(7, 11, 2000)}
+        friction = vi.find_friction_law("mdr")(coefficient=10 ** random.uniform(-3, 1, 2000), effective_radius=RADIUS, **pair)
+        law = vi.find_contact_law("hunt-crossley")(
+            stiffness=4.0 / 3.0 * pair["effective_modulus"] * 0.1, restitution=random.uniform(0.0, 1.0, 2000)
+        )
+        speed, angle = 10 ** random.uniform(-1, 1, 2000), random.uniform(0.0, 0.5 * np.pi, 2000)
+        spin = tuple(random.normal(0.0, 1.0, 2000) * speed / RADIUS for _ in range(3))
+        oblique = vi.Oblique(velocity=(speed * np.sin(angle), 0.0), spin=spin, friction=friction)
+        ball = vi.Body(mass=MASS, contact_offset=RADIUS)
+        drops = vi.Problem(
+            sphere=ball, plate=vi.rigid_plate(), laws=(law,), speed=speed * np.cos(angle) + 1e-3, gravity=0.0, impacts=1, oblique=oblique
+        )
+        impacts = vi.tabulate(drops).impacts
+        before.append(kinetic(impacts, "before")[:, 0])
+        after.append(kinetic(impacts, "after")[:, 0])
+    return np.concatenate(before), np.concatenate(after)
+
+
+@pytest.mark.parametrize("number", [4000, pytest.param(1_000_000, marks=pytest.mark.slow)])
+def test_no_random_impact_makes_energy(number: int) -> None:
+    before, after = energies_of_random_impacts(number, 5)
+    assert np.isfinite(after).all()
+    assert (after <= before * (1.0 + 1e-9)).all()
+
+
+def test_an_inclined_plate_pulls_along_x() -> None:
+    case = {
+        **CASE,
+        "plate": {**CASE["plate"], "inclination": "20 deg"},
+        "drop": {"height": "110 mm"},
+        "contact": {"law": "newton", "restitution": 0.5},
+    }
+    response = vi.simulate(vi.read_case(case))
+    touch = float(response.impacts["time_s"][0])
+    gravity = 9.80665
+    assert touch == pytest.approx(np.sqrt(2.0 * 0.1 / (gravity * np.cos(np.radians(20.0)))))
+    assert response.impacts["position_x_m"][0] == pytest.approx(0.5 * gravity * np.sin(np.radians(20.0)) * touch**2)
+    assert response.impacts["approach_velocity_x_m_s"][0] == pytest.approx(gravity * np.sin(np.radians(20.0)) * touch)
+
+
+def test_a_sphere_falls_off_the_edge() -> None:
+    response = vi.simulate(vi.read_case({**CASE, "drop": {"velocity": [5.0, 0, -3.0], "position": ["900 mm", 0]}}))
+    assert response.outcomes == (vi.Outcome.FELL,)
+    assert response.status.startswith("The sphere falls off the edge of the plate after 1 impact, ")
+    assert len(response.impacts["time_s"]) == 1
+
+
+def test_angle_speed_and_velocity_say_the_same() -> None:
+    one = vi.simulate(vi.read_case(CASE))
+    drop = {"velocity": [3.0 * np.sin(np.radians(30)), 0.0, -3.0 * np.cos(np.radians(30))], "position": ["-300 mm", 0]}
+    other = vi.simulate(vi.read_case({**CASE, "drop": drop}))
+    for name, values in one.impacts.items():
+        np.testing.assert_allclose(other.impacts[name], values, rtol=1e-9, atol=1e-12)
+
+
+def test_a_resolved_case_is_the_same_case(tmp_path: Path) -> None:
+    response = vi.simulate(vi.read_case({**CASE, "drop": {**CASE["drop"], "spin": [0, "100 rad/s", 5]}}))
+    response.save(tmp_path / "run")
+    again = vi.simulate(vi.load_case(tmp_path / "run" / "case.toml"))
+    result = vi.read_result(tmp_path / "run")
+    for name, values in response.impacts.items():
+        np.testing.assert_array_equal(again.impacts[name], values)
+        np.testing.assert_allclose(result.impacts[name], values, rtol=1e-15)
+    assert "Motion along the plate" in (tmp_path / "run" / "report.html").read_text(encoding="utf-8")
+
+
+def test_studies_sweep_angles_friction_and_spin(tmp_path: Path) -> None:
+    over = {"drop.angle": ["10 deg", "40 deg"], "contact.friction.coefficient": [0.1, 0.3], "drop.spin.y": ["-50 rad/s", "50 rad/s"]}
+    study = vi.read_study(vi.run_sweep(vi.read_sweep({**CASE, "sweep": {"over": over}}), tmp_path / "study"))
+    assert study.size == 8
+    for place in ((0, 1, 0), (1, 0, 1)):
+        values = {key: options[at] for at, (key, options) in zip(place, over.items(), strict=True)}
+        alone = vi.tabulate(vi.read_case(with_values(CASE, values)))
+        np.testing.assert_allclose(study.values("tangential_restitution", *place), alone.impacts["tangential_restitution"], rtol=1e-10)
+
+
+def with_friction(**table: Any) -> dict[str, Any]:
+    return {"contact": {"law": "hertz", "friction": table}}
+
+
+FAULTS: list[tuple[dict[str, Any], str]] = [
+    ({"drop": {"speed": 3.0, "angle": "95 deg"}}, 'drop.angle: "95 deg" is not allowed; it must be greater than -1.5708 and less than'),
+    (
+        {"drop": {"velocity": [1.0, 0.0, 2.0]}},
+        "drop.velocity: its z is 2 m/s, which leads away from the plate; at first touch it is negative",
+    ),
+    ({"drop": {"speed": 3.0, "velocity": [1.0, 0.0, -2.0]}}, "drop: give either speed or velocity; both are given"),
+    ({"drop": {"height": 1.0, "angle": 0.2}}, "drop.angle: an angle is that of the speed at first touch; give speed, or velocity in place"),
+    (
+        {"contact": {"law": "newton", "restitution": 0.5, "friction": {"law": "mdr", "coefficient": 0.2}}},
+        "contact.friction.law: newton gives no normal force, which mdr follows; take another contact law, or friction by the impulse",
+    ),
+    (with_friction(law="mindlinn"), 'contact.friction.law: there is no friction law "mindlinn"; there are none, coulomb'),
+    (with_friction(coefficient=0.2), 'contact.friction: it needs law = "...", one of none, coulomb, mdr'),
+    (with_friction(law="mdr"), "contact.friction.coefficient: this key is missing; mdr needs coefficient of friction mu"),
+    (with_friction(law="coulomb", coefficient=-0.1), "contact.friction.coefficient: -0.1 is not allowed; it must be at least 0"),
+    (with_friction(law="coulomb", mu=0.1), 'contact.friction.mu: unknown key "mu"; coulomb takes coefficient.'),
+    (
+        {"plate": {**CASE["plate"], "model": "elastic", "modes": 5, "supports": "clamped"}},
+        "drop.angle: only a rigid sphere on a rigid, flat plate may fall obliquely",
+    ),
+    ({"plate": {**CASE["plate"], "inclination": "90 deg"}}, 'plate.inclination: "90 deg" is not allowed; it must be greater than'),
+]
+
+
+@pytest.mark.parametrize(("changes", "words"), FAULTS)
+def test_bad_input_is_told_in_one_sentence(changes: dict[str, Any], words: str) -> None:
+    with pytest.raises(vi.InputError) as told:
+        vi.read_case({**CASE, **changes}).to_problem()
+    assert str(told.value).startswith(words)
+
+
+def test_sliding_is_bounded_also_where_gravity_turns_it() -> None:
+    """A coefficient of zero leaves the motion as it is, whichever way gravity pulls."""
+    for friction in ("coulomb", "rigid", "mdr"):
+        law = vi.find_friction_law(friction)(coefficient=0.0, **({} if friction in ("coulomb", "rigid") else PAIR))
+        found = vi.tabulate(problem(oblique=vi.Oblique(velocity=(1e-4, 0.0), gravity=(-3.0, 0.0), friction=law), impacts=1)).impacts
+        expected = 1e-4 - 3.0 * found["duration_s"][0]
+        assert found["separation_velocity_x_m_s"][0] == pytest.approx(expected, rel=1e-8)
+        assert abs(found["friction_lost_J"][0]) < 1e-14
+
+
+def test_a_dent_is_left_behind() -> None:
+    moved = vi.tabulate(problem("thornton", oblique=vi.Oblique(velocity=(1.0, 0.0)))).impacts["restitution_achieved"]
+    fresh = vi.tabulate(problem("thornton", same_spot=False)).impacts["restitution_achieved"]
+    np.testing.assert_allclose(moved, fresh, rtol=1e-12)
+    stays = vi.tabulate(problem("thornton", oblique=vi.Oblique(spin=(0.0, 0.0, 5.0)))).impacts["restitution_achieved"]
+    np.testing.assert_allclose(stays, vi.tabulate(problem("thornton")).impacts["restitution_achieved"], rtol=1e-12)
+
+
+@pytest.mark.parametrize("law", ["hunt-crossley", "tsuji", "adams-impact", "walton-braun", "adams-poisson"])
+def test_sliding_takes_the_coefficient_of_the_normal_impulse(law: str) -> None:
+    """Also where the normal force has a kink or a jump."""
+    others = {
+        "walton-braun": vi.find_contact_law("walton-braun")(stiffness=1e6, restitution=0.6),
+        "adams-poisson": vi.find_contact_law("adams-poisson")(penalty=1e6, restitution=0.6),
+    }
+    laws = LAWS | others
+    ball, plate = vi.Body(mass=MASS, contact_offset=RADIUS), vi.rigid_plate()
+    for friction in ("mdr", "coulomb", "rigid"):
+        oblique = vi.Oblique(velocity=(np.array([30.0, 50.0]), 0.0), friction=FRICTION[friction])
+        drops = vi.Problem(sphere=ball, plate=plate, laws=(laws[law],), speed=2.0, gravity=0.0, impacts=1, oblique=oblique)
+        for impacts in (vi.tabulate(drops).impacts, vi.simulate(drops).impacts):
+            pushed = MASS * (2.0 + impacts["separation_speed_m_s"][:, 0])
+            rubbed = MASS * (impacts["approach_velocity_x_m_s"] - impacts["separation_velocity_x_m_s"])[:, 0]
+            least = 1.0 if law == "tsuji" else 1.0 - 1e-5  # whose end pulls
+            assert (rubbed >= least * 0.3 * pushed).all()
+            assert (rubbed <= (1.02 if law == "tsuji" else 1.0 + 1e-5) * 0.3 * pushed).all()
+
+
+def test_values_at_keys_are_not_shared() -> None:
+    one = with_values({"drop": {"height": 1.0}}, {"drop.spin.y": 100.0})
+    other = with_values({"drop": {"height": 1.0}}, {"drop.spin.x": 7.0})
+    assert (one["drop"]["spin"], other["drop"]["spin"]) == ([0.0, 100.0, 0.0], [7.0, 0.0, 0.0])
+
+
+def test_python_is_told_as_well() -> None:
+    outside = {"position": (1.0, 0.0), "size": (1.0, 1.0)}
+    wrongs: list[Any] = [{"velocity": ("a", 0)}, {"inertia_ratio": np.inf}, {"size": (1.0,)}, {"size": 2.0}, outside]
+    for wrong in wrongs:
+        with pytest.raises(vi.InputError):
+            vi.Oblique(**wrong)
+    with pytest.raises(vi.InputError, match="velocity of an oblique drop has 2 values, not 3"):
+        vi.Oblique(velocity=3)  # type: ignore[arg-type]
+    newton = {
+        "sphere": vi.Body(mass=MASS, contact_offset=RADIUS),
+        "plate": vi.rigid_plate(),
+        "laws": vi.find_contact_law("newton")(restitution=0.5),
+    }
+    with pytest.raises(vi.InputError, match="newton gives no normal force for mdr to follow"):
+        vi.Problem(**newton, speed=1.0, oblique=vi.Oblique(friction=FRICTION["mdr"]))

@@ -1,0 +1,151 @@
+"""The contact that sticks in its middle and slips at its rim, against closed forms and against rows of springs."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.integrate import cumulative_trapezoid
+
+import vibroimpact as vi
+from vibroimpact.arrays import Floats
+from vibroimpact.contact.friction.laws.mdr import Mdr
+from vibroimpact.contact.friction.turning_points import TurningPoints
+
+NU, MU = 0.3, 0.3
+DRIVE = 15.0 / 8.0 * 3.5 * 2.0 * (1.0 - NU) / (2.0 - NU)
+"""Of an undamped impact of a solid sphere; see `by_springs`."""
+
+
+def impact(psi: Floats, law: vi.ContactLaw, *, mass: float = 0.02, radius: float = 0.01, spin: float = 0.0) -> vi.Response:
+    """Return the impacts of spheres of the plate's material, by psi1 = [2 (1 - nu) / (mu (2 - nu))] v_t / v_n."""
+    shear_ratio = 2.0 * (1.0 - NU) / (2.0 - NU)
+    modulus = 1e9
+    friction = Mdr(coefficient=MU, effective_modulus=modulus, effective_shear_modulus=shear_ratio * modulus, effective_radius=radius)
+    speed = 2.0
+    slip = psi * MU * speed / shear_ratio
+    oblique = vi.Oblique(velocity=(slip + radius * spin, 0.0), spin=(0.0, spin, 0.0), friction=friction)
+    ball = vi.Body(mass=mass, contact_offset=radius)
+    return vi.tabulate(vi.Problem(sphere=ball, plate=vi.rigid_plate(), laws=(law,), speed=speed, gravity=0.0, impacts=1, oblique=oblique))
+
+
+def slip_after(response: vi.Response, radius: float = 0.01) -> Floats:
+    impacts = response.impacts
+    return np.asarray(impacts["separation_velocity_x_m_s"][:, 0] - radius * impacts["spin_y_after_rad_s"][:, 0])
+
+
+def slip_before(response: vi.Response, radius: float = 0.01) -> Floats:
+    impacts = response.impacts
+    return np.asarray(impacts["approach_velocity_x_m_s"][:, 0] - radius * impacts["spin_y_before_rad_s"][:, 0])
+
+
+HERTZ = vi.find_contact_law("hertz")(stiffness=4.0 / 3.0 * 1e9 * 0.1)
+
+
+def test_rebound_of_the_slip_of_similar_materials() -> None:
+    """Published values of the same contact, to their three digits."""
+    psi = np.array([0.25, 0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0])
+    expected = np.array([-0.1665, -0.0957, 0.0597, 0.2853, 0.4186, 0.4649, 0.4599, 0.3591, 0.1529])
+    found = impact(psi, HERTZ)
+    np.testing.assert_allclose(-slip_after(found) / slip_before(found), expected, atol=1e-4)
+
+
+def test_gross_sliding_is_exact() -> None:
+    chi = 7.0 * (1.0 - NU) / (2.0 * (2.0 - NU))
+    psi = np.linspace(4.0 * chi - 1.0, 30.0, 12)
+    found = impact(psi, HERTZ)
+    expected = -1.0 + 14.0 * (1.0 - NU) / ((2.0 - NU) * psi)
+    np.testing.assert_allclose(-slip_after(found) / slip_before(found), expected, atol=1e-7)
+
+
+@pytest.mark.parametrize("restitution", [1.0, 0.7, 0.3])
+def test_gross_sliding_takes_the_coefficient_of_the_whole_normal_impulse(restitution: float) -> None:
+    """Chung and Ooi's test 6 in closed form: kappa = 7/2 mu (1 + e) v_n / v_s, where it is below 1."""
+    law = vi.find_contact_law("flores")(stiffness=1e8, restitution=restitution)
+    found = impact(np.array([15.0, 30.0]), law)
+    achieved = found.impacts["restitution_achieved"][:, 0]
+    kappa = 3.5 * MU * (1.0 + achieved) * found.impacts["approach_speed_m_s"][:, 0] / slip_before(found)
+    np.testing.assert_allclose(-slip_after(found) / slip_before(found), kappa - 1.0, rtol=1e-6)
+
+
+def test_friction_without_bound_sticks() -> None:
+    """With a coefficient that no slip reaches, springs that part take their energy with them: a row of springs without limits tells it."""
+    shear, slip = 2.0 * (1.0 - NU) / (2.0 - NU) * 1e9, 0.4
+    friction = Mdr(coefficient=1e5, effective_modulus=1e9, effective_shear_modulus=shear, effective_radius=0.01)
+    oblique = vi.Oblique(velocity=(slip, 0.0), friction=friction)
+    ball = vi.Body(mass=0.02, contact_offset=0.01)
+    problem = vi.Problem(sphere=ball, plate=vi.rigid_plate(), laws=(HERTZ,), speed=np.array([2.0]), gravity=0.0, impacts=1, oblique=oblique)
+    assert slip_after(vi.tabulate(problem))[0] / slip == pytest.approx(by_springs(1.0, DRIVE, bound=np.inf), abs=1e-4)
+
+
+def springs(depth: Floats, displacement: Floats, number: int) -> Floats:
+    """Return the integral of the displacements of a row of springs along a history of straight steps (T,)."""
+    x = (np.arange(number) + 0.5) / number * np.sqrt(depth.max())
+    u, found = np.zeros(number), [0.0]
+    for step in range(1, len(depth)):
+        parts = 400
+        for part in range(1, parts + 1):
+            deep = depth[step - 1] + (depth[step] - depth[step - 1]) * part / parts
+            before = depth[step - 1] + (depth[step] - depth[step - 1]) * (part - 1) / parts
+            moved = (displacement[step] - displacement[step - 1]) / parts
+            entering = np.clip((deep - x**2) / max(deep - before, 1e-300), 0.0, 1.0) if deep > before else (x**2 < deep).astype(float)
+            u = np.where(x**2 < deep, u + np.where(x**2 < before, 1.0, entering) * moved, 0.0)
+            limit = np.maximum(deep - x**2, 0.0)
+            u = np.clip(u, -limit, limit)
+        found.append(float(u.sum()) * x[0] * 2.0)
+    return np.array(found)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_turning_points_are_a_row_of_springs(seed: int) -> None:
+    """Any history of straight steps, with reversals, partial unloading and sliding: the stack of corners is exact."""
+    random = np.random.default_rng(seed)
+    depth, displacement = np.abs(np.cumsum(random.normal(0.4, 0.5, 14))), np.cumsum(random.normal(0.0, 0.35, 14))
+    depth[0], displacement[0] = 0.0, 0.0
+    memory, one = TurningPoints(1, len(depth)), np.array([0])
+    found = [0.0]
+    for step in range(1, len(depth)):
+        inner, outer = np.sqrt(depth[step - 1 : step]), np.sqrt(depth[step : step + 1])
+        change = displacement[step : step + 1] - displacement[step - 1 : step]
+        total = inner + outer
+        sticking = np.array([found[-1]]) + change * 2.0 / 3.0 * (total - inner * outer / (total + 1e-300))
+        integral, _ = memory.advance(one, depth[step : step + 1], displacement[step : step + 1], sticking, (np.zeros(1), np.zeros(1)))
+        found.append(float(integral[0]))
+    np.testing.assert_allclose(found, springs(depth, displacement, 4000), atol=2e-3 * max(np.abs(found)))
+
+
+def by_springs(psi: float, drive: float, bound: float = 1.0, number: int = 4000, steps: int = 6000) -> float:
+    """Return the slip after over before of an undamped impact, with springs and small steps of time.
+
+    In units of the greatest depth and the approach speed, with displacements over kappa: s'' = -drive int u dx.
+    """
+    time = np.linspace(0.0, 1.0, 20001)
+    depth = np.sin(0.5 * np.pi * time) ** 2
+    angle = 0.5 * np.pi * time
+    rate = np.full_like(angle, np.sqrt(0.8))
+    inside = angle < 0.5 * np.pi
+    rate[inside] = 2.0 * np.sin(angle[inside]) * np.cos(angle[inside]) / np.sqrt(1.0 - np.sin(angle[inside]) ** 5)
+    rate[-1] = 2.0 / np.sqrt(2.5)
+    way_in = np.concatenate([[0.0], cumulative_trapezoid(rate, angle)])
+    moments = np.linspace(0.0, 2.0 * way_in[-1], steps + 1)
+    deep = np.interp(np.minimum(moments, 2.0 * way_in[-1] - moments), way_in, depth)
+    x = (np.arange(number) + 0.5) / number
+    u, velocity, acceleration = np.zeros(number), psi, 0.0
+    for step in range(steps):
+        length = moments[step + 1] - moments[step]
+        moved = length * velocity + 0.5 * length**2 * acceleration
+        before, now = deep[step], deep[step + 1]
+        part = np.where(x**2 < before, 1.0, np.clip((now - x**2) / max(now - before, 1e-300), 0.0, 1.0))
+        u = np.where(x**2 < now, u + part * moved, 0.0)
+        limit = bound * np.maximum(now - x**2, 1e-300)
+        u = np.clip(u, -limit, limit)
+        later = -drive * float(u.mean())
+        velocity += 0.5 * length * (acceleration + later)
+        acceleration = later
+    return velocity / psi
+
+
+@pytest.mark.parametrize("psi", [0.2, 0.7, 0.99, 1.4, 2.3, 3.6])
+def test_impacts_against_four_thousand_springs(psi: float) -> None:
+    """The velocity after is within 1e-4 of that of the springs."""
+    found = impact(np.array([psi]), HERTZ)
+    assert slip_after(found)[0] / slip_before(found)[0] == pytest.approx(by_springs(psi, DRIVE), abs=1e-4)
