@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
 import pytest
 
 from live_page import ELASTIC, PATCHES, RIGID, faults, open_live, row, settle, shown, type_value, value_at
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
     from serving import Server
 
 CASES = {"rigid": RIGID, "elastic": ELASTIC}
-SIZES = {"mm": 1e-3, "GPa": 1e9, "MPa": 1e6, "µs": 1e-6}
+SIZES = {"mm": 1e-3, "GPa": 1e9, "MPa": 1e6, "µs": 1e-6, "deg": np.pi / 180.0}
 
 
 def keys(page: Page, kind: str) -> list[str]:
@@ -115,6 +116,8 @@ def test_every_choice(case: str, page: Page, server: Server) -> None:
                 )
             elif key.endswith("damping"):
                 assert (value_at(case_shown, key) == "adams-default") == (value == "adams-default")
+            elif key == "contact.friction.law":
+                assert case_shown["contact"].get("friction", {}).get("law", "none") == value
             elif key.endswith("material"):
                 found = value_at(case_shown, key)
                 assert (found if found == "rigid" else found["name"]) == value
@@ -196,6 +199,32 @@ def test_a_message_stands_at_the_field_that_it_is_about(change: dict[str, Any], 
     page.evaluate(edit, kept | {"drop": ELASTIC["drop"]})
     settle(page)
     assert page.locator("[aria-invalid], [aria-describedby], .fault-here").count() == 0
+
+
+def test_an_oblique_drop(page: Page, server: Server) -> None:
+    """Angle, friction and inclination have controls, the ball moves along the plate, and elastic bodies put all of it aside."""
+    open_live(
+        page,
+        server,
+        {**RIGID, "drop": {"speed": 3.0, "angle": 0.3}, "contact": {**RIGID["contact"], "friction": {"law": "mdr", "coefficient": 0.2}}},
+    )
+    assert faults(page) == []
+    type_value(page, "drop.angle", 30)
+    type_value(page, "contact.friction.coefficient", 0.1)
+    type_value(page, "plate.inclination", 5)
+    case = shown(page)
+    assert case["drop"]["angle"] == pytest.approx(np.radians(30))
+    assert (case["contact"]["friction"]["law"], case["contact"]["friction"]["coefficient"]) == ("mdr", 0.1)
+    assert page.locator("#chart-along_plate").count() == 1
+    path = page.evaluate("() => Array.from(vibroimpact.live.state.last.scene.path[0])")
+    assert path[-1] > path[0] + 0.01
+    row(page, "plate.model").locator("select").select_option("elastic")
+    settle(page)
+    assert faults(page) == []
+    assert "friction" not in shown(page)["contact"]
+    row(page, "plate.model").locator("select").select_option("rigid")
+    settle(page)
+    assert (faults(page), shown(page)) == ([], case)
 
 
 def test_a_body_that_becomes_elastic_and_rigid_again(page: Page, server: Server) -> None:

@@ -13,6 +13,7 @@ from matplotlib.transforms import Bbox
 import vibroimpact as vi
 from vibroimpact.charts.axis import Axis, View
 from vibroimpact.charts.chart import Chart, Panel
+from vibroimpact.charts.frame import frames_of
 from vibroimpact.charts.marks import Line, Spans
 from vibroimpact.charts.matplotlib import matplotlib_figure
 from vibroimpact.charts.print_style import print_style
@@ -54,6 +55,22 @@ def check_words(figure: Figure) -> None:
 def figures(theory: vi.Response) -> dict[str, Figure]:
     result = result_of(theory)
     return {chart.name: drawn(chart) for chart in (setup_chart(result), *run_charts(result))}
+
+
+def test_pictures_are_to_scale() -> None:
+    """A small ball on a plate of metres: both axes have the same unit, whatever the extent across."""
+    steel = {"density": 7850, "youngs_modulus": "210 GPa", "poissons_ratio": 0.3}
+    case = {
+        "sphere": {"radius": "2.5 mm", "material": steel},
+        "plate": {"size": ["4 m", "2 m", "25 mm"], "material": steel},
+        "drop": {"speed": 3.0},
+        "contact": {"law": "hertz"},
+        "run": {"impacts": 1},
+    }
+    chart = setup_chart(result_of(vi.simulate(vi.read_case(case))))
+    frames = frames_of(chart)
+    for panel in chart.panels:
+        assert frames[panel.x].size == frames[panel.y].size
 
 
 def test_words_of_a_run_neither_collide_nor_are_cut(figures: dict[str, Figure]) -> None:

@@ -1,4 +1,4 @@
-"""What the live page offers: shipped cases, contact laws with their parameters, materials, colours, and the length of messages."""
+"""What the live page offers: shipped cases, contact and friction laws, materials, colours, and the length of messages."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any
 from vibroimpact.app.messages import LONGEST
 from vibroimpact.cases.reader import shipped_cases
 from vibroimpact.contact.law import unit_of
-from vibroimpact.contact.registry import contact_laws
+from vibroimpact.contact.registry import contact_laws, friction_laws
 from vibroimpact.laws.plain_math import plain_text
 from vibroimpact.laws.text import law_text
 from vibroimpact.materials import material_library
@@ -30,6 +30,7 @@ def offer() -> dict[str, Any]:
     return {
         "cases": {name: title for name, title in shipped_cases().items() if name not in _OF_OTHER_COMMANDS},
         "laws": {name: _law(law) for name, law in contact_laws().items()},
+        "friction": list(friction_laws()),
         "materials": list(material_library()),
         "palette": palette(),
         "longest": LONGEST,

@@ -70,7 +70,11 @@ def frames_of(chart: Chart) -> dict[Axis, Frame]:
     for panel in chart.panels:
         scales = (mark.scale for mark in panel.marks if isinstance(mark, Map | Facets))
         axes |= dict.fromkeys((panel.x, panel.y, *(scale for scale in scales if scale is not None)))
-    return {axis: frame_of(axis, chart.panels) for axis in axes}
+    frames = {axis: frame_of(axis, chart.panels) for axis in axes}
+    for panel in chart.panels:
+        if panel.picture and panel.x.unit == panel.y.unit:  # lengths that are drawn alike in both directions
+            frames[panel.y] = Frame(panel.y.label, frames[panel.x].unit, frames[panel.x].size)
+    return frames
 
 
 def ends_on(axis: Axis, chart: Chart) -> tuple[float, float]:

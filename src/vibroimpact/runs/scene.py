@@ -10,6 +10,7 @@ from vibroimpact.results.deflection import Deflection
 from vibroimpact.results.result import Result
 from vibroimpact.runs.chart_data import touch_height
 from vibroimpact.runs.deflection_chart import sensor_places
+from vibroimpact.runs.oblique_chart import moves_along
 from vibroimpact.runs.supports import support_outlines
 
 HEIGHT = 0.16
@@ -91,6 +92,7 @@ def rigid_scene(result: Result) -> dict[str, Any]:
         "sphere": height,
         "contact_height": np.zeros(len(time)),
         "contact": [float(position[0]), float(position[1])],
+        **({"path": [np.interp(time, history["time_s"], history[f"position_{axis}_m"]) for axis in "xy"]} if moves_along(history) else {}),
         "radius": radius,
         "exaggeration": 1.0,
         "gap_scale": min(1.0, reach / max(float(height.max()) - radius, 1e-300)),

@@ -202,6 +202,15 @@
       if (section.modes === undefined && section.max_frequency === undefined) section.modes = body === "plate" ? 60 : 20;
     }
     const vibrates = ["sphere", "plate"].some((name) => table[name].model === "elastic");
+    // bodies that deform fall along the normal
+    const oblique = [[table.drop, "angle"], [table.drop, "velocity"], [table.drop, "spin"], [table.plate, "inclination"], [table.contact, "friction"]];
+    controls.kept.oblique = controls.kept.oblique || {};
+    for (const [part, key] of oblique) {
+      if (vibrates && key in part) { controls.kept.oblique[key] = part[key]; delete part[key]; }
+      if (!vibrates && key in controls.kept.oblique && !(key in part)) { part[key] = controls.kept.oblique[key]; delete controls.kept.oblique[key]; }
+    }
+    if (vibrates && !("speed" in table.drop) && !("height" in table.drop)) table.drop.speed = Math.abs(controls.kept.oblique.velocity?.[2] ?? 5);
+    else if ("velocity" in table.drop) delete table.drop.speed;
     const local = ["local_compliance", "finite_sphere", "local_stiffness", "local_damping", "measured"];
     controls.kept.contact = controls.kept.contact || {};
     for (const key of local) {
@@ -310,21 +319,43 @@
     return [...rows, add];
   };
 
+  // Whether the sphere may fall obliquely: both bodies are rigid, and the plate is flat.
+  const isFlat = ({ sphere, plate }) => sphere.model !== "elastic" && plate.model !== "elastic" && plate.radius === undefined;
+
+  const friction = (controls) => {
+    const path = ["contact", "friction"], now = at(controls.resolved, path);
+    if (!isFlat(controls.resolved)) return [];
+    const rows = [choice(controls, {
+      path: [...path, "law"], label: "Friction", options: ["none", ...controls.offer.friction].map((name) => [name, name]),
+      chosen: (table) => at(table, [...path, "law"]) ?? "none",
+      choose: (table, value) => { if (value === "none") delete table.contact.friction; else table.contact.friction = { law: value, coefficient: now?.coefficient ?? 0.3 }; },
+    })];
+    if (now) rows.push(slider(controls, { path: [...path, "coefficient"], label: "Coefficient", low: 0, high: 1 }));
+    return rows;
+  };
+
   const drop = (controls) => {
     const bySpeed = at(controls.resolved, ["drop", "speed"]) !== undefined && at(controls.resolved, ["drop", "height"]) === undefined;
     const how = choice(controls, {
       path: ["drop", "from"], label: "Given by", options: [["height", "height"], ["speed", "speed at first touch"]],
       chosen: (table) => ("speed" in table.drop ? "speed" : "height"),
-      choose: (table, value) => { delete table.drop.speed; delete table.drop.height; table.drop[value] = value === "speed" ? 5 : 2; },
+      choose: (table, value) => { for (const key of ["speed", "height", "angle", "velocity"]) delete table.drop[key]; table.drop[value] = value === "speed" ? 5 : 2; },
     });
+    const gravity = slider(controls, { path: ["drop", "gravity"], label: "Gravity", unit: "m/s²", low: 0.5, high: 25 });
     const size = at(controls.resolved, ["plate", "size"]);
     const place = size && controls.resolved.plate.radius === undefined
       ? [["x", 0], ["y", 1]].map(([label, side]) => slider(controls, { path: ["drop", "position", side], label, unit: "mm", size: 1e-3, low: -500 * size[side], high: 500 * size[side] }))
       : [];
+    // a velocity takes the place of speed and angle
+    if (at(controls.resolved, ["drop", "velocity"]) !== undefined) {
+      const ends = [[-20, 20], [-20, 20], [-20, "height" in controls.resolved.drop ? 20 : -0.05]];
+      return [how, ...ends.map(([low, high], axis) => slider(controls, { path: ["drop", "velocity", axis], label: `Velocity ${"xyz"[axis]}`, unit: "m/s", low, high })), ...place, gravity];
+    }
+    const angle = bySpeed && isFlat(controls.resolved) ? [slider(controls, { path: ["drop", "angle"], label: "Angle", unit: "deg", size: Math.PI / 180, low: -85, high: 85 })] : [];
     return [how, bySpeed
       ? slider(controls, { path: ["drop", "speed"], label: "Speed", unit: "m/s", low: 0.05, high: 20, log: true })
       : slider(controls, { path: ["drop", "height"], label: "Height", unit: "m", low: 0.06, high: 10, log: true }),
-    ...place, slider(controls, { path: ["drop", "gravity"], label: "Gravity", unit: "m/s²", low: 0.5, high: 25 })];
+    ...angle, ...place, gravity];
   };
 
   // The controls of the table of a case; `changed` is called after every change of it, with whether the control is let go.
@@ -371,7 +402,7 @@
       this.beginning = false;
       const shape = JSON.stringify([
         table.contact.law, Object.entries(resolved.contact).map(([name, value]) => [name, Array.isArray(value) ? "list" : typeof value]), resolved.sphere.model, resolved.plate.model, resolved.plate.material === "rigid", "height" in resolved.drop && !("speed" in table.drop),
-        table.plate.supports && resolved.plate.supports, typeof resolved.plate.damping, typeof resolved.sphere.damping,
+        "velocity" in resolved.drop, "friction" in resolved.contact, table.plate.supports && resolved.plate.supports, typeof resolved.plate.damping, typeof resolved.sphere.damping,
         (table.sensors || []).map((sensor) => sensor.name), resolved.plate.size && resolved.plate.size.slice(0, 2), resolved.plate.radius === undefined,
       ]);
       if (shape !== this.shape) { this.shape = shape; this.build(); }
@@ -382,13 +413,14 @@
       const focused = document.activeElement && document.activeElement.id;
       const plate = this.resolved.plate;
       const size = plate.size && plate.radius === undefined ? [["Length", 0, 100, 2000], ["Width", 1, 100, 2000], ["Thickness", 2, 1, 50]] : [];
+      const inclination = isFlat(this.resolved) ? [slider(this, { path: ["plate", "inclination"], label: "Inclination", unit: "deg", size: Math.PI / 180, low: -60, high: 60 })] : [];
       const below = plate.radius !== undefined ? [slider(this, { path: ["plate", "radius"], label: "Radius", unit: "mm", size: 1e-3, low: 2, high: 200, log: true })] : [];
       const all = plate.model === "elastic" ? [group("Supports", ...supports(this)), group("Sensors", ...sensors(this))] : [];
       this.form.replaceChildren(
         group("Sphere", slider(this, { path: ["sphere", "radius"], label: "Radius", unit: "mm", size: 1e-3, low: 1, high: 100, log: true }), ...material(this, "sphere"), ...bodyRows(this, "sphere")),
         group("Drop", ...drop(this)),
-        this.law = group("Contact", ...law(this)),
-        group("Plate", ...below, ...size.map(([label, side, low, high]) => slider(this, { path: ["plate", "size", side], label, unit: "mm", size: 1e-3, low, high, log: true })), ...material(this, "plate"), ...bodyRows(this, "plate")),
+        this.law = group("Contact", ...law(this), ...friction(this)),
+        group("Plate", ...below, ...inclination, ...size.map(([label, side, low, high]) => slider(this, { path: ["plate", "size", side], label, unit: "mm", size: 1e-3, low, high, log: true })), ...material(this, "plate"), ...bodyRows(this, "plate")),
         ...all,
         group("Run", slider(this, { path: ["run", "impacts"], label: "Impacts", low: 1, high: 30, whole: true })),
       );
@@ -398,7 +430,7 @@
     // Show what is asked for and could not be computed: the fields of the law that lacks a parameter.
     showAsked() {
       if (this.table.contact?.law === this.resolved?.contact.law) return;
-      const asked = group("Contact", ...law(this));
+      const asked = group("Contact", ...law(this), ...friction(this));
       this.law.replaceWith(asked);
       this.law = asked;
       this.shape = "";

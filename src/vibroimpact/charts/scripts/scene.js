@@ -84,7 +84,7 @@
         const [x, y] = place(event);
         ball = Boolean(this.moved) && [this.foot, this.ball].some((at) => at && Math.hypot(x - at[0], y - at[1]) < Math.max(16, 1.2 * at[2]));
         this.canvas.setPointerCapture(event.pointerId);
-        if (ball) { event.preventDefault(); const seen = this.onPlate(x, y); grip = Array.from(this.scene.contact, (at, side) => seen[side] - at); }
+        if (ball) { event.preventDefault(); const seen = this.onPlate(x, y); const at = this.scene.path ? this.scene.path.map((values) => this.between(values)) : this.scene.contact; grip = Array.from(at, (one, side) => seen[side] - one); }
       });
       this.canvas.addEventListener("pointermove", (event) => {
         if (!from) return;
@@ -284,7 +284,8 @@
       const { scene } = this;
       const down = this.between(scene.contact_height), height = factor * down + scene.radius + scene.gap_scale * (this.between(scene.sphere) - scene.radius - down);
       const radius = scale * scene.radius;
-      const foot = place(scene.contact[0], scene.contact[1], factor * down), [x, y] = place(scene.contact[0], scene.contact[1], height);
+      const [along, across] = scene.path ? scene.path.map((values) => this.between(values)) : scene.contact;
+      const foot = place(along, across, factor * down), [x, y] = place(along, across, height);
       this.foot = [...foot, radius];
       this.ball = [x, y, radius];
       pen.fillStyle = "rgba(0, 0, 0, 0.28)";
