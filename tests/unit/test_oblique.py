@@ -12,6 +12,7 @@ import vibroimpact as vi
 from vibroimpact.arrays import Floats
 from vibroimpact.cases.keys import with_values
 from vibroimpact.dynamics.columns import OBLIQUE_LEDGER
+from vibroimpact.dynamics.oblique import compliant
 
 RADIUS, MASS = 0.01, 0.02
 PAIR = {"effective_modulus": 1e9, "effective_shear_modulus": 0.8e9, "effective_radius": RADIUS}
@@ -306,6 +307,16 @@ def test_sliding_takes_the_coefficient_of_the_normal_impulse(law: str) -> None:
             least = 1.0 if law == "tsuji" else 1.0 - 1e-5  # whose end pulls
             assert (rubbed >= least * 0.3 * pushed).all()
             assert (rubbed <= (1.02 if law == "tsuji" else 1.0 + 1e-5) * 0.3 * pushed).all()
+
+
+@pytest.mark.parametrize("friction", ["mdr", "mindlin", "mindlin-rescale", "mindlin-force"])
+def test_sliding_throughout_is_what_the_integration_finds(friction: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Angles about that from which the contact slips all the time, with the shortcut for these and without it."""
+    oblique = vi.Oblique(velocity=(np.linspace(1.0, 6.0, 60), 0.0), friction=FRICTION[friction])
+    short = vi.tabulate(problem("hunt-crossley", oblique=oblique, impacts=1)).impacts["separation_velocity_x_m_s"]
+    monkeypatch.setattr(compliant, "_ROUNDING", -1e9)
+    whole = vi.tabulate(problem("hunt-crossley", oblique=oblique, impacts=1)).impacts["separation_velocity_x_m_s"]
+    np.testing.assert_allclose(short, whole, atol=1e-5)
 
 
 def test_values_at_keys_are_not_shared() -> None:

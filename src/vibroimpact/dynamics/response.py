@@ -347,7 +347,8 @@ class Response:
             "written_off_at_rest_J": np.full_like(times, self.rest.written_off[0] if resting else 0.0),
         }
         if self.legs is not None and problem.oblique is not None:
-            along = oblique_history(problem.oblique, self.legs, self.impacts["friction_lost_J"], found["time_s"])
+            lies_from = segment.start if resting else np.inf
+            along = oblique_history(problem, self.legs, self.impacts["friction_lost_J"], found["time_s"], lies_from)
             found |= {
                 **along,
                 "kinetic_J": found["kinetic_J"] + along["kinetic_J"],
@@ -370,7 +371,8 @@ class Response:
         plastic, rest = self.impacts["plastic_work_J"], None
         if self.outcomes[0].at_rest:
             weight = float(self.problem.sphere.mass) * float(self.problem.gravity)
-            rest = RestSegment(end_of(self.legs[-1]), end, float(self.rest.sag[0]), weight, float(self.rest.stored[0]))
+            points = 2 if self.problem.oblique is None else 97
+            rest = RestSegment(end_of(self.legs[-1]), end, float(self.rest.sag[0]), weight, float(self.rest.stored[0]), points)
         return timeline_of(self.legs, rest, np.stack([self.impacts["energy_lost_J"] - plastic, plastic], axis=1))
 
     @cached_property

@@ -257,12 +257,11 @@ class Run:
     def batch(self) -> Response:
         """Return the response of the batch without a history."""
         at_rest = np.array([outcome.at_rest for outcome in OUTCOMES])[self.outcomes]
-        # a sphere that bounces no more may move on along the plate, which is not followed
-        if self.problem.duration is not None and self.oblique is None:
+        if self.problem.duration is not None:
             self.end_time[at_rest] = np.maximum(self.end_time, self.problem.duration)[at_rest]
+        along = self.oblique_energies()
         final_gap, final_velocity = self.final_motion(np.flatnonzero(at_rest))
         vibration = self.bodies.energies()
-        along = self.oblique_energies()
         added = self.mass * self.gravity * self.deepest + np.maximum(-self.stored, 0.0)  # the stored energy is negative where it sticks
         energy = close_ledger(
             self.energy_in,
@@ -294,9 +293,10 @@ class Run:
         """Return the entries of the ledger for the motion along the plate and the spin at the end of the run."""
         if self.oblique is None:
             return {}
-        everyone = np.arange(self.size)
-        resting = np.array([outcome.at_rest for outcome in OUTCOMES])[self.outcomes]
-        self.oblique.fly(everyone, np.where(resting, np.maximum(self.end_time - self.time, 0.0), 0.0))
+        resting = np.flatnonzero(np.array([outcome.at_rest for outcome in OUTCOMES])[self.outcomes])
+        if resting.size:  # it may slip and roll on along the plate, and off its edge
+            lain = self.oblique.lie(resting, self.gravity[resting], np.maximum(self.end_time - self.time, 0.0)[resting])
+            self.end_time[resting] = np.minimum(self.end_time[resting], self.time[resting] + lain)
         kinetic, rotation, potential = self.oblique.energies()
         return {"kinetic_J": kinetic, "potential_J": potential, "rotation_J": rotation, "friction_J": self.oblique.lost}
 

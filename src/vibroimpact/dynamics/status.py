@@ -56,7 +56,7 @@ def status_of(run: Ended) -> str:
         return f"The sphere falls off the edge of the plate {after}, and is level with its surface at {_time(run, end, 6)} s."
     if outcome is Outcome.FAILED:
         return f"Failed {after}: {why_failed(run.energy)}"
-    return f"At rest {after}: {_at_rest(run)}"
+    return f"At rest {after}: {_at_rest(run)}{_moves_on(run)}"
 
 
 def _ended_by(run: Ended, outcome: Outcome) -> str:
@@ -73,6 +73,17 @@ def _ended_by(run: Ended, outcome: Outcome) -> str:
 def _riding(run: Ended) -> str:
     """Return the sentence on a sphere that is still in contact and not at rest."""
     return f"the sphere rides on the plate and is not at rest, with {_shown(run, float(run.rest.left[0]), 3)} J left in vibration"
+
+
+def _moves_on(run: Ended) -> str:
+    """Return the sentence on a sphere that bounces no more and moves on along the plate; empty if it does not."""
+    speed = float(np.sqrt(2.0 * max(float(run.energy["kinetic_J"]), 0.0) / float(run.problem.sphere.mass)))
+    if run.problem.oblique is None or speed < _STANDING * float(run.impacts["approach_speed_m_s"][0]):
+        return ""
+    return f" It moves on along the plate, at {speed:.4g} m/s when the run ends."
+
+
+_STANDING = 1e-9  # of the first approach speed
 
 
 def _at_rest(run: Ended) -> str:

@@ -10,7 +10,7 @@ A law is a frozen dataclass in a file of its own under `vibroimpact.contact.fric
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol
+from typing import ClassVar, Protocol
 
 import numpy as np
 
@@ -58,6 +58,9 @@ class CompliantFriction(FrictionLaw):
     displacements s are counted in :math:`\kappa = \mu E^* / G^*`, and the friction force is :math:`2 G^* \sqrt R\, \kappa I`, at most
     :math:`\mu F`, where :math:`I = \tfrac23 D^{3/2}`.
     """
+
+    sliding_bound: ClassVar[float] = 1.0
+    """While the depth shrinks, all of the contact slips on as long as the displacement shrinks by no more than this part of it."""
 
     effective_modulus: Array = parameter(
         "effective modulus E*", "Pa", detail="Effective modulus :math:`E^*`.", above=0, from_pair="effective_modulus"

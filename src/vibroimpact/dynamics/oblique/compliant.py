@@ -56,7 +56,8 @@ def slide_compliant(
     kappa[kappa == 0.0] = 1.0
     stiffness = np.where(asked < kappa, 0.0, 2.0 * shear * np.sqrt(radius))  # of the integral: none where friction is below the least
     path = _slide_throughout(normal, depth, slip / kappa, stiffness / mass, pull / kappa)
-    sticks = np.flatnonzero((path[0] * normal.pace < depth_slope - _ROUNDING * depth_slope.max(axis=0)).any(axis=0))
+    least = np.where(depth_slope > 0.0, depth_slope, law.sliding_bound * depth_slope)
+    sticks = np.flatnonzero((path[0] * normal.pace < least - _ROUNDING * depth_slope.max(axis=0)).any(axis=0))
     if sticks.size:
         memory, rest = law.memory(len(sticks), 2 * len(normal.time)), _some(normal, sticks)
         arrays = (slip / kappa, stiffness / mass, pull / kappa)
@@ -75,7 +76,7 @@ def _some(normal: NormalMotion, drops: Drops) -> NormalMotion:
 def _slide_throughout(normal: NormalMotion, depth: Floats, slip: Floats, stiffness: Floats, pull: Floats) -> Floats:
     """Return slip velocity, displacement and integral (3, G, B) of contacts whose every point slips all the time.
 
-    So it is where nowhere the displacement grows more slowly than the depth.
+    So it is where nowhere the displacement grows more slowly than the depth, or shrinks faster than a part of it.
     """
     found, step = np.empty((3, *depth.shape)), normal.steps[:, None]
     found[2] = (2.0 / 3.0) * depth * np.sqrt(depth)

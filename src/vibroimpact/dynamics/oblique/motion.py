@@ -11,8 +11,9 @@ from vibroimpact.arrays import Bools, Drops, Floats
 from vibroimpact.contact.friction.law import CompliantFriction, FrictionLaw, ImpulsiveFriction
 from vibroimpact.dynamics.columns import OBLIQUE_IMPACT_COLUMNS
 from vibroimpact.dynamics.oblique.normal_motion import NormalMotion
+from vibroimpact.dynamics.oblique.rolling import edge_time, slide_and_roll
 from vibroimpact.dynamics.oblique.sliding import slide
-from vibroimpact.dynamics.oblique.state import ObliqueContact, ObliqueContacts, Sphere, State
+from vibroimpact.dynamics.oblique.state import ObliqueContact, ObliqueContacts, Sphere, State, energy_taken
 from vibroimpact.dynamics.oblique.statement import Oblique
 
 OBLIQUE_STEPS = 48
@@ -49,6 +50,20 @@ class ObliqueMotion:
     def now(self, drops: Drops) -> tuple[Sphere, State]:
         """Return spheres and state of drops."""
         return self.sphere.take(drops), self.state.take(drops)
+
+    def lie(self, drops: Drops, pressing: Floats, elapsed: Floats) -> Floats:
+        """Let drops lie on the plate for a time [s], at most until they leave it, and return that time.
+
+        `pressing`: gravity along the normal [m/s^2].
+        """
+        sphere, before = self.sphere.take(drops), self.state.take(drops)
+        coefficient = 0.0 if self.law is None else self.law.take(drops).coefficient
+        if self.half is not None:
+            elapsed = edge_time(sphere, before, coefficient, pressing, elapsed, self.half)
+        after, _ = slide_and_roll(sphere, before, coefficient, pressing, elapsed)
+        self.lost[drops] += energy_taken(sphere, before, after)
+        self._put(drops, after)
+        return elapsed
 
     def distance(self, drops: Drops, elapsed: Floats) -> Floats:
         """Return how far drops move along the plate in a time without contact [m]."""
@@ -96,8 +111,7 @@ class ObliqueMotion:
     def _finish(self, drops: Drops, after: State, row: dict[str, Floats]) -> None:
         """Put drops into their states after a contact, and write its columns."""
         sphere, before = self.sphere.take(drops), self.state.take(drops)
-        work = sphere.mass * (sphere.gravity * (after.position - before.position)).sum(axis=0)
-        lost = sum(sphere.kinetic(before)) + work - sum(sphere.kinetic(after))
+        lost = energy_taken(sphere, before, after)
         self.lost[drops] += lost
         values = [*before.position, *before.velocity, *after.velocity, *before.spin, *after.spin]
         speed = np.hypot(*before.velocity)

@@ -68,6 +68,12 @@ class Sphere:
         return State(moved, state.velocity + self.gravity * elapsed, state.spin)
 
 
+def energy_taken(sphere: Sphere, before: State, after: State) -> Floats:
+    """Return the energy that friction takes between two states [J]."""
+    work = sphere.mass * (sphere.gravity * (after.position - before.position)).sum(axis=0)
+    return np.asarray(sum(sphere.kinetic(before)) + work - sum(sphere.kinetic(after)))
+
+
 @dataclass(frozen=True)
 class ObliqueContact:
     """The motion along the plate during contacts of B drops.

@@ -105,10 +105,12 @@ class RestSegment:
     sag: float
     weight: float
     stored: float
+    points: int = 2
+    """Number of times at which it is well resolved: more where the sphere moves on along the plate."""
 
     def grid(self) -> Floats:
         """Return times since the start at which the segment is well resolved [s]."""
-        return np.array([0.0, self.end - self.start])
+        return np.linspace(0.0, self.end - self.start, self.points)
 
     def at(self, time: Floats) -> Motion:
         """Return the motion at times [s] since the start of the segment."""

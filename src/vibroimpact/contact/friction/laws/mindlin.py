@@ -37,6 +37,7 @@ class Mindlin(CompliantFriction):
     name = "mindlin"
     equation = "Q = 2 G* a xi, at most mu F"
     source = "Mindlin 1949, J. Appl. Mech. 16:259; LAMMPS, granular: mindlin"
+    sliding_bound = 2.0 / 3.0
 
     rescales: ClassVar[bool] = False
     """Does the displacement shrink with the radius of the contact?"""
@@ -71,6 +72,7 @@ class MindlinRescale(Mindlin):
     equation = "Q = 2 G* a xi, xi shrinks with a, at most mu F"
     source = "Thornton, Cummins & Cleary 2013, Powder Technol. 233:30; LAMMPS, granular: mindlin_rescale"
     rescales = True
+    sliding_bound = 1.0 / 3.0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -96,6 +98,7 @@ class MindlinForce(Mindlin):
     name = "mindlin-force"
     equation = "dQ = 2 G* a ds, at most mu F"
     source = "Mindlin & Deresiewicz 1953, J. Appl. Mech. 20:327; LAMMPS, granular: mindlin_force"
+    sliding_bound = 1.0
 
     def memory(self, size: int, steps: int) -> Memory:
         """Return contacts without a force; see `CompliantFriction`."""
