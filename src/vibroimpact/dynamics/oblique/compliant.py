@@ -21,10 +21,11 @@ from vibroimpact.dynamics.oblique.normal_motion import NormalMotion
 _LEAST, _MOST = 1e-9, 1e6
 """Bounds of kappa in slip per depth: contacts with less friction slide freely, and those with more stick."""
 
+_ROUNDING = 1e-5
+"""Error of the rate of the depth at release, as a part of the largest."""
 
-_ROUNDING = 1e-5  # of the largest rate of the depth, which it has at release
-
-_SAME = 1e-6  # of the depth at the ends of two parts
+_SAME = 1e-6
+"""Relative difference below which what two parts of a contact have where they meet is the same."""
 
 
 def slide_compliant(
