@@ -83,8 +83,8 @@ def laws(
     force: Annotated[bool, typer.Option("--force", help="Replace an existing picture.")] = False,
     as_json: Json = False,
 ) -> None:
-    """List the contact laws, or show one: equation, parameters, sources; with -o PNG also a picture of its curves."""
-    from vibroimpact.contact.registry import find_contact_law
+    """List the contact and friction laws, or show one: equation, parameters, sources; with -o PNG also the curves of a contact law."""
+    from vibroimpact.contact.registry import find_contact_law, friction_laws
     from vibroimpact.laws.document import law_document, laws_document
     from vibroimpact.laws.sheet import law_sheet, law_table
 
@@ -93,7 +93,9 @@ def laws(
             raise InputError("name the law that is to be drawn: vibroimpact laws NAME -o PNG")
         show(laws_document, lambda: law_table(console().width), as_json=as_json)
         return
-    law = find_contact_law(name)
+    law = friction_laws().get(name) or find_contact_law(name)
+    if output is not None and name in friction_laws():
+        raise InputError(f"{name} is a friction law, and curves are drawn of contact laws", "-o")
     if output is not None:
         from vibroimpact.laws.curves import check_picture
 

@@ -6,22 +6,24 @@ from collections.abc import Iterable
 from dataclasses import asdict, fields
 from typing import Any
 
+from vibroimpact.contact.friction.law import FrictionLaw
 from vibroimpact.contact.law import ContactLaw
-from vibroimpact.contact.registry import contact_laws
+from vibroimpact.contact.registry import contact_laws, friction_laws
 from vibroimpact.laws.text import ParameterText, asked_and_achieved, law_text, plain_paragraph
 
 
 def laws_document() -> dict[str, Any]:
-    """Return the descriptions of all contact laws by name."""
-    return {"laws": {name: law_document(law) for name, law in contact_laws().items()}}
+    """Return the descriptions of all contact and friction laws by name."""
+    every = (("laws", contact_laws()), ("friction_laws", friction_laws()))
+    return {kind: {name: law_document(law) for name, law in laws.items()} for kind, laws in every}
 
 
-def law_document(law: type[ContactLaw]) -> dict[str, Any]:
-    """Return the description of a contact law.
+def law_document(law: type[ContactLaw | FrictionLaw]) -> dict[str, Any]:
+    """Return the description of a contact or friction law.
 
     Parameters
     ----------
-    law : type of ContactLaw
+    law : type of ContactLaw or FrictionLaw
         The law's class.
 
     Examples
@@ -33,13 +35,14 @@ def law_document(law: type[ContactLaw]) -> dict[str, Any]:
     """
     text = law_text(law)
     numbers = {item.name: item.default for item in fields(law) if isinstance(item.default, (int, float))}
+    pairs = asked_and_achieved(law) if issubclass(law, ContactLaw) else []
     return {
         **asdict(text),
         "title": plain_paragraph(text.title),
         **{part: [plain_paragraph(one) for one in getattr(text, part)] for part in ("body", "notes", "references", "raises")},
         "parameters": _parameters(text.parameters, numbers),
         "state": _parameters(text.state, numbers),
-        "restitution": [{"restitution_asked": asked, "restitution_achieved": achieved} for asked, achieved in asked_and_achieved(law)],
+        "restitution": [{"restitution_asked": asked, "restitution_achieved": achieved} for asked, achieved in pairs],
     }
 
 

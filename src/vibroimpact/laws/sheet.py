@@ -1,4 +1,4 @@
-"""Terminal output of the command `laws`: the table of all contact laws, and the sheet of one law."""
+"""Terminal output of the command `laws`: the tables of all contact and friction laws, and the sheet of one law."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from rich.table import Table
 from rich.text import Text
 
 from vibroimpact.contact.law import CompliantLaw, ContactLaw
-from vibroimpact.contact.registry import contact_laws, find_contact_law
+from vibroimpact.contact.registry import contact_laws, find_contact_law, friction_laws
 from vibroimpact.laws.text import SPEED, LawText, ParameterText, asked_and_achieved, law_text, plain_paragraph, short_source
 from vibroimpact.report.terminal_table import TerminalColumn, TerminalTable
 
@@ -20,7 +20,7 @@ _WIDE = 130  # terminal width in columns from which sources are printed in full
 
 
 def law_table(width: int) -> RenderableType:
-    """Return the table of contact laws for a terminal width in columns."""
+    """Return the tables of contact and friction laws for a terminal width in columns."""
     rows = []
     for name, law in contact_laws().items():
         end, tension = ("at once", "-") if not issubclass(law, CompliantLaw) else (_ENDS[law.contact_end], _TENSION[law.tension])
@@ -30,19 +30,27 @@ def law_table(width: int) -> RenderableType:
     table = TerminalTable(
         [TerminalColumn(words, cells, text=True) for words, cells in zip(headings, zip(*rows, strict=True), strict=True)], indent=0
     )
-    hint = '"vibroimpact laws NAME" prints one with its equation, parameters and sources; with -o PNG it draws its curves.'
-    return Group(table, Text(), Text(hint))
+    hint = '"vibroimpact laws NAME" prints one with its equation, parameters and sources; with -o PNG it draws the curves of a contact law.'
+    return Group(table, Text(), _friction_table(width), Text(), Text(hint))
+
+
+def _friction_table(width: int) -> RenderableType:
+    """Return the table of friction laws for a terminal width in columns."""
+    rows = [(name, law.equation, law.source if width >= _WIDE else short_source(law)) for name, law in friction_laws().items()]
+    headings = ("friction law", "equation", "source")
+    cells = zip(*rows, strict=True)
+    return TerminalTable([TerminalColumn(words, list(column), text=True) for words, column in zip(headings, cells, strict=True)], indent=0)
 
 
 def law_sheet(name: str) -> RenderableType:
-    """Return the sheet of a contact law: equation, parameters, state, end of the contact, notes and references.
+    """Return the sheet of a contact or friction law: equation, parameters, state, end of the contact, notes and references.
 
     Raises
     ------
     InputError
         If there is no such law.
     """
-    law = find_contact_law(name)
+    law = friction_laws().get(name) or find_contact_law(name)
     text = law_text(law)
     body = text.body[1:] if text.body and text.body[0].startswith(".. math::") else text.body  # the sheet prints `equation`
     parts: list[RenderableType] = [
@@ -55,11 +63,10 @@ def law_sheet(name: str) -> RenderableType:
         _parameters(text.parameters),
         *(_indented(f"Refused {plain_paragraph(line)[:1].lower()}{plain_paragraph(line)[1:]}") for line in text.raises),
         *_state(text),
-        *_heading("End of the contact"),
-        _indented(f"{text.end} {text.tension}".strip()),
+        *((*_heading("End of the contact"), _indented(f"{text.end} {text.tension}".strip())) if text.end else ()),
         *(_heading("Notes") if text.notes else []),
         *_prose(text.notes),
-        *_achieved(law),
+        *(_achieved(law) if issubclass(law, ContactLaw) else ()),
         *_heading("References"),
         *(_indented(plain_paragraph(reference)) for reference in text.references or (text.source,)),
     ]

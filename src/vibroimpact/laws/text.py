@@ -1,4 +1,4 @@
-"""The description of a contact law that the command line and the documentation print, from its declarations and docstring."""
+"""The description of a contact or friction law that the command line and the documentation print, from its declarations and docstring."""
 
 from __future__ import annotations
 
@@ -9,7 +9,8 @@ from typing import Any
 from vibroimpact.cases.pair import contact_pair
 from vibroimpact.cases.reader import load_case
 from vibroimpact.contact.docstring import docstring_sections
-from vibroimpact.contact.law import CompliantLaw, ContactLaw, default_origin
+from vibroimpact.contact.friction.law import FrictionLaw
+from vibroimpact.contact.law import CompliantLaw, ContactLaw, InstantaneousLaw, default_origin
 from vibroimpact.contact.pair import ContactPair
 from vibroimpact.dynamics.restitution import achieved_restitution
 from vibroimpact.laws.plain_math import plain_math, plain_text
@@ -45,7 +46,7 @@ class ParameterText:
 
 @dataclass(frozen=True)
 class LawText:
-    """The description of a contact law.
+    """The description of a contact or friction law.
 
     Texts keep the reStructuredText markup; displayed formulas in `body` and `notes` are paragraphs that begin with ".. math::".
 
@@ -56,7 +57,7 @@ class LawText:
     loss_parameters : str
         The parameters that set the energy loss.
     end, tension : str
-        Sentences on the end of the contact and on tension.
+        Sentences on the end of the contact and on tension; "" of a friction law.
     persistence : str
         Sentence on whether the state persists after the contact; "" without a state.
     body, notes, references, raises : tuple of str
@@ -81,12 +82,12 @@ class LawText:
     state: tuple[ParameterText, ...]
 
 
-def law_text(law: type[ContactLaw]) -> LawText:
-    """Return the description of a contact law.
+def law_text(law: type[ContactLaw | FrictionLaw]) -> LawText:
+    """Return the description of a contact or friction law.
 
     Parameters
     ----------
-    law : type of ContactLaw
+    law : type of ContactLaw or FrictionLaw
         The law's class.
 
     Examples
@@ -98,7 +99,9 @@ def law_text(law: type[ContactLaw]) -> LawText:
     """
     sections = docstring_sections(law.__doc__ or law.name)
     title, *body = _paragraphs(sections[""])
-    end, tension, persistence = "It is over at once: it has no duration and no force.", "", ""
+    end, tension, persistence = "", "", ""
+    if issubclass(law, InstantaneousLaw):
+        end = "It is over at once: it has no duration and no force."
     if issubclass(law, CompliantLaw):
         end, tension = _ENDS[law.contact_end], _TENSION[law.tension]
         if any(item.metadata["memory"] for item in fields(law)):
@@ -112,7 +115,7 @@ def law_text(law: type[ContactLaw]) -> LawText:
         title=title,
         equation=law.equation,
         source=law.source,
-        loss_parameters=_loss_parameters(law),
+        loss_parameters=_loss_parameters(law) if issubclass(law, ContactLaw) else "",
         end=end,
         tension=tension,
         persistence=persistence,
@@ -156,7 +159,7 @@ def asked_and_achieved(law: type[ContactLaw]) -> list[tuple[float, float]]:
     return [(asked, float(achieved_restitution(one.changed({"restitution": asked}), pair.effective_mass, SPEED))) for asked in ASKED]
 
 
-def short_source(law: type[ContactLaw]) -> str:
+def short_source(law: type[ContactLaw | FrictionLaw]) -> str:
     """Return the authors and the year of a law's source, or, without a year, the text before the first comma.
 
     Examples

@@ -25,6 +25,7 @@ class Mdr(CompliantFriction):
     References
     ----------
     Popov, V. L. and Hess, M. (2015). Method of Dimensionality Reduction in Contact Mechanics and Friction. Springer, chapter 5.
+
     Mindlin, R. D. and Deresiewicz, H. (1953). Elastic spheres in contact under varying oblique forces. J. Appl. Mech. 20, 327-344.
 
     Examples
