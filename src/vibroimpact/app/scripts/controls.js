@@ -31,8 +31,8 @@
   const words = (name) => name[0].toUpperCase() + name.slice(1).replaceAll("_", " ");
 
   // A slider with a field, of a number at a path: `size` is that of its unit in SI, `low` and `high` the ends of the slider in this unit;
-  // `shown` is its path in the resolved case.
-  const slider = (controls, { path, shown = path, label, unit = "", size = 1, low, high, log = false, whole = false, meaning = "" }) => {
+  // `shown` is its path in the resolved case, and `otherwise` what it is where the case does not give it.
+  const slider = (controls, { path, shown = path, label, unit = "", size = 1, low, high, log = false, whole = false, meaning = "", otherwise }) => {
     const key = path.join(".");
     const id = `c-${key.replaceAll(".", "-")}`;
     const toPlace = (value) => (log ? Math.log(value / low) / Math.log(high / low) : (value - low) / (high - low));
@@ -69,7 +69,7 @@
       if (field.value === "") row.show(); else set(Number(field.value), true);
     });
     row.show = () => {
-      const value = at(controls.resolved, shown);
+      const value = at(controls.resolved, shown) ?? otherwise;
       const number = Array.isArray(value) ? value[0] : value;
       if (typeof number !== "number") return;
       if (document.activeElement !== range || !controls.moving) range.value = String(within(toPlace(number / size)));
@@ -351,7 +351,7 @@
       const ends = [[-20, 20], [-20, 20], [-20, "height" in controls.resolved.drop ? 20 : -0.05]];
       return [how, ...ends.map(([low, high], axis) => slider(controls, { path: ["drop", "velocity", axis], label: `Velocity ${"xyz"[axis]}`, unit: "m/s", low, high })), ...place, gravity];
     }
-    const angle = bySpeed && isFlat(controls.resolved) ? [slider(controls, { path: ["drop", "angle"], label: "Angle", unit: "deg", size: Math.PI / 180, low: -85, high: 85 })] : [];
+    const angle = bySpeed && isFlat(controls.resolved) ? [slider(controls, { path: ["drop", "angle"], label: "Angle", unit: "deg", size: Math.PI / 180, low: -85, high: 85, otherwise: 0 })] : [];
     return [how, bySpeed
       ? slider(controls, { path: ["drop", "speed"], label: "Speed", unit: "m/s", low: 0.05, high: 20, log: true })
       : slider(controls, { path: ["drop", "height"], label: "Height", unit: "m", low: 0.06, high: 10, log: true }),
@@ -413,7 +413,7 @@
       const focused = document.activeElement && document.activeElement.id;
       const plate = this.resolved.plate;
       const size = plate.size && plate.radius === undefined ? [["Length", 0, 100, 2000], ["Width", 1, 100, 2000], ["Thickness", 2, 1, 50]] : [];
-      const inclination = isFlat(this.resolved) ? [slider(this, { path: ["plate", "inclination"], label: "Inclination", unit: "deg", size: Math.PI / 180, low: -60, high: 60 })] : [];
+      const inclination = isFlat(this.resolved) ? [slider(this, { path: ["plate", "inclination"], label: "Inclination", unit: "deg", size: Math.PI / 180, low: -60, high: 60, otherwise: 0 })] : [];
       const below = plate.radius !== undefined ? [slider(this, { path: ["plate", "radius"], label: "Radius", unit: "mm", size: 1e-3, low: 2, high: 200, log: true })] : [];
       const all = plate.model === "elastic" ? [group("Supports", ...supports(this)), group("Sensors", ...sensors(this))] : [];
       this.form.replaceChildren(
