@@ -28,7 +28,7 @@ test-slow: $(VENV)/installed-test
 	OPENBLAS_NUM_THREADS=1 $(BIN)/pytest -m "slow and not peers and not page" -n auto --dist worksteal
 
 test-page: $(VENV)/installed-page chromium
-	OPENBLAS_NUM_THREADS=1 VIBROIMPACT_CHROMIUM="$(CHROMIUM)" $(BIN)/pytest -m page tests/page
+	OPENBLAS_NUM_THREADS=1 VIBROIMPACT_CHROMIUM="$(CHROMIUM)" $(BIN)/pytest -m page tests/page --reruns 2 --only-rerun BrowserStalled
 
 chromium:
 	@test -x "$(CHROMIUM)" || { \

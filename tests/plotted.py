@@ -24,11 +24,22 @@ _SIZES = {"": 1.0, "G": 1e9, "M": 1e6, "k": 1e3, "m": 1e-3, "µ": 1e-6, "n": 1e-
 _CHART = "(window.vibroimpact.charts || window.vibroimpact.live.charts).get(name)"
 
 
+class BrowserStalled(AssertionError):
+    """The browser draws no frames any more, as a headless Chromium on a busy machine may do for good: the test is run again."""
+
+
+_FRAME = """() => Promise.race([
+  new Promise((done) => requestAnimationFrame(() => done(true))), new Promise((done) => setTimeout(() => done(false), 5000))])"""
+
+
 def until(page: Page, expression: str, argument: Any = None) -> Any:
     """Return what an expression of the page gives as soon as it is true. Playwright's own waiting evaluates text, which pages forbid."""
     end = time.monotonic() + LONGEST
     while not (found := page.evaluate(expression, argument)):
-        assert time.monotonic() < end, f"{expression} did not become true"
+        if time.monotonic() > end:
+            if not page.evaluate(_FRAME):
+                raise BrowserStalled(expression)
+            raise AssertionError(f"{expression} did not become true")
         time.sleep(0.02)
     return found
 

@@ -22,7 +22,6 @@ CHROMIUM = os.environ.get("VIBROIMPACT_CHROMIUM", "/usr/bin/chromium")
 ARGUMENTS = [
     "--no-sandbox",
     "--disable-gpu",
-    "--in-process-gpu",  # as a process of its own it may stop drawing for good on a busy machine
     "--disable-quic",
     "--no-first-run",
     "--disable-background-networking",
