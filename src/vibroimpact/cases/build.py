@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal, cast
 
 from vibroimpact.calibration.section import calibrate_table
 from vibroimpact.cases.fields.material import material_table
-from vibroimpact.cases.oblique import friction_law_of, is_oblique
+from vibroimpact.cases.oblique import friction_law_of, oblique_keys
 from vibroimpact.cases.pair import is_free_sphere
 from vibroimpact.cases.rigid import PLATE_FALLS, contact_laws_of, deforms, elastic_names, impact_limit, rigid_problem
 from vibroimpact.contact.friction.law import CompliantFriction
@@ -70,16 +70,14 @@ def _check_oblique(case: CaseTable, law: ContactLaw) -> None:
     InputError
         If bodies deform, a sphere takes the place of the plate, or the friction law needs a force that the contact law does not have.
     """
-    if not is_oblique(case):
+    keys = oblique_keys(case)
+    if not keys:
         return
-    given: dict[str, object] = {"drop.velocity": case.drop.velocity, "drop.angle": case.drop.angle, "drop.spin": case.drop.spin}
-    given |= {"plate.inclination": case.plate.inclination, "contact.friction": case.contact.friction}
-    key = next(name for name, value in given.items() if value is not None)
     if case.contact.local.finite_sphere:
         raise InputError("an oblique drop has Hertz's half space in its contact; leave this out", "contact.finite_sphere")
     if deforms(case) or case.plate.radius is not None:
         raise InputError(
-            "only a rigid sphere on a rigid, flat plate may fall obliquely, spin or rub; leave this out, or both bodies rigid", key
+            "only a rigid sphere on a rigid, flat plate may fall obliquely, spin or rub; leave this out, or both bodies rigid", keys[0]
         )
     friction = friction_law_of(case)
     if isinstance(friction, CompliantFriction) and not isinstance(law, CompliantLaw):

@@ -18,11 +18,18 @@ if TYPE_CHECKING:
     from vibroimpact.cases.schema import CaseTable
 
 
-def is_oblique(case: CaseTable) -> bool:
-    """Return whether a drop is not along the plate's normal alone, or its friction is asked for."""
+def oblique_keys(case: CaseTable) -> list[str]:
+    """Return the keys of a case for which a drop is not along the plate's normal alone, friction included."""
     drop = case.drop
     along = drop.velocity is not None and any(np.any(part) for part in drop.velocity[:2])
-    return along or any(part is not None for part in (drop.angle, drop.spin, case.plate.inclination, case.contact.friction))
+    others: dict[str, Any] = {"drop.angle": drop.angle, "drop.spin": drop.spin, "plate.inclination": case.plate.inclination}
+    others["contact.friction"] = case.contact.friction
+    return [*(["drop.velocity"] if along else []), *(key for key, value in others.items() if value is not None)]
+
+
+def is_oblique(case: CaseTable) -> bool:
+    """Return whether a drop is not along the plate's normal alone, or its friction is asked for."""
+    return bool(oblique_keys(case))
 
 
 @derived

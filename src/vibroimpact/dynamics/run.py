@@ -259,7 +259,7 @@ class Run:
         at_rest = np.array([outcome.at_rest for outcome in OUTCOMES])[self.outcomes]
         if self.problem.duration is not None:
             self.end_time[at_rest] = np.maximum(self.end_time, self.problem.duration)[at_rest]
-        along = self.oblique_energies()
+        along = {} if self.oblique is None else self.lie_on_plate(self.oblique, np.flatnonzero(at_rest))
         final_gap, final_velocity = self.final_motion(np.flatnonzero(at_rest))
         vibration = self.bodies.energies()
         added = self.mass * self.gravity * self.deepest + np.maximum(-self.stored, 0.0)  # the stored energy is negative where it sticks
@@ -289,16 +289,13 @@ class Run:
             None,
         )
 
-    def oblique_energies(self) -> dict[str, Floats]:
-        """Return the entries of the ledger for the motion along the plate and the spin at the end of the run."""
-        if self.oblique is None:
-            return {}
-        resting = np.flatnonzero(np.array([outcome.at_rest for outcome in OUTCOMES])[self.outcomes])
-        if resting.size:  # it may slip and roll on along the plate, and off its edge
-            lain = self.oblique.lie(resting, self.gravity[resting], np.maximum(self.end_time - self.time, 0.0)[resting])
-            self.end_time[resting] = np.minimum(self.end_time[resting], self.time[resting] + lain)
-        kinetic, rotation, potential = self.oblique.energies()
-        return {"kinetic_J": kinetic, "potential_J": potential, "rotation_J": rotation, "friction_J": self.oblique.lost}
+    def lie_on_plate(self, oblique: ObliqueMotion, at_rest: Drops) -> dict[str, Floats]:
+        """Follow drops at rest along the plate, over whose edge they may leave it; return the entries of the ledger for that motion."""
+        if at_rest.size:
+            lain = oblique.lie(at_rest, self.gravity[at_rest], np.maximum(self.end_time - self.time, 0.0)[at_rest])
+            self.end_time[at_rest] = np.minimum(self.end_time[at_rest], self.time[at_rest] + lain)
+        kinetic, rotation, potential = oblique.energies()
+        return {"kinetic_J": kinetic, "potential_J": potential, "rotation_J": rotation, "friction_J": oblique.lost}
 
     def final_motion(self, at_rest: Drops) -> tuple[Floats, Floats]:
         """Return gap [m] and upward velocity [m/s] at the end of the run."""

@@ -16,7 +16,6 @@ from vibroimpact.studies.axes import Values
 
 _OF_THE_RUN = ("run.duration", "run.tolerance")  # the same for all drops of a batch
 _WITHOUT_EFFECT = "plate.size."  # on rigid bodies, unless the sphere may fall off the edge
-_PARTS = {"x": 0, "y": 1, "z": 2}
 
 
 def case_at(table: Mapping[str, Any], values: Mapping[str, Any]) -> Case:
@@ -57,7 +56,7 @@ def with_arrays(case: Case, arrays: Mapping[str, Values]) -> Case:
         elif section == "drop" and "." in field:
             whole, _, part = field.partition(".")
             now = list(fields[section].get(whole, getattr(case.drop, whole) or (0.0, 0.0, 0.0)))
-            now[_PARTS[part]] = values
+            now["xyz".index(part)] = values
             fields[section][whole] = tuple(now)
         elif not key.startswith(_WITHOUT_EFFECT):
             fields[section][field] = values

@@ -30,6 +30,10 @@
   const unitWith = (exponent, unit) => (typeof exponent === "number" ? unit.replace("¹·⁵", exponent === 1 ? "" : Array.from(String(exponent), (letter) => "⁰¹²³⁴⁵⁶⁷⁸⁹"[letter] || "·").join("")) : unit);
   const words = (name) => name[0].toUpperCase() + name.slice(1).replaceAll("_", " ");
 
+  // A number of a field as the table has it: in SI as a number, else with its unit.
+  const inUnit = (value, unit, size) => (size === 1 ? Number(value) : `${value} ${unit}`);
+  const labelled = (path, id, label, meaning, ...inside) => make("div", { class: "row", "data-key": path.join(".") }, make("label", { for: id, text: label, title: meaning }), ...inside);
+
   // A slider with a field, of a number at a path: `size` is that of its unit in SI, `low` and `high` the ends of the slider in this unit;
   // `shown` is its path in the resolved case, and `otherwise` what it is where the case does not give it.
   const slider = (controls, { path, shown = path, label, unit = "", size = 1, low, high, log = false, whole = false, meaning = "", otherwise }) => {
@@ -40,7 +44,7 @@
     const within = (place) => Math.min(Math.max(place, 0), 1) || 0;
     const range = make("input", { type: "range", id: `${id}-slider`, min: 0, max: 1, step: "any", "aria-label": `${label}, slider` });
     const field = make("input", { type: "number", id, step: "any", title: meaning });
-    const row = make("div", { class: "row", "data-key": key }, make("label", { for: id, text: label, title: meaning }), range, field, make("span", { class: "unit", text: unit }));
+    const row = labelled(path, id, label, meaning, range, field, make("span", { class: "unit", text: unit }));
     const tell = (value) => range.setAttribute("aria-valuetext", `${digits(value)} ${unit}`.trim());
     const set = (value, settled) => {
       controls.change((table) => {
@@ -48,7 +52,7 @@
         const whole = path.slice(0, -1), now = at(table, whole), resolved = at(controls.resolved, whole);
         if (whole.length > 1 && (typeof now !== "object" || now === null) && resolved) put(table, whole, ownCopy(resolved));
         if (path[1] === "modes") delete at(table, whole).max_frequency;
-        put(table, path, size === 1 ? value : `${value} ${unit}`);
+        put(table, path, inUnit(value, unit, size));
       }, settled);
     };
     range.addEventListener("input", () => { const value = fromPlace(Number(range.value)); field.value = digits(value); tell(value); set(value, false); });
@@ -82,8 +86,8 @@
   const listField = (controls, { path, label, unit = "", size = 1, meaning = "" }) => {
     const id = `c-${path.join("-")}`;
     const field = make("input", { type: "text", id, class: "list", title: meaning });
-    const row = make("div", { class: "row", "data-key": path.join(".") }, make("label", { for: id, text: label, title: meaning }), field, make("span", { class: "unit", text: unit }));
-    const read = (words) => (words === "" || Number.isNaN(Number(words)) ? words : size === 1 ? Number(words) : `${words} ${unit}`);
+    const row = labelled(path, id, label, meaning, field, make("span", { class: "unit", text: unit }));
+    const read = (words) => (words === "" || Number.isNaN(Number(words)) ? words : inUnit(words, unit, size));
     field.addEventListener("change", () => controls.change((table) => {
       const values = field.value.split(",").map((words) => read(words.trim()));
       put(table, path, values.length > 1 ? values : values[0]);
@@ -98,8 +102,8 @@
   const openField = (controls, { path, label, unit = "", size = 1, hint = "", meaning = "" }) => {
     const id = `c-${path.join("-")}`;
     const field = make("input", { type: "number", id, step: "any", class: "list", placeholder: hint, title: meaning });
-    const row = make("div", { class: "row", "data-key": path.join(".") }, make("label", { for: id, text: label, title: meaning }), field, make("span", { class: "unit", text: unit }));
-    field.addEventListener("change", () => controls.change((table) => put(table, path, field.value === "" ? undefined : size === 1 ? Number(field.value) : `${field.value} ${unit}`), true));
+    const row = labelled(path, id, label, meaning, field, make("span", { class: "unit", text: unit }));
+    field.addEventListener("change", () => controls.change((table) => put(table, path, field.value === "" ? undefined : inUnit(field.value, unit, size)), true));
     return row;
   };
   // A copy of a list, or of a material, which has no name of the library any more.

@@ -13,9 +13,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from vibroimpact.arrays import Drops, Floats
+from vibroimpact.arrays import Floats
 from vibroimpact.contact.friction.law import CompliantFriction, Memory
 from vibroimpact.contact.friction.turning_points import integral_of_line
+from vibroimpact.contact.pair import hertz_stiffness
 from vibroimpact.dynamics.oblique.normal_motion import NormalMotion
 
 _LEAST, _MOST = 1e-9, 1e6
@@ -48,7 +49,8 @@ def slide_compliant(
     """
     ones = np.ones(len(slip))
     modulus, shear, radius = (ones * value for value in (law.effective_modulus, law.effective_shear_modulus, law.effective_radius))
-    depth = np.cbrt(normal.force / (4.0 / 3.0 * modulus * np.sqrt(radius))) ** 2
+    hertz = hertz_stiffness(modulus, radius)
+    depth = np.cbrt(normal.force / hertz) ** 2
     with np.errstate(divide="ignore", invalid="ignore"):
         depth_slope = np.where(normal.force > 0.0, (2.0 / 3.0) * depth * normal.force_slope / normal.force, 0.0)
     scale = (np.abs(slip) + np.abs(pull) * normal.time[-1]) * normal.time[-1] / depth.max(axis=0)
@@ -56,34 +58,25 @@ def slide_compliant(
     kappa = np.clip(asked, _LEAST * scale, _MOST * scale)
     kappa[kappa == 0.0] = 1.0
     stiffness = np.where(asked < kappa, 0.0, 2.0 * shear * np.sqrt(radius))  # of the integral: none where friction is below the least
-    path = _slide_throughout(normal, depth, slip / kappa, stiffness / mass, pull / kappa)
+    path = _slide_throughout(normal, hertz, slip / kappa, stiffness / mass, pull / kappa)
     least = np.where(depth_slope > 0.0, depth_slope, law.sliding_bound * depth_slope)
     sticks = np.flatnonzero((path[0] * normal.pace < least - _ROUNDING * depth_slope.max(axis=0)).any(axis=0))
     if sticks.size:
-        memory, rest = law.memory(len(sticks), 2 * len(normal.time)), _some(normal, sticks)
+        memory, rest = law.memory(len(sticks), 2 * len(normal.time)), normal.take(sticks)
         arrays = (slip / kappa, stiffness / mass, pull / kappa)
         path[:, :, sticks] = _integrate(memory, rest, depth[:, sticks], depth_slope[:, sticks], *(values[sticks] for values in arrays))
     return path[0] * kappa, path[1] * kappa, stiffness * kappa * path[2]
 
 
-def _some(normal: NormalMotion, drops: Drops) -> NormalMotion:
-    """Return the normal motion of some of the contacts."""
-    if len(drops) == normal.time.shape[1]:
-        return normal
-    arrays = (normal.time, normal.pace, normal.pace_slope, normal.force, normal.force_slope, normal.impulse)
-    return NormalMotion(normal.steps, *(values[:, drops] for values in arrays))
-
-
-def _slide_throughout(normal: NormalMotion, depth: Floats, slip: Floats, stiffness: Floats, pull: Floats) -> Floats:
+def _slide_throughout(normal: NormalMotion, hertz: Floats, slip: Floats, stiffness: Floats, pull: Floats) -> Floats:
     """Return slip velocity, displacement and integral (3, G, B) of contacts whose every point slips all the time.
 
-    So it is where nowhere the displacement grows more slowly than the depth, or shrinks faster than a part of it.
+    So it is where nowhere the displacement grows more slowly than the depth, or shrinks faster than a part of it. `hertz`: Hertz's
+    stiffness [N/m^1.5].
     """
-    found, step = np.empty((3, *depth.shape)), normal.steps[:, None]
-    found[2] = (2.0 / 3.0) * depth * np.sqrt(depth)
-    # the integral is proportional to the normal force, and its impulse to that of the force
-    with np.errstate(invalid="ignore", divide="ignore"):
-        per_force = np.where(normal.force.max(axis=0) > 0.0, found[2].max(axis=0) / normal.force.max(axis=0), 0.0)
+    found, step = np.empty((3, *normal.force.shape)), normal.steps[:, None]
+    per_force = (2.0 / 3.0) / hertz  # 2/3 of the depth to the power 3/2 is the integral
+    found[2] = per_force * normal.force
     found[0] = slip + pull * normal.time - stiffness * per_force * normal.impulse
     rate = normal.pace * found[0]
     bend = normal.pace_slope * found[0] + normal.pace**2 * (pull - stiffness * found[2])

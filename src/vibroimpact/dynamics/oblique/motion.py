@@ -104,9 +104,7 @@ class ObliqueMotion:
         left = slip
         if isinstance(self.law, ImpulsiveFriction):
             left = self.law.take(drops).slip_after(slip, impulse, impulse, sphere.tangential_mass)
-        change, turn = sphere.tangential_mass * (left - slip) * direction, sphere.radius / sphere.inertia
-        spin = before.spin + np.stack([turn * change[1], -turn * change[0], np.zeros(len(drops))])
-        self._finish(drops, State(before.position, before.velocity + change / sphere.mass, spin), row)
+        self._finish(drops, sphere.pushed(before, sphere.tangential_mass * (left - slip) * direction), row)
 
     def _finish(self, drops: Drops, after: State, row: dict[str, Floats]) -> None:
         """Put drops into their states after a contact, and write its columns."""

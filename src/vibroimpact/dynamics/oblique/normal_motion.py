@@ -17,7 +17,6 @@ from vibroimpact.dynamics.phase_plane.collocation import PlaneRule
 from vibroimpact.dynamics.phase_plane.motion import PlaneMotion
 from vibroimpact.dynamics.rigid.timeline import segments_of
 
-_FEWEST = 24  # steps for half of a part that was not solved in the phase plane
 _ROUNDING = 1e-12
 _HALVINGS = 30
 
@@ -39,6 +38,12 @@ class NormalMotion:
     force_slope: Floats
     impulse: Floats
 
+    def take(self, drops: Drops) -> NormalMotion:
+        """Return the normal motion of some of the contacts."""
+        if len(drops) == self.time.shape[1]:
+            return self
+        return NormalMotion(self.steps, *(getattr(self, name)[:, drops] for name in _ARRAYS))
+
 
 def normal_motions(leg: Leg, contact: Contact, encounter: Encounter, steps: int) -> list[tuple[Drops, NormalMotion]]:
     """Return the normal motion of the contacts of a leg in groups that consist of the same parts, with the places of their drops.
@@ -57,7 +62,7 @@ def normal_motions(leg: Leg, contact: Contact, encounter: Encounter, steps: int)
             found.append((places, _joined([one for part in parts for one in _of_phase(part, encounter, places, steps)])))
         else:
             alone.extend(places.tolist())
-    found.extend((np.array([place]), _read(leg.of(int(leg.contact_drops[place])), max(steps, _FEWEST))) for place in alone)
+    found.extend((np.array([place]), _read(leg.of(int(leg.contact_drops[place])), steps)) for place in alone)
     return found
 
 
@@ -72,15 +77,13 @@ def _of_phase(piece: Piece, encounter: Encounter, places: Drops, steps: int) -> 
     here = np.isin(piece.drops, places)
     motion, encounter = piece.motion.take(here), encounter.under(piece.law).take(places)
     assert isinstance(motion, PlaneMotion)
-    rule, compressing, law = motion.rule, motion.name == "compression", encounter.law
-    sign, slope = 1.0 if compressing else -1.0, rule.indentation_slope(motion.levels)
-    velocity = sign * rule.factor * np.sqrt(motion.squares)
-    static, dissipative = law.forces(rule.indentations(motion.levels), velocity, encounter.approach_speed)
+    rule, compressing = motion.rule, motion.name == "compression"
+    static, dissipative = motion.forces(encounter)
     forces = static + dissipative
-    if law.tension == "cut":
+    if encounter.law.tension == "cut":
         forces = np.maximum(forces, 0.0)
-    paces, grid, left, found = rule.split(-slope / np.sqrt(motion.squares)), np.linspace(0.0, 1.0, steps + 1), motion.duration, []
-    for pace, force in zip(paces, rule.split(forces), strict=True):
+    grid, left, found = np.linspace(0.0, 1.0, steps + 1), motion.duration, []
+    for pace, force in zip(rule.split(motion.pace), rule.split(forces), strict=True):
         ends = _reach(rule, pace, left)
         if (ends == 1.0).all():
             values, sums = rule.weights_at(grid).T, rule.weights_to_end(grid).T

@@ -58,10 +58,8 @@ def slide_and_roll(sphere: Sphere, start: State, coefficient: Array, pressing: F
         moved[:, drop], now[:, drop], pull[:, drop] = _curved(slip[:, drop], gravity[:, drop], float(bound[drop]), float(elapsed[drop]))
     velocity = start.velocity + (1.0 - share) * gravity * elapsed + share * (now - slip)
     position = start.position + (start.velocity + 0.5 * (1.0 - share) * gravity * elapsed) * elapsed + share * (moved - slip * elapsed)
-    impulse = sphere.mass * (velocity - start.velocity - gravity * elapsed)
-    turn = sphere.radius / sphere.inertia
-    spin = start.spin + np.stack([turn * impulse[1], -turn * impulse[0], 0.0 * elapsed])
-    return State(position, velocity, spin), -sphere.tangential_mass * pull
+    pushed = sphere.pushed(start, sphere.mass * (velocity - start.velocity - gravity * elapsed))
+    return State(position, velocity, pushed.spin), -sphere.tangential_mass * pull
 
 
 def _turns(slip: Floats, gravity: Floats) -> Bools:

@@ -67,6 +67,15 @@ class Sphere:
         moved = state.position + (state.velocity + 0.5 * self.gravity * elapsed) * elapsed
         return State(moved, state.velocity + self.gravity * elapsed, state.spin)
 
+    def pushed(self, state: State, impulse: Floats, twist: Floats | float = 0.0) -> State:
+        """Return the state after an impulse at the contact point along the plate [N s] (2, B).
+
+        `twist`: change of the spin about the normal [rad/s].
+        """
+        turn = self.radius / self.inertia
+        spin = state.spin + np.stack([turn * impulse[1], -turn * impulse[0], twist + 0.0 * impulse[0]])
+        return State(state.position, state.velocity + impulse / self.mass, spin)
+
 
 def energy_taken(sphere: Sphere, before: State, after: State) -> Floats:
     """Return the energy that friction takes between two states [J]."""
@@ -101,9 +110,8 @@ class ObliqueContact:
         pull = (sphere.gravity * self.direction).sum(axis=0)
         impulse = sphere.tangential_mass * (slip - slip_before - pull * time) * self.direction
         moved = sphere.tangential_mass * (displacement - slip_before * time - 0.5 * pull * time**2) * self.direction
-        flown, turn = sphere.fly(before, time), sphere.radius / sphere.inertia
-        spin = before.spin + np.stack([turn * impulse[1], -turn * impulse[0], twist])
-        return State(flown.position + moved / sphere.mass, flown.velocity + impulse / sphere.mass, spin)
+        pushed = sphere.pushed(sphere.fly(before, time), impulse, twist)
+        return State(pushed.position + moved / sphere.mass, pushed.velocity, pushed.spin)
 
     @property
     def end(self) -> State:

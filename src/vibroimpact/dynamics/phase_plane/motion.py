@@ -40,7 +40,7 @@ class PlaneMotion(PlanePath):
 
     def grid(self) -> Floats:
         """Return times since the start at which the motion of one drop is well resolved [s]."""
-        elapsed = self.rule.integrals_of(self._pace)
+        elapsed = self.rule.integrals_of(self.pace)
         within = self.rule.weights_to_end(np.linspace(0.0, 1.0, 61)).T @ elapsed
         within[0] = 0.0  # where two segments meet there is one point, whatever the rounding
         since = np.unique(within + _sums_before(elapsed[-1]))
@@ -50,10 +50,9 @@ class PlaneMotion(PlanePath):
 
     def at(self, time: Floats, encounter: Encounter) -> tuple[Floats, Floats, Floats]:
         """Return indentation [m], its rate [m/s] and the energy dissipated since the start [J] of one drop at times since then [s]."""
-        rule, levels, compressing, pace = self.rule, self.levels, self.name == "compression", self._pace
-        sign, slope = 1.0 if compressing else -1.0, rule.indentation_slope(levels)
-        velocity = sign * rule.factor * np.sqrt(self.squares)
-        static, dissipative = encounter.law.forces(rule.indentations(levels), velocity, encounter.approach_speed)
+        rule, levels, compressing, pace = self.rule, self.levels, self.name == "compression", self.pace
+        sign, slope = self._sign, rule.indentation_slope(levels)
+        static, dissipative = self.forces(encounter)
         losses = rule.integrals_of(-sign * dissipative * rule.factor * slope)
         squares = rule.integrals_of(2.0 * (encounter.gravity - (static + dissipative) / encounter.mass) * slope)
         squares += np.concatenate([self.begun, self.ends[:-1, 0]])
@@ -72,9 +71,19 @@ class PlaneMotion(PlanePath):
         lost = lost + _sums_before(losses[-1])[segment]
         return (delta, rate, losses[-1].sum() - lost) if compressing else (delta, -rate, lost)
 
+    def forces(self, encounter: Encounter) -> tuple[Floats, Floats]:
+        """Return the static and the dissipative part of the force at the nodes [N] (S N, b), before any clipping at zero."""
+        velocity = self._sign * self.rule.factor * np.sqrt(self.squares)
+        return encounter.law.forces(self.rule.indentations(self.levels), velocity, encounter.approach_speed)
+
     @property
-    def _pace(self) -> Floats:
-        """dt/dy at the nodes [s] (S N, 1)."""
+    def _sign(self) -> float:
+        """The direction of the indentation rate: 1 in compression, -1 in restitution."""
+        return 1.0 if self.name == "compression" else -1.0
+
+    @property
+    def pace(self) -> Floats:
+        """dt/dy at the nodes [s] (S N, b)."""
         return np.asarray(-self.rule.indentation_slope(self.levels) / np.sqrt(self.squares))
 
     def _values(self, series: Sequence[Floats], segment: Indices, y: Floats) -> list[Floats]:
