@@ -11,7 +11,7 @@ import pytest
 import vibroimpact as vi
 from vibroimpact.arrays import Floats
 from vibroimpact.cases.keys import with_values
-from vibroimpact.dynamics.columns import OBLIQUE_LEDGER
+from vibroimpact.dynamics.columns import LEDGER, OBLIQUE_LEDGER, VIBRATION_LEDGER
 from vibroimpact.dynamics.oblique import compliant
 
 RADIUS, MASS = 0.01, 0.02
@@ -38,6 +38,14 @@ CASE: dict[str, Any] = {
     "drop": {"speed": "3 m/s", "angle": "30 deg", "position": ["-300 mm", 0]},
     "contact": {"law": "hunt-crossley", "restitution": 0.6, "friction": {"law": "mdr", "coefficient": 0.2}},
     "run": {"impacts": 3},
+}
+ELASTIC_PLATE = {
+    **CASE["plate"],
+    "size": ["600 mm", "400 mm", "20 mm"],
+    "model": "elastic",
+    "modes": 20,
+    "supports": "clamped",
+    "damping": 0.01,
 }
 
 
@@ -257,8 +265,8 @@ FAULTS: list[tuple[dict[str, Any], str]] = [
     (with_friction(law="coulomb", coefficient=-0.1), "contact.friction.coefficient: -0.1 is not allowed; it must be at least 0"),
     (with_friction(law="coulomb", mu=0.1), 'contact.friction.mu: unknown key "mu"; coulomb takes coefficient.'),
     (
-        {"plate": {**CASE["plate"], "model": "elastic", "modes": 5, "supports": "clamped"}},
-        "drop.angle: only a rigid sphere on a rigid, flat plate may fall obliquely",
+        {"plate": ELASTIC_PLATE, **with_friction(law="coulomb", coefficient=0.1)},
+        'contact.friction.law: coulomb has no tangential compliance, which friction on bodies that deform needs; take "mdr" or',
     ),
     ({"plate": {**CASE["plate"], "inclination": "90 deg"}}, 'plate.inclination: "90 deg" is not allowed; it must be greater than'),
 ]
@@ -340,3 +348,64 @@ def test_python_is_told_as_well() -> None:
     }
     with pytest.raises(vi.InputError, match="newton gives no normal force for mdr to follow"):
         vi.Problem(**newton, speed=1.0, oblique=vi.Oblique(friction=FRICTION["mdr"]))
+
+
+DROP_ON_ELASTIC = {"speed": "3 m/s", "angle": "10 deg", "position": ["-100 mm", "20 mm"], "gravity": "60 m/s^2"}
+
+
+def on_elastic(**changes: Any) -> dict[str, Any]:
+    sensors = [{"name": "a1", "position": ["50 mm", "60 mm"]}]
+    return {**CASE, "plate": ELASTIC_PLATE, "drop": DROP_ON_ELASTIC, "sensors": sensors, **changes}
+
+
+def case_of(**changes: Any) -> vi.Case:
+    return vi.read_case(on_elastic(**changes))
+
+
+def test_an_oblique_drop_on_a_plate_that_vibrates(tmp_path: Path) -> None:
+    """Each impact is where the sphere is by then; history, ledger, sensors and folder have both its motion and the plate's."""
+    response = vi.simulate(case_of())
+    places = np.stack([response.impacts["position_x_m"], response.impacts["position_y_m"]])
+    assert len(places[0]) == 3
+    assert places[0, 0] == pytest.approx(-0.1, abs=1e-9)
+    assert (np.diff(places[0]) > 0.01).all()
+    history = response.history()
+    ledger = sum(history[name] for name in (*LEDGER, *VIBRATION_LEDGER, *OBLIQUE_LEDGER))
+    np.testing.assert_allclose(ledger, ledger[0], rtol=1e-7)
+    assert history["friction_J"][-1] == pytest.approx(response.impacts["friction_lost_J"].sum(), rel=1e-9)
+    assert response.energy["closure_relative"] < 1e-9
+    response.save(tmp_path / "run")
+    result = vi.read_result(tmp_path / "run")
+    np.testing.assert_allclose(result.impacts["tangential_restitution"], response.impacts["tangential_restitution"], rtol=1e-15)
+    assert "Motion along the plate" in (tmp_path / "run" / "report.html").read_text(encoding="utf-8")
+
+
+def test_the_plate_is_another_one_at_another_place() -> None:
+    """The second impact is as a first one would be there, but for what still vibrates, which damping takes before it."""
+    plate = {**ELASTIC_PLATE, "damping": 0.4}
+    first = vi.simulate(case_of(plate=plate, run={"impacts": 2}))
+    row = {name: values[1] for name, values in first.impacts.items()}
+    drop = {
+        "velocity": [row["approach_velocity_x_m_s"], row["approach_velocity_y_m_s"], -row["approach_speed_m_s"]],
+        "spin": [row[f"spin_{axis}_before_rad_s"] for axis in "xyz"],
+        "position": [row["position_x_m"], row["position_y_m"]],
+        "gravity": "60 m/s^2",
+    }
+    alone = vi.simulate(case_of(plate=plate, drop=drop, run={"impacts": 1})).impacts
+    for name in ("separation_speed_m_s", "separation_velocity_x_m_s", "max_force_N", "duration_s"):
+        assert alone[name][0] == pytest.approx(row[name], rel=1e-6)
+    elsewhere = vi.simulate(case_of(plate=plate, drop={**drop, "position": [0.2, 0.1]}, run={"impacts": 1})).impacts
+    assert abs(elsewhere["max_force_N"][0] / row["max_force_N"] - 1.0) > 3e-4
+
+
+def test_falling_off_the_edge_of_a_plate_that_vibrates() -> None:
+    drop = {"height": "0.5 m", "velocity": ["1.5 m/s", 0, 0], "position": ["-100 mm", 0]}
+    response = vi.simulate(case_of(drop=drop))
+    assert "falls off the edge of the plate after 0 impacts" in response.status
+
+
+def test_studies_of_oblique_drops_on_a_plate_that_vibrates(tmp_path: Path) -> None:
+    over = {"drop.angle": ["0 deg", "40 deg"]}
+    study = vi.read_study(vi.run_sweep(vi.read_sweep({**on_elastic(run={"impacts": 1}), "sweep": {"over": over}}), tmp_path / "study"))
+    alone = vi.simulate(case_of(run={"impacts": 1}, drop={**DROP_ON_ELASTIC, "angle": "40 deg"}))
+    assert float(study.values("tangential_restitution", 1)[0]) == float(alone.impacts["tangential_restitution"][0])

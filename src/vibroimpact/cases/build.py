@@ -7,6 +7,7 @@ from dataclasses import fields, replace
 from typing import TYPE_CHECKING, Any, Literal, cast
 
 from vibroimpact.calibration.section import calibrate_table
+from vibroimpact.cases.fields.elastic_body import BroughtMeshTable
 from vibroimpact.cases.fields.material import material_table
 from vibroimpact.cases.oblique import friction_law_of, oblique_keys
 from vibroimpact.cases.pair import is_free_sphere
@@ -68,18 +69,23 @@ def _check_oblique(case: CaseTable, law: ContactLaw) -> None:
     Raises
     ------
     InputError
-        If bodies deform, a sphere takes the place of the plate, or the friction law needs a force that the contact law does not have.
+        If a sphere takes the place of the plate, the mesh of a plate is brought along, or the friction law does not go with the contact law
+        or with bodies that deform.
     """
     keys = oblique_keys(case)
     if not keys:
         return
     if case.contact.local.finite_sphere:
         raise InputError("an oblique drop has Hertz's half space in its contact; leave this out", "contact.finite_sphere")
-    if deforms(case) or case.plate.radius is not None:
-        raise InputError(
-            "only a rigid sphere on a rigid, flat plate may fall obliquely, spin or rub; leave this out, or both bodies rigid", keys[0]
-        )
+    if case.plate.radius is not None:
+        raise InputError("a sphere may fall obliquely, spin or rub on a flat plate only, not on another sphere; leave this out", keys[0])
+    if isinstance(case.plate.mesh, BroughtMeshTable):
+        words = "a mesh that is brought along does not say where the plate ends, over whose edge a sphere may fall"
+        raise InputError(f"{words}; give size and leave out mesh, or leave this out", keys[0])
     friction = friction_law_of(case)
+    if deforms(case) and friction is not None and not isinstance(friction, CompliantFriction):
+        words = f"{friction.name} has no tangential compliance, which friction on bodies that deform needs"
+        raise InputError(f'{words}; take "mdr" or one of the "mindlin" laws', "contact.friction.law")
     if isinstance(friction, CompliantFriction) and not isinstance(law, CompliantLaw):
         words = f"{law.name} gives no normal force, which {friction.name} follows"
         raise InputError(f'{words}; take another contact law, or friction by the impulse: "coulomb" or "rigid"', "contact.friction.law")

@@ -11,6 +11,8 @@ from vibroimpact.dynamics.encounter import Encounter
 from vibroimpact.dynamics.flight import Flight
 from vibroimpact.dynamics.leg import Leg
 from vibroimpact.dynamics.lockstep import Coroutine
+from vibroimpact.dynamics.oblique.motion import ObliqueMotion
+from vibroimpact.dynamics.oblique.state import ObliqueContacts
 
 if TYPE_CHECKING:  # a drop of rigid bodies does not load what vibrates
     from vibroimpact.dynamics.vibrating.linear_system import FreeMotion
@@ -62,6 +64,9 @@ class Bodies(Protocol):
         row : dict of str to array
             The row of the impact table, into which further columns of bodies that vibrate are written.
         """
+
+    def slide(self, oblique: ObliqueMotion, leg: Leg, row: dict[str, Floats]) -> ObliqueContacts:
+        """Advance drops along the plate through the contacts of a leg, write their columns, and return the motion in them."""
 
     def falls_back(self, contact: Contact, law: CompliantLaw, gravity: Floats) -> Bools:
         """Return which drops fall back into the indentation before they have risen to the touch level of the law."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
 from numbers import Integral
@@ -84,6 +84,9 @@ class Problem:
         What is told of how the deformation is modelled; names end in their units.
     models : mapping, optional
         The modes of "sphere" and "plate" on their meshes, for pictures of their deflection.
+    at_place : callable, optional
+        The problem with its contact at another place of the plate, x and y [m]; without it a sphere that moves along a plate that
+        vibrates finds it everywhere as where it touches first.
 
     Raises
     ------
@@ -120,6 +123,7 @@ class Problem:
     source: ResolvedCase | None = field(default=None, compare=False)
     facts: Mapping[str, float | str] = field(default_factory=dict, compare=False)
     models: Mapping[str, ModalModel] = field(default_factory=dict, compare=False)
+    at_place: Callable[[tuple[float, float]], Problem] | None = field(default=None, compare=False)
 
     def __post_init__(self) -> None:
         if isinstance(self.laws, ContactLaw):
@@ -165,10 +169,7 @@ class Problem:
         if self.oblique is not None and not isinstance(self.oblique, Oblique):
             raise InputError(f"oblique must be an Oblique, not {self.oblique!r}")
         if self.oblique is not None and self.vibrates:
-            raise InputError(
-                "only a rigid sphere on a rigid plate that is held may fall obliquely, spin or rub; "
-                "bodies that deform fall along the normal"
-            )
+            self._check_rubbing(self.oblique)
         if self.oblique is not None and isinstance(self.oblique.friction, CompliantFriction) and isinstance(self.laws[0], InstantaneousLaw):
             words = f"{self.laws[0].name} gives no normal force for {self.oblique.friction.name} to follow"
             raise InputError(f"{words}; take another contact law, or friction by the impulse, as of coulomb or rigid")
@@ -178,6 +179,21 @@ class Problem:
             raise InputError("the arrays of a batch must agree in shape: one value a drop") from None
         if len(self.shape) > 1 or 0 in self.shape:
             raise InputError(f"a batch has one axis with at least one drop, not the shape {self.shape}")
+
+    def _check_rubbing(self, oblique: Oblique) -> None:
+        """Check that bodies that deform can move along each other.
+
+        Raises
+        ------
+        InputError
+            If the plate's modes do not tell how it moves along its surface, or the friction law has no tangential compliance.
+        """
+        bases = [basis for basis in (self.plate.rigid, self.plate.modes) if basis is not None]
+        if any(basis.along is None for basis in bases):
+            raise InputError("modes of a plate that is hit obliquely need `along`, the motion of their contact point along the plate")
+        if oblique.friction is not None and not isinstance(oblique.friction, CompliantFriction):
+            words = f"{oblique.friction.name} has no tangential compliance, which friction on bodies that deform needs"
+            raise InputError(f'{words}; take "mdr" or one of the "mindlin" laws')
 
     @property
     def vibrates(self) -> bool:

@@ -118,8 +118,9 @@ class Response:
     @property
     def history_columns(self) -> dict[str, tuple[str, str]]:
         """Unit and meaning of the columns of a history."""
-        further = VIBRATION_HISTORY_COLUMNS if self.problem.vibrates else {} if self.problem.oblique is None else OBLIQUE_HISTORY_COLUMNS
-        return meanings({**HISTORY_COLUMNS, **further})
+        of_vibration = VIBRATION_HISTORY_COLUMNS if self.problem.vibrates else {}
+        along = {} if self.problem.oblique is None else OBLIQUE_HISTORY_COLUMNS
+        return meanings({**HISTORY_COLUMNS, **of_vibration, **along})
 
     @property
     def status(self) -> str:
@@ -324,15 +325,28 @@ class Response:
     def _history(self, number: int, times: Floats, columns: Collection[str]) -> dict[str, Floats]:
         """Return columns at times since the start of one segment."""
         segments, problem = self._segments, self.problem
-        if not isinstance(segments, Timeline):
+        if isinstance(segments, Timeline):
+            found, resting = self._rigid_history(segments, number, times), isinstance(segments[number], RestSegment)
+        else:
             from vibroimpact.dynamics.vibrating.history import vibrating_history
+            from vibroimpact.dynamics.vibrating.rest_motion import RestMotion
 
-            return vibrating_history(problem, segments[number], times, columns)
+            of_bodies = [name for name in columns if name not in OBLIQUE_HISTORY_COLUMNS]
+            found, resting = vibrating_history(problem, segments[number], times, of_bodies), isinstance(segments[number].motion, RestMotion)
+        if self.legs is not None and problem.oblique is not None:
+            start = segments[number].start
+            along = oblique_history(problem, self.legs, self.impacts["friction_lost_J"], start + times, start if resting else np.inf)
+            found |= {name: values + found[name] if name in found else values for name, values in along.items()}
+        return {name: found[name] for name in columns}
+
+    def _rigid_history(self, segments: Timeline, number: int, times: Floats) -> dict[str, Floats]:
+        """Return the columns of the motion of rigid bodies along the normal at times since the start of one segment."""
+        problem = self.problem
         segment, mass, gravity = segments[number], float(problem.sphere.mass), float(problem.gravity)
         gap, velocity, force, stored, lost, plastic = segment.at(times)
         lost_before, plastic_before = segments.spent[number]
         resting, flying = isinstance(segment, RestSegment), isinstance(segment, FlightSegment)
-        found = {
+        return {
             "time_s": segment.start + times,
             "position_m": float(problem.sphere.contact_offset) + gap,
             "velocity_m_s": velocity,
@@ -346,15 +360,6 @@ class Response:
             "plastic_work_J": plastic_before + plastic,
             "written_off_at_rest_J": np.full_like(times, self.rest.written_off[0] if resting else 0.0),
         }
-        if self.legs is not None and problem.oblique is not None:
-            lies_from = segment.start if resting else np.inf
-            along = oblique_history(problem, self.legs, self.impacts["friction_lost_J"], found["time_s"], lies_from)
-            found |= {
-                **along,
-                "kinetic_J": found["kinetic_J"] + along["kinetic_J"],
-                "potential_J": found["potential_J"] + along["potential_J"],
-            }
-        return {name: found[name] for name in columns}
 
     @cached_property
     def _segments(self) -> Sequence[VibratingSegment] | Timeline:

@@ -19,8 +19,7 @@ from vibroimpact.dynamics.flight import Flight
 from vibroimpact.dynamics.impact_rows import ImpactRows
 from vibroimpact.dynamics.leg import Leg
 from vibroimpact.dynamics.lockstep import Coroutine
-from vibroimpact.dynamics.oblique.motion import OBLIQUE_STEPS, ObliqueMotion
-from vibroimpact.dynamics.oblique.normal_motion import normal_motions
+from vibroimpact.dynamics.oblique.motion import ObliqueMotion
 from vibroimpact.dynamics.outcome import OUTCOMES, Outcome
 from vibroimpact.dynamics.problem import MOST_IMPACTS, Problem
 from vibroimpact.dynamics.response import Response
@@ -60,7 +59,7 @@ class Run:
         """Return the bodies of the problem, of which one vibrates."""
         from vibroimpact.dynamics.vibrating.bodies import VibratingBodies  # a drop of rigid bodies does not load what vibrates
 
-        return VibratingBodies(self.problem, self.mass, self.gravity)
+        return VibratingBodies(self.problem, self.mass, self.gravity, self.oblique)
 
     def spread(self, value: object) -> Floats:
         """Return a value of the problem as an array with one entry per drop."""
@@ -211,8 +210,7 @@ class Run:
         self.stored[drops[riding]] = stored[riding]
         leg = replace(leg, contact=contact, encounter=encounter)
         if self.oblique is not None:
-            motions = normal_motions(leg, contact, encounter, OBLIQUE_STEPS)
-            leg = replace(leg, oblique_contacts=self.oblique.collide(drops, motions, row))
+            leg = replace(leg, oblique_contacts=self.bodies.slide(self.oblique, leg, row))
         return leg, contact.dissipated + np.where(captured | riding, 0.0, stored)
 
     def next_law(self, drops: Drops) -> CompliantLaw:

@@ -214,6 +214,8 @@ class ModalBasis:
     residuals : mapping of str to array, shape (3,)
         Residual compliances: static displacements of the sensors under a unit vertical force at the contact point, less those of these
         modes [m/N].
+    along : array, shape (modes, 2), optional
+        Displacement of the contact point along x and y in each mode [kg^-1/2], by which friction moves the body.
     """
 
     frequencies: Floats
@@ -225,6 +227,7 @@ class ModalBasis:
     rotation: Floats | None = None
     frequency_errors: Floats | None = None
     residuals: Mapping[str, Floats] = field(default_factory=dict)
+    along: Floats | None = None
 
     @property
     def angular_frequencies(self) -> Floats:
@@ -264,15 +267,17 @@ def modal_basis(
     def seen(spot: Spot, face: Side, what: str = "the contact point") -> Floats:
         return model.at(np.array([place_of(model.mesh, spot, face)]), face, what)[0][:, 0]
 
+    touched = seen(contact, side)
     return ModalBasis(
         model.frequencies,
         damping.ratios(model.frequencies),
-        seen(contact, side)[:, 2],
+        touched[:, 2],
         model.participation[:, :3],
         {name: seen(*point, f'sensor "{name}"') for name, point in (points or {}).items()},
         model.properties.mass,
         _rotation(model.properties, model.participation[:, 3:]),
         model.frequency_errors,
+        along=touched[:, :2],
     )
 
 
@@ -301,14 +306,16 @@ def rigid_basis(model: ModalModel, contact: tuple[Spot, Side], points: Mapping[s
         place = surface_motion(model.mesh, np.array([place_of(model.mesh, spot, side)]), side, model.thickness)[1][0]
         return np.asarray(along + np.cross(turning, place - properties.centre))
 
+    touched = seen(*contact)
     return ModalBasis(
         np.zeros(len(motions)),
         np.zeros(len(motions)),
-        seen(*contact)[:, 2],
+        touched[:, 2],
         properties.mass * along,
         {name: seen(*point) for name, point in points.items()},
         properties.mass,
         _rotation(properties, turning @ properties.inertia),
+        along=touched[:, :2],
     )
 
 

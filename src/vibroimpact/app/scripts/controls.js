@@ -205,21 +205,13 @@
       if (section.damping === undefined) section.damping = 0.01;
       if (section.modes === undefined && section.max_frequency === undefined) section.modes = body === "plate" ? 60 : 20;
     }
-    const vibrates = ["sphere", "plate"].some((name) => table[name].model === "elastic");
-    // bodies that deform fall along the normal
-    const oblique = [[table.drop, "angle"], [table.drop, "velocity"], [table.drop, "spin"], [table.plate, "inclination"], [table.contact, "friction"]];
-    controls.kept.oblique = controls.kept.oblique || {};
-    for (const [part, key] of oblique) {
-      if (vibrates && key in part) { controls.kept.oblique[key] = part[key]; delete part[key]; }
-      if (!vibrates && key in controls.kept.oblique && !(key in part)) { part[key] = controls.kept.oblique[key]; delete controls.kept.oblique[key]; }
-    }
-    if (vibrates && !("speed" in table.drop) && !("height" in table.drop)) table.drop.speed = Math.abs(controls.kept.oblique.velocity?.[2] ?? 5);
-    else if ("velocity" in table.drop) delete table.drop.speed;
+    const deforms = vibrates(table), rubs = table.contact.friction;
+    if (deforms && rubs && IMPULSIVE.includes(rubs.law)) table.contact.friction = { law: "mdr", coefficient: rubs.coefficient };
     const local = ["local_compliance", "finite_sphere", "local_stiffness", "local_damping", "measured"];
     controls.kept.contact = controls.kept.contact || {};
     for (const key of local) {
-      if (!vibrates && key in table.contact) { controls.kept.contact[key] = table.contact[key]; delete table.contact[key]; }
-      if (vibrates && key in controls.kept.contact && !(key in table.contact)) table.contact[key] = controls.kept.contact[key];
+      if (!deforms && key in table.contact) { controls.kept.contact[key] = table.contact[key]; delete table.contact[key]; }
+      if (deforms && key in controls.kept.contact && !(key in table.contact)) table.contact[key] = controls.kept.contact[key];
     }
   };
 
@@ -323,14 +315,20 @@
     return [...rows, add];
   };
 
-  // Whether the sphere may fall obliquely: both bodies are rigid, and the plate is flat.
-  const isFlat = ({ sphere, plate }) => sphere.model !== "elastic" && plate.model !== "elastic" && plate.radius === undefined;
+  // Whether the sphere may fall obliquely: on a flat plate whose sides are known.
+  const isFlat = ({ plate }) => plate.radius === undefined && plate.mesh?.file === undefined;
+
+  const vibrates = ({ sphere, plate }) => [sphere, plate].some((body) => body.model === "elastic");
+
+  // Friction laws without tangential compliance, which friction on bodies that deform needs.
+  const IMPULSIVE = ["coulomb", "rigid"];
 
   const friction = (controls) => {
     const path = ["contact", "friction"], now = at(controls.resolved, path);
     if (!isFlat(controls.resolved)) return [];
+    const laws = controls.offer.friction.filter((name) => !vibrates(controls.resolved) || !IMPULSIVE.includes(name));
     const rows = [choice(controls, {
-      path: [...path, "law"], label: "Friction", options: ["none", ...controls.offer.friction].map((name) => [name, name]),
+      path: [...path, "law"], label: "Friction", options: ["none", ...laws].map((name) => [name, name]),
       chosen: (table) => at(table, [...path, "law"]) ?? "none",
       choose: (table, value) => { if (value === "none") delete table.contact.friction; else table.contact.friction = { law: value, coefficient: now?.coefficient ?? 0.3 }; },
     })];

@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import TYPE_CHECKING, cast
 
 import numpy as np
@@ -284,6 +285,8 @@ def couple_bodies(
         facts=coupling.facts,
         models=coupling.models,
     )
+    if problem.oblique is not None and "plate" in coupling.modes:
+        found = replace(found, at_place=partial(_at_place, case, found))
     local = case.contact.local
     if local.local_compliance != "identified":
         return found
@@ -295,6 +298,13 @@ def couple_bodies(
         return replace(found, local_element=given, facts=facts)
     element, facts = _identified(case, local.measured, problem if local.measured.plate == "rigid" else found)
     return replace(found, local_element=element, facts={**coupling.facts, **facts})
+
+
+def _at_place(case: CaseTable, problem: Problem, place: tuple[float, float]) -> Problem:
+    """Return the problem of a case with the contact at another place of its plate [m]."""
+    coupling = coupling_of(case.model_copy(update={"drop": case.drop.model_copy(update={"position": place})}))
+    plate = replace(problem.plate, modes=coupling.modes["plate"], rigid=coupling.rigid)
+    return replace(problem, plate=plate, quasi_static=coupling.quasi_static)
 
 
 def _identified(case: CaseTable, measured: MeasuredImpact, problem: Problem) -> tuple[tuple[float, float], dict[str, float | str]]:

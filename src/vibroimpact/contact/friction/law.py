@@ -4,7 +4,8 @@ A law is a frozen dataclass in a file of its own under `vibroimpact.contact.fric
 `equation` and `source`, its parameters as contact laws do, and is one of
 
 * `ImpulsiveFriction`, whose slip velocity follows from the normal impulse so far;
-* `CompliantFriction`, whose force depends on the tangential displacement and its history, kept in a `Memory`.
+* `CompliantFriction`, whose force depends on the tangential displacement and its history, kept in a `Memory` of many contacts along one
+  direction, or in the `TangentialHistory` of one contact in two.
 """
 
 from __future__ import annotations
@@ -16,6 +17,9 @@ import numpy as np
 
 from vibroimpact.arrays import Array, Drops, Floats
 from vibroimpact.contact.parameters import Parameters, parameter
+
+_TWISTING = 3.0 * np.pi / 16.0
+"""Moment of full twisting under Hertz's pressure, over friction force and contact radius [-]."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -72,8 +76,17 @@ class CompliantFriction(FrictionLaw):
         "effective radius R", "m", detail="Effective radius :math:`R`.", above=0, from_pair="effective_radius"
     )
 
+    def twisting_moment(self, force: Floats) -> Floats:
+        """Return the moment of full twisting under a normal force [N m]: 3 pi/16 mu F a (Johnson 1985, section 7.2; Lubkin 1951)."""
+        radius = np.cbrt(0.75 * force * self.effective_radius / self.effective_modulus)
+        return np.asarray(_TWISTING * self.coefficient * force * radius)
+
     def memory(self, size: int, steps: int) -> Memory:
         """Return the memory of `size` contacts before first touch, for at most `steps` advances."""
+        raise NotImplementedError
+
+    def history(self, largest_force: float) -> TangentialHistory:
+        """Return the history of one contact before first touch, whose normal force will come to about `largest_force` [N]."""
         raise NotImplementedError
 
 
@@ -97,5 +110,21 @@ class Memory(Protocol):
             The integral if no point of the contact slips on the way.
         rates : tuple of two arrays, shape (b,)
             Rates of depth and displacement at the end of the way.
+        """
+        ...
+
+
+class TangentialHistory(Protocol):
+    """Tangential displacements of one contact under way in two directions; it does not change, so that a way may be tried."""
+
+    def after(self, force: float, moved: Floats) -> tuple[TangentialHistory, Floats]:
+        """Return the history at another normal force [N], and the friction force [N] (2,).
+
+        Parameters
+        ----------
+        force : float
+            Normal force [N].
+        moved : array, shape (2,)
+            Displacement of the surfaces past each other on the way, along x and y [m].
         """
         ...

@@ -65,13 +65,13 @@ def _of_leg(leg: Leg, lost: float, time: Floats) -> Moving:
     after = time > touch
     if leg.oblique_contacts and after.any():
         ((_, contact),) = leg.oblique_contacts
-        in_contact, force = contact.at(time[after] - touch)
-        parting = float(contact.sliding.time[-1, 0])
+        in_contact, force, lost_here = contact.at(time[after] - touch)
+        parting = float(contact.duration[0])
         later = sphere.fly(in_contact, np.maximum(time[after] - touch - parting, 0.0))
         for whole, part in zip((state.position, state.velocity, state.spin), (later.position, later.velocity, later.spin), strict=True):
             whole[:, after] = part
         friction[:, after] = np.where(time[after] - touch < parting, force, 0.0)
-        taken[after] += energy_taken(sphere, contact.before, in_contact)
+        taken[after] += lost_here
     return state, friction, taken
 
 

@@ -19,9 +19,6 @@ from vibroimpact.dynamics.oblique.statement import Oblique
 OBLIQUE_STEPS = 48
 """Steps for each phase of a contact: the slip velocity at its end is then within 1e-4 of that at first touch."""
 
-_TWISTING = 3.0 * np.pi / 16.0
-"""Moment of full twisting under Hertz's pressure over friction force and contact radius [-] (Johnson 1985, section 7.2; Lubkin 1951)."""
-
 
 class ObliqueMotion:
     """Places, velocities along the plate and spins of the B drops of a run.
@@ -72,13 +69,21 @@ class ObliqueMotion:
             moved = self.sphere.take(drops).fly(before, elapsed).position - before.position
         return np.asarray(np.nan_to_num(np.hypot(*moved)))
 
+    def place(self, drops: Drops, elapsed: Floats) -> Floats:
+        """Return the places of drops over the plate after a time without contact [m] (2, b)."""
+        with np.errstate(invalid="ignore"):
+            return self.sphere.take(drops).fly(self.state.take(drops), elapsed).position
+
+    def place_on_plate(self, drops: Drops, elapsed: Floats) -> Floats:
+        """Return the places of drops after a time without contact, or the nearest ones on the plate [m] (2, b)."""
+        place = np.nan_to_num(self.place(drops, elapsed))
+        return place if self.half is None else np.clip(place, -self.half, self.half)
+
     def beside(self, drops: Drops, elapsed: Floats) -> Bools:
         """Return which drops will be beside the plate after a time without contact [s]."""
         if self.half is None:
             return np.zeros(len(drops), dtype=bool)
-        with np.errstate(invalid="ignore"):
-            place = self.sphere.take(drops).fly(self.state.take(drops), elapsed).position
-        return np.asarray(np.isfinite(elapsed) & (np.abs(place) > self.half).any(axis=0))
+        return np.asarray(np.isfinite(elapsed) & (np.abs(self.place(drops, elapsed)) > self.half).any(axis=0))
 
     def collide(self, drops: Drops, motions: Sequence[tuple[Drops, NormalMotion]], row: dict[str, Floats]) -> ObliqueContacts:
         """Advance drops through a contact, write its columns, and return the motion in it.
@@ -94,7 +99,7 @@ class ObliqueMotion:
         contact = ObliqueContact(
             sphere, before, direction, slide(law, normal, slip, sphere.tangential_mass, pull), _twist(law, normal, sphere, before.spin[2])
         )
-        self._finish(drops, contact.end, row)
+        self.finish(drops, contact.end, energy_taken(sphere, before, contact.end), row)
         return contact
 
     def collide_at_once(self, drops: Drops, impulse: Floats, row: dict[str, Floats]) -> None:
@@ -104,12 +109,12 @@ class ObliqueMotion:
         left = slip
         if isinstance(self.law, ImpulsiveFriction):
             left = self.law.take(drops).slip_after(slip, impulse, impulse, sphere.tangential_mass)
-        self._finish(drops, sphere.pushed(before, sphere.tangential_mass * (left - slip) * direction), row)
+        after = sphere.pushed(before, sphere.tangential_mass * (left - slip) * direction)
+        self.finish(drops, after, energy_taken(sphere, before, after), row)
 
-    def _finish(self, drops: Drops, after: State, row: dict[str, Floats]) -> None:
-        """Put drops into their states after a contact, and write its columns."""
-        sphere, before = self.sphere.take(drops), self.state.take(drops)
-        lost = energy_taken(sphere, before, after)
+    def finish(self, drops: Drops, after: State, lost: Floats, row: dict[str, Floats]) -> None:
+        """Put drops into their states after a contact in which friction took an energy [J], and write its columns."""
+        before = self.state.take(drops)
         self.lost[drops] += lost
         values = [*before.position, *before.velocity, *after.velocity, *before.spin, *after.spin]
         speed = np.hypot(*before.velocity)
@@ -152,7 +157,11 @@ def _twist(law: FrictionLaw | None, normal: NormalMotion, sphere: Sphere, spin: 
     """Return the change of the spin about the normal by full twisting of the contact, which ends where the spin does [rad/s]."""
     if not isinstance(law, CompliantFriction) or not spin.any():
         return np.zeros_like(spin)
-    radius = np.cbrt(0.75 * normal.force * law.effective_radius / law.effective_modulus)
-    moment = _TWISTING * law.coefficient * normal.force * radius
+    moment = law.twisting_moment(normal.force)
     impulse = 0.5 * ((moment[1:] + moment[:-1]) * np.diff(normal.time, axis=0)).sum(axis=0)
+    return twist_by(impulse, sphere, spin)
+
+
+def twist_by(impulse: Floats, sphere: Sphere, spin: Floats) -> Floats:
+    """Return the change of the spin about the normal by an impulse of the moment against it [N m s], which ends where the spin does."""
     return np.asarray(-np.sign(spin) * np.minimum(impulse / sphere.inertia, np.abs(spin)))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 
@@ -83,6 +84,34 @@ def energy_taken(sphere: Sphere, before: State, after: State) -> Floats:
     return np.asarray(sum(sphere.kinetic(before)) + work - sum(sphere.kinetic(after)))
 
 
+def state_after(sphere: Sphere, before: State, time: Floats, velocity: Floats, displacement: Floats, twist: Floats) -> State:
+    """Return the states a time after first touch [s], from the motion of the contact points of the spheres.
+
+    Parameters
+    ----------
+    sphere : Sphere
+        The spheres.
+    before : State
+        Their states at first touch.
+    time : array, shape (B,)
+        Times since then [s].
+    velocity, displacement : array, shape (2, B)
+        Velocities of the contact points [m/s], and their displacements since then [m].
+    twist : array, shape (B,)
+        Changes of the spin about the normal [rad/s].
+    """
+    slip, mass = sphere.slip(before), sphere.tangential_mass
+    impulse = mass * (velocity - slip - sphere.gravity * time)
+    moved = mass * (displacement - (slip + 0.5 * sphere.gravity * time) * time)
+    pushed = sphere.pushed(sphere.fly(before, time), impulse, twist)
+    return State(pushed.position + moved / sphere.mass, pushed.velocity, pushed.spin)
+
+
+def spin_energy(sphere: Sphere, before: State, twist: Floats) -> Floats:
+    """Return the energy that a change of the spin about the normal takes [J]."""
+    return np.asarray(-0.5 * sphere.inertia * twist * (2.0 * before.spin[2] + twist))
+
+
 @dataclass(frozen=True)
 class ObliqueContact:
     """The motion along the plate during contacts of B drops.
@@ -114,12 +143,17 @@ class ObliqueContact:
         return State(pushed.position + moved / sphere.mass, pushed.velocity, pushed.spin)
 
     @property
+    def duration(self) -> Floats:
+        """Durations of the contacts [s]."""
+        return np.asarray(self.sliding.time[-1])
+
+    @property
     def end(self) -> State:
         """The state at the end of the contact."""
         return self.after(self.sliding.time[-1], self.sliding.slip[-1], self.sliding.displacement[-1], self.twist)
 
-    def at(self, time: Floats) -> tuple[State, Floats]:
-        """Return the states of one drop at times since first touch [s] (T,), and the friction force on it [N] (2, T)."""
+    def at(self, time: Floats) -> tuple[State, Floats, Floats]:
+        """Return states of one drop, friction on it [N] (2, T) and energy taken [J] (T,), at times since first touch [s]."""
         from scipy.interpolate import CubicHermiteSpline  # a drop along the normal does not load it
 
         sliding = self.sliding
@@ -131,8 +165,22 @@ class ObliqueContact:
         path = CubicHermiteSpline(times, displacement, slip)
         now = np.minimum(time, times[-1])
         state = self.after(now, path(now, 1), path(now), self.twist * now / times[-1])
-        return state, -self.direction * np.interp(now, times, force)
+        return state, -self.direction * np.interp(now, times, force), energy_taken(self.sphere, self.before, state)
 
 
-ObliqueContacts = tuple[tuple[Drops, ObliqueContact], ...]
+class ContactAlong(Protocol):
+    """The motion along the plate during contacts of some drops."""
+
+    @property
+    def duration(self) -> Floats:
+        """Durations of the contacts [s]."""
+
+    def of(self, drop: int) -> ContactAlong:
+        """Return the motion of one drop."""
+
+    def at(self, time: Floats) -> tuple[State, Floats, Floats]:
+        """Return states of one drop, friction on it [N] (2, T) and energy taken [J] (T,), at times since first touch [s]."""
+
+
+ObliqueContacts = tuple[tuple[Drops, ContactAlong], ...]
 """The motion along the plate during contacts of groups of drops, with their places among all drops of the contact."""

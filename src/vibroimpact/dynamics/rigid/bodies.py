@@ -16,6 +16,9 @@ from vibroimpact.dynamics.encounter import Encounter
 from vibroimpact.dynamics.flight import Flight
 from vibroimpact.dynamics.leg import Leg
 from vibroimpact.dynamics.lockstep import Coroutine
+from vibroimpact.dynamics.oblique.motion import OBLIQUE_STEPS, ObliqueMotion
+from vibroimpact.dynamics.oblique.normal_motion import normal_motions
+from vibroimpact.dynamics.oblique.state import ObliqueContacts
 from vibroimpact.dynamics.rigid.solve_contact import SolvesContact
 
 if TYPE_CHECKING:  # a drop of rigid bodies does not load what vibrates
@@ -60,6 +63,12 @@ class RigidBodies:
         """Return the contact of drops from the solver of the run."""
         yield from ()
         return self.solve_contact(encounter, drops)
+
+    def slide(self, oblique: ObliqueMotion, leg: Leg, row: dict[str, Floats]) -> ObliqueContacts:
+        """Advance drops along the plate, driven by the normal motion of their contacts, which does not feel friction."""
+        assert leg.contact is not None
+        assert leg.encounter is not None
+        return oblique.collide(leg.contact_drops, normal_motions(leg, leg.contact, leg.encounter, OBLIQUE_STEPS), row)
 
     def falls_back(self, contact: Contact, law: CompliantLaw, gravity: Floats) -> Bools:
         """Return which drops fall back into the indentation before they have risen to the touch level of the law."""

@@ -50,8 +50,8 @@ class FilteredChain:
         Samples per second [Hz].
     outputs : array, shape (2, S, n)
         Weights of displacements and velocities of the oscillators in the outputs `HALF_LENGTH` samples later.
-    answers : array, shape (S, points)
-        Response to an impulse of minus the force, `FINENESS` points per sample, from `HALF_LENGTH` samples before it on.
+    answers : array, shape (P, S, points)
+        Response to an impulse of minus the force at each port, `FINENESS` points per sample, from `HALF_LENGTH` samples before it on.
     """
 
     chain: MeasuringChain
@@ -59,8 +59,9 @@ class FilteredChain:
     outputs: Floats
     answers: Floats
 
-    def add(self, values: Floats, times: Floats, impulses: Floats, last: int) -> None:
-        """Add the response to impulses [N s] at times [s] to `values` (S, samples), which begin at time zero, for samples before `last`."""
+    def add(self, values: Floats, port: int, times: Floats, impulses: Floats, last: int) -> None:
+        """Add the response to impulses at a port [N s] to `values` (S, samples), which begin at time zero, for samples before `last`."""
+        whole = self.answers[port]
         first, spread = _spread_on_grid(times * (self.rate * FINENESS), impulses)
         width = len(spread)
         begin = max(0, -((HALF_LENGTH * FINENESS - first) // FINENESS))  # the first sample whose kernel reaches the impulses
@@ -68,8 +69,8 @@ class FilteredChain:
         if end <= begin:
             return
         at = begin * FINENESS - (first + width - 1) + HALF_LENGTH * FINENESS  # index of the last impulse point in the responses
-        before, after = max(0, -at), (end - 1 - begin) * FINENESS + at + width - self.answers.shape[1]
-        answers = np.pad(self.answers, ((0, 0), (before, max(0, after))))
+        before, after = max(0, -at), (end - 1 - begin) * FINENESS + at + width - whole.shape[1]
+        answers = np.pad(whole, ((0, 0), (before, max(0, after))))
         answers = answers[:, at + before : at + before + (end - 1 - begin) * FINENESS + width]
         values[:, begin:end] -= _correlate(answers, spread[::-1])
 
@@ -89,16 +90,17 @@ def filtered_chain(chain: MeasuringChain, rate: float, beyond: float) -> Filtere
     oscillators, pairs = chain.oscillators, chain.pairs
     derivatives = kernel_derivatives()
     points, more = derivatives.shape[1], math.ceil(beyond * FINENESS * rate) + len(_LAGRANGE)
-    weights = np.concatenate(list(chain.outputs * oscillators.shape), axis=-1).T  # (2 n, S)
-    answers = np.zeros((len(chain.direct), points + more))
+    weights = [np.concatenate(list(chain.outputs * shape), axis=-1).T for shape in oscillators.shape]  # (2 n, S) of each port
+    answers = np.zeros((*chain.direct.shape[:2], points + more))
     parts = (oscillators.angular_frequency.tobytes(), oscillators.damping_ratio.tobytes(), rate)
-    kept = 2 * len(oscillators.shape) * (points + more) <= _KEPT
+    kept = 2 * oscillators.number * (points + more) <= _KEPT
     for begin, states in _kept_states(*parts, points + _rounded(more)) if kept else _states(*parts, points + more):
         rows = min(len(states), points + more - begin)
         if rows > 0:
-            answers[:, begin : begin + rows] = (states[:rows] @ weights).T
+            for answer, weight in zip(answers, weights, strict=True):
+                answer[:, begin : begin + rows] = (states[:rows] @ weight).T
     scaled = derivatives * rate ** np.arange(1.0, 4.0)[:, None]
-    answers[:, :points] += chain.direct @ scaled
+    answers[:, :, :points] += chain.direct @ scaled
     return FilteredChain(chain, rate, pairs.product(chain.outputs, filter_gains(oscillators, rate)), answers)
 
 

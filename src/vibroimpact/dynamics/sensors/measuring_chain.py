@@ -28,18 +28,19 @@ _POLE_DISTANCE = 1e-6
 
 @dataclass(frozen=True)
 class MeasuringChain:
-    """A linear system from the contact force to S outputs.
+    """A linear system from the contact forces at P ports to S outputs.
 
     Parameters
     ----------
     oscillators : Oscillators
-        The modes of the plate, then the pairs of poles of the instruments, driven by the force with shape 1.
+        The modes of the plate, then the pairs of poles of the instruments for each port, which its force alone drives, with shape 1; the
+        shapes have a row a port.
     modes : int
         Number of modes of the plate among them.
     outputs : array, shape (2, S, n)
         Weights of the displacement and the velocity of each in each output.
-    direct : array, shape (S, 3)
-        Weights of minus the force, and of its first and second derivative.
+    direct : array, shape (P, S, 3)
+        Weights of minus the force at each port, and of its first and second derivative.
     shapes, compliance, orders
         Arguments of `measuring_chain`.
     """
@@ -65,7 +66,12 @@ class MeasuringChain:
     @property
     def instrument(self) -> Oscillators:
         """The pairs of poles of the instruments."""
-        return self.oscillators.pick(np.arange(self.modes, len(self.oscillators.shape)))
+        return self.oscillators.pick(np.arange(self.modes, self.oscillators.number))
+
+    def instrument_of(self, port: int) -> slice:
+        """Return the places of the pairs of poles for a port among those of the instruments."""
+        number = (self.oscillators.number - self.modes) // len(self.direct)
+        return slice(number * port, number * (port + 1))
 
 
 def measuring_chain(
@@ -76,11 +82,11 @@ def measuring_chain(
     Parameters
     ----------
     plate : Oscillators
-        The modes of the plate.
+        The modes of the plate, with a row of shapes a port.
     shapes : array, shape (S, modes)
         Mode shapes at the points of the sensors [kg^-1/2].
-    compliance : array, shape (S,)
-        Compliance between the contact and these points of the modes left out [m/N].
+    compliance : array, shape (P, S)
+        Compliance between each port and these points of the modes left out [m/N].
     orders : sequence of int
         Order of the derivative of the displacement that each sensor takes.
     sections : sequence of pairs of floats
@@ -90,22 +96,31 @@ def measuring_chain(
     at_modes = PolePairs(plate.angular_frequency**2, plate.damping)
     passed = at_modes.low_pass(sections)
     outputs = np.stack([shape * at_modes.product(at_modes.power(order), passed) for shape, order in zip(shapes, orders, strict=True)])
-    direct = np.zeros((len(shapes), 3))
+    direct = np.zeros((*compliance.shape, 3))
     if not sections:
-        direct[np.arange(len(shapes)), orders] = compliance
-        direct[:, 0] += np.where(np.asarray(orders) == 2, shapes @ plate.shape, 0.0)
+        direct[:, np.arange(len(shapes)), orders] = compliance
+        direct[:, :, 0] += np.where(np.asarray(orders) == 2, [shapes @ shape for shape in plate.shape], 0.0)
     elif len(sections) == 1:
-        direct[:, 0] = np.where(np.asarray(orders) == 2, sections[0][0] * compliance, 0.0)
-    instrument = [_section_weights(number, sections, plate, shapes, compliance, orders) for number in range(len(sections))]
+        direct[:, :, 0] = np.where(np.asarray(orders) == 2, sections[0][0] * compliance, 0.0)
+    instrument = [
+        _section_weights(number, sections, at_port(plate, port), shapes, compliance[port], orders)
+        for port in range(len(compliance))
+        for number in range(len(sections))
+    ]
     return MeasuringChain(
         _with_sections(plate, sections),
-        len(plate.shape),
+        plate.number,
         np.concatenate([outputs, *instrument], axis=-1).transpose(1, 0, 2),
         direct,
         shapes,
         compliance,
         tuple(orders),
     )
+
+
+def at_port(plate: Oscillators, port: int) -> Oscillators:
+    """Return the modes of the plate with the shapes at one port."""
+    return Oscillators(plate.angular_frequency, plate.damping_ratio, plate.shape[port])
 
 
 def section_outputs(number: int, sections: Sequence[Section], orders: Sequence[int]) -> Floats:
@@ -159,7 +174,10 @@ def _with_sections(plate: Oscillators, sections: Sequence[Section]) -> Oscillato
     if not sections:
         return plate
     omega = np.sqrt([stiffness for stiffness, _ in sections])
-    ratio = np.array([damping for _, damping in sections]) / (2.0 * omega)
+    ratio, ports = np.array([damping for _, damping in sections]) / (2.0 * omega), len(plate.shape)
+    driven = np.repeat(np.eye(ports), len(sections), axis=1)
     return Oscillators(
-        np.append(plate.angular_frequency, omega), np.append(plate.damping_ratio, ratio), np.append(plate.shape, np.ones(len(sections)))
+        np.append(plate.angular_frequency, np.tile(omega, ports)),
+        np.append(plate.damping_ratio, np.tile(ratio, ports)),
+        np.concatenate([plate.shape, driven], axis=1),
     )

@@ -12,6 +12,7 @@ import numpy as np
 from vibroimpact.arrays import Floats
 from vibroimpact.dynamics.sensors.antialias import HALF_LENGTH, AntiAlias, kernel, parallel
 from vibroimpact.dynamics.sensors.measuring_chain import MeasuringChain
+from vibroimpact.dynamics.sensors.ports import Ports
 from vibroimpact.dynamics.sensors.sampled import sample_filtered_chain
 from vibroimpact.dynamics.sensors.sensor import sample_count
 
@@ -51,9 +52,11 @@ def finer_rate(rate: float, resonance: float | None) -> float:
     return rate * max(_FINER, math.ceil(_PER_PERIOD * (resonance or 0.0) / rate))
 
 
-def overload(chain: MeasuringChain, rate: float, segments: Sequence[VibratingSegment], end: float, ahead: float, limit: float) -> Overload:
+def overload(
+    chain: MeasuringChain, ports: Ports, rate: float, segments: Sequence[VibratingSegment], end: float, ahead: float, limit: float
+) -> Overload:
     """Return the excess of a chain of one output [m/s^2] over a limit, at a rate [Hz], until a time and a little `ahead` [s]."""
-    value = sample_filtered_chain(chain, rate, segments, sample_count(end + ahead, rate), np.array([limit]))[0]
+    value = sample_filtered_chain(chain, ports, rate, segments, sample_count(end + ahead, rate), np.array([limit]))[0]
     excess = np.maximum(np.abs(value) - limit, 0.0) * np.sign(value)
     within = sample_count(end, rate)
     return Overload(rate, excess, float(np.abs(value[:within]).max(initial=0.0)), float(np.count_nonzero(excess[:within]) / rate))

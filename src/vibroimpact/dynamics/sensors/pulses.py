@@ -32,13 +32,19 @@ def _panels(number: int) -> tuple[Floats, Floats]:
     return places, np.tile(0.5 * weights / number, number)
 
 
-def pulses(stretch: VibratingStretch, fastest: float, until: Floats | None = None) -> tuple[Floats, Floats]:
-    """Return times since the start [s] and impulses [N s] that are equivalent to the force for a linear system.
+Pulses = tuple[Floats, Floats]
+"""Times [s] and impulses [N s]."""
+
+
+def pulses(stretch: VibratingStretch, force: Floats, fastest: float, until: Floats | None = None) -> Pulses:
+    """Return times since the start [s] and impulses [N s] that are equivalent to a force for a linear system.
 
     Parameters
     ----------
     stretch : VibratingStretch
         The stretch of contact.
+    force : array, shape (N,)
+        The force at its nodes [N].
     fastest : float
         Highest angular frequency to which the system responds [rad/s].
     until : array, shape (T,), optional
@@ -47,16 +53,16 @@ def pulses(stretch: VibratingStretch, fastest: float, until: Floats | None = Non
     """
     length, rule = stretch.length, stretch.rule
     if until is None and fastest * length < _SLOW:
-        return length * rule.time, length * rule.integral[-1] * stretch.force[0]
+        return length * rule.time, length * rule.integral[-1] * force
     ends = np.array([length]) if until is None else until
     begins = np.append(0.0, ends[:-1])
     longest = float((ends - begins).max(initial=0.0))
     nodes, weights = gauss_rule(rule.root * fastest * longest)  # bound of the slope of the time map
     begins, ends = rule.unmap_time(begins / length), rule.unmap_time(ends / length)
     x = begins[:, None] + (ends - begins)[:, None] * nodes
-    force = rule.interpolate(x.ravel(), stretch.force[0]).reshape(x.shape)
+    there = rule.interpolate(x.ravel(), force).reshape(x.shape)
     times = length * rule.map_time(x)
-    impulses = length * _slope(stretch, x) * force * ((ends - begins)[:, None] * weights)
+    impulses = length * _slope(stretch, x) * there * ((ends - begins)[:, None] * weights)
     return (times[0], impulses[0]) if until is None else (times, impulses)
 
 

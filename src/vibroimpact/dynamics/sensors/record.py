@@ -15,6 +15,7 @@ from vibroimpact.dynamics.sensors.antialias import Section, antialias_of
 from vibroimpact.dynamics.sensors.filtered_chain import filtered_chain
 from vibroimpact.dynamics.sensors.measuring_chain import MeasuringChain, measuring_chain
 from vibroimpact.dynamics.sensors.overload import clipped_part, finer_rate, overload
+from vibroimpact.dynamics.sensors.ports import Ports, ports_of
 from vibroimpact.dynamics.sensors.recording import Signal
 from vibroimpact.dynamics.sensors.sampled import longest_span, outputs_around_first_contact, sample_at_instants, sample_filtered
 from vibroimpact.dynamics.sensors.sensor import Sensor, sample_count
@@ -24,7 +25,6 @@ from vibroimpact.errors import InputError
 
 if TYPE_CHECKING:
     from vibroimpact.dynamics.vibrating.segments import VibratingSegment
-    from vibroimpact.structures.modal_model import ModalBasis
 
 MOST_SAMPLES = 100_000_000
 """Largest number of samples of one sensor; more do not fit into memory."""
@@ -55,18 +55,19 @@ def record(problem: Problem, segments: Sequence[VibratingSegment], sensors: Sequ
     InputError
         If the plate does not vibrate, has no such point, or there would be too many samples.
     """
-    modes = _checked(problem, sensors, end)
+    _check(problem, sensors, end)
+    ports = ports_of(segments)
     groups: dict[tuple[float, str, float | None, tuple[Section, ...]], list[Sensor]] = {}
     for sensor in sensors:
         groups.setdefault((sensor.rate, sensor.filter, sensor.corner, _resonance(sensor)), []).append(sensor)
     signals: dict[str, Signal] = {}
     for group in groups.values():
-        signals |= _recorded(problem, modes, segments, group, end)
+        signals |= _recorded(problem, ports, segments, group, end)
     return {sensor.name: signals[sensor.name] for sensor in sensors}
 
 
-def _checked(problem: Problem, sensors: Sequence[Sensor], end: float) -> ModalBasis:
-    """Return the modes of the plate; raise InputError if it is rigid, lacks a point, or there would be too many samples."""
+def _check(problem: Problem, sensors: Sequence[Sensor], end: float) -> None:
+    """Raise InputError if the plate is rigid, lacks a point, or there would be too many samples."""
     modes = problem.plate.modes
     if modes is None:
         raise InputError("the plate is rigid, so that its points do not move; give it modes", "sensors")
@@ -79,13 +80,13 @@ def _checked(problem: Problem, sensors: Sequence[Sensor], end: float) -> ModalBa
         if count > MOST_SAMPLES:
             why = "" if rate == sensor.rate else ", at which the clipping of its range is followed,"
             raise InputError(f"{count:.3g} samples{why} are more than {MOST_SAMPLES:.0e}; ask for a lower rate", "sensors")
-    return modes
 
 
-def _plate(problem: Problem) -> Oscillators:
-    """Return the rigid motions and modes of the plate as oscillators."""
-    parts = ((basis.angular_frequencies, basis.damping_ratios, basis.contact) for basis in bases_of_plate(problem))
-    return Oscillators(*(np.concatenate(part) for part in zip(*parts, strict=True)))
+def _plate(problem: Problem, ports: Ports) -> Oscillators:
+    """Return the rigid motions and modes of the plate as oscillators, driven at ports."""
+    parts = ((basis.angular_frequencies, basis.damping_ratios) for basis in bases_of_plate(problem))
+    frequencies, ratios = (np.concatenate(part) for part in zip(*parts, strict=True))
+    return Oscillators(frequencies, ratios, ports.shapes)
 
 
 def _resonance(sensor: Sensor) -> tuple[Section, ...]:
@@ -98,35 +99,37 @@ def _resonance(sensor: Sensor) -> tuple[Section, ...]:
 
 
 def _recorded(
-    problem: Problem, modes: ModalBasis, segments: Sequence[VibratingSegment], group: Sequence[Sensor], end: float
+    problem: Problem, ports: Ports, segments: Sequence[VibratingSegment], group: Sequence[Sensor], end: float
 ) -> dict[str, Signal]:
     """Return the signals of sensors with the same rate, resonance and filter."""
-    sensor, plate = group[0], _plate(problem)
+    sensor, plate = group[0], _plate(problem, ports)
     antialias, resonance, count = antialias_of(sensor), _resonance(sensor), sample_count(end, sensor.rate)
     bases = bases_of_plate(problem)
     shapes = np.stack([np.concatenate([basis.points[one.name] for basis in bases]) @ np.asarray(one.direction) for one in group])
-    compliance = np.array([modes.residuals.get(one.name, _NONE) @ np.asarray(one.direction) for one in group])
+    compliance = np.array([[part.get(one.name, _NONE) @ np.asarray(one.direction) for one in group] for part in ports.residuals])
     orders = [one.order for one in group]
     # a converter's filter is applied in closed form; an analogue one is a part of the chain, sampled at instants
     bare = measuring_chain(plate, shapes, compliance, orders, resonance)
     if antialias.half_length:
         known = filtered_chain(bare, sensor.rate, longest_span(segments, sensor.rate))
-        values = sample_filtered(known, segments, count)
+        values = sample_filtered(known, ports, segments, count)
     else:
         chain = measuring_chain(plate, shapes, compliance, orders, (*resonance, *antialias.sections))
-        values = sample_at_instants(chain, sensor.rate, segments, count)
+        values = sample_at_instants(chain, ports, sensor.rate, segments, count)
         rate = sensor.rate * (1 if antialias.sections else _WIDER)
         known = filtered_chain(bare, rate, longest_span(segments, rate))
     # the error by the modes left out, from a model of the next octave
     left_out = filtered_chain(_next_octave_chain(plate, shapes, orders, resonance), known.rate, longest_span(segments, known.rate))
-    norm, left_out_norm = (np.linalg.norm(outputs_around_first_contact(one, segments), axis=1) for one in (known, left_out))
+    norm, left_out_norm = (np.linalg.norm(outputs_around_first_contact(one, ports, segments), axis=1) for one in (known, left_out))
     uncertainties = left_out_norm / np.where(norm > 0.0, norm, np.inf)
     signals = {}
     for number, one in enumerate(group):
         value, meter, facts = values[number], one.accelerometer, {"uncertainty": float(uncertainties[number])}
         if meter is not None and meter.range is not None:
-            alone = measuring_chain(plate, shapes[[number]], compliance[[number]], [2], resonance)
-            found = overload(alone, finer_rate(one.rate, meter.resonance), segments, end, antialias.half_length / one.rate, meter.range)
+            alone = measuring_chain(plate, shapes[[number]], compliance[:, [number]], [2], resonance)
+            found = overload(
+                alone, ports, finer_rate(one.rate, meter.resonance), segments, end, antialias.half_length / one.rate, meter.range
+            )
             clipped = one.filter == "none"
             value = np.clip(value, -meter.range, meter.range) if clipped else value - clipped_part(found, antialias, one.rate, count)
             facts |= {"peak": found.peak, "overload_time": found.time}
@@ -142,7 +145,8 @@ def _next_octave_chain(plate: Oscillators, shapes: Floats, orders: Sequence[int]
     last = np.flatnonzero(plate.angular_frequency > 0.5 * plate.angular_frequency.max())
     above, shapes_above = plate.pick(last), 2.0 * shapes[:, last]
     above = replace(above, angular_frequency=2.0 * above.angular_frequency)
-    return measuring_chain(above, shapes_above, -(shapes_above * above.shape / above.angular_frequency**2).sum(axis=1), orders, resonance)
+    static = -(shapes_above * above.shape[:, None] / above.angular_frequency**2).sum(axis=2)
+    return measuring_chain(above, shapes_above, static, orders, resonance)
 
 
 def _digitised(sensor: Sensor, value: Floats) -> Floats:

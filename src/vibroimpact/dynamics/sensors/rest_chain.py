@@ -20,9 +20,9 @@ import numpy as np
 
 from vibroimpact.arrays import Floats
 from vibroimpact.dynamics.sensors.antialias import Section
-from vibroimpact.dynamics.sensors.measuring_chain import MeasuringChain, point_receptance, section_outputs
+from vibroimpact.dynamics.sensors.measuring_chain import MeasuringChain, at_port, point_receptance, section_outputs
 from vibroimpact.dynamics.sensors.pole_pairs import PolePairs
-from vibroimpact.dynamics.sensors.pulses import gauss_rule
+from vibroimpact.dynamics.sensors.pulses import Pulses, gauss_rule
 from vibroimpact.dynamics.vibrating.oscillators import Oscillators
 from vibroimpact.dynamics.vibrating.rest_motion import RestMotion
 
@@ -47,13 +47,15 @@ class RestChain:
     constant: Floats
 
 
-def rest_chain(chain: MeasuringChain, rest: RestMotion, instrument_state: Floats) -> RestChain:
+def rest_chain(chain: MeasuringChain, port: int, rest: RestMotion, instrument_state: Floats) -> RestChain:
     """Return a measuring chain as free oscillators, while a sphere is at rest on the plate.
 
     Parameters
     ----------
     chain : MeasuringChain
         From the contact force to the outputs.
+    port : int
+        Where the sphere rests.
     rest : RestMotion
         Motion of sphere and plate.
     instrument_state : array, shape (2, pairs of poles)
@@ -62,9 +64,11 @@ def rest_chain(chain: MeasuringChain, rest: RestMotion, instrument_state: Floats
     equilibrium, coupled = rest.equilibrium, rest.coupled
     poles, shapes, ground = PolePairs(coupled.angular_frequency**2, coupled.damping), equilibrium.modes[1], equilibrium.system.ground
     force = -math.sqrt(equilibrium.system.mass[0]) * shapes[0] * poles.power(2)
-    moved = chain.shapes @ shapes[ground] * poles.power(0)[:, None] - chain.compliance[:, None] * force[:, None]  # (2, S, coupled)
-    static = chain.shapes @ equilibrium.state.displacement[ground] - chain.compliance * equilibrium.weight
-    instrument = chain.instrument
+    compliance = chain.compliance[port]
+    moved = chain.shapes @ shapes[ground] * poles.power(0)[:, None] - compliance[:, None] * force[:, None]  # (2, S, coupled)
+    static = chain.shapes @ equilibrium.state.displacement[ground] - compliance * equilibrium.weight
+    here = chain.instrument_of(port)
+    instrument = at_port(chain.instrument.pick(here), port)
     sections = list(zip((instrument.angular_frequency**2).tolist(), instrument.damping.tolist(), strict=True))
     passed = poles.low_pass(sections)
     outputs = [
@@ -81,20 +85,29 @@ def rest_chain(chain: MeasuringChain, rest: RestMotion, instrument_state: Floats
         driven = poles.product(moved, poles.inverse(poles.quadratic(*section))[:, None])
         now = np.stack([_value(driven, rest.start_coupled), _value(poles.product(driven, poles.power(1)[:, None]), rest.start_coupled)])
         now[0] += static / section[0]
-        places.append(_driven_section_states(chain, section, rest, instrument_state[:, [number]]) - now)
+        places.append(_driven_section_states(chain, port, section, rest, instrument_state[:, here][:, [number]]) - now)
         outputs.append(section_outputs(number, sections, chain.orders) * np.eye(len(static)))
     constant = np.where(np.asarray(chain.orders) == 0, static, 0.0)
-    oscillators = reduce(_concatenate, [coupled, *(instrument.pick(np.full(len(static), number)) for number in range(len(sections)))])
+    own = [instrument.pick(np.full(len(static), number)) for number in range(len(sections))]
+    for other in (one for one in range(len(chain.direct)) if one != port):  # what earlier contacts left in the instruments dies away
+        there = chain.instrument_of(other)
+        own.append(at_port(chain.instrument.pick(there), other))
+        places.append(instrument_state[:, there])
+        outputs.append(chain.outputs[:, :, chain.modes :][:, :, there])
+    oscillators = reduce(_concatenate, [coupled, *own])
     return RestChain(oscillators, np.concatenate(outputs, axis=-1), np.concatenate(places, axis=1), constant)
 
 
-def _driven_section_states(chain: MeasuringChain, section: Section, rest: RestMotion, instrument_state: Floats) -> Floats:
+def _driven_section_states(chain: MeasuringChain, port: int, section: Section, rest: RestMotion, instrument_state: Floats) -> Floats:
     """Return the states of a pair of poles driven by the motion of each point, (2, S), from its state under minus the force, (2, 1)."""
-    plate, ground = chain.plate, rest.equilibrium.system.ground
+    plate, ground = at_port(chain.plate, port), rest.equilibrium.system.ground
     modes = np.stack([rest.start.displacement[ground], rest.start.velocity[ground]])
     found = []
     at_modes, poles = PolePairs(plate.angular_frequency**2, plate.damping), PolePairs(np.array([section[0]]), np.array([section[1]]))
-    by_modes, by_own = at_modes.inverse(at_modes.quadratic(*section)), point_receptance(section, plate, chain.shapes, chain.compliance)
+    by_modes, by_own = (
+        at_modes.inverse(at_modes.quadratic(*section)),
+        point_receptance(section, plate, chain.shapes, chain.compliance[port]),
+    )
     for order in (0, 1):
         of_modes = chain.shapes @ _terms(at_modes.product(by_modes, at_modes.power(order)), modes)
         found.append(of_modes + _value(poles.product(by_own, poles.power(order)[:, None]), instrument_state))
@@ -111,7 +124,7 @@ def _value(element: Floats, place: Floats) -> Floats:
     return np.asarray(_terms(element, place).sum(axis=-1))
 
 
-def rest_pulses(rest: RestMotion, fastest: float, length: float) -> tuple[Floats, Floats]:
+def rest_pulses(rest: RestMotion, fastest: float, length: float) -> Pulses:
     """Return times since rest began [s] and impulses [N s] that are equivalent to the contact force for a smooth linear system.
 
     Parameters

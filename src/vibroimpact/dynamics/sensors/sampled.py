@@ -15,7 +15,8 @@ from vibroimpact.dynamics.sensors.antialias import FINENESS, HALF_LENGTH, kernel
 from vibroimpact.dynamics.sensors.filtered_chain import FilteredChain, filter_gains, filtered_chain
 from vibroimpact.dynamics.sensors.measuring_chain import MeasuringChain
 from vibroimpact.dynamics.sensors.pole_pairs import PolePairs
-from vibroimpact.dynamics.sensors.pulses import force_derivatives, pulses
+from vibroimpact.dynamics.sensors.ports import Ports
+from vibroimpact.dynamics.sensors.pulses import Pulses, force_derivatives
 from vibroimpact.dynamics.sensors.rest_chain import rest_chain, rest_pulses
 from vibroimpact.dynamics.vibrating.oscillators import Oscillators
 from vibroimpact.dynamics.vibrating.rest_motion import RestMotion
@@ -38,7 +39,7 @@ _PASS_BAND = 0.6
 
 @dataclass
 class _Span:
-    """A part of the history that is computed at once: state of its oscillators at its start, (2, n), and the impulses within it.
+    """A part of the history that is computed at once: state of its oscillators at its start, (2, n), and the pulses within it, by ports.
 
     For the part with the sphere at rest on the plate, `rest` is its motion.
     """
@@ -46,18 +47,31 @@ class _Span:
     start: float
     end: float
     initial: Floats
-    times: list[Floats] = field(default_factory=list)
-    impulses: list[Floats] = field(default_factory=list)
+    pulses: dict[int, list[Pulses]] = field(default_factory=dict)
     rest: RestMotion | None = None
 
+    def add(self, start: float, found: Sequence[tuple[int, Pulses]]) -> None:
+        """Add pulses, with their ports, at times since a start [s]."""
+        for port, (times, impulses) in found:
+            self.pulses.setdefault(port, []).append((start + times, impulses))
 
-def sample_filtered(filtered: FilteredChain, segments: Sequence[VibratingSegment], count: int, levels: Floats | None = None) -> Floats:
+    def joined(self) -> Iterator[tuple[int, Floats, Floats]]:
+        """Yield the ports with all times and impulses."""
+        for port, found in self.pulses.items():
+            yield port, np.concatenate([times for times, _ in found]), np.concatenate([impulses for _, impulses in found])
+
+
+def sample_filtered(
+    filtered: FilteredChain, ports: Ports, segments: Sequence[VibratingSegment], count: int, levels: Floats | None = None
+) -> Floats:
     """Return the outputs of a chain with a converter's filter, (S, count).
 
     Parameters
     ----------
     filtered : FilteredChain
         The chain.
+    ports : Ports
+        Where the contact forces act.
     segments : sequence of VibratingSegment
         The history of one drop.
     count : int
@@ -67,9 +81,9 @@ def sample_filtered(filtered: FilteredChain, segments: Sequence[VibratingSegment
     """
     rate, values = filtered.rate, np.zeros((len(filtered.outputs[0]), count))
     blocks = _blocks(filtered.chain.oscillators, filtered.outputs, rate)
-    for span in _spans(filtered.chain, segments, rate):
+    for span in _spans(filtered.chain, ports, segments, rate):
         if span.rest is not None:
-            _add_rest(filtered, span.rest, span, values, levels)
+            _add_rest(filtered, ports.of(span.rest.equilibrium.system), span.rest, span, values, levels)
             break
         first, last = _first_sample(span.start, rate), _first_sample(span.end, rate)
         if span.end >= segments[-1].end:
@@ -77,34 +91,35 @@ def sample_filtered(filtered: FilteredChain, segments: Sequence[VibratingSegment
         to = min(last, count - HALF_LENGTH)
         if to > first:
             blocks.sample(values[:, first + HALF_LENGTH : to + HALF_LENGTH], span.initial, first / rate - span.start, levels)
-        if span.times:
-            filtered.add(values, np.concatenate(span.times), np.concatenate(span.impulses), last + HALF_LENGTH)
+        for port, times, impulses in span.joined():
+            filtered.add(values, port, times, impulses, last + HALF_LENGTH)
     return values
 
 
-def outputs_around_first_contact(filtered: FilteredChain, segments: Sequence[VibratingSegment]) -> Floats:
+def outputs_around_first_contact(filtered: FilteredChain, ports: Ports, segments: Sequence[VibratingSegment]) -> Floats:
     """Return the outputs around the first contact, before which everything is at rest, within the filter's reach, (S, samples)."""
     rate = filtered.rate
-    span = next((span for span in _spans(filtered.chain, segments, rate) if span.times), None)
+    span = next((span for span in _spans(filtered.chain, ports, segments, rate) if span.pulses), None)
     if span is None:
-        return np.zeros((len(filtered.answers), 0))
+        return np.zeros((filtered.answers.shape[1], 0))
     first = _first_sample(span.start, rate) - HALF_LENGTH
-    values = np.zeros((len(filtered.answers), _first_sample(span.end, rate) + HALF_LENGTH - first))
-    filtered.add(values, np.concatenate(span.times) - first / rate, np.concatenate(span.impulses), values.shape[1])
+    values = np.zeros((filtered.answers.shape[1], _first_sample(span.end, rate) + HALF_LENGTH - first))
+    for port, times, impulses in span.joined():
+        filtered.add(values, port, times - first / rate, impulses, values.shape[1])
     return values
 
 
 def sample_filtered_chain(
-    chain: MeasuringChain, rate: float, segments: Sequence[VibratingSegment], count: int, levels: Floats | None = None
+    chain: MeasuringChain, ports: Ports, rate: float, segments: Sequence[VibratingSegment], count: int, levels: Floats | None = None
 ) -> Floats:
     """Return the outputs of a chain followed by a converter's filter, (S, count); see `sample_filtered`."""
-    return sample_filtered(filtered_chain(chain, rate, longest_span(segments, rate)), segments, count, levels)
+    return sample_filtered(filtered_chain(chain, rate, longest_span(segments, rate)), ports, segments, count, levels)
 
 
-def sample_at_instants(chain: MeasuringChain, rate: float, segments: Sequence[VibratingSegment], count: int) -> Floats:
+def sample_at_instants(chain: MeasuringChain, ports: Ports, rate: float, segments: Sequence[VibratingSegment], count: int) -> Floats:
     """Return the outputs of a chain at the sampling instants, (S, count), without a further filter."""
-    values, blocks = np.zeros((len(chain.direct), count)), _blocks(chain.oscillators, chain.outputs, rate)
-    instrument_state = np.zeros((2, len(chain.oscillators.shape) - chain.modes))
+    values, blocks = np.zeros((len(chain.shapes), count)), _blocks(chain.oscillators, chain.outputs, rate)
+    instrument_state = np.zeros((2, chain.oscillators.number - chain.modes))
     for segment in segments:
         first, last = _first_sample(segment.start, rate), min(_first_sample(segment.end, rate), count)
         last = count if segment is segments[-1] else last
@@ -112,14 +127,16 @@ def sample_at_instants(chain: MeasuringChain, rate: float, segments: Sequence[Vi
         if last > first:
             offset = first / rate - segment.start
             if isinstance(segment.trajectory, VibratingStretch):
-                values[:, first:last] = _in_contact(chain, segment.trajectory, instrument_state, offset + np.arange(last - first) / rate)
+                times = offset + np.arange(last - first) / rate
+                values[:, first:last] = _in_contact(chain, ports, segment.trajectory, instrument_state, times)
             elif isinstance(segment.trajectory, RestMotion):
-                chained = rest_chain(chain, segment.trajectory, instrument_state + _rest_jump(segments)[:, None])
+                port = ports.of(segment.system)
+                chained = rest_chain(chain, port, segment.trajectory, instrument_state + _instrument_jump(chain, port, segments))
                 _blocks(chained.oscillators, chained.outputs, rate).sample(values[:, first:last], chained.initial, offset)
                 values[:, first:last] += chained.constant[:, None]
             else:
                 blocks.sample(values[:, first:last], motion_state, offset)
-        instrument_state = _instrument_later(chain, segment, instrument_state)
+        instrument_state = _instrument_later(chain, ports, segment, instrument_state)
     return values
 
 
@@ -129,7 +146,7 @@ def longest_span(segments: Sequence[VibratingSegment], rate: float) -> float:
     return max(HALF_LENGTH / rate, *stretches, 0.0)
 
 
-def _add_rest(filtered: FilteredChain, rest: RestMotion, span: _Span, values: Floats, levels: Floats | None) -> None:
+def _add_rest(filtered: FilteredChain, port: int, rest: RestMotion, span: _Span, values: Floats, levels: Floats | None) -> None:
     """Add the outputs from the instant of rest on, to the end of `values` (S, samples).
 
     Samples whose kernel lies wholly after that instant see the oscillations at rest alone. For earlier ones the force of these oscillations
@@ -138,11 +155,11 @@ def _add_rest(filtered: FilteredChain, rest: RestMotion, span: _Span, values: Fl
     rate, chain = filtered.rate, filtered.chain
     first = _first_sample(span.start, rate)
     times, impulses = rest_pulses(rest, 2.0 * np.pi * _PASS_BAND * rate, (first + 2 * HALF_LENGTH) / rate - span.start)
-    filtered.add(values, span.start + times, impulses, first + HALF_LENGTH)
+    filtered.add(values, port, span.start + times, impulses, first + HALF_LENGTH)
     later = values[:, first + HALF_LENGTH :]
     if not later.shape[1]:
         return
-    chained = rest_chain(chain, rest, span.initial[:, chain.modes :])
+    chained = rest_chain(chain, port, rest, span.initial[:, chain.modes :])
     pairs = PolePairs(chained.oscillators.angular_frequency**2, chained.oscillators.damping)
     outputs = pairs.product(chained.outputs, filter_gains(chained.oscillators, rate))
     _blocks(chained.oscillators, outputs, rate).sample(later, chained.initial, first / rate - span.start, levels)
@@ -167,6 +184,11 @@ def _rest_jump(segments: Sequence[VibratingSegment]) -> Floats:
     return np.array([0.0, float(shape @ change) / float(shape @ shape) if shape.any() else 0.0])
 
 
+def _instrument_jump(chain: MeasuringChain, port: int, segments: Sequence[VibratingSegment]) -> Floats:
+    """Return the jumps of the instruments' pairs of poles at the instant of rest, (2, n)."""
+    return np.asarray(_rest_jump(segments)[:, None] * chain.instrument.shape[port])
+
+
 def _first_sample(time: float, rate: float) -> int:
     """Return the number of the first sample that is not before a time."""
     return math.ceil(time * rate - 1e-9)
@@ -179,24 +201,24 @@ def _initial_plate_state(segment: VibratingSegment) -> Floats:
     return np.stack([trajectory.start.displacement[ground], trajectory.start.velocity[ground]])
 
 
-def _spans(chain: MeasuringChain, segments: Sequence[VibratingSegment], rate: float) -> Iterator[_Span]:
+def _spans(chain: MeasuringChain, ports: Ports, segments: Sequence[VibratingSegment], rate: float) -> Iterator[_Span]:
     """Yield the history in parts; neighbouring contacts are combined up to the filter's reach."""
-    instrument_state, reach = np.zeros((2, len(chain.oscillators.shape) - chain.modes)), HALF_LENGTH / rate
+    instrument_state, reach = np.zeros((2, chain.oscillators.number - chain.modes)), HALF_LENGTH / rate
     fastest = max(2.0 * np.pi * _PASS_BAND * rate, float(chain.oscillators.angular_frequency[chain.modes :].max(initial=0.0)))
     span: _Span | None = None
     for segment in segments:
         if isinstance(segment.trajectory, RestMotion):
             # rest ends the history: its jump is also an impulse on the motion before
-            jump = _rest_jump(segments)
+            port = ports.of(segment.system)
             if span is not None:
-                span.times.append(np.array([segment.start]))
-                span.impulses.append(-jump[1:])
+                span.add(segment.start, [(port, (np.zeros(1), -_rest_jump(segments)[1:]))])
                 yield span
-            motion_state = np.concatenate([_initial_plate_state(segment), instrument_state + jump[:, None]], axis=1)
+            jump = _instrument_jump(chain, port, segments)
+            motion_state = np.concatenate([_initial_plate_state(segment), instrument_state + jump], axis=1)
             yield _Span(segment.start, segment.end, motion_state, rest=segment.trajectory)
             return
         # a part grows only while it has contacts, stays within the filter's reach, and the last segment is not reached
-        if span is not None and not (span.times and segment.end - span.start <= reach and segment is not segments[-1]):
+        if span is not None and not (span.pulses and segment.end - span.start <= reach and segment is not segments[-1]):
             yield span
             span = None
         if span is None:
@@ -204,16 +226,19 @@ def _spans(chain: MeasuringChain, segments: Sequence[VibratingSegment], rate: fl
         span.end = segment.end
         force_pulses = None
         if isinstance(segment.trajectory, VibratingStretch):
-            times, impulses = force_pulses = pulses(segment.trajectory, fastest)
-            span.times.append(segment.start + times)
-            span.impulses.append(impulses)
-        instrument_state = _instrument_later(chain, segment, instrument_state, force_pulses)
+            force_pulses = ports.pulses(segment.trajectory, fastest)
+            span.add(segment.start, force_pulses)
+        instrument_state = _instrument_later(chain, ports, segment, instrument_state, force_pulses)
     if span is not None:
         yield span
 
 
 def _instrument_later(
-    chain: MeasuringChain, segment: VibratingSegment, instrument_state: Floats, force_pulses: tuple[Floats, Floats] | None = None
+    chain: MeasuringChain,
+    ports: Ports,
+    segment: VibratingSegment,
+    instrument_state: Floats,
+    force_pulses: list[tuple[int, Pulses]] | None = None,
 ) -> Floats:
     """Return the state of the instruments' oscillators at the end of a segment, from that at its start."""
     if not instrument_state.shape[1]:
@@ -222,8 +247,8 @@ def _instrument_later(
     length = segment.end - segment.start
     later = _free(oscillators, instrument_state, np.array(length))
     if isinstance(segment.trajectory, VibratingStretch):
-        times, impulses = force_pulses or pulses(segment.trajectory, float(oscillators.angular_frequency.max()))
-        later = later - np.tensordot(_impulse_answers(oscillators, length - times), impulses, (1, 0))
+        for port, (times, impulses) in force_pulses or ports.pulses(segment.trajectory, float(oscillators.angular_frequency.max())):
+            later = later - oscillators.shape[port] * np.tensordot(_impulse_answers(oscillators, length - times), impulses, (1, 0))
     return later
 
 
@@ -239,22 +264,28 @@ def _impulse_answers(oscillators: Oscillators, time: Floats) -> Floats:
     return np.stack([sine, cosine - oscillators.damping * sine])
 
 
-def _in_contact(chain: MeasuringChain, stretch: VibratingStretch, instrument_state: Floats, times: Floats) -> Floats:
+def _in_contact(chain: MeasuringChain, ports: Ports, stretch: VibratingStretch, instrument_state: Floats, times: Floats) -> Floats:
     """Return the outputs at times since the start of a stretch of contact, (S, T)."""
     times = np.clip(times, 0.0, stretch.length)
     state, ground = stretch.state(times), stretch.system.ground
     places = np.stack([state.displacement[:, ground], state.velocity[:, ground]])
     if instrument_state.shape[1]:
         oscillators = chain.instrument
-        since, impulses = pulses(stretch, float(oscillators.angular_frequency.max()), times)
-        gained = np.einsum("ktjn,tj->ktn", _impulse_answers(oscillators, times[:, None] - since), impulses)
+        gained = np.zeros((2, len(times), oscillators.number))
+        for port, (since, impulses) in ports.pulses(stretch, float(oscillators.angular_frequency.max()), times):
+            answers = np.einsum("ktjn,tj->ktn", _impulse_answers(oscillators, times[:, None] - since), impulses)
+            gained += oscillators.shape[port] * answers
         instrument_states, instrument_now = np.empty((2, len(times), instrument_state.shape[1])), instrument_state
         for number, passed in enumerate(np.diff(times, prepend=0.0)):
             instrument_now = _free(oscillators, instrument_now, np.array(passed)) - gained[:, number]
             instrument_states[:, number] = instrument_now
         places = np.concatenate([places, instrument_states], axis=-1)
     moved = np.einsum("ksn,ktn->st", chain.outputs, places)
-    return np.asarray(moved - chain.direct @ force_derivatives(stretch, times))
+    port = ports.of(stretch.system)
+    moved -= chain.direct[port] @ force_derivatives(stretch, times)
+    if stretch.rubbed is not None:  # there is no residual compliance to friction: its derivatives do not count
+        moved -= np.einsum("ps,pt->st", chain.direct[port + 1 : port + 3, :, 0], stretch.rubbed.at(times)[2])
+    return np.asarray(moved)
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ import numpy as np
 
 from vibroimpact.arrays import Bools, Drops, Floats
 from vibroimpact.bodies.body import Body
+from vibroimpact.contact.friction.law import CompliantFriction
 from vibroimpact.contact.law import CompliantLaw, ContactLaw
 from vibroimpact.dynamics.bodies import Motions
 from vibroimpact.dynamics.columns import VIBRATING_IMPACT_COLUMNS
@@ -16,16 +17,26 @@ from vibroimpact.dynamics.encounter import Encounter
 from vibroimpact.dynamics.flight import Flight
 from vibroimpact.dynamics.leg import Leg
 from vibroimpact.dynamics.lockstep import Coroutine, run_in_lockstep
+from vibroimpact.dynamics.oblique.motion import ObliqueMotion
+from vibroimpact.dynamics.oblique.state import ObliqueContacts
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.vibrating.contact_equilibrium import ContactEquilibrium
 from vibroimpact.dynamics.vibrating.linear_system import FreeMotion, LinearSystem, State
 from vibroimpact.dynamics.vibrating.next_touch import next_touch
 from vibroimpact.dynamics.vibrating.rest_motion import RestMotion, bring_to_rest
+from vibroimpact.dynamics.vibrating.rubbed_contact import rubbed_contacts
+from vibroimpact.dynamics.vibrating.rubbing import Rubbing, rubbing_at_touch
 from vibroimpact.dynamics.vibrating.sensitivity import Neighbours
 from vibroimpact.dynamics.vibrating.visit import Visit, follow_visit
 
 if TYPE_CHECKING:
     from vibroimpact.structures.modal_model import ModalBasis  # which loads sparse matrices
+
+_SAME_PLACE = 1e-12
+"""Distance of places at which the contact is the same [m]."""
+
+_MOST_PLACES = 8
+"""Number of corrections of the place where a sphere touches a plate that deflects."""
 
 
 def system_of(problem: Problem, mass: float, gravity: float) -> LinearSystem:
@@ -45,12 +56,19 @@ def system_of(problem: Problem, mass: float, gravity: float) -> LinearSystem:
     of_rigid, of_sphere, of_plate = slices_of(problem)
     load, inside, ground = np.zeros(len(shape)), np.zeros(len(shape), dtype=bool), np.zeros(len(shape), dtype=bool)
     load[0], inside[of_sphere], ground[of_rigid], ground[of_plate] = gravity * mass**0.5, problem.sphere_inside, True, True
+    along = None
+    if problem.oblique is not None:
+        along = np.zeros((2, len(shape)))
+        for basis, where in ((problem.plate.rigid, of_rigid), (problem.plate.modes, of_plate)):
+            if basis is not None:
+                assert basis.along is not None  # the problem has seen to it
+                along[:, where] = basis.along.T
     local = [problem.local_element] if problem.local_element else []
     rate = np.array([stiffness / damping for stiffness, damping in local])
     mobility = np.array([1.0 / damping for _, damping in local])
-    return LinearSystem(
-        frequency, damping, shape[None], np.zeros(1), load, inside, ground[None], rate, mobility, np.zeros(len(local), dtype=np.intp)
-    )
+    contact = np.zeros(len(local), dtype=np.intp)
+    residuals = {} if problem.plate.modes is None else problem.plate.modes.residuals
+    return LinearSystem(frequency, damping, shape[None], np.zeros(1), load, inside, ground[None], rate, mobility, contact, along, residuals)
 
 
 def slices_of(problem: Problem) -> tuple[slice, slice, slice]:
@@ -80,21 +98,25 @@ def modes_of(body: Body) -> int:
 
 
 class VibratingBodies:
-    """The bodies of B drops of which some vibrate: one linear system per drop, with the modes in common. `Bodies` describes the methods."""
+    """The bodies of B drops of which some vibrate: one linear system per drop, with the modes in common. `Bodies` describes the methods.
 
-    def __init__(self, problem: Problem, mass: Floats, gravity: Floats) -> None:
-        self.problem, self.mass, size = problem, mass, len(mass)
-        self.columns = tuple(name for name in VIBRATING_IMPACT_COLUMNS if problem.sensitivity or name != "sensitivity")
+    `oblique`: their motion along the plate, where they have any.
+    """
+
+    def __init__(self, problem: Problem, mass: Floats, gravity: Floats, oblique: ObliqueMotion | None) -> None:
+        self.problem, self.mass, self.gravity, self.oblique, size = problem, mass, gravity, oblique, len(mass)
+        sensitive = problem.sensitivity and oblique is None
+        self.columns = tuple(name for name in VIBRATING_IMPACT_COLUMNS if sensitive or name != "sensitivity")
         pairs = list(zip(mass.tolist(), gravity.tolist(), strict=True))
         self.system = system_of(problem, *pairs[0])
         distinct = {(mass, gravity): self.system.with_sphere(mass**-0.5, gravity * mass**0.5) for mass, gravity in set(pairs)}
-        self.systems = [distinct[pair] for pair in pairs]
+        self.systems, self.series = [distinct[pair] for pair in pairs], [problem.quasi_static] * size
         self.displacement, self.velocity = np.zeros((size, self.system.number)), np.zeros((size, self.system.number))
         self.local = np.zeros((size, len(self.system.rate)))
         self.lost = np.zeros((size, self.system.number + 1))
         self.lying: list[RestMotion | None] = [None] * size
         self.left = np.full(size, np.nan)
-        self.neighbours = Neighbours(problem, mass, self.system) if problem.sensitivity else None
+        self.neighbours = Neighbours(problem, mass, self.system) if sensitive else None
 
     def state(self, drop: int, gap: float, velocity: float) -> State:
         """Return the state of a drop whose sphere has a gap [m] and a velocity upwards [m/s]."""
@@ -110,12 +132,36 @@ class VibratingBodies:
     def next_touch(self, drops: Drops, flight: Flight, law: ContactLaw) -> tuple[Floats, Floats, Motions]:
         """Return the times of the next touch [s], the approach speeds of the rigid bodies then [m/s], and the free motions of the drops."""
         assert isinstance(law, CompliantLaw)  # the problem has seen to it
-        starts = zip(drops, flight.gap, flight.velocity, strict=True)
-        motions = tuple(FreeMotion(self.systems[drop], self.state(drop, *sphere)) for drop, *sphere in starts)
-        level = law.touch_level + np.zeros(len(motions))
-        touch = flight.start + np.array([next_touch(motion, float(at), np.inf) for motion, at in zip(motions, level, strict=True)])
-        touches = np.isfinite(touch)
+        levels, guess = law.touch_level + np.zeros(len(drops)), flight.touch(np.zeros(1))[0] - flight.start
+        states = [self.state(drop, *sphere) for drop, *sphere in zip(drops, flight.gap, flight.velocity, strict=True)]
+        found = [self._touch(*one) for one in zip(drops.tolist(), states, levels.tolist(), guess.tolist(), strict=True)]
+        motions, elapsed = tuple(motion for motion, _ in found), np.array([time for _, time in found])
+        touch, touches = flight.start + elapsed, np.isfinite(elapsed)
         return touch, -self.rigid_speed(drops, flight.at(np.where(touches, touch, flight.start))[1]), motions
+
+    def _touch(self, drop: int, state: State, level: float, guess: float) -> tuple[FreeMotion, float]:
+        """Return the free motion of a drop and the time until it touches [s], where it then is over the plate; `guess`: about that time."""
+        if self.oblique is None or self.problem.at_place is None:
+            motion = FreeMotion(self.systems[drop], state)
+            return motion, next_touch(motion, level, np.inf)
+        one, place = np.array([drop]), None
+        for _ in range(_MOST_PLACES):  # the deflection of the plate where it falls changes the time a little, and that the place
+            before, place = place, self.oblique.place_on_plate(one, np.array([guess]))[:, 0]
+            if before is not None and np.abs(place - before).max() <= _SAME_PLACE:
+                break
+            self.move_to(drop, (float(place[0]), float(place[1])))
+            motion = FreeMotion(self.systems[drop], state)
+            time = next_touch(motion, level, np.inf)
+            if not np.isfinite(time):
+                break
+            guess = time
+        return motion, time
+
+    def move_to(self, drop: int, place: tuple[float, float]) -> None:
+        """Let the contact of a drop be at another place on the plate [m]."""
+        assert self.problem.at_place is not None
+        there = self.problem.at_place(place)
+        self.systems[drop], self.series[drop] = system_of(there, float(self.mass[drop]), float(self.gravity[drop])), there.quasi_static
 
     def pass_flight(self, drops: Drops, motions: Motions, elapsed: Floats) -> None:
         """Advance the coordinates of drops by free motion."""
@@ -145,7 +191,7 @@ class VibratingBodies:
             lighter = float(self.systems[drop].mass[0] / one.mass[0]) ** 0.4
             start, pace = self.state(drop, gaps[number], velocities[number]), 3.0 * lighter * float(one.depth[0] / one.speed_scale[0])
             rules = (problem.tolerance, pace, not problem.same_spot, float(rest_speed[number]), float(until[number]))
-            followed.append(follow_visit(self.systems[drop], one.law.take(0), problem.quasi_static, start, *rules))
+            followed.append(follow_visit(self.systems[drop], one.law.take(0), self.series[drop], start, *rules, self.rubbing(drop, one)))
             starts.append(start)
         visits = yield from run_in_lockstep(followed)
         for number, (drop, start, found) in enumerate(zip(drops, starts, visits, strict=True)):
@@ -163,6 +209,21 @@ class VibratingBodies:
                     self.left[drop] = lying.excess
         force, when = (np.array([getattr(found, name) for found in visits]) for name in ("max_force", "time_of_max_force"))
         return contact_of(visits, encounter.law), force, when
+
+    def rubbing(self, drop: int, encounter: Encounter) -> Rubbing | None:
+        """Return the friction of a drop at first touch; None if there is none."""
+        law = None if self.oblique is None or self.oblique.law is None else self.oblique.law.take(drop)
+        if self.oblique is None or not isinstance(law, CompliantFriction):
+            return None
+        sphere, before = self.oblique.now(np.array([drop]))
+        largest = float(encounter.law.forces(encounter.depth, np.zeros(1), encounter.approach_speed)[0][0])
+        along = (float(sphere.tangential_mass[0]), sphere.gravity[:, 0], sphere.slip(before)[:, 0])
+        return rubbing_at_touch(law, largest, *along)
+
+    def slide(self, oblique: ObliqueMotion, leg: Leg, row: dict[str, Floats]) -> ObliqueContacts:
+        """Advance drops along the plate as their visits have it."""
+        assert leg.contact is not None
+        return rubbed_contacts(oblique, leg.contact_drops, leg.contact, row)
 
     def falls_back(self, contact: Contact, law: CompliantLaw, gravity: Floats) -> Bools:
         """Return False for all drops: a visit includes the contacts of those that fall back."""

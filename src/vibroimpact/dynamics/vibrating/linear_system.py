@@ -15,7 +15,8 @@ all other coordinates :math:`F_{ci} = F_c`.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
@@ -65,6 +66,10 @@ class LinearSystem(Oscillators):
         Of the massless elements: stiffness over damping [1/s], and one over damping [m/(N s)].
     local_contact : array of int, shape (k,)
         The contact that each massless element is in series with.
+    along : array, shape (2, n), optional
+        Displacement of the surface below along x and y at the only contact, by each coordinate [kg^-1/2]; where there is friction.
+    residuals : mapping of str to array, shape (3,)
+        Residual compliances between the only contact and the sensors, by their names [m/N].
     """
 
     offset: Floats
@@ -74,6 +79,8 @@ class LinearSystem(Oscillators):
     rate: Floats
     mobility: Floats
     local_contact: Indices
+    along: Floats | None = None
+    residuals: Mapping[str, Floats] = field(default_factory=dict)
 
     @cached_property
     def views(self) -> dict[tuple[int, ...], Any]:
@@ -92,6 +99,14 @@ class LinearSystem(Oscillators):
         found = replace(self, shape=shapes, load=loads)
         found.__dict__["shared_modes"] = self.shared_modes
         return found
+
+    @cached_property
+    def rubbed(self) -> LinearSystem:
+        """The same system with two further contacts, at which friction acts, in the direction of x and of y."""
+        assert self.along is not None
+        apart = np.concatenate([self.offset, np.zeros(2)])
+        shapes, below = np.concatenate([self.shape, -self.along]), np.repeat(self.below, 3, axis=0)
+        return replace(self, shape=shapes, offset=apart, below=below, along=None)
 
     @cached_property
     def rigid(self) -> Bools:

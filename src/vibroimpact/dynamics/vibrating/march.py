@@ -33,6 +33,7 @@ from vibroimpact.dynamics.vibrating.local import LocalContact
 from vibroimpact.dynamics.vibrating.next_touch import next_touch, time_to_separation
 from vibroimpact.dynamics.vibrating.receptance import contact_view
 from vibroimpact.dynamics.vibrating.recoil import end_of_recoil, recoil_end_value
+from vibroimpact.dynamics.vibrating.rubbing import Rubbing
 from vibroimpact.dynamics.vibrating.solve_stretches import StretchProblem
 from vibroimpact.dynamics.vibrating.stretch import VibratingStretch
 from vibroimpact.dynamics.vibrating.stretch_end import (
@@ -69,7 +70,7 @@ class March:
     `time` [s], `state`: current ones. `next_length`: of the next stretch [s]. `active`: contacts whose surfaces overlap, by number.
     `next_laws`: laws of the next impacts, with their memory. `dents`: laws of the last impacts where the next one meets undeformed
     surfaces, while surfaces may still overlap the dent. `parts`: the history. `impacts`: one record per impact. `lost` [J], (n + 1,):
-    energy lost in each coordinate, and in the contacts; `plastic`: plastic work [J].
+    energy lost in each coordinate, and in the contacts; `plastic`: plastic work [J]. `rubbing`: friction of the only contact, if any.
 
     Parameters
     ----------
@@ -83,6 +84,8 @@ class March:
         Relative error allowed at the end of each stretch.
     scale : tuple of two floats, optional
         Speed of the motion [m/s] and approximate duration of a contact [s]; by default each contact has its own.
+    rubbing : Rubbing, optional
+        Friction at the start, of one contact.
     """
 
     def __init__(
@@ -92,6 +95,7 @@ class March:
         state: State,
         tolerance: float,
         scale: tuple[float, float] | None = None,
+        rubbing: Rubbing | None = None,
     ) -> None:
         self.system, self.definitions, self.state, self.tolerance, self.scale = system, definitions, state, tolerance, scale
         self.next_laws = [law.law for law in definitions]
@@ -101,6 +105,7 @@ class March:
         self.parts: list[MotionPart] = []
         self.impacts: list[Impact] = []
         self.lost, self.plastic = np.zeros(system.number + 1), 0.0
+        self.rubbing = rubbing
 
     def run_until(self, end: float, progress: Callable[[float], None] | None = None) -> Coroutine[None]:
         """Advance to a time [s]; a contact in progress is cut off there.
@@ -162,6 +167,7 @@ class March:
     def append_free(self, free: FreeMotion, length: float) -> None:
         """Append a free motion of a length [s] to the history."""
         motion = FreePhase(free, length, tuple((number, contact.local) for number, contact in self.active.items()))
+        self.rubbing = None if self.rubbing is None else self.rubbing.flown(length)
         self.append_motion(motion, free.state(np.array(length)), motion.lost_by(np.array(length)))
 
     def end_recoil(self, contact: ActiveContact, *, parts: bool) -> None:
@@ -310,7 +316,14 @@ class March:
         """Return the problem of a stretch of a length [s] from the current state."""
         contacts, begun, trend = zip(*((contact.local, contact.delta, contact.trend) for contact in pushing), strict=True)
         return StretchProblem(
-            contact_view(self.system, (contact.number for contact in pushing)), contacts, time_map, length, self.state, begun, trend
+            contact_view(self.system, (contact.number for contact in pushing)),
+            contacts,
+            time_map,
+            length,
+            self.state,
+            begun,
+            trend,
+            rubbing=self.rubbing,
         )
 
     def accept(self, pushing: list[ActiveContact], stretch: VibratingStretch) -> None:
@@ -324,6 +337,7 @@ class March:
             if not contact.pushes:  # recoiling contacts, which are not part of the stretch
                 self.lost[-1] += float(recoil_loss(self.system, contact.number, contact.local, self.state, end))
         self.append_motion(stretch, end, lost)
+        self.rubbing = None if stretch.rubbed is None else stretch.rubbed.end
         stretch.keep()
 
     def append_motion(self, motion: VibratingStretch | FreePhase, state: State, lost: Floats) -> None:

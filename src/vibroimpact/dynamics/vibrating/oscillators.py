@@ -36,7 +36,7 @@ class Oscillators:
         """Twice the damping ratio times the angular frequency [1/s] (n,)."""
         return 2.0 * self.damping_ratio * self.angular_frequency
 
-    def pick(self, which: Indices | Bools) -> Oscillators:
+    def pick(self, which: Indices | Bools | slice) -> Oscillators:
         """Return a subset of the oscillators."""
         return Oscillators(self.angular_frequency[which], self.damping_ratio[which], self.shape[..., which])
 

@@ -19,7 +19,15 @@ from vibroimpact.dynamics.linear_equations import stacked_inverse, stacked_matve
 from vibroimpact.dynamics.vibrating.contact_history import ContactHistory
 from vibroimpact.dynamics.vibrating.linear_system import State
 from vibroimpact.dynamics.vibrating.local import Linearised, LocalContact, linearise_contacts, stack_contacts
-from vibroimpact.dynamics.vibrating.receptance import NODES_PER_STRETCH, ContactView, Receptance, StackedSystems, radau_eigenbasis
+from vibroimpact.dynamics.vibrating.receptance import (
+    NODES_PER_STRETCH,
+    ContactView,
+    RadauEigenbasis,
+    Receptance,
+    StackedSystems,
+    radau_eigenbasis,
+)
+from vibroimpact.dynamics.vibrating.rubbing import FrictionForces, RubbedStretch, Rubbing
 from vibroimpact.dynamics.vibrating.stretch import VibratingStretch, stretch_motions
 
 _MOST_ITERATIONS = 25
@@ -65,6 +73,8 @@ class StretchProblem:
         Initial guess of the indentations of the laws [m] and of the forces [N] at the nodes.
     end_condition : EndCondition, optional
         Condition at the end, from which the length is found.
+    rubbing : Rubbing, optional
+        Friction at the start, of a drop that has any.
     """
 
     view: ContactView
@@ -76,6 +86,7 @@ class StretchProblem:
     trend: Sequence[float] = ()
     guess: tuple[Floats, Floats] | None = None
     end_condition: EndCondition | None = None
+    rubbing: Rubbing | None = None
 
     @property
     def kind(self) -> tuple[object, ...]:
@@ -88,7 +99,7 @@ class StretchProblem:
             if self.end_condition.name in ("parted", "breakpoint")
             else self.end_condition.name
         )
-        return self.view.modes.kind, self.time_map, end_condition, self.guess is None, laws
+        return self.view.modes.kind, self.time_map, end_condition, self.guess is None, laws, self.rubbing is None
 
     @property
     def size(self) -> int:
@@ -111,7 +122,11 @@ def solve_stretches(problems: Sequence[StretchProblem]) -> list[VibratingStretch
     start_approach = np.maximum(systems.approach, [[local.release_level for local in problem.contacts] for problem in problems])
     begun = np.array([problem.begun for problem in problems])
     start_delta = np.array([local.refine_indentation(begun[:, place], start_approach[:, place]) for place, local in enumerate(stacked)]).T
-    receptance = Receptance(systems, basis, length)
+    receptance = unrubbed = Receptance(systems, basis, length)
+    friction = _friction(problems, basis)
+    if friction is not None:
+        friction.set_length(length)
+        receptance = friction.moving(unrubbed)
     delta, force = _first_guess(problems, stacked, receptance, start_delta) if first.guess is None else _guesses(problems)
     # a scale of the forces, for motions that change their rate within the stretch
     largest = np.abs(receptance.rate).reshape(number, -1, NODES_PER_STRETCH).max(axis=2) / length[:, None]
@@ -137,7 +152,13 @@ def solve_stretches(problems: Sequence[StretchProblem]) -> list[VibratingStretch
                 iterating, np.clip(length_step, -_LENGTH_FACTOR * length, _LENGTH_FACTOR / (1.0 + _LENGTH_FACTOR) * length), 0.0
             )
             length = length - length_step
-            receptance, step_size = Receptance(systems, basis, length), np.maximum(step_size, np.abs(length_step) / length)
+            receptance = unrubbed = Receptance(systems, basis, length)
+            step_size = np.maximum(step_size, np.abs(length_step) / length)
+        if friction is not None:
+            if event is not None:
+                friction.set_length(length)
+            step_size = np.maximum(step_size, friction.follow(force, iterating) / (scale + np.abs(force).max(axis=1)))
+            receptance = friction.moving(unrubbed)
         last_size, size = size, step_size
         # predicted size of the next step: quadratic convergence, limited by the finite-difference derivatives
         next_size = size * np.minimum(np.maximum((size / last_size) ** 2, _INEXACT), 1.0)
@@ -146,7 +167,15 @@ def solve_stretches(problems: Sequence[StretchProblem]) -> list[VibratingStretch
         iterating &= ~done & np.isfinite(size)
         if not iterating.any():
             break
-    return _stretches(problems, stacked, receptance, length, (start_approach, start_delta), (static, delta, force), solved)
+    return _stretches(problems, stacked, receptance, length, (start_approach, start_delta), (static, delta, force), solved, friction)
+
+
+def _friction(problems: Sequence[StretchProblem], basis: RadauEigenbasis) -> FrictionForces | None:
+    """Return the friction forces of stretches; None if there is no friction."""
+    rubbings = [problem.rubbing for problem in problems if problem.rubbing is not None]
+    if not rubbings:
+        return None
+    return FrictionForces([problem.view for problem in problems], [problem.start for problem in problems], rubbings, basis)
 
 
 def _stretches(
@@ -157,6 +186,7 @@ def _stretches(
     begun: tuple[Floats, Floats],
     found: tuple[Floats, Floats, Floats],
     solved: Bools,
+    friction: FrictionForces | None,
 ) -> list[VibratingStretch]:
     """Return the solved stretches from their indentations and forces at the nodes.
 
@@ -176,6 +206,8 @@ def _stretches(
         Static forces [N], indentations of the laws [m] and forces [N] at the nodes.
     solved : array of bool, shape (B,)
         Whether Newton's method converged.
+    friction : FrictionForces or None
+        Friction at the nodes, where there is any.
     """
     systems, basis, (start_approach, start_delta), (static, delta, force) = receptance.systems, receptance.basis, begun, found
     approach, rate = (
@@ -198,7 +230,13 @@ def _stretches(
     dissipated = (dissipative * rates[:, :, 1:]) @ basis.rule.integral[-1] * length[:, None]
     needed = np.array([problem.view.mass for problem in problems]) * np.abs(rates).max(axis=2) / length[:, None]
     roughness = basis.rule.tail_of_each(force, needed).max(axis=1).tolist()
-    motions = stretch_motions(systems, basis, length, (receptance.admittance, receptance.responses), force, static)
+    rubbed: Sequence[RubbedStretch | None] = [None] * len(problems) if friction is None else friction.stretches(force[:, 0])
+    modes = receptance.admittance, receptance.responses
+    if friction is None:
+        motions = stretch_motions(systems, basis, length, modes, force, static)
+    else:
+        both = [np.concatenate(parts, axis=1) for parts in ((force, friction.force), (static, np.zeros_like(friction.force)))]
+        motions = stretch_motions(friction.systems, basis, length, modes, *both)
     stretches = []
     for number, problem in enumerate(problems):
         contacts = tuple(
@@ -216,7 +254,9 @@ def _stretches(
             )
             for place, local in enumerate(problem.contacts)
         )
-        stretch = VibratingStretch(problem.view, basis, lengths[number], problem.start, contacts, bool(solved[number]), roughness[number])
+        stretch = VibratingStretch(
+            problem.view, basis, lengths[number], problem.start, contacts, bool(solved[number]), roughness[number], rubbed[number]
+        )
         stretch.__dict__["motion"] = motions[number]
         stretches.append(stretch)
     return stretches

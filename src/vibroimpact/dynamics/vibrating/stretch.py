@@ -16,6 +16,7 @@ from vibroimpact.dynamics.collocation import Rule
 from vibroimpact.dynamics.vibrating.contact_history import ContactHistory
 from vibroimpact.dynamics.vibrating.linear_system import LinearSystem, State
 from vibroimpact.dynamics.vibrating.receptance import ContactView, RadauEigenbasis, StackedSystems
+from vibroimpact.dynamics.vibrating.rubbing import RubbedStretch, rubbed_view
 
 _RIGID_ROUNDING = 2e-15  # relative rounding error of the kinetic energy of the rigid motions that move the contacts
 _ROUNDING = 2e-14  # relative rounding error of the energy of the modes, which may far exceed that of a soft contact
@@ -60,7 +61,7 @@ class VibratingStretch:
 
     `view`: the system reduced to the contacts that push. `length` [s]. `start`: state at the start. `contacts`: histories of the contacts
     that push. `solved`: whether Newton's method converged. `roughness`: the last Legendre coefficients of the forces, relative to their
-    scale; the error at the end is of the order of its square.
+    scale; the error at the end is of the order of its square. `rubbed`: friction, of a drop that has any.
     """
 
     view: ContactView
@@ -70,6 +71,7 @@ class VibratingStretch:
     contacts: tuple[ContactHistory, ...]
     solved: bool
     roughness: float
+    rubbed: RubbedStretch | None = None
 
     @property
     def system(self) -> LinearSystem:
@@ -99,11 +101,14 @@ class VibratingStretch:
     def motion(self) -> StretchMotion:
         """Motion of the coordinates; recomputed from the forces if it is no longer kept."""
         self.keep()
-        systems, length = StackedSystems([self.view], [self.start]), np.array([self.length])
+        view, force, static = self.view, self.force[None], np.array([[contact.static for contact in self.contacts]])
+        if self.rubbed is not None:
+            view, force = rubbed_view(view), np.concatenate([force, self.rubbed.force[None]], axis=1)
+            static = np.concatenate([static, np.zeros_like(self.rubbed.force[None])], axis=1)
+        systems, length = StackedSystems([view], [self.start]), np.array([self.length])
         admittance = 1.0 / systems.impedance(length[:, None] * self.basis.values)
         responses = systems.drive(self.basis, length) * admittance
-        static = np.array([[contact.static for contact in self.contacts]])
-        return stretch_motions(systems, self.basis, length, (admittance, responses), self.force[None], static)[0]
+        return stretch_motions(systems, self.basis, length, (admittance, responses), force, static)[0]
 
     @property
     def accelerations(self) -> Floats:
@@ -193,7 +198,10 @@ class VibratingStretch:
         """
         if not (self.solved and self.roughness**2 <= 0.1 * tolerance):
             return False
+        if self.rubbed is not None and abs(self.rubbed.imbalance) > 0.06 * tolerance * energy:
+            return False
         gain = self.motion.gain + sum(contact.work for contact in self.contacts)
+        gain -= 0.0 if self.rubbed is None else self.rubbed.surface_work
         return bool(abs(gain + self.lost.sum()) <= 0.06 * tolerance * energy + self.motion.rounding)
 
 

@@ -24,6 +24,7 @@ from vibroimpact.dynamics.vibrating.linear_system import FreeMotion, LinearSyste
 from vibroimpact.dynamics.vibrating.local import LocalContact
 from vibroimpact.dynamics.vibrating.march import March, MotionPart, NotIntegrable
 from vibroimpact.dynamics.vibrating.next_touch import next_touch, time_to_separation
+from vibroimpact.dynamics.vibrating.rubbing import Rubbing
 from vibroimpact.dynamics.vibrating.stretch import VibratingStretch
 
 MOST_STEPS, MOST_STEPS_TO_A_TIME = 5_000, 20_000
@@ -39,7 +40,7 @@ class Visit:
     `state`: at the end. `duration`: from first touch to last release [s]. `contacts`: number of contacts. `max_indentation`, `max_force`
     and their times since first touch [m, N, s]. `lost` [J], (n + 1,): energy lost in each coordinate, and in the contact. `plastic`:
     plastic work [J]. `law`: with its memory at the end. `stored`: energy left in the contact [J]. `local`: the contact in which the sphere
-    rests, if so.
+    rests, if so. `rubbing`: friction at the end, if any.
     """
 
     system: LinearSystem
@@ -57,6 +58,7 @@ class Visit:
     plastic: float
     stored: float
     local: LocalContact
+    rubbing: Rubbing | None = None
 
 
 def follow_visit(
@@ -69,6 +71,7 @@ def follow_visit(
     fresh_surface: bool = False,
     rest_speed: float = 0.0,
     until: float = np.inf,
+    rubbing: Rubbing | None = None,
 ) -> Coroutine[Visit]:
     """Follow one drop from first touch to its last release, or to rest.
 
@@ -92,9 +95,11 @@ def follow_visit(
         A sphere that separates more slowly, and can no longer separate faster, is at rest [m/s].
     until : float, default infinite
         End of a ride [s since first touch]; a contact of usual duration is completed.
+    rubbing : Rubbing, optional
+        Friction at first touch.
     """
     speed = motion_speed(system, 0, law, closing_speed(system, state, 0))
-    march = March(system, [ContactDefinition(law, series, fresh_surface)], state, tolerance, (speed, contact_duration))
+    march = March(system, [ContactDefinition(law, series, fresh_surface)], state, tolerance, (speed, contact_duration), rubbing)
     return (yield from _VisitMarch(march, rest_speed, until).run())
 
 
@@ -145,6 +150,7 @@ class _VisitMarch:
             march.plastic,
             self.stored,
             local,
+            march.rubbing,
         )
 
     # one contact -----------------------------------------------------------------------------------

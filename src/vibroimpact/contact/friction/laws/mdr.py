@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from vibroimpact.contact.friction.law import CompliantFriction
+from vibroimpact.contact.friction.springs import ContactSprings, contact_springs
 from vibroimpact.contact.friction.turning_points import TurningPoints
 
 
@@ -41,3 +42,8 @@ class Mdr(CompliantFriction):
     def memory(self, size: int, steps: int) -> TurningPoints:
         """Return contacts without displacement; see `CompliantFriction`."""
         return TurningPoints(size, steps)
+
+    def history(self, largest_force: float) -> ContactSprings:
+        """Return springs without displacement; see `CompliantFriction`."""
+        moduli = (float(self.effective_modulus), float(self.effective_shear_modulus))
+        return contact_springs(*moduli, float(self.effective_radius), float(self.coefficient), largest_force)

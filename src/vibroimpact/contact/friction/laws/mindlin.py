@@ -8,7 +8,7 @@ from typing import ClassVar
 import numpy as np
 
 from vibroimpact.arrays import Drops, Floats
-from vibroimpact.contact.friction.law import CompliantFriction, Memory, Pair
+from vibroimpact.contact.friction.law import CompliantFriction, Memory, Pair, TangentialHistory
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -45,6 +45,14 @@ class Mindlin(CompliantFriction):
     def memory(self, size: int, steps: int) -> Memory:
         """Return springs without displacement; see `CompliantFriction`."""
         return Spring(size, rescales=self.rescales)
+
+    def history(self, largest_force: float) -> TangentialHistory:
+        """Return a spring without displacement; see `CompliantFriction`."""
+        return OneSpring(self, 0.0, np.zeros(2))
+
+    def radius_under(self, force: float) -> float:
+        """Return the radius of the contact of one drop under a normal force [N]."""
+        return float(np.cbrt(0.75 * max(force, 0.0) * self.effective_radius / self.effective_modulus))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -104,6 +112,10 @@ class MindlinForce(Mindlin):
         """Return contacts without a force; see `CompliantFriction`."""
         return KeptForce(size)
 
+    def history(self, largest_force: float) -> TangentialHistory:
+        """Return a contact without a force; see `CompliantFriction`."""
+        return OneForce(self, 0.0, np.zeros(2))
+
 
 class Spring:
     """Displacements of B springs; see `Memory`."""
@@ -139,3 +151,40 @@ class KeptForce:
         most = (2.0 / 3.0) * radius * depth
         integral = np.clip(sticking, -most, most)
         return integral, np.where(np.abs(sticking) > most, np.sign(integral) * radius * rates[0], radius * rates[1])
+
+
+@dataclass(frozen=True)
+class OneSpring:
+    """Spring of one contact in two directions; see `TangentialHistory`. `radius` of the contact [m], `stretch` [m] (2,)."""
+
+    law: Mindlin
+    radius: float
+    stretch: Floats
+
+    def after(self, force: float, moved: Floats) -> tuple[OneSpring, Floats]:
+        """Stretch the spring, at most to sliding."""
+        law, radius = self.law, self.law.radius_under(force)
+        kept = radius / self.radius if law.rescales and radius < self.radius else 1.0
+        stretch, stiffness = self.stretch * kept + moved * (0.5 * (1.0 + kept)), 2.0 * float(law.effective_shear_modulus) * radius
+        most, pulled = float(law.coefficient) * max(force, 0.0), stiffness * float(np.hypot(*stretch))
+        if pulled > most:
+            stretch = stretch * (most / pulled)
+        return OneSpring(law, radius, stretch), stiffness * stretch
+
+
+@dataclass(frozen=True)
+class OneForce:
+    """Kept force of one contact in two directions; see `TangentialHistory`. `radius` of the contact [m], `force` [N] (2,)."""
+
+    law: Mindlin
+    radius: float
+    force: Floats
+
+    def after(self, force: float, moved: Floats) -> tuple[OneForce, Floats]:
+        """Change the force as without slip, by the mean stiffness on the way, at most to sliding."""
+        law, radius = self.law, self.law.radius_under(force)
+        pulled = self.force + float(law.effective_shear_modulus) * (self.radius + radius) * moved
+        most, strength = float(law.coefficient) * max(force, 0.0), float(np.hypot(*pulled))
+        if strength > most:
+            pulled = pulled * (most / strength)
+        return OneForce(law, radius, pulled), pulled

@@ -1,0 +1,75 @@
+"""The motion along the plate during visits of spheres to plates that deform."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from vibroimpact.arrays import Drops, Floats
+from vibroimpact.dynamics.contact import Contact
+from vibroimpact.dynamics.oblique.motion import ObliqueMotion, twist_by
+from vibroimpact.dynamics.oblique.state import ObliqueContacts, Sphere, State, spin_energy, state_after
+from vibroimpact.dynamics.vibrating.rubbing import RubbedStretch
+from vibroimpact.dynamics.vibrating.stretch import VibratingStretch
+
+
+@dataclass(frozen=True)
+class RubbedContact:
+    """The motion along the plate during the visit of one drop; see `ObliqueContact`.
+
+    `sphere`, `before`: the sphere, and its state at first touch. `duration`: of the visit [s] (1,). `parts`: starts of its stretches under
+    friction since first touch [s], and these. `twist`: change of the spin about the normal [rad/s] (1,).
+    """
+
+    sphere: Sphere
+    before: State
+    duration: Floats
+    parts: Sequence[tuple[float, RubbedStretch]]
+    twist: Floats
+
+    def of(self, drop: int) -> RubbedContact:
+        """Return itself: it belongs to one drop."""
+        return self
+
+    def at(self, time: Floats) -> tuple[State, Floats, Floats]:
+        """Return states, friction forces on the sphere [N] (2, T) and energy taken [J] (T,) at times since first touch [s] (T,)."""
+        sphere, before, now = self.sphere, self.before, np.minimum(time, self.duration)
+        slip = sphere.slip(before)
+        velocity, displacement = slip + sphere.gravity * now, (slip + 0.5 * sphere.gravity * now) * now
+        force, taken = np.zeros((2, len(now))), np.zeros(len(now))
+        for start, stretch in self.parts:  # what follows a stretch flies on from its end until the next one
+            within, later = (now >= start) & (now <= start + stretch.length), now > start + stretch.length
+            if within.any():
+                velocity[:, within], displacement[:, within], force[:, within], taken[within] = stretch.at(now[within] - start)
+            if later.any():
+                end, rest = stretch.end, now[later] - start - stretch.length
+                velocity[:, later] = end.velocity[:, None] + end.pull[:, None] * rest
+                displacement[:, later] = end.displacement[:, None] + (end.velocity[:, None] + 0.5 * end.pull[:, None] * rest) * rest
+                force[:, later], taken[later] = 0.0, end.work
+        twist = self.twist * now / self.duration
+        return state_after(sphere, before, now, velocity, displacement, twist), -force, taken + spin_energy(sphere, before, twist)
+
+    @property
+    def end(self) -> tuple[State, Floats]:
+        """The state at the end of the visit, and the energy that friction took in it [J] (1,)."""
+        state, _, taken = self.at(self.duration)
+        return state, taken
+
+
+def rubbed_contacts(oblique: ObliqueMotion, drops: Drops, contact: Contact, row: dict[str, Floats]) -> ObliqueContacts:
+    """Advance drops through their visits along the plate, write their columns, and return the motion in them."""
+    parts: list[list[tuple[float, RubbedStretch]]] = [[] for _ in drops]
+    for piece in contact.pieces:
+        if isinstance(piece.motion, VibratingStretch) and piece.motion.rubbed is not None:
+            parts[int(piece.drops[0])].append((float(piece.start[0]), piece.motion.rubbed))
+    found = []
+    for place, stretches in enumerate(parts):
+        here, one = np.array([place]), drops[place : place + 1]
+        sphere, before = oblique.now(one)
+        twist = twist_by(np.array([stretches[-1][1].end.twisting if stretches else 0.0]), sphere, before.spin[2])
+        along = RubbedContact(sphere, before, contact.duration[here], stretches, twist)
+        oblique.finish(one, *along.end, row)
+        found.append((here, along))
+    return tuple(found)

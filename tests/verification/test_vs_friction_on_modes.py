@@ -1,0 +1,218 @@
+"""Friction on a plate that vibrates, against an integration of its modes and of the sphere in space by SciPy, and against momentum."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+import vibroimpact as vi
+from vibroimpact.contact.friction.turning_points import TurningPoints
+from vibroimpact.dynamics.vibrating.bodies import slices_of
+from vibroimpact.structures.modal_model import ModalBasis
+
+MASS, RADIUS, MODULUS, SHEAR = 0.5, 0.025, 1.15e11, 0.92e11
+STIFFNESS = 4.0 / 3.0 * MODULUS * RADIUS**0.5
+GRAVITY = (1.5, 0.0)
+EFFECTIVE = 2.0 / 7.0 * MASS
+
+
+def bending_modes(seed: int, number: int = 12, *, size: float = 0.5) -> ModalBasis:
+    """Modes whose contact point moves up and along x and y, as where bending turns the surface."""
+    random = np.random.default_rng(seed)
+    frequencies = np.sort(np.exp(random.uniform(np.log(200.0), np.log(2e4), number)))
+    contact, along = size * random.normal(size=number), 0.5 * size * random.normal(size=(number, 2))
+    return ModalBasis(frequencies, np.full(number, 0.02), contact, np.zeros((number, 3)), mass=4.0, along=along)
+
+
+def drop(plate: ModalBasis, friction: Any, **oblique: Any) -> vi.Problem:
+    law = vi.find_contact_law("hertz")(stiffness=STIFFNESS)
+    return vi.Problem(
+        sphere=vi.Body(mass=MASS, contact_offset=RADIUS),
+        plate=vi.Body(mass=np.inf, contact_offset=0.0, modes=plate),
+        laws=(law,),
+        speed=2.0,
+        gravity=9.81,
+        impacts=1,
+        tolerance=1e-12,
+        oblique=vi.Oblique(friction=friction, gravity=GRAVITY, **oblique),
+    )
+
+
+def friction(name: str, coefficient: float) -> Any:
+    return vi.find_friction_law(name)(
+        coefficient=coefficient, effective_modulus=MODULUS, effective_shear_modulus=SHEAR, effective_radius=RADIUS
+    )
+
+
+def integrated(plate: ModalBasis, slip: np.ndarray, law: str, coefficient: float) -> dict[str, Any]:
+    """The first contact, by DOP853: fall, contact point of the sphere, and modes, with a spring that sticks, or sliding along x."""
+    omega, count = plate.angular_frequencies, len(plate.frequencies)
+    assert plate.along is not None
+    along, pull = plate.along, np.array(GRAVITY)
+
+    def parts(state: np.ndarray) -> tuple[Any, ...]:
+        (depth, fall), point, point_rate = state[:2], state[2:4], state[4:6]
+        return depth, fall, point, point_rate, state[6 : 6 + count], state[6 + count : 6 + 2 * count]
+
+    def forces(state: np.ndarray) -> tuple[float, np.ndarray]:
+        depth, _, point, point_rate, place, rate = parts(state)
+        overlap = max(depth + plate.contact @ place, 0.0)
+        force = STIFFNESS * overlap**1.5
+        if law == "stick":
+            return force, 2.0 * SHEAR * (RADIUS * overlap) ** 0.5 * (point - along.T @ place)
+        rubs = point_rate - along.T @ rate
+        return force, coefficient * force * rubs / np.hypot(*rubs)
+
+    def rates(_: float, state: np.ndarray) -> np.ndarray:
+        _, fall, _, point_rate, place, rate = parts(state)
+        force, rub = forces(state)
+        modes = -(omega**2) * place - 2.0 * plate.damping_ratios * omega * rate - plate.contact * force + along @ rub
+        sphere = [fall, 9.81 - force / MASS, *point_rate, *(pull - rub / EFFECTIVE)]
+        return np.concatenate([sphere, rate, modes])
+
+    def parted(time: float, state: np.ndarray) -> float:
+        return float(state[0] + plate.contact @ state[6 : 6 + count]) if time > 1e-6 else 1.0
+
+    parted.terminal, parted.direction = True, -1.0  # type: ignore[attr-defined]
+    start = np.concatenate([[0.0, 2.0, 0.0, 0.0], slip, np.zeros(2 * count)])
+    found = solve_ivp(rates, (0.0, 1e-2), start, method="DOP853", events=parted, rtol=1e-12, atol=1e-14, max_step=2e-6)
+    end = found.y[:, -1]
+    return {"time": found.t[-1], "fall": end[1], "point": end[4:6], "place": end[6 : 6 + count], "rate": end[6 + count :]}
+
+
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_a_contact_that_sticks_in_two_directions(seed: int) -> None:
+    """A single spring without limit is smooth: all velocities agree with an integration in time to 1e-7."""
+    plate, velocity = bending_modes(seed), (0.4, -0.25)
+    response = vi.simulate(drop(plate, friction("mindlin", 1e9), velocity=velocity))
+    found = integrated(plate, np.array(velocity), "stick", 0.0)
+    row = {name: values[0] for name, values in response.impacts.items()}
+    assert row["contacts"] == 1
+    assert row["duration_s"] == pytest.approx(found["time"], rel=1e-7)
+    assert row["separation_speed_m_s"] == pytest.approx(-found["fall"], rel=1e-7)
+    rolled = np.array([-row["spin_y_after_rad_s"], row["spin_x_after_rad_s"]]) * RADIUS
+    point = np.array([row["separation_velocity_x_m_s"], row["separation_velocity_y_m_s"]]) + rolled
+    assert point == pytest.approx(found["point"], rel=1e-7, abs=1e-7 * 0.4)
+    modes = 0.5 * (found["rate"] ** 2 + (plate.angular_frequencies * found["place"]) ** 2).sum()
+    history = response.at([row["time_s"] + row["duration_s"]])
+    assert history["plate_kinetic_J"][0] + history["plate_strain_J"][0] == pytest.approx(modes, rel=1e-7)
+
+
+@pytest.mark.parametrize("name", ["mdr", "mindlin", "mindlin-force"])
+def test_a_contact_that_slides(name: str) -> None:
+    """Fast slip leaves no choice to any law: the coefficient times the normal force, against the slip over the surface as it moves."""
+    plate = bending_modes(7)
+    assert plate.along is not None
+    straight = replace(plate, along=plate.along * np.array([1.0, 0.0]))
+    problem = drop(straight, friction(name, 0.1), velocity=(3.0, 0.0))
+    row = {name: values[0] for name, values in vi.simulate(problem).impacts.items()}
+    found = integrated(straight, np.array([3.0, 0.0]), "slide", 0.1)
+    point = row["separation_velocity_x_m_s"] - RADIUS * row["spin_y_after_rad_s"]
+    assert row["contacts"] == 1
+    assert point == pytest.approx(found["point"][0], rel=1e-7)
+    assert row["separation_speed_m_s"] == pytest.approx(-found["fall"], rel=1e-7)
+
+
+@pytest.mark.parametrize("place", [(0.06, -0.03), (-0.11, 0.05)])
+@pytest.mark.parametrize("law", ["mdr", "mindlin-rescale"])
+def test_momentum_of_a_free_plate(place: tuple[float, float], law: str) -> None:
+    """An oblique drop beside the centre of a free plate: momentum and angular momentum of both together stay, to 1e-9."""
+    case = vi.read_case(
+        {
+            "sphere": {"radius": 0.02, "material": "steel"},
+            "plate": {"size": [0.3, 0.2, 0.01], "material": "steel", "model": "elastic", "supports": "free", "modes": 30},
+            "drop": {"speed": 2.0, "angle": math.radians(35.0), "gravity": 0.0, "position": list(place), "spin": [20.0, -30.0, 0.0]},
+            "contact": {"law": "hunt-crossley", "restitution": 0.8, "friction": {"law": law, "coefficient": 0.2}},
+            "run": {"impacts": 1},
+        }
+    )
+    problem = case.to_problem()
+    response = vi.simulate(problem)
+    rigid = problem.plate.rigid
+    assert rigid is not None
+    assert rigid.along is not None
+    assert response.legs is not None
+    contact = response.legs[0].contact
+    assert contact is not None
+    end = contact.pieces[-1].motion.end  # type: ignore[union-attr]
+    speed = end.velocity[slices_of(problem)[0]]
+    row = {name: values[0] for name, values in response.impacts.items()}
+    mass, radius = float(problem.sphere.mass), 0.02
+    before, after = (np.array([row[f"{when}_velocity_{axis}_m_s"] for axis in "xy"]) for when in ("approach", "separation"))
+    rising = float(response.at([row["time_s"] + row["duration_s"]])["velocity_m_s"][0])
+    impulse = mass * np.append(after - before, rising + 2.0 * math.cos(math.radians(35.0)))
+    scale = mass * 2.0
+    assert speed @ rigid.participation == pytest.approx(-impulse, abs=1e-9 * scale)
+    # the plate turns about its centre by the impulse at the place of contact, half its thickness above
+    arm = np.array([*place, 0.005])
+    inertia = problem.models["plate"].properties.inertia
+    assert rigid.rotation is not None
+    moments, axes = np.linalg.eigh(inertia)
+    turned = axes @ (np.sqrt(moments) * (speed @ rigid.rotation))
+    assert turned == pytest.approx(np.cross(arm, -impulse), abs=1e-9 * scale * 0.15)
+    spin = np.array([row[f"spin_{axis}_after_rad_s"] - row[f"spin_{axis}_before_rad_s"] for axis in "xyz"])
+    assert 0.4 * mass * radius**2 * spin == pytest.approx(np.cross([0.0, 0.0, -radius], impulse), abs=1e-9 * scale * radius)
+    assert abs(response.energy["closure_relative"]) < 1e-9
+
+
+@pytest.mark.parametrize("slip", [0.05, 0.3, 0.8, 3.0])
+@pytest.mark.parametrize("name", ["mdr", "mindlin", "mindlin-force"])
+def test_a_plate_that_hardly_moves_is_a_rigid_one(name: str, slip: float) -> None:
+    """Sticking, slipping in part and sliding: springs and nodes here, turning points and steps there."""
+    still = bending_modes(1, size=1e-9)
+    level = vi.Oblique(velocity=(slip, 0.3 * slip), spin=(3.0, 1.0, 20.0), friction=friction(name, 0.2))
+    problem = replace(drop(still, level.friction), oblique=level, tolerance=1e-9)
+    rigid = vi.simulate(replace(problem, plate=vi.rigid_plate())).impacts
+    found = vi.simulate(problem).impacts
+    before = slip + 0.08  # about the slip speed, with that of the spin
+    for axis in "xy":
+        for key, scale in ((f"separation_velocity_{axis}_m_s", before), (f"spin_{axis}_after_rad_s", 2.5 * before / RADIUS)):
+            assert found[key][0] == pytest.approx(rigid[key][0], abs=2e-4 * scale)
+    assert found["spin_z_after_rad_s"][0] == pytest.approx(rigid["spin_z_after_rad_s"][0], rel=1e-4)
+    assert found["friction_lost_J"][0] == pytest.approx(rigid["friction_lost_J"][0], abs=5e-4 * MASS * slip**2)
+
+
+def test_random_drops_close_their_ledger_and_gain_nothing() -> None:
+    random = np.random.default_rng(0)
+    laws = ("mdr", "mindlin", "mindlin-rescale", "mindlin-force")
+    for number in range(24):
+        plate = bending_modes(number, int(random.integers(1, 40)), size=float(10 ** random.uniform(-1.5, 0.3)))
+        problem = drop(
+            plate,
+            friction(laws[number % 4], float(10 ** random.uniform(-2.0, 0.5))),
+            velocity=tuple(random.normal(size=2) * 10 ** random.uniform(-3.0, 1.0)),
+            spin=tuple(random.normal(size=3) * 10 ** random.uniform(0.0, 2.0)),
+        )
+        law = vi.find_contact_law("hunt-crossley")(stiffness=STIFFNESS, restitution=float(random.uniform(0.1, 1.0)))
+        response = vi.simulate(replace(problem, laws=(law,), speed=float(10 ** random.uniform(-2.0, 1.0)), impacts=2, tolerance=1e-9))
+        assert response.energy["closure_relative"] < 2e-9
+        assert (response.impacts["friction_lost_J"] > -1e-9 * response.energy["input_J"]).all()
+
+
+def test_springs_follow_the_turning_points() -> None:
+    """Along one direction, a displacement that turns twice while the contact grows and shrinks: within 1e-4 of the largest friction."""
+    steps = 1600
+    angle = np.linspace(0.0, np.pi, 20 * steps + 1)
+    depth = 1e-6 * np.maximum(np.sin(angle), 0.0)
+    moved = 2e-7 * (np.sin(2.6 * angle + 0.3) - np.sin(0.3))
+    ratio = 0.1 * MODULUS / SHEAR
+    exact, integral, nothing = TurningPoints(1, len(angle) + 2), 0.0, np.zeros(1)
+    curve = [0.0]
+    for point in range(1, len(angle)):
+        stick = 0.5 * (depth[point] ** 0.5 + depth[point - 1] ** 0.5) * (moved[point] - moved[point - 1]) / ratio
+        here = slice(point, point + 1)
+        found, _ = exact.advance(np.array([0]), depth[here], moved[here] / ratio, np.array([integral + stick]), (nothing, nothing))
+        integral = float(found[0])
+        curve.append(2.0 * SHEAR * RADIUS**0.5 * ratio * integral)
+    force = STIFFNESS * depth[::20] ** 1.5
+    springs: Any = friction("mdr", 0.1).history(float(force.max()))
+    for point in range(1, steps + 1):
+        way = (moved[20 * point] - moved[20 * point - 20]) * np.array([0.6, 0.8])
+        springs, rub = springs.after(float(force[point]), way)
+        assert rub @ [0.6, 0.8] == pytest.approx(curve[20 * point], abs=1e-4 * 0.1 * force.max())
+        assert abs(rub @ [0.8, -0.6]) < 1e-12 * force.max()
