@@ -11,6 +11,7 @@ from vibroimpact.calibration.speed_function import SpeedFunction
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.response import Response
 from vibroimpact.dynamics.simulate import simulate
+from vibroimpact.errors import InputError
 from vibroimpact.exporting.contact_parameters import law_at
 from vibroimpact.exporting.drop import Drop
 
@@ -25,6 +26,8 @@ def as_rigid(drop: Drop) -> Drop:
     the approach speeds differ from those of elastic bodies, which absorb energy. A drop of rigid bodies is returned unchanged, unless
     a parameter is a function of the approach speed; then it is simulated with that function.
     """
+    if drop.oblique is not None:
+        raise InputError("a drop with motion along the plate, spin or friction can't be written for other programs; data formats hold it")
     if drop.rigid is None:
         return drop
     response = simulate(drop.rigid) if drop.function is None else _by_function(drop.rigid, *drop.function)
