@@ -14,6 +14,7 @@ import pytest
 
 from told import MASS, RADIUS, STIFFNESS, told, told_case
 from vibroimpact.calibration.speed_function import SpeedFunction
+from vibroimpact.contact.friction.laws.mindlin import MindlinForce
 from vibroimpact.contact.hysteretic import HystereticLaw
 from vibroimpact.contact.laws.adams_impact import AdamsImpact
 from vibroimpact.contact.laws.hertz import Hertz
@@ -22,7 +23,8 @@ from vibroimpact.contact.laws.linear_spring_dashpot import LinearSpringDashpot
 from vibroimpact.contact.laws.newton import Newton
 from vibroimpact.contact.laws.tsuji import Tsuji
 from vibroimpact.contact.pair import ContactPair
-from vibroimpact.contact.registry import contact_laws
+from vibroimpact.contact.registry import contact_laws, find_friction_law
+from vibroimpact.dynamics.oblique.statement import Oblique
 from vibroimpact.dynamics.restitution import achieved_restitution
 from vibroimpact.errors import InputError
 from vibroimpact.exporting.contact_parameters import clipped_dashpot
@@ -124,6 +126,25 @@ class TestLammps:
         law = LinearSpringDashpot(stiffness=2e6, damping=80.0)
         drop = replace(told(law), function=("damping", SpeedFunction((50.0, 10.0), 1.0, 3.0)))
         np.testing.assert_allclose(self.wall(drop)[2], 50.0 + 10.0 * drop.impacts["approach_speed_m_s"])
+
+    def test_oblique(self) -> None:
+        """In the frame of the plate: gravity is inclined."""
+        law = MindlinForce(coefficient=0.3, effective_modulus=2.4e9, effective_shear_modulus=2e9, effective_radius=RADIUS)
+        oblique = Oblique(velocity=(1.0, -0.5), spin=(1.0, 2.0, 3.0), gravity=(3.0, 0.0), friction=law)
+        hertz = Hertz(stiffness=4.0 / 3.0 * 2.4e9 * math.sqrt(RADIUS))
+        text = text_of(lammps.FORMAT, told(hertz, oblique=oblique, gravity=4.0))
+        assert "set             group all omega 1.0 2.0 3.0" in text
+        assert "velocity        all set 1.0 -0.5 -0.0" in text
+        assert "gravity 5.0 vector 3.0 0.0 -4.0" in text
+        found = re.search(r"tangential mindlin/force (\S+) 0\.0 0\.3 zplane", text)
+        assert found is not None
+        assert float(found[1]) == pytest.approx(2.0 * 2e9, rel=1e-14)
+
+    @pytest.mark.parametrize("name", ["coulomb", "rigid"])
+    def test_refuses_friction_without_a_stiffness(self, name: str) -> None:
+        oblique = Oblique(friction=find_friction_law(name)(coefficient=0.3))
+        with pytest.raises(InputError, match=f"{name} can't be written for LAMMPS; mindlin, mindlin-rescale, mindlin-force, mdr can"):
+            lammps.FORMAT.write(told(TSUJI, oblique=oblique))
 
 
 class TestYade:

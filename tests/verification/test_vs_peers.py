@@ -9,15 +9,16 @@ import subprocess
 import sys
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 import vibroimpact as vi
-from told import MASS, STIFFNESS, told, told_case
+from told import MASS, RADIUS, ROCK, STEEL, STIFFNESS, told, told_case
 from vibroimpact.contact.law import ContactLaw
-from vibroimpact.contact.pair import ContactPair
-from vibroimpact.contact.registry import contact_laws
+from vibroimpact.contact.pair import ContactPair, effective_modulus, effective_shear_modulus
+from vibroimpact.contact.registry import contact_laws, find_friction_law
 from vibroimpact.dynamics.restitution import achieved_restitution
 from vibroimpact.exporting.drop import Drop
 from vibroimpact.exporting.export_format import find_export_format
@@ -26,7 +27,9 @@ pytestmark = pytest.mark.peers
 
 PAIR = ContactPair(effective_modulus=2.4265e9, effective_radius=0.025, effective_mass=MASS, poissons_ratio=0.28)
 LINE = re.compile(r"impact (\d+): approach speed (\S+) m/s, restitution (\S+), rebound height (\S+) m, largest force (\S+) N")
+MOTION = re.compile(r"impact (\d+): velocity along the plate (\S+) (\S+) m/s, spin (\S+) (\S+) (\S+) rad/s")
 COLUMNS = ("approach_speed_m_s", "restitution_achieved", "rebound_height_m", "max_force_N")
+AFTER = ("separation_velocity_x_m_s", "separation_velocity_y_m_s", "spin_x_after_rad_s", "spin_y_after_rad_s", "spin_z_after_rad_s")
 
 
 def law(name: str, **parameters: float) -> ContactLaw:
@@ -42,7 +45,13 @@ def run(drop: Drop, program: str, folder: Path, command: list[str]) -> dict[str,
     assert done.returncode == 0, done.stdout[-3000:] + done.stderr[-3000:]
     assert [int(row[0]) for row in rows] == list(range(1, len(rows) + 1))
     assert len(rows) == len(drop.impacts["impact"]), done.stdout[-3000:]
-    return {column: np.array([float(row[1 + index]) for row in rows]) for index, column in enumerate(COLUMNS)}
+    motion = MOTION.findall(done.stdout)
+    assert len(motion) == (0 if drop.oblique is None else len(rows))
+    return {
+        column: np.array([float(row[1 + index]) for row in table])
+        for table, columns in ((rows, COLUMNS), (motion, AFTER))
+        for index, column in enumerate(columns)
+    }
 
 
 def assert_agree(found: dict[str, np.ndarray], drop: Drop, tolerance: float, columns: tuple[str, ...] = COLUMNS) -> None:
@@ -53,6 +62,27 @@ def assert_agree(found: dict[str, np.ndarray], drop: Drop, tolerance: float, col
 
 
 SHORT = COLUMNS[:3]  # without the force
+FRICTION_PAIR = ContactPair(
+    effective_modulus(ROCK, STEEL), RADIUS, MASS, effective_shear_modulus=effective_shear_modulus(ROCK, STEEL), poissons_ratio=0.28
+)
+SLIP, SLIDING, STICKING = 1.0, 0.05, 0.4  # m/s; coefficients of friction with which all of the contact slips, and with which it sticks
+
+
+def oblique(friction: str, coefficient: float, name: str = "hertz", **changes: Any) -> Drop:
+    """Return a drop on an inclined plate with forward velocity and backspin, whose slip begins with 1 m/s."""
+    parameters = {"restitution": 0.7} if name != "hertz" else {"stiffness": changes.pop("stiffness", FRICTION_PAIR.hertz_stiffness)}
+    normal = contact_laws()[name].for_pair(FRICTION_PAIR, **parameters)
+    law = find_friction_law(friction).for_pair(FRICTION_PAIR, coefficient=coefficient)
+    given = {"velocity": (0.6 * SLIP, 0.0), "spin": (0.0, -0.4 * SLIP / RADIUS, 0.0), "gravity": (0.5, 0.0), **changes}
+    return told(normal, oblique=vi.Oblique(friction=law, **given))
+
+
+def assert_moves_alike(found: dict[str, np.ndarray], drop: Drop, tolerance: float, impacts: int = 3) -> None:
+    """Velocities of the centre and of the surface after each impact; the tolerance is that of the slip at the start."""
+    for column in found.keys() & set(AFTER):
+        scale = RADIUS if "spin" in column else 1.0
+        theirs, ours = scale * found[column][:impacts], scale * drop.impacts[column][:impacts]
+        np.testing.assert_allclose(theirs, ours, atol=tolerance * SLIP, err_msg=column)
 
 
 @pytest.fixture(scope="module")
@@ -125,6 +155,45 @@ class TestLammps:
     def test_the_papers_drop(self, tmp_path: Path) -> None:
         drop = told_case("paper:type1-variable")
         assert_agree(self.run(drop, tmp_path), drop, 3e-4, SHORT)
+
+    @pytest.mark.parametrize("friction", ["mindlin", "mindlin-rescale", "mindlin-force"])
+    def test_its_own_friction(self, friction: str, tmp_path: Path) -> None:
+        drop = oblique(friction, SLIDING)
+        assert find_export_format("lammps").notes(drop) == []
+        found = self.run(drop, tmp_path)
+        assert_moves_alike(found, drop, 1e-8, impacts=1)
+        assert_moves_alike(found, drop, 4e-4)  # whose later impacts stick at last
+        drop = oblique(friction, STICKING)
+        assert_moves_alike(self.run(drop, tmp_path), drop, 4e-4)
+
+    def test_friction_under_a_spring_that_is_not_the_materials(self, tmp_path: Path) -> None:
+        """The radius of the contact is then not that of the overlap."""
+        drop = oblique("mindlin", STICKING, stiffness=3.0 * FRICTION_PAIR.hertz_stiffness)
+        assert_moves_alike(self.run(drop, tmp_path), drop, 4e-4)
+
+    def test_friction_across_gravity_and_spin_about_the_normal(self, tmp_path: Path) -> None:
+        drop = oblique("mindlin-force", STICKING, velocity=(0.3, -0.4), spin=(3.0, -8.0, 50.0), gravity=(0.5, 0.2))
+        assert "leaves the spin about the normal" in " ".join(find_export_format("lammps").notes(drop))
+        found = self.run(drop, tmp_path)
+        assert found.pop("spin_z_after_rad_s").tolist() == [50.0] * 3
+        assert_moves_alike(found, drop, 1e-3)
+
+    def test_friction_that_stands_for_another(self, tmp_path: Path) -> None:
+        drop = oblique("mdr", STICKING)
+        assert "its mindlin-rescale stands for it" in " ".join(find_export_format("lammps").notes(drop))
+        assert_moves_alike(self.run(drop, tmp_path), oblique("mindlin-rescale", STICKING), 4e-4)
+
+    @pytest.mark.parametrize("name", ["tsuji", "hunt-crossley"])
+    def test_friction_with_damping(self, name: str, tmp_path: Path) -> None:
+        """Friction follows its pull at the end of a contact; and the radius of the contact is that of the overlap."""
+        assert "takes the radius of the contact from the overlap" in " ".join(
+            find_export_format("lammps").notes(oblique("mindlin", 0.1, name))
+        )
+        drop = oblique("mindlin", SLIDING, name)
+        assert_moves_alike(self.run(drop, tmp_path), drop, 0.008, impacts=1)
+        for friction in "mindlin", "mindlin-rescale", "mindlin-force":
+            drop = oblique(friction, STICKING, name)
+            assert_moves_alike(self.run(drop, tmp_path), drop, 0.17)
 
 
 class TestYade:

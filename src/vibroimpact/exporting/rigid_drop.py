@@ -26,8 +26,6 @@ def as_rigid(drop: Drop) -> Drop:
     the approach speeds differ from those of elastic bodies, which absorb energy. A drop of rigid bodies is returned unchanged, unless
     a parameter is a function of the approach speed; then it is simulated with that function.
     """
-    if drop.oblique is not None:
-        raise InputError("a drop with motion along the plate, spin or friction can't be written for other programs; data formats hold it")
     if drop.rigid is None:
         return drop
     response = simulate(drop.rigid) if drop.function is None else _by_function(drop.rigid, *drop.function)
@@ -43,6 +41,19 @@ def as_rigid(drop: Drop) -> Drop:
         signals={},
         surface={},
     )
+
+
+def as_rigid_along_normal(drop: Drop) -> Drop:
+    """Return the same, for programs that are not told of motion along the plate.
+
+    Raises
+    ------
+    InputError
+        If the drop moves along the plate, spins or rubs.
+    """
+    if drop.oblique is not None:
+        raise InputError("motion along the plate, spin and friction can't be written for this program; lammps and data formats hold them")
+    return as_rigid(drop)
 
 
 def _by_function(problem: Problem, name: str, function: SpeedFunction) -> Response:

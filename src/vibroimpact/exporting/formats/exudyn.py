@@ -12,7 +12,7 @@ from vibroimpact.errors import InputError
 from vibroimpact.exporting.contact_parameters import approach_speeds, first_contact, shared_notes
 from vibroimpact.exporting.drop import Drop
 from vibroimpact.exporting.export_format import ExportFormat, comment_lines, file_name
-from vibroimpact.exporting.rigid_drop import as_rigid
+from vibroimpact.exporting.rigid_drop import as_rigid_along_normal
 from vibroimpact.files.plain_names import plain_words
 from vibroimpact.ranges import Range
 
@@ -226,5 +226,5 @@ FORMAT = ExportFormat(
     tested="run with EXUDYN 1.13.6, beside vibroimpact's drops between rigid bodies",
     write=_write,
     notes=shared_notes,
-    prepare=as_rigid,
+    prepare=as_rigid_along_normal,
 )

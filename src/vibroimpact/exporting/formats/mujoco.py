@@ -19,7 +19,7 @@ from vibroimpact.exporting.contact_parameters import (
 )
 from vibroimpact.exporting.drop import Drop
 from vibroimpact.exporting.export_format import ExportFormat, comment_lines, file_name
-from vibroimpact.exporting.rigid_drop import as_rigid
+from vibroimpact.exporting.rigid_drop import as_rigid_along_normal
 from vibroimpact.files.plain_names import plain_words
 
 _STEPS = 1000
@@ -109,5 +109,5 @@ FORMAT = ExportFormat(
     tested="run with MuJoCo 3.2.7 and 3.17.0, the first impact beside vibroimpact's between rigid bodies",
     write=_write,
     notes=_notes,
-    prepare=as_rigid,
+    prepare=as_rigid_along_normal,
 )

@@ -22,7 +22,7 @@ from vibroimpact.exporting.contact_parameters import (
 )
 from vibroimpact.exporting.drop import Drop
 from vibroimpact.exporting.export_format import ExportFormat, comment_lines, file_name
-from vibroimpact.exporting.rigid_drop import as_rigid
+from vibroimpact.exporting.rigid_drop import as_rigid_along_normal
 from vibroimpact.files.plain_names import plain_words
 
 _STEPS = 10_000
@@ -157,5 +157,5 @@ FORMAT = ExportFormat(
     tested="run with YADE 2023.02a, beside vibroimpact's drops between rigid bodies",
     write=_write,
     notes=_notes,
-    prepare=as_rigid,
+    prepare=as_rigid_along_normal,
 )
