@@ -213,6 +213,30 @@ class TestExudyn:
         assert isinstance(made["parameters"](0, 5.0), SimpleNamespace)
         assert made["parameters"](0, 5.0).damping_max == pytest.approx(function(5.0), rel=1e-14)
 
+    def test_forces_along_the_plate(self) -> None:
+        """Coulomb's, proportional to the slip where it is small; the moment turns the sphere forwards."""
+        oblique = Oblique(
+            velocity=(1.0, -0.5), spin=(1.0, 2.0, 3.0), gravity=(3.0, 0.5), friction=find_friction_law("coulomb")(coefficient=0.3)
+        )
+        text = text_of(exudyn.FORMAT, told(Hertz(stiffness=STIFFNESS), oblique=oblique))
+        compile(text, "script.py", "exec")
+        made = self.functions(told(Hertz(stiffness=STIFFNESS), oblique=oblique))
+        exec(text[text.index("FRICTION, PULL") : text.index("INERTIA =")], made)
+        made["now"] = SimpleNamespace(in_contact=True, approach=2.0, p=made["parameters"](0, 2.0))
+        made["state"] = lambda: (-1e-4, 0.0)
+        normal, weight = STIFFNESS * 1e-6, MASS * np.array([3.0, 0.5])
+        x, y, about_x, about_y = made["forces_along_plate"](None, 0.0, 0, [0.0] * 4, [3.0, 4.0, 0.0, 0.0])
+        np.testing.assert_allclose([x, y] - weight, [-0.6 * 0.3 * normal, -0.8 * 0.3 * normal], rtol=1e-12)
+        np.testing.assert_allclose([about_x, about_y], [-RADIUS * 0.8 * 0.3 * normal, RADIUS * 0.6 * 0.3 * normal], rtol=1e-12)
+        rolling = made["forces_along_plate"](None, 0.0, 0, [0.0] * 4, [1.0, -1.0, 1.0 / RADIUS, 1.0 / RADIUS])
+        np.testing.assert_allclose(rolling, [*weight, 0.0, 0.0], atol=1e-12)
+        made["state"] = lambda: (1e-4, 0.0)
+        assert made["forces_along_plate"](None, 0.0, 0, [0.0] * 4, [3.0, 4.0, 0.0, 0.0]) == [*weight, 0.0, 0.0]
+
+    def test_refuses_friction_that_reverses_the_slip(self) -> None:
+        with pytest.raises(InputError, match="rigid can't be written for EXUDYN; coulomb, mdr"):
+            exudyn.FORMAT.write(told(TSUJI, oblique=Oblique(friction=find_friction_law("rigid")(coefficient=0.3))))
+
     def test_refusal_names_the_laws(self) -> None:
         with pytest.raises(InputError, match=r"thornton can't be written for EXUDYN; adams-impact, anagnostopoulos, .*calibrate"):
             exudyn.FORMAT.write(told(contact_laws()["thornton"].example(PAIR)))

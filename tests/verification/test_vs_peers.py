@@ -70,8 +70,9 @@ SLIP, SLIDING, STICKING = 1.0, 0.05, 0.4  # m/s; coefficients of friction with w
 
 def oblique(friction: str, coefficient: float, name: str = "hertz", **changes: Any) -> Drop:
     """Return a drop on an inclined plate with forward velocity and backspin, whose slip begins with 1 m/s."""
-    parameters = {"restitution": 0.7} if name != "hertz" else {"stiffness": changes.pop("stiffness", FRICTION_PAIR.hertz_stiffness)}
-    normal = contact_laws()[name].for_pair(FRICTION_PAIR, **parameters)
+    parameters = {"hertz": {}, "adams-impact": {"damping_max": 120.0}}.get(name, {"restitution": 0.7})
+    stiffness = changes.pop("stiffness", FRICTION_PAIR.hertz_stiffness)
+    normal = contact_laws()[name].for_pair(FRICTION_PAIR, stiffness=stiffness, **parameters)
     law = find_friction_law(friction).for_pair(FRICTION_PAIR, coefficient=coefficient)
     given = {"velocity": (0.6 * SLIP, 0.0), "spin": (0.0, -0.4 * SLIP / RADIUS, 0.0), "gravity": (0.5, 0.0), **changes}
     return told(normal, oblique=vi.Oblique(friction=law, **given))
@@ -247,6 +248,21 @@ class TestExudyn:
     def test_a_function_of_the_approach_speed(self, calibrated: Drop, tmp_path: Path) -> None:
         """Which EXUDYN evaluates itself, at each impact."""
         assert_agree(self.run(calibrated, tmp_path), calibrated, 1e-6, SHORT)
+
+    @pytest.mark.parametrize("name", ["hertz", "hunt-crossley", "adams-impact"])
+    def test_friction(self, name: str, tmp_path: Path) -> None:
+        for coefficient in SLIDING, STICKING:
+            drop = oblique("coulomb", coefficient, name)
+            assert find_export_format("exudyn").notes(drop) == []
+            assert_moves_alike(self.run(drop, tmp_path), drop, 1e-5)
+
+    def test_friction_that_stands_for_another(self, tmp_path: Path) -> None:
+        drop = oblique("mdr", STICKING, velocity=(0.3, -0.4), spin=(3.0, -8.0, 50.0), gravity=(0.5, 0.2))
+        notes = " ".join(find_export_format("exudyn").notes(drop))
+        assert "its coulomb stands for it" in notes
+        assert "leaves the spin about the normal" in notes
+        coulomb = oblique("coulomb", STICKING, velocity=(0.3, -0.4), spin=(3.0, -8.0, 50.0), gravity=(0.5, 0.2))
+        assert_moves_alike(self.run(drop, tmp_path), coulomb, 1e-4)
 
 
 class TestMujoco:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import fields, replace
-from typing import Any
 
 import numpy as np
 
@@ -110,7 +109,14 @@ def _first_rebound(drop: Drop, friction: FrictionLaw) -> float:
         friction=friction,
         size=None,
     )
-    given: dict[str, Any] = {"laws": laws_of_impacts(drop)[:1], "speed": approach_speeds(drop)[0], "gravity": drop.gravity, "oblique": oblique}
-    ball = Body(mass=drop.mass, contact_offset=drop.radius)
-    impacts = simulate(Problem(sphere=ball, plate=rigid_plate(), impacts=1, **given)).impacts
+    problem = Problem(
+        sphere=Body(mass=drop.mass, contact_offset=drop.radius),
+        plate=rigid_plate(),
+        laws=(laws_of_impacts(drop)[0],),
+        speed=approach_speeds(drop)[0],
+        gravity=drop.gravity,
+        oblique=oblique,
+        impacts=1,
+    )
+    impacts = simulate(problem).impacts
     return math.hypot(*(float(impacts[f"separation_velocity_{axis}_m_s"][0]) for axis in "xy"))
