@@ -176,6 +176,22 @@ class TestMujoco:
         assert float(joint.attrib["ref"]) == float(key.attrib["qpos"]) == 0.5
         assert "exponent 1.5" in " ".join(mujoco.FORMAT.notes(drop))
 
+    def test_a_free_body(self) -> None:
+        oblique = Oblique(velocity=(1.0, -0.5), spin=(1.0, 2.0, 3.0), gravity=(3.0, 0.0))
+        root = ElementTree.fromstring(text_of(mujoco.FORMAT, told(TSUJI, oblique=oblique, position=(0.1, 0.2))))
+        option, key = root.find("option"), root.find("keyframe/key")
+        assert option is not None
+        assert key is not None
+        assert option.attrib["gravity"] == "3.0 0.0 -9.8"
+        assert key.attrib["qpos"] == "0.1 0.2 0.5 1.0 0.0 0.0 0.0"
+        assert [float(part) for part in key.attrib["qvel"].split()] == [1.0, -0.5, 0.0, 1.0, 2.0, 3.0]
+        assert root.find("worldbody/body/freejoint") is not None
+
+    def test_refuses_friction(self) -> None:
+        oblique = Oblique(friction=find_friction_law("coulomb")(coefficient=0.3))
+        with pytest.raises(InputError, match="coulomb can't be written for MuJoCo"):
+            mujoco.FORMAT.write(told(TSUJI, oblique=oblique))
+
 
 class TestExudyn:
     @staticmethod

@@ -309,3 +309,21 @@ class TestMujoco:
         assert heights[0] == 0.06
         after = int(drop.impacts["time_s"][0] / model.opt.timestep)
         assert max(heights[after + 1000 :]) - drop.radius == pytest.approx(drop.impacts["rebound_height_m"][0] - drop.radius, rel=3e-3)
+
+    def test_a_drop_without_friction_on_an_inclined_plate(self) -> None:
+        """Its own axes do not turn the velocities of its centre."""
+        mujoco = pytest.importorskip("mujoco")
+        linear = law("linear-spring-dashpot", stiffness=2e6, restitution=0.7)
+        moving = vi.Oblique(velocity=(0.3, -0.2), spin=(3.0, -8.0, 5.0), gravity=(2.0, 0.0))
+        drop = told(linear, height=0.06, number=1, oblique=moving, position=(0.1, 0.0))
+        (text,) = find_export_format("mujoco").write(drop).values()
+        model = mujoco.MjModel.from_xml_string(text.decode())
+        data = mujoco.MjData(model)
+        mujoco.mj_resetDataKeyframe(model, data, 0)
+        assert data.qpos[:3].tolist() == [0.1, 0.0, 0.06]
+        while not (data.qvel[2] > 0.0 and data.qpos[2] > drop.radius):
+            mujoco.mj_step(model, data)
+        assert data.qvel[0] == pytest.approx(drop.impacts["separation_velocity_x_m_s"][0], rel=1e-3)
+        assert data.qvel[1] == pytest.approx(-0.2, rel=1e-12)
+        np.testing.assert_allclose(data.qvel[3:], [3.0, -8.0, 5.0], rtol=1e-9)
+        assert data.qvel[2] == pytest.approx(drop.impacts["separation_speed_m_s"][0], rel=1e-2)
