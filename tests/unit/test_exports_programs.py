@@ -161,6 +161,29 @@ class TestYade:
         compile(text_of(yade.FORMAT, told(law)), "script.py", "exec")
         assert "never pulls" in " ".join(yade.FORMAT.notes(told(law)))
 
+    def test_friction(self) -> None:
+        """Poisson's ratio gives the tangential stiffness, and the modulus then that along the normal."""
+        law = MindlinForce(coefficient=0.3, effective_modulus=2.4e9, effective_shear_modulus=2e9, effective_radius=RADIUS)
+        hertz = Hertz(stiffness=4.0 / 3.0 * 2.4e9 * math.sqrt(RADIUS))
+        oblique = Oblique(velocity=(1.0, -0.5), spin=(1.0, 2.0, 3.0), gravity=(3.0, 0.5), friction=law)
+        text = text_of(yade.FORMAT, told(hertz, oblique=oblique))
+        compile(text, "script.py", "exec")
+        found = re.search(r"young=([^,]+), poisson=([^,]+), .*frictionAngle=([^)]+)", text)
+        assert found is not None
+        youngs, poisson, angle = map(float, found.groups())
+        assert math.tan(angle) == pytest.approx(0.3)
+        root = math.sqrt(RADIUS / 2)
+        assert 4 / 3 * youngs / (2 * (1 - poisson**2)) * root == pytest.approx(hertz.stiffness)
+        assert 4 * youngs / (2 * (1 + poisson)) / (2 - poisson) * root == pytest.approx(2 * 2e9 * math.sqrt(RADIUS))
+        assert "PULL = (3.0, 0.5)" in text
+        assert "ball.state.angVel = (1.0, -0.5, -SPEED), (1.0, 2.0, 3.0)" in text
+
+    def test_refuses_friction_that_it_has_no_stiffness_for(self) -> None:
+        moduli = {"effective_modulus": 2.4e9, "effective_shear_modulus": 2e9, "effective_radius": RADIUS}
+        for law in LinearSpringDashpot(stiffness=2e6, damping=80.0), Hertz(stiffness=1e7):
+            with pytest.raises(InputError, match="mindlin-force can't be written for YADE unless"):
+                yade.FORMAT.write(told(law, oblique=Oblique(friction=MindlinForce(coefficient=0.3, **moduli))))
+
 
 class TestMujoco:
     def test_model(self) -> None:

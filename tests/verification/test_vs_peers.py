@@ -221,6 +221,32 @@ class TestYade:
         drop = told_case("paper:type1-variable")
         assert_agree(self.run(drop, tmp_path), drop, 5e-4, SHORT)
 
+    def test_its_own_friction(self, tmp_path: Path) -> None:
+        """With an arm that is shorter by the overlap."""
+        drop = oblique("mindlin-force", SLIDING, velocity=(4.0, -1.0))
+        found = self.run(drop, tmp_path)
+        after, shorter = drop.impacts, drop.impacts["max_indentation_m"].max() / RADIUS
+        for axis in "xy":
+            velocity = f"separation_velocity_{axis}_m_s"
+            assert found[velocity][0] == pytest.approx(after[velocity][0], abs=1e-4)
+            spins = after[f"spin_{axis}_before_rad_s"][0], found[f"spin_{axis}_after_rad_s"][0], after[f"spin_{axis}_after_rad_s"][0]
+            assert 1.0 - shorter < (spins[1] - spins[0]) / (spins[2] - spins[0]) < 1.0 - 0.5 * shorter
+        assert f"changes the spin by up to {100.0 * shorter:.2g} % less" in " ".join(find_export_format("yade").notes(drop))
+        drop = oblique("mindlin-force", STICKING)
+        assert_moves_alike(self.run(drop, tmp_path), drop, 0.02)
+        without = told(law("hertz"), oblique=vi.Oblique(velocity=(1.0, -0.5), spin=(3.0, -8.0, 5.0), gravity=(0.5, 0.0)))
+        assert_moves_alike(self.run(without, tmp_path), without, 1e-5)
+
+    def test_friction_with_damping(self, tmp_path: Path) -> None:
+        """The radius of the contact is that of the overlap."""
+        drop = oblique("mdr", STICKING, "hunt-crossley", spin=(0.0, -20.0, 5.0))
+        notes = " ".join(find_export_format("yade").notes(drop))
+        for words in "its mindlin-force stands for it", "takes the radius of the contact from the overlap", "the spin about the normal":
+            assert words in notes
+        found, there = self.run(drop, tmp_path), oblique("mindlin-force", STICKING, "hunt-crossley", spin=(0.0, -20.0, 5.0))
+        found.pop("spin_z_after_rad_s")
+        assert_moves_alike(found, there, 0.17)
+
 
 class TestExudyn:
     """Dormand and Prince's method with a tolerance of 1e-10, and 1000 steps a contact or more, which tell the largest force."""
