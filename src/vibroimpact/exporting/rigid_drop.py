@@ -11,7 +11,6 @@ from vibroimpact.calibration.speed_function import SpeedFunction
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.response import Response
 from vibroimpact.dynamics.simulate import simulate
-from vibroimpact.errors import InputError
 from vibroimpact.exporting.contact_parameters import law_at
 from vibroimpact.exporting.drop import Drop
 
@@ -41,19 +40,6 @@ def as_rigid(drop: Drop) -> Drop:
         signals={},
         surface={},
     )
-
-
-def as_rigid_along_normal(drop: Drop) -> Drop:
-    """Return the same, for programs that are not told of motion along the plate.
-
-    Raises
-    ------
-    InputError
-        If the drop moves along the plate, spins or rubs.
-    """
-    if drop.oblique is not None:
-        raise InputError("motion along the plate, spin and friction can't be written for this program; lammps and data formats hold them")
-    return as_rigid(drop)
 
 
 def _by_function(problem: Problem, name: str, function: SpeedFunction) -> Response:

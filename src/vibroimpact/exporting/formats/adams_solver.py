@@ -18,7 +18,7 @@ from vibroimpact.exporting.adams_model import (
 from vibroimpact.exporting.contact_parameters import shared_notes
 from vibroimpact.exporting.drop import Drop
 from vibroimpact.exporting.export_format import ExportFormat
-from vibroimpact.exporting.rigid_drop import as_rigid_along_normal
+from vibroimpact.exporting.rigid_drop import as_rigid
 
 _NAMES = Names(centre="11", spot="1", sensor="1", speed="1", damping="2")
 _GROUND, _SPHERE, _CORNER = 1, 2, 2  # parts, and the marker at the plate's corner
@@ -144,5 +144,5 @@ FORMAT = ExportFormat(
     tested=TESTED,
     write=write,
     notes=shared_notes,
-    prepare=as_rigid_along_normal,
+    prepare=as_rigid,
 )

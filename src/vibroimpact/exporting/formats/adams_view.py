@@ -18,7 +18,7 @@ from vibroimpact.exporting.adams_model import (
 from vibroimpact.exporting.contact_parameters import shared_notes
 from vibroimpact.exporting.drop import Drop
 from vibroimpact.exporting.export_format import ExportFormat
-from vibroimpact.exporting.rigid_drop import as_rigid_along_normal
+from vibroimpact.exporting.rigid_drop import as_rigid
 
 _UPRIGHT = "0.0d, 0.0d, 0.0d"
 
@@ -169,5 +169,5 @@ FORMAT = ExportFormat(
     tested=TESTED,
     write=write,
     notes=shared_notes,
-    prepare=as_rigid_along_normal,
+    prepare=as_rigid,
 )
