@@ -31,6 +31,9 @@ class Names(NamedTuple):
     sensor: str
     speed: str
     damping: str
+    slip_x: str
+    slip_y: str
+    drag: str
 
     @property
     def height(self) -> str:
@@ -112,8 +115,7 @@ def adams_contact(drop: Drop) -> AdamsContact:
     Raises
     ------
     InputError
-        If its law is not supported, or changes from impact to impact in more than its damping, or the sphere moves along the plate,
-        spins or rubs.
+        If its law is not supported, or changes from impact to impact in more than its damping.
 
     Examples
     --------
@@ -124,8 +126,6 @@ def adams_contact(drop: Drop) -> AdamsContact:
     >>> round(adams_contact(drop).stiffness, 6), adams_contact(drop).damping
     (31622.776602, '0.15')
     """
-    if drop.oblique is not None:
-        raise InputError("motion along the plate, spin and friction can't be written for Adams; lammps, yade and exudyn hold them")
     speeds = approach_speeds(drop)
     laws = drop.laws[: len(speeds)]
     law = laws[0]

@@ -74,7 +74,7 @@ def drop_of_result(result: Result, case: Case, function: tuple[str, SpeedFunctio
         # the impact point may be given as a node set of an imported mesh
         position=case.drop.position if found is None else found.contact,
         height=float(motion.get("height", case.sphere.radius)),
-        speed=float(motion.get("speed", -motion.get("velocity", 0.0))),
+        speed=float(motion.get("speed", 0.0 - motion.get("velocity", 0.0))),
         gravity=float(motion["gravity"]),
         oblique=oblique_of(case),
         laws=contact_laws_of(case),

@@ -20,6 +20,9 @@ from vibroimpact.errors import InputError
 from vibroimpact.exporting.contact_parameters import approach_speeds, laws_of_impacts
 from vibroimpact.exporting.drop import Drop
 
+COULOMB = dict.fromkeys(("coulomb", "mdr", "mindlin", "mindlin-rescale", "mindlin-force"), "coulomb")
+"""The friction laws for which Coulomb's stands in programs that have no other."""
+
 
 def friction_in(drop: Drop, program: str, stands_for: Mapping[str, str]) -> FrictionLaw | None:
     """Return the friction law that a program has for that of a drop; None if there is no friction.

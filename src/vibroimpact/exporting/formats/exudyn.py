@@ -13,7 +13,7 @@ from vibroimpact.errors import InputError
 from vibroimpact.exporting.contact_parameters import approach_speeds, first_contact, shared_notes
 from vibroimpact.exporting.drop import Drop
 from vibroimpact.exporting.export_format import ExportFormat, comment_lines, file_name
-from vibroimpact.exporting.program_friction import friction_in, friction_notes
+from vibroimpact.exporting.program_friction import COULOMB, friction_in, friction_notes
 from vibroimpact.exporting.rigid_drop import as_rigid
 from vibroimpact.files.plain_names import plain_words
 from vibroimpact.ranges import Range
@@ -60,9 +60,6 @@ return p.stiffness * delta**1.5 + damping * rate""",
 }
 
 
-_FRICTION = dict.fromkeys(("coulomb", "mdr", "mindlin", "mindlin-rescale", "mindlin-force"), "coulomb")
-"""The friction laws that can be written, and which stands for each: EXUDYN's contacts have Coulomb's."""
-
 _CREEP = 1e-4
 """Slip below which friction is proportional to it, over the first approach speed."""
 
@@ -105,7 +102,7 @@ def _function(drop: Drop) -> str:
 
 
 def _friction(drop: Drop) -> FrictionLaw | None:
-    return friction_in(drop, "EXUDYN", _FRICTION)
+    return friction_in(drop, "EXUDYN", COULOMB)
 
 
 def _along_plate(drop: Drop) -> tuple[str, str]:
@@ -117,6 +114,8 @@ def _along_plate(drop: Drop) -> tuple[str, str]:
     (x, y), (about_x, about_y, about_z) = (tuple(map(float, values)) for values in (oblique.velocity, oblique.spin))
     return (
         f'''
+from exudyn.itemInterface import NodeGenericODE2, ObjectGenericODE2
+
 # along the plate, and about x and y; the spin about the normal stays
 FRICTION, PULL = {coefficient!r}, {tuple(map(float, oblique.gravity))!r}  # coefficient, and gravity along the plate
 CREEP = {_CREEP * approach_speeds(drop)[0]!r}  # m/s; below this slip friction is proportional to it
@@ -175,9 +174,7 @@ from exudyn.itemInterface import (
     MarkerNodeCoordinate,
     Mass1D,
     Node1D,
-    NodeGenericODE2,
     NodePointGround,
-    ObjectGenericODE2,
 )
 
 RADIUS, MASS, GRAVITY = {drop.radius!r}, {drop.mass!r}, {drop.gravity!r}
