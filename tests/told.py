@@ -18,12 +18,13 @@ STIFFNESS, RADIUS, MASS = 5.115e8, 0.025, 0.09032
 def told(*laws: ContactLaw, **changes: Any) -> Drop:
     """Return the drop of the paper's rock under given laws: three impacts from 0.5 m unless changes say otherwise."""
     given: dict[str, Any] = {"radius": RADIUS, "mass": MASS, "height": 0.5, "gravity": 9.8, **changes}
-    start = {"height": given["height"]} if not given.get("speed") else {"speed": given["speed"]}
+    start: dict[str, Any] = {"height": given["height"]} if not given.get("speed") else {"speed": given["speed"]}
     if given.get("speed"):
         given["height"] = given["radius"]
     impacts = given.pop("number", 3)
     ball = Body(mass=given["mass"], contact_offset=given["radius"])
-    response = vi.simulate(vi.Problem(sphere=ball, plate=rigid_plate(), laws=laws, gravity=given["gravity"], impacts=impacts, **start))
+    start |= {"gravity": given["gravity"], "oblique": given.get("oblique")}
+    response = vi.simulate(vi.Problem(sphere=ball, plate=rigid_plate(), laws=laws, impacts=impacts, **start))
     facts = {"name": "a test", "sphere_material": ROCK, "plate_material": STEEL, "plate_size": (0.52, 0.42, 0.008)}
     run = {"laws": laws, "end_time": float(response.end_time[0]), "impacts": response.impacts}
     return Drop(**{**facts, **run, **given})

@@ -14,7 +14,7 @@ from told import MASS, RADIUS, STIFFNESS, told
 from vibroimpact.contact.law import CompliantLaw
 from vibroimpact.contact.laws.lankarani_nikravesh import LankaraniNikravesh
 from vibroimpact.contact.pair import ContactPair
-from vibroimpact.contact.registry import contact_laws
+from vibroimpact.contact.registry import contact_laws, friction_laws
 from vibroimpact.exporting.drop import Drop
 from vibroimpact.exporting.export_format import ExportFormat, export_formats, find_export_format
 from vibroimpact.exporting.load_drop import drop_of_result
@@ -54,8 +54,9 @@ class Strange(CompliantLaw):
 
 def written(format: ExportFormat, drop: Drop) -> dict[str, bytes] | None:
     """Return the files, or None if the drop is refused as it should be: in one clear line."""
-    files, message, drop = {}, "", format.prepare(drop)
+    files, message = {}, ""
     try:
+        drop = format.prepare(drop)
         files = dict(format.write(drop))
     except vi.InputError as error:
         message = str(error)
@@ -127,6 +128,17 @@ def test_every_law_is_written_or_refused(name: str) -> None:
         if written(format, drop) is None:
             with pytest.raises(vi.InputError, match=law.name):  # the message names the law
                 format.write(drop)
+
+
+@every_format
+def test_every_friction_law_is_written_or_refused(format: ExportFormat) -> None:
+    pair = ContactPair(2.4e9, RADIUS, MASS, effective_shear_modulus=2e9)
+    for law in (None, *friction_laws().values()):
+        oblique = vi.Oblique(velocity=(1.0, 0.5), spin=(1.0, 2.0, 3.0), friction=None if law is None else law.example(pair))
+        drop = told(LankaraniNikravesh(stiffness=STIFFNESS, restitution=0.7), number=1, oblique=oblique)
+        if format.name not in DATA and written(format, drop) is None:
+            with pytest.raises(vi.InputError, match="along the plate" if law is None else f"{law.name} can't|along the plate"):
+                format.write(format.prepare(drop))
 
 
 @every_format

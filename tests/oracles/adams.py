@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -18,7 +19,7 @@ LONGEST_CONTACT = 5e-3
 
 @dataclass
 class Part:
-    """Where it is, its mass, the marker at its centre of mass, and how fast it moves upwards."""
+    """Where it is, its mass, the marker at its centre of mass, how fast it moves upwards, and VX, VY, WX, WY and WZ."""
 
     position: Vector = (0.0, 0.0, 0.0)
     mass: float = 0.0
@@ -26,6 +27,7 @@ class Part:
     centre: str = ""
     velocity: float = 0.0
     ground: bool = False
+    along: tuple[float, ...] = (0.0,) * 5
 
 
 @dataclass
@@ -50,6 +52,8 @@ class Model:
     sensors: dict[str, Sensor] = field(default_factory=dict)
     variables: dict[str, str] = field(default_factory=dict)
     forces: dict[str, tuple[str, str, str]] = field(default_factory=dict)
+    floating: dict[str, str] = field(default_factory=dict)
+    general: list[tuple[str, str, list[str]]] = field(default_factory=list)
     requests: dict[str, list[str]] = field(default_factory=dict)
     balls: dict[str, float] = field(default_factory=dict)
     longest_step: float = 0.0
@@ -103,13 +107,14 @@ def reals(text: str) -> Vector:
 
 @dataclass
 class Bounce:
-    """A contact in SI: speeds, duration, largest force, and the height of the centre that the sphere rose to."""
+    """A contact in SI: speeds, duration, largest force, the height of the centre that the sphere rose to, and VX, VY, WX, WY, WZ after."""
 
     approach_speed: float
     separation_speed: float
     duration: float
     largest_force: float
     rebound_height: float = np.nan
+    along: tuple[float, ...] = ()
 
 
 class Motion:
@@ -129,21 +134,26 @@ class Motion:
             if part not in model.parts:
                 raise Refused(f"marker {one} is on no part")
         self.scope = Scope(model.markers, model.sensors, {})
+        self.scope.forces.update(dict.fromkeys(model.forces, lambda state: self.force(state)))
         for one, text in model.variables.items():
             self.scope.variables[one] = parse_function(text, self.scope)
         self.sensors = {
             one: (parse_function(sensor.function, self.scope), parse_function(sensor.evaluate, self.scope), sensor)
             for one, sensor in model.sensors.items()
         }
-        ((name, (acts_on, along, text)),) = model.forces.items()
+        ((acts_on, along, text),) = model.forces.values()
         if acts_on != self.part.centre or along not in model.markers or not model.parts[model.markers[along][0]].ground:
             raise Refused("the force does not act from the ground on the centre of the part")
         if model.place(acts_on)[:2] != model.place(along)[:2]:
             raise Refused("the force's markers are not above each other")
         self.scope.touches.clear()
         self.force: Value = parse_function(text, self.scope)
-        self.scope.forces[name] = self.force
         self.touch = self.scope.touches[0]
+        self.general: list[Value] = []
+        for one, seen_from, functions in model.general:
+            if one != self.part.centre or not model.parts[model.markers[seen_from][0]].ground:
+                raise Refused("the general force does not act on the centre of the part, in the axes of the ground")
+            self.general += [parse_function(function, self.scope) for function in functions]
         for functions in model.requests.values():
             for function in functions:
                 parse_function(function, self.scope)
@@ -151,11 +161,13 @@ class Motion:
         self.held = dict.fromkeys(model.sensors, 0.0)
         self.always = True
 
-    def state(self, moved: float, velocity: float) -> State:
-        """The state when the part is so much higher than at the start."""
+    def state(self, moved: float, velocity: float, along: Sequence[float]) -> State:
+        """The state when the part is so much higher than at the start; `along`: VX, VY, WX, WY and WZ."""
         heights = {one: start + moves * moved for one, (start, moves) in self.heights.items()}
         velocities = {one: moves * velocity for one, (_, moves) in self.heights.items()}
-        state = State(heights, velocities, dict(self.held))
+        names = zip(("VX", "VY", "WX", "WY", "WZ"), along, strict=True)
+        measured = {name: {one: moves * value for one, (_, moves) in self.heights.items()} for name, value in names}
+        state = State(heights, velocities, dict(self.held), measured)
         if self.always:
             for one, (function, evaluate, sensor) in self.sensors.items():
                 if function(state) - sensor.value >= -sensor.error:
@@ -169,19 +181,24 @@ class Motion:
         true: `always` is the first, else the second, and then it does not yet at the start. `never`: it does not work at all.
         """
         self.always = always and not never
-        mass, gravity, unit = self.part.mass, self.model.gravity[2], self.model.length
+        (*pull, gravity), mass, unit = self.model.gravity, self.part.mass, self.model.length
+        along = np.array(self.part.along)
+        inertia = np.array([mass, mass, *self.part.inertia])
         centre = self.model.place(self.part.centre)[2]
         time, moved, velocity, bounces = 0.0, 0.0, self.part.velocity, []
-        in_flight = self.touch(self.state(moved, velocity)) > 0.0 or velocity >= 0.0
+        in_flight = self.touch(self.state(moved, velocity, along)) > 0.0 or velocity >= 0.0
 
         # each stretch counts its way from where it begins, so that the tolerance is one of the indentation
         def state(y: np.ndarray) -> State:
-            return self.state(moved + y[0], y[1])
+            return self.state(moved + y[0], y[1], y[2:])
 
         def rates(_: float, y: np.ndarray) -> list[float]:
             # a trial step of a flight may end deep in the ground; that the force is zero above it is checked below
-            force = 0.0 if in_flight else self.force(state(y))
-            return [y[1], gravity + self.model.newton * force / mass]
+            now = state(y)
+            force = 0.0 if in_flight else self.force(now)
+            x, y_force, z, *moments = [0.0] * 6 if in_flight or not self.general else [one(now) for one in self.general]
+            turned = self.model.newton * np.array([x, y_force, *moments]) / inertia + [*pull, 0.0, 0.0, 0.0]
+            return [y[1], gravity + self.model.newton * (force + z) / mass, *turned]
 
         def gap(_: float, y: np.ndarray) -> float:
             return self.touch(state(y))
@@ -192,7 +209,7 @@ class Motion:
             found = solve_ivp(
                 rates,
                 (time, self.model.end if in_flight else min(self.model.end, time + LONGEST_CONTACT)),
-                [0.0, velocity],
+                [0.0, velocity, *along],
                 method="DOP853",
                 rtol=1e-12,
                 atol=1e-14 / unit,
@@ -212,15 +229,16 @@ class Motion:
                     lambda t, f=found: -self.force(state(f.sol(t))), bounds=around, method="bounded", options={"xatol": 1e-12}
                 )
                 bounces.append(Bounce(-unit * velocity, unit * new[1], new_time - time, -peak.fun))
+                bounces[-1].along = (*(unit * new[2:4]), *new[4:])
             if in_flight and any(self.force(state(y)) != 0.0 for y in found.y.T if gap(0.0, y) > 0.0):
                 raise Refused("there is a force without contact")
             if in_flight and self.always:
                 # in contact it holds what the solver's last step of the flight stored, wherever that was: the middle, say
                 half = 0.5 * (new_time - time)
-                self.held = dict(state(np.array([velocity * half + 0.5 * gravity * half**2, velocity + gravity * half])).held)
+                self.held = dict(state(np.array([velocity * half + 0.5 * gravity * half**2, velocity + gravity * half, *along])).held)
             if not in_flight and not (always or never):
                 self.held = {one: evaluate(state(new)) for one, (_, evaluate, _) in self.sensors.items()}
-            time, moved, velocity, in_flight = new_time, moved + new[0], new[1], not in_flight
+            time, moved, velocity, along, in_flight = new_time, moved + new[0], new[1], new[2:], not in_flight
         return bounces
 
 

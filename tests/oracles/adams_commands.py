@@ -6,6 +6,7 @@ parameters and values that are not known here are refused, and so are names that
 
 from __future__ import annotations
 
+import math
 import re
 
 from oracles.adams import Model, Part, Sensor, real, reals, set_units
@@ -26,7 +27,7 @@ _COMMANDS: dict[str, dict[str, str]] = {
     "part create rigid_body name_and_position": {"part_name": "!new part", "location": "!reals", "orientation": "!angles"},
     "part create rigid_body mass_properties": {"part_name": "!part", "mass": "!real", "center_of_mass_marker": "!marker"}
     | dict.fromkeys(("ixx", "iyy", "izz", "ixy", "izx", "iyz"), "!real"),
-    "part create rigid_body initial_velocity": {"part_name": "!part", "vz": "!real"},
+    "part create rigid_body initial_velocity": {"part_name": "!part"} | dict.fromkeys(("vx", "vy", "vz", "wx", "wy", "wz"), "real"),
     "executive_control create sensor": {"sensor_name": "!new sensor", "compare": "!ge", "value": "!real", "error": "!real"}
     | dict.fromkeys(("codgen", "halt", "print", "restart", "return", "yydump"), _ON_OFF)
     | {"function": "!function", "evaluate": "!function"},
@@ -39,6 +40,13 @@ _COMMANDS: dict[str, dict[str, str]] = {
         "action_only": "!on",
         "function": "!function",
     },
+    "force create direct general_force": {
+        "general_force_name": "!new force",
+        "i_marker_name": "!marker",
+        "j_part_name": "!part",
+        "ref_marker_name": "!marker",
+    }
+    | {f"{axis}_{kind}_function": "!function" for kind in ("force", "torque") for axis in "xyz"},
     "force create body gravitational": {"gravity_field_name": "!word"}
     | dict.fromkeys(("x_component_gravity", "y_component_gravity", "z_component_gravity"), "!real"),
     "output_control create request": {"request_name": "!new request", "component_names": "strings", "results_name": "strings"}
@@ -181,7 +189,9 @@ def _do(session: _Session, words: str, given: dict[str, str]) -> None:
         part.mass, part.centre = real(given["mass"]), given["center_of_mass_marker"]
         part.inertia = real(given["ixx"]), real(given["iyy"]), real(given["izz"])
     elif words.endswith("initial_velocity"):
-        model.parts[given["part_name"]].velocity = real(given["vz"])
+        part = model.parts[given["part_name"]]
+        x, y, part.velocity, *spin = (real(given.get(name, "0")) for name in ("vx", "vy", "vz", "wx", "wy", "wz"))
+        part.along = (x, y, *(math.radians(one) for one in spin))  # the unit of angle is the degree
     elif words.endswith("ellipsoid"):
         model.balls[given["center_marker"]] = real(given["x_scale_factor"])
     elif words.endswith("create sensor"):
@@ -190,6 +200,11 @@ def _do(session: _Session, words: str, given: dict[str, str]) -> None:
         model.variables[given["variable_name"]] = given["function"]
     elif words.endswith("single_component_force"):
         model.forces[given["single_component_force_name"]] = given["i_marker_name"], given["j_marker_name"], given["function"]
+    elif words.endswith("general_force"):
+        if not model.parts[given["j_part_name"]].ground:
+            raise Refused("the friction is not that of the ground")
+        functions = [given[f"{axis}_{kind}_function"] for kind in ("force", "torque") for axis in "xyz"]
+        model.general.append((given["i_marker_name"], given["ref_marker_name"], functions))
     elif words.endswith("gravitational"):
         model.gravity = tuple(real(given[f"{axis}_component_gravity"]) for axis in "xyz")
     elif words.endswith("create request"):

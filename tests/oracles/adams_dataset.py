@@ -14,14 +14,16 @@ from oracles.adams_functions import Refused
 # what each argument is; "!" before it: it must be there
 _STATEMENTS: dict[str, dict[str, str]] = {
     "UNITS": {"FORCE": "!word", "MASS": "!word", "LENGTH": "!word", "TIME": "!word"},
-    "PART": {"GROUND": "flag", "QG": "reals", "VZ": "real", "MASS": "real", "CM": "id", "IP": "reals"},
-    "MARKER": {"PART": "!id", "QP": "!reals"},
+    "PART": {"GROUND": "flag", "QG": "reals", "MASS": "real", "CM": "id", "IP": "reals"}
+    | dict.fromkeys(("VX", "VY", "VZ", "WX", "WY", "WZ"), "real"),
+    "MARKER": {"PART": "!id", "QP": "reals", "FLOATING": "flag"},
     "GRAPHICS": {"BOX": "flag", "ELLIPSOID": "flag", "CORNER": "id", "CM": "id"}
     | dict.fromkeys(("X", "Y", "Z", "XSCALE", "YSCALE", "ZSCALE"), "real"),
     "MATERIAL": {"NAME": "!word", "DENSITY": "!real", "YOUNGS_MODULUS": "!real", "POISSONS_RATIO": "!real"},
     "SENSOR": {"GE": "!flag", "VALUE": "!real", "ERROR": "!real", "FUNCTION": "!function", "EVALUATE": "!function"},
     "VARIABLE": {"FUNCTION": "!function"},
     "SFORCE": {"TRANSLATION": "!flag", "ACTIONONLY": "!flag", "I": "!id", "J": "!id", "FUNCTION": "!function"},
+    "GFORCE": {"I": "!id", "JFLOAT": "!id", "RM": "!id"} | dict.fromkeys(("FX", "FY", "FZ", "TX", "TY", "TZ"), "!function"),
     "REQUEST": {"CNAMES": "strings"} | {f"F{column}": "function" for column in range(1, 9)},
     "ACCGRAV": {"IGRAV": "!real", "JGRAV": "!real", "KGRAV": "!real"},
     "INTEGRATOR": {"GSTIFF": "!flag", "SI2": "flag", "ERROR": "!real", "HMAX": "!real"},
@@ -105,10 +107,16 @@ def _take(model: Model, kind: str, number: str, given: dict[str, str]) -> None:
         elif missing := {"QG", "MASS", "CM", "IP"} - set(given):
             raise Refused(f"PART lacks {', '.join(sorted(missing))}")
         else:
-            inertia, velocity = reals(given["IP"]), real(given.get("VZ", "0"))
-            model.parts[number] = Part(reals(given["QG"]), real(given["MASS"]), inertia, given["CM"], velocity)
+            x, y, z, *spin = (real(given.get(name, "0")) for name in ("VX", "VY", "VZ", "WX", "WY", "WZ"))
+            inertia, along = reals(given["IP"]), (x, y, *spin)
+            model.parts[number] = Part(reals(given["QG"]), real(given["MASS"]), inertia, given["CM"], z, along=along)
     elif kind == "MARKER":
-        model.markers[number] = given["PART"], reals(given["QP"])
+        if ("QP" in given) == ("FLOATING" in given):
+            raise Refused(f"MARKER/{number} has a place, or floats")
+        if "FLOATING" in given:
+            model.floating[number] = given["PART"]
+        else:
+            model.markers[number] = given["PART"], reals(given["QP"])
     elif kind == "GRAPHICS":
         at = given.get("CORNER" if "BOX" in given else "CM", "")
         shape = {"BOX", "CORNER", "X", "Y", "Z"} if "BOX" in given else {"ELLIPSOID", "CM", "XSCALE", "YSCALE", "ZSCALE"}
@@ -122,6 +130,10 @@ def _take(model: Model, kind: str, number: str, given: dict[str, str]) -> None:
         model.variables[number] = given["FUNCTION"]
     elif kind == "SFORCE":
         model.forces[number] = given["I"], given["J"], given["FUNCTION"]
+    elif kind == "GFORCE":
+        if given["JFLOAT"] not in model.floating or not model.parts[model.floating[given["JFLOAT"]]].ground:
+            raise Refused(f"GFORCE/{number} has no floating marker on the ground")
+        model.general.append((given["I"], given["RM"], [given[name] for name in ("FX", "FY", "FZ", "TX", "TY", "TZ")]))
     elif kind == "REQUEST":
         model.requests[number] = [value for name, value in given.items() if name != "CNAMES"]
     elif kind == "ACCGRAV":

@@ -18,11 +18,12 @@ class Refused(Exception):
 
 @dataclass
 class State:
-    """Height and velocity of each marker, and what each sensor holds."""
+    """Height and velocity of each marker, what each sensor holds, and VX, VY, WX, WY and WZ of each marker."""
 
     heights: Mapping[str, float]
     velocities: Mapping[str, float]
     held: Mapping[str, float]
+    along: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
 
 
 Value = Callable[[State], float]
@@ -42,6 +43,9 @@ class Scope:
 _TOKEN = re.compile(
     r"\s*(?:(?P<number>(?:\d+\.?\d*|\.\d+)(?:[EeDd][+-]?\d+)?)|(?P<path>\.[A-Za-z_]\w*(?:\.\w+)*)|(?P<word>[A-Za-z_]\w*)|(?P<sign>\*\*|[-+*/(),:]))"
 )
+
+_MARKERS = {"DZ": 3, "VZ": 4, "VX": 4, "VY": 4, "WX": 3, "WY": 3, "WZ": 3}
+"""How many markers a measure takes at most: of what, from what, along whose axis, seen from where."""
 
 _PLAIN: dict[str, tuple[int, Callable[..., float]]] = {
     "SQRT": (1, math.sqrt),
@@ -148,7 +152,7 @@ class _Parser:
         self.take("(")
         if name == "IF":
             return self.arithmetic_if()
-        value = self.measure(name) if name in ("DZ", "VZ", "SENVAL", "VARVAL", "SFORCE") else self.general(name)
+        value = self.measure(name) if name in (*_MARKERS, "SENVAL", "VARVAL", "SFORCE") else self.general(name)
         self.take(")")
         return value
 
@@ -178,13 +182,14 @@ class _Parser:
     def measure(self, name: str) -> Value:
         ids = self.references()
         scope = self.scope
-        if name in ("DZ", "VZ"):
-            if not 1 <= len(ids) <= (3 if name == "DZ" else 4):
+        if name in _MARKERS:
+            if not 1 <= len(ids) <= _MARKERS[name]:
                 raise Refused(f"{name} of {len(ids)} markers")
             if missing := [one for one in ids if one not in scope.markers]:
                 raise Refused(f"{name}: there is no marker {missing[0]}")
             first, second = ids[0], ids[1] if len(ids) > 1 else None
-            of = (lambda s: s.heights) if name == "DZ" else (lambda s: s.velocities)
+            plain = {"DZ": lambda s: s.heights, "VZ": lambda s: s.velocities}
+            of = plain.get(name, lambda s: s.along[name])
             return lambda s: of(s)[first] - (of(s)[second] if second is not None else 0.0)
         known: Mapping[str, object] = {"SENVAL": scope.sensors, "VARVAL": scope.variables, "SFORCE": scope.forces}[name]
         if ids[0] not in known:

@@ -57,6 +57,20 @@ ELASTIC = {
 }
 
 
+OBLIQUE = {
+    "name": "oblique",
+    "sphere": {"radius": "10 mm", "material": {"density": 2500, "youngs_modulus": "60 GPa", "poissons_ratio": 0.2}},
+    "plate": {
+        "size": ["2 m", "1 m", "20 mm"],
+        "material": {"density": 7850, "youngs_modulus": "210 GPa", "poissons_ratio": 0.3},
+        "inclination": "10 deg",
+    },
+    "drop": {"height": "30 mm", "velocity": [0.5, -0.2, 0.4], "spin": [10, -30, 50], "position": ["-300 mm", 0]},
+    "contact": {"law": "hunt-crossley", "restitution": 0.6, "friction": {"law": "mdr", "coefficient": 0.2}},
+    "run": {"impacts": 2},
+}
+
+
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
     """A result folder of an elastic plate with sensors."""
@@ -76,6 +90,16 @@ def elastic(folder: Path) -> Drop:
 @pytest.fixture(scope="module")
 def rigid(variable: vi.Response) -> Drop:
     return drop_of_result(result_of(variable), vi.load_case("paper:type1-variable"))
+
+
+@pytest.fixture(scope="module")
+def oblique_response() -> vi.Response:
+    return vi.simulate(vi.read_case(OBLIQUE))
+
+
+@pytest.fixture(scope="module")
+def oblique(oblique_response: vi.Response) -> Drop:
+    return drop_of_result(result_of(oblique_response), vi.read_case(OBLIQUE))
 
 
 @pytest.fixture
@@ -248,6 +272,34 @@ def test_names_are_legal_in_matlab() -> None:
         assert name != "end"
 
 
+def test_an_oblique_drop_has_its_motion_along_the_plate(oblique: Drop) -> None:
+    assert oblique.oblique is not None
+    assert (oblique.height, oblique.speed, oblique.position) == (0.03, -0.4, (-0.3, 0.0))
+    assert oblique.gravity == pytest.approx(9.80665 * np.cos(np.radians(10.0)), rel=1e-15)
+    assert oblique.oblique.gravity[0] == pytest.approx(9.80665 * np.sin(np.radians(10.0)), rel=1e-15)
+    files = files_of("csv", oblique)
+    for table, values in (("impacts", oblique.impacts), ("history", oblique.history)):
+        read = pandas.read_csv(BytesIO(files[f"{table}.csv"]), dtype=str).astype(float)
+        assert list(read.columns) == list(values)
+        for name in values:
+            np.testing.assert_array_equal(read[name], values[name])
+    assert {"tangential_restitution", "spin_y_after_rad_s"} < set(oblique.impacts)
+    (content,) = files_of("mat", oblique).values()
+    read = loadmat(BytesIO(content), simplify_cells=True)
+    assert read["drop"]["velocity_along_plate"].tolist() == [0.5, -0.2]
+    assert read["drop"]["spin"].tolist() == [10.0, -30.0, 50.0]
+    assert (read["drop"]["friction_law"], read["drop"]["friction"]["coefficient"]) == ("mdr", 0.2)
+    assert read["units"]["drop"]["friction"]["effective_shear_modulus"] == "Pa"
+    assert read["units"]["history"]["friction_x_N"] == "N"
+    np.testing.assert_array_equal(read["history"]["spin_y_rad_s"], oblique.history["spin_y_rad_s"])
+
+
+def test_a_rising_sphere_rises_in_what_is_exported() -> None:
+    case = vi.read_case(plain_case(drop={"height": 0.5, "velocity": [0, 0, 1.5]}))
+    drop = drop_of_result(result_of(vi.simulate(case)), case)
+    assert (drop.height, drop.speed, drop.oblique) == (0.5, -1.5, None)
+
+
 # functions of time -----------------------------------------------------------------------------------
 
 
@@ -310,6 +362,26 @@ def test_the_history_is_sampled_as_finely_as_the_contact_needs(elastic: Drop, ri
     rate = history_rate(elastic)
     assert rate is not None
     assert rate % 50e3 == 0.0  # on the times of the fastest sensor
+
+
+def test_universal_file_of_an_oblique_drop(oblique: Drop, oblique_response: vi.Response, tmp_path: Path) -> None:
+    """In directions 1 and 2 along the plate, and 4 to 6 of rotation."""
+    pyuff = pytest.importorskip("pyuff")
+    (content,) = files_of("uff58", oblique).values()
+    (tmp_path / "drop.uff").write_bytes(content)
+    functions = pyuff.UFF(str(tmp_path / "drop.uff")).read_sets()[2:]
+    found = {(one["rsp_dir"], one["ordinate_spec_data_type"]): one for one in functions}
+    assert len(found) == len(functions) == 4 + 3 * 2 + 3
+    exact = oblique_response.at(found[3, 8]["x"])
+    for axis, name in enumerate("xyz", 1):
+        spin = exact[f"spin_{name}_rad_s"]
+        np.testing.assert_allclose(found[axis + 3, 11]["data"], spin, atol=1e-3 * np.abs(spin).max())
+        assert found[axis + 3, 11]["ordinate_axis_units_lab"] == "rad/s"
+    for axis, name in enumerate("xy", 1):
+        np.testing.assert_allclose(found[axis, 8]["data"], exact[f"position_{name}_m"], atol=1e-8)
+        np.testing.assert_allclose(found[axis, 11]["data"], exact[f"velocity_{name}_m_s"], atol=1e-4)
+        largest = np.abs(exact[f"friction_{name}_N"]).max()
+        np.testing.assert_allclose(found[axis, 13]["data"], exact[f"friction_{name}_N"], atol=0.01 * largest)
 
 
 def test_a_step_that_has_more_digits_than_the_format_is_told(rigid: Drop) -> None:
@@ -434,6 +506,16 @@ def test_frames_of_a_rigid_drop_show_each_touch(rigid: Drop, tmp_path: Path) -> 
     assert plate.points[:, 2].max() == 0.0
     corners = plate.points[plate.cells_dict["hexahedron"][0]]
     assert np.linalg.det(corners[[1, 3, 4]] - corners[0]) > 0.0  # VTK's order of the corners
+
+
+def test_frames_of_an_oblique_drop_move_along_the_plate(oblique: Drop, oblique_response: vi.Response, tmp_path: Path) -> None:
+    times, spheres = frames(files_of("vtu", oblique), "sphere", tmp_path)
+    exact = oblique_response.at(times)
+    for index, sphere in enumerate(spheres):
+        centre = [exact[name][index] for name in ("position_x_m", "position_y_m", "position_m")]
+        np.testing.assert_allclose(np.linalg.norm(sphere.points - centre, axis=1), 0.01, rtol=1e-4)
+    assert exact["position_x_m"][-1] > -0.2
+    assert "does not turn" in notes_of("vtu", oblique)
 
 
 def test_holes_and_plates_without_a_size(elastic: Drop, rigid: Drop, tmp_path: Path) -> None:

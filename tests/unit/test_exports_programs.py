@@ -14,6 +14,7 @@ import pytest
 
 from told import MASS, RADIUS, STIFFNESS, told, told_case
 from vibroimpact.calibration.speed_function import SpeedFunction
+from vibroimpact.contact.friction.laws.mindlin import MindlinForce
 from vibroimpact.contact.hysteretic import HystereticLaw
 from vibroimpact.contact.laws.adams_impact import AdamsImpact
 from vibroimpact.contact.laws.hertz import Hertz
@@ -22,7 +23,8 @@ from vibroimpact.contact.laws.linear_spring_dashpot import LinearSpringDashpot
 from vibroimpact.contact.laws.newton import Newton
 from vibroimpact.contact.laws.tsuji import Tsuji
 from vibroimpact.contact.pair import ContactPair
-from vibroimpact.contact.registry import contact_laws
+from vibroimpact.contact.registry import contact_laws, find_friction_law
+from vibroimpact.dynamics.oblique.statement import Oblique
 from vibroimpact.dynamics.restitution import achieved_restitution
 from vibroimpact.errors import InputError
 from vibroimpact.exporting.contact_parameters import clipped_dashpot
@@ -125,6 +127,25 @@ class TestLammps:
         drop = replace(told(law), function=("damping", SpeedFunction((50.0, 10.0), 1.0, 3.0)))
         np.testing.assert_allclose(self.wall(drop)[2], 50.0 + 10.0 * drop.impacts["approach_speed_m_s"])
 
+    def test_oblique(self) -> None:
+        """In the frame of the plate: gravity is inclined."""
+        law = MindlinForce(coefficient=0.3, effective_modulus=2.4e9, effective_shear_modulus=2e9, effective_radius=RADIUS)
+        oblique = Oblique(velocity=(1.0, -0.5), spin=(1.0, 2.0, 3.0), gravity=(3.0, 0.0), friction=law)
+        hertz = Hertz(stiffness=4.0 / 3.0 * 2.4e9 * math.sqrt(RADIUS))
+        text = text_of(lammps.FORMAT, told(hertz, oblique=oblique, gravity=4.0))
+        assert "set             group all omega 1.0 2.0 3.0" in text
+        assert "velocity        all set 1.0 -0.5 -0.0" in text
+        assert "gravity 5.0 vector 3.0 0.0 -4.0" in text
+        found = re.search(r"tangential mindlin/force (\S+) 0\.0 0\.3 zplane", text)
+        assert found is not None
+        assert float(found[1]) == pytest.approx(2.0 * 2e9, rel=1e-14)
+
+    @pytest.mark.parametrize("name", ["coulomb", "rigid"])
+    def test_refuses_friction_without_a_stiffness(self, name: str) -> None:
+        oblique = Oblique(friction=find_friction_law(name)(coefficient=0.3))
+        with pytest.raises(InputError, match=f"{name} can't be written for LAMMPS; mindlin, mindlin-rescale, mindlin-force, mdr can"):
+            lammps.FORMAT.write(told(TSUJI, oblique=oblique))
+
 
 class TestYade:
     def test_modulus_gives_the_stiffness(self) -> None:
@@ -140,6 +161,29 @@ class TestYade:
         compile(text_of(yade.FORMAT, told(law)), "script.py", "exec")
         assert "never pulls" in " ".join(yade.FORMAT.notes(told(law)))
 
+    def test_friction(self) -> None:
+        """Poisson's ratio gives the tangential stiffness, and the modulus then that along the normal."""
+        law = MindlinForce(coefficient=0.3, effective_modulus=2.4e9, effective_shear_modulus=2e9, effective_radius=RADIUS)
+        hertz = Hertz(stiffness=4.0 / 3.0 * 2.4e9 * math.sqrt(RADIUS))
+        oblique = Oblique(velocity=(1.0, -0.5), spin=(1.0, 2.0, 3.0), gravity=(3.0, 0.5), friction=law)
+        text = text_of(yade.FORMAT, told(hertz, oblique=oblique))
+        compile(text, "script.py", "exec")
+        found = re.search(r"young=([^,]+), poisson=([^,]+), .*frictionAngle=([^)]+)", text)
+        assert found is not None
+        youngs, poisson, angle = map(float, found.groups())
+        assert math.tan(angle) == pytest.approx(0.3)
+        root = math.sqrt(RADIUS / 2)
+        assert 4 / 3 * youngs / (2 * (1 - poisson**2)) * root == pytest.approx(hertz.stiffness)
+        assert 4 * youngs / (2 * (1 + poisson)) / (2 - poisson) * root == pytest.approx(2 * 2e9 * math.sqrt(RADIUS))
+        assert "PULL = (3.0, 0.5)" in text
+        assert "ball.state.angVel = (1.0, -0.5, -SPEED), (1.0, 2.0, 3.0)" in text
+
+    def test_refuses_friction_that_it_has_no_stiffness_for(self) -> None:
+        moduli = {"effective_modulus": 2.4e9, "effective_shear_modulus": 2e9, "effective_radius": RADIUS}
+        for law in LinearSpringDashpot(stiffness=2e6, damping=80.0), Hertz(stiffness=1e7):
+            with pytest.raises(InputError, match="mindlin-force can't be written for YADE unless"):
+                yade.FORMAT.write(told(law, oblique=Oblique(friction=MindlinForce(coefficient=0.3, **moduli))))
+
 
 class TestMujoco:
     def test_model(self) -> None:
@@ -154,6 +198,22 @@ class TestMujoco:
         assert damping == pytest.approx(clipped_dashpot(stiffness, 1.0, 0.7, MASS, speed))
         assert float(joint.attrib["ref"]) == float(key.attrib["qpos"]) == 0.5
         assert "exponent 1.5" in " ".join(mujoco.FORMAT.notes(drop))
+
+    def test_a_free_body(self) -> None:
+        oblique = Oblique(velocity=(1.0, -0.5), spin=(1.0, 2.0, 3.0), gravity=(3.0, 0.0))
+        root = ElementTree.fromstring(text_of(mujoco.FORMAT, told(TSUJI, oblique=oblique, position=(0.1, 0.2))))
+        option, key = root.find("option"), root.find("keyframe/key")
+        assert option is not None
+        assert key is not None
+        assert option.attrib["gravity"] == "3.0 0.0 -9.8"
+        assert key.attrib["qpos"] == "0.1 0.2 0.5 1.0 0.0 0.0 0.0"
+        assert [float(part) for part in key.attrib["qvel"].split()] == [1.0, -0.5, 0.0, 1.0, 2.0, 3.0]
+        assert root.find("worldbody/body/freejoint") is not None
+
+    def test_refuses_friction(self) -> None:
+        oblique = Oblique(friction=find_friction_law("coulomb")(coefficient=0.3))
+        with pytest.raises(InputError, match="coulomb can't be written for MuJoCo"):
+            mujoco.FORMAT.write(told(TSUJI, oblique=oblique))
 
 
 class TestExudyn:
@@ -191,6 +251,30 @@ class TestExudyn:
         made = self.functions(replace(drop, laws=drop.laws[:1], function=("damping_max", function)))
         assert isinstance(made["parameters"](0, 5.0), SimpleNamespace)
         assert made["parameters"](0, 5.0).damping_max == pytest.approx(function(5.0), rel=1e-14)
+
+    def test_forces_along_the_plate(self) -> None:
+        """Coulomb's, proportional to the slip where it is small; the moment turns the sphere forwards."""
+        oblique = Oblique(
+            velocity=(1.0, -0.5), spin=(1.0, 2.0, 3.0), gravity=(3.0, 0.5), friction=find_friction_law("coulomb")(coefficient=0.3)
+        )
+        text = text_of(exudyn.FORMAT, told(Hertz(stiffness=STIFFNESS), oblique=oblique))
+        compile(text, "script.py", "exec")
+        made = self.functions(told(Hertz(stiffness=STIFFNESS), oblique=oblique))
+        exec(text[text.index("FRICTION, PULL") : text.index("INERTIA =")], made)
+        made["now"] = SimpleNamespace(in_contact=True, approach=2.0, p=made["parameters"](0, 2.0))
+        made["state"] = lambda: (-1e-4, 0.0)
+        normal, weight = STIFFNESS * 1e-6, MASS * np.array([3.0, 0.5])
+        x, y, about_x, about_y = made["forces_along_plate"](None, 0.0, 0, [0.0] * 4, [3.0, 4.0, 0.0, 0.0])
+        np.testing.assert_allclose([x, y] - weight, [-0.6 * 0.3 * normal, -0.8 * 0.3 * normal], rtol=1e-12)
+        np.testing.assert_allclose([about_x, about_y], [-RADIUS * 0.8 * 0.3 * normal, RADIUS * 0.6 * 0.3 * normal], rtol=1e-12)
+        rolling = made["forces_along_plate"](None, 0.0, 0, [0.0] * 4, [1.0, -1.0, 1.0 / RADIUS, 1.0 / RADIUS])
+        np.testing.assert_allclose(rolling, [*weight, 0.0, 0.0], atol=1e-12)
+        made["state"] = lambda: (1e-4, 0.0)
+        assert made["forces_along_plate"](None, 0.0, 0, [0.0] * 4, [3.0, 4.0, 0.0, 0.0]) == [*weight, 0.0, 0.0]
+
+    def test_refuses_friction_that_reverses_the_slip(self) -> None:
+        with pytest.raises(InputError, match="rigid can't be written for EXUDYN; coulomb, mdr"):
+            exudyn.FORMAT.write(told(TSUJI, oblique=Oblique(friction=find_friction_law("rigid")(coefficient=0.3))))
 
     def test_refusal_names_the_laws(self) -> None:
         with pytest.raises(InputError, match=r"thornton can't be written for EXUDYN; adams-impact, anagnostopoulos, .*calibrate"):

@@ -47,8 +47,9 @@ def drop_of(laws: tuple[ContactLaw, ...] | ContactLaw, *, start: dict | None = N
     start = start or {"height": 4.0}
     laws = laws if isinstance(laws, tuple) else (laws,)
     problem = Problem(
-        sphere=Body(MASS, RADIUS), plate=rigid_plate(), laws=laws, impacts=impacts, gravity=9.8, rest_speed=0.0, tolerance=1e-12, **start
-    )
+        sphere=Body(MASS, RADIUS), plate=rigid_plate(), laws=laws, impacts=impacts, gravity=9.8, rest_speed=0.0, tolerance=1e-12,
+        oblique=given.get("oblique"), **start,
+    )  # fmt: skip
     response = vi.simulate(problem)
     told = {"height": start.get("height", RADIUS), "speed": start.get("speed", 0.0)} | given
     return Drop(
@@ -75,6 +76,10 @@ def commands(drop: Drop) -> Model:
     return read_commands(text.decode())
 
 
+AFTER = [
+    *("separation_velocity_x_m_s", "separation_velocity_y_m_s"),
+    *("spin_x_after_rad_s", "spin_y_after_rad_s", "spin_z_after_rad_s"),
+]
 READERS = [pytest.param(dataset, id="adm"), pytest.param(commands, id="cmd")]
 
 
@@ -325,3 +330,51 @@ def test_the_parser_would_see_wrong_units() -> None:
 )
 def test_the_oracles_functions(text: str, value: float) -> None:
     assert parse_function(text, Scope({}, {}, {}))(State({}, {}, {})) == pytest.approx(value, rel=1e-14)
+
+
+@pytest.mark.parametrize("read", READERS)
+@pytest.mark.parametrize("coefficient", [0.05, 0.4])
+def test_oblique_drops(read, coefficient: float) -> None:
+    """That slip throughout, and that roll at last; on an inclined plate."""
+    coulomb = vi.find_friction_law("coulomb")(coefficient=coefficient)
+    oblique = vi.Oblique(velocity=(0.6, 0.0), spin=(0.0, -16.0, 5.0), gravity=(0.5, 0.0), friction=coulomb)
+    drop = drop_of(impact(), start={"height": 0.5}, impacts=2, oblique=oblique)
+    model = read(drop)
+    bounces = Motion(model).run()
+    same(drop, bounces)
+    found = np.array([bounce.along for bounce in bounces]).T
+    for values, column in zip(found, AFTER, strict=True):
+        scale = RADIUS if "spin" in column else 1.0
+        np.testing.assert_allclose(scale * values, scale * drop.impacts[column], atol=2e-5)
+    assert model.gravity == pytest.approx((500.0, 0.0, -9800.0))
+
+
+def test_friction_that_stands_for_another() -> None:
+    moduli = {"effective_modulus": 2.4e9, "effective_shear_modulus": 2e9, "effective_radius": RADIUS}
+    mdr = vi.find_friction_law("mdr")(coefficient=0.3, **moduli)
+    drop = drop_of(impact(), start={"height": 0.5}, impacts=1, oblique=vi.Oblique(velocity=(0.6, 0.0), friction=mdr))
+    for format in adams_solver.FORMAT, adams_view.FORMAT:
+        assert "its coulomb stands for it" in " ".join(format.notes(drop))
+        assert any(b"0.3 * MAX(SFORCE(" in content for content in format.write(drop).values())
+    rigid = vi.Oblique(friction=vi.find_friction_law("rigid")(coefficient=0.3))
+    with pytest.raises(InputError, match="rigid can't be written for Adams; coulomb, mdr"):
+        adams_solver.write(drop_of(impact(), start={"height": 0.5}, impacts=1, oblique=rigid))
+
+
+@pytest.mark.parametrize(
+    ("right", "wrong", "words"),
+    [
+        (", FLOATING\n", "", "has a place, or floats"),
+        (", JFLOAT = 3", ", JFLOAT = 2", "no floating marker"),
+        (", TZ = 0.0\n", "", "lacks TZ"),
+        ("GFORCE/1\n, I = 11", "GFORCE/1\n, I = 1", "act on the centre"),
+        ("WY(11, 1, 1)", "WY(11, 1, 1, 1)", "4 markers"),
+        ("SFORCE(1, 0, 4, 1), 0.0)", "SFORCE(2, 0, 4, 1), 0.0)", "there is no 2"),
+    ],
+)
+def test_the_parser_refuses_broken_friction(right: str, wrong: str, words: str) -> None:
+    oblique = vi.Oblique(velocity=(0.6, 0.0), friction=vi.find_friction_law("coulomb")(coefficient=0.3))
+    text = adams_solver.write(drop_of(impact(), start={"height": 0.5}, impacts=1, oblique=oblique))["a_drop.adm"].decode()
+    assert right in text
+    with pytest.raises(Refused, match=words):
+        Motion(read_dataset(text.replace(right, wrong, 1)))

@@ -9,15 +9,16 @@ import subprocess
 import sys
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 import vibroimpact as vi
-from told import MASS, STIFFNESS, told, told_case
+from told import MASS, RADIUS, ROCK, STEEL, STIFFNESS, told, told_case
 from vibroimpact.contact.law import ContactLaw
-from vibroimpact.contact.pair import ContactPair
-from vibroimpact.contact.registry import contact_laws
+from vibroimpact.contact.pair import ContactPair, effective_modulus, effective_shear_modulus
+from vibroimpact.contact.registry import contact_laws, find_friction_law
 from vibroimpact.dynamics.restitution import achieved_restitution
 from vibroimpact.exporting.drop import Drop
 from vibroimpact.exporting.export_format import find_export_format
@@ -26,7 +27,9 @@ pytestmark = pytest.mark.peers
 
 PAIR = ContactPair(effective_modulus=2.4265e9, effective_radius=0.025, effective_mass=MASS, poissons_ratio=0.28)
 LINE = re.compile(r"impact (\d+): approach speed (\S+) m/s, restitution (\S+), rebound height (\S+) m, largest force (\S+) N")
+MOTION = re.compile(r"impact (\d+): velocity along the plate (\S+) (\S+) m/s, spin (\S+) (\S+) (\S+) rad/s")
 COLUMNS = ("approach_speed_m_s", "restitution_achieved", "rebound_height_m", "max_force_N")
+AFTER = ("separation_velocity_x_m_s", "separation_velocity_y_m_s", "spin_x_after_rad_s", "spin_y_after_rad_s", "spin_z_after_rad_s")
 
 
 def law(name: str, **parameters: float) -> ContactLaw:
@@ -42,7 +45,13 @@ def run(drop: Drop, program: str, folder: Path, command: list[str]) -> dict[str,
     assert done.returncode == 0, done.stdout[-3000:] + done.stderr[-3000:]
     assert [int(row[0]) for row in rows] == list(range(1, len(rows) + 1))
     assert len(rows) == len(drop.impacts["impact"]), done.stdout[-3000:]
-    return {column: np.array([float(row[1 + index]) for row in rows]) for index, column in enumerate(COLUMNS)}
+    motion = MOTION.findall(done.stdout)
+    assert len(motion) == (0 if drop.oblique is None else len(rows))
+    return {
+        column: np.array([float(row[1 + index]) for row in table])
+        for table, columns in ((rows, COLUMNS), (motion, AFTER))
+        for index, column in enumerate(columns)
+    }
 
 
 def assert_agree(found: dict[str, np.ndarray], drop: Drop, tolerance: float, columns: tuple[str, ...] = COLUMNS) -> None:
@@ -53,6 +62,28 @@ def assert_agree(found: dict[str, np.ndarray], drop: Drop, tolerance: float, col
 
 
 SHORT = COLUMNS[:3]  # without the force
+FRICTION_PAIR = ContactPair(
+    effective_modulus(ROCK, STEEL), RADIUS, MASS, effective_shear_modulus=effective_shear_modulus(ROCK, STEEL), poissons_ratio=0.28
+)
+SLIP, SLIDING, STICKING = 1.0, 0.05, 0.4  # m/s; coefficients of friction with which all of the contact slips, and with which it sticks
+
+
+def oblique(friction: str, coefficient: float, name: str = "hertz", **changes: Any) -> Drop:
+    """Return a drop on an inclined plate with forward velocity and backspin, whose slip begins with 1 m/s."""
+    parameters = {"hertz": {}, "adams-impact": {"damping_max": 120.0}}.get(name, {"restitution": 0.7})
+    stiffness = changes.pop("stiffness", FRICTION_PAIR.hertz_stiffness)
+    normal = contact_laws()[name].for_pair(FRICTION_PAIR, stiffness=stiffness, **parameters)
+    law = find_friction_law(friction).for_pair(FRICTION_PAIR, coefficient=coefficient)
+    given = {"velocity": (0.6 * SLIP, 0.0), "spin": (0.0, -0.4 * SLIP / RADIUS, 0.0), "gravity": (0.5, 0.0), **changes}
+    return told(normal, oblique=vi.Oblique(friction=law, **given))
+
+
+def assert_moves_alike(found: dict[str, np.ndarray], drop: Drop, tolerance: float, impacts: int = 3) -> None:
+    """Velocities of the centre and of the surface after each impact; the tolerance is that of the slip at the start."""
+    for column in found.keys() & set(AFTER):
+        scale = RADIUS if "spin" in column else 1.0
+        theirs, ours = scale * found[column][:impacts], scale * drop.impacts[column][:impacts]
+        np.testing.assert_allclose(theirs, ours, atol=tolerance * SLIP, err_msg=column)
 
 
 @pytest.fixture(scope="module")
@@ -126,6 +157,45 @@ class TestLammps:
         drop = told_case("paper:type1-variable")
         assert_agree(self.run(drop, tmp_path), drop, 3e-4, SHORT)
 
+    @pytest.mark.parametrize("friction", ["mindlin", "mindlin-rescale", "mindlin-force"])
+    def test_its_own_friction(self, friction: str, tmp_path: Path) -> None:
+        drop = oblique(friction, SLIDING)
+        assert find_export_format("lammps").notes(drop) == []
+        found = self.run(drop, tmp_path)
+        assert_moves_alike(found, drop, 1e-8, impacts=1)
+        assert_moves_alike(found, drop, 4e-4)  # whose later impacts stick at last
+        drop = oblique(friction, STICKING)
+        assert_moves_alike(self.run(drop, tmp_path), drop, 4e-4)
+
+    def test_friction_under_a_spring_that_is_not_the_materials(self, tmp_path: Path) -> None:
+        """The radius of the contact is then not that of the overlap."""
+        drop = oblique("mindlin", STICKING, stiffness=3.0 * FRICTION_PAIR.hertz_stiffness)
+        assert_moves_alike(self.run(drop, tmp_path), drop, 4e-4)
+
+    def test_friction_across_gravity_and_spin_about_the_normal(self, tmp_path: Path) -> None:
+        drop = oblique("mindlin-force", STICKING, velocity=(0.3, -0.4), spin=(3.0, -8.0, 50.0), gravity=(0.5, 0.2))
+        assert "leaves the spin about the normal" in " ".join(find_export_format("lammps").notes(drop))
+        found = self.run(drop, tmp_path)
+        assert found.pop("spin_z_after_rad_s").tolist() == [50.0] * 3
+        assert_moves_alike(found, drop, 1e-3)
+
+    def test_friction_that_stands_for_another(self, tmp_path: Path) -> None:
+        drop = oblique("mdr", STICKING)
+        assert "its mindlin-rescale stands for it" in " ".join(find_export_format("lammps").notes(drop))
+        assert_moves_alike(self.run(drop, tmp_path), oblique("mindlin-rescale", STICKING), 4e-4)
+
+    @pytest.mark.parametrize("name", ["tsuji", "hunt-crossley"])
+    def test_friction_with_damping(self, name: str, tmp_path: Path) -> None:
+        """Friction follows its pull at the end of a contact; and the radius of the contact is that of the overlap."""
+        assert "takes the radius of the contact from the overlap" in " ".join(
+            find_export_format("lammps").notes(oblique("mindlin", 0.1, name))
+        )
+        drop = oblique("mindlin", SLIDING, name)
+        assert_moves_alike(self.run(drop, tmp_path), drop, 0.008, impacts=1)
+        for friction in "mindlin", "mindlin-rescale", "mindlin-force":
+            drop = oblique(friction, STICKING, name)
+            assert_moves_alike(self.run(drop, tmp_path), drop, 0.17)
+
 
 class TestYade:
     """Leapfrog with 10 000 steps a contact; where restitution is calibrated, gravity is left out, which tells at 2e-4."""
@@ -150,6 +220,32 @@ class TestYade:
     def test_the_papers_drop(self, tmp_path: Path) -> None:
         drop = told_case("paper:type1-variable")
         assert_agree(self.run(drop, tmp_path), drop, 5e-4, SHORT)
+
+    def test_its_own_friction(self, tmp_path: Path) -> None:
+        """With an arm that is shorter by the overlap."""
+        drop = oblique("mindlin-force", SLIDING, velocity=(4.0, -1.0))
+        found = self.run(drop, tmp_path)
+        after, shorter = drop.impacts, drop.impacts["max_indentation_m"].max() / RADIUS
+        for axis in "xy":
+            velocity = f"separation_velocity_{axis}_m_s"
+            assert found[velocity][0] == pytest.approx(after[velocity][0], abs=1e-4)
+            spins = after[f"spin_{axis}_before_rad_s"][0], found[f"spin_{axis}_after_rad_s"][0], after[f"spin_{axis}_after_rad_s"][0]
+            assert 1.0 - shorter < (spins[1] - spins[0]) / (spins[2] - spins[0]) < 1.0 - 0.5 * shorter
+        assert f"changes the spin by up to {100.0 * shorter:.2g} % less" in " ".join(find_export_format("yade").notes(drop))
+        drop = oblique("mindlin-force", STICKING)
+        assert_moves_alike(self.run(drop, tmp_path), drop, 0.02)
+        without = told(law("hertz"), oblique=vi.Oblique(velocity=(1.0, -0.5), spin=(3.0, -8.0, 5.0), gravity=(0.5, 0.0)))
+        assert_moves_alike(self.run(without, tmp_path), without, 1e-5)
+
+    def test_friction_with_damping(self, tmp_path: Path) -> None:
+        """The radius of the contact is that of the overlap."""
+        drop = oblique("mdr", STICKING, "hunt-crossley", spin=(0.0, -20.0, 5.0))
+        notes = " ".join(find_export_format("yade").notes(drop))
+        for words in "its mindlin-force stands for it", "takes the radius of the contact from the overlap", "the spin about the normal":
+            assert words in notes
+        found, there = self.run(drop, tmp_path), oblique("mindlin-force", STICKING, "hunt-crossley", spin=(0.0, -20.0, 5.0))
+        found.pop("spin_z_after_rad_s")
+        assert_moves_alike(found, there, 0.17)
 
 
 class TestExudyn:
@@ -178,6 +274,21 @@ class TestExudyn:
     def test_a_function_of_the_approach_speed(self, calibrated: Drop, tmp_path: Path) -> None:
         """Which EXUDYN evaluates itself, at each impact."""
         assert_agree(self.run(calibrated, tmp_path), calibrated, 1e-6, SHORT)
+
+    @pytest.mark.parametrize("name", ["hertz", "hunt-crossley", "adams-impact"])
+    def test_friction(self, name: str, tmp_path: Path) -> None:
+        for coefficient in SLIDING, STICKING:
+            drop = oblique("coulomb", coefficient, name)
+            assert find_export_format("exudyn").notes(drop) == []
+            assert_moves_alike(self.run(drop, tmp_path), drop, 1e-5)
+
+    def test_friction_that_stands_for_another(self, tmp_path: Path) -> None:
+        drop = oblique("mdr", STICKING, velocity=(0.3, -0.4), spin=(3.0, -8.0, 50.0), gravity=(0.5, 0.2))
+        notes = " ".join(find_export_format("exudyn").notes(drop))
+        assert "its coulomb stands for it" in notes
+        assert "leaves the spin about the normal" in notes
+        coulomb = oblique("coulomb", STICKING, velocity=(0.3, -0.4), spin=(3.0, -8.0, 50.0), gravity=(0.5, 0.2))
+        assert_moves_alike(self.run(drop, tmp_path), coulomb, 1e-4)
 
 
 class TestMujoco:
@@ -224,3 +335,21 @@ class TestMujoco:
         assert heights[0] == 0.06
         after = int(drop.impacts["time_s"][0] / model.opt.timestep)
         assert max(heights[after + 1000 :]) - drop.radius == pytest.approx(drop.impacts["rebound_height_m"][0] - drop.radius, rel=3e-3)
+
+    def test_a_drop_without_friction_on_an_inclined_plate(self) -> None:
+        """Its own axes do not turn the velocities of its centre."""
+        mujoco = pytest.importorskip("mujoco")
+        linear = law("linear-spring-dashpot", stiffness=2e6, restitution=0.7)
+        moving = vi.Oblique(velocity=(0.3, -0.2), spin=(3.0, -8.0, 5.0), gravity=(2.0, 0.0))
+        drop = told(linear, height=0.06, number=1, oblique=moving, position=(0.1, 0.0))
+        (text,) = find_export_format("mujoco").write(drop).values()
+        model = mujoco.MjModel.from_xml_string(text.decode())
+        data = mujoco.MjData(model)
+        mujoco.mj_resetDataKeyframe(model, data, 0)
+        assert data.qpos[:3].tolist() == [0.1, 0.0, 0.06]
+        while not (data.qvel[2] > 0.0 and data.qpos[2] > drop.radius):
+            mujoco.mj_step(model, data)
+        assert data.qvel[0] == pytest.approx(drop.impacts["separation_velocity_x_m_s"][0], rel=1e-3)
+        assert data.qvel[1] == pytest.approx(-0.2, rel=1e-12)
+        np.testing.assert_allclose(data.qvel[3:], [3.0, -8.0, 5.0], rtol=1e-9)
+        assert data.qvel[2] == pytest.approx(drop.impacts["separation_speed_m_s"][0], rel=1e-2)

@@ -31,6 +31,9 @@ class Names(NamedTuple):
     sensor: str
     speed: str
     damping: str
+    slip_x: str
+    slip_y: str
+    drag: str
 
     @property
     def height(self) -> str:

@@ -8,8 +8,10 @@ from textwrap import wrap
 from typing import NamedTuple
 
 from vibroimpact.exporting.adams_contact import AdamsContact, adams_contact
+from vibroimpact.exporting.adams_motion import AdamsMotion, adams_friction, adams_motion
 from vibroimpact.exporting.contact_parameters import first_contact, laws_of_impacts, shared_notes
 from vibroimpact.exporting.drop import Drop
+from vibroimpact.exporting.program_friction import friction_notes
 from vibroimpact.files.plain_names import identifier, plain_words
 from vibroimpact.materials import Material
 
@@ -19,6 +21,7 @@ _LONGEST_NAME = 40
 _OWN_NAMES = {
     *("ground", "spot", "corner", "plate", "sphere", "cm", "ball"),
     *("touch", "approach_speed", "damping", "contact", "gravity", "motion", "drop"),
+    *("slip_x", "slip_y", "drag", "friction", "opposite", "along_plate"),
 }
 """Names of the other elements of the model, which a material may not have."""
 
@@ -33,7 +36,7 @@ SENSOR_ERROR = 1e-4
 
 TESTED = (
     "a strict parser of the documented syntax, which integrates the contact of what it reads; restitution, peak force and rebound "
-    "heights of vibroimpact's drops between rigid bodies within 1e-7. No Adams was run"
+    "heights of vibroimpact's drops between rigid bodies within 1e-7, velocities after friction within 2e-5. No Adams was run"
 )
 
 
@@ -56,6 +59,7 @@ class AdamsModel:
     mass: float
     centre: tuple[float, float, float]
     velocity: float
+    motion: AdamsMotion | None
     plate: tuple[float, float, float] | None
     materials: tuple[MaterialData, ...]
     notes: tuple[str, ...]
@@ -72,6 +76,12 @@ class AdamsModel:
     def inertia(self) -> float:
         """Moment of inertia of the solid sphere about any axis through its centre [kg mm^2]."""
         return 0.4 * self.mass * self.radius**2
+
+    @property
+    def pull(self) -> tuple[float, float, float]:
+        """Acceleration of gravity [mm/s^2]."""
+        along = (0.0, 0.0) if self.motion is None else self.motion.gravity
+        return *along, -self.contact.gravity
 
     @property
     def corner(self) -> tuple[float, float, float]:
@@ -101,13 +111,19 @@ def adams_model(drop: Drop) -> AdamsModel:
         mass=drop.mass,
         centre=(1e3 * x, 1e3 * y, 1e3 * drop.height),
         velocity=-1e3 * drop.speed,
+        motion=adams_motion(drop),
         plate=None if drop.plate_size is None else (1e3 * drop.plate_size[0], 1e3 * drop.plate_size[1], 1e3 * drop.plate_size[2]),
         materials=_material_data([material for material in both if _is_elastic(material)]),
-        notes=tuple(shared_notes(drop)),
+        notes=tuple(adams_notes(drop)),
         end=drop.end_time,
         longest_step=_round_down(duration / _STEPS),
         output_step=_round_down(duration / _OUTPUTS),
     )
+
+
+def adams_notes(drop: Drop) -> list[str]:
+    """Return the limitations of the model."""
+    return [*shared_notes(drop), *friction_notes(drop, "Adams", adams_friction(drop))]
 
 
 def remarks(model: AdamsModel) -> list[str]:
@@ -125,6 +141,11 @@ def remarks(model: AdamsModel) -> list[str]:
         lines.append(
             "the sensor is true while the sphere is free; it then stores the speed of the next touch, from the energy, which is "
             "the same at any moment of a flight; in contact it is false, and the value is held"
+        )
+    if model.motion is not None:
+        lines.append(
+            "friction is the coefficient times the contact force, against the slip; a slip that is not large beside "
+            f"{model.motion.creep:.3g} mm/s has less"
         )
     return [*lines, *model.notes]
 

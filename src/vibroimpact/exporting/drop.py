@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from vibroimpact.arrays import Floats
 from vibroimpact.calibration.speed_function import SpeedFunction
 from vibroimpact.contact.law import ContactLaw
+from vibroimpact.dynamics.oblique.statement import Oblique
 from vibroimpact.dynamics.problem import Problem
 from vibroimpact.dynamics.sensors.recording import Signal
 from vibroimpact.materials import Material
@@ -28,13 +29,15 @@ class Drop:
     plate_size : tuple of three floats, optional
         Length (x), width (y) and thickness (z) [m].
     position : tuple of two floats
-        Point of impact, relative to the plate's centre [m].
+        Point of impact, relative to the plate's centre [m]; where the sphere moves along the plate, that over which it starts.
     height : float
         Initial height of the sphere's centre above the plate's upper surface [m]; the radius if the run starts at first touch.
     speed : float
-        Initial downward speed [m/s]; zero if the sphere is released from rest.
+        Initial downward speed [m/s]; zero if the sphere is released from rest, negative if it rises.
     gravity : float
-        Acceleration of gravity [m/s^2].
+        Acceleration of gravity [m/s^2]; with an inclined plate its part along the normal.
+    oblique : Oblique, optional
+        Motion along the plate, spin, friction and gravity along the plate; none by default.
     laws : tuple of ContactLaw
         The contact law of the first impact, the second, ...; the last one holds for all further impacts.
     function : tuple of str and SpeedFunction, optional
@@ -74,6 +77,7 @@ class Drop:
     height: float
     speed: float = 0.0
     gravity: float
+    oblique: Oblique | None = None
     laws: tuple[ContactLaw, ...]
     function: tuple[str, SpeedFunction] | None = None
     elastic: tuple[str, ...] = ()

@@ -9,7 +9,7 @@ from typing import Any
 from vibroimpact.calibration.file_contents import CALIBRATION
 from vibroimpact.calibration.speed_function import SpeedFunction
 from vibroimpact.cases.case import Case
-from vibroimpact.cases.oblique import is_oblique
+from vibroimpact.cases.oblique import normal_motion_of, oblique_of
 from vibroimpact.cases.reader import load_case, read_case
 from vibroimpact.cases.rigid import contact_laws_of, deforms, elastic_names, mass_of_sphere, rigid_problem
 from vibroimpact.errors import InputError
@@ -60,7 +60,7 @@ def drop_of_result(result: Result, case: Case, function: tuple[str, SpeedFunctio
         A parameter of the contact law as a function of the approach speed.
     """
     _check_flat(case)
-    found, dropped = result.deflection, case.drop
+    found, motion = result.deflection, normal_motion_of(case)
     surface = {} if found is None else {"time": found.time, "x": found.x, "y": found.y, "height": found.height.astype(float)}
     if found is not None:
         surface["sphere_position"] = found.sphere_position
@@ -71,10 +71,12 @@ def drop_of_result(result: Result, case: Case, function: tuple[str, SpeedFunctio
         sphere_material=case.sphere.material,
         plate_material=case.plate.material,
         plate_size=case.plate.size,
-        position=dropped.position if found is None else found.contact,  # the impact point may be given as a node set of an imported mesh
-        height=case.sphere.radius if dropped.height is None else dropped.height,
-        speed=dropped.speed or 0.0,
-        gravity=dropped.gravity,
+        # the impact point may be given as a node set of an imported mesh
+        position=case.drop.position if found is None else found.contact,
+        height=float(motion.get("height", case.sphere.radius)),
+        speed=float(motion.get("speed", 0.0 - motion.get("velocity", 0.0))),
+        gravity=float(motion["gravity"]),
+        oblique=oblique_of(case),
         laws=contact_laws_of(case),
         function=function,
         elastic=tuple(elastic_names(case)),
@@ -90,11 +92,9 @@ def drop_of_result(result: Result, case: Case, function: tuple[str, SpeedFunctio
 
 
 def _check_flat(case: Case) -> None:
-    """Raise if the sphere falls on another sphere, or obliquely, which no export format supports."""
+    """Raise if the sphere falls on another sphere, which no export format supports."""
     if case.plate.radius is not None:
         raise InputError("what is exported falls on a flat plate, and this sphere falls on another", "plate.radius")
-    if is_oblique(case):
-        raise InputError("what is exported falls along the plate's normal, and does not spin or rub", "drop")
 
 
 def _of_calibration(folder: Path) -> Drop:

@@ -7,13 +7,14 @@ from collections.abc import Mapping
 import numpy as np
 
 from vibroimpact.arrays import Floats, Indices
+from vibroimpact.dynamics.columns import OBLIQUE_HISTORY_COLUMNS
 
 
 def motion_at(history: Mapping[str, Floats], times: Floats) -> dict[str, Floats]:
-    """Return position, velocity, acceleration and force of the sphere, by column name.
+    """Return position, velocity, acceleration and force of the sphere, by column name; also its motion along the plate, if it has one.
 
-    Position and velocity are cubic Hermite interpolants, exact in free flight; acceleration and force are interpolated linearly
-    between the points of the history.
+    Positions and the velocity along the normal are cubic Hermite interpolants, the others are interpolated linearly between the points
+    of the history; all are exact in free flight.
 
     Parameters
     ----------
@@ -35,12 +36,18 @@ def motion_at(history: Mapping[str, Floats], times: Floats) -> dict[str, Floats]
     part = np.divide(times - time[before], step, out=np.ones_like(times), where=step > 0.0)
     position, velocity = history["position_m"], history["velocity_m_s"]
     acceleration, force = history["acceleration_m_s2"], history["force_N"]
-    return {
+    found = {
         "position_m": _cubic(position, velocity, before, step, part),
         "velocity_m_s": _cubic(velocity, acceleration, before, step, part),
         "acceleration_m_s2": _linear(acceleration, before, part),
         "force_N": _linear(force, before, part),
     }
+    if "position_x_m" in history:
+        found |= {name: _linear(history[name], before, part) for name, column in OBLIQUE_HISTORY_COLUMNS.items() if not column.in_ledger}
+        for axis in "xy":
+            along, speed = history[f"position_{axis}_m"], history[f"velocity_{axis}_m_s"]
+            found[f"position_{axis}_m"] = _cubic(along, speed, before, step, part)
+    return found
 
 
 def _linear(values: Floats, before: Indices, part: Floats) -> Floats:

@@ -12,16 +12,16 @@ from vibroimpact.exporting.adams_model import (
     TESTED,
     AdamsModel,
     adams_model,
+    adams_notes,
     header_comments,
     wrap_expression,
 )
-from vibroimpact.exporting.contact_parameters import shared_notes
 from vibroimpact.exporting.drop import Drop
 from vibroimpact.exporting.export_format import ExportFormat
 from vibroimpact.exporting.rigid_drop import as_rigid
 
-_NAMES = Names(centre="11", spot="1", sensor="1", speed="1", damping="2")
-_GROUND, _SPHERE, _CORNER = 1, 2, 2  # parts, and the marker at the plate's corner
+_NAMES = Names(centre="11", spot="1", sensor="1", speed="1", damping="2", slip_x="3", slip_y="4", drag="5")
+_GROUND, _SPHERE, _CORNER, _OPPOSITE = 1, 2, 2, 3  # parts, the marker at the plate's corner, and that of the reaction to friction
 
 
 def write(drop: Drop) -> dict[str, bytes]:
@@ -56,6 +56,9 @@ def _dataset(model: AdamsModel) -> Iterator[str]:
         size = dict(zip("XYZ", map(adams_number, model.plate), strict=True))
         yield from _headed("plate", "GRAPHICS", 1, "BOX", CORNER=str(_CORNER), **size)
     velocity = {"VZ": adams_number(model.velocity)} if model.velocity else {}
+    if model.motion is not None:
+        parts = (*model.motion.velocity, model.velocity, *model.motion.spin)
+        velocity = dict(zip(("VX", "VY", "VZ", "WX", "WY", "WZ"), map(adams_number, parts), strict=True))
     yield from _headed(
         "sphere",
         "PART",
@@ -104,20 +107,36 @@ def _dataset(model: AdamsModel) -> Iterator[str]:
         J=_NAMES.spot,
         FUNCTION=contact.force(_NAMES),
     )
+    yield from _friction(model)
     yield from _requests(model)
-    yield from _statement("ACCGRAV/", IGRAV="0.0", JGRAV="0.0", KGRAV=adams_number(-contact.gravity))
+    yield from _statement("ACCGRAV/", **dict(zip(("IGRAV", "JGRAV", "KGRAV"), map(adams_number, model.pull), strict=True)))
     yield from _statement("INTEGRATOR/", "GSTIFF", "SI2", ERROR=adams_number(ACCURACY), HMAX=adams_number(model.longest_step))
     yield from _statement("OUTPUT/", "REQSAVE", "GRSAVE")
     yield from _statement("RESULTS/", "XRF")
     yield from ("END", "")
 
 
+def _friction(model: AdamsModel) -> Iterator[str]:
+    """Yield the statements of friction, if the sphere moves along the plate."""
+    if model.motion is None:
+        return
+    for name, (number, expression) in model.motion.variables(_NAMES, "1").items():
+        yield from _headed(name, "VARIABLE", int(number), FUNCTION=expression)
+    yield from _headed("opposite", "MARKER", _OPPOSITE, "FLOATING", PART=str(_GROUND))
+    *first, last = zip(("FX", "FY", "FZ", "TX", "TY", "TZ"), model.motion.components(_NAMES), strict=True)
+    functions = {name: f"{expression}\\" for name, expression in first} | dict([last])
+    yield from _headed("friction", "GFORCE", 1, I=_NAMES.centre, JFLOAT=str(_OPPOSITE), RM=_NAMES.spot, **functions)
+
+
 def _requests(model: AdamsModel) -> Iterator[str]:
-    """Yield the REQUEST statement for the output of a run."""
-    readings = model.contact.readings(_NAMES, "1")
-    last = max(readings)
-    functions = {f"F{column}": expression + ("" if column == last else "\\") for column, (_, expression) in readings.items()}
-    yield from _headed("motion", "REQUEST", 1, CNAMES=column_titles(readings), **functions)
+    """Yield the REQUEST statements for the output of a run."""
+    requests = {"motion": model.contact.readings(_NAMES, "1")}
+    if model.motion is not None:
+        requests["along_plate"] = model.motion.readings(_NAMES)
+    for number, (name, readings) in enumerate(requests.items(), 1):
+        last = max(readings)
+        functions = {f"F{column}": expression + ("" if column == last else "\\") for column, (_, expression) in readings.items()}
+        yield from _headed(name, "REQUEST", number, CNAMES=column_titles(readings), **functions)
 
 
 def _headed(name: str, kind: str, identifier: int, *flags: str, **arguments: str) -> Iterator[str]:
@@ -143,6 +162,6 @@ FORMAT = ExportFormat(
     files="a dataset NAME.adm, and NAME.acf with the commands that run it",
     tested=TESTED,
     write=write,
-    notes=shared_notes,
+    notes=adams_notes,
     prepare=as_rigid,
 )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 
 from vibroimpact.exporting.adams_contact import Names, adams_number, adams_numbers, column_titles
@@ -12,10 +13,10 @@ from vibroimpact.exporting.adams_model import (
     TESTED,
     AdamsModel,
     adams_model,
+    adams_notes,
     header_comments,
     wrap_expression,
 )
-from vibroimpact.exporting.contact_parameters import shared_notes
 from vibroimpact.exporting.drop import Drop
 from vibroimpact.exporting.export_format import ExportFormat
 from vibroimpact.exporting.rigid_drop import as_rigid
@@ -38,7 +39,9 @@ def write(drop: Drop) -> dict[str, bytes]:
 def _commands(model: AdamsModel) -> Iterator[str]:
     contact, top = model.contact, f".{model.name}"
     ground, sphere = f"{top}.ground", f"{top}.sphere"
-    names = Names(f"{sphere}.cm", f"{ground}.spot", f"{top}.touch", f"{top}.approach_speed", f"{top}.damping")
+    names = Names(
+        f"{sphere}.cm", f"{ground}.spot", *(f"{top}.{name}" for name in ("touch", "approach_speed", "damping", "slip_x", "slip_y", "drag"))
+    )
     yield from header_comments(model)
     yield from _command("defaults units", length="mm", angle="deg", force="newton", mass="kg", time="sec")
     yield from _command("defaults units", coordinate_system_type="cartesian", orientation_type="body313")
@@ -75,8 +78,12 @@ def _commands(model: AdamsModel) -> Iterator[str]:
         center_of_mass_marker=names.centre,
         **moments,
     )
-    if model.velocity:
-        yield from _command("part create rigid_body initial_velocity", part_name=sphere, vz=adams_number(model.velocity))
+    velocity = {"vz": adams_number(model.velocity)} if model.velocity else {}
+    if model.motion is not None:
+        parts = (*model.motion.velocity, model.velocity, *(math.degrees(part) for part in model.motion.spin))
+        velocity = dict(zip(("vx", "vy", "vz", "wx", "wy", "wz"), map(adams_number, parts), strict=True))
+    if velocity:
+        yield from _command("part create rigid_body initial_velocity", part_name=sphere, **velocity)
     scale = {f"{axis}_scale_factor": adams_number(2.0 * model.radius) for axis in "xyz"}
     yield from _command("geometry create shape ellipsoid", ellipsoid_name=f"{sphere}.ball", center_marker=names.centre, **scale)
     if contact.holds_speed:
@@ -103,14 +110,10 @@ def _commands(model: AdamsModel) -> Iterator[str]:
         action_only="on",
         function=_quoted(contact.force(names)),
     )
-    yield from _command(
-        "force create body gravitational",
-        gravity_field_name="gravity",
-        x_component_gravity="0.0",
-        y_component_gravity="0.0",
-        z_component_gravity=adams_number(-contact.gravity),
-    )
-    yield from _request(model, names)
+    yield from _friction(model, names)
+    gravity = {f"{axis}_component_gravity": adams_number(part) for axis, part in zip("xyz", model.pull, strict=True)}
+    yield from _command("force create body gravitational", gravity_field_name="gravity", **gravity)
+    yield from _requests(model, names)
     yield from _command(
         "executive_control set numerical_integration_parameters",
         model_name=top,
@@ -122,16 +125,36 @@ def _commands(model: AdamsModel) -> Iterator[str]:
     yield from _command("simulation script create", sim_script_name=f"{top}.drop", solver_commands=f'"{run}"')
 
 
-def _request(model: AdamsModel, names: Names) -> Iterator[str]:
-    """Yield the command that creates the request for the output of a run."""
-    readings = model.contact.readings(names, f".{model.name}.contact")
+def _friction(model: AdamsModel, names: Names) -> Iterator[str]:
+    """Yield the commands of friction, if the sphere moves along the plate."""
+    if model.motion is None:
+        return
+    for name, expression in model.motion.variables(names, f".{model.name}.contact").values():
+        yield from _variable(name, expression)
+    functions = [f"{axis}_{kind}_function" for kind in ("force", "torque") for axis in "xyz"]
     yield from _command(
-        "output_control create request",
-        request_name=f".{model.name}.motion",
-        component_names=column_titles(readings),
-        results_name='"motion"',
-        **{f"f{column}": _quoted(expression) for column, (_, expression) in readings.items()},
+        "force create direct general_force",
+        general_force_name=f".{model.name}.friction",
+        i_marker_name=names.centre,
+        j_part_name=f".{model.name}.ground",
+        ref_marker_name=names.spot,
+        **dict(zip(functions, map(_quoted, model.motion.components(names)), strict=True)),
     )
+
+
+def _requests(model: AdamsModel, names: Names) -> Iterator[str]:
+    """Yield the commands that create the requests for the output of a run."""
+    requests = {"motion": model.contact.readings(names, f".{model.name}.contact")}
+    if model.motion is not None:
+        requests["along_plate"] = model.motion.readings(names)
+    for name, readings in requests.items():
+        yield from _command(
+            "output_control create request",
+            request_name=f".{model.name}.{name}",
+            component_names=column_titles(readings),
+            results_name=f'"{name}"',
+            **{f"f{column}": _quoted(expression) for column, (_, expression) in readings.items()},
+        )
 
 
 def _inside(part: str) -> Iterator[str]:
@@ -168,6 +191,6 @@ FORMAT = ExportFormat(
     files="a command file NAME.cmd",
     tested=TESTED,
     write=write,
-    notes=shared_notes,
+    notes=adams_notes,
     prepare=as_rigid,
 )

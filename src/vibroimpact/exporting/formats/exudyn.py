@@ -6,12 +6,14 @@ import math
 from collections.abc import Mapping
 from dataclasses import fields
 
+from vibroimpact.contact.friction.law import FrictionLaw
 from vibroimpact.contact.law import ContactLaw
 from vibroimpact.contact.laws.linear_spring_dashpot import LinearSpringDashpot
 from vibroimpact.errors import InputError
 from vibroimpact.exporting.contact_parameters import approach_speeds, first_contact, shared_notes
 from vibroimpact.exporting.drop import Drop
 from vibroimpact.exporting.export_format import ExportFormat, comment_lines, file_name
+from vibroimpact.exporting.program_friction import COULOMB, friction_in, friction_notes
 from vibroimpact.exporting.rigid_drop import as_rigid
 from vibroimpact.files.plain_names import plain_words
 from vibroimpact.ranges import Range
@@ -58,6 +60,10 @@ return p.stiffness * delta**1.5 + damping * rate""",
 }
 
 
+_CREEP = 1e-4
+"""Slip below which friction is proportional to it, over the first approach speed."""
+
+
 def _force(law: ContactLaw) -> str:
     """Return the body of the Python function of a law's contact force."""
     if isinstance(law, LinearSpringDashpot) and law.damping is not None:
@@ -95,17 +101,69 @@ def _function(drop: Drop) -> str:
     return f"    p.{name} = {inside}  # of the approach speed, fitted from {polynomial.slowest:.6g} to {polynomial.fastest:.6g} m/s\n"
 
 
+def _friction(drop: Drop) -> FrictionLaw | None:
+    return friction_in(drop, "EXUDYN", COULOMB)
+
+
+def _along_plate(drop: Drop) -> tuple[str, str]:
+    """Return the lines of the motion along the plate and the spin, and those that print them; none if there is no such motion."""
+    if drop.oblique is None:
+        return "", ""
+    law, oblique = _friction(drop), drop.oblique
+    coefficient = 0.0 if law is None else float(law.coefficient)
+    (x, y), (about_x, about_y, about_z) = (tuple(map(float, values)) for values in (oblique.velocity, oblique.spin))
+    return (
+        f'''
+from exudyn.itemInterface import NodeGenericODE2, ObjectGenericODE2
+
+# along the plate, and about x and y; the spin about the normal stays
+FRICTION, PULL = {coefficient!r}, {tuple(map(float, oblique.gravity))!r}  # coefficient, and gravity along the plate
+CREEP = {_CREEP * approach_speeds(drop)[0]!r}  # m/s; below this slip friction is proportional to it
+SPIN_ABOUT_NORMAL = {about_z!r}
+
+
+def forces_along_plate(mbs, t, item, angles, rates):
+    """The forces along x and y, and the moments about x and y."""
+    gap, velocity = state()
+    pressing = max(contact_force(-gap, -velocity, now.approach, now.p), 0.0) if now.in_contact and gap < 0.0 else 0.0
+    slip = rates[0] - RADIUS * rates[3], rates[1] + RADIUS * rates[2]
+    x, y = (-FRICTION * pressing * part / max(math.hypot(*slip), CREEP) for part in slip)
+    return [x + MASS * PULL[0], y + MASS * PULL[1], RADIUS * y, -RADIUS * x]
+
+
+INERTIA = 0.4 * MASS * RADIUS**2
+rates = {[x, y, about_x, about_y]!r}
+start = {{"referenceCoordinates": [0] * 4, "initialCoordinates": [0] * 4, "initialCoordinates_t": rates}}
+moving = mbs.AddNode(NodeGenericODE2(**start, numberOfODE2Coordinates=4))
+masses = [[(MASS, MASS, INERTIA, INERTIA)[i] if i == j else 0.0 for j in range(4)] for i in range(4)]
+mbs.AddObject(ObjectGenericODE2(nodeNumbers=[moving], massMatrix=masses, forceUserFunction=forces_along_plate))
+''',
+        """\
+    x, y, about_x, about_y = mbs.systemData.GetODE2Coordinates_t()[1:]
+    print(
+        f"impact {impact + 1}: velocity along the plate {x:.9g} {y:.9g} m/s, "
+        f"spin {about_x:.9g} {about_y:.9g} {SPIN_ABOUT_NORMAL:.9g} rad/s"
+    )
+""",
+    )
+
+
+def _notes(drop: Drop) -> list[str]:
+    return [*shared_notes(drop), *friction_notes(drop, "EXUDYN", _friction(drop))]
+
+
 def _write(drop: Drop) -> Mapping[str, bytes]:
     law, speeds = drop.laws[0], approach_speeds(drop)
     body = "\n".join(f"    {line}" for line in _force(law).splitlines())
     duration, _ = first_contact(law, drop)
+    objects, print_motion = _along_plate(drop)
     # in the script a fall is integrated to the known time of first touch, and each contact separately, with steps of its scale
     return {
         file_name(drop, "-exudyn.py"): f'''\
 """A sphere that falls on a plate, for EXUDYN 1.13 or later. Units: m, kg, s, N."""
 # The contact law is {law.name}: {law.equation}
 # The case "{plain_words(drop.name)}"
-{comment_lines(shared_notes(drop))}
+{comment_lines(_notes(drop))}
 import math
 from types import SimpleNamespace
 
@@ -166,7 +224,7 @@ plate = mbs.AddMarker(MarkerNodeCoordinate(nodeNumber=ground, coordinate=0))
 sphere = mbs.AddMarker(MarkerNodeCoordinate(nodeNumber=node, coordinate=0))
 mbs.AddObject(CoordinateSpringDamper(markerNumbers=[plate, sphere], springForceUserFunction=spring_force))
 mbs.AddLoad(LoadCoordinate(markerNumber=sphere, load=-MASS * GRAVITY))
-mbs.SetPreStepUserFunction(goes_on)
+{objects}mbs.SetPreStepUserFunction(goes_on)
 mbs.Assemble()
 
 
@@ -215,7 +273,7 @@ for impact in range(IMPACTS):
         f"impact {{impact + 1}}: approach speed {{now.approach:.9g}} m/s, restitution {{speed / now.approach:.9g}}, "
         f"rebound height {{RADIUS + speed**2 / (2.0 * GRAVITY):.9g}} m, largest force {{now.largest:.9g}} N"
     )
-'''.encode()
+{print_motion}'''.encode()
     }
 
 
@@ -223,8 +281,8 @@ FORMAT = ExportFormat(
     name="exudyn",
     program="EXUDYN",
     files="a Python script (.py)",
-    tested="run with EXUDYN 1.13.6, beside vibroimpact's drops between rigid bodies",
+    tested="run with EXUDYN 1.13.6, beside vibroimpact's drops between rigid bodies, oblique ones too",
     write=_write,
-    notes=shared_notes,
+    notes=_notes,
     prepare=as_rigid,
 )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Sequence
 from dataclasses import fields
 from io import BytesIO
 from typing import Any
@@ -12,6 +12,7 @@ import numpy as np
 
 from vibroimpact._version import __version__
 from vibroimpact.contact.law import unit_of
+from vibroimpact.contact.parameters import Parameters
 from vibroimpact.exporting.drop import Drop
 from vibroimpact.exporting.drop_tables import Table, tables_of
 from vibroimpact.exporting.export_format import ExportFormat, file_name
@@ -99,7 +100,7 @@ def _signal(drop: Drop, name: str, table: Table) -> dict[str, Any]:
 
 def _facts(drop: Drop) -> tuple[dict[str, Any], dict[str, Any]]:
     """Return the data of the drop (bodies, initial state, contact law), and their units."""
-    stated: Mapping[str, tuple[Any, str]] = {
+    stated: dict[str, tuple[Any, str]] = {
         "name": (one_line(drop.name), ""),
         "radius": (drop.radius, "m"),
         "mass": (drop.mass, "kg"),
@@ -112,24 +113,37 @@ def _facts(drop: Drop) -> tuple[dict[str, Any], dict[str, Any]]:
         "elastic": (", ".join(drop.elastic), ""),
         "contact_law": (drop.laws[0].name, ""),
     }
+    if drop.oblique is not None:
+        along = {name: np.array(getattr(drop.oblique, name), dtype=float) for name in ("velocity", "spin", "gravity")}
+        stated |= {
+            "velocity_along_plate": (along["velocity"], "m/s"),
+            "spin": (along["spin"], "rad/s"),
+            "gravity_along_plate": (along["gravity"], "m/s2"),
+        }
     facts = {name: value for name, (value, _) in stated.items()}
     units: dict[str, Any] = {name: unit for name, (_, unit) in stated.items() if unit}
     for name in ("sphere", "plate"):
         material = getattr(drop, f"{name}_material")
         for key, unit in (("density", "kg/m3"), ("youngs_modulus", "Pa"), ("poissons_ratio", "1")):
             facts[f"{name}_{key}"], units[f"{name}_{key}"] = getattr(material, key), unit
-    # each parameter of the law as an array over the laws of the impacts
-    law, law_units = {}, {}
-    for item in fields(drop.laws[0]):
-        values = [getattr(one, item.name) for one in drop.laws]
-        if values[0] is not None and not item.metadata["memory"]:
-            unit = unit_of(item, getattr(drop.laws[0], "exponent", 1))
-            law[item.name], law_units[item.name] = np.asarray(values), unit
-    facts["law"], units["law"] = law, law_units
+    facts["law"], units["law"] = _parameters(drop.laws)
+    if drop.oblique is not None and drop.oblique.friction is not None:
+        facts["friction_law"] = drop.oblique.friction.name
+        facts["friction"], units["friction"] = _parameters((drop.oblique.friction,))
     if drop.function is not None:
         name, function = drop.function
         facts["function"] = {"parameter": name, "coefficients_lowest_power_first": np.array(function.coefficients)}
     return facts, units
+
+
+def _parameters(laws: Sequence[Parameters]) -> tuple[dict[str, Any], dict[str, str]]:
+    """Return each parameter of a law as an array over the laws of the impacts, and its unit."""
+    values, units = {}, {}
+    for item in fields(laws[0]):
+        found = [getattr(one, item.name) for one in laws]
+        if found[0] is not None and not item.metadata["memory"]:
+            values[item.name], units[item.name] = np.asarray(found), unit_of(item, getattr(laws[0], "exponent", 1))
+    return values, units
 
 
 FORMAT = ExportFormat(

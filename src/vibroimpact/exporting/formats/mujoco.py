@@ -5,10 +5,13 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Mapping
+from dataclasses import dataclass
 from xml.sax.saxutils import quoteattr
 
+from vibroimpact.arrays import Array
 from vibroimpact.contact.laws.adams_impact import AdamsImpact
 from vibroimpact.dynamics.restitution import achieved_restitution
+from vibroimpact.errors import InputError
 from vibroimpact.exporting.contact_parameters import (
     approach_speeds,
     clipped_dashpot,
@@ -46,12 +49,50 @@ def _linear(drop: Drop) -> AdamsImpact:
     return achieving(trial * (first_contact(achieving(trial), drop)[0] / duration) ** 2)
 
 
+@dataclass(frozen=True)
+class _Motion:
+    """How the sphere may move: its joint, coordinates and velocities at the start, gravity along the plate, and what is said of them."""
+
+    joint: str
+    place: str
+    velocity: str
+    gravity: str
+    meaning: str
+
+
+def _motion(drop: Drop) -> _Motion:
+    """Return the motion along the normal alone, or that of a free body."""
+    height, rising = float(drop.height), -float(drop.speed)
+    if drop.oblique is None:
+        joint = f'<joint name="height" type="slide" axis="0 0 1" ref="{height!r}"/>'
+        meaning = "The sphere's height above the plate is qpos[0], its velocity qvel[0]."
+        return _Motion(joint, repr(height), repr(rising), "0 0", meaning)
+    if drop.oblique.friction is not None:
+        raise InputError(
+            f"{drop.oblique.friction.name} can't be written for MuJoCo, whose friction is viscous up to its cone, and lowers the "
+            "restitution of what slides; a drop without friction can",
+            "contact.friction",
+        )
+    return _Motion(
+        '<freejoint name="motion"/>',
+        _numbers(*drop.position, height, 1.0, 0.0, 0.0, 0.0),
+        _numbers(*drop.oblique.velocity, rising, *drop.oblique.spin),
+        _numbers(*drop.oblique.gravity),
+        "The sphere's place is qpos[0:3], its velocity qvel[0:3], its angular velocity in its own axes qvel[3:6].",
+    )
+
+
+def _numbers(*values: Array) -> str:
+    return " ".join(repr(float(value)) for value in values)
+
+
 def _write(drop: Drop) -> Mapping[str, bytes]:
     linear, laws = _linear(drop), laws_of_impacts(drop)
     duration, force = first_contact(linear, drop)
     _, own_force = first_contact(laws[0], drop)
     length, width, _ = drop.plate_size or (0.0, 0.0, 0.0)  # zero means infinite extent
     x, y = (float(value) for value in drop.position)
+    motion = _motion(drop)
     inertia = 0.4 * drop.mass * drop.radius**2
     comment = f"""\
 {plain_words(drop.name)}. Units: m, kg, s, N.
@@ -59,14 +100,14 @@ The contact law is {laws[0].name}: {laws[0].equation}
 {comment_lines(_notes(drop)).replace("# ", "")}
 solref = -(stiffness / mass), -(damping / mass) of the contact: {linear.stiffness:.9g} N/m and {linear.damping_max:.9g} N s/m.
 Duration of the first contact {duration:.6g} s; largest force {force:.6g} N, where the law has {own_force:.6g} N.
-The sphere's height above the plate is qpos[0], its velocity qvel[0]."""
+{motion.meaning}"""
     comment = re.sub("-(?=-)", "- ", comment)  # two hyphens would end the XML comment
     text = f"""\
 <!--
 {comment}
 -->
 <mujoco model={quoteattr(plain_words(drop.name))}>
-  <option timestep="{duration / _STEPS!r}" gravity="0 0 {-drop.gravity!r}" integrator="Euler" cone="elliptic"/>
+  <option timestep="{duration / _STEPS!r}" gravity="{motion.gravity} {-drop.gravity!r}" integrator="Euler" cone="elliptic"/>
   <default>
     <geom condim="1" solref="{-linear.stiffness / drop.mass!r} {-linear.damping_max / drop.mass!r}"
           solimp="{_IMPEDANCE} {_IMPEDANCE} 1 0.5 1"/>
@@ -74,13 +115,13 @@ The sphere's height above the plate is qpos[0], its velocity qvel[0]."""
   <worldbody>
     <geom name="plate" type="plane" size="{0.5 * length!r} {0.5 * width!r} 1"/>
     <body name="sphere" pos="{x!r} {y!r} {drop.height!r}">
-      <joint name="height" type="slide" axis="0 0 1" ref="{drop.height!r}"/>
+      {motion.joint}
       <inertial pos="0 0 0" mass="{drop.mass!r}" diaginertia="{inertia!r} {inertia!r} {inertia!r}"/>
       <geom name="surface" type="sphere" size="{drop.radius!r}"/>
     </body>
   </worldbody>
   <keyframe>
-    <key name="start" qpos="{drop.height!r}" qvel="{-drop.speed!r}"/>
+    <key name="start" qpos="{motion.place}" qvel="{motion.velocity}"/>
   </keyframe>
 </mujoco>
 """
@@ -106,7 +147,7 @@ FORMAT = ExportFormat(
     name="mujoco",
     program="MuJoCo",
     files="a model (.xml, MJCF)",
-    tested="run with MuJoCo 3.2.7 and 3.17.0, the first impact beside vibroimpact's between rigid bodies",
+    tested="run with MuJoCo 3.2.7 and 3.17.0, the first impact beside vibroimpact's between rigid bodies; an oblique one with 3.17.0",
     write=_write,
     notes=_notes,
     prepare=as_rigid,

@@ -14,6 +14,7 @@ import numpy as np
 
 from vibroimpact._version import __version__
 from vibroimpact.arrays import Floats
+from vibroimpact.dynamics.columns import OBLIQUE_HISTORY_COLUMNS
 from vibroimpact.errors import InputError
 from vibroimpact.exporting.drop import Drop
 from vibroimpact.exporting.export_format import ExportFormat, file_name
@@ -27,11 +28,13 @@ _MOST_SAMPLES = 2_000_000
 """Largest number of samples of the history."""
 _SPHERE, _FIRST_SENSOR = 1, 2  # nodes
 _UP = 3  # direction +z
+_TURNING = 3  # what the number of a rotation about an axis is beyond that of the direction along it
 _LINE = 80
 """Characters of a line of text."""
 _MOST_NAMED = 10
 """Largest number of sensors that a note names."""
 _QUANTITIES = {"displacement": 8, "velocity": 11, "acceleration": 12}
+_ALONG_PLATE = {"position": 8, "velocity": 11, "spin": 11, "friction": 13}
 
 
 @dataclass(frozen=True)
@@ -103,6 +106,11 @@ def _of_history(drop: Drop) -> Iterator[_Function]:
     motion = motion_at(drop.history, np.arange(int(drop.history["time_s"][-1] * rate * (1.0 + 1e-12)) + 1) / rate)
     for name, (words, kind, unit) in SPHERE_FUNCTIONS.items():
         yield _Function(words, _SPHERE, _UP, kind, unit, rate, motion[name])
+    for name, column in OBLIQUE_HISTORY_COLUMNS.items():
+        if name in motion:
+            what, axis, _ = name.split("_", 2)
+            direction = "xyz".index(axis) + 1 + (_TURNING if what == "spin" else 0)
+            yield _Function(column.meaning, _SPHERE, direction, _ALONG_PLATE[what], column.unit, rate, motion[name])
 
 
 def _direction(along: tuple[float, float, float]) -> int:

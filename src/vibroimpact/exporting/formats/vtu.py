@@ -32,9 +32,9 @@ def write(drop: Drop) -> dict[str, bytes]:
     InputError
         If the drop has neither a history nor the motion of the plate's surface.
     """
-    times, height = _sphere_path(drop)
+    times, path = _sphere_path(drop)
     points, cells = _sphere(drop)
-    moved = [points + np.array([0.0, 0.0, at], dtype=np.float32) for at in height]
+    moved = [points + at for at in path.astype(np.float32)]
     files = _series("sphere", times, [_text(one, cells) for one in moved])
     if drop.surface:
         points, cells, on_plate = _surface(drop)
@@ -45,9 +45,22 @@ def write(drop: Drop) -> dict[str, bytes]:
 
 
 def _sphere_path(drop: Drop) -> tuple[Floats, Floats]:
-    """Return the times of the frames [s] and the height of the sphere's centre [m]."""
+    """Return the times of the frames [s], and how far the sphere's centre has moved along the plate, and its height [m] (frames, 3)."""
     if drop.surface:
-        return drop.surface["time"], drop.surface["sphere_position"]
+        times, height = drop.surface["time"], drop.surface["sphere_position"]
+    else:
+        times = _times(drop)
+        height = motion_at(drop.history, times)["position_m"]
+    path = np.zeros((len(times), 3))
+    path[:, 2] = height
+    if drop.oblique is not None:
+        motion = motion_at(drop.history, times)
+        path[:, :2] = np.stack([motion["position_x_m"], motion["position_y_m"]], axis=1) - drop.position
+    return times, path
+
+
+def _times(drop: Drop) -> Floats:
+    """Return equidistant times over the run, and those of what happens in the first impacts [s]."""
     if len(drop.history.get("time_s", ())) < 2:
         raise InputError(f'"{one_line(drop.name)}" has no history; there is no motion to write')
     times = np.linspace(0.0, float(drop.history["time_s"][-1]), _EVEN)
@@ -55,7 +68,7 @@ def _sphere_path(drop: Drop) -> tuple[Floats, Floats]:
         touch, duration, deepest = (drop.impacts[name][:_IMPACTS] for name in ("time_s", "duration_s", "time_of_max_indentation_s"))
         events = np.concatenate([touch, touch + duration, deepest])
         times = np.union1d(times, events[(events >= 0.0) & (events <= times[-1])])  # without NaN
-    return times, motion_at(drop.history, times)["position_m"]
+    return times
 
 
 def _series(name: str, times: Floats, texts: list[bytes]) -> dict[str, bytes]:
@@ -115,6 +128,8 @@ def _box(size: tuple[float, float, float]) -> bytes:
 
 def _notes(drop: Drop) -> list[str]:
     notes = ["The sphere is drawn round, wherever it deforms, at its true height above the plate at rest (z = 0)."]
+    if drop.oblique is not None:
+        notes.append("It moves along the plate, and does not turn; its spin is in the history.")
     if drop.surface:
         notes.append("The frames are those of the result folder, from the first touch on; plate.pvd is drawn flat: apply Warp By Vector")
         notes[-1] += " to displacement_m, which is small."

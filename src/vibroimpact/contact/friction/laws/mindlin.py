@@ -105,7 +105,7 @@ class MindlinForce(Mindlin):
 
     name = "mindlin-force"
     equation = "dQ = 2 G* a ds, at most mu F"
-    source = "Mindlin & Deresiewicz 1953, J. Appl. Mech. 20:327; LAMMPS, granular: mindlin_force"
+    source = "Mindlin & Deresiewicz 1953, J. Appl. Mech. 20:327; LAMMPS, granular: mindlin/force"
     sliding_bound = 1.0
 
     def memory(self, size: int, steps: int) -> Memory:
@@ -129,7 +129,9 @@ class Spring:
         radius, stretch = np.sqrt(depth), self.stretch[drops]
         with np.errstate(divide="ignore", invalid="ignore"):
             shrinks = self.rescales & (radius < self.radius[drops])
-            stretch = stretch * np.where(shrinks, radius / self.radius[drops], 1.0) + displacement - self.before[drops]
+            shrink = np.where(shrinks, radius / self.radius[drops], 1.0)
+            mean = 0.5 * (1.0 + shrink)  # what is added on the way shrinks too
+            stretch = stretch * shrink + mean * displacement - mean * self.before[drops]
             widens = np.where(radius > 0.0, 0.5 * rates[0] / radius, 0.0)
         most = (2.0 / 3.0) * depth
         slides = np.abs(stretch) > most
