@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from vibroimpact.arrays import Bools, Drops, Floats
-from vibroimpact.contact.friction.law import CompliantFriction, FrictionLaw, ImpulsiveFriction
+from vibroimpact.contact.friction.law import FrictionLaw, ImpulsiveFriction
 from vibroimpact.dynamics.columns import OBLIQUE_IMPACT_COLUMNS
 from vibroimpact.dynamics.oblique.normal_motion import NormalMotion
 from vibroimpact.dynamics.oblique.rolling import edge_time, slide_and_roll
@@ -54,10 +55,10 @@ class ObliqueMotion:
         `pressing`: gravity along the normal [m/s^2].
         """
         sphere, before = self.sphere.take(drops), self.state.take(drops)
-        coefficient = 0.0 if self.law is None else self.law.take(drops).coefficient
+        law = None if self.law is None else self.law.take(drops)
         if self.half is not None:
-            elapsed = edge_time(sphere, before, coefficient, pressing, elapsed, self.half)
-        after, _ = slide_and_roll(sphere, before, coefficient, pressing, elapsed)
+            elapsed = edge_time(sphere, before, law, pressing, elapsed, self.half)
+        after, _ = slide_and_roll(sphere, before, law, pressing, elapsed)
         self.lost[drops] += energy_taken(sphere, before, after)
         self._put(drops, after)
         return elapsed
@@ -96,9 +97,10 @@ class ObliqueMotion:
         sphere, before = self.sphere.take(drops), self.state.take(drops)
         law = self.law if self.law is None or len(drops) == len(self.lost) else self.law.take(drops)
         direction, slip, pull = _along(sphere, before)
-        contact = ObliqueContact(
-            sphere, before, direction, slide(law, normal, slip, sphere.tangential_mass, pull), _twist(law, normal, sphere, before.spin[2])
-        )
+        sliding, twist = slide(law, normal, slip, sphere.tangential_mass, pull), _twist(law, normal, sphere, before)
+        contact = ObliqueContact(sphere, before, direction, sliding, twist)
+        rubbed = sphere.tangential_mass * np.abs(sliding.slip[-1] - slip - pull * normal.time[-1])
+        contact = replace(contact, rolling=_rolling(law, sphere, contact.end, normal.impulse[-1], rubbed))
         self.finish(drops, contact.end, energy_taken(sphere, before, contact.end), row)
         return contact
 
@@ -110,6 +112,9 @@ class ObliqueMotion:
         if isinstance(self.law, ImpulsiveFriction):
             left = self.law.take(drops).slip_after(slip, impulse, impulse, sphere.tangential_mass)
         after = sphere.pushed(before, sphere.tangential_mass * (left - slip) * direction)
+        law, rubbed = None if self.law is None else self.law.take(drops), sphere.tangential_mass * np.abs(left - slip)
+        change = _rolling(law, sphere, after, impulse, rubbed)
+        after = after if change is None else after.changed(change)
         self.finish(drops, after, energy_taken(sphere, before, after), row)
 
     def finish(self, drops: Drops, after: State, lost: Floats, row: dict[str, Floats]) -> None:
@@ -153,15 +158,30 @@ def _along(sphere: Sphere, state: State) -> tuple[Floats, Floats, Floats]:
     return direction, speed, (sphere.gravity * direction).sum(axis=0)
 
 
-def _twist(law: FrictionLaw | None, normal: NormalMotion, sphere: Sphere, spin: Floats) -> Floats:
-    """Return the change of the spin about the normal by full twisting of the contact, which ends where the spin does [rad/s]."""
-    if not isinstance(law, CompliantFriction) or not spin.any():
-        return np.zeros_like(spin)
+def _twist(law: FrictionLaw | None, normal: NormalMotion, sphere: Sphere, before: State) -> Floats:
+    """Return the change of the spin about the normal by full twisting of the contact [rad/s]."""
+    if law is None or not before.spin[2].any():
+        return np.zeros_like(before.spin[2])
     moment = law.twisting_moment(normal.force)
-    impulse = 0.5 * ((moment[1:] + moment[:-1]) * np.diff(normal.time, axis=0)).sum(axis=0)
-    return twist_by(impulse, sphere, spin)
+    return sphere.twist(before, 0.5 * ((moment[1:] + moment[:-1]) * np.diff(normal.time, axis=0)).sum(axis=0))
 
 
-def twist_by(impulse: Floats, sphere: Sphere, spin: Floats) -> Floats:
-    """Return the change of the spin about the normal by an impulse of the moment against it [N m s], which ends where the spin does."""
-    return np.asarray(-np.sign(spin) * np.minimum(impulse / sphere.inertia, np.abs(spin)))
+def _rolling(law: FrictionLaw | None, sphere: Sphere, after: State, impulse: Floats, rubbed: Floats) -> State | None:
+    """Return what rolling resistance changes in states after contacts; None if it does not act.
+
+    Its moment acts at the end, against the spin that is left, with the whole normal impulse [N s]. What the impulse of friction so far,
+    `rubbed` [N s], has left of friction keeps the sphere rolling, but where the contact point slips with the spin so fast that this made
+    energy.
+    """
+    if law is None or not np.any(law.rolling_coefficient):
+        return None
+    share, turning = sphere.tangential_mass / sphere.mass, sphere.turning(after)
+    speed, moment = np.hypot(*turning), law.rolling_coefficient * impulse
+    along = np.divide(turning, speed, out=np.zeros_like(turning), where=speed > 0.0)
+    slips = 2.0 * (1.0 - share) * (sphere.slip(after) * along).sum(axis=0) > speed
+    held = np.where(slips, 0.0, np.minimum((1.0 - share) * moment, np.maximum(law.coefficient * impulse - rubbed, 0.0)))
+    turn = sphere.radius**2 / sphere.inertia
+    slower = (moment - held) * turn
+    part = np.divide(speed, slower, out=np.ones_like(speed), where=slower > speed)
+    still = State(np.zeros_like(turning), np.zeros_like(turning), np.zeros_like(after.spin))
+    return sphere.turned(sphere.pushed(still, part * held * along), -part * moment * turn * along)
