@@ -92,8 +92,8 @@ def test_across_an_incline_against_an_integration(mu: float, angle: float) -> No
 
 def resting(**changes: Any) -> vi.Response:
     law = vi.find_contact_law("hunt-crossley")(stiffness=1e8, restitution=0.1)
-    values: dict[str, Any] = {"height": 0.05, "gravity": GRAVITY, "impacts": None, "duration": 3.0, **changes}
-    return vi.simulate(vi.Problem(sphere=vi.Body(mass=MASS, contact_offset=RADIUS), plate=vi.rigid_plate(), laws=(law,), **values))
+    values: dict[str, Any] = {"laws": (law,), "height": 0.05, "gravity": GRAVITY, "impacts": None, "duration": 3.0, **changes}
+    return vi.simulate(vi.Problem(sphere=vi.Body(mass=MASS, contact_offset=RADIUS), plate=vi.rigid_plate(), **values))
 
 
 def test_a_run_goes_on_rolling_until_its_duration() -> None:
@@ -255,3 +255,27 @@ def test_a_contact_with_an_area_resists_twisting() -> None:
         assert state.spin[2, 0] == pytest.approx(left, abs=1e-12)
     state, _ = slide_and_roll(ball, start, vi.find_friction_law("coulomb")(coefficient=0.2), GRAVITY * one, one)
     assert state.spin[2, 0] == 3.0
+
+
+@pytest.mark.parametrize("friction", ["coulomb", "mdr"])
+@pytest.mark.parametrize(("mu", "tolerance"), [(0.02, 1e-4), (0.1, 1e-4), (0.5, 1e-3)])
+def test_gravity_across_the_slip_turns_the_friction_of_an_impact(friction: str, mu: float, tolerance: float) -> None:
+    """Against SciPy, whose friction changes over 1e-7 m/s at rest: velocity across over what gravity alone would give, 0.98 to 5/7."""
+    stiffness, gravity, speed, slip = 1.3e8, np.array([0.5, 3.0]), 1.0, 1.0
+    pair = {"effective_modulus": 1e9, "effective_shear_modulus": 8e8, "effective_radius": RADIUS}
+    law = vi.find_friction_law(friction)(coefficient=mu, **({} if friction == "coulomb" else pair))
+    oblique = vi.Oblique(velocity=(slip, 0.0), gravity=tuple(gravity), friction=law)
+    hertz = (vi.find_contact_law("hertz")(stiffness=stiffness),)
+    impacts = resting(laws=hertz, height=None, speed=speed, gravity=0.0, impacts=1, duration=None, oblique=oblique).impacts
+    duration = float(impacts["duration_s"][0])
+
+    def rates(_: float, state: Floats) -> Floats:
+        force = stiffness * max(state[0], 0.0) ** 1.5 / MASS
+        point = state[2:4] + state[4:6]
+        rubbed = -mu * force * point / np.sqrt(point @ point + 1e-14)
+        return np.concatenate([[state[1], -force], rubbed + gravity, 2.5 * rubbed])
+
+    start = [0.0, speed, slip, 0.0, 0.0, 0.0]
+    found = solve_ivp(rates, (0.0, duration), start, method="Radau", rtol=1e-9, atol=1e-13, max_step=duration / 200.0).y[:, -1]
+    across = np.array([impacts["separation_velocity_y_m_s"][0], RADIUS * impacts["spin_x_after_rad_s"][0]])
+    np.testing.assert_allclose(across / (gravity[1] * duration), found[[3, 5]] / (gravity[1] * duration), atol=tolerance)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -12,7 +11,7 @@ from vibroimpact.arrays import Bools, Drops, Floats
 from vibroimpact.contact.friction.law import FrictionLaw, ImpulsiveFriction
 from vibroimpact.dynamics.columns import OBLIQUE_IMPACT_COLUMNS
 from vibroimpact.dynamics.oblique.normal_motion import NormalMotion
-from vibroimpact.dynamics.oblique.rolling import edge_time, slide_and_roll
+from vibroimpact.dynamics.oblique.rolling import ACROSS, edge_time, slide_and_roll
 from vibroimpact.dynamics.oblique.sliding import slide
 from vibroimpact.dynamics.oblique.state import ObliqueContact, ObliqueContacts, Sphere, State, energy_taken
 from vibroimpact.dynamics.oblique.statement import Oblique
@@ -100,7 +99,8 @@ class ObliqueMotion:
         sliding, twist = slide(law, normal, slip, sphere.tangential_mass, pull), _twist(law, normal, sphere, before)
         contact = ObliqueContact(sphere, before, direction, sliding, twist)
         rubbed = sphere.tangential_mass * np.abs(sliding.slip[-1] - slip - pull * normal.time[-1])
-        contact = replace(contact, rolling=_rolling(law, sphere, contact.end, normal.impulse[-1], rubbed))
+        contact = contact.changed(_across(sphere, contact))
+        contact = contact.changed(_rolling(law, sphere, contact.end, normal.impulse[-1], rubbed))
         self.finish(drops, contact.end, energy_taken(sphere, before, contact.end), row)
         return contact
 
@@ -146,8 +146,7 @@ class ObliqueMotion:
 def _along(sphere: Sphere, state: State) -> tuple[Floats, Floats, Floats]:
     """Return the directions of slip (2, B), the slip speeds [m/s], and the accelerations of gravity along the directions [m/s^2].
 
-    Where nothing slips the direction is that of gravity. A pull across the direction acts on the centre alone: within a contact it would
-    turn the slip by its duration times gravity over the slip speed.
+    Where nothing slips the direction is that of gravity.
     """
     slip = sphere.slip(state)
     speed = np.hypot(*slip)
@@ -156,6 +155,25 @@ def _along(sphere: Sphere, state: State) -> tuple[Floats, Floats, Floats]:
     with np.errstate(invalid="ignore"):
         direction = np.where(length > 0.0, ahead / length, np.array([[1.0], [0.0]]))
     return direction, speed, (sphere.gravity * direction).sum(axis=0)
+
+
+def _across(sphere: Sphere, contact: ObliqueContact) -> State | None:
+    """Return what friction changes across the direction of slip in contacts, where gravity pulls across it; None if it does nowhere.
+
+    The slip across is small: friction Q against a slip s along the direction slows it at the rate Q / (m s), and holds it where s is over.
+    """
+    direction, sliding = contact.direction, contact.sliding
+    along = (sphere.gravity * direction).sum(axis=0)
+    across = sphere.gravity - along * direction
+    if not (np.hypot(*across) > ACROSS * np.hypot(*sphere.gravity)).any():
+        return None
+    elapsed, slip = np.diff(sliding.time, axis=0), sliding.slip
+    slowed = np.divide(slip[1:] - along * elapsed, slip[:-1], out=np.zeros_like(elapsed), where=slip[:-1] > 0.0)
+    # what is left by the end of the slip that is there at a point
+    left = np.cumprod(np.append(np.clip(slowed, 0.0, 1.0), np.ones_like(elapsed[:1]), axis=0)[::-1], axis=0)[::-1]
+    lost = (elapsed * (0.5 * (left[1:] + left[:-1]) - 1.0)).sum(axis=0) * across
+    still = np.zeros_like(direction)
+    return sphere.pushed(State(still, still, np.zeros((3, still.shape[1]))), sphere.tangential_mass * lost)
 
 
 def _twist(law: FrictionLaw | None, normal: NormalMotion, sphere: Sphere, before: State) -> Floats:

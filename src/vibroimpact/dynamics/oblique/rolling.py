@@ -28,7 +28,9 @@ from vibroimpact.arrays import Bools, Floats
 from vibroimpact.contact.friction.law import FrictionLaw
 from vibroimpact.dynamics.oblique.state import Sphere, State
 
-_ACROSS = 1e-12  # of two vectors: the part of one across the other that counts as none
+ACROSS = 1e-12
+"""Of two vectors: the part of one across the other that counts as none."""
+
 _STOPPED = 1e-9  # of the slip and the spin at the start: what has ended, where the motion turns
 
 
@@ -83,7 +85,7 @@ def slide_and_roll(sphere: Sphere, start: State, law: FrictionLaw | None, pressi
     gravity = np.broadcast_to(sphere.gravity, start.velocity.shape)
     lying = Lying(gravity, sliding * pressing / share + none, rolling * pressing * (1.0 - share) / share + none, share + none)
     slip, turning = sphere.slip(start), sphere.turning(start)
-    rounding = (lying.resistance > 0.0) & (np.hypot(*slip) <= _ACROSS * np.hypot(*turning))
+    rounding = (lying.resistance > 0.0) & (np.hypot(*slip) <= ACROSS * np.hypot(*turning))
     begin = np.where(rounding, 0.0, slip)
     found = _straight(begin, turning, lying, elapsed)
     for drop in np.flatnonzero(_turns(begin, turning, lying)):
@@ -99,7 +101,7 @@ def slide_and_roll(sphere: Sphere, start: State, law: FrictionLaw | None, pressi
 
 def _across(one: Floats, other: Floats) -> Bools:
     """Return where two vectors do not lie along one line."""
-    return np.asarray(np.abs(one[0] * other[1] - one[1] * other[0]) > _ACROSS * np.hypot(*one) * np.hypot(*other))
+    return np.asarray(np.abs(one[0] * other[1] - one[1] * other[0]) > ACROSS * np.hypot(*one) * np.hypot(*other))
 
 
 def _turns(slip: Floats, turning: Floats, lying: Lying) -> Bools:

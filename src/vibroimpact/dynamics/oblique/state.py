@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Protocol
 
 import numpy as np
@@ -135,7 +135,8 @@ class ObliqueContact:
     """The motion along the plate during contacts of B drops.
 
     `before`: state at first touch. `direction`: of the slip at first touch (2, B). `sliding`: along it. `twist`: changes of the spin about
-    the normal by the end [rad/s] (B,). `rolling`: what rolling resistance changes by the end, if it acts.
+    the normal by the end [rad/s] (B,). `change`: what friction across the direction and rolling resistance change
+    by the end, if they act.
     """
 
     sphere: Sphere
@@ -143,7 +144,7 @@ class ObliqueContact:
     direction: Floats
     sliding: Sliding
     twist: Floats
-    rolling: State | None = None
+    change: State | None = None
 
     def of(self, drop: int) -> ObliqueContact:
         """Return the motion of one drop."""
@@ -155,8 +156,14 @@ class ObliqueContact:
             self.direction[:, here],
             alone,
             self.twist[here],
-            None if self.rolling is None else self.rolling.take(here),
+            None if self.change is None else self.change.take(here),
         )
+
+    def changed(self, change: State | None) -> ObliqueContact:
+        """Return the motion with a further change by the end, if there is one."""
+        if change is None:
+            return self
+        return replace(self, change=change if self.change is None else self.change.changed(change))
 
     def after(self, time: Floats, slip: Floats, displacement: Floats, part: Floats | float = 1.0) -> State:
         """Return the state at a time since first touch, from slip and displacement along the direction; `part`: of the moments, so far."""
@@ -167,7 +174,7 @@ class ObliqueContact:
         moved = sphere.tangential_mass * (displacement - slip_before * time - 0.5 * pull * time**2) * self.direction
         pushed = sphere.pushed(sphere.fly(before, time), impulse, self.twist * part)
         found = State(pushed.position + moved / sphere.mass, pushed.velocity, pushed.spin)
-        return found if self.rolling is None else found.changed(self.rolling, part)
+        return found if self.change is None else found.changed(self.change, part)
 
     @property
     def duration(self) -> Floats:
