@@ -135,8 +135,8 @@ class ObliqueContact:
     """The motion along the plate during contacts of B drops.
 
     `before`: state at first touch. `direction`: of the slip at first touch (2, B). `sliding`: along it. `twist`: changes of the spin about
-    the normal by the end [rad/s] (B,). `change`: what friction across the direction and rolling resistance change
-    by the end, if they act.
+    the normal by the end [rad/s] (B,). `change`: of velocity and spin by the end, by friction across the direction and
+    by rolling resistance, if they act.
     """
 
     sphere: Sphere
@@ -174,7 +174,10 @@ class ObliqueContact:
         moved = sphere.tangential_mass * (displacement - slip_before * time - 0.5 * pull * time**2) * self.direction
         pushed = sphere.pushed(sphere.fly(before, time), impulse, self.twist * part)
         found = State(pushed.position + moved / sphere.mass, pushed.velocity, pushed.spin)
-        return found if self.change is None else found.changed(self.change, part)
+        if self.change is None:
+            return found
+        on_the_way = State(0.5 * time * self.change.velocity, self.change.velocity, self.change.spin)  # evenly in time
+        return found.changed(on_the_way, part)
 
     @property
     def duration(self) -> Floats:
