@@ -35,7 +35,7 @@ _STOPPED = 1e-9  # of the slip and the spin at the start: what has ended, where 
 
 
 @dataclass(frozen=True)
-class Lying:
+class _Lying:
     """What acts on B spheres that lie on the plate.
 
     `gravity`: acceleration along the plate [m/s^2] (2, B). `bound`, `resistance`: what sliding and rolling friction take at most from the
@@ -47,10 +47,10 @@ class Lying:
     resistance: Floats
     share: Floats
 
-    def of(self, drop: int) -> Lying:
+    def of(self, drop: int) -> _Lying:
         """Return what acts on one of the spheres."""
         one = slice(drop, drop + 1)
-        return Lying(self.gravity[:, one], self.bound[one], self.resistance[one], self.share[one])
+        return _Lying(self.gravity[:, one], self.bound[one], self.resistance[one], self.share[one])
 
 
 def slide_and_roll(sphere: Sphere, start: State, law: FrictionLaw | None, pressing: Floats, elapsed: Floats) -> tuple[State, Floats]:
@@ -83,7 +83,7 @@ def slide_and_roll(sphere: Sphere, start: State, law: FrictionLaw | None, pressi
     share, none = sphere.tangential_mass / sphere.mass, 0.0 * elapsed
     sliding, rolling = (0.0, 0.0) if law is None else (law.coefficient, law.rolling_coefficient)
     gravity = np.broadcast_to(sphere.gravity, start.velocity.shape)
-    lying = Lying(gravity, sliding * pressing / share + none, rolling * pressing * (1.0 - share) / share + none, share + none)
+    lying = _Lying(gravity, sliding * pressing / share + none, rolling * pressing * (1.0 - share) / share + none, share + none)
     slip, turning = sphere.slip(start), sphere.turning(start)
     rounding = (lying.resistance > 0.0) & (np.hypot(*slip) <= ACROSS * np.hypot(*turning))
     begin = np.where(rounding, 0.0, slip)
@@ -104,13 +104,13 @@ def _across(one: Floats, other: Floats) -> Bools:
     return np.asarray(np.abs(one[0] * other[1] - one[1] * other[0]) > ACROSS * np.hypot(*one) * np.hypot(*other))
 
 
-def _turns(slip: Floats, turning: Floats, lying: Lying) -> Bools:
+def _turns(slip: Floats, turning: Floats, lying: _Lying) -> Bools:
     """Return where gravity pulls across the slip, or the moment acts across one of both, so that directions turn."""
     moment = (lying.resistance > 0.0) & (_across(slip, turning) | _across(lying.gravity, turning))
     return np.asarray(_across(slip, lying.gravity) | moment)
 
 
-def _straight(slip: Floats, turning: Floats, lying: Lying, elapsed: Floats) -> Floats:
+def _straight(slip: Floats, turning: Floats, lying: _Lying, elapsed: Floats) -> Floats:
     """Return the way of the contact point and its slip, what the moment makes of both, and what friction takes from the acceleration.
 
     All is along one line, from one zero of the slip or the spin to the next. Arrays are (2, B), the result (5, 2, B).
@@ -137,7 +137,7 @@ def _straight(slip: Floats, turning: Floats, lying: Lying, elapsed: Floats) -> F
         left = left - step
 
 
-def _rates(slip: Floats, turning: Floats, pull: Floats, lying: Lying) -> tuple[Floats, Floats, Floats]:
+def _rates(slip: Floats, turning: Floats, pull: Floats, lying: _Lying) -> tuple[Floats, Floats, Floats]:
     """Return the accelerations of the slip along a line, what the moment adds to it, and what friction takes from it."""
     rubbed = lying.bound * np.sign(slip)
     friction = np.where(slip != 0.0, rubbed, np.clip(pull / lying.share, -lying.bound, lying.bound))
@@ -155,7 +155,7 @@ class _Curve:
     The rows of its state are the first four of what `_straight` returns, two where rolling is not resisted.
     """
 
-    def __init__(self, slip: Floats, turning: Floats, lying: Lying) -> None:
+    def __init__(self, slip: Floats, turning: Floats, lying: _Lying) -> None:
         self.slip, self.turning, self.gravity = slip, turning, lying.gravity[:, 0]
         self.bound, self.resistance, self.share = (float(part[0]) for part in (lying.bound, lying.resistance, lying.share))
         self.resists = self.resistance > 0.0
@@ -202,7 +202,7 @@ class _Curve:
         return float(found.t[-1]), found.y[:, -1].reshape(-1, 2), slips != bool(len(found.t_events[0]))
 
 
-def _curved(slip: Floats, turning: Floats, lying: Lying, elapsed: float) -> Floats:
+def _curved(slip: Floats, turning: Floats, lying: _Lying, elapsed: float) -> Floats:
     """Return the same of one sphere whose directions turn (5, 2), by integration from one zero of the slip or the spin to the next."""
     curve = _Curve(slip, turning, lying)
     time, rows, turn = 0.0, np.zeros((4 if curve.resists else 2, 2)), np.zeros(2)
