@@ -272,6 +272,14 @@ class TestExudyn:
         made["state"] = lambda: (1e-4, 0.0)
         assert made["forces_along_plate"](None, 0.0, 0, [0.0] * 4, [3.0, 4.0, 0.0, 0.0]) == [*weight, 0.0, 0.0]
 
+    def test_says_that_nothing_resists_rolling(self) -> None:
+        for rolling, said in ((0.0, False), (0.02, True)):
+            law = find_friction_law("coulomb")(coefficient=0.3, rolling_coefficient=rolling)
+            notes = exudyn.FORMAT.notes(told(Hertz(stiffness=STIFFNESS), oblique=Oblique(friction=law)))
+            assert (
+                "Nothing resists rolling in what EXUDYN gets: contact.friction.rolling_coefficient, 0.02, is left out." in notes
+            ) == said
+
     def test_refuses_friction_that_reverses_the_slip(self) -> None:
         with pytest.raises(InputError, match="rigid can't be written for EXUDYN; coulomb, mdr"):
             exudyn.FORMAT.write(told(TSUJI, oblique=Oblique(friction=find_friction_law("rigid")(coefficient=0.3))))

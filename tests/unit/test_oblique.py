@@ -25,6 +25,7 @@ FRICTION = {
     "coulomb": vi.find_friction_law("coulomb")(coefficient=0.3),
     "rigid": vi.find_friction_law("rigid")(coefficient=0.3, slip_restitution=0.4),
 }
+WITH_ROLLING = {**FRICTION, "rolls": vi.find_friction_law("mdr")(coefficient=0.3, rolling_coefficient=0.1, **PAIR)}
 LAWS = {
     "hertz": vi.find_contact_law("hertz")(stiffness=1.3e8),
     "hunt-crossley": vi.find_contact_law("hunt-crossley")(stiffness=1.3e8, restitution=0.7),
@@ -93,21 +94,21 @@ def test_energy_is_not_made_and_the_impulse_turns_the_sphere(law: str, friction:
     assert (impacts["spin_z_after_rad_s"] <= 50.0).all()
 
 
-@pytest.mark.parametrize("friction", ["mdr", "mindlin-rescale", "coulomb"])
+@pytest.mark.parametrize("friction", ["mdr", "mindlin-rescale", "coulomb", "rolls"])
 def test_directions_are_alike(friction: str) -> None:
     """What falls in another direction moves on alike; a mirror image is a mirror image."""
     angle = np.array([0.0, 0.7, 2.0, 4.0])
     cos, sin = np.cos(angle), np.sin(angle)
     spin = (10.0 * cos - 20.0 * sin, 10.0 * sin + 20.0 * cos, 5.0)
     found = vi.tabulate(
-        problem("hunt-crossley", oblique=vi.Oblique(velocity=(1.0 * cos, 1.0 * sin), spin=spin, friction=FRICTION[friction]))
+        problem("hunt-crossley", oblique=vi.Oblique(velocity=(1.0 * cos, 1.0 * sin), spin=spin, friction=WITH_ROLLING[friction]))
     )
     x, y = (found.impacts[f"separation_velocity_{axis}_m_s"] for axis in "xy")
     back = cos[:, None] * x + sin[:, None] * y, -sin[:, None] * x + cos[:, None] * y
     for part in back:
         np.testing.assert_allclose(part, np.broadcast_to(part[0], part.shape), atol=1e-12)
     mirrored = vi.tabulate(
-        problem("hunt-crossley", oblique=vi.Oblique(velocity=(1.0, 0.0), spin=(-10.0, 20.0, -5.0), friction=FRICTION[friction]))
+        problem("hunt-crossley", oblique=vi.Oblique(velocity=(1.0, 0.0), spin=(-10.0, 20.0, -5.0), friction=WITH_ROLLING[friction]))
     )
     np.testing.assert_allclose(mirrored.impacts["separation_velocity_x_m_s"], x[0], atol=1e-12)
     np.testing.assert_allclose(mirrored.impacts["separation_velocity_y_m_s"], -y[0], atol=1e-12)
@@ -125,10 +126,10 @@ def test_coulomb_ends_in_rolling() -> None:
 
 
 @pytest.mark.parametrize("law", ["hertz", "hunt-crossley", "adams-impact"])
-@pytest.mark.parametrize("friction", ["mdr", "mindlin", "coulomb"])
+@pytest.mark.parametrize("friction", ["mdr", "mindlin", "coulomb", "rolls"])
 def test_histories_conserve_energy_and_end_where_impacts_do(law: str, friction: str) -> None:
     oblique = vi.Oblique(
-        velocity=(1.0, 0.4), spin=(10.0, -30.0, 50.0), position=(0.1, -0.2), gravity=(2.0, 0.5), friction=FRICTION[friction]
+        velocity=(1.0, 0.4), spin=(10.0, -30.0, 50.0), position=(0.1, -0.2), gravity=(2.0, 0.5), friction=WITH_ROLLING[friction]
     )
     response = vi.simulate(problem(law, oblique=oblique, speed=None, height=0.3, velocity=0.5))
     history = response.history()
@@ -162,13 +163,15 @@ def test_a_batch_is_its_drops() -> None:
         np.testing.assert_allclose(whole.drop(drop).at(time)["position_x_m"], alone.at(time)["position_x_m"], rtol=1e-12)
 
 
-def energies_of_random_impacts(number: int, seed: int) -> tuple[Floats, Floats]:
-    """Return the energies along the plate before and after random impacts [J]."""
+def energies_of_random_impacts(number: int, seed: int, rolling: float = 0.0) -> tuple[Floats, Floats]:
+    """Return the energies along the plate before and after random impacts [J]; `rolling`: coefficient of rolling friction."""
     random = np.random.default_rng(seed)
     before, after = [], []
     for _ in range(0, number, 2000):
         pair = {"effective_modulus": 10 ** random.uniform(7, 11, 2000), "effective_shear_modulus": 10 ** random.uniform(7, 11, 2000)}
-        friction = vi.find_friction_law("mdr")(coefficient=10 ** random.uniform(-3, 1, 2000), effective_radius=RADIUS, **pair)
+        friction = vi.find_friction_law("mdr")(
+            coefficient=10 ** random.uniform(-3, 1, 2000), rolling_coefficient=rolling, effective_radius=RADIUS, **pair
+        )
         law = vi.find_contact_law("hunt-crossley")(
             stiffness=4.0 / 3.0 * pair["effective_modulus"] * 0.1, restitution=random.uniform(0.0, 1.0, 2000)
         )
@@ -190,6 +193,13 @@ def test_no_random_impact_makes_energy(number: int) -> None:
     before, after = energies_of_random_impacts(number, 5)
     assert np.isfinite(after).all()
     assert (after <= before * (1.0 + 1e-9)).all()
+
+
+@pytest.mark.parametrize("rolling", [0.01, 0.3, 10.0])
+def test_no_random_impact_makes_energy_by_rolling_resistance(rolling: float) -> None:
+    without, with_it = (energies_of_random_impacts(4000, 6, coefficient)[1] for coefficient in (0.0, rolling))
+    assert (with_it <= without * (1.0 + 1e-12)).all()
+    assert (with_it < without).mean() > 0.9
 
 
 def test_an_inclined_plate_pulls_along_x() -> None:
@@ -263,7 +273,11 @@ FAULTS: list[tuple[dict[str, Any], str]] = [
     (with_friction(coefficient=0.2), 'contact.friction: it needs law = "...", one of none, coulomb, mdr'),
     (with_friction(law="mdr"), "contact.friction.coefficient: this key is missing; mdr needs coefficient of friction mu"),
     (with_friction(law="coulomb", coefficient=-0.1), "contact.friction.coefficient: -0.1 is not allowed; it must be at least 0"),
-    (with_friction(law="coulomb", mu=0.1), 'contact.friction.mu: unknown key "mu"; coulomb takes coefficient.'),
+    (
+        with_friction(law="coulomb", coefficient=0.1, rolling_coefficient=-1),
+        "contact.friction.rolling_coefficient: -1 is not allowed; it must be at least 0",
+    ),
+    (with_friction(law="coulomb", mu=0.1), 'contact.friction.mu: unknown key "mu"; coulomb takes coefficient, rolling_coefficient.'),
     (
         {"plate": ELASTIC_PLATE, **with_friction(law="coulomb", coefficient=0.1)},
         'contact.friction.law: coulomb has no tangential compliance, which friction on bodies that deform needs; take "mdr" or',

@@ -16,6 +16,7 @@ from support import plain_case
 from vibroimpact.calibration.calibrate_case import calibrate_case, read_calibration
 from vibroimpact.cases.build import resolved_case
 from vibroimpact.cases.slips.find import slips, swept_slips
+from vibroimpact.cases.slips.hertz_estimate import HertzEstimate
 from vibroimpact.cli import app
 from vibroimpact.results.result import result_of
 from vibroimpact.studies.compute_study import compute_study
@@ -211,3 +212,23 @@ def test_results_and_calibrations_tell_it_too() -> None:
     assert result_of(vi.simulate(vi.read_case(plain_case(contact__stiffness=16176)))).doubts[0].startswith(slip)
     table = plain_case(contact={"law": "hunt-crossley", "restitution": 0.7, "stiffness": 16176}, calibrate={"target": {"restitution": 0.7}})
     assert calibrate_case(read_calibration(table)).doubts[0].startswith(slip)
+
+
+@pytest.mark.parametrize(
+    ("drop", "speed", "touch"),
+    [
+        ({"speed": 2.0}, 2.0, 0.0),
+        ({"velocity": [1.0, 0.5, -2.0]}, 2.0, 0.0),
+        ({"height": 0.525}, np.sqrt(10.0), np.sqrt(0.1)),
+        ({"height": 0.525, "velocity": [1.0, 0.0, 3.0]}, np.sqrt(19.0), 0.3 + np.sqrt(0.19)),
+    ],
+)
+def test_every_way_to_state_a_fall_has_an_estimate(drop: dict[str, Any], speed: float, touch: float) -> None:
+    case = plain_case()
+    case["drop"] = {**drop, "gravity": 10.0}
+    case["sphere"]["radius"] = 0.025
+    case["run"] = {"duration": 1.0}
+    resolved = resolved_case(vi.read_case(case))
+    estimate = HertzEstimate(resolved)
+    assert (estimate.speed, estimate.touch) == (pytest.approx(speed), pytest.approx(touch))
+    assert slips(resolved) == []

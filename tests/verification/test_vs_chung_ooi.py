@@ -1,7 +1,9 @@
-"""Against Chung and Ooi (2011), Granular Matter 13, 643-656, doi 10.1007/s10035-011-0277-0: tests 1, 2 and 5.
+"""Against Chung and Ooi (2011), Granular Matter 13, 643-656, doi 10.1007/s10035-011-0277-0: tests 1, 2, 5 and 8.
 
 Inputs from the article; values from Hertz's closed form, which its digitised curves meet to 1 %. Tolerance 1e-5,
-the digits given.
+the digits given. Inputs of test 8 and the points read from its figure are those of the benchmarks of Kratos' DEM application. Test 7, two
+equal spheres with opposite spins, whose contact point does not slip, needs a second sphere that spins; what it asks of one is in
+test_vs_lammps_granular.py (impact without slip).
 """
 
 from __future__ import annotations
@@ -135,3 +137,42 @@ def test_5_spin_of_a_sphere_that_hits_at_an_angle(law: str, mean: float, largest
     assert apart.mean() < mean
     assert apart.max() < largest
     assert (law == "mdr") == (apart.mean() < 0.015)
+
+
+FIGURE_8 = (
+    (0.1872, -0.8152),
+    (0.3583, -0.6262),
+    (0.5508, -0.4394),
+    (0.7647, -0.2378),
+    (0.9786, -0.0173),
+)
+"""7/2 mu (1 + e) over the tangent of the angle, and minus the slip after over that before, of the points of test 8 that slip throughout."""
+
+
+@pytest.mark.parametrize("law", ["mdr", "mindlin", "mindlin-rescale", "mindlin-force"])
+def test_8_a_spinning_sphere_on_a_larger_one(law: str) -> None:
+    """The larger sphere, of 1000 times the density and the modulus and five times the radius, is held: it has 125,000 times the mass."""
+    radius, speed, friction = 0.1, 0.2, 0.4
+    small = vi.Material(density=2700, youngs_modulus=7e10, poissons_ratio=0.33)
+    large = vi.Material(density=2.7e6, youngs_modulus=7e13, poissons_ratio=0.33)
+    moduli = {"effective_modulus": effective_modulus(small, large), "effective_shear_modulus": effective_shear_modulus(small, large)}
+    curved = 1.0 / (1.0 / radius + 1.0 / 0.5)
+    damped = vi.find_contact_law("gonthier")(stiffness=hertz_stiffness(moduli["effective_modulus"], curved), restitution=0.5)
+    kappa, beta = np.array(FIGURE_8).T
+    slip = 3.5 * friction * 1.5 * speed / kappa
+    problem = vi.Problem(
+        sphere=vi.rigid_sphere(radius, small),
+        plate=vi.rigid_plate(),
+        laws=(damped,),
+        speed=speed,
+        gravity=0.0,
+        impacts=1,
+        oblique=vi.Oblique(
+            spin=(0.0, -slip / radius, 0.0), friction=vi.find_friction_law(law)(coefficient=friction, effective_radius=curved, **moduli)
+        ),
+    )
+    row = {name: values[:, 0] for name, values in vi.tabulate(problem).impacts.items()}
+    found = -(row["separation_velocity_x_m_s"] - radius * row["spin_y_after_rad_s"]) / slip
+    achieved = 3.5 * friction * (1.0 + row["restitution_achieved"]) * speed / slip
+    np.testing.assert_allclose(found, achieved - 1.0, rtol=1e-6)
+    assert np.abs(found - beta).max() < 0.02

@@ -16,13 +16,17 @@ from vibroimpact.dynamics.oblique.state import Sphere, State
 RADIUS, MASS, GRAVITY = 0.02, 0.3, 9.81
 
 
-def after(time: float, velocity: Any, spin: Any = (0.0, 0.0, 0.0), mu: float = 0.1, angle: float = 0.0) -> tuple[State, Floats]:
+def after(
+    time: float, velocity: Any, spin: Any = (0.0, 0.0, 0.0), mu: float = 0.1, angle: float = 0.0, rolling: float = 0.0
+) -> tuple[State, Floats]:
     """Return the state of a sphere on a plate inclined about y, which began at the origin, and the friction force."""
     one = np.ones(1)
     along = np.array([[GRAVITY * np.sin(angle)], [0.0]])
     ball = Sphere(MASS * one, RADIUS * one, 0.4 * MASS * RADIUS**2 * one, along)
     start = State(np.zeros((2, 1)), np.array(velocity, dtype=float)[:, None], np.array(spin, dtype=float)[:, None])
-    return slide_and_roll(ball, start, mu, GRAVITY * np.cos(angle) * one, time * one)
+    return slide_and_roll(
+        ball, start, vi.find_friction_law("coulomb")(coefficient=mu, rolling_coefficient=rolling), GRAVITY * np.cos(angle) * one, time * one
+    )
 
 
 def test_sliding_ends_in_rolling_with_five_sevenths() -> None:
@@ -56,24 +60,31 @@ def test_down_an_incline(mu: float) -> None:
     assert (state.spin[1, 0] * RADIUS == pytest.approx(state.velocity[0, 0])) == rolls
 
 
-@pytest.mark.parametrize(("mu", "angle"), [(0.3, 0.2), (0.05, 0.4), (0.2, 0.05)])
-def test_across_an_incline_against_an_integration(mu: float, angle: float) -> None:
-    """Slip that gravity turns: the equations of centre and spin, integrated by SciPy with friction that changes over 1e-6 m/s at rest."""
-    start, spin, time = np.array([-0.4, 1.0]), np.array([8.0, 30.0]), 0.6
+def integrated(start: Any, spin: Any, time: float, mu: float, angle: float, rolling: float = 0.0) -> Floats:
+    """Return place, velocity and spin by SciPy's integration of centre and spin, whose friction changes over 1e-6 m/s at rest."""
 
     def rates(_: float, state: Floats) -> Floats:
         velocity, turning = state[2:4], state[4:6]
         slip = velocity + RADIUS * np.array([-turning[1], turning[0]])
-        force = -mu * MASS * GRAVITY * np.cos(angle) * slip / np.sqrt(slip @ slip + 1e-12)
+        pressing = MASS * GRAVITY * np.cos(angle)
+        force = -mu * pressing * slip / np.sqrt(slip @ slip + 1e-12)
+        moment = -rolling * RADIUS * pressing * turning / np.sqrt(turning @ turning + 1e-12 / RADIUS**2)
         return np.concatenate(
             [
                 velocity,
                 force / MASS + [GRAVITY * np.sin(angle), 0.0],
-                RADIUS / (0.4 * MASS * RADIUS**2) * np.array([force[1], -force[0]]),
+                (RADIUS * np.array([force[1], -force[0]]) + moment) / (0.4 * MASS * RADIUS**2),
             ]
         )
 
-    found = solve_ivp(rates, (0.0, time), [0.0, 0.0, *start, *spin], method="Radau", rtol=1e-10, atol=1e-12).y[:, -1]
+    return np.asarray(solve_ivp(rates, (0.0, time), [0.0, 0.0, *start, *spin], method="Radau", rtol=1e-10, atol=1e-12).y[:, -1])
+
+
+@pytest.mark.parametrize(("mu", "angle"), [(0.3, 0.2), (0.05, 0.4), (0.2, 0.05)])
+def test_across_an_incline_against_an_integration(mu: float, angle: float) -> None:
+    """Slip that gravity turns."""
+    start, spin, time = np.array([-0.4, 1.0]), np.array([8.0, 30.0]), 0.6
+    found = integrated(start, spin, time, mu, angle)
     state, _ = after(time, start, (*spin, 0.0), mu=mu, angle=angle)
     np.testing.assert_allclose([*state.position[:, 0], *state.velocity[:, 0]], found[:4], atol=2e-6)
     np.testing.assert_allclose(state.spin[:2, 0], found[4:], atol=2e-4)
@@ -81,8 +92,8 @@ def test_across_an_incline_against_an_integration(mu: float, angle: float) -> No
 
 def resting(**changes: Any) -> vi.Response:
     law = vi.find_contact_law("hunt-crossley")(stiffness=1e8, restitution=0.1)
-    values: dict[str, Any] = {"height": 0.05, "gravity": GRAVITY, "impacts": None, "duration": 3.0, **changes}
-    return vi.simulate(vi.Problem(sphere=vi.Body(mass=MASS, contact_offset=RADIUS), plate=vi.rigid_plate(), laws=(law,), **values))
+    values: dict[str, Any] = {"laws": (law,), "height": 0.05, "gravity": GRAVITY, "impacts": None, "duration": 3.0, **changes}
+    return vi.simulate(vi.Problem(sphere=vi.Body(mass=MASS, contact_offset=RADIUS), plate=vi.rigid_plate(), **values))
 
 
 def test_a_run_goes_on_rolling_until_its_duration() -> None:
@@ -105,3 +116,166 @@ def test_a_sphere_rolls_off_the_edge() -> None:
     response = resting(oblique=vi.Oblique(velocity=(0.7, 0.0), friction=friction, size=(2.0, 1.0)))
     assert response.end_time[0] < 3.0
     assert response.at([float(response.end_time[0])])["position_x_m"][0] == pytest.approx(1.0, rel=1e-12)
+
+
+def test_rolling_resistance_brings_the_sphere_to_rest() -> None:
+    """With 5/7 mu_r g, after 7 v / (5 mu_r g) and 7 v^2 / (10 mu_r g); then it stays."""
+    rolls = {"velocity": (0.7, 0.0), "spin": (0.0, 0.7 / RADIUS, 0.0), "rolling": 0.02}
+    until = 7.0 * 0.7 / (5.0 * 0.02 * GRAVITY)
+    half, force = after(0.5 * until, **rolls)
+    assert half.velocity[0, 0] == pytest.approx(0.35, rel=1e-12)
+    assert half.spin[1, 0] == pytest.approx(0.35 / RADIUS, rel=1e-12)
+    assert force[0, 0] == pytest.approx(-5.0 / 7.0 * 0.02 * MASS * GRAVITY, rel=1e-12)
+    for time in (until * (1.0 + 1e-15), until + 5.0):
+        state, force = after(time, **rolls)
+        assert state.position[0, 0] == pytest.approx(7.0 * 0.7**2 / (10.0 * 0.02 * GRAVITY), rel=1e-12)
+        np.testing.assert_allclose([*state.velocity[:, 0], *(RADIUS * state.spin[:, 0])], 0.0, atol=1e-15)
+        assert force[0, 0] == 0.0
+
+
+@pytest.mark.parametrize(("angle", "moves"), [(0.0299, False), (0.0301, True), (0.3, True)])
+def test_rolling_resistance_holds_the_sphere_on_a_slope(angle: float, moves: bool) -> None:
+    """It lies still up to the angle whose tangent is mu_r, and rolls with 5/7 g (sin - mu_r cos) above."""
+    state, force = after(2.0, (0.0, 0.0), mu=0.5, angle=angle, rolling=np.tan(0.03))
+    down = 5.0 / 7.0 * GRAVITY * (np.sin(angle) - np.tan(0.03) * np.cos(angle)) if moves else 0.0
+    assert state.velocity[0, 0] == pytest.approx(2.0 * down, rel=1e-12, abs=1e-15)
+    assert state.spin[1, 0] == pytest.approx(2.0 * down / RADIUS, rel=1e-12, abs=1e-13)
+    assert force[0, 0] == pytest.approx(-MASS * (GRAVITY * np.sin(angle) - down), rel=1e-12)
+
+
+@pytest.mark.parametrize("rolling", [0.05, 0.4])
+def test_a_sphere_that_rolls_up_a_slope(rolling: float) -> None:
+    """It comes to rest at the top of its way, and stays there or rolls back."""
+    angle, speed, later = 0.2, 1.4, 0.3
+    up, down = (5.0 / 7.0 * GRAVITY * (np.sin(angle) + sign * rolling * np.cos(angle)) for sign in (1.0, -1.0))
+    state, _ = after(speed / up + later, (-speed, 0.0), (0.0, -speed / RADIUS, 0.0), mu=0.6, angle=angle, rolling=rolling)
+    assert state.velocity[0, 0] == pytest.approx(max(down, 0.0) * later, rel=1e-12, abs=1e-15)
+    assert state.position[0, 0] == pytest.approx(-0.5 * speed**2 / up + 0.5 * max(down, 0.0) * later**2, rel=1e-12)
+
+
+def test_sliding_with_rolling_resistance_ends_in_rolling() -> None:
+    """The moment takes 5/2 mu_r g from the spin that friction gives: it rolls after v / (7/2 mu - 5/2 mu_r) g."""
+    mu, rolling, speed = 0.2, 0.03, 1.4
+    until = speed / ((3.5 * mu - 2.5 * rolling) * GRAVITY)
+    half, _ = after(0.5 * until, (speed, 0.0), mu=mu, rolling=rolling)
+    assert RADIUS * half.spin[1, 0] == pytest.approx(2.5 * (mu - rolling) * GRAVITY * 0.5 * until, rel=1e-12)
+    state, _ = after(until, (speed, 0.0), mu=mu, rolling=rolling)
+    assert state.velocity[0, 0] == pytest.approx(speed - mu * GRAVITY * until, rel=1e-12)
+    assert RADIUS * state.spin[1, 0] == pytest.approx(state.velocity[0, 0], rel=1e-12)
+
+
+def test_a_moment_beyond_the_friction_leaves_the_sphere_without_spin() -> None:
+    """With mu_r above mu friction cannot turn it: it slides to rest with mu g."""
+    state, _ = after(0.3, (1.4, 0.0), mu=0.2, rolling=0.21)
+    assert state.velocity[0, 0] == pytest.approx(1.4 - 0.2 * GRAVITY * 0.3, rel=1e-12)
+    assert abs(RADIUS * state.spin[1, 0]) < 1e-15
+    rests, _ = after(3.0, (1.4, 0.0), mu=0.2, rolling=0.21)
+    assert rests.position[0, 0] == pytest.approx(1.4**2 / (2.0 * 0.2 * GRAVITY), rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("mu", "rolling", "angle", "velocity", "spin"),
+    [
+        (0.3, 0.05, 0.0, (0.5, 0.2), (20.0, -30.0)),
+        (0.3, 0.05, 0.2, (-0.4, 1.0), (8.0, 30.0)),
+        (0.3, 0.25, 0.2, (0.0, 0.6), (-30.0, 0.0)),
+        (0.05, 0.3, 0.1, (-0.4, 0.5), (0.0, 0.0)),
+        (0.1, 0.02, 0.5, (0.0, 1.0), (-50.0, 0.0)),
+        (0.2, 0.1, 0.0, (0.0, 0.0), (40.0, 10.0)),
+        (0.1, 0.12, 0.06, (-0.5, 0.3), (60.0, -40.0)),
+        (0.2, 0.1, 0.4, (-1.0, 0.0), (0.0, -80.0)),
+        (0.0, 0.1, 0.1, (0.0, 0.5), (0.0, 40.0)),
+    ],
+)
+def test_rolling_resistance_against_an_integration(mu: float, rolling: float, angle: float, velocity: Any, spin: Any) -> None:
+    """Slip, spin and gravity in all directions, through their zeros."""
+    for time in (0.1, 0.7):
+        found = integrated(velocity, spin, time, mu, angle, rolling)
+        state, _ = after(time, velocity, (*spin, 0.0), mu=mu, angle=angle, rolling=rolling)
+        np.testing.assert_allclose([*state.position[:, 0], *state.velocity[:, 0]], found[:4], atol=5e-6)
+        np.testing.assert_allclose(RADIUS * state.spin[:2, 0], found[4:] * RADIUS, atol=5e-6)
+
+
+def test_a_run_comes_to_rest_by_rolling_resistance() -> None:
+    friction = vi.find_friction_law("coulomb")(coefficient=0.2, rolling_coefficient=0.05)
+    response = resting(oblique=vi.Oblique(velocity=(0.7, 0.0), friction=friction))
+    assert response.energy["closure_relative"] < 1e-12
+    assert response.energy["kinetic_J"] == pytest.approx(0.0, abs=1e-15)
+    history = response.history()
+    entries = ("kinetic_J", "potential_J", "contact_elastic_J", "contact_dissipated_J", "rotation_J", "friction_J", "written_off_at_rest_J")
+    np.testing.assert_allclose(sum(history[name] for name in entries), response.energy["input_J"], rtol=1e-9)
+    assert (np.diff(history["friction_J"]) > -1e-12).all()
+    assert "It moves on" not in response.status
+    lies = response.rest.time[0]
+    rolls = history["time_s"] > lies
+    speed = float(response.at([lies])["velocity_x_m_s"][0])
+    slowed = np.maximum(speed - 5.0 / 7.0 * 0.05 * GRAVITY * (history["time_s"] - lies), 0.0)
+    np.testing.assert_allclose(history["velocity_x_m_s"][rolls], slowed[rolls], atol=1e-9)
+
+
+def test_rolling_resistance_decides_whether_it_reaches_the_edge() -> None:
+    for rolling, falls in ((0.01, True), (0.05, False)):
+        friction = vi.find_friction_law("coulomb")(coefficient=0.2, rolling_coefficient=rolling)
+        response = resting(duration=10.0, oblique=vi.Oblique(velocity=(0.7, 0.0), friction=friction, size=(1.5, 1.0)))
+        assert (response.end_time[0] < 10.0) == falls
+        place = response.at([float(response.end_time[0])])["position_x_m"][0]
+        assert (place == pytest.approx(0.75, rel=1e-12)) if falls else (place < 0.75)
+
+
+@pytest.mark.parametrize("friction", ["coulomb", "rigid", "mdr", "mindlin"])
+def test_an_impact_resists_rolling(friction: str) -> None:
+    """Changes over the impulse J per mass: 5/7 mu_r of all that rolls; mu of what slips, and 5/2 (mu -+ mu_r) of its spin."""
+    pair = {"effective_modulus": 1e9, "effective_shear_modulus": 8e8, "effective_radius": RADIUS}
+    mu, rolling = 0.3, 0.04
+    law = vi.find_friction_law(friction)(coefficient=mu, rolling_coefficient=rolling, **({} if friction in ("coulomb", "rigid") else pair))
+    slower = -5.0 / 7.0 * rolling
+    for speed, spin, push, turn in (
+        (1.0, 1.0, slower, slower),
+        (30.0, 0.0, -mu, 2.5 * (mu - rolling)),
+        (0.0, -30.0, -mu, 2.5 * (mu + rolling)),
+    ):
+        oblique = vi.Oblique(velocity=(speed, 0.0), spin=(0.0, spin / RADIUS, 0.0), friction=law)
+        impacts = resting(height=None, speed=2.0, gravity=0.0, impacts=1, duration=None, oblique=oblique).impacts
+        impulse = 2.0 + impacts["separation_speed_m_s"][0]
+        assert impacts["separation_velocity_x_m_s"][0] == pytest.approx(speed + push * impulse, rel=1e-8)
+        assert RADIUS * impacts["spin_y_after_rad_s"][0] == pytest.approx(spin + turn * impulse, rel=1e-8)
+
+
+def test_a_contact_with_an_area_resists_twisting() -> None:
+    """The spin about the normal of a sphere that lies falls by 5/2 M / (m R^2), M = 3 pi/16 mu m g a; a point leaves it as it is."""
+    pair = {"effective_modulus": 1e9, "effective_shear_modulus": 8e8, "effective_radius": RADIUS}
+    one, spin = np.ones(1), np.array([0.0, 0.0, 3.0])[:, None]
+    ball = Sphere(MASS * one, RADIUS * one, 0.4 * MASS * RADIUS**2 * one, np.zeros((2, 1)))
+    start, weight = State(np.zeros((2, 1)), np.zeros((2, 1)), spin), MASS * GRAVITY
+    moment = 3.0 * np.pi / 16.0 * 0.2 * weight * (3.0 * weight * RADIUS / (4.0 * 1e9)) ** (1.0 / 3.0)
+    law = vi.find_friction_law("mdr")(coefficient=0.2, **pair)
+    until = 3.0 * 0.4 * MASS * RADIUS**2 / moment
+    for time, left in ((0.25 * until, 2.25), (until, 0.0), (3.0 * until, 0.0)):
+        state, _ = slide_and_roll(ball, start, law, GRAVITY * one, time * one)
+        assert state.spin[2, 0] == pytest.approx(left, abs=1e-12)
+    state, _ = slide_and_roll(ball, start, vi.find_friction_law("coulomb")(coefficient=0.2), GRAVITY * one, one)
+    assert state.spin[2, 0] == 3.0
+
+
+@pytest.mark.parametrize("friction", ["coulomb", "mdr"])
+@pytest.mark.parametrize(("mu", "tolerance"), [(0.02, 1e-4), (0.1, 1e-4), (0.5, 1e-3)])
+def test_gravity_across_the_slip_turns_the_friction_of_an_impact(friction: str, mu: float, tolerance: float) -> None:
+    """Against SciPy, whose friction changes over 1e-7 m/s at rest: velocity across over what gravity alone would give, 0.98 to 5/7."""
+    stiffness, gravity, speed, slip = 1.3e8, np.array([0.5, 3.0]), 1.0, 1.0
+    pair = {"effective_modulus": 1e9, "effective_shear_modulus": 8e8, "effective_radius": RADIUS}
+    law = vi.find_friction_law(friction)(coefficient=mu, **({} if friction == "coulomb" else pair))
+    oblique = vi.Oblique(velocity=(slip, 0.0), gravity=tuple(gravity), friction=law)
+    hertz = (vi.find_contact_law("hertz")(stiffness=stiffness),)
+    impacts = resting(laws=hertz, height=None, speed=speed, gravity=0.0, impacts=1, duration=None, oblique=oblique).impacts
+    duration = float(impacts["duration_s"][0])
+
+    def rates(_: float, state: Floats) -> Floats:
+        force = stiffness * max(state[0], 0.0) ** 1.5 / MASS
+        point = state[2:4] + state[4:6]
+        rubbed = -mu * force * point / np.sqrt(point @ point + 1e-14)
+        return np.concatenate([[state[1], -force], rubbed + gravity, 2.5 * rubbed])
+
+    start = [0.0, speed, slip, 0.0, 0.0, 0.0]
+    found = solve_ivp(rates, (0.0, duration), start, method="Radau", rtol=1e-9, atol=1e-13, max_step=duration / 200.0).y[:, -1]
+    across = np.array([impacts["separation_velocity_y_m_s"][0], RADIUS * impacts["spin_x_after_rad_s"][0]])
+    np.testing.assert_allclose(across / (gravity[1] * duration), found[[3, 5]] / (gravity[1] * duration), atol=tolerance)

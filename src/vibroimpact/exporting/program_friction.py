@@ -96,6 +96,9 @@ def friction_notes(drop: Drop, program: str, written: FrictionLaw | None) -> lis
             f"{program} takes the radius of the contact from the overlap; here it follows from the normal force with its damping. "
             "Where the contact sticks, velocities differ by up to a sixth of the slip at a restitution of 0.7."
         )
+    if law.rolling_coefficient:
+        given = f"contact.friction.rolling_coefficient, {law.rolling_coefficient:g},"
+        notes.append(f"Nothing resists rolling in what {program} gets: {given} is left out.")
     if isinstance(law, CompliantFriction) and drop.oblique.spin[2]:
         notes.append(f"{program} leaves the spin about the normal as it is.")
     return notes

@@ -59,18 +59,27 @@ class HertzEstimate:
         """Mass of the sphere [kg]."""
         return float(self._conditions.mass)
 
+    @property
+    def _upward(self) -> float:
+        """Velocity along the normal at the start [m/s], upwards; zero if it falls from rest."""
+        velocity = self.case["drop"].get("velocity")
+        return 0.0 if velocity is None else float(velocity[2])
+
     @cached_property
     def speed(self) -> float:
         """Approach speed of the first impact [m/s]."""
         drop = self.case["drop"]
         if drop.get("speed") is not None:
             return float(drop["speed"])
-        return float(np.sqrt(2.0 * drop["gravity"] * max(drop["height"] - self.radius, 0.0)))
+        if drop.get("height") is None:
+            return -self._upward
+        return float(np.sqrt(self._upward**2 + 2.0 * drop["gravity"] * max(drop["height"] - self.radius, 0.0)))
 
     @property
     def touch(self) -> float:
         """Time of the first touch [s]."""
-        return 0.0 if self.case["drop"].get("speed") is not None else self.speed / self.case["drop"]["gravity"]
+        drop = self.case["drop"]
+        return 0.0 if drop.get("height") is None else (self._upward + self.speed) / drop["gravity"]
 
     @cached_property
     def stiffness(self) -> float:

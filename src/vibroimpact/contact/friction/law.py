@@ -27,6 +27,16 @@ class FrictionLaw(Parameters):
     """Base of all friction laws."""
 
     coefficient: Array = parameter("coefficient of friction mu", detail=r"Coefficient of friction :math:`\mu`.", example=0.3, at_least=0)
+    rolling_coefficient: Array = parameter(
+        "coefficient of rolling friction mu_r",
+        detail=r"Coefficient of rolling friction :math:`\mu_r`: its moment is :math:`\mu_r R F`, with the radius of the sphere.",
+        default=0.0,
+        at_least=0,
+    )
+
+    def twisting_moment(self, force: Floats) -> Floats:
+        """Return the moment of full twisting under a normal force [N m]; none where the contact is a point."""
+        return np.zeros_like(force)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -80,10 +80,9 @@ def _lying(problem: Problem, leg: Leg, moving: Moving, elapsed: Floats) -> Movin
     assert leg.oblique is not None
     assert problem.oblique is not None
     (sphere, _), (start, _, taken) = leg.oblique, moving
-    law, ones = problem.oblique.friction, np.ones(len(elapsed))
+    ones = np.ones(len(elapsed))
     many = Sphere(sphere.mass * ones, sphere.radius * ones, sphere.inertia * ones, sphere.gravity * ones)
-    coefficient = 0.0 if law is None else law.coefficient
-    state, friction = slide_and_roll(many, start, coefficient, float(problem.gravity) * ones, elapsed)
+    state, friction = slide_and_roll(many, start, problem.oblique.friction, float(problem.gravity) * ones, elapsed)
     return state, friction, taken + energy_taken(many, start, state)
 
 

@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 
 from vibroimpact.arrays import Bools, Drops, Floats
-from vibroimpact.contact.friction.law import CompliantFriction, FrictionLaw, ImpulsiveFriction
+from vibroimpact.contact.friction.law import FrictionLaw, ImpulsiveFriction
 from vibroimpact.dynamics.columns import OBLIQUE_IMPACT_COLUMNS
 from vibroimpact.dynamics.oblique.normal_motion import NormalMotion
-from vibroimpact.dynamics.oblique.rolling import edge_time, slide_and_roll
+from vibroimpact.dynamics.oblique.rolling import ACROSS, edge_time, slide_and_roll
 from vibroimpact.dynamics.oblique.sliding import slide
 from vibroimpact.dynamics.oblique.state import ObliqueContact, ObliqueContacts, Sphere, State, energy_taken
 from vibroimpact.dynamics.oblique.statement import Oblique
@@ -54,10 +54,10 @@ class ObliqueMotion:
         `pressing`: gravity along the normal [m/s^2].
         """
         sphere, before = self.sphere.take(drops), self.state.take(drops)
-        coefficient = 0.0 if self.law is None else self.law.take(drops).coefficient
+        law = None if self.law is None else self.law.take(drops)
         if self.half is not None:
-            elapsed = edge_time(sphere, before, coefficient, pressing, elapsed, self.half)
-        after, _ = slide_and_roll(sphere, before, coefficient, pressing, elapsed)
+            elapsed = edge_time(sphere, before, law, pressing, elapsed, self.half)
+        after, _ = slide_and_roll(sphere, before, law, pressing, elapsed)
         self.lost[drops] += energy_taken(sphere, before, after)
         self._put(drops, after)
         return elapsed
@@ -96,9 +96,11 @@ class ObliqueMotion:
         sphere, before = self.sphere.take(drops), self.state.take(drops)
         law = self.law if self.law is None or len(drops) == len(self.lost) else self.law.take(drops)
         direction, slip, pull = _along(sphere, before)
-        contact = ObliqueContact(
-            sphere, before, direction, slide(law, normal, slip, sphere.tangential_mass, pull), _twist(law, normal, sphere, before.spin[2])
-        )
+        sliding, twist = slide(law, normal, slip, sphere.tangential_mass, pull), _twist(law, normal, sphere, before)
+        contact = ObliqueContact(sphere, before, direction, sliding, twist)
+        rubbed = sphere.tangential_mass * np.abs(sliding.slip[-1] - slip - pull * normal.time[-1])
+        contact = contact.changed(_across(sphere, contact))
+        contact = contact.changed(_rolling(law, sphere, contact.end, normal.impulse[-1], rubbed))
         self.finish(drops, contact.end, energy_taken(sphere, before, contact.end), row)
         return contact
 
@@ -110,6 +112,9 @@ class ObliqueMotion:
         if isinstance(self.law, ImpulsiveFriction):
             left = self.law.take(drops).slip_after(slip, impulse, impulse, sphere.tangential_mass)
         after = sphere.pushed(before, sphere.tangential_mass * (left - slip) * direction)
+        law, rubbed = None if self.law is None else self.law.take(drops), sphere.tangential_mass * np.abs(left - slip)
+        change = _rolling(law, sphere, after, impulse, rubbed)
+        after = after if change is None else after.changed(change)
         self.finish(drops, after, energy_taken(sphere, before, after), row)
 
     def finish(self, drops: Drops, after: State, lost: Floats, row: dict[str, Floats]) -> None:
@@ -141,8 +146,7 @@ class ObliqueMotion:
 def _along(sphere: Sphere, state: State) -> tuple[Floats, Floats, Floats]:
     """Return the directions of slip (2, B), the slip speeds [m/s], and the accelerations of gravity along the directions [m/s^2].
 
-    Where nothing slips the direction is that of gravity. A pull across the direction acts on the centre alone: within a contact it would
-    turn the slip by its duration times gravity over the slip speed.
+    Where nothing slips the direction is that of gravity.
     """
     slip = sphere.slip(state)
     speed = np.hypot(*slip)
@@ -153,15 +157,49 @@ def _along(sphere: Sphere, state: State) -> tuple[Floats, Floats, Floats]:
     return direction, speed, (sphere.gravity * direction).sum(axis=0)
 
 
-def _twist(law: FrictionLaw | None, normal: NormalMotion, sphere: Sphere, spin: Floats) -> Floats:
-    """Return the change of the spin about the normal by full twisting of the contact, which ends where the spin does [rad/s]."""
-    if not isinstance(law, CompliantFriction) or not spin.any():
-        return np.zeros_like(spin)
+def _across(sphere: Sphere, contact: ObliqueContact) -> State | None:
+    """Return what friction changes across the direction of slip in contacts, where gravity pulls across it; None if it does nowhere.
+
+    The slip across is small: friction Q against a slip s along the direction slows it at the rate Q / (m s), and holds it where s is over.
+    """
+    direction, sliding = contact.direction, contact.sliding
+    along = (sphere.gravity * direction).sum(axis=0)
+    across = sphere.gravity - along * direction
+    if not (np.hypot(*across) > ACROSS * np.hypot(*sphere.gravity)).any():
+        return None
+    elapsed, slip = np.diff(sliding.time, axis=0), sliding.slip
+    slowed = np.divide(slip[1:] - along * elapsed, slip[:-1], out=np.zeros_like(elapsed), where=slip[:-1] > 0.0)
+    # what is left by the end of the slip that is there at a point
+    left = np.cumprod(np.append(np.clip(slowed, 0.0, 1.0), np.ones_like(elapsed[:1]), axis=0)[::-1], axis=0)[::-1]
+    lost = (elapsed * (0.5 * (left[1:] + left[:-1]) - 1.0)).sum(axis=0) * across
+    still = np.zeros_like(direction)
+    return sphere.pushed(State(still, still, np.zeros((3, still.shape[1]))), sphere.tangential_mass * lost)
+
+
+def _twist(law: FrictionLaw | None, normal: NormalMotion, sphere: Sphere, before: State) -> Floats:
+    """Return the change of the spin about the normal by full twisting of the contact [rad/s]."""
+    if law is None or not before.spin[2].any():
+        return np.zeros_like(before.spin[2])
     moment = law.twisting_moment(normal.force)
-    impulse = 0.5 * ((moment[1:] + moment[:-1]) * np.diff(normal.time, axis=0)).sum(axis=0)
-    return twist_by(impulse, sphere, spin)
+    return sphere.twist(before, 0.5 * ((moment[1:] + moment[:-1]) * np.diff(normal.time, axis=0)).sum(axis=0))
 
 
-def twist_by(impulse: Floats, sphere: Sphere, spin: Floats) -> Floats:
-    """Return the change of the spin about the normal by an impulse of the moment against it [N m s], which ends where the spin does."""
-    return np.asarray(-np.sign(spin) * np.minimum(impulse / sphere.inertia, np.abs(spin)))
+def _rolling(law: FrictionLaw | None, sphere: Sphere, after: State, impulse: Floats, rubbed: Floats) -> State | None:
+    """Return what rolling resistance changes in states after contacts; None if it does not act.
+
+    Its moment acts at the end, against the spin that is left, with the whole normal impulse [N s]. What the impulse of friction so far,
+    `rubbed` [N s], has left of friction keeps the sphere rolling, but where the contact point slips with the spin so fast that this made
+    energy.
+    """
+    if law is None or not np.any(law.rolling_coefficient):
+        return None
+    share, turning = sphere.tangential_mass / sphere.mass, sphere.turning(after)
+    speed, moment = np.hypot(*turning), law.rolling_coefficient * impulse
+    along = np.divide(turning, speed, out=np.zeros_like(turning), where=speed > 0.0)
+    slips = 2.0 * (1.0 - share) * (sphere.slip(after) * along).sum(axis=0) > speed
+    held = np.where(slips, 0.0, np.minimum((1.0 - share) * moment, np.maximum(law.coefficient * impulse - rubbed, 0.0)))
+    turn = sphere.radius**2 / sphere.inertia
+    slower = (moment - held) * turn
+    part = np.divide(speed, slower, out=np.ones_like(speed), where=slower > speed)
+    still = State(np.zeros_like(turning), np.zeros_like(turning), np.zeros_like(after.spin))
+    return sphere.turned(sphere.pushed(still, part * held * along), -part * moment * turn * along)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Protocol
 
 import numpy as np
@@ -36,6 +36,10 @@ class State:
         """Return the state of some drops."""
         return State(self.position[:, drops], self.velocity[:, drops], self.spin[:, drops])
 
+    def changed(self, change: State, part: Floats | float = 1.0) -> State:
+        """Return the state with a part of a change."""
+        return State(*(getattr(self, name) + part * getattr(change, name) for name in ("position", "velocity", "spin")))
+
 
 @dataclass(frozen=True)
 class Sphere:
@@ -55,9 +59,13 @@ class Sphere:
         """Effective mass of the motion of the contact point [kg]: 2/7 of that of a solid sphere."""
         return np.asarray(1.0 / (1.0 / self.mass + self.radius**2 / self.inertia))
 
+    def turning(self, state: State) -> Floats:
+        """Return the part of the spin in the velocity of the contact point along the plate [m/s] (2, B)."""
+        return np.asarray(self.radius * np.stack([-state.spin[1], state.spin[0]]))
+
     def slip(self, state: State) -> Floats:
         """Return the velocity of the contact point along the plate [m/s] (2, B)."""
-        return np.asarray(state.velocity + self.radius * np.stack([-state.spin[1], state.spin[0]]))
+        return np.asarray(state.velocity + self.turning(state))
 
     def kinetic(self, state: State) -> tuple[Floats, Floats]:
         """Return the kinetic energies of the motion along the plate and of the rotation [J]."""
@@ -76,6 +84,16 @@ class Sphere:
         turn = self.radius / self.inertia
         spin = state.spin + np.stack([turn * impulse[1], -turn * impulse[0], twist + 0.0 * impulse[0]])
         return State(state.position, state.velocity + impulse / self.mass, spin)
+
+    def twist(self, state: State, impulse: Floats) -> Floats:
+        """Return the change of the spin about the normal by an impulse of twisting friction [N m s], which ends with the spin [rad/s]."""
+        spin = state.spin[2]
+        return np.asarray(-np.sign(spin) * np.minimum(impulse / self.inertia, np.abs(spin)))
+
+    def turned(self, state: State, change: Floats, twist: Floats | float = 0.0) -> State:
+        """Return the state after changes of the part of the spin in the slip [m/s] (2, B) and of the spin about the normal [rad/s]."""
+        spin = state.spin + np.stack([change[1] / self.radius, -change[0] / self.radius, twist + 0.0 * change[0]])
+        return State(state.position, state.velocity, spin)
 
 
 def energy_taken(sphere: Sphere, before: State, after: State) -> Floats:
@@ -117,7 +135,8 @@ class ObliqueContact:
     """The motion along the plate during contacts of B drops.
 
     `before`: state at first touch. `direction`: of the slip at first touch (2, B). `sliding`: along it. `twist`: changes of the spin about
-    the normal by the end [rad/s] (B,).
+    the normal by the end [rad/s] (B,). `change`: of velocity and spin by the end, by friction across the direction and
+    by rolling resistance, if they act.
     """
 
     sphere: Sphere
@@ -125,22 +144,40 @@ class ObliqueContact:
     direction: Floats
     sliding: Sliding
     twist: Floats
+    change: State | None = None
 
     def of(self, drop: int) -> ObliqueContact:
         """Return the motion of one drop."""
         here, sliding = np.array([drop]), self.sliding
         alone = Sliding(*(values[:, here] for values in (sliding.time, sliding.slip, sliding.displacement, sliding.force)))
-        return ObliqueContact(self.sphere.take(here), self.before.take(here), self.direction[:, here], alone, self.twist[here])
+        return ObliqueContact(
+            self.sphere.take(here),
+            self.before.take(here),
+            self.direction[:, here],
+            alone,
+            self.twist[here],
+            None if self.change is None else self.change.take(here),
+        )
 
-    def after(self, time: Floats, slip: Floats, displacement: Floats, twist: Floats) -> State:
-        """Return the state at a time since first touch, from slip and displacement along the direction and the twist so far."""
+    def changed(self, change: State | None) -> ObliqueContact:
+        """Return the motion with a further change by the end, if there is one."""
+        if change is None:
+            return self
+        return replace(self, change=change if self.change is None else self.change.changed(change))
+
+    def after(self, time: Floats, slip: Floats, displacement: Floats, part: Floats | float = 1.0) -> State:
+        """Return the state at a time since first touch, from slip and displacement along the direction; `part`: of the moments, so far."""
         sphere, before = self.sphere, self.before
         slip_before = (sphere.slip(before) * self.direction).sum(axis=0)
         pull = (sphere.gravity * self.direction).sum(axis=0)
         impulse = sphere.tangential_mass * (slip - slip_before - pull * time) * self.direction
         moved = sphere.tangential_mass * (displacement - slip_before * time - 0.5 * pull * time**2) * self.direction
-        pushed = sphere.pushed(sphere.fly(before, time), impulse, twist)
-        return State(pushed.position + moved / sphere.mass, pushed.velocity, pushed.spin)
+        pushed = sphere.pushed(sphere.fly(before, time), impulse, self.twist * part)
+        found = State(pushed.position + moved / sphere.mass, pushed.velocity, pushed.spin)
+        if self.change is None:
+            return found
+        on_the_way = State(0.5 * time * self.change.velocity, self.change.velocity, self.change.spin)  # evenly in time
+        return found.changed(on_the_way, part)
 
     @property
     def duration(self) -> Floats:
@@ -150,7 +187,7 @@ class ObliqueContact:
     @property
     def end(self) -> State:
         """The state at the end of the contact."""
-        return self.after(self.sliding.time[-1], self.sliding.slip[-1], self.sliding.displacement[-1], self.twist)
+        return self.after(self.sliding.time[-1], self.sliding.slip[-1], self.sliding.displacement[-1])
 
     def at(self, time: Floats) -> tuple[State, Floats, Floats]:
         """Return states of one drop, friction on it [N] (2, T) and energy taken [J] (T,), at times since first touch [s]."""
@@ -164,7 +201,7 @@ class ObliqueContact:
         )
         path = CubicHermiteSpline(times, displacement, slip)
         now = np.minimum(time, times[-1])
-        state = self.after(now, path(now, 1), path(now), self.twist * now / times[-1])
+        state = self.after(now, path(now, 1), path(now), now / times[-1])
         return state, -self.direction * np.interp(now, times, force), energy_taken(self.sphere, self.before, state)
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from vibroimpact.arrays import Drops, Floats
 from vibroimpact.dynamics.contact import Contact
-from vibroimpact.dynamics.oblique.motion import ObliqueMotion, twist_by
+from vibroimpact.dynamics.oblique.motion import ObliqueMotion
 from vibroimpact.dynamics.oblique.state import ObliqueContacts, Sphere, State, spin_energy, state_after
 from vibroimpact.dynamics.vibrating.rubbing import RubbedStretch
 from vibroimpact.dynamics.vibrating.stretch import VibratingStretch
@@ -68,7 +68,7 @@ def rubbed_contacts(oblique: ObliqueMotion, drops: Drops, contact: Contact, row:
     for place, stretches in enumerate(parts):
         here, one = np.array([place]), drops[place : place + 1]
         sphere, before = oblique.now(one)
-        twist = twist_by(np.array([stretches[-1][1].end.twisting if stretches else 0.0]), sphere, before.spin[2])
+        twist = sphere.twist(before, np.array([stretches[-1][1].end.twisting if stretches else 0.0]))
         along = RubbedContact(sphere, before, contact.duration[here], stretches, twist)
         oblique.finish(one, *along.end, row)
         found.append((here, along))
