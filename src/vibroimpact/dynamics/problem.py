@@ -170,11 +170,11 @@ class Problem:
             raise InputError("stiffness and damping of the local element must be greater than 0 and finite")
         if self.plate.rigid is not None and np.any(np.asarray(self.gravity) > 0):
             raise InputError("nothing holds the plate, so that it falls away from under the sphere: set gravity to 0, and give speed")
+        self._check_motion()
         if self.vibrates and isinstance(self.laws[0], InstantaneousLaw):
             raise InputError(f"{self.laws[0].name} gives no force, and bodies that deform need one; take another law")
         if self.oblique is not None and not isinstance(self.oblique, Oblique):
             raise InputError(f"oblique must be an Oblique, not {self.oblique!r}")
-        self._check_motion()
         if self.oblique is not None and self.vibrates:
             self._check_rubbing(self.oblique)
         if self.oblique is not None and isinstance(self.oblique.friction, CompliantFriction) and isinstance(self.laws[0], InstantaneousLaw):
@@ -210,6 +210,8 @@ class Problem:
             raise InputError(f"motion must be a PlateMotion, not {self.motion!r}")
         if self.plate.rigid is not None:
             raise InputError("nothing holds the plate, so that no motion of supports reaches it; leave out its motion")
+        if len(self.motion.phasors) > 1 and self.duration is None:
+            raise InputError("a motion of several harmonics does not repeat: give the duration of the run")
         if self.sensors:
             raise InputError(
                 "sensors see the vibration that impacts excite, and a plate whose supports move has its own; leave one of them out"
