@@ -45,5 +45,7 @@ for threshold, name in ((exists, "one bounce a period exists"), (doubles, "it do
     diagram.axvline(threshold, color="#6b6b6b", linestyle=":")
     diagram.text(threshold, 1.66, f"{name} ", rotation=90, va="top", ha="right", color="#6b6b6b")
     print(f"{name} from {threshold:.5f} g on")
-diagram.set(xlabel="greatest acceleration of the table [g]", ylabel="flights [periods]", xlim=(0.95, 2.02), ylim=(0.4, 1.7), title="e = 0.5")
+diagram.set(
+    xlabel="greatest acceleration of the table [g]", ylabel="flights [periods]", xlim=(0.95, 2.02), ylim=(0.4, 1.7), title="e = 0.5"
+)
 figure.savefig("ball-on-table.png", dpi=130)

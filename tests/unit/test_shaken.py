@@ -12,10 +12,14 @@ import pytest
 
 import vibroimpact as vi
 from vibroimpact.cases.keys import with_values
+from vibroimpact.charts.marks import Line
 from vibroimpact.contact.laws.kuwabara_kono import KuwabaraKono
 from vibroimpact.contact.laws.newton import Newton
 from vibroimpact.dynamics.columns import ALL_HISTORY_COLUMNS
 from vibroimpact.dynamics.shaken.tabulated import tabulated_motion
+from vibroimpact.runs.charts import run_charts
+from vibroimpact.runs.history_charts import _touch_and_release, tops_of_rebounds
+from vibroimpact.runs.scene import rigid_scene
 
 SOFT = KuwabaraKono(stiffness=1e8, dissipation_time=1e-5)
 CASE: dict[str, Any] = {
@@ -313,3 +317,30 @@ def test_an_amplitude_of_zero_leaves_an_elastic_plate_as_it_is() -> None:
     one, other = vi.simulate(still), vi.simulate(replace(still, motion=None))
     for name, values in other.impacts.items():
         assert np.array_equal(values, one.impacts[name], equal_nan=True), name
+
+
+def test_modal_coordinates_and_deflections_are_those_of_the_whole_motion() -> None:
+    elastic = {"plate.model": "elastic", "plate.supports": "clamped", "plate.modes": 12, "plate.damping": 0.01, "run.impacts": 1}
+    response = vi.simulate(case(**elastic))
+    times = np.linspace(0.0, float(response.end_time[0]), 7)
+    modes, motion = response.problem.plate.modes, response.problem.motion
+    assert modes is not None
+    assert motion is not None
+    surface = motion.at(times)[0] + response.modal(times)["plate"] @ modes.contact
+    assert surface == pytest.approx(response.at(times)["plate_deflection_m"], abs=1e-12)
+
+
+@pytest.mark.parametrize("law", ["newton", "lankarani-nikravesh"])
+def test_charts_of_a_shaken_plate(law: str) -> None:
+    result = vi.result_of(vi.simulate(vi.read_case(with_values(CASE, {"contact": {"law": law, "restitution": 0.8}}))))
+    position = next(chart for chart in run_charts(result) if chart.name == "position")
+    (ball, surface) = (mark for mark in position.rows[0][0].marks if isinstance(mark, Line))
+    assert (ball.y - surface.y).min() >= -1.1 * float(result.impacts["max_indentation_m"].max()) - 1e-9
+    times, velocities = _touch_and_release(result)
+    around = np.array([times[0] - 1e-6, times[1] + 1e-6])
+    assert np.interp(around, result.history["time_s"], result.history["velocity_m_s"]) == pytest.approx(velocities[:2], abs=1e-4)
+    tops, heights = tops_of_rebounds(result)
+    assert len(tops) >= 1
+    assert np.interp(tops, result.history["time_s"], result.history["position_m"]) == pytest.approx(heights, rel=1e-3)
+    scene = rigid_scene(result)
+    assert np.ptp(scene["contact_height"]) == pytest.approx(4e-3, rel=0.02)

@@ -31,6 +31,7 @@ from vibroimpact.dynamics.rigid.timeline import Timeline, end_of, timeline_of
 from vibroimpact.dynamics.sensors.recording import Signal
 from vibroimpact.dynamics.sensors.sensor import Sensor, sample_count
 from vibroimpact.dynamics.shaken.ride import RideSegment
+from vibroimpact.dynamics.shaken.steady import steady_modes
 from vibroimpact.dynamics.status import Ended, status_of
 from vibroimpact.dynamics.truncation import truncation_estimates
 from vibroimpact.errors import InputError, did_you_mean
@@ -236,7 +237,7 @@ class Response:
         Returns
         -------
         dict of str to array
-            "sphere" and "plate", (T, modes) [kg^1/2 m]; times a mode's shape they are displacements.
+            "sphere" and "plate", (T, modes) [kg^1/2 m]; times a mode's shape they are displacements, of a plate relative to its supports.
         """
         from vibroimpact.dynamics.vibrating.bodies import slices_of
 
@@ -247,7 +248,11 @@ class Response:
         found = np.zeros((len(flat), plate.stop))
         for number in () if isinstance(segments, Timeline) else np.unique(index).tolist():
             segment, here = segments[number], index == number
-            found[here] = segment.state(np.minimum(flat[here], segment.end) - segment.start).displacement
+            found[here] = segment.state(np.minimum(flat[here], segment.end) - segment.start).displacement[:, : plate.stop]
+        motion, modes = self.problem.motion, self.problem.plate.modes
+        if motion is not None and modes is not None:
+            turned = np.exp(1j * motion.angular_frequency * flat[:, None])
+            found[:, plate] += (turned @ steady_modes(motion, modes).T).imag
         return {"sphere": found[:, sphere], "plate": found[:, plate]}
 
     def signals(self, *sensors: Sensor) -> dict[str, Signal]:

@@ -36,7 +36,11 @@ def steady_phasors(motion: PlateMotion, modes: ModalBasis | None, shapes: Floats
     supports = motion.direction[2] * motion.phasors
     if modes is None:
         return np.asarray(supports)
+    return np.asarray(supports + (modes.contact if shapes is None else shapes) @ steady_modes(motion, modes))
+
+
+def steady_modes(motion: PlateMotion, modes: ModalBasis) -> Complex:
+    """Return the phasors of the modes in the steady motion, relative to the supports [kg^1/2 m] (modes, k)."""
     along = modes.participation @ np.array(motion.direction)
     omega, ratio, driving = modes.angular_frequencies[:, None], modes.damping_ratios[:, None], motion.angular_frequency
-    forced = along[:, None] * driving**2 * motion.phasors / (omega**2 - driving**2 + 2j * ratio * omega * driving)
-    return np.asarray(supports + (modes.contact if shapes is None else shapes) @ forced)
+    return np.asarray(along[:, None] * driving**2 * motion.phasors / (omega**2 - driving**2 + 2j * ratio * omega * driving))
