@@ -344,3 +344,8 @@ def test_charts_of_a_shaken_plate(law: str) -> None:
     assert np.interp(tops, result.history["time_s"], result.history["position_m"]) == pytest.approx(heights, rel=1e-3)
     scene = rigid_scene(result)
     assert np.ptp(scene["contact_height"]) == pytest.approx(4e-3, rel=0.02)
+
+
+def test_no_law_is_calibrated_on_a_plate_that_moves() -> None:
+    with pytest.raises(vi.InputError, match=r"plate\.motion: .* rebound from a plate at rest"):
+        vi.calibrate_case(vi.read_calibration({**CASE, "calibrate": {"target": {"restitution": 0.7}}}))
