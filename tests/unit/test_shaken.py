@@ -36,7 +36,8 @@ SPRINGS = [{"type": "spring", "position": [x, y], "stiffness": "2 kN/m"} for x i
 def problem(law: vi.ContactLaw = SOFT, **changes: Any) -> vi.Problem:
     start = {} if "speed" in changes else {"height": 0.05}
     values: dict[str, Any] = {"motion": vi.PlateMotion(amplitude=2e-3, frequency=25.0), "gravity": 9.8, "impacts": 6, **start, **changes}
-    return vi.Problem(sphere=vi.Body(mass=0.1, contact_offset=0.01), plate=vi.rigid_plate(), laws=(law,), **values)
+    values = {"laws": (law,), **values}
+    return vi.Problem(sphere=vi.Body(mass=0.1, contact_offset=0.01), plate=vi.rigid_plate(), **values)
 
 
 def case(**values: Any) -> vi.Problem:
@@ -67,7 +68,8 @@ def test_refused_motions(values: dict[str, Any], words: str) -> None:
     ("values", "words"),
     [
         ({"motion": 25.0}, "must be a PlateMotion"),
-        ({"oblique": vi.Oblique(velocity=(1.0, 0.0))}, "along the normal"),
+        ({"laws": (Newton(restitution=0.5),), "oblique": vi.Oblique(velocity=(1.0, 0.0))}, "under a law with a force"),
+        ({"oblique": vi.Oblique(friction=vi.find_friction_law("coulomb")(coefficient=0.3))}, "no tangential compliance"),
         ({"sensors": (vi.Sensor("a1", (0.0, 0.0)),)}, "sensors"),
         ({"height": 0.0115, "motion": vi.PlateMotion(amplitude=2e-3, frequency=25.0, phase=1.5)}, "begins its motion above"),
         ({"speed": 0.1, "motion": vi.PlateMotion(amplitude=2e-3, frequency=25.0, phase=np.pi)}, "recedes"),
@@ -233,7 +235,8 @@ def test_tables_without_their_columns(tmp_path: Path) -> None:
         ({"plate.motion.frequenzy": "25 Hz"}, 'Did you mean "frequency"'),
         ({"plate.motion.direction": [0, 0, 0]}, "length 0"),
         ({"plate.motion.amplitude": "2 Hz"}, r"plate\.motion\.amplitude"),
-        ({"plate.inclination": "10 deg"}, "along the normal"),
+        ({"plate.inclination": "10 deg", "plate.model": "elastic", "plate.supports": "clamped"}, "only a rigid plate that moves"),
+        ({"plate.inclination": "10 deg", "contact": {"law": "newton", "restitution": 0.5}}, "under a contact law with a force"),
         ({"drop.height": "21 mm", "plate.motion.phase": "90 deg"}, "begins its motion above"),
         ({"plate.motion": 3}, "not a table"),
     ],
@@ -272,6 +275,69 @@ def test_studies_over_amplitude_and_frequency(tmp_path: Path) -> None:
     study = vi.read_study(tmp_path / "study")
     alone = case(**{"plate.motion.amplitude": "1 mm", "plate.motion.frequency": "25 Hz"})
     assert study.values("time_s", 1, 1) == pytest.approx(vi.simulate(alone).impacts["time_s"], rel=1e-9)
+
+
+# along the plate -----------------------------------------------------------------------------------
+
+
+def rubbing(velocity: tuple[float, float], motion: vi.PlateMotion, law: str = "mdr", **changes: Any) -> vi.Response:
+    pair = {"effective_modulus": 1e9, "effective_shear_modulus": 0.8e9, "effective_radius": 0.01}
+    along: dict[str, Any] = {"spin": changes.pop("spin", (10.0, -30.0, 50.0)), "gravity": changes.pop("gravity_along", (0.0, 0.0))}
+    oblique = vi.Oblique(velocity=velocity, friction=vi.find_friction_law(law)(coefficient=0.3, **pair), **along)
+    normal = vi.find_contact_law("hunt-crossley")(stiffness=1.3e8, restitution=0.7)
+    return vi.simulate(problem(normal, **{"speed": 2.0, "impacts": 1, "motion": motion, "oblique": oblique, **changes}))
+
+
+STILL = vi.PlateMotion(amplitude=1e-14, frequency=25.0, direction=(1.0, 0.0, 0.0))
+
+
+@pytest.mark.parametrize("law", ["mdr", "mindlin"])
+@pytest.mark.parametrize("speed", [0.3, 1.5])
+def test_friction_feels_the_velocity_of_the_plate_alone(law: str, speed: float) -> None:
+    """A plate that drifts along itself at a steady speed, of a motion of 1 mHz, is one at rest seen by an observer who drifts."""
+    drift = vi.PlateMotion(amplitude=speed / (2e-3 * np.pi), frequency=1e-3, direction=(0.6, 0.8, 0.0))
+    moving, still = rubbing((1.0, 0.4), drift, law), rubbing((1.0 - 0.6 * speed, 0.4 - 0.8 * speed), STILL, law)
+    for axis, part in (("x", 0.6), ("y", 0.8)):
+        name = f"separation_velocity_{axis}_m_s"
+        assert moving.impacts[name] == pytest.approx(still.impacts[name] + part * speed, abs=1e-10)
+    for name in ("spin_x_after_rad_s", "spin_y_after_rad_s", "spin_z_after_rad_s", "friction_lost_J", "separation_speed_m_s"):
+        assert moving.impacts[name] == pytest.approx(still.impacts[name], rel=1e-9), name
+    assert moving.energy["closure_relative"] <= 1e-9
+
+
+def test_a_plate_that_accelerates_along_itself_is_a_pull() -> None:
+    motion = vi.PlateMotion(amplitude=5.0 / (2.0 * np.pi) ** 2, frequency=1.0, phase=0.5 * np.pi, direction=(1.0, 0.0, 0.0))
+    moving, pulled = rubbing((0.3, 0.0), motion), rubbing((0.3, 0.0), STILL, gravity_along=(5.0, 0.0))
+    drift = 5.0 * float(moving.impacts["duration_s"][0])
+    expected = pulled.impacts["separation_velocity_x_m_s"] - drift
+    assert moving.impacts["separation_velocity_x_m_s"] == pytest.approx(expected, abs=1e-8)
+    assert moving.impacts["spin_y_after_rad_s"] == pytest.approx(pulled.impacts["spin_y_after_rad_s"], rel=1e-7)
+
+
+def test_the_ledger_of_an_inclined_screen_closes() -> None:
+    screen = vi.PlateMotion(amplitude=2e-3, frequency=25.0, direction=(0.6, 0.0, 0.8))
+    response = rubbing((0.3, 0.0), screen, gravity_along=(1.0, 0.0), impacts=None, duration=1.0)
+    history = response.history()
+    total = sum(history[name] for name in history if name in IN_LEDGER)
+    assert total == pytest.approx(total[0], abs=1e-6 * response.energy["input_J"])
+    assert response.energy["closure_relative"] <= 1e-9
+    assert len(response.impacts["time_s"]) >= 3
+
+
+@pytest.mark.slow
+def test_a_ball_that_rolls_on_a_table_moves_with_two_sevenths_of_its_velocity() -> None:
+    """The centre of a solid sphere that rolls follows 2/7 of the velocity of what it rolls on; within its tangential deformation."""
+    pair = {"effective_modulus": 1e7, "effective_shear_modulus": 0.8e7, "effective_radius": 0.01}
+    friction = vi.find_friction_law("mdr")(coefficient=0.5, **pair)
+    sideways = vi.PlateMotion(amplitude=2e-3, frequency=5.0, direction=(1.0, 0.0, 0.0))
+    law = KuwabaraKono(stiffness=4.0 / 3.0 * 1e6, dissipation_time=1e-3)
+    drop = {"height": 0.0105, "impacts": None, "duration": 0.5, "motion": sideways, "oblique": vi.Oblique(friction=friction)}
+    response = vi.simulate(replace(problem(law, **drop), sphere=vi.Body(mass=0.02, contact_offset=0.01)))
+    times = np.linspace(0.2, 0.5, 301)
+    speeds = 2e-3 * 10.0 * np.pi * np.cos(10.0 * np.pi * times)
+    share, rest = np.polyfit(speeds, response.at(times)["velocity_x_m_s"], 1)
+    assert share == pytest.approx(2.0 / 7.0, rel=3e-3)
+    assert abs(rest) < 1e-4
 
 
 # elastic plates --------------------------------------------------------------------------------------

@@ -108,8 +108,9 @@ def _check_motion(case: CaseTable) -> None:
     if case.sensors:
         words = "sensors see what impacts excite, and a plate on supports that move has a motion of its own"
         raise InputError(f"{words}; leave them out", "sensors")
-    if oblique_keys(case):
-        raise InputError("a sphere on a plate that moves falls along the normal; leave this out, or plate.motion", oblique_keys(case)[0])
+    if oblique_keys(case) and (elastic_names(case) or not isinstance(contact_laws_of(case)[-1], CompliantLaw)):
+        words = "only a rigid plate that moves is hit obliquely, and under a contact law with a force"
+        raise InputError(f"{words}; leave this out, or plate.motion", oblique_keys(case)[0])
     length = motion_length(case)
     if case.run.duration is not None and case.run.duration > length:
         raise InputError(f"the motion of the plate ends at {length:.6g} s; stop the run by then", "run.duration")

@@ -199,7 +199,7 @@ class Problem:
         if any(basis.along is None for basis in bases):
             raise InputError("modes of a plate that is hit obliquely need `along`, the motion of their contact point along the plate")
         if oblique.friction is not None and not isinstance(oblique.friction, CompliantFriction):
-            words = f"{oblique.friction.name} has no tangential compliance, which friction on bodies that deform needs"
+            words = f"{oblique.friction.name} has no tangential compliance, which friction needs on bodies that deform or are shaken"
             raise InputError(f'{words}; take "mdr" or one of the "mindlin" laws')
 
     def _check_motion(self) -> None:
@@ -216,8 +216,9 @@ class Problem:
             raise InputError(
                 "sensors see the vibration that impacts excite, and a plate whose supports move has its own; leave one of them out"
             )
-        if self.oblique is not None:
-            raise InputError("a sphere on a plate that moves falls along the normal; leave out what is oblique, or the motion")
+        if self.oblique is not None and (self.plate.modes is not None or isinstance(self.laws[0], InstantaneousLaw)):
+            words = "only a rigid plate that moves is hit obliquely, and under a law with a force"
+            raise InputError(f"{words}; leave out what is oblique, or the motion")
         place, speed, _ = self.surface(0.0)
         if self.height is not None and not np.all(np.asarray(self.height) - self.sphere.contact_offset > place):
             raise InputError(
@@ -237,8 +238,9 @@ class Problem:
 
     @property
     def shaken(self) -> bool:
-        """Whether the surface of the plate moves along its normal without being hit."""
-        return self.motion is not None and bool(np.any(self.surface_phasors))
+        """Whether the surface of the plate moves without being hit: along its normal, or along itself where the drop is oblique."""
+        along = self.motion is not None and self.oblique is not None and bool(np.any(self.motion.amplitude))
+        return self.motion is not None and (along or bool(np.any(self.surface_phasors)))
 
     @cached_property
     def surface_phasors(self) -> Complex:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vibroimpact.arrays import Bools, Drops, Floats
+from vibroimpact.arrays import Bools, Complex, Drops, Floats
 from vibroimpact.bodies.body import Body
 from vibroimpact.contact.friction.law import CompliantFriction
 from vibroimpact.contact.law import CompliantLaw, ContactLaw
@@ -55,7 +55,8 @@ def system_of(problem: Problem, mass: float, gravity: float) -> LinearSystem:
     of_bodies = ((problem.plate.rigid, 1.0), (problem.sphere.modes, -1.0), (problem.plate.modes, 1.0))
     parts += [(basis.angular_frequencies, basis.damping_ratios, sign * basis.contact) for basis, sign in of_bodies if basis]
     driven = problem.motion.angular_frequency if problem.motion is not None and problem.shaken else np.zeros(0)
-    parts += [(driven, np.zeros_like(driven), np.full_like(driven, _IMMOVABLE * mass**-0.5))]
+    moves, _ = driven_motion_of(problem)
+    parts += [(driven, np.zeros_like(driven), np.full_like(driven, _IMMOVABLE * mass**-0.5 * moves[2]))]
     frequency, damping, shape = (np.concatenate(part) for part in zip(*parts, strict=True))
     of_rigid, of_sphere, of_plate = slices_of(problem)
     load, inside, ground = np.zeros(len(shape)), np.zeros(len(shape), dtype=bool), np.zeros(len(shape), dtype=bool)
@@ -68,6 +69,7 @@ def system_of(problem: Problem, mass: float, gravity: float) -> LinearSystem:
             if basis is not None:
                 assert basis.along is not None  # the problem has seen to it
                 along[:, where] = basis.along.T
+        along[:, of_plate.stop :] = _IMMOVABLE * mass**-0.5 * moves[:2, None]
     local = [problem.local_element] if problem.local_element else []
     rate = np.array([stiffness / damping for stiffness, damping in local])
     mobility = np.array([1.0 / damping for _, damping in local])
@@ -81,6 +83,16 @@ def system_of(problem: Problem, mass: float, gravity: float) -> LinearSystem:
 
 _IMMOVABLE = 1e-10
 """Shape of a driven coordinate over that of the sphere [-]: of a mass 1e20 times that of the sphere, which no contact disturbs."""
+
+
+def driven_motion_of(problem: Problem) -> tuple[Floats, Complex]:
+    """Return the direction in which what drives a plate moves its surface (3,), and the phasors of that motion [m] (k,).
+
+    A rigid plate moves with its supports; of an elastic one only the motion along the normal is followed.
+    """
+    if problem.motion is None or problem.plate.modes is not None:
+        return np.array([0.0, 0.0, 1.0]), problem.surface_phasors
+    return np.array(problem.motion.direction), problem.motion.phasors
 
 
 def slices_of(problem: Problem) -> tuple[slice, slice, slice]:
@@ -125,7 +137,7 @@ class VibratingBodies:
         self.systems, self.series = [distinct[pair] for pair in pairs], [problem.quasi_static] * size
         self.displacement, self.velocity = np.zeros((size, self.system.number)), np.zeros((size, self.system.number))
         if driven := self.system.driven:
-            phasors = problem.surface_phasors / self.system.shape[0, -driven:]
+            phasors = driven_motion_of(problem)[1] / (_IMMOVABLE * float(mass[0]) ** -0.5)
             self.displacement[:, -driven:], self.velocity[:, -driven:] = (
                 phasors.imag,
                 self.system.angular_frequency[-driven:] * phasors.real,

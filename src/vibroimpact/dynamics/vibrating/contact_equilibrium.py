@@ -88,8 +88,8 @@ def rides_for_good(equilibrium: ContactEquilibrium, state: State, force: float) 
     amplitude of the force that the speed between them can still cause.
     """
     system = equilibrium.system
-    if system.number > 1 + system.driven or system.rate.size:
-        return False  # other coordinates oscillate too
+    if system.number > 1 + system.driven or system.rate.size or system.along is not None:
+        return False  # other coordinates oscillate too, or it moves along the plate
     driven, mass = slice(1, None), float(system.mass[0])
     speeds = np.hypot(state.velocity[driven], system.angular_frequency[driven] * state.displacement[driven])
     greatest = float((np.abs(system.shape[0, driven]) * system.angular_frequency[driven]) @ speeds)

@@ -160,7 +160,10 @@ class VibratingStretch:
         by_coordinate = system.damping * self.velocities**2
         if system.driven:
             shapes = system.shape[self.view.contacts, -system.driven :]
-            by_coordinate[:, -system.driven :] = -(self.force.T @ shapes) * self.velocities[:, -system.driven :]
+            pushed = self.force.T @ shapes
+            if self.rubbed is not None and system.along is not None:
+                pushed -= self.rubbed.force.T @ system.along[:, -system.driven :]
+            by_coordinate[:, -system.driven :] = -pushed * self.velocities[:, -system.driven :]
         return np.concatenate([by_coordinate, lost[:, None]], axis=1)
 
     @cached_property
