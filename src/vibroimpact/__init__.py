@@ -66,6 +66,7 @@ if TYPE_CHECKING:
     from vibroimpact.dynamics.sensors.recording import Signal as Signal
     from vibroimpact.dynamics.sensors.sensor import Accelerometer as Accelerometer
     from vibroimpact.dynamics.sensors.sensor import Sensor as Sensor
+    from vibroimpact.dynamics.shaken.statement import PlateMotion as PlateMotion
     from vibroimpact.dynamics.simulate import simulate as simulate
     from vibroimpact.dynamics.simulate_system import BodyMotion as BodyMotion
     from vibroimpact.dynamics.simulate_system import SystemResponse as SystemResponse
@@ -130,6 +131,7 @@ _HOME = {
     "Outcome": "dynamics.outcome",
     "PointContact": "dynamics.system",
     "Oblique": "dynamics.oblique.statement",
+    "PlateMotion": "dynamics.shaken.statement",
     "Problem": "dynamics.problem",
     "QuasiStatic": "contact.quasi_static",
     "Response": "dynamics.response",

@@ -33,6 +33,7 @@ class ResolvedPlate(ResolvedBody, total=False):
     element: str
     supports: Any
     inclination: Array
+    motion: Mapping[str, Any]
 
 
 class ResolvedDrop(TypedDict, total=False):

@@ -124,6 +124,8 @@ def calibrate_case(
     section = case.calibrate
     if section is None or section.target is None:
         raise InputError("it is missing; it says what impacts are to be like, such as { restitution = 0.7 }", "calibrate.target")
+    if case.plate.motion is not None:
+        raise InputError("what is wanted is the rebound from a plate at rest, and this one moves; leave its motion out", "plate.motion")
     problem = problem_of(case, progress, tell)
     if problem.same_spot and getattr(problem.laws[0], "lasting", False) and impact_count(problem) > 1:
         words = f"{case.contact.law} leaves a dent that the next impact falls into, and each impact is matched on fresh surfaces"

@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING, Any, Literal, cast
 from vibroimpact.calibration.section import calibrate_table
 from vibroimpact.cases.fields.elastic_body import BroughtMeshTable
 from vibroimpact.cases.fields.material import material_table
+from vibroimpact.cases.motion import motion_length
 from vibroimpact.cases.oblique import friction_law_of, oblique_keys
 from vibroimpact.cases.pair import is_free_sphere
-from vibroimpact.cases.rigid import PLATE_FALLS, contact_laws_of, deforms, elastic_names, impact_limit, rigid_problem
+from vibroimpact.cases.rigid import PLATE_FALLS, contact_laws_of, deforms, elastic_names, impact_limit, rigid_problem, run_duration
 from vibroimpact.contact.friction.law import CompliantFriction
 from vibroimpact.contact.law import CompliantLaw, ContactLaw, is_conservative
 from vibroimpact.dynamics.problem import Problem
@@ -36,7 +37,7 @@ def check_case(case: CaseTable) -> None:
     """
     law = contact_laws_of(case)[-1]
     # without a limit of impacts or time only losses in the contact end a run
-    if impact_limit(case) is None and case.run.duration is None:
+    if impact_limit(case) is None and run_duration(case) is None:
         remedy = "give a number or a duration"
         if is_conservative(law):
             raise InputError(f'"all" needs a law that loses energy, and this {law.name} never comes to rest; {remedy}', "run.impacts")
@@ -44,6 +45,7 @@ def check_case(case: CaseTable) -> None:
             words = f"and {law.name} loses none on a dent that it has made"
             raise InputError(f'"all" needs a law that loses energy, {words}; {remedy}, or drop.same_spot = false', "run.impacts")
     _check_oblique(case, law)
+    _check_motion(case)
     if case.sensors and case.plate.model == "rigid":
         remedy = 'give it model = "elastic", or leave out the sensors' if case.plate.radius is None else "leave out the sensors"
         raise InputError(f"the plate is rigid, so that its points do not move; {remedy}", "sensors")
@@ -89,6 +91,33 @@ def _check_oblique(case: CaseTable, law: ContactLaw) -> None:
     if isinstance(friction, CompliantFriction) and not isinstance(law, CompliantLaw):
         words = f"{law.name} gives no normal force, which {friction.name} follows"
         raise InputError(f'{words}; take another contact law, or friction by the impulse: "coulomb" or "rigid"', "contact.friction.law")
+
+
+def _check_motion(case: CaseTable) -> None:
+    """Check the motion of the plate's supports against the rest of a case.
+
+    Raises
+    ------
+    InputError
+        If the motion can't be read or reaches nothing, or the drop does not begin above the plate.
+    """
+    if case.plate.motion is None:
+        return
+    if case.plate.radius is not None or case.plate.supports == "free":
+        raise InputError("only a plate that supports hold moves with them; leave this out", "plate.motion")
+    if case.sensors:
+        words = "sensors see what impacts excite, and a plate on supports that move has a motion of its own"
+        raise InputError(f"{words}; leave them out", "sensors")
+    if oblique_keys(case) and (elastic_names(case) or not isinstance(contact_laws_of(case)[-1], CompliantLaw)):
+        words = "only a rigid plate that moves is hit obliquely, and under a contact law with a force"
+        raise InputError(f"{words}; leave this out, or plate.motion", oblique_keys(case)[0])
+    length = motion_length(case)
+    if case.run.duration is not None and case.run.duration > length:
+        raise InputError(f"the motion of the plate ends at {length:.6g} s; stop the run by then", "run.duration")
+    try:
+        rigid_problem(case)
+    except InputError as error:
+        raise InputError(error.message, error.key or "plate.motion") from None
 
 
 def check_drop(case: CaseTable) -> None:
@@ -167,7 +196,7 @@ def _body(case: CaseTable, name: Literal["sphere", "plate"]) -> dict[str, Any]:
     section: SphereSection | PlateSection = getattr(case, name)
     found = section.model_dump(exclude_none=True, exclude={"material", "supports", "damping", "mesh"})
     if section.model == "rigid":
-        found = {key: found[key] for key in ("radius", "size", "model", "inclination") if key in found}
+        found = {key: found[key] for key in ("radius", "size", "model", "inclination", "motion") if key in found}
         found |= {"supports": "free"} if name == "plate" and is_free_sphere(case) else {}
     else:
         from vibroimpact.cases.elastic.bodies import elastic_table  # imports scipy.sparse
@@ -175,4 +204,7 @@ def _body(case: CaseTable, name: Literal["sphere", "plate"]) -> dict[str, Any]:
         found |= elastic_table(case, name)
     if "size" in found:
         found["size"] = list(found["size"])
+    if "motion" in found:
+        motion = {key: list(value) if isinstance(value, tuple) else value for key, value in found["motion"].items()}
+        found["motion"] = {key: value for key, value in motion.items() if key != "phase"} if "file" in motion else motion
     return {**found, "material": material_table(section.material)}

@@ -11,6 +11,7 @@ from pydantic.fields import FieldInfo
 
 from vibroimpact.cases.fields.local import LocalSection
 from vibroimpact.cases.fields.material import InlineMaterial, material_table
+from vibroimpact.cases.fields.motion import MotionTable
 from vibroimpact.cases.fields.quantities import Quantity
 from vibroimpact.cases.schema import SECTIONS
 from vibroimpact.contact.law import unit_of
@@ -80,7 +81,7 @@ def holds_keys(key: str) -> bool:
     (True, False)
     """
     section, _, field = key.partition(".")
-    return section in (*SECTIONS, "contact") and field in ("", "material", *_PLACES)
+    return section in (*SECTIONS, "contact") and field in ("", "material", "motion", *_PLACES)
 
 
 def with_values(table: Mapping[str, Any], values: Mapping[str, Any], done: str = "swept") -> dict[str, Any]:
@@ -146,6 +147,9 @@ def _keys(table: Mapping[str, Any]) -> Iterator[tuple[str, Quantity | None]]:
             parts = _parts(info.annotation) if field in _PLACES else ()
             yield key, None if parts else _DAMPING if field == "damping" else quantity_of(info)
             yield from ((f"{key}.{place}", _quantity((part,))) for place, part in zip(_PLACES.get(field, ()), parts, strict=True))
+            if field == "motion":
+                for number, inner in MotionTable.model_fields.items():
+                    yield f"{key}.{number}", None if number == "direction" else quantity_of(inner)
             if field == "material":
                 for number, inner in InlineMaterial.model_fields.items():
                     if number != "name":

@@ -19,6 +19,7 @@ from vibroimpact.cases.case import Case
 from vibroimpact.cases.fields.fault_messages import fault_messages
 from vibroimpact.cases.fields.item_labels import path_in_words
 from vibroimpact.cases.fields.material import InlineMaterial
+from vibroimpact.cases.fields.motion import MotionTable
 from vibroimpact.cases.fields.size_limits import MOST_BYTES, check_bounds, check_text
 from vibroimpact.cases.keys import with_values
 from vibroimpact.cases.schema import SECTIONS, AccelerometerTable, SensorSection
@@ -39,6 +40,7 @@ _SECTIONS: dict[tuple[str, ...], type[BaseModel]] = {
     ("sensors",): SensorSection,
     ("sweep",): SweepSection,
     ("sensors", "accelerometer"): AccelerometerTable,
+    ("plate", "motion"): MotionTable,
 }
 
 
@@ -220,6 +222,10 @@ def _resolve_paths(table: dict[str, Any], folder: Path) -> dict[str, Any]:
         if isinstance(section, dict) and isinstance(file, str) and file.strip():
             path = str((folder / file).absolute())
             section["mesh"] = {**mesh, "file": path} if isinstance(mesh, dict) else path
+    plate = table.get("plate")
+    motion = plate.get("motion") if isinstance(plate, dict) else None
+    if isinstance(motion, dict) and isinstance(motion.get("file"), str) and motion["file"].strip():
+        motion["file"] = str((folder / motion["file"]).absolute())
     wanted = table.get("calibrate")
     target = wanted.get("target") if isinstance(wanted, dict) else None
     file = target.get("file") if isinstance(target, dict) else target

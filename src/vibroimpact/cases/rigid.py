@@ -9,6 +9,7 @@ import numpy as np
 from vibroimpact.bodies.body import Body
 from vibroimpact.bodies.rigid import rigid_plate, rigid_sphere
 from vibroimpact.cases.fields.section import derived
+from vibroimpact.cases.motion import motion_length, motion_of
 from vibroimpact.cases.oblique import normal_motion_of, oblique_of
 from vibroimpact.cases.pair import contact_pair, is_free_sphere
 from vibroimpact.contact.law import ContactLaw
@@ -49,10 +50,16 @@ def contact_laws_of(case: CaseTable) -> tuple[ContactLaw, ...]:
 
 
 def impact_limit(case: CaseTable) -> int | None:
-    """Return the number of impacts after which a run stops; None if it continues to rest or to its duration."""
+    """Return the number of impacts after which a run stops; None if it continues to rest or to a time."""
     if case.run.impacts is None:
-        return _DEFAULT_IMPACTS if case.run.duration is None else None
+        return _DEFAULT_IMPACTS if run_duration(case) is None else None
     return None if case.run.impacts == "all" else case.run.impacts
+
+
+def run_duration(case: CaseTable) -> float | None:
+    """Return the time at which a run stops [s]: its duration, or the end of a tabulated motion of the plate; None without either."""
+    length = motion_length(case)
+    return case.run.duration if np.isinf(length) else min(case.run.duration or length, length)
 
 
 def elastic_names(case: CaseTable) -> list[Literal["sphere", "plate"]]:
@@ -75,8 +82,9 @@ def rigid_problem(case: CaseTable) -> Problem:
         laws=contact_laws_of(case),
         **normal_motion_of(case),
         oblique=oblique_of(case),
+        motion=motion_of(case),
         impacts=impact_limit(case),
-        duration=case.run.duration,
+        duration=run_duration(case),
         rest_speed=case.run.rest_speed,
         same_spot=case.drop.same_spot,
         tolerance=case.run.tolerance,

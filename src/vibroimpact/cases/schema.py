@@ -23,6 +23,7 @@ from vibroimpact.cases.fields.elastic_body import (
     check_sphere_below,
 )
 from vibroimpact.cases.fields.material import MaterialField
+from vibroimpact.cases.fields.motion import MotionTable
 from vibroimpact.cases.fields.quantities import Quantity
 from vibroimpact.cases.fields.section import Section, check_alternatives
 from vibroimpact.cases.fields.size_limits import MOST_ITEMS, Name, at_most
@@ -86,6 +87,7 @@ class PlateSection(Section):
         ]
         | None
     ) = None
+    motion: MotionTable | None = Field(None, description="how the supports move; at rest by default")
     mesh: PlateMeshField = None
     reduction: MethodField | None = Field(None, description="how the finite elements are reduced to modes; modal by default")
     attachment_mode: StrictBool = Field(False, description="add a residual attachment mode at the contact point")

@@ -126,6 +126,23 @@ VIBRATION_HISTORY_COLUMNS: dict[str, Column] = {
 }
 """Further columns of a history, where a body vibrates."""
 
+SHAKEN_IMPACT_COLUMNS: dict[str, Column] = {
+    "plate_velocity_m_s": Column("m/s", "velocity of the plate's surface at first touch, upwards, of its own motion"),
+    "plate_work_J": Column("J", "work of the moving plate on the sphere, from first touch until it leaves"),
+}
+"""Further columns of the impact table, where the plate is shaken."""
+
+SHAKEN_HISTORY_COLUMNS: dict[str, Column] = {
+    "surface_m": Column("m", "place of the plate's surface at the contact point by its own motion, upwards from its mean"),
+    "surface_velocity_m_s": Column("m/s", "velocity of the plate's surface at the contact point by its own motion, upwards"),
+    "drive_J": _held(
+        "minus the work that the moving plate has done so far: energy that came from its drive is negative",
+        "Taken by the drive of the plate, negative where it gave",
+        "drive of the plate",
+    ),
+}
+"""Further columns of a history, where the plate is shaken."""
+
 OBLIQUE_IMPACT_COLUMNS: dict[str, Column] = {
     "position_x_m": Column("m", "place of the sphere's centre at first touch, along x"),
     "position_y_m": Column("m", "place of the sphere's centre at first touch, along y"),
@@ -152,7 +169,7 @@ OBLIQUE_IMPACT_COLUMNS: dict[str, Column] = {
 """Further columns of the impact table, where motion is not along the normal alone."""
 
 VIBRATING_IMPACT_COLUMNS = {**IMPACT_COLUMNS, **VIBRATION_IMPACT_COLUMNS}
-ALL_IMPACT_COLUMNS = {**VIBRATING_IMPACT_COLUMNS, **OBLIQUE_IMPACT_COLUMNS}
+ALL_IMPACT_COLUMNS = {**VIBRATING_IMPACT_COLUMNS, **SHAKEN_IMPACT_COLUMNS, **OBLIQUE_IMPACT_COLUMNS}
 OBLIQUE_HISTORY_COLUMNS: dict[str, Column] = {
     "position_x_m": Column("m", "place of the sphere's centre along x, from the centre of the plate"),
     "position_y_m": Column("m", "place of the sphere's centre along y, from the centre of the plate"),
@@ -172,7 +189,7 @@ OBLIQUE_HISTORY_COLUMNS: dict[str, Column] = {
 }
 """Further columns of a history, where motion is not along the normal alone."""
 
-ALL_HISTORY_COLUMNS = {**HISTORY_COLUMNS, **VIBRATION_HISTORY_COLUMNS, **OBLIQUE_HISTORY_COLUMNS}
+ALL_HISTORY_COLUMNS = {**HISTORY_COLUMNS, **VIBRATION_HISTORY_COLUMNS, **SHAKEN_HISTORY_COLUMNS, **OBLIQUE_HISTORY_COLUMNS}
 
 MOTION_COLUMNS = (*tuple(HISTORY_COLUMNS)[:8], "plate_deflection_m")
 """Those of motion and force, from `time_s` to `potential_J`, which are found from the state without the losses so far."""
@@ -182,6 +199,9 @@ LEDGER = tuple(name for name, column in HISTORY_COLUMNS.items() if column.in_led
 
 VIBRATION_LEDGER = tuple(name for name, column in VIBRATION_HISTORY_COLUMNS.items() if column.in_ledger)
 """The further columns that share it, where a body vibrates."""
+
+SHAKEN_LEDGER = tuple(name for name, column in SHAKEN_HISTORY_COLUMNS.items() if column.in_ledger)
+"""The further columns that share it, where the plate is shaken."""
 
 OBLIQUE_LEDGER = tuple(name for name, column in OBLIQUE_HISTORY_COLUMNS.items() if column.in_ledger)
 """The further columns that share it, where motion is not along the normal alone."""

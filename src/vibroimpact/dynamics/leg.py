@@ -12,6 +12,7 @@ from vibroimpact.dynamics.contact import Contact
 from vibroimpact.dynamics.encounter import Encounter
 from vibroimpact.dynamics.flight import Flight
 from vibroimpact.dynamics.oblique.state import ObliqueContacts, Sphere, State
+from vibroimpact.dynamics.shaken.ride import Ride
 
 if TYPE_CHECKING:  # a drop of rigid bodies does not load what vibrates
     from vibroimpact.dynamics.vibrating.linear_system import FreeMotion
@@ -36,6 +37,8 @@ class Leg:
     oblique: tuple[Sphere, State] | None = None
     """The spheres, and their motion along the plate at the start of the flight, where they have any."""
     oblique_contacts: ObliqueContacts = ()
+    ride: Ride | None = None
+    """Rides of `contact_drops` on a shaken plate after an impact of a law without a force."""
 
     def of(self, drop: int) -> Leg | None:
         """Return the leg of one drop, or None if the drop is not in it."""
@@ -48,7 +51,8 @@ class Leg:
         motions = self.motions[int(here[0]) : int(here[0]) + 1]
         oblique = None if self.oblique is None else (self.oblique[0].take(here), self.oblique[1].take(here))
         if self.contact is None or self.encounter is None or not contact_here.size:
-            return Leg(one, alone, self.flight_end[here], one[: contact_here.size], motions=motions, oblique=oblique)
+            ride = self.ride.of(int(contact_here[0])) if self.ride is not None and contact_here.size else None
+            return Leg(one, alone, self.flight_end[here], one[: contact_here.size], motions=motions, oblique=oblique, ride=ride)
         contact, encounter = self.contact.of(int(contact_here[0])), self.encounter.take(contact_here)
         place = int(contact_here[0])
         along = tuple((one, part.of(int(np.flatnonzero(places == place)[0]))) for places, part in self.oblique_contacts if place in places)

@@ -10,13 +10,15 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
-from vibroimpact.arrays import Array
+from vibroimpact.arrays import Array, Complex, Floats
 from vibroimpact.bodies.body import Body
 from vibroimpact.contact.friction.law import CompliantFriction
 from vibroimpact.contact.law import ContactLaw, InstantaneousLaw
 from vibroimpact.contact.quasi_static import QuasiStatic
 from vibroimpact.dynamics.oblique.statement import Oblique
 from vibroimpact.dynamics.sensors.sensor import Sensor
+from vibroimpact.dynamics.shaken.statement import PlateMotion
+from vibroimpact.dynamics.shaken.steady import steady_phasors
 from vibroimpact.errors import InputError
 from vibroimpact.resolved_case import ResolvedCase
 
@@ -52,6 +54,9 @@ class Problem:
     oblique : Oblique, optional
         Velocity along the plate, spin, friction and an inclination of the plate. By default the sphere falls along the normal and
         does not turn.
+    motion : PlateMotion, optional
+        Prescribed motion of the plate's supports. Heights are then above the mean position of the plate's surface, and approach and
+        separation speeds relative to it. By default the supports are at rest.
     impacts : int, optional
         Stop after so many impacts, at the top of the last rebound. None: go on to rest.
     duration : float, optional
@@ -110,6 +115,7 @@ class Problem:
     speed: Array | None = None
     gravity: Array = STANDARD_GRAVITY
     oblique: Oblique | None = None
+    motion: PlateMotion | None = None
     impacts: int | None = 5
     duration: float | None = None
     rest_speed: Array | None = None
@@ -164,6 +170,7 @@ class Problem:
             raise InputError("stiffness and damping of the local element must be greater than 0 and finite")
         if self.plate.rigid is not None and np.any(np.asarray(self.gravity) > 0):
             raise InputError("nothing holds the plate, so that it falls away from under the sphere: set gravity to 0, and give speed")
+        self._check_motion()
         if self.vibrates and isinstance(self.laws[0], InstantaneousLaw):
             raise InputError(f"{self.laws[0].name} gives no force, and bodies that deform need one; take another law")
         if self.oblique is not None and not isinstance(self.oblique, Oblique):
@@ -192,14 +199,57 @@ class Problem:
         if any(basis.along is None for basis in bases):
             raise InputError("modes of a plate that is hit obliquely need `along`, the motion of their contact point along the plate")
         if oblique.friction is not None and not isinstance(oblique.friction, CompliantFriction):
-            words = f"{oblique.friction.name} has no tangential compliance, which friction on bodies that deform needs"
+            words = f"{oblique.friction.name} has no tangential compliance, which friction needs on bodies that deform or are shaken"
             raise InputError(f'{words}; take "mdr" or one of the "mindlin" laws')
+
+    def _check_motion(self) -> None:
+        """Check what a plate on supports that move may have."""
+        if self.motion is None:
+            return
+        if not isinstance(self.motion, PlateMotion):
+            raise InputError(f"motion must be a PlateMotion, not {self.motion!r}")
+        if self.plate.rigid is not None:
+            raise InputError("nothing holds the plate, so that no motion of supports reaches it; leave out its motion")
+        if len(self.motion.phasors) > 1 and self.duration is None:
+            raise InputError("a motion of several harmonics does not repeat: give the duration of the run")
+        if self.sensors:
+            raise InputError(
+                "sensors see the vibration that impacts excite, and a plate whose supports move has its own; leave one of them out"
+            )
+        if self.oblique is not None and (self.plate.modes is not None or isinstance(self.laws[0], InstantaneousLaw)):
+            words = "only a rigid plate that moves is hit obliquely, and under a law with a force"
+            raise InputError(f"{words}; leave out what is oblique, or the motion")
+        place, speed, _ = self.surface(0.0)
+        if self.height is not None and not np.all(np.asarray(self.height) - self.sphere.contact_offset > place):
+            raise InputError(
+                "the plate begins its motion above the lowest point of the sphere; let it fall from higher, or change the phase"
+            )
+        if self.speed is not None and not np.all(np.asarray(self.speed) > -speed):
+            raise InputError(
+                "the plate recedes from the sphere as fast as it comes down; give a higher speed, or another phase of the motion"
+            )
 
     @property
     def vibrates(self) -> bool:
         """Whether anything but the contact of the law deforms, or anything but the sphere moves."""
         modes = (self.sphere.modes, self.plate.modes, self.plate.rigid, self.local_element)
-        return any(part is not None for part in modes) or bool(self.quasi_static)
+        shaken = self.shaken and not isinstance(self.laws[0], InstantaneousLaw)
+        return any(part is not None for part in modes) or bool(self.quasi_static) or shaken
+
+    @property
+    def shaken(self) -> bool:
+        """Whether the surface of the plate moves without being hit: along its normal, or along itself where the drop is oblique."""
+        along = self.motion is not None and self.oblique is not None and bool(np.any(self.motion.amplitude))
+        return self.motion is not None and (along or bool(np.any(self.surface_phasors)))
+
+    @cached_property
+    def surface_phasors(self) -> Complex:
+        """Phasors of the surface at the contact point where nothing hits it [m] (k,), as `PlateMotion.at` takes them."""
+        return np.zeros(0, dtype=complex) if self.motion is None else steady_phasors(self.motion, self.plate.modes)
+
+    def surface(self, time: Array) -> Floats:
+        """Return place [m], velocity [m/s] and acceleration [m/s^2] of that surface, upwards, at times [s] (...), (3, ...)."""
+        return np.zeros((3, *np.shape(time))) if self.motion is None else self.motion.at(time, self.surface_phasors)
 
     @cached_property
     def shape(self) -> tuple[int, ...]:

@@ -12,7 +12,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from vibroimpact.arrays import Floats
-from vibroimpact.dynamics.columns import HISTORY_COLUMNS, OBLIQUE_HISTORY_COLUMNS, VIBRATION_HISTORY_COLUMNS, meanings
+from vibroimpact.dynamics.columns import (
+    HISTORY_COLUMNS,
+    OBLIQUE_HISTORY_COLUMNS,
+    SHAKEN_HISTORY_COLUMNS,
+    VIBRATION_HISTORY_COLUMNS,
+    meanings,
+)
 from vibroimpact.dynamics.energy import why_failed
 from vibroimpact.dynamics.history_grid import points_kept, thinned
 from vibroimpact.dynamics.leg import Leg
@@ -24,6 +30,8 @@ from vibroimpact.dynamics.rigid.segments import FlightSegment, RestSegment
 from vibroimpact.dynamics.rigid.timeline import Timeline, end_of, timeline_of
 from vibroimpact.dynamics.sensors.recording import Signal
 from vibroimpact.dynamics.sensors.sensor import Sensor, sample_count
+from vibroimpact.dynamics.shaken.ride import RideSegment
+from vibroimpact.dynamics.shaken.steady import steady_modes
 from vibroimpact.dynamics.status import Ended, status_of
 from vibroimpact.dynamics.truncation import truncation_estimates
 from vibroimpact.errors import InputError, did_you_mean
@@ -119,8 +127,9 @@ class Response:
     def history_columns(self) -> dict[str, tuple[str, str]]:
         """Unit and meaning of the columns of a history."""
         of_vibration = VIBRATION_HISTORY_COLUMNS if self.problem.vibrates else {}
+        moving = {} if self.problem.motion is None else SHAKEN_HISTORY_COLUMNS
         along = {} if self.problem.oblique is None else OBLIQUE_HISTORY_COLUMNS
-        return meanings({**HISTORY_COLUMNS, **of_vibration, **along})
+        return meanings({**HISTORY_COLUMNS, **of_vibration, **moving, **along})
 
     @property
     def status(self) -> str:
@@ -228,7 +237,7 @@ class Response:
         Returns
         -------
         dict of str to array
-            "sphere" and "plate", (T, modes) [kg^1/2 m]; times a mode's shape they are displacements.
+            "sphere" and "plate", (T, modes) [kg^1/2 m]; times a mode's shape they are displacements, of a plate relative to its supports.
         """
         from vibroimpact.dynamics.vibrating.bodies import slices_of
 
@@ -239,7 +248,11 @@ class Response:
         found = np.zeros((len(flat), plate.stop))
         for number in () if isinstance(segments, Timeline) else np.unique(index).tolist():
             segment, here = segments[number], index == number
-            found[here] = segment.state(np.minimum(flat[here], segment.end) - segment.start).displacement
+            found[here] = segment.state(np.minimum(flat[here], segment.end) - segment.start).displacement[:, : plate.stop]
+        motion, modes = self.problem.motion, self.problem.plate.modes
+        if motion is not None and modes is not None:
+            turned = np.exp(1j * motion.angular_frequency * flat[:, None])
+            found[:, plate] += (turned @ steady_modes(motion, modes).T).imag
         return {"sphere": found[:, sphere], "plate": found[:, plate]}
 
     def signals(self, *sensors: Sensor) -> dict[str, Signal]:
@@ -344,9 +357,9 @@ class Response:
         problem = self.problem
         segment, mass, gravity = segments[number], float(problem.sphere.mass), float(problem.gravity)
         gap, velocity, force, stored, lost, plastic = segment.at(times)
-        lost_before, plastic_before = segments.spent[number]
+        lost_before, plastic_before, drive_before = segments.spent[number]
         resting, flying = isinstance(segment, RestSegment), isinstance(segment, FlightSegment)
-        return {
+        found = {
             "time_s": segment.start + times,
             "position_m": float(problem.sphere.contact_offset) + gap,
             "velocity_m_s": velocity,
@@ -360,6 +373,11 @@ class Response:
             "plastic_work_J": plastic_before + plastic,
             "written_off_at_rest_J": np.full_like(times, self.rest.written_off[0] if resting else 0.0),
         }
+        if problem.motion is not None:
+            place, surface_velocity, _ = problem.surface(found["time_s"])
+            drive = drive_before - (segment.drive_work(times) if isinstance(segment, RideSegment) else 0.0 * times)
+            found |= {"surface_m": place, "surface_velocity_m_s": surface_velocity, "drive_J": drive}
+        return found
 
     @cached_property
     def _segments(self) -> Sequence[VibratingSegment] | Timeline:
@@ -373,12 +391,17 @@ class Response:
             from vibroimpact.dynamics.vibrating.segments import vibrating_timeline
 
             return vibrating_timeline(self.legs, self.rest.lying[0], end)
-        plastic, rest = self.impacts["plastic_work_J"], None
-        if self.outcomes[0].at_rest:
+        plastic = self.impacts["plastic_work_J"]
+        rest: RestSegment | RideSegment | None = None
+        ride, work = self.legs[-1].ride, self.impacts.get("plate_work_J", np.zeros(len(plastic)))
+        if self.outcomes[0].at_rest and ride is not None:
+            begin = end_of(self.legs[-1])
+            rest = RideSegment(begin, end, ride, begin)
+        elif self.outcomes[0].at_rest:
             weight = float(self.problem.sphere.mass) * float(self.problem.gravity)
             points = 2 if self.problem.oblique is None else 97
             rest = RestSegment(end_of(self.legs[-1]), end, float(self.rest.sag[0]), weight, float(self.rest.stored[0]), points)
-        return timeline_of(self.legs, rest, np.stack([self.impacts["energy_lost_J"] - plastic, plastic], axis=1))
+        return timeline_of(self.legs, rest, np.stack([self.impacts["energy_lost_J"] - plastic, plastic, -work], axis=1))
 
     @cached_property
     def _starts(self) -> Floats:

@@ -11,7 +11,7 @@ from vibroimpact.arrays import Drops, Floats
 from vibroimpact.contact.law import CompliantLaw, ContactLaw, InstantaneousLaw
 from vibroimpact.contact.static import static_indentation
 from vibroimpact.dynamics.bodies import Bodies
-from vibroimpact.dynamics.columns import OBLIQUE_IMPACT_COLUMNS
+from vibroimpact.dynamics.columns import OBLIQUE_IMPACT_COLUMNS, SHAKEN_IMPACT_COLUMNS
 from vibroimpact.dynamics.contact import CAPTURED, FAILED, RIDING
 from vibroimpact.dynamics.encounter import Encounter, encounter_of
 from vibroimpact.dynamics.energy import CLOSURE_LIMIT, WRITE_OFF_LIMIT, close_ledger
@@ -41,6 +41,8 @@ class Run:
             self.gap, self.velocity = self.spread(problem.height) - self.radius, self.spread(problem.velocity)
         else:
             self.velocity = -self.spread(problem.speed)
+            # at touch: apart by the rounding error of the place of a plate that is shaken
+            self.gap = self.gap + problem.surface(0.0)[0] + 4e-15 * np.abs(problem.surface_phasors).sum()
         self.oblique = None if problem.oblique is None else ObliqueMotion(problem.oblique, self.mass, self.radius)
         self.energy_in = self.mechanical_energy()
         if self.oblique is not None:
@@ -51,13 +53,19 @@ class Run:
         self.end_time, self.rest_time = np.full(self.size, np.nan), np.full(self.size, np.nan)
         self.sag, self.stored, self.written_off = np.zeros(self.size), np.zeros(self.size), np.zeros(self.size)
         self.rest_speed = self.default_rest_speed() if problem.rest_speed is None else self.spread(problem.rest_speed)
-        self.bodies = self.vibrating_bodies() if problem.vibrates else RigidBodies(self.size, solve_contact)
+        self.bodies = self.moving_bodies(solve_contact) if problem.vibrates or problem.shaken else RigidBodies(self.size, solve_contact)
         self.memories = {name: self.spread(value) for name, value in problem.laws[0].memories().items()}
-        self.rows = ImpactRows((*self.bodies.columns, *(() if self.oblique is None else OBLIQUE_IMPACT_COLUMNS)), self.size)
+        further = (*(() if problem.motion is None else SHAKEN_IMPACT_COLUMNS), *(() if self.oblique is None else OBLIQUE_IMPACT_COLUMNS))
+        self.rows = ImpactRows((*self.bodies.columns, *further), self.size)
 
-    def vibrating_bodies(self) -> Bodies:
-        """Return the bodies of the problem, of which one vibrates."""
-        from vibroimpact.dynamics.vibrating.bodies import VibratingBodies  # a drop of rigid bodies does not load what vibrates
+    def moving_bodies(self, solve_contact: SolvesContact) -> Bodies:
+        """Return the bodies of the problem, of which one vibrates or is shaken."""
+        # a drop of rigid bodies does not load what vibrates
+        if not self.problem.vibrates:
+            from vibroimpact.dynamics.shaken.bodies import ShakenBodies
+
+            return ShakenBodies(self.problem, self.mass, self.gravity, solve_contact)
+        from vibroimpact.dynamics.vibrating.bodies import VibratingBodies
 
         return VibratingBodies(self.problem, self.mass, self.gravity, self.oblique)
 
@@ -85,7 +93,9 @@ class Run:
         done = len(self.rows) / (self.problem.impacts or MOST_IMPACTS)
         if self.problem.duration is not None:
             done = max(done, float(self.time[self.moving].min()) / self.problem.duration)
-        if self.problem.impacts is None and self.rows:  # up to rest: the logarithm of the speed falls about linearly
+        if (
+            self.problem.impacts is None and self.rows and not self.problem.shaken
+        ):  # up to rest: the logarithm of the speed falls about linearly
             first = self.rows.first["approach_speed_m_s"][self.moving]
             slowed = np.log(first / self.velocity[self.moving]) / np.log(first / self.rest_speed[self.moving])
             done = max(done, float(np.nanmin(np.clip(slowed, 0.0, 1.0), initial=1.0)))
@@ -109,7 +119,7 @@ class Run:
         end = np.inf if self.problem.duration is None else self.problem.duration
         last, outcome = np.full(len(drops), end), Outcome.IMPACTS
         if len(self.rows) in (self.problem.impacts, MOST_IMPACTS):
-            last = np.minimum(flight.apex()[0], end)
+            last = np.minimum(np.minimum(flight.apex()[0], touch), end)  # a plate that is shaken may come sooner
             outcome = Outcome.IMPACTS if len(self.rows) == self.problem.impacts else Outcome.LIMIT
         by_time = last == end
         last = np.maximum(last, flight.start)  # a contact under way at the end of the run is finished first
@@ -141,13 +151,18 @@ class Run:
         row = self.rows.add()
         row["impact"][drops], row["time_s"][drops], row["approach_speed_m_s"][drops] = len(self.rows), touch, speed
         row["restitution_asked"][drops] = _nominal_restitution(law)
+        if self.problem.motion is not None:
+            row["plate_velocity_m_s"][drops] = self.problem.surface(touch)[1]
         if isinstance(law, InstantaneousLaw):
-            self.time[drops], self.gap[drops], self.velocity[drops] = touch, 0.0, law.separation_speed(speed, self.mass[drops])
-            row["separation_speed_m_s"][drops] = self.velocity[drops]
+            (place, velocity, _), separation = self.problem.surface(touch), law.separation_speed(speed, self.mass[drops])
+            self.time[drops], self.gap[drops], self.velocity[drops] = touch, place, velocity + separation
+            row["separation_speed_m_s"][drops] = separation
             row["duration_s"][drops] = row["max_indentation_m"][drops] = row["plastic_work_J"][drops] = 0.0
             if self.oblique is not None:
-                self.oblique.collide_at_once(drops, self.mass[drops] * (speed + self.velocity[drops]), row)
-            lost = 0.5 * self.mass[drops] * (speed**2 - self.velocity[drops] ** 2)
+                self.oblique.collide_at_once(drops, self.mass[drops] * (speed + separation), row)
+            lost = 0.5 * self.mass[drops] * (speed**2 - separation**2)
+            if self.problem.shaken:
+                leg, lost = self.ride(leg, touch, speed, lost, row)
         else:
             assert isinstance(law, CompliantLaw)
             closing = self.bodies.closing_speed(drops, speed, self.velocity[drops])
@@ -157,16 +172,35 @@ class Run:
         self.dissipated[drops] += lost - row["plastic_work_J"][drops]
         self.plastic[drops] += row["plastic_work_J"][drops]
         separation = row["separation_speed_m_s"][drops]
+        rising = np.maximum(self.velocity[drops], 0.0) if self.problem.shaken else separation
         row["restitution_achieved"][drops] = separation / speed
         row["energy_lost_J"][drops] = lost
         with np.errstate(divide="ignore", invalid="ignore"):
-            rise = np.where(self.gravity[drops] > 0.0, 0.5 * separation**2 / self.gravity[drops], np.nan)
+            rise = np.where(self.gravity[drops] > 0.0, 0.5 * rising**2 / self.gravity[drops], np.nan)
         row["rebound_height_m"][drops] = self.radius[drops] + self.gap[drops] + rise
         if self.oblique is not None:
             self.leave_dents(drops, row)
         moving = self.moving[drops]
         self.stop_resting(drops[moving], law if moving.all() else law.take(np.flatnonzero(moving)), row)
         return leg
+
+    def ride(self, leg: Leg, touch: Floats, speed: Floats, lost: Floats, row: dict[str, Floats]) -> tuple[Leg, Floats]:
+        """Let drops that hardly rebound from a shaken plate ride on it; return the leg with the rides, and the energy lost [J].
+
+        `speed`: at which they met the plate [m/s]. `lost`: in the impact without what is lost as they come to ride [J].
+        """
+        from vibroimpact.dynamics.shaken.bodies import ShakenBodies
+
+        assert isinstance(self.bodies, ShakenBodies)
+        drops, separation = leg.contact_drops, row["separation_speed_m_s"][leg.contact_drops]
+        ride = self.bodies.ride(drops, touch, separation, self.rest_speed[drops])
+        rides, end = ride.end > touch, np.where(np.isfinite(ride.end), ride.end, touch)
+        work = ride.mass * (speed + np.where(rides, 0.0, separation)) * ride.surface(touch)[1] + ride.energy(end) - ride.energy(touch)
+        self.bodies.work[drops] += work
+        row["plate_work_J"][drops] = work
+        carried = drops[rides]
+        self.time[carried], (self.gap[carried], self.velocity[carried], _) = end[rides], ride.surface(end[rides])
+        return replace(leg, ride=ride), lost + np.where(rides, 0.5 * ride.mass * separation**2, 0.0)
 
     def leave_dents(self, drops: Drops, row: dict[str, Floats]) -> None:
         """Forget the dents of drops that move on by more than the radius of their contact before they touch again."""
@@ -228,7 +262,8 @@ class Run:
         with np.errstate(divide="ignore", invalid="ignore"):
             # flights are a geometric series with the ratio of the last restitution
             missing = 1.0 - row["restitution_achieved"][slow]
-            limit = self.time[slow] + 2.0 * self.velocity[slow] / self.gravity[slow] / np.where(missing > 1e-6, missing, 0.0)
+            speed = self.velocity[slow] - self.problem.surface(self.time[slow])[1]
+            limit = self.time[slow] + 2.0 * speed / self.gravity[slow] / np.where(missing > 1e-6, missing, 0.0)
         self.bring_to_rest(slow, law.take(np.flatnonzero(resting)), limit, np.zeros(len(slow)))
         self.stop(slow, Outcome.REST_SPEED, np.where(np.isfinite(limit), limit, self.time[slow]))
 
@@ -261,6 +296,9 @@ class Run:
         final_gap, final_velocity = self.final_motion(np.flatnonzero(at_rest))
         vibration = self.bodies.energies()
         added = self.mass * self.gravity * self.deepest + np.maximum(-self.stored, 0.0)  # the stored energy is negative where it sticks
+        if self.problem.motion is not None:
+            vibration = {"drive_J": np.zeros(self.size), **vibration}
+            added += np.maximum(-vibration["drive_J"], 0.0)
         energy = close_ledger(
             self.energy_in,
             added,

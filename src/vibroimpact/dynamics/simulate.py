@@ -15,6 +15,7 @@ from vibroimpact.dynamics.phase_plane.contact_solver import contact_solver
 from vibroimpact.dynamics.problem import StatesProblem
 from vibroimpact.dynamics.response import Response
 from vibroimpact.dynamics.run import Run
+from vibroimpact.dynamics.shaken.statement import PlateMotion
 from vibroimpact.errors import ComputationError, InputError
 
 _HISTORY = 100.0  # factor between the tolerance of impacts and that of contacts from which histories are read
@@ -90,7 +91,7 @@ def _simulated(problem: StatesProblem, progress: Callable[[float], None] | None 
         raise InputError(f"simulate takes a Problem, or a case as vi.load_case(...) reads it, not {problem!r}")
     stated = problem.to_problem()
     run = Run(stated, contact_solver(stated.laws[0], stated.tolerance, math.prod(stated.shape), finer=_HISTORY))
-    legs: PackedList[Leg] | list[Leg] = PackedList[Leg](Rule, PlaneRule) if stated.shape == () and not stated.vibrates else []
+    legs: PackedList[Leg] | list[Leg] = PackedList[Leg](Rule, PlaneRule, PlateMotion) if stated.shape == () and not stated.vibrates else []
     while run.moving.any():
         legs.append((yield from run.advance()))
         if progress is not None:

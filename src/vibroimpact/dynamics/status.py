@@ -46,7 +46,8 @@ def status_of(run: Ended) -> str:
     if outcome is Outcome.DURATION:
         asked = float(run.problem.duration or end)
         finished = f", and the contact under way was finished, at {_time(run, end, 9)} s" if end > asked else ""
-        riding = f"; {_riding(run)}" if np.isfinite(run.rest.left[0]) else ""
+        rides = run.problem.shaken and number and np.isnan(run.impacts["separation_speed_m_s"][-1])
+        riding = f"; {_riding(run)}" if np.isfinite(run.rest.left[0]) or rides else ""
         return f"Stopped {after} at {asked:.6g} s, the duration asked for{finished}{riding}."
     if outcome is Outcome.LIMIT:
         return f"Stopped {after}, the most that are followed, at {_time(run, end, 6)} s; the sphere is not at rest."
@@ -56,6 +57,9 @@ def status_of(run: Ended) -> str:
         return f"The sphere falls off the edge of the plate {after}, and is level with its surface at {_time(run, end, 6)} s."
     if outcome is Outcome.FAILED:
         return f"Failed {after}: {why_failed(run.energy)}"
+    if run.problem.shaken:
+        when = _time(run, float(run.rest.time[0]), 7)
+        return f"At rest {after}: from {when} s on the sphere moves with the plate, which does not fall away from under it any more."
     return f"At rest {after}: {_at_rest(run)}{_moves_on(run)}"
 
 
@@ -72,6 +76,8 @@ def _ended_by(run: Ended, outcome: Outcome) -> str:
 
 def _riding(run: Ended) -> str:
     """Return the sentence on a sphere that is still in contact and not at rest."""
+    if run.problem.shaken:
+        return "the sphere rides on the plate, which is shaken"
     return f"the sphere rides on the plate and is not at rest, with {_shown(run, float(run.rest.left[0]), 3)} J left in vibration"
 
 

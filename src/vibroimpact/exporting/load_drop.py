@@ -92,9 +92,11 @@ def drop_of_result(result: Result, case: Case, function: tuple[str, SpeedFunctio
 
 
 def _check_flat(case: Case) -> None:
-    """Raise if the sphere falls on another sphere, which no export format supports."""
+    """Raise if the sphere falls on another sphere, or on a plate that moves, which no export format supports."""
     if case.plate.radius is not None:
         raise InputError("what is exported falls on a flat plate, and this sphere falls on another", "plate.radius")
+    if case.plate.motion is not None:
+        raise InputError("what is exported falls on a plate at rest, and this one moves", "plate.motion")
 
 
 def _of_calibration(folder: Path) -> Drop:

@@ -81,7 +81,9 @@ def deflection_of(response: Response, frames: int = _FRAMES) -> Deflection | Non
         return grid, grid.interpolate(vertical).reshape(len(vertical), -1)
 
     grid, shapes = model.cached("vertical displacement on a grid", shapes_on_grid, POINTS)
-    height = response.modal(time)["plate"] @ shapes
+    height, motion = response.modal(time)["plate"] @ shapes, response.problem.motion
+    if motion is not None:
+        height += motion.direction[2] * motion.at(time)[0][:, None]
     history = response.at(time, ("position_m", "plate_deflection_m"))
     return Deflection(
         time,

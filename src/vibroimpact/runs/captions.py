@@ -65,7 +65,8 @@ def _velocity(result: Result) -> str:
         return "The sphere falls freely through the whole run."
     approach, separation = float(impacts["approach_speed_m_s"][0]), float(impacts["separation_speed_m_s"][0])
     return (
-        f"In impact 1 the sphere arrives at {text(approach, 'm/s')} and leaves at {text(separation, 'm/s')}: "
+        f"In impact 1 the sphere arrives at {text(approach, 'm/s')} and leaves at {text(separation, 'm/s')}"
+        f"{', relative to the plate' if 'plate_velocity_m_s' in impacts else ''}: "
         f"a restitution of {fixed(separation / approach, 4)}. Between impacts the line's slope is gravity alone."
     )
 
@@ -100,9 +101,11 @@ def _energy(result: Result) -> str:
     put_in = result.energy["input_J"]
     words = f"Of {text(put_in, 'J')} put in, {energy_text(result, 'contact_dissipated_J', 'plastic_work_J')} is lost in contact by the end."
     words += _vibration(result) if result.vibrates else ""
+    if result.energy.get("drive_J"):
+        words += f" The moving plate {'brought' if result.energy['drive_J'] < 0.0 else 'took'} {text(abs(result.energy['drive_J']), 'J')}."
     if np.min(result.history["potential_J"]) < -0.01 * put_in:
         words += " Below the height of first touch the potential energy is negative; there the other bands begin below zero."
-    return words + " The bands add up to the energy put in at all times."
+    return words + f" The bands add up to the energy put in{' and brought so far' if 'drive_J' in result.energy else ''} at all times."
 
 
 def _vibration(result: Result) -> str:

@@ -14,6 +14,7 @@ from vibroimpact.cases.case import Case
 from vibroimpact.cases.costs import describe_costs
 from vibroimpact.cases.doubts import doubts
 from vibroimpact.cases.expected import expected_of, expected_restitution
+from vibroimpact.cases.motion import motion_length
 from vibroimpact.cases.oblique import friction_law_of, is_oblique
 from vibroimpact.cases.pair import contact_pair, is_free_sphere
 from vibroimpact.cases.rigid import contact_laws_of, deforms, elastic_names, impact_limit, mass_of_sphere, touch_speed
@@ -31,7 +32,8 @@ def _plate_text(case: Case) -> str:
     if plate.radius is not None:
         return f"in its place a sphere, radius {plate.radius:g} m, {'free' if plate.supports == 'free' else 'rigid, held fixed'}"
     size = f", {' x '.join(f'{side:g}' for side in plate.size)} m" if plate.size else ""
-    return f"{'rigid, held fixed' if plate.model == 'rigid' else 'elastic'}{size}"
+    held = "held fixed" if plate.motion is None else "moved with its supports"
+    return f"{f'rigid, {held}' if plate.model == 'rigid' else 'elastic'}{size}"
 
 
 def case_explained(case: Case, aside: Container[str] = ()) -> RenderableType:
@@ -49,6 +51,7 @@ def case_explained(case: Case, aside: Container[str] = ()) -> RenderableType:
     rows: list[tuple[str, str]] = [
         ("sphere", f"radius {radius:g} m, mass {mass:.6g} kg, {case.sphere.model}, of {_material_text(case.sphere.material)}"),
         ("plate", f"{_plate_text(case)}, of {_material_text(case.plate.material)}"),
+        *_motion_rows(case),
         *_elastic_rows(case),
         *_coupling_rows(case),
         ("effective modulus", f"{pair.effective_modulus:.6g} Pa"),
@@ -88,6 +91,19 @@ def case_explained(case: Case, aside: Container[str] = ()) -> RenderableType:
     rows += [("" if number else "cost", line) for number, line in enumerate(describe_costs(case))]
     found = doubts(resolved_case(case), expected, aside)
     return Group(Text(case.name or "a drop", style="bold"), facts(rows), *doubt_lines(found))
+
+
+def _motion_rows(case: Case) -> list[tuple[str, str]]:
+    """Return the row on the motion of the plate's supports."""
+    motion = case.plate.motion
+    if motion is None:
+        return []
+    along = f"along ({', '.join(f'{part:g}' for part in motion.direction)})"
+    if motion.file is not None:
+        return [("motion of supports", f"as in {motion.file}, for {motion_length(case):.6g} s, {along}")]
+    strength = float(motion.amplitude or 0.0) * (2.0 * math.pi * float(motion.frequency or 0.0)) ** 2
+    words = f"amplitude {motion.amplitude:g} m, frequency {motion.frequency:g} Hz, phase {motion.phase:g} rad, {along}"
+    return [("motion of supports", f"{words}: up to {strength:.4g} m/s2, {strength / STANDARD_GRAVITY:.4g} times standard gravity")]
 
 
 def _elastic_rows(case: Case) -> list[tuple[str, str]]:

@@ -64,10 +64,13 @@ def ledger_chart(result: Result, history: Mapping[str, Floats], caption: str) ->
     title = "Energy" + (" (bands stand on the potential energy where it is negative)" if sinks else "")
     # contacts are shaded where they are enlarged alone, since the bands cover the ground
     stack = Stack(history["time_s"], tuple(layers), _drawn_points(result, history))
-    marks: tuple[Stack | Level | Spans, ...] = (stack, Level(put_in, "total put in", "total"))
+    brought = -history["drive_J"] if "drive_J" in history else np.zeros(1)  # by a plate that is shaken
+    marks: tuple[Stack | Level | Spans, ...] = (stack, Level(put_in, "put in at the start" if brought.any() else "total put in", "total"))
     time = time_axis(result, views_of_contacts(result))
     low = float(min(np.min(bands["potential_J"]), 0.0))
-    panel = Panel(time, Axis("Energy", "J", range=(low, 1.06 * put_in)), (spans_of_contact(result), *marks))
+    panel = Panel(
+        time, Axis("Energy", "J", range=(low, 1.06 * (put_in + max(float(brought.max()), 0.0)))), (spans_of_contact(result), *marks)
+    )
     return Chart("energy", title, ((panel,),), caption, height=3.9)
 
 

@@ -63,6 +63,9 @@ def history_chart(result: Result, history: Mapping[str, Floats], quantity: Plott
     views = views_of_contacts(result, headline=lambda impact: quantity.headline(result, impact), level=level, level_label=label)
     time = time_axis(result, views)
     marks: list[Mark] = [spans_of_contact(result), Line(history["time_s"], history[quantity.column])]
+    if quantity is POSITION and "surface_m" in history and len(result.impacts["time_s"]):
+        above = touch_height(result) - _at(result, "surface_m", result.impacts["time_s"][:1])[0]
+        marks.append(Line(history["time_s"], history["surface_m"] + above, "where it touches the moving plate", "reference"))
     for (name, found), role in zip(quantity.marks, ("mark", "other mark"), strict=False):
         times, values = found(result)
         if len(times):
@@ -77,12 +80,20 @@ def _names(result: Result, times: Floats) -> tuple[str, ...]:
     return tuple(f"impact {number}" for number in impact)
 
 
+def _at(result: Result, column: str, times: Floats) -> Floats:
+    """Return a column of the history of a shaken plate at times [s]; zeros where the plate is at rest."""
+    if column not in result.history:
+        return np.zeros_like(times)
+    return np.asarray(np.interp(times, result.history["time_s"], result.history[column]))
+
+
 def tops_of_rebounds(result: Result) -> tuple[Floats, Floats]:
     """Return times [s] and heights of the sphere's centre [m] at the apex of each rebound within the run."""
     impacts, down = result.impacts, gravity_of(result)
     if down <= 0.0:
         return np.empty(0), np.empty(0)
-    top = impacts["time_s"] + impacts["duration_s"] + impacts["separation_speed_m_s"] / down
+    release = impacts["time_s"] + impacts["duration_s"]
+    top = release + (impacts["separation_speed_m_s"] + _at(result, "surface_velocity_m_s", release)) / down
     # a rebound during which the run ends or comes to rest does not reach its apex in the history
     reached = np.interp(top, result.history["time_s"], result.history["position_m"], right=np.nan)
     height = impacts["rebound_height_m"]
@@ -92,7 +103,9 @@ def tops_of_rebounds(result: Result) -> tuple[Floats, Floats]:
 
 def _largest_indentations(result: Result) -> tuple[Floats, Floats]:
     when = result.impacts["time_of_max_indentation_s"]
-    if result.vibrates:  # the plate moves too: position and indentation do not add up to the height at first touch
+    if (
+        result.vibrates or "surface_m" in result.history
+    ):  # the plate moves too: position and indentation do not add up to the height at first touch
         return when, np.interp(when, result.history["time_s"], result.history["position_m"])
     return when, touch_height(result) - result.impacts["max_indentation_m"]
 
@@ -110,9 +123,11 @@ def _acceleration_peaks(result: Result) -> tuple[Floats, Floats]:
 
 def _touch_and_release(result: Result) -> tuple[Floats, Floats]:
     impacts = result.impacts
-    times = np.stack([impacts["time_s"], impacts["time_s"] + impacts["duration_s"]], axis=1)
+    touch, release = impacts["time_s"], impacts["time_s"] + impacts["duration_s"]
+    before = _at(result, "surface_velocity_m_s", touch) - impacts["approach_speed_m_s"]
+    after = _at(result, "surface_velocity_m_s", release) + impacts["separation_speed_m_s"]
     # in the order of time, so that pages keep them in full precision
-    return times.ravel(), np.stack([-impacts["approach_speed_m_s"], impacts["separation_speed_m_s"]], axis=1).ravel()
+    return np.stack([touch, release], axis=1).ravel(), np.stack([before, after], axis=1).ravel()
 
 
 POSITION = PlottedQuantity(

@@ -65,7 +65,7 @@ def scene_of(result: Result) -> dict[str, Any]:
 
 
 def rigid_scene(result: Result) -> dict[str, Any]:
-    """Return what a page draws of a ball that bounces on a plate at rest, over the whole run; the same as `scene_of` otherwise.
+    """Return what a page draws of a ball that bounces on a plate that does not bend, over the whole run; the same as `scene_of` otherwise.
 
     Parameters
     ----------
@@ -82,15 +82,16 @@ def rigid_scene(result: Result) -> dict[str, Any]:
     # the lowest points lie between the frames: of a bounce at least its first touch is seen
     time = np.union1d(time, result.impacts["time_s"][:_FRAMES])
     height = np.interp(time, history["time_s"], history["position_m"])
+    surface = np.interp(time, history["time_s"], history.get("surface_m", np.zeros_like(history["time_s"])))
     reach = 1.1 * max(half)
     first = float(result.impacts["time_s"][0]) if len(result.impacts["time_s"]) else 0.0
     return {
         "x": np.array([-half[0], half[0]]),
         "y": np.array([-half[1], half[1]]),
-        "height": np.zeros((len(time), 4), dtype=np.float32),
+        "height": np.repeat(surface[:, None], 4, axis=1).astype(np.float32),
         "time": time - first,
         "sphere": height,
-        "contact_height": np.zeros(len(time)),
+        "contact_height": surface,
         "contact": [float(position[0]), float(position[1])],
         **({"path": [np.interp(time, history["time_s"], history[f"position_{axis}_m"]) for axis in "xy"]} if moves_along(history) else {}),
         "radius": radius,

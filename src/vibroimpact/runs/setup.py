@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -156,6 +157,8 @@ def setup_rows(result: Result) -> list[tuple[str, str]]:
     plate: Mapping[str, Any] = case["plate"]
     if (inclination := plate.get("inclination")) is not None:
         rows.append(("Inclination", f"{np.degrees(float(inclination)):.4g}° about y"))
+    if (motion := plate.get("motion")) is not None:
+        rows.append(("Motion of the supports", _motion_words(motion)))
     rows.append(("Contact law", _law_words({key: value for key, value in case["contact"].items() if key != "friction"})))
     if (friction := case["contact"].get("friction")) is not None:
         rows.append(("Friction", _law_words(friction)))
@@ -163,6 +166,17 @@ def setup_rows(result: Result) -> list[tuple[str, str]]:
         words = f"{one['quantity']} at {_place(one['position'])}, {_given(float(one['rate']), 'Hz')}"
         rows.append((f"Sensor {shortened(visible(one['name']), 60)}", words))
     return rows
+
+
+def _motion_words(motion: Mapping[str, Any]) -> str:
+    """Return the motion of the plate's supports in words."""
+    if (file := motion.get("file")) is not None:
+        words = [f"as in {shortened(visible(Path(file).name), 60)}"]
+    else:
+        words = [f"amplitude {_given(float(motion['amplitude']), 'm')}, frequency {_given(float(motion['frequency']), 'Hz')}"]
+        words += [f"phase {np.degrees(float(motion['phase'])):.4g}°"] if motion.get("phase") else []
+    along = [float(part) for part in motion["direction"]]
+    return ", ".join([*words, "along the normal" if not any(along[:2]) else f"along ({', '.join(f'{part:.4g}' for part in along)})"])
 
 
 def _body_words(body: Mapping[str, Any]) -> str:

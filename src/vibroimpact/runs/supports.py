@@ -167,6 +167,8 @@ def support_words(result: Result) -> str:
     given = plate.get("supports")
     if given == "free":
         return "free"
+    if plate.get("motion") is not None and plate.get("model", "rigid") == "rigid":
+        return "moved with its supports"
     if plate.get("model", "rigid") == "rigid":
         return "held fixed"
     if isinstance(given, str):

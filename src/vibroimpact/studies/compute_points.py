@@ -113,7 +113,7 @@ def _parts(study: _Study, places: Indices) -> Iterator[_Part]:
         return
     arrays = {key: values[places] for key, values in study.points.items() if is_array_key(key, values)}
     off_the_edge = any(key.startswith("plate.size.") for key in arrays) and is_oblique(with_arrays(case, arrays))
-    if deforms(case) or off_the_edge or not arrays:
+    if deforms(case) or off_the_edge or case.plate.motion is not None or not arrays:
         yield from _side_by_side(study, places)
         return
     height: Any = arrays.get("drop.height", case.drop.height)

@@ -296,7 +296,11 @@ def couple_bodies(
         given = (local.local_stiffness, local.local_damping)
         facts = {**coupling.facts, "local_stiffness_N_m": given[0], "local_damping_N_s_m": given[1]}
         return replace(found, local_element=given, facts=facts)
-    element, facts = _identified(case, local.measured, problem if local.measured.plate == "rigid" else found)
+    element, facts = _identified(
+        case,
+        local.measured,
+        replace(problem if local.measured.plate == "rigid" else found, motion=None),  # measured on a plate at rest
+    )
     return replace(found, local_element=element, facts={**coupling.facts, **facts})
 
 

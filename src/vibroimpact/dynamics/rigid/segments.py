@@ -16,6 +16,7 @@ from vibroimpact.dynamics.flight import Flight
 from vibroimpact.dynamics.phase_plane.motion import PlaneMotion
 from vibroimpact.dynamics.rigid.glide import Glide
 from vibroimpact.dynamics.rigid.stretch import Stretch
+from vibroimpact.dynamics.shaken.ride import RideSegment
 
 Motion = tuple[Floats, Floats, Floats, Floats, Floats, Floats]
 """Gap [m], upward velocity [m/s], contact force [N], stored energy [J], and energy lost in damping and in
@@ -118,4 +119,4 @@ class RestSegment:
         return -self.sag * same, 0.0 * same, self.weight * same, self.stored * same, 0.0 * same, 0.0 * same
 
 
-Segment = FlightSegment | ContactSegment | GlideSegment | RestSegment
+Segment = FlightSegment | ContactSegment | GlideSegment | RestSegment | RideSegment

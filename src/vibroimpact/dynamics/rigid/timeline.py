@@ -14,6 +14,7 @@ from vibroimpact.dynamics.phase_plane.motion import PlaneMotion
 from vibroimpact.dynamics.rigid.glide import Glide
 from vibroimpact.dynamics.rigid.segments import ContactSegment, FlightSegment, GlideSegment, RestSegment, Segment
 from vibroimpact.dynamics.rigid.stretch import Stretch
+from vibroimpact.dynamics.shaken.ride import RideSegment
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,16 +25,16 @@ class Timeline(Sequence[Segment]):
     ----------
     legs : sequence of Leg
         The flights and contacts of one drop.
-    rest : RestSegment or None
+    rest : RestSegment, RideSegment or None
         What comes after them, if the drop comes to rest.
     starts : array, shape (segments,)
         When each segment begins [s].
-    spent : array, shape (segments, 2)
-        Energy lost before each in damping and in plastic deformation [J].
+    spent : array, shape (segments, 3)
+        Energy lost before each in damping, in plastic deformation, and to the drive of the plate [J].
     """
 
     legs: Sequence[Leg]
-    rest: RestSegment | None
+    rest: RestSegment | RideSegment | None
     starts: Floats
     spent: Floats
     _firsts: Indices
@@ -61,19 +62,19 @@ class Timeline(Sequence[Segment]):
         return self._recent[leg][number - int(self._firsts[leg])]
 
 
-def timeline_of(legs: Sequence[Leg], rest: RestSegment | None, lost: Floats) -> Timeline:
+def timeline_of(legs: Sequence[Leg], rest: RestSegment | RideSegment | None, lost: Floats) -> Timeline:
     """Return the history of one drop.
 
     Parameters
     ----------
     legs : sequence of Leg
         Its flights and contacts.
-    rest : RestSegment or None
+    rest : RestSegment, RideSegment or None
         What comes after them, if it comes to rest.
-    lost : array, shape (impacts, 2)
-        Energy that each impact takes in damping and in plastic deformation [J].
+    lost : array, shape (impacts, 3)
+        Energy that each impact takes in damping, in plastic deformation, and minus the work of the drive of the plate [J].
     """
-    before = np.concatenate([np.zeros((1, 2)), np.cumsum(lost, axis=0)])
+    before = np.concatenate([np.zeros((1, 3)), np.cumsum(lost, axis=0)])
     starts: list[float] = []
     spent: list[Floats] = []
     firsts = []
@@ -82,10 +83,12 @@ def timeline_of(legs: Sequence[Leg], rest: RestSegment | None, lost: Floats) -> 
         so_far = before[number]
         segments = segments_of(leg)
         for segment in segments:
+            if isinstance(segment, RideSegment):
+                so_far = before[number + 1]
             starts.append(segment.start)
             spent.append(so_far)
             if isinstance(segment, (ContactSegment, GlideSegment)) and segment is not segments[-1]:
-                so_far = so_far + [float(part[0]) for part in segment.at(segment.duration)[-2:]]
+                so_far = so_far + np.array([*(float(part[0]) for part in segment.at(segment.duration)[-2:]), 0.0])
     if rest is not None:
         firsts.append(len(starts))
         starts.append(rest.start)
@@ -97,6 +100,9 @@ def segments_of(leg: Leg) -> list[Segment]:
     """Return the segments of a leg of one drop."""
     touch = float(leg.flight_end[0])
     segments: list[Segment] = [FlightSegment(float(leg.flight.start[0]), touch, leg.flight)]
+    if leg.ride is not None and touch < float(leg.ride.end[0]) < np.inf:
+        end = float(leg.ride.end[0])
+        segments.append(RideSegment(touch, end, leg.ride, end))
     if leg.contact is None or leg.encounter is None:
         return segments
     for piece in leg.contact.pieces:

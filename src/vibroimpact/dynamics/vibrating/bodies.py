@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from vibroimpact.arrays import Bools, Drops, Floats
+from vibroimpact.arrays import Bools, Complex, Drops, Floats
 from vibroimpact.bodies.body import Body
 from vibroimpact.contact.friction.law import CompliantFriction
 from vibroimpact.contact.law import CompliantLaw, ContactLaw
@@ -20,6 +20,7 @@ from vibroimpact.dynamics.lockstep import Coroutine, run_in_lockstep
 from vibroimpact.dynamics.oblique.motion import ObliqueMotion
 from vibroimpact.dynamics.oblique.state import ObliqueContacts
 from vibroimpact.dynamics.problem import Problem
+from vibroimpact.dynamics.vibrating.carried_motion import carry
 from vibroimpact.dynamics.vibrating.contact_equilibrium import ContactEquilibrium
 from vibroimpact.dynamics.vibrating.linear_system import FreeMotion, LinearSystem, State
 from vibroimpact.dynamics.vibrating.next_touch import next_touch
@@ -40,7 +41,8 @@ _MOST_PLACES = 8
 
 
 def system_of(problem: Problem, mass: float, gravity: float) -> LinearSystem:
-    """Return the linear system of a drop: the fall of the sphere, the rigid motions of the plate, the modes of both, and the local element.
+    """Return the linear system of a drop: the fall of the sphere, the rigid motions of the plate, the modes of both, the local element,
+    and the motion of a plate that is shaken.
 
     Parameters
     ----------
@@ -52,10 +54,14 @@ def system_of(problem: Problem, mass: float, gravity: float) -> LinearSystem:
     parts = [(np.zeros(1), np.zeros(1), np.array([mass**-0.5]))]
     of_bodies = ((problem.plate.rigid, 1.0), (problem.sphere.modes, -1.0), (problem.plate.modes, 1.0))
     parts += [(basis.angular_frequencies, basis.damping_ratios, sign * basis.contact) for basis, sign in of_bodies if basis]
+    driven = problem.motion.angular_frequency if problem.motion is not None and problem.shaken else np.zeros(0)
+    moves, _ = driven_motion_of(problem)
+    parts += [(driven, np.zeros_like(driven), np.full_like(driven, _IMMOVABLE * mass**-0.5 * moves[2]))]
     frequency, damping, shape = (np.concatenate(part) for part in zip(*parts, strict=True))
     of_rigid, of_sphere, of_plate = slices_of(problem)
     load, inside, ground = np.zeros(len(shape)), np.zeros(len(shape), dtype=bool), np.zeros(len(shape), dtype=bool)
     load[0], inside[of_sphere], ground[of_rigid], ground[of_plate] = gravity * mass**0.5, problem.sphere_inside, True, True
+    ground[of_plate.stop :] = True
     along = None
     if problem.oblique is not None:
         along = np.zeros((2, len(shape)))
@@ -63,18 +69,36 @@ def system_of(problem: Problem, mass: float, gravity: float) -> LinearSystem:
             if basis is not None:
                 assert basis.along is not None  # the problem has seen to it
                 along[:, where] = basis.along.T
+        along[:, of_plate.stop :] = _IMMOVABLE * mass**-0.5 * moves[:2, None]
     local = [problem.local_element] if problem.local_element else []
     rate = np.array([stiffness / damping for stiffness, damping in local])
     mobility = np.array([1.0 / damping for _, damping in local])
     contact = np.zeros(len(local), dtype=np.intp)
     residuals = {} if problem.plate.modes is None else problem.plate.modes.residuals
-    return LinearSystem(frequency, damping, shape[None], np.zeros(1), load, inside, ground[None], rate, mobility, contact, along, residuals)
+    of_elements = (rate, mobility, contact)
+    return LinearSystem(
+        frequency, damping, shape[None], np.zeros(1), load, inside, ground[None], *of_elements, along, residuals, len(driven)
+    )
+
+
+_IMMOVABLE = 1e-10
+"""Shape of a driven coordinate over that of the sphere [-]: of a mass 1e20 times that of the sphere, which no contact disturbs."""
+
+
+def driven_motion_of(problem: Problem) -> tuple[Floats, Complex]:
+    """Return the direction in which what drives a plate moves its surface (3,), and the phasors of that motion [m] (k,).
+
+    A rigid plate moves with its supports; of an elastic one only the motion along the normal is followed.
+    """
+    if problem.motion is None or problem.plate.modes is not None:
+        return np.array([0.0, 0.0, 1.0]), problem.surface_phasors
+    return np.array(problem.motion.direction), problem.motion.phasors
 
 
 def slices_of(problem: Problem) -> tuple[slice, slice, slice]:
     """Return the slices of the plate's rigid motions, the sphere's modes and the plate's modes among the coordinates of a drop.
 
-    The fall of the sphere is the first coordinate.
+    The fall of the sphere is the first coordinate; driven coordinates come last.
     """
     rigid = 0 if problem.plate.rigid is None else len(problem.plate.rigid.frequencies)
     ends = np.cumsum([1, rigid, modes_of(problem.sphere), modes_of(problem.plate)]).tolist()
@@ -112,6 +136,12 @@ class VibratingBodies:
         distinct = {(mass, gravity): self.system.with_sphere(mass**-0.5, gravity * mass**0.5) for mass, gravity in set(pairs)}
         self.systems, self.series = [distinct[pair] for pair in pairs], [problem.quasi_static] * size
         self.displacement, self.velocity = np.zeros((size, self.system.number)), np.zeros((size, self.system.number))
+        if driven := self.system.driven:
+            phasors = driven_motion_of(problem)[1] / (_IMMOVABLE * float(mass[0]) ** -0.5)
+            self.displacement[:, -driven:], self.velocity[:, -driven:] = (
+                phasors.imag,
+                self.system.angular_frequency[-driven:] * phasors.real,
+            )
         self.local = np.zeros((size, len(self.system.rate)))
         self.lost = np.zeros((size, self.system.number + 1))
         self.lying: list[RestMotion | None] = [None] * size
@@ -136,8 +166,9 @@ class VibratingBodies:
         states = [self.state(drop, *sphere) for drop, *sphere in zip(drops, flight.gap, flight.velocity, strict=True)]
         found = [self._touch(*one) for one in zip(drops.tolist(), states, levels.tolist(), guess.tolist(), strict=True)]
         motions, elapsed = tuple(motion for motion, _ in found), np.array([time for _, time in found])
-        touch, touches = flight.start + elapsed, np.isfinite(elapsed)
-        return touch, -self.rigid_speed(drops, flight.at(np.where(touches, touch, flight.start))[1]), motions
+        touch = flight.start + elapsed
+        when = np.where(np.isfinite(elapsed), touch, flight.start)
+        return touch, -self._rigid_speed(drops, flight.at(when)[1] - self.problem.surface(when)[1]), motions
 
     def _touch(self, drop: int, state: State, level: float, guess: float) -> tuple[FreeMotion, float]:
         """Return the free motion of a drop and the time until it touches [s], where it then is over the plate; `guess`: about that time."""
@@ -175,7 +206,11 @@ class VibratingBodies:
         return np.array([float(self.systems[drop].outer_rates(state)[0]) for drop, state in zip(drops, states, strict=True)])
 
     def rigid_speed(self, drops: Drops, velocity: Floats) -> Floats:
-        """Return the separation speed of the rigid motions [m/s], of sphere and plate."""
+        """Return the separation speed of the rigid motions [m/s], of sphere and plate, relative to what drives the plate."""
+        surface = [float(self.systems[drop].driven_motion(self.state(drop, 0.0, 0.0))[1]) for drop in drops]
+        return self._rigid_speed(drops, velocity - np.array(surface))
+
+    def _rigid_speed(self, drops: Drops, velocity: Floats) -> Floats:
         states = (self.state(drop, 0.0, up) for drop, up in zip(drops, velocity, strict=True))
         return np.array([-float(self.systems[drop].rigid_motion(state)[1][0]) for drop, state in zip(drops, states, strict=True)])
 
@@ -198,10 +233,14 @@ class VibratingBodies:
             system = self.systems[drop]
             before, after = (float(np.sum(system.energies(state), axis=0)[system.vibrating].sum()) for state in (start, found.state))
             row["closing_speed_m_s"][drop], row["contacts"][drop] = encounter.approach_speed[number], found.contacts
-            row["energy_to_vibration_J"][drop] = after - before + found.lost[:-1].sum()
+            row["energy_to_vibration_J"][drop] = after - before + found.lost[: system.number - system.driven].sum()
+            if self.problem.motion is not None:
+                row["plate_work_J"][drop] = -found.lost[system.number - system.driven : -1].sum()
             self.lost[drop, :-1] += found.lost[:-1]
             self.place(drop, found.state)
-            if found.outcome in (CAPTURED, SETTLED, RIDING):
+            if found.outcome == CAPTURED and system.driven:
+                self.lying[drop] = carry(ContactEquilibrium(system, found.local), found.state, found.stored)
+            elif found.outcome in (CAPTURED, SETTLED, RIDING) and not system.driven:
                 equilibrium = ContactEquilibrium(system, found.local)
                 self.left[drop] = equilibrium.excess(found.state, found.stored)
                 if found.outcome != RIDING:
@@ -269,6 +308,7 @@ class VibratingBodies:
             "plate_damping_J": self.lost[:, plate].sum(axis=1),
             "local_J": self.system.local_energy(state),
             "local_damping_J": self.lost[:, -1],
+            **({"drive_J": self.lost[:, -1 - driven : -1].sum(axis=1)} if (driven := self.system.driven) else {}),
         }
 
 

@@ -80,6 +80,24 @@ def near_equilibrium(system: LinearSystem, state: State, force: float, indentati
     return mass * abs(float(system.rigid_motion(state)[1][0])) * slowest < most
 
 
+def rides_for_good(equilibrium: ContactEquilibrium, state: State, force: float) -> bool:
+    """Whether a sphere on a rigid plate that is shaken will never leave it again.
+
+    The least force that carries it, its mass times gravity less the greatest downward acceleration of the plate, must exceed what is left
+    of its own oscillation on the contact: the difference of the force [N] from that of a sphere that moves with the plate, and the
+    amplitude of the force that the speed between them can still cause.
+    """
+    system = equilibrium.system
+    if system.number > 1 + system.driven or system.rate.size or system.along is not None:
+        return False  # other coordinates oscillate too, or it moves along the plate
+    driven, mass = slice(1, None), float(system.mass[0])
+    speeds = np.hypot(state.velocity[driven], system.angular_frequency[driven] * state.displacement[driven])
+    greatest = float((np.abs(system.shape[0, driven]) * system.angular_frequency[driven]) @ speeds)
+    carried = equilibrium.weight + mass * float(system.driven_motion(state)[2])
+    left = abs(force - carried) + np.sqrt(equilibrium.contact[0] * mass) * abs(float(system.rates(state)[0]))
+    return bool(left < _MARGIN * (equilibrium.weight - mass * greatest))
+
+
 @dataclass(frozen=True, eq=False)
 class ContactEquilibrium:
     """Equilibrium of a sphere on bodies that vibrate, and small oscillations about it as one linear system.

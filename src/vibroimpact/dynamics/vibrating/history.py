@@ -10,6 +10,8 @@ import numpy as np
 from vibroimpact.arrays import Floats
 from vibroimpact.dynamics.columns import MOTION_COLUMNS
 from vibroimpact.dynamics.problem import Problem
+from vibroimpact.dynamics.shaken.statement import PlateMotion
+from vibroimpact.dynamics.shaken.steady import steady_phasors
 from vibroimpact.dynamics.vibrating.bodies import bases_of_plate, centre_of, slices_of
 from vibroimpact.dynamics.vibrating.free_motion import FreePhase
 from vibroimpact.dynamics.vibrating.linear_system import LinearSystem, State
@@ -55,7 +57,7 @@ def _motion_columns(problem: Problem, segment: VibratingSegment, time: Floats, s
         "indentation_m": indentation,
         "kinetic_J": 0.5 * mass * fall_speed**2,
         "potential_J": -mass * gravity * depth,
-        "plate_deflection_m": state.displacement[:, system.ground] @ system.shape[0, system.ground],
+        "plate_deflection_m": state.displacement[:, system.ground] @ system.shape[0, system.ground] + system.driven_motion(state)[0],
     }
 
 
@@ -75,13 +77,29 @@ def _further_columns(problem: Problem, segment: VibratingSegment, time: Floats, 
         stored = stored + contact_energy
         if isinstance(motion, VibratingStretch):
             plastic = plastic - local.plastic_work(max(float(motion.contacts[0].approach[0]), local.release_level))
-    return {
+    found = {
         "contact_elastic_J": stored,
         "contact_dissipated_J": lost[:, -1].copy(),  # a view would keep the losses of all modes in memory
         "plastic_work_J": segment.lost_before[-1] + plastic,
         "written_off_at_rest_J": (motion.written_off if isinstance(motion, RestMotion) else 0.0) * same,
         **_body_columns(problem, system, state, lost, force),
     }
+    if problem.motion is not None:
+        found |= _shaken_columns(problem, problem.motion, segment.start + time, found, lost[:, -1 - system.driven : -1])
+    return found
+
+
+def _shaken_columns(problem: Problem, motion: PlateMotion, time: Floats, columns: dict[str, Floats], lost: Floats) -> dict[str, Floats]:
+    """Return the columns that only shaken plates have, and those of the plate's centre with its own motion.
+
+    `time`: since the start of the run [s] (T,). `columns`: with what impacts excite. `lost`: by the driven coordinates [J] (T, k).
+    """
+    place, velocity, _ = problem.surface(time)
+    modes = problem.plate.modes
+    centre = motion.at(time, steady_phasors(motion, modes, None if modes is None else modes.participation[:, 2] / modes.mass))
+    names = ("plate_displacement_m", "plate_velocity_m_s", "plate_acceleration_m_s2")
+    moving = {name: columns[name] + part for name, part in zip(names, centre, strict=True)}
+    return {**moving, "surface_m": place, "surface_velocity_m_s": velocity, "drive_J": lost.sum(axis=1)}
 
 
 def _contact_energies(local: LocalContact, system: LinearSystem, state: State) -> tuple[Floats, Floats]:

@@ -11,6 +11,9 @@ contact c by its shape :math:`\chi_{ci}`. With the contact forces F and the load
 where y is the approach of the surfaces, negative where there is a gap. A coordinate may lie *inside* the contacts of its body: it is then
 in series with the springs of the contact laws alone, :math:`F_{ci}` is the force of that spring, and the dashpot of the law spans it. For
 all other coordinates :math:`F_{ci} = F_c`.
+
+The last coordinates may be *driven*: a prescribed harmonic motion of the body below is an undamped oscillator whose mass is so large, and
+whose shape is so small, that no contact disturbs it. Its energy says nothing and is not counted; what counts is the work of its drive.
 """
 
 from __future__ import annotations
@@ -70,6 +73,8 @@ class LinearSystem(Oscillators):
         Displacement of the surface below along x and y at the only contact, by each coordinate [kg^-1/2]; where there is friction.
     residuals : mapping of str to array, shape (3,)
         Residual compliances between the only contact and the sensors, by their names [m/N].
+    driven : int, default 0
+        How many coordinates are driven, the last ones.
     """
 
     offset: Floats
@@ -81,6 +86,7 @@ class LinearSystem(Oscillators):
     local_contact: Indices
     along: Floats | None = None
     residuals: Mapping[str, Floats] = field(default_factory=dict)
+    driven: int = 0
 
     @cached_property
     def views(self) -> dict[tuple[int, ...], Any]:
@@ -115,8 +121,8 @@ class LinearSystem(Oscillators):
 
     @property
     def ground(self) -> Bools:
-        """Mask of the coordinates of the body below, of a drop (n,)."""
-        return np.asarray(self.below[0])
+        """Mask of the coordinates of the body below, of a drop, without those that are driven (n,)."""
+        return np.asarray(self.below[0] & (np.arange(self.number) < self.number - self.driven))
 
     @cached_property
     def vibrating(self) -> Bools:
@@ -176,8 +182,11 @@ class LinearSystem(Oscillators):
         return np.asarray(self.shape**2 @ self.flexibility + self.local_incidence @ self.local_compliance)
 
     def energies(self, state: State) -> tuple[Floats, Floats]:
-        """Return the kinetic and the strain energy of each coordinate [J]; states may have leading axes."""
-        return 0.5 * state.velocity**2, 0.5 * (self.angular_frequency * state.displacement) ** 2
+        """Return the kinetic and the strain energy of each coordinate [J], zero for driven ones; states may have leading axes."""
+        kinetic, strain = 0.5 * state.velocity**2, 0.5 * (self.angular_frequency * state.displacement) ** 2
+        if self.driven:
+            kinetic[..., -self.driven :] = strain[..., -self.driven :] = 0.0
+        return kinetic, strain
 
     def local_energy(self, state: State) -> Floats:
         """Return the energy in the springs of the massless elements [J]."""
@@ -210,6 +219,12 @@ class LinearSystem(Oscillators):
     def rigid_motion(self, state: State) -> tuple[Floats, Floats]:
         """Return the contribution of the rigid motions, and of the offset, to the approach [m] and to its rate [m/s] (..., contacts)."""
         return self.offset + state.displacement @ self.rigid_shape.T, state.velocity @ self.rigid_shape.T
+
+    def driven_motion(self, state: State) -> tuple[Floats, Floats, Floats]:
+        """Return what the driven coordinates contribute to the first approach [m], its rate [m/s] and its acceleration [m/s^2] (...)."""
+        driven = slice(self.number - self.driven, None)
+        shape, place = self.shape[0, driven], state.displacement[..., driven]
+        return place @ shape, state.velocity[..., driven] @ shape, -(place * self.angular_frequency[driven] ** 2) @ shape
 
     def accelerations(self, state: State, force: Floats) -> Floats:
         """Return the accelerations of the coordinates outside the contacts, under contact forces [N] (T, contacts): (T, n)."""

@@ -90,7 +90,7 @@ def time_to_separation(motion: FreeMotion, level: float, contact: int = 0) -> fl
 
 def _peak_speeds(system: LinearSystem, state: State) -> Floats:
     """Return an upper bound of the future speed of each mode, from its energy."""
-    return np.where(system.rigid, 0.0, np.sqrt(2.0 * sum(system.energies(state))))
+    return np.where(system.rigid, 0.0, np.sqrt(state.velocity**2 + (system.angular_frequency * state.displacement) ** 2))
 
 
 def _displacement_bound(system: LinearSystem, state: State, contact: int) -> float:

@@ -108,7 +108,7 @@ class ContactModes:
         self.pairs = np.ascontiguousarray(self.shapes[:, :, None] * self.shapes[:, None])
         self.rate, self.local_incidence = system.rate, system.local_incidence[rows]
         self.local_mobility = self.local_incidence * system.mobility
-        self.kind = (system.number, first, len(rows), len(self.rate), self.inside)
+        self.kind = (system.number, first, len(rows), len(self.rate), self.inside, system.driven)
 
 
 class ContactView:

@@ -43,7 +43,8 @@ class StretchMotion(NamedTuple):
 
     At the nodes: `accelerations` and `velocities` of the coordinates (N, n), and rates of the massless elements, `massless` (N, k). `end`:
     the state at the end. `gain`: increase of the energy of coordinates and massless elements, without the contact laws, and `rounding`: its
-    rounding error [J]. `lost`: energy lost by the damping of each coordinate, and last in the massless elements [J] (n + 1,).
+    rounding error [J]. `lost`: energy lost by the damping of each coordinate, and last in the massless elements [J] (n + 1,); of a driven
+    coordinate minus the work of its drive.
     """
 
     accelerations: Floats
@@ -156,7 +157,14 @@ class VibratingStretch:
         system = self.system
         in_laws = sum(contact.power for contact in self.contacts)
         lost = in_laws + (self.motion.massless**2 / system.mobility).sum(axis=1)
-        return np.concatenate([system.damping * self.velocities**2, lost[:, None]], axis=1)
+        by_coordinate = system.damping * self.velocities**2
+        if system.driven:
+            shapes = system.shape[self.view.contacts, -system.driven :]
+            pushed = self.force.T @ shapes
+            if self.rubbed is not None and system.along is not None:
+                pushed -= self.rubbed.force.T @ system.along[:, -system.driven :]
+            by_coordinate[:, -system.driven :] = -pushed * self.velocities[:, -system.driven :]
+        return np.concatenate([by_coordinate, lost[:, None]], axis=1)
 
     @cached_property
     def lost(self) -> Floats:
@@ -251,12 +259,15 @@ def stretch_motions(
     # as differences of squares, so that motion that the contact does not change causes no rounding error
     gain = 0.5 * (end.velocity - start.velocity) * (end.velocity + start.velocity)
     gain += (end.displacement - start.displacement) * (0.5 * frequency**2 * (end.displacement + start.displacement) - load)
+    begun = 0.5 * (start.velocity**2 + (frequency * start.displacement) ** 2)
+    if count := systems.views[0].system.driven:  # the energy of a driven coordinate is not counted, but the work of its drive
+        shapes = np.array([view.system.shape[view.contacts, -count:] for view in systems.views])
+        power = (shapes.swapaxes(1, 2) @ force) * velocities[:, -count:]
+        lost[:, -1 - count : -1] = -(power @ rule.integral[-1]) * across
+        gain[:, -count:] = begun[:, -count:] = 0.0
     in_springs = 0.5 * (end.local - start.local) * (end.local + start.local) * springs / mobility
     grown = (gain.sum(axis=1) + in_springs.sum(axis=1)).tolist()
-    begun, active_rigid = (
-        0.5 * (start.velocity**2 + (frequency * start.displacement) ** 2),
-        np.array([view.active_rigid for view in systems.views]),
-    )
+    active_rigid = np.array([view.active_rigid for view in systems.views])
     rounding = (begun * np.where(frequency > 0.0, _ROUNDING, _RIGID_ROUNDING * active_rigid)).sum(axis=1).tolist()
     return [
         StretchMotion(accelerations[one].T, velocities[one].T, massless[one].T, end.take(one), grown[one], rounding[one], lost[one])

@@ -18,7 +18,13 @@ from vibroimpact.contact.quasi_static import QuasiStatic
 from vibroimpact.dynamics.contact import CAPTURED, FAILED, RELEASED, RIDING, SETTLED
 from vibroimpact.dynamics.lockstep import Coroutine
 from vibroimpact.dynamics.vibrating.active_contact import ContactDefinition, closing_speed, locate_highest_peak, motion_speed
-from vibroimpact.dynamics.vibrating.contact_equilibrium import ContactEquilibrium, least_energy, near_equilibrium, separates_slower_than
+from vibroimpact.dynamics.vibrating.contact_equilibrium import (
+    ContactEquilibrium,
+    least_energy,
+    near_equilibrium,
+    rides_for_good,
+    separates_slower_than,
+)
 from vibroimpact.dynamics.vibrating.events import ROUNDING
 from vibroimpact.dynamics.vibrating.linear_system import FreeMotion, LinearSystem, State
 from vibroimpact.dynamics.vibrating.local import LocalContact
@@ -126,7 +132,12 @@ class _VisitMarch:
                 break
             separation_speed = self.separation_speed
             slow = separation_speed < self.rest_speed and self.gravity > 0.0
-            if slow and separation_speed > 0.0 and separates_slower_than(self.system, self.next_law, march.state, self.rest_speed):
+            if (
+                slow
+                and separation_speed > 0.0
+                and not self.system.driven
+                and separates_slower_than(self.system, self.next_law, march.state, self.rest_speed)
+            ):
                 outcome = SETTLED
                 break
             if not self.touches_again(slow) and separation_speed >= 0.0:
@@ -177,7 +188,9 @@ class _VisitMarch:
         return outcome
 
     def captured(self) -> bool:
-        """Whether the energy is too small to lift the sphere out of its indentation."""
+        """Whether the energy is too small to lift the sphere out of its indentation; never where a drive brings more."""
+        if self.system.driven:
+            return False
         active, local = self.active, self.active.local
         state = self.march.state
         energy = float(self.system.mechanical_energy(state) - self.system.common_energy(state)) + float(
@@ -191,18 +204,19 @@ class _VisitMarch:
         last, local = self.march.parts[-1].motion, self.active.local
         if not isinstance(last, VibratingStretch):
             return False
-        if not near_equilibrium(
-            self.system, self.march.state, float(last.contacts[0].force[-1]), self.active.overlap(self.system, self.march.state)
-        ):
+        force, driven = float(last.contacts[0].force[-1]), self.system.driven
+        if not driven and not near_equilibrium(self.system, self.march.state, force, self.active.overlap(self.system, self.march.state)):
             return False
         if self.equilibrium is None or self.equilibrium.local.law is not local.law:
             self.equilibrium = ContactEquilibrium(self.system, local)
+        if driven:
+            return rides_for_good(self.equilibrium, self.march.state, force)
         return self.equilibrium.linear and self.equilibrium.cannot_separate(self.march.state)
 
     @property
     def separation_speed(self) -> float:
-        """Speed at which the centres move apart [m/s]."""
-        return -float(self.system.rigid_motion(self.march.state)[1][0])
+        """Speed at which the centres move apart [m/s], or the sphere from what drives the plate."""
+        return -float(self.system.rigid_motion(self.march.state)[1][0] + self.system.driven_motion(self.march.state)[1])
 
     # apart -----------------------------------------------------------------------------------------
 
@@ -214,11 +228,13 @@ class _VisitMarch:
     def touches_again(self, without_limit: bool) -> bool:
         """Follow the free sphere to the top of its flight, or without limit; return whether the surfaces touch again before.
 
-        Where the next contact meets undeformed surfaces, the visit continues at least until these have separated.
+        Where the next contact meets undeformed surfaces, the visit continues at least until these have separated. Where the plate is
+        shaken, it continues as long as the surfaces meet more slowly than the rest speed: any faster touch is an impact of its own.
         """
         march, separation_speed, gravity = self.march, self.separation_speed, self.gravity
         free = FreeMotion(self.system, march.state)
-        top = np.inf if separation_speed <= 0.0 or gravity == 0.0 or without_limit else separation_speed / gravity
+        shaken = self.system.driven > 0
+        top = np.inf if separation_speed <= 0.0 or gravity == 0.0 or without_limit or shaken else separation_speed / gravity
         law, next_law = self.active.local.law, self.next_law
         level = float(next_law.touch_level)
         parted = time_to_separation(free, level)
@@ -233,6 +249,8 @@ class _VisitMarch:
             return False
         if without_limit and separation_speed > 0.0 and time > self.until - march.time:
             return False  # after the end of the run
+        if shaken and separation_speed >= 0.0 and float(free.motion(np.array(time))[1][0]) >= self.rest_speed:
+            return False
         march.append_free(free, time)
         self.active = march.begin_contact(0, law)
         return True

@@ -1,0 +1,36 @@
+"""The [plate.motion] table: a harmonic motion of the plate's supports, or a file with one."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import Field, model_validator
+
+from vibroimpact.cases.fields.quantities import Quantity
+from vibroimpact.cases.fields.section import Section
+from vibroimpact.errors import InputError
+from vibroimpact.ranges import Range
+
+
+class MotionTable(Section):
+    """How the supports of the plate move: harmonically, or as a file tells."""
+
+    amplitude: Annotated[float, Quantity("m", "amplitude of the motion", Range(at_least=0))] | None = None
+    frequency: Annotated[float, Quantity("Hz", "frequency of the motion", Range(above=0))] | None = None
+    phase: Annotated[float, Quantity("rad", "phase at the start; at 0 the plate passes its mean position, upwards")] = 0.0
+    file: str | None = Field(None, description="CSV file of the motion over time: time, and displacement or acceleration, with their units")
+    direction: tuple[Annotated[float, Quantity("", "x")], Annotated[float, Quantity("", "y")], Annotated[float, Quantity("", "z")]] = Field(
+        (0.0, 0.0, 1.0), description="direction of the motion along x, y and the normal z, of any length but 0"
+    )
+
+    @model_validator(mode="after")
+    def _one_of_two(self) -> MotionTable:
+        given = [name for name in ("amplitude", "frequency") if getattr(self, name) is not None]
+        if self.file is not None and (given or "phase" in self.model_fields_set):
+            raise InputError("give either a file or amplitude and frequency; both are given", "file")
+        if self.file is None and len(given) < 2:
+            missing = "amplitude" if given == ["frequency"] else "frequency" if given else "amplitude and frequency"
+            raise InputError(f"this key needs {missing}, or file in place of both")
+        if not any(self.direction):
+            raise InputError("a direction of length 0 is none; give one along x, y and z, such as [0, 0, 1]", "direction")
+        return self

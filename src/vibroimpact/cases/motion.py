@@ -1,0 +1,107 @@
+"""The motion of the plate's supports that a case describes, harmonic or from a file."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from vibroimpact.cases.fields.motion import MotionTable
+from vibroimpact.cases.fields.section import derived
+from vibroimpact.dynamics.shaken.statement import PlateMotion
+from vibroimpact.errors import InputError
+
+if TYPE_CHECKING:
+    from vibroimpact.arrays import Floats
+    from vibroimpact.cases.schema import CaseTable
+    from vibroimpact.measurements.table_file import TableFile
+
+_FEWEST, _MOST = 33, 20_000  # samples of a motion; each takes part in every search for a touch
+_EQUAL = 1e-3  # of a step: the deviation of rounded times from equal steps
+_UNKNOWN = 0.05  # of the range of a motion: the largest error of a sample found from its neighbours
+
+
+def motion_of(case: CaseTable) -> PlateMotion | None:
+    """Return the motion of the plate's supports; None if they are at rest.
+
+    Raises
+    ------
+    InputError
+        If the file can't be read, or does not tell a motion.
+    """
+    table = case.plate.motion
+    return None if table is None else _motion(table)[0]
+
+
+def motion_length(case: CaseTable) -> float:
+    """Return how long the motion of a file lasts [s]; infinite without one."""
+    return np.inf if case.plate.motion is None else _motion(case.plate.motion)[1]
+
+
+@derived
+def _motion(table: MotionTable) -> tuple[PlateMotion, float]:
+    """Return a motion, and how long it lasts [s]."""
+    size = float(np.linalg.norm(table.direction))
+    direction = (table.direction[0] / size, table.direction[1] / size, table.direction[2] / size)
+    if table.file is None:
+        assert table.amplitude is not None
+        assert table.frequency is not None
+        return PlateMotion(amplitude=table.amplitude, frequency=table.frequency, phase=table.phase, direction=direction), np.inf
+    from vibroimpact.dynamics.shaken.tabulated import tabulated_motion  # here, as few plates are shaken
+
+    try:
+        step, displacement = _samples(table.file)
+    except InputError as error:
+        raise InputError(error.message, "plate.motion.file") from None
+    return tabulated_motion(step, displacement, direction), step * (len(displacement) - 1)
+
+
+def _samples(file: str) -> tuple[float, Floats]:
+    """Return the step [s] and the displacements [m] of a file.
+
+    Raises
+    ------
+    InputError
+        If the file has neither displacements nor accelerations, its times have no equal steps, it has too few samples or too many, or a
+        sample can't be guessed from its neighbours.
+    """
+    from vibroimpact.dynamics.shaken.tabulated import integrated_twice
+    from vibroimpact.measurements.table_file import read_table_file
+
+    table = read_table_file(file, {"time": "s", "displacement": "m", "acceleration": "m/s^2"})
+    missing = "time" if "time" not in table.columns else "displacement [m], or acceleration [m/s^2]" if len(table.columns) == 1 else ""
+    if missing or len(table.columns) > 2:
+        words = f"there is no column {missing}" if missing else "it has displacement and acceleration; leave one of them out"
+        raise InputError(f"{file}: {words}")
+    name = next(name for name in table.columns if name != "time")
+    time, values = table.columns["time"], table.columns[name]
+    if not _FEWEST <= len(time) <= _MOST:
+        many = f"it takes {_FEWEST}" if len(time) < _FEWEST else f"more than {_MOST:,} can't be followed; keep a part, or fewer a second"
+        raise InputError(f"{file}: {len(time)} samples are no motion that can be followed: {many}")
+    _check_steps(table, time)
+    _check_sampling(table, name, values)
+    step = float(time[-1] - time[0]) / (len(time) - 1)
+    return step, values if name == "displacement" else integrated_twice(step, values)
+
+
+def _check_steps(table: TableFile, time: Floats) -> None:
+    """Raise InputError unless times rise by equal steps."""
+    steps = np.diff(time)
+    usual, rounding = float(np.median(steps)), 1e-12 * float(np.abs(time).max())
+    odd = np.flatnonzero((steps <= 0.0) | (np.abs(steps - usual) > _EQUAL * usual + rounding))
+    if odd.size:
+        at = int(odd[0])
+        words = "times must rise" if steps[at] <= 0.0 else f"the others come by {usual:.6g} s; a motion has equal steps, and no gaps"
+        where = f"{table.path}, line {table.lines[at + 1]}"
+        raise InputError(f"{where}: the time {time[at + 1]:.9g} s comes {steps[at]:.6g} s after the one before, and {words}")
+
+
+def _check_sampling(table: TableFile, name: str, values: Floats) -> None:
+    """Raise InputError if a sample can't be guessed from its neighbours: the values jump, or are too coarse for what they show."""
+    between = np.convolve(values, [-1.0 / 6.0, 2.0 / 3.0, 0.0, 2.0 / 3.0, -1.0 / 6.0], mode="valid")  # the cubic through four neighbours
+    wrong = np.abs(values[2:-2] - between)
+    worst = int(wrong.argmax())
+    if wrong[worst] > _UNKNOWN * float(np.ptp(values)):
+        unit = "m" if name == "displacement" else "m/s^2"
+        words = f"the {name} {values[worst + 2]:.6g} {unit} is {wrong[worst]:.3g} {unit} away from the curve through its neighbours"
+        raise InputError(f"{table.path}, line {table.lines[worst + 2]}: {words}; it jumps, or the samples are too coarse for the motion")

@@ -1,0 +1,90 @@
+"""The prescribed motion of a plate's supports, as a sum of harmonic motions along one direction."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from vibroimpact.arrays import Array, Complex, Floats
+from vibroimpact.errors import InputError
+
+_UNIT = 1e-9  # largest deviation of the length of a direction from one
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class PlateMotion:
+    r"""Prescribed motion of the supports of a plate along a direction: :math:`s(t) = \sum_k A_k \sin(2 \pi f_k t + \varphi_k)`.
+
+    Parameters
+    ----------
+    amplitude : float or array, shape (k,)
+        Amplitude of each harmonic motion [m], >= 0.
+    frequency : float or array, shape (k,)
+        Their frequencies [Hz], > 0.
+    phase : float or array, shape (k,), default 0
+        Their phases at the start [rad]; at 0 the plate passes its mean position along the direction.
+    direction : tuple of three floats, default (0, 0, 1)
+        Unit vector of the motion along x and y, in the plate, and its normal z.
+
+    Raises
+    ------
+    InputError
+        If a value is not finite or out of its range, or the direction is not of length 1.
+
+    Examples
+    --------
+    >>> table = PlateMotion(amplitude=2e-3, frequency=25.0)
+    >>> table.at(0.01).round(6).tolist()  # displacement, velocity and acceleration a quarter of a period later
+    [0.002, 0.0, -49.348022]
+    """
+
+    amplitude: Array
+    frequency: Array
+    phase: Array = 0.0
+    direction: tuple[float, float, float] = (0.0, 0.0, 1.0)
+
+    def __post_init__(self) -> None:
+        for name, words, least in (
+            ("amplitude", "not be negative", 0.0),
+            ("frequency", "be greater than 0 Hz", 1e-300),
+            ("phase", "", -np.inf),
+        ):
+            value = getattr(self, name)
+            if np.asarray(value).dtype.kind not in "iuf" or np.ndim(value) > 1 or not np.all(np.isfinite(value)):
+                raise InputError(f"{name} of the plate's motion must be a finite number in SI, or a row of them, not {value!r}")
+            if not np.all(np.asarray(value) >= least):
+                raise InputError(f"{name} of the plate's motion must {words}")
+        try:
+            found = np.broadcast_arrays(
+                *(np.atleast_1d(np.asarray(part, dtype=float)) for part in (self.amplitude, self.frequency, self.phase))
+            )
+        except ValueError:
+            raise InputError("amplitude, frequency and phase of the plate's motion must agree in number, one of each harmonic") from None
+        for name, value in zip(("amplitude", "frequency", "phase"), found, strict=True):
+            object.__setattr__(self, name, value)
+        direction: Any = np.asarray(self.direction)
+        if direction.shape != (3,) or direction.dtype.kind not in "iuf" or not abs(np.linalg.norm(direction) - 1.0) <= _UNIT:
+            raise InputError(f"direction of the plate's motion must be a vector of length 1 along x, y and z, not {self.direction!r}")
+        object.__setattr__(self, "direction", tuple(direction.astype(float).tolist()))
+
+    @cached_property
+    def angular_frequency(self) -> Floats:
+        """Angular frequencies [rad/s] (k,)."""
+        return np.asarray(2.0 * np.pi * np.asarray(self.frequency))
+
+    @cached_property
+    def phasors(self) -> Complex:
+        """Complex amplitudes C [m] (k,) of the motion, the imaginary part of the sum of C exp(i omega t)."""
+        return np.asarray(np.asarray(self.amplitude) * np.exp(1j * np.asarray(self.phase)))
+
+    def at(self, time: Array, phasors: Complex | None = None) -> Floats:
+        """Return displacement [m], velocity [m/s] and acceleration [m/s^2] at times [s] (...), (3, ...).
+
+        `phasors`: of another motion of these frequencies, (k,); by default those of the supports along the direction.
+        """
+        omega = self.angular_frequency
+        turned = (self.phasors if phasors is None else phasors) * np.exp(1j * omega * np.asarray(time, dtype=float)[..., None])
+        return np.array([turned.imag.sum(axis=-1), (omega * turned.real).sum(axis=-1), -(omega**2 * turned.imag).sum(axis=-1)])

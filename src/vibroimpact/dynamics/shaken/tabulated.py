@@ -1,0 +1,87 @@
+r"""Tabulated motions of a plate as sums of harmonic ones, which pass through every sample.
+
+A displacement that is sampled at N + 1 equal steps over a time T is a sum of cosines :math:`c_k \cos(\pi k t/T)`, by the discrete cosine
+transform of the first kind. Their sum goes on evenly beyond both ends, where it would have a kink. Six harmonic motions of the frequencies
+:math:`(m + 1/2)/(2T)` take the slopes and the third derivatives there, so that the coefficients of a smooth record fall with the sixth
+power of k. They are those that leave least in the upper quarter of the frequencies.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from vibroimpact.arrays import Floats
+from vibroimpact.dynamics.shaken.statement import PlateMotion
+
+_KEPT = 1e-6  # of the largest acceleration: what all harmonic motions that are left out may add up to
+
+
+_SEEN = 10.0  # of the standard deviation of the noise: what is more is seen
+
+_HALVES = np.array([2, 4, 8])
+"""The m of the motions that take the slopes at the ends and the third derivatives there, and as many times more as N has 128ths."""
+
+
+def tabulated_motion(step: float, displacement: Floats, direction: tuple[float, float, float] = (0.0, 0.0, 1.0)) -> PlateMotion:
+    """Return a motion through samples of the displacement at equal steps, from its mean position.
+
+    Parameters
+    ----------
+    step : float
+        Time between samples [s], the first of which is at time zero.
+    displacement : array, shape (samples,)
+        Displacement along the direction [m], at least 33.
+    direction : tuple of three floats, default (0, 0, 1)
+        Unit vector of the motion.
+
+    Examples
+    --------
+    >>> time = np.linspace(0.0, 1.0, 201)
+    >>> motion = tabulated_motion(0.005, 0.001 * np.sin(30.0 * time))
+    >>> offset = (motion.at(time)[0] - 0.001 * np.sin(30.0 * time)).mean()
+    >>> bool(np.allclose(motion.at(0.7031)[0] - offset, 0.001 * np.sin(30.0 * 0.7031), rtol=1e-6))
+    True
+    """
+    from scipy.fft import dct  # here, as few plates are shaken
+
+    last = len(displacement) - 1
+    length, time = step * last, step * np.arange(last + 1)
+    halves, places = (_HALVES * (1 + last // 128) + 0.5) * np.pi / length, np.arange(last + 1)
+    # sines have a slope at the start alone, and cosines at the end alone; their means are made up for in pairs
+    moving = np.concatenate([np.sin(halves[:, None] * time), np.cos(halves[:, None] * time)])
+    means = np.concatenate([1.0 / halves, np.sin(halves * length) / halves])
+    pairs = np.kron(np.eye(2), [[1.0, -1.0, 0.0], [0.0, 1.0, -1.0]]) / means
+    spectra, upper = dct(np.vstack([pairs @ moving, displacement]), 1, axis=1) / last, places > 3 * last // 4
+    # by least squares, without what is lost in the noise of the samples
+    left, singular, right = np.linalg.svd(spectra[:-1, upper].T, full_matrices=False)
+    seen = spectra[-1, upper] @ left
+    noise = float(np.std(spectra[-1, upper] - left @ seen))
+    sizes = np.where(np.abs(seen) > _SEEN * noise, seen, 0.0) / singular @ right
+    found = spectra[-1] - sizes @ spectra[:-1]
+    found[-1] *= 0.5
+    frequency = np.concatenate([halves, halves, np.pi / length * places[1:]]) / (2.0 * np.pi)
+    size = np.concatenate([sizes @ pairs, found[1:]])
+    phase = np.where(np.arange(len(size)) < len(halves), 0.0, 0.5 * np.pi) + np.pi * (size < 0.0)
+    acceleration = np.abs(size) * frequency**2
+    smallest = np.argsort(acceleration)
+    kept = np.sort(smallest[np.cumsum(acceleration[smallest]) > _KEPT * acceleration.max()])
+    return PlateMotion(amplitude=np.abs(size[kept]), frequency=frequency[kept], phase=phase[kept], direction=direction)
+
+
+def integrated_twice(step: float, acceleration: Floats) -> Floats:
+    """Return the displacement [m] of samples of an acceleration at equal steps [s], (samples,).
+
+    The parabola that fits the displacement best is taken away: an accelerometer knows neither the velocity at the start nor its own zero.
+
+    Examples
+    --------
+    >>> time = np.linspace(0.0, 1.0, 2001)
+    >>> found = integrated_twice(0.0005, -400.0 * np.sin(200.0 * np.pi * time))
+    >>> round(float(np.ptp(found)) * (200.0 * np.pi) ** 2 / 800.0, 2)
+    1.0
+    """
+    from scipy.interpolate import CubicSpline
+
+    time = step * np.arange(len(acceleration))
+    moved = CubicSpline(time, acceleration).antiderivative(2)(time)
+    return np.asarray(moved - np.polynomial.Polynomial.fit(time, moved, 2)(time))

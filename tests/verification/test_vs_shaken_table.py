@@ -1,0 +1,195 @@
+"""Balls on shaken tables, against closed forms of the bouncing ball and against SciPy's integration of a lump on a sprung deck.
+
+With Gamma = A omega^2 / g: a ball that does not rebound stays on the table if Gamma < 1, and is launched else where sin(omega t) = 1/Gamma.
+One bounce a period needs Gamma >= pi (1 - e)/(1 + e), as the table must be as fast as pi g/omega (1 - e)/(1 + e) where they meet; it
+doubles its period where Gamma^2 = (pi (1 - e)/(1 + e))^2 + 4 (1 + e^2)^2/(1 + e)^4 (Luck and Mehta 1993, Phys. Rev. E 48:3988; Holmes 1982,
+J. Sound Vib. 84:173, for high bounces; both hold for the exact motion, since the map has determinant e^2 and trace
+1 + e^2 - (1 + e)^2 A omega^2 sin(theta)/g).
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+import vibroimpact as vi
+from oracles.shaken_integration import ShakenDeck
+from vibroimpact.contact.laws.hertz import Hertz
+from vibroimpact.contact.laws.kuwabara_kono import KuwabaraKono
+from vibroimpact.contact.laws.newton import Newton
+from vibroimpact.structures.modal_model import ModalBasis
+
+G, FREQUENCY = 9.8, 25.0
+OMEGA = 2.0 * math.pi * FREQUENCY
+
+
+def table(strength: float, phase: float = 0.0) -> vi.PlateMotion:
+    """A table of a greatest acceleration of so many g."""
+    return vi.PlateMotion(amplitude=strength * G / OMEGA**2, frequency=FREQUENCY, phase=phase)
+
+
+def ball(restitution: float, motion: vi.PlateMotion | None, **more: Any) -> vi.Problem:
+    start = {"height": 0.05} if "speed" not in more else {}
+    settings: dict[str, Any] = {"gravity": G, "motion": motion, **start, **more}
+    return vi.Problem(
+        sphere=vi.Body(mass=0.1, contact_offset=0.01), plate=vi.rigid_plate(), laws=(Newton(restitution=restitution),), **settings
+    )
+
+
+def on_orbit(strength: float, restitution: float, shift: float = 0.0, **more: Any) -> vi.Problem:
+    """A ball that begins on the orbit of one bounce a period, or shifted by some phase [rad]."""
+    bounce = math.pi * (1.0 - restitution) / (1.0 + restitution)
+    phase = math.acos(min(bounce / strength, 1.0))
+    return ball(restitution, table(strength, phase + shift), speed=math.pi * G / OMEGA, **more)
+
+
+def doubling(restitution: float) -> float:
+    once = math.pi * (1.0 - restitution) / (1.0 + restitution)
+    return math.sqrt(once**2 + 4.0 * (1.0 + restitution**2) ** 2 / (1.0 + restitution) ** 4)
+
+
+@pytest.mark.parametrize("restitution", [0.0, 0.4, 0.7])
+def test_a_ball_stays_on_a_table_below_one_g(restitution: float) -> None:
+    response = vi.simulate(ball(restitution, table(0.999), impacts=None, duration=20.0))
+    assert response.outcomes == (vi.Outcome.REST_SPEED,)
+    assert response.energy["closure_relative"] <= 1e-9
+    last = response.at(np.linspace(19.0, 20.0, 101))
+    assert last["position_m"] - 0.01 == pytest.approx(last["surface_m"], abs=1e-15)
+    assert last["force_N"] == pytest.approx(0.1 * (G - last["surface_m"] * OMEGA**2), rel=1e-9)
+    assert "moves with the plate" in response.status
+
+
+@pytest.mark.parametrize("strength", [1.001, 1.2, 1.8])
+def test_launch_from_a_table_beyond_one_g(strength: float) -> None:
+    """The first flight after a ride begins at sin(omega t) = 1/Gamma, with the velocity of the table."""
+    response = vi.simulate(ball(0.0, table(strength), impacts=3))
+    launch = math.asin(1.0 / strength) / OMEGA
+    touch = response.impacts["time_s"][0]
+    launch += math.ceil((touch - launch) * FREQUENCY) / FREQUENCY
+    place, speed, _ = response.problem.surface(launch)
+    moment = response.at(launch + np.array([0.0, 1e-4, 1e-3]))
+    later = np.array([0.0, 1e-4, 1e-3])
+    assert moment["position_m"] - 0.01 == pytest.approx(place + speed * later - 0.5 * G * later**2, abs=1e-14)
+    pressed = response.at(launch - 1e-7)["force_N"]
+    assert pressed == pytest.approx(0.1 * G * OMEGA * 1e-7 * math.sqrt(strength**2 - 1.0), rel=1e-3)
+    assert response.energy["closure_relative"] <= 1e-9
+
+
+def test_one_bounce_a_period_exists_from_its_threshold_on() -> None:
+    threshold = math.pi * 0.2 / 1.8
+    above = vi.simulate(on_orbit(1.01 * threshold, 0.8, impacts=500))
+    assert np.diff(above.impacts["time_s"]) == pytest.approx(1.0 / FREQUENCY, rel=1e-9)
+    below = vi.simulate(on_orbit(0.99 * threshold, 0.8, impacts=None, duration=60.0))
+    assert below.outcomes == (vi.Outcome.REST_SPEED,)
+
+
+@pytest.mark.parametrize("restitution", [0.3, 0.5, 0.8])
+def test_period_doubling(restitution: float) -> None:
+    """The factor by which a small shift grows a bounce is -1 at the threshold, found from the factors beside it."""
+
+    def growth(strength: float) -> float:
+        shifted, orbit = (vi.simulate(on_orbit(strength, restitution, shift, impacts=45)).impacts["time_s"] for shift in (1e-7, 0.0))
+        away = shifted + 1e-7 / OMEGA - orbit
+        return float(away[-1] / away[-2])
+
+    expected = doubling(restitution)
+    strengths = expected * np.array([0.99, 1.0, 1.01])
+    factors = np.array([growth(strength) for strength in strengths])
+    assert factors[0] > -1.0 > factors[2]
+    found = np.interp(1.0, -factors, strengths)
+    assert found == pytest.approx(expected, rel=1e-5)
+
+
+def test_two_bounces_of_different_length_beyond_the_doubling() -> None:
+    times = [vi.simulate(on_orbit(factor * doubling(0.5), 0.5, 1e-3, impacts=900)).impacts["time_s"] for factor in (0.98, 1.02)]
+    (even, odd) = (np.diff(times[0][-21:]), np.diff(times[1][-21:]))
+    assert even == pytest.approx(1.0 / FREQUENCY, rel=1e-6)
+    assert odd[::2] == pytest.approx(odd[0], rel=1e-6)
+    assert abs(odd[0] - odd[1]) * FREQUENCY > 0.01
+
+
+@pytest.mark.parametrize(("strength", "restitution"), [(2.5, 0.8), (8.0, 0.7), (1.5, 0.95)])
+def test_ledger_of_a_billiard_of_a_thousand_impacts(strength: float, restitution: float) -> None:
+    response = vi.simulate(ball(restitution, table(strength), impacts=1000))
+    assert response.impacts["impact"][-1] == 1000
+    assert response.energy["closure_relative"] <= 1e-9
+    history = response.history(50_000)
+    total = sum(history[name] for name in history if name.endswith("_J"))
+    assert total == pytest.approx(total[0], abs=1e-9 * response.energy["contact_dissipated_J"])
+    assert (history["position_m"] - 0.01 - history["surface_m"]).min() >= -1e-12
+
+
+@pytest.mark.slow
+def test_ledger_of_a_thousand_soft_impacts() -> None:
+    law = KuwabaraKono(stiffness=1e8, dissipation_time=1e-5)
+    body = vi.Body(mass=0.1, contact_offset=0.01)
+    settings: dict[str, Any] = {"height": 0.03, "gravity": G, "impacts": 1000, "sensitivity": False}
+    response = vi.tabulate(vi.Problem(sphere=body, plate=vi.rigid_plate(), laws=(law,), motion=table(3.0), **settings))
+    assert response.impacts["impact"][-1] == 1000
+    assert response.energy["closure_relative"] <= 1e-9
+    assert -response.energy["drive_J"] > 100.0 * response.energy["input_J"]
+
+
+@pytest.mark.parametrize(("relaxation", "height"), [(2e-5, 0.02), (2e-3, 0.006)], ids=["bouncing", "riding and launched again"])
+@pytest.mark.parametrize("deck", [np.inf, 80.0], ids=["stiff deck", "sprung deck"])
+def test_lump_on_a_deck(deck: float, relaxation: float, height: float) -> None:
+    """A lump of 20 kg on a deck of 80 kg on springs of 12 Hz, or on none, on a frame shaken at 15 Hz, against SciPy's DOP853."""
+    stiffness = 1e8 if relaxation < 1e-3 else 1e7
+    system = ShakenDeck(20.0, deck, 12.0, 0.05, stiffness, relaxation, 1.6e-3, 15.0)
+    modes = None
+    if np.isfinite(deck):
+        shape = np.array([deck**-0.5])
+        moves = np.array([[0.0, 0.0, deck**0.5]])
+        modes = ModalBasis(np.array([12.0]), np.array([0.05]), shape, moves, {"a": np.outer(shape, [0.0, 0.0, 1.0])}, deck)
+    problem = vi.Problem(
+        sphere=vi.Body(mass=20.0, contact_offset=0.1),
+        plate=vi.Body(mass=np.inf, contact_offset=0.0, modes=modes),
+        laws=(KuwabaraKono(stiffness=stiffness, dissipation_time=relaxation),),
+        height=0.1 + height,
+        gravity=9.8,
+        duration=1.0,
+        impacts=None,
+        tolerance=1e-11,
+        motion=vi.PlateMotion(amplitude=1.6e-3, frequency=15.0),
+    )
+    response, times = vi.simulate(problem), np.linspace(0.0, 1.0, 1001)
+    expected, left = system.follow(height, times)
+    found = response.at(times)
+    assert found["position_m"] - 0.1 == pytest.approx(expected[:, 0], abs=1e-8)
+    assert found["velocity_m_s"] == pytest.approx(expected[:, 1], abs=1e-6)
+    assert found["plate_deflection_m"] == pytest.approx(expected[:, 2], abs=1e-8)
+    assert found["plate_displacement_m"] == pytest.approx(expected[:, 2], abs=1e-8)
+    assert found["plate_velocity_m_s"] == pytest.approx(expected[:, 3], abs=1e-6)
+    assert len(left) > 2
+    assert response.energy["closure_relative"] <= 1e-9
+
+
+@pytest.mark.parametrize("law", [Newton(restitution=0.6), Hertz(stiffness=1e8), KuwabaraKono(stiffness=1e8, dissipation_time=1e-5)])
+def test_a_table_without_amplitude_is_a_plate_at_rest(law: vi.ContactLaw) -> None:
+    still = vi.PlateMotion(amplitude=0.0, frequency=25.0)
+    body = vi.Body(mass=0.1, contact_offset=0.01)
+    settings: dict[str, Any] = {"height": 0.05, "gravity": G, "impacts": 20}
+    rest, shaken = (
+        vi.simulate(vi.Problem(sphere=body, plate=vi.rigid_plate(), laws=(law,), motion=motion, **settings)) for motion in (None, still)
+    )
+    for name, values in rest.impacts.items():
+        assert np.array_equal(values, shaken.impacts[name], equal_nan=True), name
+    for name, values in rest.history().items():
+        assert np.array_equal(values, shaken.history()[name], equal_nan=True), name
+    for name, value in rest.energy.items():
+        assert value == shaken.energy[name], name
+
+
+@pytest.mark.parametrize("law", [Newton(restitution=0.6), KuwabaraKono(stiffness=1e8, dissipation_time=1e-5)])
+def test_a_table_that_hardly_moves_is_nearly_a_plate_at_rest(law: vi.ContactLaw) -> None:
+    nearly = vi.PlateMotion(amplitude=1e-15, frequency=25.0)
+    body = vi.Body(mass=0.1, contact_offset=0.01)
+    settings: dict[str, Any] = {"height": 0.05, "gravity": G, "impacts": 5}
+    rest, shaken = (
+        vi.simulate(vi.Problem(sphere=body, plate=vi.rigid_plate(), laws=(law,), motion=motion, **settings)) for motion in (None, nearly)
+    )
+    for name in ("time_s", "duration_s", "approach_speed_m_s", "separation_speed_m_s", "max_indentation_m", "rebound_height_m"):
+        assert shaken.impacts[name] == pytest.approx(rest.impacts[name], rel=1e-8), name
