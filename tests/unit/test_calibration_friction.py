@@ -233,8 +233,7 @@ def test_folder_page_and_charts(tmp_path: Path) -> None:
         np.testing.assert_allclose(points.y, columns[name], rtol=1e-11)
         np.testing.assert_allclose(np.interp(ALL[1:-1], curve.x, curve.y), points.y[1:-1], atol=0.02 * np.ptp(points.y))
         assert (points.low is None) == (name == "rebound_angle_deg")
-    with pytest.raises(vi.InputError, match="does not spin or rub"):
-        load_drop(folder)
+    assert load_drop(folder).function is None
 
 
 FAULTS = [
